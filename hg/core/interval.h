@@ -1,0 +1,25 @@
+/// Closed intervals: limits, bounds and slacks are all of this kind.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+namespace hg {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Closed interval [lb, ub]; empty when lb > ub. An infinite end means "no limit on this side".
+struct Interval {
+  double lb = -kInfinity;
+  double ub = kInfinity;
+
+  constexpr bool empty() const noexcept { return lb > ub; }
+  constexpr bool contains(double x) const noexcept { return lb <= x && x <= ub; }
+  constexpr bool bounded() const noexcept { return lb > -kInfinity || ub < kInfinity; }
+};
+
+constexpr Interval intersect(Interval a, Interval b) noexcept {
+  return {std::max(a.lb, b.lb), std::min(a.ub, b.ub)};
+}
+
+}  // namespace hg
