@@ -8,12 +8,13 @@
 
 namespace hg {
 
-inline constexpr int kMaxGantry = 2;        ///< prepositioning joints
-inline constexpr int kMaxManipulator = 7;   ///< manipulator joints
-inline constexpr int kMaxTwin = 30;         ///< degrees of freedom of a twin
-inline constexpr int kMaxTwinCoords = 36;   ///< coordinates of a twin; a floating joint has 7 for 6 DOF
-inline constexpr int kMaxVirtualJoints = 2;     ///< virtual joints: sums of manipulator joints
-inline constexpr int kMaxCartesianFrames = 2;   ///< frames with Cartesian limits
+inline constexpr int kMaxGantry = 2;       ///< prepositioning joints
+inline constexpr int kMaxManipulator = 7;  ///< manipulator joints
+inline constexpr int kMaxTwin = 30;        ///< degrees of freedom of a twin
+inline constexpr int kMaxTwinCoords =
+    36;  ///< coordinates of a twin; a floating joint has 7 for 6 DOF
+inline constexpr int kMaxVirtualJoints = 2;    ///< virtual joints: sums of manipulator joints
+inline constexpr int kMaxCartesianFrames = 2;  ///< frames with Cartesian limits
 
 template <int kCapacity>
 using VectorUpTo = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kCapacity, 1>;
@@ -22,9 +23,9 @@ using MatrixUpTo =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kRows, kCols>;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-using VectorP = VectorUpTo<kMaxGantry>;         ///< chain p: prepositioning unit
-using VectorM = VectorUpTo<kMaxManipulator>;    ///< chain m: manipulator
-using VectorA = VectorUpTo<kMaxTwin>;           ///< chain a: twin, velocities and torques
+using VectorP = VectorUpTo<kMaxGantry>;             ///< chain p: prepositioning unit
+using VectorM = VectorUpTo<kMaxManipulator>;        ///< chain m: manipulator
+using VectorA = VectorUpTo<kMaxTwin>;               ///< chain a: twin, velocities and torques
 using ConfigurationA = VectorUpTo<kMaxTwinCoords>;  ///< chain a: twin, coordinates q_a
 
 /// Pose of a frame E relative to a frame B: p_B_E in m, R_B_E.

@@ -1,0 +1,52 @@
+/// The plain structs that cross the boundary of a cycle: sensors and operator in, command out.
+///
+/// A recording of SensorFrame and OperatorFrame replays a run bit for bit. SI units; frames are
+/// spelled in names (B = base, H = handle, S = force/torque sensor). Copyable, no allocation.
+#pragma once
+
+#include <cstdint>
+
+#include "hg/core/types.h"
+
+namespace hg {
+
+/// What a device measured in one sample, as its sensors give it.
+struct SensorFrame {
+  std::uint64_t sequence = 0;     ///< counts up by one per sample
+  double time_s = 0.0;            ///< the device's clock
+  VectorM q_m;                    ///< link-side encoders; unlimited joints wrapped to [-pi, pi)
+  VectorM dq_m;                   ///< link-side joint velocities
+  VectorM tau_m;                  ///< joint torque sensors
+  VectorP q_p;                    ///< gantry encoders
+  Vector6 w_S = Vector6::Zero();  ///< wrench on the handle at S, resolved in S, force first
+  bool dead_man = false;          ///< the user's hand closes the dead-man switch of the handle
+  bool emergency_stop = false;    ///< the safety inputs ask for a stop
+};
+
+/// Where a simulated person wants the handle. Only simulated devices look at it.
+struct HandTarget {
+  bool active = false;                            ///< false: the person's own script decides
+  Eigen::Vector3d p_B = Eigen::Vector3d::Zero();  ///< target position of the handle in B
+  double press = 0.0;  ///< how far the hand presses the lever it holds, 0..1
+};
+
+enum class ModeRequest : std::uint8_t { kNone = 0, kArm = 1, kRun = 2, kStop = 3, kReset = 4 };
+
+/// Everything that enters a cycle from outside other than sensors.
+struct OperatorFrame {
+  ModeRequest request = ModeRequest::kNone;
+  HandTarget hand_target;
+};
+
+/// What the device is asked to do until the next sample.
+struct CommandFrame {
+  std::uint64_t sequence = 0;  ///< of the SensorFrame that it answers
+  bool enable = false;         ///< drives powered; false also means: brakes closed
+  VectorM q_m;                 ///< reference positions of the manipulator
+  VectorM dq_m;                ///< reference velocities
+  VectorM ddq_m;               ///< reference accelerations
+  VectorP dq_p;                ///< gantry velocities
+  HandTarget hand_target;      ///< handed through to a simulated person
+};
+
+}  // namespace hg

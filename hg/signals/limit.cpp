@@ -1,0 +1,39 @@
+#include "hg/signals/limit.h"
+
+namespace hg {
+
+std::string_view to_string(LimitState state) noexcept {
+  switch (state) {
+    case LimitState::kInactive:
+      return "inactive";
+    case LimitState::kLower:
+      return "lower";
+    case LimitState::kUpper:
+      return "upper";
+    case LimitState::kViolated:
+      return "violated";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(LimitCause cause) noexcept {
+  switch (cause) {
+    case LimitCause::kNone:
+      return "none";
+    case LimitCause::kPosition:
+      return "position";
+    case LimitCause::kVelocity:
+      return "velocity";
+    case LimitCause::kAcceleration:
+      return "acceleration";
+    case LimitCause::kLock:
+      return "lock";
+    case LimitCause::kLatch:
+      return "latch";
+    case LimitCause::kFriction:
+      return "friction";
+  }
+  return "unknown";
+}
+
+}  // namespace hg

@@ -1,0 +1,109 @@
+/// The plain structs that travel inside a cycle and out of it as a record.
+///
+/// SI units. Chains: p = prepositioning unit (gantry), m = manipulator, a = twin. Frames: B = base,
+/// H = handle of the device, E = end effector of the twin. Wrenches act on the handle, at H,
+/// resolved in B, force first. Copyable, no allocation.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "hg/core/types.h"
+#include "hg/signals/fault.h"
+#include "hg/signals/frames.h"
+#include "hg/signals/limit.h"
+
+namespace hg {
+
+/// Operating states of DESIGN.md section 8.
+enum class Mode : std::uint8_t {
+  kOff = 0,
+  kReady = 1,
+  kArmed = 2,
+  kRunning = 3,
+  kStopping = 4,
+  kFault = 5,
+};
+
+std::string_view to_string(Mode mode) noexcept;
+
+/// What estimation knows about the device.
+struct RobotState {
+  VectorM q_m, dq_m;              ///< measured, unlimited joints unwrapped
+  VectorP q_p, dq_p, ddq_p;       ///< gantry, from the observer with the drive model
+  Vector6 w_H = Vector6::Zero();  ///< wrench of the user
+};
+
+/// Integrated reference of the manipulator.
+struct ReferenceState {
+  VectorM q_m, dq_m, ddq_m;
+};
+
+/// State of the twin.
+struct TwinState {
+  ConfigurationA q_a;   ///< coordinates; a floating joint has position and quaternion xyzw
+  VectorA dq_a, ddq_a;  ///< velocities of its joints; a floating joint in its own frame
+};
+
+/// Where the user's wrench goes, in twin joint space (rad: Nm, m: N). The parts add up:
+/// J_a^T w = inertia + damping + friction + spring + surface + limits (+ conflict); the part of w
+/// that the twin's bearings carry is `structure`.
+struct Budget {
+  VectorA inertia;   ///< M_a ddq_a + c_a
+  VectorA damping;   ///< viscous part of tau_dis
+  VectorA friction;  ///< Coulomb part of tau_dis while slipping
+  VectorA spring;    ///< -tau_dri
+  VectorA surface;   ///< J_a^T w_ref
+  VectorA limits;    ///< minus the constraint torques of all rows with a reaction
+  VectorA conflict;  ///< minus what rows that could not be met add
+  Vector6 structure = Vector6::Zero();  ///< part of w in the null space of J_a^T
+};
+
+enum class SolverStatus : std::uint8_t {
+  kNotRun = 0,
+  kSolved = 1,
+  kIterationLimit = 2,
+  kFailed = 3
+};
+
+std::string_view to_string(SolverStatus status) noexcept;
+
+/// Everything that a cycle has to say: recorded, shown, and judged after the run.
+struct CycleRecord {
+  std::uint64_t cycle = 0;
+  double time_s = 0.0;  ///< nominal time since the cycle was created
+  Mode mode = Mode::kOff;
+  Fault fault;
+  RobotState robot;
+  ReferenceState reference;
+  TwinState twin;
+  Pose T_B_H;                                     ///< handle at the reference
+  Eigen::Vector3d v_H = Eigen::Vector3d::Zero();  ///< its velocity
+  Eigen::Vector3d a_H = Eigen::Vector3d::Zero();  ///< its acceleration asked for this sample
+  Eigen::Vector3d p_B_elbow = Eigen::Vector3d::Zero();
+  double sync_error = 0.0;        ///< distance of H and E in m
+  double sync_error_angle = 0.0;  ///< angle between H and E in rad
+  VectorA tau_a;                  ///< J_a^T w
+  Budget budget;
+  std::array<LimitReport, kMaxLimits> limits{};
+  int limit_count = 0;
+  int felt_limit = -1;               ///< index of the limit that the user feels most; -1 = none
+  Vector6 w_felt = Vector6::Zero();  ///< its reaction as a wrench on the handle (device rows only)
+  VectorP q_p_target;                ///< where prepositioning wants the gantry
+  SolverStatus solver_status = SolverStatus::kNotRun;
+  int solver_iterations = 0;
+  int active_set_changes = 0;
+  std::uint64_t state_hash = 0;  ///< of the state after this cycle; equal in a replay
+};
+
+/// One cycle, complete: what is recorded.
+struct Sample {
+  SensorFrame sensors;
+  OperatorFrame operator_input;
+  CommandFrame command;
+  CycleRecord record;
+  double cycle_time_us = 0.0;  ///< measured by the runtime; not part of a replay
+};
+
+}  // namespace hg
