@@ -1,0 +1,72 @@
+/// What goes in and comes out of a solve besides the problem: options, active set, solution.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "hg/hqp/problem.h"
+
+namespace hg::hqp {
+
+enum class Status : std::uint8_t {
+  kSolved,          ///< every level is optimal
+  kIterationLimit,  ///< levels below `completed_levels` are feasible but not optimal
+  kBadRow,          ///< `bad_row` is not finite, has lb > ub or a weight <= 0; levels above it hold
+  kNumericalFailure,  ///< overflow: x is the last finite point
+};
+const char* to_string(Status status) noexcept;
+
+/// Place of a row relative to its interval.
+enum class RowState : std::uint8_t {
+  kInactive,  ///< inside, or touching without being held
+  kLower,     ///< held at its lower bound by lower levels
+  kUpper,     ///< held at its upper bound by lower levels
+  kEqual,     ///< lb = ub and reached
+  kBelow,     ///< violated: stays below its lower bound
+  kAbove,     ///< violated: stays above its upper bound
+};
+constexpr bool is_violated(RowState s) noexcept {
+  return s == RowState::kBelow || s == RowState::kAbove;
+}
+
+/// Guess of the row states, by row id. A plain value: copy, store and pass it on. The default is a
+/// cold start; a wrong or outdated guess costs time, never correctness.
+struct ActiveSet {
+  std::array<RowState, kMaxRows> state{};
+};
+
+struct Options {
+  /// A row that is a combination of others, up to this fraction of its own norm, is dependent.
+  double rank_tolerance = 1e-9;
+  /// A bound counts as met up to this fraction of |bound| + norm(row) |x|.
+  double feasibility_tolerance = 1e-10;
+  /// Active sets tried before the solver stops, > 0; a warm start mostly needs 1 or 2.
+  int max_iterations = 1000;
+  /// Freedom left by the last level goes to the smallest |x|; otherwise x is any optimal point.
+  bool minimum_norm = true;
+};
+
+struct LevelResult {
+  double slack_squared;  ///< sum of (weight * slack)^2 over the level's rows
+  int freedom;           ///< dimensions that this level found left to it; 0: the level is frozen
+  int blocking_row;      ///< row above that costs this level most slack, -1: none
+};
+
+/// Result of one solve. Vectors have the size of the problem; they never grow beyond `capacity`.
+struct Solution {
+  /// Throws SetupError, see check(Capacity).
+  explicit Solution(const Capacity& capacity);
+
+  Status status = Status::kSolved;
+  int iterations = 0;        ///< active sets tried
+  int completed_levels = 0;  ///< levels known to be optimal, counted from the top
+  int bad_level = -1;        ///< level and id of the row that caused kBadRow, else -1
+  int bad_row = -1;
+  std::vector<double> x;            ///< always finite
+  std::vector<RowState> state;      ///< by row id
+  std::vector<double> slack;        ///< by row id: nearest bound - c x, 0 inside; not weighted
+  std::vector<LevelResult> levels;  ///< by level
+};
+
+}  // namespace hg::hqp
