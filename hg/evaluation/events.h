@@ -1,0 +1,68 @@
+/// Recognises what happened in a run: an ordered list of events, each a conjunction of conditions
+/// on one CycleRecord. Works on records only, outside the control loop.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hg/signals/state.h"
+
+namespace hg::evaluation {
+
+enum class ConditionKind {
+  kLimit,        ///< limit `index` is felt on `side` within 2 mm / 5 mrad of it
+  kSpeedLimit,   ///< the velocity rating of limit `index` acts
+  kLocked,       ///< a lock holds limit `index`
+  kForceAbove,   ///< norm of the user's force > value, N
+  kForceBelow,   ///< norm of the user's force < value, N
+  kTwinAbove,    ///< twin coordinate `index` > value
+  kTwinBelow,    ///< twin coordinate `index` < value
+  kTurns,        ///< manipulator joint `index` has turned by `value` turns since the start
+  kGantryAbove,  ///< gantry joint `index` > value, m
+  kGantryBelow,  ///< gantry joint `index` < value, m
+  kElapsed,      ///< time > value, s
+};
+
+struct Condition {
+  ConditionKind kind = ConditionKind::kElapsed;
+  int index = 0;
+  LimitState side = LimitState::kInactive;  ///< kInactive = either side
+  double value = 0.0;
+};
+
+struct EventRule {
+  std::string name;               ///< "t_a", "locked"
+  std::string what;               ///< one sentence for humans
+  std::vector<Condition> all_of;  ///< true together
+};
+
+struct Event {
+  std::string name;
+  double time_s = 0.0;
+  std::string what;
+};
+
+/// Looks for the rules in their order: each is looked for once the one before it has happened.
+class EventDetector {
+ public:
+  /// With no rules, every limit that begins to be felt is an event.
+  EventDetector(std::vector<EventRule> rules, LimitCatalogue catalogue);
+
+  /// The event that this record completes, if any.
+  std::optional<Event> observe(const CycleRecord& record);
+
+  /// Names of the rules that have not happened yet.
+  std::vector<std::string> missing() const;
+
+ private:
+  bool holds(const Condition& condition, const CycleRecord& record) const;
+
+  std::vector<EventRule> rules_;
+  LimitCatalogue catalogue_;
+  std::size_t next_ = 0;
+  VectorM q_m_start_;
+  std::vector<LimitState> last_states_;
+};
+
+}  // namespace hg::evaluation

@@ -1,0 +1,47 @@
+/// The device as the rendering sees it: chain, frames, and the limits that are part of the law.
+///
+/// Set-up data: filled by config, checked once, constant afterwards. SI units.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hg/core/types.h"
+#include "hg/limits/acceleration_bounds.h"
+#include "hg/model/chain.h"
+
+namespace hg::rendering {
+
+/// A weighted sum of manipulator joints with limits of its own, for example q4 + q5, whose ends are
+/// singular; [HG] sec. VI-C3.
+struct VirtualJoint {
+  std::string name;
+  VectorM weights;  ///< one per manipulator joint
+  limits::JointLimits limits;
+};
+
+/// A frame whose origin stays inside a box of B; [HG] sec. VI-C4.
+struct CartesianLimit {
+  std::string name;
+  int frame = -1;                           ///< index in the chain
+  std::array<limits::JointLimits, 3> axes;  ///< x, y, z of B in m; infinite = no row
+  double margin = 5e-3;  ///< the box is rendered smaller by this much on every side, m
+};
+
+struct DeviceModel {
+  model::Chain chain;                             ///< gantry joints first, then the manipulator
+  int n_p = 0;                                    ///< gantry joints
+  int n_m = 0;                                    ///< manipulator joints
+  int handle = -1;                                ///< frame H
+  int elbow = -1;                                 ///< frame shown as the elbow; -1 = none
+  std::vector<limits::JointLimits> joint_limits;  ///< of the manipulator joints
+  std::vector<VirtualJoint> virtual_joints;
+  std::vector<CartesianLimit> cartesian_limits;  ///< highest priority first
+
+  const std::string& manipulator_joint(int i) const {
+    return chain.joints()[static_cast<std::size_t>(n_p + i)].name;
+  }
+};
+
+}  // namespace hg::rendering

@@ -1,0 +1,38 @@
+/// First and last in the line: refuses sensor values that cannot be used, and commands that must
+/// not leave. Not a certified safety function.
+///
+/// No allocation, noexcept after set-up.
+#pragma once
+
+#include <vector>
+
+#include "hg/core/interval.h"
+#include "hg/signals/state.h"
+
+namespace hg::safety {
+
+/// Set-up data.
+struct MonitorConfig {
+  double force_max = 150.0;             ///< [HANDBOOK] 6.2, N
+  double torque_max = 14.0;             ///< Nm; the sensor ends at 15
+  double position_tolerance = 0.03;     ///< beyond a joint limit, rad
+  double cartesian_tolerance = 0.03;    ///< outside a Cartesian limit, m
+  double speed_tolerance = 1.1;         ///< times the rating
+  double tracking_tolerance = 0.08;     ///< reference minus measured joint, rad
+  double gantry_speed_max = 1.5;        ///< m/s
+  std::vector<Interval> joint_range;    ///< of the manipulator joints
+  std::vector<double> joint_speed_max;  ///< rad/s
+};
+
+/// The first thing wrong with what was measured, or kNone.
+Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
+                    std::uint64_t expected_sequence) noexcept;
+
+/// The first thing wrong with the reference or the state behind it, or kNone.
+Fault check_reference(const MonitorConfig& config, const CycleRecord& record) noexcept;
+
+/// Last hand on the command: non-finite values become safe ones, speeds are clamped. Leaves a
+/// command that is fine untouched, bit for bit.
+void sanitise(const MonitorConfig& config, CommandFrame& command) noexcept;
+
+}  // namespace hg::safety

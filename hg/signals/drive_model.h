@@ -1,0 +1,42 @@
+/// How a velocity-controlled gantry axis follows its command: shared by its simulation and by the
+/// observer that estimates its motion.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+namespace hg {
+
+/// [HANDBOOK] 1.5. Set-up data.
+struct DriveModel {
+  double dead_time = 4e-3;  ///< s, >= 0
+  double lag = 40e-3;       ///< first-order time constant, s, > 0
+  double dq_max = 1.5;      ///< speed, m/s
+  double ddq_max = 2.5;     ///< acceleration, m/s^2
+};
+
+/// Acceleration of the drive at speed `dq` for the command that has passed the dead time.
+inline double drive_acceleration(const DriveModel& drive, double dq, double dq_cmd) noexcept {
+  const double dq_limited = std::clamp(dq_cmd, -drive.dq_max, drive.dq_max);
+  return std::clamp((dq_limited - dq) / drive.lag, -drive.ddq_max, drive.ddq_max);
+}
+
+/// Commands on their way to the drive. At most kCapacity - 1 periods long.
+class CommandDelay {
+ public:
+  static constexpr int kCapacity = 256;
+
+  /// Takes the command of this period, returns the one given `periods` periods ago (0 before).
+  double shift(double command, int periods) noexcept {
+    values_[static_cast<std::size_t>(next_)] = command;
+    const int delayed = (next_ - periods + kCapacity) % kCapacity;
+    next_ = (next_ + 1) % kCapacity;
+    return values_[static_cast<std::size_t>(delayed)];
+  }
+
+ private:
+  std::array<double, kCapacity> values_{};
+  int next_ = 0;
+};
+
+}  // namespace hg
