@@ -1,0 +1,30 @@
+#include "hg/core/nearest_name.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace hg {
+namespace {
+
+const std::vector<std::string> kJoints = {"ppu1", "m1", "m2", "elbow", "handle"};
+
+TEST(NearestName, FindsOneWrongMissingOrExtraLetter) {
+  EXPECT_EQ(nearest_name("hendle", kJoints), "handle");
+  EXPECT_EQ(nearest_name("elbw", kJoints), "elbow");
+  EXPECT_EQ(nearest_name("ppuu1", kJoints), "ppu1");
+}
+
+TEST(NearestName, FindsSwappedLetters) { EXPECT_EQ(nearest_name("hadnle", kJoints), "handle"); }
+
+TEST(NearestName, IgnoresCase) { EXPECT_EQ(nearest_name("ELBOW", kJoints), "elbow"); }
+
+TEST(NearestName, TakesTheFirstOfEquals) { EXPECT_EQ(nearest_name("m3", kJoints), "m1"); }
+
+TEST(NearestName, AnswersEmptyNamesAndListsWithoutFailing) {
+  EXPECT_EQ(nearest_name("", kJoints), "m1");
+  EXPECT_EQ(nearest_name("handle", {}), "");
+}
+
+}  // namespace
+}  // namespace hg

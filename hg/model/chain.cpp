@@ -1,0 +1,414 @@
+#include "hg/model/chain.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/jacobian.hpp>
+#include <pinocchio/algorithm/joint-configuration.hpp>
+#include <pinocchio/algorithm/kinematics.hpp>
+#include <pinocchio/algorithm/rnea.hpp>
+#include <pinocchio/multibody/data.hpp>
+#include <pinocchio/multibody/model.hpp>
+#include <utility>
+
+#include "hg/core/error.h"
+#include "hg/core/nearest_name.h"
+#include "hg/model/urdf.h"
+
+namespace hg::model {
+namespace {
+
+// A frame moves with the child of a joint; joint 0 is the frame B itself.
+struct Frame {
+  pinocchio::JointIndex joint = 0;
+  pinocchio::SE3 T_joint_frame = pinocchio::SE3::Identity();
+};
+
+pinocchio::SE3 to_SE3(const Pose& pose) { return {pose.R, pose.p}; }
+
+pinocchio::Inertia to_inertia(const Inertial& i) { return {i.mass, i.p_com, i.inertia}; }
+
+// axes along x, y, z have cheaper joints of their own
+pinocchio::JointModel scalar_joint(bool turns, const Eigen::Vector3d& axis) {
+  if (axis == Eigen::Vector3d::UnitX()) {
+    return turns ? pinocchio::JointModel(pinocchio::JointModelRX())
+                 : pinocchio::JointModel(pinocchio::JointModelPX());
+  }
+  if (axis == Eigen::Vector3d::UnitY()) {
+    return turns ? pinocchio::JointModel(pinocchio::JointModelRY())
+                 : pinocchio::JointModel(pinocchio::JointModelPY());
+  }
+  if (axis == Eigen::Vector3d::UnitZ()) {
+    return turns ? pinocchio::JointModel(pinocchio::JointModelRZ())
+                 : pinocchio::JointModel(pinocchio::JointModelPZ());
+  }
+  return turns ? pinocchio::JointModel(pinocchio::JointModelRevoluteUnaligned(axis))
+               : pinocchio::JointModel(pinocchio::JointModelPrismaticUnaligned(axis));
+}
+
+int find(std::string_view name, const std::vector<std::string>& names, const std::string& chain,
+         const std::string& kind) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<int>(found - names.begin());
+  throw SetupError(chain + ": " + kind + " must be one of the chain, got '" + std::string(name) +
+                   "', nearest is '" + nearest_name(name, names) + "'");
+}
+
+// What a chain is made of: joints and frames, and the rigid-body model that moves them.
+struct Assembly {
+  std::string name;
+  std::vector<Joint> joints;
+  std::vector<std::string> joint_names;
+  std::vector<std::string> frame_names;
+  std::vector<Frame> frames;
+  pinocchio::Model model;
+
+  pinocchio::JointIndex add_joint(pinocchio::JointIndex parent, Joint joint,
+                                  const pinocchio::JointModel& kind,
+                                  const pinocchio::SE3& placement) {
+    const pinocchio::JointIndex index = model.addJoint(parent, kind, placement, joint.name);
+    joint.q_index = model.idx_qs[index];
+    joint.v_index = model.idx_vs[index];
+    joint.nq = model.nqs[index];
+    joint.nv = model.nvs[index];
+    joint_names.push_back(joint.name);
+    joints.push_back(std::move(joint));
+    return index;
+  }
+
+  pinocchio::JointIndex add_floating_root(const Pose& T_B_root) {
+    return add_joint(0, {.name = "root", .type = JointType::kFloating, .position = {}},
+                     pinocchio::JointModelFreeFlyer(), to_SE3(T_B_root));
+  }
+
+  void add_frame(const std::string& frame_name, pinocchio::JointIndex joint,
+                 const pinocchio::SE3& T_joint_frame) {
+    frame_names.push_back(frame_name);
+    frames.push_back({joint, T_joint_frame});
+  }
+};
+
+// Walks a URDF from its root to its tip and adds what it meets to a chain.
+class Builder {
+ public:
+  Builder(const Urdf& urdf, const ChainOptions& options) : urdf_(urdf), options_(options) {}
+
+  Assembly build() {
+    Assembly chain;
+    chain.name = urdf_.name;
+    const int root = root_link();
+    pinocchio::JointIndex joint = 0;
+    pinocchio::SE3 placement = to_SE3(options_.T_B_root);
+    if (options_.floating_root) {
+      joint = chain.add_floating_root(options_.T_B_root);
+      placement.setIdentity();
+    }
+
+    merge_fixed(chain, joint, root, placement);
+    refuse_massless(joint, link(root), options_.floating_root ? "root" : "");
+    std::size_t visited = merged_.size();
+    while (const UrdfJoint* next = moving_joint()) {
+      joint = add(chain, joint, *next);
+      merge_fixed(chain, joint, next->child, pinocchio::SE3::Identity());
+      refuse_massless(joint, link(next->child), next->name);
+      visited += merged_.size();
+    }
+    if (visited != urdf_.links.size()) fail_for_loop();
+    if (chain.joints.empty()) throw SetupError(urdf_.source + ": robot has no moving joint");
+    return chain;
+  }
+
+ private:
+  struct Merged {
+    int link;
+    pinocchio::SE3 T_joint_link;
+  };
+
+  const UrdfLink& link(int index) const { return urdf_.links[static_cast<std::size_t>(index)]; }
+
+  [[noreturn]] void fail(int line, const std::string& what) const {
+    throw SetupError(urdf_.source + ":" + std::to_string(line) + ": " + what);
+  }
+
+  int root_link() const {
+    std::vector<const UrdfJoint*> holder(urdf_.links.size(), nullptr);
+    for (const UrdfJoint& j : urdf_.joints) {
+      const UrdfJoint*& first = holder[static_cast<std::size_t>(j.child)];
+      if (first != nullptr) {
+        fail(j.line, "joint " + j.name + ": link " + link(j.child).name +
+                         " is the child of joint " + first->name + " already");
+      }
+      first = &j;
+    }
+    int root = -1;
+    for (int i = 0; i < static_cast<int>(holder.size()); ++i) {
+      if (holder[static_cast<std::size_t>(i)] != nullptr) continue;
+      if (root >= 0) {
+        fail(link(i).line, "link " + link(i).name + ": is not connected to link " +
+                               link(root).name + ", a chain has one root");
+      }
+      root = i;
+    }
+    if (root < 0) fail_for_loop();
+    return root;
+  }
+
+  [[noreturn]] void fail_for_loop() const {
+    fail(urdf_.joints.front().line, "robot: joints form a loop, a chain has a root and a tip");
+  }
+
+  // Collects the links that are fixed to `first`, gives them to the body of `joint` and lists
+  // frames.
+  void merge_fixed(Assembly& chain, pinocchio::JointIndex joint, int first,
+                   const pinocchio::SE3& placement) {
+    merged_ = {{first, placement}};
+    mass_ = 0.0;
+    for (std::size_t i = 0; i < merged_.size(); ++i) {
+      const Merged at = merged_[i];
+      chain.add_frame(link(at.link).name, joint, at.T_joint_link);
+      if (const auto& inertial = link(at.link).inertial; inertial && joint > 0) {
+        chain.model.appendBodyToJoint(joint, to_inertia(*inertial), at.T_joint_link);
+        mass_ += inertial->mass;
+      }
+      for (const UrdfJoint& j : urdf_.joints) {
+        if (j.parent != at.link || j.type != UrdfJointType::kFixed) continue;
+        merged_.push_back({j.child, at.T_joint_link * to_SE3(j.T_parent_joint)});
+      }
+    }
+  }
+
+  // The joint that carries the rest of the chain; nullptr at the tip.
+  const UrdfJoint* moving_joint() {
+    const UrdfJoint* found = nullptr;
+    for (const Merged& at : merged_) {
+      for (const UrdfJoint& j : urdf_.joints) {
+        if (j.parent != at.link || j.type == UrdfJointType::kFixed) continue;
+        if (found != nullptr) {
+          fail(j.line, "link " + link(at.link).name + ": branches into the joints " + found->name +
+                           " and " + j.name + ", only serial chains are supported");
+        }
+        found = &j;
+        T_joint_next_ = at.T_joint_link * to_SE3(j.T_parent_joint);
+      }
+    }
+    return found;
+  }
+
+  pinocchio::JointIndex add(Assembly& chain, pinocchio::JointIndex parent,
+                            const UrdfJoint& j) const {
+    Joint joint = {.name = j.name,
+                   .position = j.position,
+                   .velocity_max = j.velocity_max,
+                   .effort_max = j.effort_max};
+    if (j.type == UrdfJointType::kFloating) {
+      joint.type = JointType::kFloating;
+      return chain.add_joint(parent, joint, pinocchio::JointModelFreeFlyer(), T_joint_next_);
+    }
+    joint.type = j.type == UrdfJointType::kPrismatic    ? JointType::kPrismatic
+                 : j.type == UrdfJointType::kContinuous ? JointType::kContinuous
+                                                        : JointType::kRevolute;
+    const bool turns = j.type != UrdfJointType::kPrismatic;
+    return chain.add_joint(parent, joint, scalar_joint(turns, j.axis), T_joint_next_);
+  }
+
+  void refuse_massless(pinocchio::JointIndex joint, const UrdfLink& body,
+                       const std::string& joint_name) const {
+    if (joint == 0 || mass_ > 0.0) return;
+    fail(body.line, "link " + body.name + ": moves with joint " + joint_name +
+                        " but has no mass; give it an <inertial> or make the joint fixed");
+  }
+
+  const Urdf& urdf_;
+  const ChainOptions& options_;
+  std::vector<Merged> merged_;  // links of the current body
+  double mass_ = 0.0;           // of the current body
+  pinocchio::SE3 T_joint_next_ = pinocchio::SE3::Identity();
+};
+
+Assembly build(const Urdf& urdf, const ChainOptions& options) {
+  Assembly chain = Builder(urdf, options).build();
+  if (chain.model.nv > kMaxTwin || chain.model.nq > kMaxTwinCoords) {
+    throw SetupError(urdf.source + ": a chain has at most " + std::to_string(kMaxTwin) +
+                     " degrees of freedom, got " + std::to_string(chain.model.nv));
+  }
+  if (!options.gravity) chain.model.gravity.setZero();
+  return chain;
+}
+
+Assembly build(const FreeBody& body, const ChainOptions& options) {
+  const Inertial inertial = {body.mass, body.p_handle_com, body.inertia};
+  check(inertial, "free body");
+  Assembly chain;
+  chain.name = "free_body";
+  const pinocchio::JointIndex root = chain.add_floating_root(options.T_B_root);
+  chain.model.appendBodyToJoint(root, to_inertia(inertial), pinocchio::SE3::Identity());
+  chain.add_frame("handle", root, pinocchio::SE3::Identity());
+  if (!options.gravity) chain.model.gravity.setZero();
+  return chain;
+}
+
+}  // namespace
+
+struct Chain::Impl {
+  explicit Impl(Assembly assembly)
+      : parts(std::move(assembly)),
+        data(parts.model),
+        scratch(parts.model),
+        zero(Eigen::VectorXd::Zero(parts.model.nv)) {}
+
+  const Frame& frame(int index) const noexcept {
+    assert(index >= 0 && index < static_cast<int>(parts.frames.size()));
+    return parts.frames[static_cast<std::size_t>(index)];
+  }
+
+  Assembly parts;
+  pinocchio::Data data;     // results of update()
+  pinocchio::Data scratch;  // of inverse_dynamics()
+  Eigen::VectorXd zero;     // (nv)
+};
+
+std::string_view to_string(JointType type) noexcept {
+  switch (type) {
+    case JointType::kRevolute:
+      return "revolute";
+    case JointType::kContinuous:
+      return "continuous";
+    case JointType::kPrismatic:
+      return "prismatic";
+    case JointType::kFloating:
+      return "floating";
+  }
+  return "unknown";
+}
+
+Chain::Chain(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+Chain::Chain(const Chain& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Chain::Chain(Chain&& other) noexcept = default;
+Chain& Chain::operator=(const Chain& other) {
+  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  return *this;
+}
+Chain& Chain::operator=(Chain&& other) noexcept = default;
+Chain::~Chain() = default;
+
+Chain Chain::from_urdf_file(const std::filesystem::path& file, const ChainOptions& options) {
+  return Chain(std::make_unique<Impl>(build(read_urdf_file(file), options)));
+}
+
+Chain Chain::from_urdf_text(std::string_view text, std::string_view source,
+                            const ChainOptions& options) {
+  return Chain(std::make_unique<Impl>(build(read_urdf_text(text, source), options)));
+}
+
+Chain Chain::free_body(const FreeBody& body, const ChainOptions& options) {
+  return Chain(std::make_unique<Impl>(build(body, options)));
+}
+
+const std::string& Chain::name() const noexcept { return impl_->parts.name; }
+int Chain::nq() const noexcept { return impl_->parts.model.nq; }
+int Chain::nv() const noexcept { return impl_->parts.model.nv; }
+const std::vector<Joint>& Chain::joints() const noexcept { return impl_->parts.joints; }
+const std::vector<std::string>& Chain::frame_names() const noexcept {
+  return impl_->parts.frame_names;
+}
+
+int Chain::frame(std::string_view name) const {
+  return find(name, impl_->parts.frame_names, impl_->parts.name, "frame");
+}
+
+int Chain::joint(std::string_view name) const {
+  return find(name, impl_->parts.joint_names, impl_->parts.name, "joint");
+}
+
+ConfigurationA Chain::neutral() const noexcept {
+  ConfigurationA q = ConfigurationA::Zero(nq());
+  for (const Joint& joint : impl_->parts.joints) {
+    if (joint.type == JointType::kFloating) q[joint.q_index + 6] = 1.0;
+  }
+  return q;
+}
+
+ConfigurationA Chain::integrate(const VectorIn& q, const VectorIn& step) const noexcept {
+  assert(q.size() == nq() && step.size() == nv());
+  ConfigurationA q_next(nq());
+  Eigen::Ref<Eigen::VectorXd> out(q_next);
+  pinocchio::integrate(impl_->parts.model, q, step, out);
+  return q_next;
+}
+
+void Chain::update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept {
+  assert(q.size() == nq() && dq.size() == nv());
+  const VectorIn ddq(impl_->zero);
+  pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q, dq, ddq);
+  pinocchio::computeJointJacobians(impl_->parts.model, impl_->data);
+}
+
+void Chain::update(const VectorIn& q, const VectorIn& dq) noexcept {
+  pinocchio::Data& data = impl_->data;
+  pinocchio::crba(impl_->parts.model, data, q, pinocchio::Convention::WORLD);
+  data.M.triangularView<Eigen::StrictlyLower>() = data.M.transpose();
+  pinocchio::nonLinearEffects(impl_->parts.model, data, q, dq);
+  pinocchio::computeGeneralizedGravity(impl_->parts.model, data, q);
+  update_kinematics(q, dq);
+}
+
+Pose Chain::pose(int frame) const noexcept {
+  const Frame& f = impl_->frame(frame);
+  const pinocchio::SE3 T_B_frame = impl_->data.oMi[f.joint] * f.T_joint_frame;
+  return {T_B_frame.translation(), T_B_frame.rotation()};
+}
+
+Vector6 Chain::twist(int frame) const noexcept {
+  const Frame& f = impl_->frame(frame);
+  const Eigen::Matrix3d& R_B_joint = impl_->data.oMi[f.joint].rotation();
+  const pinocchio::Motion& v = impl_->data.v[f.joint];
+  Vector6 result;
+  result << R_B_joint * (v.linear() + v.angular().cross(f.T_joint_frame.translation())),
+      R_B_joint * v.angular();
+  return result;
+}
+
+Jacobian Chain::jacobian(int frame) const noexcept {
+  const Frame& f = impl_->frame(frame);
+  const Eigen::Vector3d p_B_frame = impl_->data.oMi[f.joint].act(f.T_joint_frame.translation());
+
+  // joints beyond the frame do not move it
+  const int columns =
+      f.joint == 0 ? 0 : impl_->parts.model.idx_vs[f.joint] + impl_->parts.model.nvs[f.joint];
+  Jacobian J = Jacobian::Zero(6, nv());
+  for (int i = 0; i < columns; ++i) {
+    // columns of data.J are twists at the origin of B
+    const Eigen::Vector3d v = impl_->data.J.col(i).head<3>();
+    const Eigen::Vector3d omega = impl_->data.J.col(i).tail<3>();
+    J.col(i) << v + omega.cross(p_B_frame), omega;
+  }
+  return J;
+}
+
+Vector6 Chain::bias_acceleration(int frame) const noexcept {
+  const Frame& f = impl_->frame(frame);
+  const Eigen::Matrix3d& R_B_joint = impl_->data.oMi[f.joint].rotation();
+  const Eigen::Vector3d& p = f.T_joint_frame.translation();
+  const pinocchio::Motion& v = impl_->data.v[f.joint];
+  const pinocchio::Motion& a = impl_->data.a[f.joint];
+
+  // spatial to classical acceleration of the frame's origin
+  const Eigen::Vector3d v_frame = v.linear() + v.angular().cross(p);
+  const Eigen::Vector3d a_frame = a.linear() + a.angular().cross(p) + v.angular().cross(v_frame);
+  Vector6 result;
+  result << R_B_joint * a_frame, R_B_joint * a.angular();
+  return result;
+}
+
+const Eigen::MatrixXd& Chain::M() const noexcept { return impl_->data.M; }
+const Eigen::VectorXd& Chain::c() const noexcept { return impl_->data.nle; }
+const Eigen::VectorXd& Chain::gravity() const noexcept { return impl_->data.g; }
+
+VectorA Chain::inverse_dynamics(const VectorIn& q, const VectorIn& dq,
+                                const VectorIn& ddq) noexcept {
+  assert(q.size() == nq() && dq.size() == nv() && ddq.size() == nv());
+  return pinocchio::rnea(impl_->parts.model, impl_->scratch, q, dq, ddq);
+}
+
+}  // namespace hg::model

@@ -1,0 +1,303 @@
+#include "hg/model/urdf.h"
+
+#include <tinyxml2.h>
+
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "hg/core/error.h"
+#include "hg/core/nearest_name.h"
+
+namespace hg::model {
+namespace {
+
+using tinyxml2::XMLElement;
+
+constexpr std::array<std::pair<std::string_view, UrdfJointType>, 5> kJointTypes = {{
+    {"fixed", UrdfJointType::kFixed},
+    {"revolute", UrdfJointType::kRevolute},
+    {"continuous", UrdfJointType::kContinuous},
+    {"prismatic", UrdfJointType::kPrismatic},
+    {"floating", UrdfJointType::kFloating},
+}};
+
+std::string in_quotes(std::string_view text) {
+  std::string result = "'";
+  result += text;
+  return result += "'";
+}
+
+std::string place(const Urdf& urdf, int line) {
+  return urdf.source + ":" + std::to_string(line) + ": ";
+}
+
+[[noreturn]] void fail(const Urdf& urdf, int line, const std::string& what) {
+  throw SetupError(place(urdf, line) + what);
+}
+
+// Reads the parts of one file; `item` is the link or joint at hand, for messages.
+class Reader {
+ public:
+  explicit Reader(Urdf& urdf) : urdf_(urdf) {}
+
+  void read(const XMLElement& robot) {
+    urdf_.name = attribute(robot, "name", "robot");
+    for (auto* e = robot.FirstChildElement("link"); e; e = e->NextSiblingElement("link")) {
+      urdf_.links.push_back(link(*e));
+      refuse_second(urdf_.links, "link");
+    }
+    if (urdf_.links.empty()) fail(urdf_, robot.GetLineNum(), "robot: has no links");
+    for (auto* e = robot.FirstChildElement("joint"); e; e = e->NextSiblingElement("joint")) {
+      urdf_.joints.push_back(joint(*e));
+      refuse_second(urdf_.joints, "joint");
+    }
+  }
+
+ private:
+  std::string attribute(const XMLElement& e, const char* key, const std::string& item) const {
+    const char* text = e.Attribute(key);
+    if (text == nullptr) {
+      fail(urdf_, e.GetLineNum(),
+           item + ": <" + e.Name() + "> needs the attribute " + in_quotes(key));
+    }
+    return text;
+  }
+
+  // Numbers separated by blanks; exactly `count` of them.
+  std::vector<double> numbers(const XMLElement& e, const char* key, std::size_t count,
+                              const std::string& item) const {
+    const std::string text = attribute(e, key, item);
+    std::vector<double> values;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+      double value = 0.0;
+      const char* begin = word.data() + (word.front() == '+' ? 1 : 0);
+      const char* end = word.data() + word.size();
+      const auto [stop, error] = std::from_chars(begin, end, value);
+      if (error != std::errc() || stop != end || !std::isfinite(value)) {
+        fail(urdf_, e.GetLineNum(), item + ": " + key + " must be numbers, got " + in_quotes(text));
+      }
+      values.push_back(value);
+    }
+    if (values.size() != count) {
+      fail(urdf_, e.GetLineNum(),
+           item + ": " + key + " must be " + std::to_string(count) +
+               (count == 1 ? " number, got " : " numbers, got ") + in_quotes(text));
+    }
+    return values;
+  }
+
+  double number(const XMLElement& e, const char* key, const std::string& item) const {
+    return numbers(e, key, 1, item)[0];
+  }
+
+  Eigen::Vector3d vector3(const XMLElement& e, const char* key, const std::string& item) const {
+    return Eigen::Vector3d(numbers(e, key, 3, item).data());
+  }
+
+  const XMLElement& child(const XMLElement& e, const char* name, const std::string& item) const {
+    const XMLElement* found = e.FirstChildElement(name);
+    if (found == nullptr) {
+      fail(urdf_, e.GetLineNum(),
+           item + ": <" + e.Name() + "> needs an element <" + std::string(name) + ">");
+    }
+    return *found;
+  }
+
+  Pose origin(const XMLElement& parent, const std::string& item) const {
+    Pose pose;
+    const XMLElement* e = parent.FirstChildElement("origin");
+    if (e == nullptr) return pose;
+    if (e->Attribute("xyz")) pose.p = vector3(*e, "xyz", item);
+    if (e->Attribute("rpy")) {
+      const Eigen::Vector3d rpy = vector3(*e, "rpy", item);
+      pose.R = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+                Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+                   .toRotationMatrix();
+    }
+    return pose;
+  }
+
+  Inertial inertial(const XMLElement& e, const std::string& item) const {
+    const Pose pose = origin(e, item);
+    const XMLElement& i = child(e, "inertia", item);
+    const double ixy = number(i, "ixy", item);
+    const double ixz = number(i, "ixz", item);
+    const double iyz = number(i, "iyz", item);
+    Eigen::Matrix3d inertia;
+    inertia << number(i, "ixx", item), ixy, ixz,  //
+        ixy, number(i, "iyy", item), iyz,         //
+        ixz, iyz, number(i, "izz", item);
+    const Inertial result = {.mass = number(child(e, "mass", item), "value", item),
+                             .p_com = pose.p,
+                             .inertia = pose.R * inertia * pose.R.transpose()};
+    check(result, place(urdf_, e.GetLineNum()) + item);
+    return result;
+  }
+
+  UrdfLink link(const XMLElement& e) const {
+    UrdfLink result = {
+        .name = attribute(e, "name", "link"), .line = e.GetLineNum(), .inertial = {}};
+    if (const XMLElement* i = e.FirstChildElement("inertial")) {
+      result.inertial = inertial(*i, "link " + result.name);
+    }
+    return result;
+  }
+
+  int link_index(const XMLElement& e, const std::string& item) const {
+    const std::string name = attribute(e, "link", item);
+    std::vector<std::string> names;
+    for (const UrdfLink& l : urdf_.links) {
+      if (l.name == name) return static_cast<int>(names.size());
+      names.push_back(l.name);
+    }
+    fail(urdf_, e.GetLineNum(),
+         item + ": " + e.Name() + " must be a link, got " + in_quotes(name) + ", nearest is " +
+             in_quotes(nearest_name(name, names)));
+  }
+
+  UrdfJointType joint_type(const XMLElement& e, const std::string& item) const {
+    const std::string text = attribute(e, "type", item);
+    std::vector<std::string> names;
+    for (const auto& [name, type] : kJointTypes) {
+      if (name == text) return type;
+      names.emplace_back(name);
+    }
+    if (text == "planar") {
+      fail(urdf_, e.GetLineNum(),
+           item + ": planar joints are not supported; use two prismatic and a continuous joint");
+    }
+    fail(urdf_, e.GetLineNum(),
+         item + ": type is unknown, got " + in_quotes(text) + ", nearest is " +
+             in_quotes(nearest_name(text, names)));
+  }
+
+  Eigen::Vector3d axis(const XMLElement& e, const std::string& item) const {
+    const XMLElement* a = e.FirstChildElement("axis");
+    if (a == nullptr) return Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d v = vector3(*a, "xyz", item);
+    if (v.norm() < 1e-6) {
+      fail(urdf_, a->GetLineNum(),
+           item + ": axis must have a direction, got " + in_quotes(a->Attribute("xyz")));
+    }
+    return v.normalized();
+  }
+
+  double positive(const XMLElement& e, const char* key, const std::string& item) const {
+    const double value = number(e, key, item);
+    if (!(value > 0.0)) {
+      fail(urdf_, e.GetLineNum(),
+           item + ": limit " + key + " must be positive (leave it out for no limit), got " +
+               to_text(value));
+    }
+    return value;
+  }
+
+  void limits(const XMLElement& e, const std::string& item, UrdfJoint& joint) const {
+    const bool has_range =
+        joint.type == UrdfJointType::kRevolute || joint.type == UrdfJointType::kPrismatic;
+    const XMLElement* limit = has_range ? &child(e, "limit", item) : e.FirstChildElement("limit");
+    if (limit == nullptr) return;
+    if (limit->Attribute("velocity")) joint.velocity_max = positive(*limit, "velocity", item);
+    if (limit->Attribute("effort")) joint.effort_max = positive(*limit, "effort", item);
+    if (!has_range) return;
+    joint.position = {number(*limit, "lower", item), number(*limit, "upper", item)};
+    if (!(joint.position.lb < joint.position.ub)) {
+      fail(urdf_, limit->GetLineNum(),
+           item + ": limit lower must be below upper, got lower " + to_text(joint.position.lb) +
+               ", upper " + to_text(joint.position.ub));
+    }
+  }
+
+  UrdfJoint joint(const XMLElement& e) const {
+    UrdfJoint result;
+    result.name = attribute(e, "name", "joint");
+    result.line = e.GetLineNum();
+    const std::string item = "joint " + result.name;
+    result.type = joint_type(e, item);
+    result.parent = link_index(child(e, "parent", item), item);
+    result.child = link_index(child(e, "child", item), item);
+    result.T_parent_joint = origin(e, item);
+    result.axis = axis(e, item);
+    if (result.type != UrdfJointType::kFloating) limits(e, item, result);
+    if (const XMLElement* mimic = e.FirstChildElement("mimic")) {
+      fail(urdf_, mimic->GetLineNum(), item + ": mimic joints are not supported");
+    }
+    return result;
+  }
+
+  template <typename Item>
+  void refuse_second(const std::vector<Item>& items, const std::string& kind) const {
+    for (std::size_t i = 0; i + 1 < items.size(); ++i) {
+      if (items[i].name == items.back().name) {
+        fail(urdf_, items.back().line,
+             kind + " " + items.back().name + ": name is taken already in line " +
+                 std::to_string(items[i].line));
+      }
+    }
+  }
+
+  Urdf& urdf_;
+};
+
+}  // namespace
+
+std::string to_text(double value) {
+  std::array<char, 32> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), result.ptr};
+}
+
+void check(const Inertial& inertial, std::string_view item) {
+  // exported files carry six digits; a flat plate has I3 = I1 + I2
+  constexpr double kRounding = 1e-5;
+  const auto require = [&](bool holds, const std::string& rule, const std::string& value) {
+    if (!holds) throw SetupError(std::string(item) + ": " + rule + ", got " + value);
+  };
+  require(std::isfinite(inertial.mass) && inertial.mass > 0.0, "mass must be positive",
+          to_text(inertial.mass));
+  require(inertial.p_com.allFinite() && inertial.inertia.allFinite(), "inertia must be finite",
+          "nan or inf");
+
+  const Eigen::Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertial.inertia).eigenvalues();
+  const std::string got = "principal moments " + to_text(moments[0]) + ", " + to_text(moments[1]) +
+                          ", " + to_text(moments[2]);
+  require(moments[0] > 0.0, "inertia must be positive definite", got);
+  require(moments[0] + moments[1] >= moments[2] * (1.0 - kRounding),
+          "inertia is of no body, the two smaller principal moments must add up to the largest",
+          got);
+}
+
+Urdf read_urdf_text(std::string_view text, std::string_view source) {
+  Urdf urdf;
+  urdf.source = source;
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    fail(urdf, document.ErrorLineNum(),
+         std::string("is not valid XML: ") +
+             tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()));
+  }
+  const XMLElement* root = document.RootElement();
+  if (root == nullptr || std::string_view(root->Name()) != "robot") {
+    fail(urdf, root == nullptr ? 1 : root->GetLineNum(),
+         std::string("root element must be <robot>, got <") + (root ? root->Name() : "") + ">");
+  }
+  Reader(urdf).read(*root);
+  return urdf;
+}
+
+Urdf read_urdf_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) throw SetupError(file.string() + ": cannot be read as a URDF file, is it there?");
+  return read_urdf_text(text, file.string());
+}
+
+}  // namespace hg::model
