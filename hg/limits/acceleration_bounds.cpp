@@ -1,0 +1,172 @@
+#include "hg/limits/acceleration_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "hg/core/error.h"
+
+namespace hg::limits {
+namespace {
+
+constexpr double kTauPeriods = 2.0;         // an approach of two periods neither rings nor softens
+constexpr double kReturnSpeedMax = 0.5;     // rad/s or m/s, see RecoverableOptions::v_rec
+constexpr double kReturnSpeedShare = 0.25;  // of dq_max: a slow joint returns slower still
+
+void require(bool ok, std::string_view item, const char* rule, double value) {
+  if (ok) return;
+  std::ostringstream message;
+  message << item << ": " << rule << ", got " << value;
+  throw SetupError(message.str());
+}
+
+// The helpers below look at the upper limit only: d is the distance left to it, v the speed towards
+// it.
+
+// The speed v+ at the end of the sample for which v+ = d+ / tau, with d+ = d - dt (v + v+) / 2.
+double speed_on_line(double d, double v, double tau, double dt) noexcept {
+  return (d - 0.5 * dt * v) / (tau + 0.5 * dt);
+}
+
+// The speed v+ = w(d+) of bounds R.
+double recoverable_speed(double d, double v, double ddq_max, const RecoverableOptions& options,
+                         double dt) noexcept {
+  if (d < 0.0) return std::max(speed_on_line(d, v, options.tau_rec, dt), -options.v_rec);
+
+  // line and root touch at v+ = A tau, the line is above: it decides on which of them v+ lies
+  const double v_line = speed_on_line(d, v, options.tau, dt);
+  if (v_line <= ddq_max * options.tau) return v_line;
+
+  // v+^2 = A (2 d+ - A tau^2); d+ is linear in v+
+  const double half_step = 0.5 * ddq_max * dt;
+  const double v_squared = ddq_max * (2.0 * d - dt * v - ddq_max * options.tau * options.tau);
+  return std::sqrt(half_step * half_step + v_squared) - half_step;
+}
+
+double recoverable_max(double d, double v, const JointLimits& limits,
+                       const RecoverableOptions& options, double dt) noexcept {
+  const double v_end =
+      std::min(limits.dq_max, recoverable_speed(d, v, limits.ddq_max, options, dt));
+  return std::clamp((v_end - v) / dt, -options.ddq_rec_factor * limits.ddq_max, limits.ddq_max);
+}
+
+// Fastest speed from which ddq_max stops the joint within distance d; [DP18] eq. (10).
+double viable_speed(double d, const JointLimits& limits) noexcept {
+  return d > 0.0 ? std::min(limits.dq_max, std::sqrt(2.0 * limits.ddq_max * d)) : 0.0;
+}
+
+// [DP18] alg. 1: the position stays below the limit during the whole sample. v > 0 needs d > 0.
+double max_from_position(double d, double v, double dt) noexcept {
+  const double ddq_touch = 2.0 * (d - v * dt) / (dt * dt);  // touches the limit at the sample's end
+  const double ddq_stop = -v / dt;                          // stands still at the sample's end
+
+  if (v <= 0.0 || ddq_touch > ddq_stop) return ddq_touch;
+  return std::min(-v * v / (2.0 * d), ddq_stop);  // turns back inside the sample
+}
+
+// [DP18] alg. 2: after the sample, braking with ddq_max still stops the joint before the limit.
+double max_from_viability(double d, double v, double ddq_max, double dt) noexcept {
+  if (ddq_max == kInfinity) return kInfinity;
+  const double a = dt * dt;
+  const double b = dt * (2.0 * v + ddq_max * dt);
+  const double c = v * v - 2.0 * ddq_max * (d - v * dt);
+  const double delta = b * b - 4.0 * a * c;
+  const double ddq_stop = -v / dt;
+
+  if (delta < 0.0) return ddq_stop;
+  return std::max((-b + std::sqrt(delta)) / (2.0 * a), ddq_stop);
+}
+
+// A state as bounds A and B see it: inside the limits and viable.
+struct ViableState {
+  double d_lower;
+  double d_upper;
+  double dq;
+};
+
+ViableState nearest_viable(const JointLimits& limits, double q, double dq) noexcept {
+  const double q_v = std::clamp(q, limits.q_min, limits.q_max);
+  const double d_lower = q_v - limits.q_min;
+  const double d_upper = limits.q_max - q_v;
+  return {d_lower, d_upper,
+          std::clamp(dq, -viable_speed(d_lower, limits), viable_speed(d_upper, limits))};
+}
+
+Interval position_bounds(const ViableState& s, double dt) noexcept {
+  const Interval ddq = {-max_from_position(s.d_lower, -s.dq, dt),
+                        max_from_position(s.d_upper, s.dq, dt)};
+  const double ddq_stop = -s.dq / dt;
+  return ddq.empty() ? Interval{ddq_stop, ddq_stop} : ddq;
+}
+
+Interval speed_bounds(const ViableState& s, const JointLimits& limits, double dt) noexcept {
+  return {(-limits.dq_max - s.dq) / dt, (limits.dq_max - s.dq) / dt};
+}
+
+Interval viability_bounds(const ViableState& s, double ddq_max, double dt) noexcept {
+  return {-max_from_viability(s.d_lower, -s.dq, ddq_max, dt),
+          max_from_viability(s.d_upper, s.dq, ddq_max, dt)};
+}
+
+// The intersection; where there is none, the point of `stronger` nearest to `weaker`. An empty
+// `stronger` has nothing to say.
+Interval moved_into(Interval weaker, Interval stronger) noexcept {
+  if (stronger.empty()) return weaker;
+  return {std::clamp(weaker.lb, stronger.lb, stronger.ub),
+          std::clamp(weaker.ub, stronger.lb, stronger.ub)};
+}
+
+}  // namespace
+
+void check(const JointLimits& limits, std::string_view item) {
+  require(limits.q_min < kInfinity, item, "q_min must be a number or -infinity", limits.q_min);
+  require(limits.q_max > -kInfinity, item, "q_max must be a number or infinity", limits.q_max);
+  require(limits.q_max >= limits.q_min, item, "q_max must not be below q_min", limits.q_max);
+  require(limits.dq_max > 0.0, item, "dq_max must be positive", limits.dq_max);
+  require(limits.ddq_max > 0.0, item, "ddq_max must be positive", limits.ddq_max);
+}
+
+RecoverableOptions recoverable_options(const JointLimits& limits, double dt, double dt_max) {
+  return {.tau = std::max(kTauPeriods * dt, dt_max),
+          .v_rec = std::min(kReturnSpeedMax, kReturnSpeedShare * limits.dq_max)};
+}
+
+void check(const RecoverableOptions& options, const JointLimits& limits, double dt_max,
+           std::string_view item) {
+  require(std::isfinite(options.tau) && options.tau >= dt_max, item,
+          "tau must be finite and not below the longest period", options.tau);
+  require(std::isfinite(options.tau_rec) && options.tau_rec >= dt_max, item,
+          "tau_rec must be finite and not below the longest period", options.tau_rec);
+  require(options.v_rec > 0.0 && std::isfinite(options.v_rec) && options.v_rec <= limits.dq_max,
+          item, "v_rec must be positive and at most dq_max", options.v_rec);
+  require(options.ddq_rec_factor >= 1.0 && std::isfinite(options.ddq_rec_factor), item,
+          "ddq_rec_factor must be finite and at least 1", options.ddq_rec_factor);
+}
+
+Interval recoverable_bounds(const JointLimits& limits, const RecoverableOptions& options, double q,
+                            double dq, double dt) noexcept {
+  const double ub = recoverable_max(limits.q_max - q, dq, limits, options, dt);
+  const double lb = -recoverable_max(q - limits.q_min, -dq, limits, options, dt);
+  if (lb <= ub) return {lb, ub};
+  const double more_urgent = std::abs(ub) > std::abs(lb) ? ub : lb;
+  return {more_urgent, more_urgent};
+}
+
+Interval bounds_A(const JointLimits& limits, double q, double dq, double dt) noexcept {
+  const ViableState s = nearest_viable(limits, q, dq);
+  return moved_into(speed_bounds(s, limits, dt), position_bounds(s, dt));
+}
+
+Interval bounds_B(const JointLimits& limits, double q, double dq, double dt) noexcept {
+  const ViableState s = nearest_viable(limits, q, dq);
+  const Interval acceleration = {-limits.ddq_max, limits.ddq_max};
+  const Interval viable = moved_into(acceleration, viability_bounds(s, limits.ddq_max, dt));
+  return moved_into(moved_into(viable, speed_bounds(s, limits, dt)), position_bounds(s, dt));
+}
+
+Interval bounds_C(const JointLimits& limits, double q, double dq, double T_C) noexcept {
+  const double gain = 2.0 / (T_C * T_C);
+  return {gain * (limits.q_min - q - T_C * dq), gain * (limits.q_max - q - T_C * dq)};
+}
+
+}  // namespace hg::limits

@@ -1,0 +1,30 @@
+/// Position limits that change at run time without a jump: they travel to their new values slowly
+/// enough for bounds R to carry the joint along.
+///
+/// A joint that is viable when its limit begins to close in can be overrun, because it did not know
+/// that the limit would come. With bounds R, options o and A = ddq_max it is outside by at most
+///   max(v_rec tau_rec, v_rec^2 / (2 A (ddq_rec_factor - 1))) + v_rec dt + A dt^2
+/// (10 mrad with the defaults and A >= 25 rad/s^2), and inside again shortly after the limit rests.
+///
+/// Joint space: rad or m; time in s. Plain value, part of the copyable state of a cycle; no
+/// allocation, noexcept.
+#pragma once
+
+#include "hg/core/interval.h"
+
+namespace hg::limits {
+
+struct MovingLimits {
+  Interval q;               ///< limits that hold now; never empty; infinite means no limit
+  bool is_crossed = false;  ///< the target had lb > ub; to be reported as a fault
+};
+
+/// The limits one period later: each end has moved towards its target by at most v_rec dt.
+///
+/// A crossed target (lb > ub) counts as its midpoint; if that is not finite the limits stay.
+/// An end that disappears (infinite target) goes at once. One that appears starts at its target, or
+/// at the position `q` of the joint where the joint is beyond the target, and travels from there.
+[[nodiscard]] MovingLimits advanced(const MovingLimits& now, Interval target, double q,
+                                    double v_rec, double dt) noexcept;
+
+}  // namespace hg::limits
