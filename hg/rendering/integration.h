@@ -1,0 +1,15 @@
+/// One sample of constant acceleration; [HG] sec. VI-E.
+#pragma once
+
+#include "hg/model/chain.h"
+#include "hg/signals/state.h"
+
+namespace hg::rendering {
+
+/// q += dt dq + dt^2/2 ddq, dq += dt ddq.
+void integrate(ReferenceState& reference, double dt) noexcept;
+
+/// The same on the twin's configuration space: orientations stay orientations.
+void integrate(const model::Chain& chain, TwinState& twin, double dt) noexcept;
+
+}  // namespace hg::rendering

@@ -1,0 +1,52 @@
+/// "Why do I feel this": which limits act, how hard, and where the user's wrench goes.
+///
+/// The total constraint torque M_a ddq_a - tau is unique; its split among the active rows is not
+/// when rows depend on each other. Rule: reactions have the sign of their bound; among all splits
+/// that add up, the smallest one, rows scaled by their rating; rows that could not be met get a
+/// share only for what the others cannot explain.
+///
+/// No allocation after construction.
+#pragma once
+
+#include <array>
+
+#include "hg/hqp/solver.h"
+#include "hg/rendering/tasks.h"
+#include "hg/signals/state.h"
+
+namespace hg::rendering {
+
+class Reactions {
+ public:
+  Reactions(const DeviceModel& device, const TwinModel& twin);
+
+  /// Splits the constraint torque of `solution`, which solves tasks.problem().
+  /// `tau_constraint` (n_a) = M_a ddq_a + c_a - tau.
+  void split(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
+             const hqp::Solution& solution, const VectorA& tau_constraint) noexcept;
+
+  /// Constraint force or torque of a limit in its own coordinate.
+  double of(int limit) const noexcept { return value_[static_cast<std::size_t>(limit)]; }
+
+  /// Fills limits, felt_limit, w_felt and the constraint parts and structure of the budget.
+  void report(const TwinModel& twin, const Tasks& tasks, const hqp::Solution& solution, double dt,
+              CycleRecord& record) const noexcept;
+
+ private:
+  void find_active(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
+                   const hqp::Solution& solution) noexcept;
+
+  int n_m_, n_a_, device_limits_;
+  std::array<double, kMaxLimits> value_{};
+  std::array<int, kMaxLimits> active_{};  ///< limits whose row is at or beyond a bound
+  int active_count_ = 0;
+  /// Per active limit: its direction in twin torques, and for device limits as a handle wrench.
+  MatrixUpTo<kMaxTwin, kMaxLimits> direction_;
+  MatrixUpTo<6, kMaxLimits> wrench_;
+  hqp::Problem problem_;
+  hqp::Solver solver_;
+  hqp::Solution solution_;
+  hqp::ActiveSet active_set_;
+};
+
+}  // namespace hg::rendering

@@ -1,0 +1,174 @@
+#include "hg/rendering/rendering.h"
+
+#include <cmath>
+#include <utility>
+
+#include "hg/core/error.h"
+#include "hg/rendering/integration.h"
+
+namespace hg::rendering {
+namespace {
+
+// slower than this a joint with Coulomb friction stands still, rad/s or m/s
+constexpr double kStandstill = 1e-9;
+
+SolverStatus to_solver_status(hqp::Status status) noexcept {
+  switch (status) {
+    case hqp::Status::kSolved:
+      return SolverStatus::kSolved;
+    case hqp::Status::kIterationLimit:
+      return SolverStatus::kIterationLimit;
+    case hqp::Status::kBadRow:
+    case hqp::Status::kNumericalFailure:
+      return SolverStatus::kFailed;
+  }
+  return SolverStatus::kFailed;
+}
+
+// torque of Coulomb friction while slipping, as part of tau_dis
+VectorA slip_torque(const TwinModel& twin, const VectorA& dq_a, TwinInnerState& inner) noexcept {
+  VectorA torque = VectorA::Zero(dq_a.size());
+  for (int i = 0; i < dq_a.size(); ++i) {
+    const double friction = twin.dofs[static_cast<std::size_t>(i)].friction;
+    bool& sticks = inner.sticks[static_cast<std::size_t>(i)];
+    if (friction <= 0.0) continue;
+    if (std::abs(dq_a[i]) <= kStandstill) sticks = true;
+    if (!sticks) torque[i] = std::copysign(friction, dq_a[i]);
+  }
+  return torque;
+}
+
+// a slipping joint that would turn round within the sample sticks from the next one on
+void catch_reversals(const TwinModel& twin, const TwinState& state, double dt,
+                     TwinInnerState& inner) noexcept {
+  for (int i = 0; i < state.dq_a.size(); ++i) {
+    if (twin.dofs[static_cast<std::size_t>(i)].friction <= 0.0) continue;
+    if (state.dq_a[i] * (state.dq_a[i] + dt * state.ddq_a[i]) < 0.0) {
+      inner.sticks[static_cast<std::size_t>(i)] = true;
+    }
+  }
+}
+
+int changed_rows(const hqp::ActiveSet& a, const hqp::ActiveSet& b, int first, int count) noexcept {
+  int changes = 0;
+  for (int i = first; i < first + count; ++i) {
+    if (a.state[static_cast<std::size_t>(i)] != b.state[static_cast<std::size_t>(i)]) ++changes;
+  }
+  return changes;
+}
+
+}  // namespace
+
+void check(const DeviceModel& device, const TwinModel& twin, const Options& options) {
+  if (!(options.dt > 0.0)) throw SetupError("rendering: the period must be positive");
+  if (device.n_m != 6) {
+    throw SetupError("device: the rendering needs six manipulator joints, got " +
+                     std::to_string(device.n_m));
+  }
+  if (twin.chain.nv() > kMaxTwin) {
+    throw SetupError("twin: at most " + std::to_string(kMaxTwin) + " degrees of freedom, got " +
+                     std::to_string(twin.chain.nv()));
+  }
+  if (twin.locks.size() > static_cast<std::size_t>(kMaxLocks)) {
+    throw SetupError("twin: at most " + std::to_string(kMaxLocks) + " locks");
+  }
+}
+
+Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options)
+    : device_((check(device, twin, options), std::move(device))),
+      twin_(std::move(twin)),
+      options_(options),
+      tasks_(device_, twin_, options_),
+      reactions_(device_, twin_),
+      solver_(tasks_.problem().capacity()),
+      solution_(tasks_.problem().capacity()) {}
+
+State Rendering::start(const VectorM& q_m) const {
+  State state;
+  state.reference = {q_m, VectorM::Zero(q_m.size()), VectorM::Zero(q_m.size())};
+  const int n_a = twin_.chain.nv();
+  state.twin = {twin_.q_start, VectorA::Zero(n_a), VectorA::Zero(n_a)};
+  return state;
+}
+
+SolverStatus Rendering::step(State& state, CycleRecord& record) noexcept {
+  const int n_p = device_.n_p, n_m = device_.n_m;
+  VectorUpTo<kMaxGantry + kMaxManipulator> q(n_p + n_m), dq(n_p + n_m);
+  q << record.robot.q_p, state.reference.q_m;
+  dq << record.robot.dq_p, state.reference.dq_m;
+  device_.chain.update_kinematics(q, dq);
+  twin_.chain.update(state.twin.q_a, state.twin.dq_a);
+  advance_locks(twin_, state.twin.q_a, state.inner);
+
+  const VectorA tau_a = twin_.chain.jacobian(twin_.end_effector).transpose() * record.robot.w_H;
+  record.tau_a = tau_a;
+  Budget& budget = record.budget;
+  budget.spring = spring_torque(twin_, state.twin.q_a);
+  budget.damping = damping_torque(twin_, state.twin.dq_a);
+  budget.friction = slip_torque(twin_, state.twin.dq_a, state.inner);
+  budget.surface = VectorA::Zero(twin_.chain.nv());
+
+  const hqp::ActiveSet previous = state.active_set;
+  solve(state, record, budget.friction);
+  record.active_set_changes =
+      changed_rows(previous, state.active_set, tasks_.first_limit_row(), record.limit_count);
+  catch_reversals(twin_, state.twin, options_.dt, state.inner);
+  report_kinematics(state, record);
+  return record.solver_status;
+}
+
+// Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
+void Rendering::solve(State& state, CycleRecord& record, VectorA& friction) noexcept {
+  const int n_m = device_.n_m, n_a = twin_.chain.nv();
+  const int first_twin_limit = static_cast<int>(tasks_.limit_rows().size()) - n_a;
+  record.solver_iterations = 0;
+  for (int attempt = 0; attempt <= n_a; ++attempt) {
+    const Budget& budget = record.budget;
+    const VectorA tau = record.tau_a - budget.damping - friction - budget.spring - budget.surface;
+    tasks_.fill(device_, twin_, {record.robot, state.reference, state.twin, state.inner, tau});
+    record.solver_status = to_solver_status(
+        solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_));
+    record.solver_iterations += solution_.iterations;
+
+    const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);
+    state.reference.ddq_m = x.head(n_m);
+    state.twin.ddq_a = x.tail(n_a);
+    record.budget.inertia = twin_.chain.M() * state.twin.ddq_a + twin_.chain.c();
+    const VectorA tau_constraint = record.budget.inertia - tau;
+    reactions_.split(device_, twin_, tasks_, solution_, tau_constraint);
+
+    bool released = false;
+    for (int i = 0; i < n_a; ++i) {
+      bool& sticks = state.inner.sticks[static_cast<std::size_t>(i)];
+      const double holding = reactions_.of(first_twin_limit + i);
+      const double most = twin_.dofs[static_cast<std::size_t>(i)].friction;
+      if (!sticks || std::abs(holding) <= most) continue;
+      sticks = false;
+      friction[i] = -std::copysign(most, holding);
+      released = true;
+    }
+    if (!released) break;
+  }
+  reactions_.report(twin_, tasks_, solution_, options_.dt, record);
+}
+
+void Rendering::report_kinematics(const State& state, CycleRecord& record) const noexcept {
+  record.reference = state.reference;
+  record.twin = state.twin;
+  record.T_B_H = device_.chain.pose(device_.handle);
+  record.v_H = device_.chain.twist(device_.handle).head<3>();
+  const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
+  record.a_H =
+      (J_a * state.twin.ddq_a + twin_.chain.bias_acceleration(twin_.end_effector)).head<3>();
+  if (device_.elbow >= 0) record.p_B_elbow = device_.chain.pose(device_.elbow).p;
+  const Pose T_B_E = twin_.chain.pose(twin_.end_effector);
+  record.sync_error = (T_B_E.p - record.T_B_H.p).norm();
+  record.sync_error_angle = Eigen::AngleAxisd(record.T_B_H.R.transpose() * T_B_E.R).angle();
+}
+
+void Rendering::integrate(State& state) const noexcept {
+  rendering::integrate(state.reference, options_.dt);
+  rendering::integrate(twin_.chain, state.twin, options_.dt);
+}
+
+}  // namespace hg::rendering

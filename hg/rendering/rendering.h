@@ -1,0 +1,62 @@
+/// The rendering law `gauss`: from the state of device and twin and the user's wrench to
+/// accelerations, integrated to the next reference.
+///
+/// Source: [HG] sec. VI-C; departures in docs/architecture.md. One object serves one thread.
+/// No allocation, noexcept after construction.
+#pragma once
+
+#include "hg/hqp/solver.h"
+#include "hg/rendering/device_model.h"
+#include "hg/rendering/options.h"
+#include "hg/rendering/reactions.h"
+#include "hg/rendering/tasks.h"
+#include "hg/rendering/twin_forces.h"
+#include "hg/rendering/twin_model.h"
+#include "hg/signals/state.h"
+
+namespace hg::rendering {
+
+/// Part of the copyable state of a cycle.
+struct State {
+  ReferenceState reference;
+  TwinState twin;
+  TwinInnerState inner;
+  hqp::ActiveSet active_set;
+};
+
+/// Throws SetupError naming the first thing in the models that the law cannot use.
+void check(const DeviceModel& device, const TwinModel& twin, const Options& options);
+
+class Rendering {
+ public:
+  Rendering(DeviceModel device, TwinModel twin, const Options& options);
+
+  const DeviceModel& device() const noexcept { return device_; }
+  const TwinModel& twin() const noexcept { return twin_; }
+
+  /// At rest: the manipulator at `q_m`, the twin at its start.
+  State start(const VectorM& q_m) const;
+
+  /// Solves for the accelerations of this sample and reports why they are what they are. Needs
+  /// record.robot; fills the rest that concerns device, twin, limits and solver. Does not move the
+  /// state: integrate() does.
+  SolverStatus step(State& state, CycleRecord& record) noexcept;
+
+  /// Moves reference and twin by one period.
+  void integrate(State& state) const noexcept;
+
+ private:
+  void solve(State& state, CycleRecord& record, VectorA& friction) noexcept;
+  void report_kinematics(const State& state, CycleRecord& record) const noexcept;
+
+  DeviceModel device_;
+  TwinModel twin_;
+  Options options_;
+  Tasks tasks_;
+  Reactions reactions_;
+  hqp::Options solver_options_;
+  hqp::Solver solver_;
+  hqp::Solution solution_;
+};
+
+}  // namespace hg::rendering
