@@ -1,0 +1,60 @@
+/// Which of the touched rows push: non-negative least squares on multipliers.
+///
+/// At a point x with gradient g, minimises |g + F^T lambda + sum mu_i s_i c_i| over mu >= 0, where
+/// F are the pivot rows already eliminated and s_i = +1 at an upper, -1 at a lower bound. What is
+/// left over, negated, is the steepest feasible descent; nothing left proves x optimal. The
+/// residual falls with every change, so degenerate corners cannot make it cycle. [LH74] C. Lawson,
+/// R. Hanson, Solving Least Squares Problems, 1974, ch. 23.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "hg/hqp/elimination.h"
+#include "hg/hqp/problem.h"
+
+namespace hg::hqp {
+
+/// A row at one of its bounds.
+struct TouchedRow {
+  int row;
+  double sign;  ///< +1: at the upper bound, -1: at the lower
+};
+
+class Cone {
+ public:
+  Cone(int max_variables, int max_rows);
+
+  /// Runs on `candidates`, of which earlier ones are preferred among equals. Leaves the pushing
+  /// rows as pivots of `elimination`, after those it had. `g_scale`: size of the terms that make up
+  /// g.
+  void solve(const Problem& problem, const std::vector<TouchedRow>& candidates, const double* g,
+             double g_scale, double rank_tolerance, Elimination& elimination) noexcept;
+
+  /// Rows that push, and their multipliers mu > 0.
+  int pushing() const noexcept { return size_; }
+  TouchedRow row(int i) const noexcept { return rows_[static_cast<std::size_t>(i)]; }
+  double mu(int i) const noexcept { return mu_[i]; }
+  /// Steepest feasible descent, minus the residual.
+  const Eigen::VectorXd& descent() const noexcept { return descent_; }
+
+ private:
+  int most_opposed(const Problem& problem, const std::vector<TouchedRow>& candidates,
+                   double descent_norm) const noexcept;
+  void solve_passive(const Problem& problem, const double* g, int base,
+                     const Elimination& elimination) noexcept;
+  void remove_non_positive(const Problem& problem, int base, double rank_tolerance,
+                           Elimination& elimination) noexcept;
+
+  int size_ = 0;
+  std::vector<TouchedRow> rows_;
+  Eigen::VectorXd mu_;
+  Eigen::VectorXd mu_new_;
+  std::vector<std::uint8_t> is_barred_;  ///< by candidate: in rows_ already, or dependent on them
+  std::vector<int> candidate_;           ///< by entry of rows_: its index among the candidates
+  Eigen::VectorXd descent_;
+  Eigen::VectorXd rest_;
+};
+
+}  // namespace hg::hqp

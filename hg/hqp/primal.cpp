@@ -1,0 +1,282 @@
+#include "hg/hqp/primal.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hg::hqp {
+namespace {
+
+constexpr double kPushes = 1e-8;     // share of the gradient from which a row surely pushes
+constexpr double kParallel = 1e-12;  // cosine below which a direction does not approach a row
+
+// Sides of a row that do not stop a step, as bits.
+constexpr std::uint8_t kUpperSide = 1;
+constexpr std::uint8_t kLowerSide = 2;
+
+std::uint8_t side_of(const TouchedRow& t) noexcept {
+  return t.sign > 0.0 ? kUpperSide : kLowerSide;
+}
+
+class LevelByLevel {
+ public:
+  LevelByLevel(const Problem& problem, const Options& options, int levels, int& iterations,
+               Workspace& work) noexcept
+      : problem_(problem),
+        options_(options),
+        levels_(levels),
+        n_(problem.variables()),
+        iterations_(iterations),
+        work_(work) {}
+
+  PrimalOutcome run(int& completed) noexcept;
+
+ private:
+  PrimalOutcome optimise(int level) noexcept;
+  void fix(int level) noexcept;
+  void collect_targets(int level) noexcept;
+  void collect_touched(int level) noexcept;
+  bool aim(int level) noexcept;
+  bool aim_past_obstacles(int level) noexcept;
+  double slopes(int level) noexcept;
+  double way_to_obstacle(int level, int& obstacle) const noexcept;
+  double best_length(int level, double longest) const noexcept;
+  bool is_norm_level(int level) const noexcept { return level == problem_.levels(); }
+  int end_of_levels_above(int level) const noexcept {
+    return level > 0 ? problem_.end_row(level - 1) : 0;
+  }
+
+  const Problem& problem_;
+  const Options& options_;
+  const int levels_;
+  const int n_;
+  int& iterations_;
+  Workspace& work_;
+  LevelGradient size_ = {};
+  int base_ = 0;  ///< pivots of the levels above
+};
+
+PrimalOutcome LevelByLevel::run(int& completed) noexcept {
+  const int end = levels_ > 0 ? problem_.end_row(levels_ - 1) : 0;
+  std::fill_n(work_.state.begin(), end, RowState::kInactive);
+  std::fill_n(work_.is_fixed.begin(), end, false);
+  work_.x.head(n_).setZero();
+  work_.elimination.reset(n_);
+  update_values(problem_, levels_, work_);
+
+  for (completed = 0; completed < levels_; ++completed) {
+    const PrimalOutcome outcome = optimise(completed);
+    if (outcome != PrimalOutcome::kOptimal) return outcome;
+    fix(completed);
+  }
+  if (!options_.minimum_norm || levels_ < problem_.levels()) return PrimalOutcome::kOptimal;
+  return optimise(problem_.levels());
+}
+
+// Rows of the level that are equalities or violated: the quadratic piece of its objective at x.
+void LevelByLevel::collect_targets(int level) noexcept {
+  work_.targets.clear();
+  for (int row = problem_.first_row(level); row < problem_.end_row(level); ++row) {
+    if (problem_.norm(row) == 0.0) continue;
+    const double distance = violation(problem_, options_, work_, row);
+    const Interval bounds = problem_.bounds(row);
+    if (is_equality(bounds) || distance != 0.0) {
+      work_.targets.push_back({row, distance < 0.0 ? bounds.lb : bounds.ub});
+    }
+  }
+}
+
+// Rows of higher levels that x is at the bound of.
+void LevelByLevel::collect_touched(int level) noexcept {
+  work_.touched.clear();
+  for (int row = 0; row < end_of_levels_above(level); ++row) {
+    if (work_.is_fixed[at(row)] || problem_.norm(row) == 0.0) continue;
+    const auto [lb, ub] = problem_.bounds(row);
+    const double value = work_.value[at(row)];
+    const bool at_upper = touches(problem_, options_, work_, row, ub) || value > ub;
+    const bool at_lower = touches(problem_, options_, work_, row, lb) || value < lb;
+    if (at_upper) work_.touched.push_back({row, 1.0});
+    if (at_lower) work_.touched.push_back({row, -1.0});
+  }
+}
+
+// Direction to the minimum of the quadratic piece within the free columns; false when it gains
+// nothing that counts.
+bool LevelByLevel::aim(int level) noexcept {
+  Elimination& elimination = work_.elimination;
+  if (elimination.freedom() == 0) return false;
+  if (is_norm_level(level)) {
+    elimination.project_to_free(work_.x.data(), work_.direction.data());
+    work_.direction.head(n_) *= -1.0;
+    return work_.direction.head(n_).norm() > options_.feasibility_tolerance * work_.x_norm;
+  }
+  const int rank = elimination.rank();
+  elimination.add_least_squares(problem_, work_.targets, work_.x.data(), options_.rank_tolerance);
+  elimination.truncate(rank);
+  work_.direction.head(n_) = elimination.step().head(n_);
+  return std::any_of(work_.targets.begin(), work_.targets.end(), [&](const TargetRow& t) {
+    const double gain = dot(problem_, t.row, work_.direction.data());
+    return std::abs(gain) > tolerance(problem_, options_, work_, t.row, t.target);
+  });
+}
+
+// c d of all rows that matter to the level, into work_.slope; returns |d|.
+double LevelByLevel::slopes(int level) noexcept {
+  const int end = is_norm_level(level) ? problem_.rows() : problem_.end_row(level);
+  for (int row = 0; row < end; ++row) {
+    work_.slope[at(row)] = dot(problem_, row, work_.direction.data());
+  }
+  return work_.direction.head(n_).norm();
+}
+
+// How far the direction can be followed before a row of a higher level is in the way.
+double LevelByLevel::way_to_obstacle(int level, int& obstacle) const noexcept {
+  const double direction_norm = work_.direction.head(n_).norm();
+  double way = kInfinity;
+  double best_cosine = 0.0;
+  obstacle = -1;
+  for (int row = 0; row < end_of_levels_above(level); ++row) {
+    if (work_.is_fixed[at(row)]) continue;
+    const double slope = work_.slope[at(row)];
+    if (work_.skipped_sides[at(row)] & (slope > 0.0 ? kUpperSide : kLowerSide)) continue;
+    const double cosine = std::abs(slope) / (problem_.norm(row) * direction_norm);
+    if (!(cosine > kParallel)) continue;
+    const auto [lb, ub] = problem_.bounds(row);
+    const double distance = slope > 0.0 ? ub - work_.value[at(row)] : work_.value[at(row)] - lb;
+    const double way_of_row = std::max(0.0, distance) / std::abs(slope);
+    if (way_of_row < way || (way_of_row == way && cosine > best_cosine)) {
+      way = way_of_row;
+      best_cosine = cosine;
+      obstacle = row;
+    }
+  }
+  return way;
+}
+
+// Minimum of the level's objective along the direction, a convex piecewise quadratic, up to
+// `longest`: goes from kink to kink until its derivative is positive.
+double LevelByLevel::best_length(int level, double longest) const noexcept {
+  if (is_norm_level(level)) {
+    const double d_d = work_.direction.head(n_).squaredNorm();
+    return std::min(longest, -work_.direction.head(n_).dot(work_.x.head(n_)) / d_d);
+  }
+  const int first = problem_.first_row(level);
+  const int end = problem_.end_row(level);
+  double length = 0.0;
+  for (int piece = 0; piece <= 2 * (end - first); ++piece) {
+    double derivative = 0.0;
+    double curvature = 0.0;
+    double kink = kInfinity;
+    for (int row = first; row < end; ++row) {
+      const double slope = work_.slope[at(row)];
+      if (slope == 0.0) continue;
+      const double value = work_.value[at(row)];
+      const auto [lb, ub] = problem_.bounds(row);
+      const double to_lb = (lb - value) / slope;
+      const double to_ub = (ub - value) / slope;
+      const double in = std::min(to_lb, to_ub);
+      const double out = std::max(to_lb, to_ub);
+      if (in > length) kink = std::min(kink, in);
+      if (out > length) kink = std::min(kink, out);
+      const bool is_inside = in <= length && length < out;
+      if (is_inside) continue;
+      const double nearest = length < in ? in : out;
+      const double factor = problem_.weight(row) * problem_.weight(row) * slope * slope;
+      derivative += factor * (length - nearest);
+      curvature += factor;
+    }
+    if (derivative >= 0.0 || curvature == 0.0) return length;
+    const double minimum = length - derivative / curvature;
+    length = std::min({minimum, kink, longest});
+    if (length == minimum || length == longest) return length;
+  }
+  return length;
+}
+
+// A direction along which the objective falls and x can move at once; false at the optimum.
+bool LevelByLevel::aim_past_obstacles(int level) noexcept {
+  Elimination& elimination = work_.elimination;
+  std::fill_n(work_.skipped_sides.begin(), end_of_levels_above(level), std::uint8_t{0});
+  for (int i = 0; i < work_.cone.pushing(); ++i) {
+    work_.skipped_sides[at(work_.cone.row(i).row)] = kUpperSide | kLowerSide;
+  }
+  if (!aim(level)) return false;
+
+  while (true) {
+    slopes(level);
+    int obstacle = -1;
+    way_to_obstacle(level, obstacle);
+    const bool is_touched =
+        obstacle >= 0 && std::any_of(work_.touched.begin(), work_.touched.end(),
+                                     [&](const TouchedRow& t) { return t.row == obstacle; });
+    if (!is_touched) return true;
+    work_.skipped_sides[at(obstacle)] = kUpperSide | kLowerSide;
+    elimination.add_row(problem_, obstacle, options_.rank_tolerance);
+    if (!aim(level)) break;
+  }
+
+  // every better point of this face is barred: the steepest feasible descent leads off it
+  work_.direction.head(n_) = work_.cone.descent().head(n_);
+  std::fill_n(work_.skipped_sides.begin(), end_of_levels_above(level), std::uint8_t{0});
+  for (const TouchedRow& t : work_.touched) work_.skipped_sides[at(t.row)] |= side_of(t);
+  slopes(level);
+  return true;
+}
+
+PrimalOutcome LevelByLevel::optimise(int level) noexcept {
+  Elimination& elimination = work_.elimination;
+  base_ = elimination.rank();
+  while (true) {
+    if (iterations_ >= options_.max_iterations) return PrimalOutcome::kIterationLimit;
+    ++iterations_;
+    elimination.truncate(base_);
+
+    size_ = level_gradient(problem_, options_, level, work_);
+    if (size_.is_zero || elimination.freedom() == 0) return PrimalOutcome::kOptimal;
+    if (!is_norm_level(level)) collect_targets(level);
+    collect_touched(level);
+    work_.cone.solve(problem_, work_.touched, work_.gradient.data(), size_.scale,
+                     options_.rank_tolerance, elimination);
+    if (!aim_past_obstacles(level)) return PrimalOutcome::kOptimal;
+
+    int obstacle = -1;
+    const double longest = way_to_obstacle(level, obstacle);
+    const double length = best_length(level, longest);
+    if (!(length > 0.0)) return PrimalOutcome::kOptimal;
+    if (!move(problem_, work_.direction, length, work_)) return PrimalOutcome::kNotFinite;
+    update_values(problem_, levels_, work_);
+  }
+}
+
+// Keeps the optimal slacks of the level: its equality and violated rows, and the rows that surely
+// push, do not change any more.
+void LevelByLevel::fix(int level) noexcept {
+  Elimination& elimination = work_.elimination;
+  elimination.truncate(base_);
+  collect_targets(level);
+  elimination.add_least_squares(problem_, work_.targets, work_.x.data(), options_.rank_tolerance);
+  for (const TargetRow& t : work_.targets) {
+    work_.is_fixed[at(t.row)] = true;
+    const double distance = violation(problem_, options_, work_, t.row);
+    work_.state[at(t.row)] = distance == 0.0  ? RowState::kEqual
+                             : distance > 0.0 ? RowState::kAbove
+                                              : RowState::kBelow;
+  }
+  if (size_.is_zero) return;
+  for (int i = 0; i < work_.cone.pushing(); ++i) {
+    const auto [row, sign] = work_.cone.row(i);
+    work_.state[at(row)] = sign > 0.0 ? RowState::kUpper : RowState::kLower;
+    if (work_.cone.mu(i) * problem_.norm(row) > kPushes * size_.scale + size_.rounding) {
+      elimination.add_row(problem_, row, options_.rank_tolerance);
+      work_.is_fixed[at(row)] = true;
+    }
+  }
+}
+
+}  // namespace
+
+PrimalOutcome solve_level_by_level(const Problem& problem, const Options& options, int levels,
+                                   int& iterations, int& completed, Workspace& work) noexcept {
+  return LevelByLevel(problem, options, levels, iterations, work).run(completed);
+}
+
+}  // namespace hg::hqp

@@ -1,0 +1,90 @@
+#include "hg/hqp/workspace.h"
+
+#include <cmath>
+
+namespace hg::hqp {
+namespace {
+
+constexpr double kRoundOff = 1e-14;  // error of c x relative to norm(c) |x|, with a margin of 50
+
+}  // namespace
+
+Workspace::Workspace(const Capacity& c)
+    : elimination(c.variables, c.rows),
+      cone(c.variables, c.rows),
+      x(c.variables),
+      state(at(c.rows)),
+      value(at(c.rows)),
+      rank_at_level(at(c.levels) + 1),
+      blocking_row(at(c.levels) + 1),
+      is_held(at(c.variables)),
+      is_frozen(at(c.variables)),
+      slope(at(c.rows)),
+      is_fixed(at(c.rows)),
+      skipped_sides(at(c.rows)),
+      gradient(c.variables),
+      direction(c.variables) {
+  targets.reserve(at(c.rows));
+  touched.reserve(at(c.rows));
+}
+
+double tolerance(const Problem& problem, const Options& options, const Workspace& work, int row,
+                 double bound) noexcept {
+  return options.feasibility_tolerance * magnitude(problem.norm(row), bound, work.x_norm);
+}
+
+double violation(const Problem& problem, const Options& options, const Workspace& work,
+                 int row) noexcept {
+  const Interval bounds = problem.bounds(row);
+  const double distance = excess(bounds, work.value[at(row)]);
+  if (distance == 0.0) return 0.0;
+  const double bound = distance > 0.0 ? bounds.ub : bounds.lb;
+  return std::abs(distance) > tolerance(problem, options, work, row, bound) ? distance : 0.0;
+}
+
+bool touches(const Problem& problem, const Options& options, const Workspace& work, int row,
+             double bound) noexcept {
+  return std::isfinite(bound) &&
+         std::abs(work.value[at(row)] - bound) <= tolerance(problem, options, work, row, bound);
+}
+
+void update_values(const Problem& problem, int levels, Workspace& work) noexcept {
+  const int end = levels > 0 ? problem.end_row(levels - 1) : 0;
+  for (int row = 0; row < end; ++row) work.value[at(row)] = dot(problem, row, work.x.data());
+}
+
+bool move(const Problem& problem, const Eigen::VectorXd& step, double length,
+          Workspace& work) noexcept {
+  const int n = problem.variables();
+  work.x.head(n) += length * step.head(n);
+  const double norm = work.x.head(n).norm();
+  work.x_norm = std::max(work.x_norm, norm);
+  return std::isfinite(norm);
+}
+
+LevelGradient level_gradient(const Problem& problem, const Options& options, int level,
+                             Workspace& work) noexcept {
+  const int n = problem.variables();
+  if (level == problem.levels()) {
+    work.gradient.head(n) = work.x.head(n);
+    const double norm = work.x.head(n).norm();
+    return {.is_zero = norm == 0.0, .scale = norm, .rounding = kRoundOff * work.x_norm};
+  }
+
+  LevelGradient result = {.is_zero = true, .scale = 0.0, .rounding = 0.0};
+  work.gradient.head(n).setZero();
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    const double norm = problem.norm(row);
+    const double distance = excess(problem.bounds(row), work.value[at(row)]);
+    if (distance == 0.0 || norm == 0.0) continue;
+    if (violation(problem, options, work, row) != 0.0) result.is_zero = false;
+    const double factor = problem.weight(row) * problem.weight(row);
+    add_multiple(problem, row, factor * distance, work.gradient.data());
+    result.scale += factor * norm * std::abs(distance);
+    const double bound = work.value[at(row)] - distance;
+    result.rounding += factor * norm * kRoundOff * magnitude(norm, bound, work.x_norm);
+  }
+  return result;
+}
+
+}  // namespace hg::hqp

@@ -1,0 +1,75 @@
+/// Memory of the solver and the few notions that its parts share.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "hg/hqp/cone.h"
+#include "hg/hqp/elimination.h"
+#include "hg/hqp/problem.h"
+#include "hg/hqp/rows.h"
+#include "hg/hqp/solution.h"
+
+namespace hg::hqp {
+
+/// One candidate point and everything known about it. Vectors have their largest size from the
+/// start, except the lists, which are reserved.
+struct Workspace {
+  explicit Workspace(const Capacity& capacity);
+
+  Elimination elimination;
+  Cone cone;
+
+  Eigen::VectorXd x;
+  double x_norm = 0.0;  ///< largest |x| met in this solve: rounding errors scale with it
+  std::vector<RowState> state;
+  std::vector<double> value;            ///< c x by row
+  std::vector<int> rank_at_level;       ///< pivots of the levels above; last: minimum norm
+  std::vector<int> blocking_row;        ///< by level, -1: none
+  std::vector<std::uint8_t> is_held;    ///< by pivot: a row at a bound, not a least-squares row
+  std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
+
+  std::vector<TargetRow> targets;
+  std::vector<TouchedRow> touched;
+  std::vector<double> slope;                ///< c d by row, d the search direction
+  std::vector<std::uint8_t> is_fixed;       ///< by row: eliminated for good
+  std::vector<std::uint8_t> skipped_sides;  ///< by row: sides that are no obstacle to a step
+  Eigen::VectorXd gradient;
+  Eigen::VectorXd direction;
+};
+
+/// Gradient of a level's objective at work.x, in work.gradient.
+struct LevelGradient {
+  bool is_zero;     ///< every row of the level is met within its tolerance
+  double scale;     ///< sum of the norms of the gradient's terms
+  double rounding;  ///< the part of it that rounding may have made up
+};
+
+inline std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+/// Distance from the bound below which the row counts as being at it.
+double tolerance(const Problem& problem, const Options& options, const Workspace& work, int row,
+                 double bound) noexcept;
+
+/// How far c x = work.value[row] is outside its bounds, as excess(); 0 within the tolerance.
+double violation(const Problem& problem, const Options& options, const Workspace& work,
+                 int row) noexcept;
+
+/// Whether work.value[row] is at `bound`, within the tolerance.
+bool touches(const Problem& problem, const Options& options, const Workspace& work, int row,
+             double bound) noexcept;
+
+/// Sets work.value of the rows of the first `levels` levels.
+void update_values(const Problem& problem, int levels, Workspace& work) noexcept;
+
+/// x += length * step; false when x is no longer finite.
+[[nodiscard]] bool move(const Problem& problem, const Eigen::VectorXd& step, double length,
+                        Workspace& work) noexcept;
+
+/// Gradient of `level`, of 1/2 |x|^2 for level == problem.levels(); needs work.value.
+LevelGradient level_gradient(const Problem& problem, const Options& options, int level,
+                             Workspace& work) noexcept;
+
+}  // namespace hg::hqp
