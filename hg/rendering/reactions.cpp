@@ -153,8 +153,9 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
     report.state = limit_state(solution.state[row], value_[i]);
     report.cause = cause_of(rows[i], report.state, dt);
     report.position = rows[i].q;
-    report.excess =
-        std::max({0.0, rows[i].q - rows[i].limits.q_max, rows[i].limits.q_min - rows[i].q});
+    report.to_lower = rows[i].q - rows[i].limits.q_min;
+    report.to_upper = rows[i].limits.q_max - rows[i].q;
+    report.excess = std::max({0.0, rows[i].q - rows[i].range.ub, rows[i].range.lb - rows[i].q});
     report.slack = solution.slack[row];
     report.reaction = value_[i];
   }

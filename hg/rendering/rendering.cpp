@@ -91,7 +91,7 @@ State Rendering::start(const VectorM& q_m) const {
   return state;
 }
 
-SolverStatus Rendering::step(State& state, CycleRecord& record) noexcept {
+SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record) noexcept {
   const int n_p = device_.n_p, n_m = device_.n_m;
   VectorUpTo<kMaxGantry + kMaxManipulator> q(n_p + n_m), dq(n_p + n_m);
   q << record.robot.q_p, state.reference.q_m;
@@ -105,6 +105,10 @@ SolverStatus Rendering::step(State& state, CycleRecord& record) noexcept {
   Budget& budget = record.budget;
   budget.spring = spring_torque(twin_, state.twin.q_a);
   budget.damping = damping_torque(twin_, state.twin.dq_a);
+  if (braking_rate > 0.0) {
+    const VectorA braking = braking_rate * state.twin.dq_a;
+    budget.damping.noalias() += twin_.chain.M() * braking;
+  }
   budget.friction = slip_torque(twin_, state.twin.dq_a, state.inner);
   budget.surface = VectorA::Zero(twin_.chain.nv());
 
@@ -133,7 +137,8 @@ void Rendering::solve(State& state, CycleRecord& record, VectorA& friction) noex
     const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);
     state.reference.ddq_m = x.head(n_m);
     state.twin.ddq_a = x.tail(n_a);
-    record.budget.inertia = twin_.chain.M() * state.twin.ddq_a + twin_.chain.c();
+    record.budget.inertia = twin_.chain.c();
+    record.budget.inertia.noalias() += twin_.chain.M() * state.twin.ddq_a;
     const VectorA tau_constraint = record.budget.inertia - tau;
     reactions_.split(device_, twin_, tasks_, solution_, tau_constraint);
 
@@ -150,6 +155,14 @@ void Rendering::solve(State& state, CycleRecord& record, VectorA& friction) noex
     if (!released) break;
   }
   reactions_.report(twin_, tasks_, solution_, options_.dt, record);
+}
+
+bool Rendering::is_blocked(const CycleRecord& record) const noexcept {
+  const int count = device_.n_m + static_cast<int>(device_.virtual_joints.size());
+  for (int i = 0; i < count; ++i) {
+    if (record.limits[static_cast<std::size_t>(i)].state == LimitState::kViolated) return true;
+  }
+  return false;
 }
 
 void Rendering::report_kinematics(const State& state, CycleRecord& record) const noexcept {

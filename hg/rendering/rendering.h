@@ -39,8 +39,12 @@ class Rendering {
 
   /// Solves for the accelerations of this sample and reports why they are what they are. Needs
   /// record.robot; fills the rest that concerns device, twin, limits and solver. Does not move the
-  /// state: integrate() does.
-  SolverStatus step(State& state, CycleRecord& record) noexcept;
+  /// state: integrate() does. `braking_rate` > 0 (1/s) damps the twin to a standstill.
+  SolverStatus step(State& state, double braking_rate, CycleRecord& record) noexcept;
+
+  /// A joint or virtual joint of the device could not be kept within its limits: what the gantry
+  /// does to a held twin stands above them.
+  bool is_blocked(const CycleRecord& record) const noexcept;
 
   /// Moves reference and twin by one period.
   void integrate(State& state) const noexcept;

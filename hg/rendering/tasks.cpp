@@ -16,18 +16,15 @@ hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin) {
           .rows = 6 + device.n_m + virtual_joints + 3 * frames + 2 * n_a};
 }
 
-LimitRow make_row(const limits::JointLimits& limits, double dt) {
+LimitRow make_row(const limits::JointLimits& limits, double margin, double dt) {
   LimitRow row;
+  row.range = {limits.q_min, limits.q_max};
   row.limits = limits;
+  row.limits.q_min += margin;
+  row.limits.q_max -= margin;
   row.options = limits::recoverable_options(limits, dt, dt);
   row.rating = std::isfinite(limits.ddq_max) ? limits.ddq_max : 1.0;
   return row;
-}
-
-limits::JointLimits with_margin(limits::JointLimits axis, double margin) {
-  axis.q_min += margin;
-  axis.q_max -= margin;
-  return axis;
 }
 
 // [HG] (11), rotational part: axis times angle of R_H_E, resolved in B
@@ -47,8 +44,8 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
       coefficients_(static_cast<std::size_t>(n_m_ + n_a_), 0.0),
       L_(n_a_, n_a_) {
   problem_.clear(n_m_ + n_a_);
-  const auto add_limit = [&](const limits::JointLimits& limits, int variable) {
-    limit_rows_.push_back(make_row(limits, options.dt));
+  const auto add_limit = [&](const limits::JointLimits& limits, int variable, double margin) {
+    limit_rows_.push_back(make_row(limits, margin, options.dt));
     const double weight = 1.0 / limit_rows_.back().rating;
     if (variable >= 0) {
       problem_.add_bound(variable, {}, weight);
@@ -60,16 +57,18 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
   problem_.add_level();
   for (int i = 0; i < 6; ++i) problem_.add_row(coefficients_, {});
   problem_.add_level();
-  for (int i = 0; i < n_m_; ++i) add_limit(device.joint_limits[static_cast<std::size_t>(i)], i);
+  for (int i = 0; i < n_m_; ++i) {
+    add_limit(device.joint_limits[static_cast<std::size_t>(i)], i, 0.0);
+  }
   problem_.add_level();
-  for (const VirtualJoint& joint : device.virtual_joints) add_limit(joint.limits, -1);
+  for (const VirtualJoint& joint : device.virtual_joints) add_limit(joint.limits, -1, 0.0);
   for (const CartesianLimit& frame : device.cartesian_limits) {
     problem_.add_level();
-    for (const auto& axis : frame.axes) add_limit(with_margin(axis, frame.margin), -1);
+    for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
   }
   problem_.add_level();
   for (int i = 0; i < n_a_; ++i) {
-    add_limit(twin.dofs[static_cast<std::size_t>(i)].limits, n_m_ + i);
+    add_limit(twin.dofs[static_cast<std::size_t>(i)].limits, n_m_ + i, 0.0);
   }
   problem_.add_level();
   for (int i = 0; i < n_a_; ++i) problem_.add_row(coefficients_, {});
@@ -112,6 +111,7 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
 void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, double dq,
                       double known_acceleration) noexcept {
   LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  row.limits = limits;
   row.q = q;
   row.dq = dq;
   const Interval ddq = limits::recoverable_bounds(limits, row.options, q, dq, options_.dt);

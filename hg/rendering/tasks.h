@@ -29,7 +29,8 @@ namespace hg::rendering {
 /// One row of levels 1.. to the last but one, in catalogue order: limit i is row first_limit_row()
 /// + i.
 struct LimitRow {
-  limits::JointLimits limits;  ///< rendered ones: Cartesian margins are taken off
+  Interval range;              ///< configured positions
+  limits::JointLimits limits;  ///< as rendered: with margins, and this cycle's locks
   limits::RecoverableOptions options;
   double rating = 1.0;                     ///< weight of the row is 1 / rating
   LimitCause held_by = LimitCause::kNone;  ///< lock, latch or friction, this cycle

@@ -13,14 +13,16 @@ namespace hg::safety {
 
 /// Set-up data.
 struct MonitorConfig {
-  double force_max = 150.0;             ///< [HANDBOOK] 6.2, N
-  double torque_max = 14.0;             ///< Nm; the sensor ends at 15
-  double position_tolerance = 0.03;     ///< beyond a joint limit, rad
-  double cartesian_tolerance = 0.03;    ///< outside a Cartesian limit, m
-  double speed_tolerance = 1.1;         ///< times the rating
-  double tracking_tolerance = 0.08;     ///< reference minus measured joint, rad
-  double gantry_speed_max = 1.5;        ///< m/s
-  std::vector<Interval> joint_range;    ///< of the manipulator joints
+  double force_max = 150.0;           ///< [HANDBOOK] 6.2, N
+  double torque_max = 14.0;           ///< Nm; the sensor ends at 15
+  double position_tolerance = 0.03;   ///< beyond a joint limit, rad
+  double cartesian_tolerance = 0.03;  ///< outside a Cartesian limit, m
+  double speed_tolerance = 1.1;       ///< times the rating
+  double tracking_tolerance = 0.08;   ///< reference minus measured joint, rad
+  double gantry_speed_max = 1.5;      ///< m/s
+  std::vector<Interval> joint_range;  ///< of the manipulator joints
+  int first_cartesian = 0;  ///< Cartesian limits in the catalogue: first and one past the last
+  int end_cartesian = 0;
   std::vector<double> joint_speed_max;  ///< rad/s
 };
 

@@ -12,9 +12,13 @@ struct SupervisorState {
 };
 
 /// Takes one request and the fault of this cycle, if any.
-///   off -> ready (first good sample) -> armed (arm) -> running (run) -> armed (stop)
-///   any powered state -> fault (fault) -> ready (reset, once the cause is gone)
+///   off -> ready (first good sample) -> armed (arm) -> running (run, with the dead-man closed)
+///   armed -> ready (stop);  running -> stopping (stop, or the dead-man opens)
+///   any state -> fault (fault) -> ready (reset, once the cause is gone)
 void advance(SupervisorState& state, ModeRequest request, bool dead_man,
              const Fault& fault) noexcept;
+
+/// stopping -> armed: the reference stands still.
+void has_stopped(SupervisorState& state) noexcept;
 
 }  // namespace hg::safety

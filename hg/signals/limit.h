@@ -52,6 +52,8 @@ struct LimitReport {
   LimitState state = LimitState::kInactive;
   LimitCause cause = LimitCause::kNone;
   double position = 0.0;  ///< of the limited quantity
+  double to_lower = kInfinity;  ///< distance left to the limit as rendered: with margin and locks
+  double to_upper = kInfinity;
   double excess = 0.0;    ///< how far it is outside its configured range, >= 0
   double slack = 0.0;     ///< acceleration by which a violated row misses its bound
   double reaction = 0.0;  ///< constraint force or torque in the quantity's own coordinate

@@ -1,0 +1,130 @@
+#include "hg/cycle/cycle.h"
+
+#include "hg/control/tracking.h"
+
+namespace hg::cycle {
+namespace {
+
+constexpr double kBrakingRate = 20.0;  // 1/s: stopping takes about 0.2 s
+constexpr double kStandstill = 1e-3;   // rad/s and m/s
+
+// FNV-1a over the bytes of the doubles
+template <typename Vector>
+void mix(std::uint64_t& hash, const Vector& v) noexcept {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(v.data());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(v.size()) * sizeof(double); ++i) {
+    hash = (hash ^ bytes[i]) * 0x100000001b3ULL;
+  }
+}
+
+std::uint64_t hash_of(const rendering::State& state, const RobotState& robot) noexcept {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  mix(hash, state.reference.q_m);
+  mix(hash, state.reference.dq_m);
+  mix(hash, state.twin.q_a);
+  mix(hash, state.twin.dq_a);
+  mix(hash, robot.q_p);
+  mix(hash, robot.dq_p);
+  return hash;
+}
+
+bool stands_still(const CycleRecord& record) noexcept {
+  return record.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
+         record.reference.dq_m.lpNorm<Eigen::Infinity>() < kStandstill &&
+         record.robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
+}
+
+}  // namespace
+
+Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
+             const rendering::TwinModel& twin)
+    : config_(config),
+      estimation_(config.estimation, device.chain, device.n_p, device.n_m, device.handle),
+      rendering_(device, twin, config.rendering) {
+  prepositioning::check(config_.prepositioning);
+  state_.rendering = rendering_.start(VectorM::Zero(device.n_m));
+  state_.dq_p = VectorP::Zero(device.n_p);
+}
+
+void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input,
+                 CommandFrame& command, CycleRecord& record) noexcept {
+  record = {};
+  record.cycle = state_.cycle;
+  record.time_s = static_cast<double>(state_.cycle) * config_.rendering.dt;
+
+  // supervisor: may this sample be used, and what is the device allowed to do
+  if (state_.cycle == 0) state_.next_sequence = sensors.sequence;
+  const Fault fault = safety::check_sensors(config_.monitor, sensors, state_.next_sequence);
+  safety::advance(state_.supervisor, operator_input.request, sensors.dead_man, fault);
+
+  // estimation -> rendering -> prepositioning
+  if (fault.code != FaultCode::kSensorNotFinite) {
+    record.robot = estimation_.step(sensors, state_.dq_p, state_.estimation);
+    const Mode mode = state_.supervisor.mode;
+    if (mode == Mode::kRunning || mode == Mode::kStopping) {
+      render(record);
+    } else {
+      hold(record);
+    }
+  }
+
+  // control -> sanitiser
+  write_command(sensors, operator_input, command);
+  safety::sanitise(config_.monitor, command);
+
+  state_.dq_p = command.dq_p;
+  state_.next_sequence = sensors.sequence + 1;
+  ++state_.cycle;
+  record.mode = state_.supervisor.mode;
+  record.fault = state_.supervisor.fault;
+  record.state_hash = hash_of(state_.rendering, record.robot);
+}
+
+// The twin rests, the device stays where it is.
+void Cycle::hold(CycleRecord& record) noexcept {
+  rendering::State& rendering = state_.rendering;
+  if (state_.supervisor.mode != Mode::kArmed) rendering.reference.q_m = record.robot.q_m;
+  rendering.reference.dq_m.setZero();
+  rendering.twin.dq_a.setZero();
+  const Vector6 w_H = record.robot.w_H;
+  record.robot.w_H.setZero();
+  rendering_.step(rendering, kBrakingRate, record);
+  record.robot.w_H = w_H;
+  state_.dq_p.setZero();
+}
+
+void Cycle::render(CycleRecord& record) noexcept {
+  const bool is_stopping = state_.supervisor.mode == Mode::kStopping;
+  if (is_stopping) record.robot.w_H.setZero();
+  rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record);
+
+  const Fault fault = safety::check_reference(config_.monitor, record);
+  if (fault.code != FaultCode::kNone) {
+    stop_with(fault);
+    return;
+  }
+  const prepositioning::Command gantry = prepositioning::step(
+      config_.prepositioning, record.robot, state_.rendering.reference.q_m, state_.is_blocked);
+  record.q_p_target = gantry.q_target;
+  state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
+  state_.is_blocked = rendering_.is_blocked(record);
+  rendering_.integrate(state_.rendering);
+  if (is_stopping && stands_still(record)) safety::has_stopped(state_.supervisor);
+}
+
+void Cycle::stop_with(const Fault& fault) noexcept {
+  safety::advance(state_.supervisor, state_.supervisor.last_request, false, fault);
+}
+
+void Cycle::write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
+                          CommandFrame& command) noexcept {
+  const Mode mode = state_.supervisor.mode;
+  command.sequence = sensors.sequence;
+  command.enable = mode == Mode::kArmed || mode == Mode::kRunning || mode == Mode::kStopping;
+  control::track(state_.rendering.reference, command);
+  command.dq_p = state_.dq_p;
+  if (!command.enable) command.dq_p.setZero();
+  command.hand_target = operator_input.hand_target;
+}
+
+}  // namespace hg::cycle

@@ -1,0 +1,60 @@
+/// One pass of the control loop: sensors and operator in, command and record out.
+///
+/// No clock, no thread, no I/O: the same inputs give the same bits. No allocation after
+/// construction.
+#pragma once
+
+#include "hg/estimation/estimation.h"
+#include "hg/prepositioning/prepositioning.h"
+#include "hg/rendering/rendering.h"
+#include "hg/safety/monitor.h"
+#include "hg/safety/supervisor.h"
+#include "hg/signals/state.h"
+
+namespace hg::cycle {
+
+/// Set-up data.
+struct Config {
+  estimation::Config estimation;
+  prepositioning::Config prepositioning;
+  rendering::Options rendering;
+  safety::MonitorConfig monitor;
+};
+
+/// All that a cycle remembers. Copy it to take a snapshot, assign it to go back.
+struct State {
+  std::uint64_t cycle = 0;
+  std::uint64_t next_sequence = 0;
+  safety::SupervisorState supervisor;
+  estimation::State estimation;
+  rendering::State rendering;
+  VectorP dq_p;             ///< gantry command of the last cycle
+  bool is_blocked = false;  ///< a device limit could not be met in the last cycle
+};
+
+class Cycle {
+ public:
+  /// Throws SetupError when the parts do not fit together.
+  Cycle(const Config& config, const rendering::DeviceModel& device,
+        const rendering::TwinModel& twin);
+
+  void step(const SensorFrame& sensors, const OperatorFrame& operator_input, CommandFrame& command,
+            CycleRecord& record) noexcept;
+
+  const State& state() const noexcept { return state_; }
+  void restore(const State& state) noexcept { state_ = state; }
+
+ private:
+  void hold(CycleRecord& record) noexcept;
+  void render(CycleRecord& record) noexcept;
+  void write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
+                     CommandFrame& command) noexcept;
+  void stop_with(const Fault& fault) noexcept;
+
+  Config config_;
+  estimation::Estimation estimation_;
+  rendering::Rendering rendering_;
+  State state_;
+};
+
+}  // namespace hg::cycle

@@ -1,0 +1,101 @@
+#include "hg/evaluation/events.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace hg::evaluation {
+namespace {
+
+// [HANDBOOK] 10: a limit is hit within 2 mm / 5 mrad of it
+constexpr double kNearMetres = 2e-3;
+constexpr double kNearRadians = 5e-3;
+
+bool is_held(LimitCause cause) noexcept {
+  return cause == LimitCause::kLock || cause == LimitCause::kFriction;
+}
+
+// the side of the position limit that is reached and acts, kInactive if none
+LimitState reached_side(const LimitInfo& info, const LimitReport& report) noexcept {
+  if (report.state == LimitState::kInactive || is_held(report.cause)) return LimitState::kInactive;
+  const double near = info.is_angle ? kNearRadians : kNearMetres;
+  if (report.state != LimitState::kUpper && report.to_lower <= near) return LimitState::kLower;
+  if (report.state != LimitState::kLower && report.to_upper <= near) return LimitState::kUpper;
+  return LimitState::kInactive;
+}
+
+}  // namespace
+
+EventDetector::EventDetector(std::vector<EventRule> rules, LimitCatalogue catalogue)
+    : rules_(std::move(rules)),
+      catalogue_(std::move(catalogue)),
+      last_states_(catalogue_.size(), LimitState::kInactive) {}
+
+bool EventDetector::holds(const Condition& condition, const CycleRecord& record) const {
+  const auto i = static_cast<std::size_t>(condition.index);
+  switch (condition.kind) {
+    case ConditionKind::kLimit: {
+      const LimitState side = reached_side(catalogue_[i], record.limits[i]);
+      return side != LimitState::kInactive &&
+             (condition.side == LimitState::kInactive || condition.side == side);
+    }
+    case ConditionKind::kSpeedLimit:
+      return record.limits[i].state != LimitState::kInactive &&
+             record.limits[i].cause == LimitCause::kVelocity;
+    case ConditionKind::kLocked:
+      return record.limits[i].cause == LimitCause::kLock;
+    case ConditionKind::kForceAbove:
+      return record.robot.w_H.head<3>().norm() > condition.value;
+    case ConditionKind::kForceBelow:
+      return record.robot.w_H.head<3>().norm() < condition.value;
+    case ConditionKind::kTwinAbove:
+      return record.twin.q_a[condition.index] > condition.value;
+    case ConditionKind::kTwinBelow:
+      return record.twin.q_a[condition.index] < condition.value;
+    case ConditionKind::kTurns:
+      return std::abs(record.reference.q_m[condition.index] - q_m_start_[condition.index]) >=
+             2.0 * std::numbers::pi * condition.value;
+    case ConditionKind::kGantryAbove:
+      return record.robot.q_p[condition.index] > condition.value;
+    case ConditionKind::kGantryBelow:
+      return record.robot.q_p[condition.index] < condition.value;
+    case ConditionKind::kElapsed:
+      return record.time_s > condition.value;
+  }
+  return false;
+}
+
+std::optional<Event> EventDetector::observe(const CycleRecord& record) {
+  if (record.mode != Mode::kRunning) return std::nullopt;
+  if (q_m_start_.size() == 0) q_m_start_ = record.reference.q_m;
+
+  if (!rules_.empty()) {
+    if (next_ == rules_.size()) return std::nullopt;
+    const EventRule& rule = rules_[next_];
+    const bool happens = std::all_of(rule.all_of.begin(), rule.all_of.end(),
+                                     [&](const Condition& c) { return holds(c, record); });
+    if (!happens) return std::nullopt;
+    ++next_;
+    return Event{rule.name, record.time_s, rule.what};
+  }
+
+  std::optional<Event> event;
+  for (std::size_t i = 0; i < catalogue_.size(); ++i) {
+    const LimitState side = reached_side(catalogue_[i], record.limits[i]);
+    if (side != LimitState::kInactive && last_states_[i] == LimitState::kInactive && !event) {
+      event =
+          Event{catalogue_[i].name, record.time_s, std::string(to_string(side)) + " limit reached"};
+    }
+    last_states_[i] = side;
+  }
+  return event;
+}
+
+std::vector<std::string> EventDetector::missing() const {
+  std::vector<std::string> names;
+  for (std::size_t i = next_; i < rules_.size(); ++i) names.push_back(rules_[i].name);
+  return names;
+}
+
+}  // namespace hg::evaluation

@@ -1,0 +1,175 @@
+#include "hg/evaluation/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace hg::evaluation {
+namespace {
+
+// [HANDBOOK] 10.1
+constexpr double kToleranceMetres = 2e-3;
+constexpr double kToleranceRadians = 5e-3;
+
+nlohmann::ordered_json to_json(const Distribution& d) {
+  return {{"median", d.median}, {"p99_9", d.p99_9}, {"max", d.max}};
+}
+
+double per_second(std::uint64_t count, double duration_s) {
+  return duration_s > 0.0 ? static_cast<double>(count) / duration_s : 0.0;
+}
+
+double mean(double sum, std::uint64_t count) {
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+}  // namespace
+
+Distribution distribution(std::vector<float>& values) {
+  if (values.empty()) return {};
+  const auto at = [&](double share) {
+    const auto rank = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(values.begin(), nth, values.end());
+    return static_cast<double>(*nth);
+  };
+  return {at(0.5), at(0.999), at(1.0)};
+}
+
+Summary::Summary(LimitCatalogue catalogue)
+    : catalogue_(std::move(catalogue)), worst_excess_(catalogue_.size(), 0.0) {}
+
+void Summary::add(const Sample& sample) {
+  const CycleRecord& record = sample.record;
+  ++cycles_;
+  cycle_time_us_.push_back(static_cast<float>(sample.cycle_time_us));
+  if (record.fault.code != FaultCode::kNone && fault_.code == FaultCode::kNone) {
+    fault_ = record.fault;
+  }
+  if (record.mode != Mode::kRunning) {
+    last_acceleration_ = record.a_H;
+    return;
+  }
+
+  ++running_cycles_;
+  duration_s_ = record.time_s;
+  for (std::size_t i = 0; i < catalogue_.size(); ++i) {
+    worst_excess_[i] = std::max(worst_excess_[i], record.limits[i].excess);
+  }
+  max_sync_error_ = std::max(max_sync_error_, record.sync_error);
+  max_sync_angle_ = std::max(max_sync_angle_, record.sync_error_angle);
+  const double force = record.robot.w_H.head<3>().norm();
+  sum_force_ += force;
+  max_force_ = std::max(max_force_, force);
+  max_torque_ = std::max(max_torque_, record.robot.w_H.tail<3>().norm());
+  ++solver_status_[static_cast<std::size_t>(record.solver_status)];
+  active_set_changes_ += static_cast<std::uint64_t>(record.active_set_changes);
+  const double change = (record.a_H - last_acceleration_).norm();
+  last_acceleration_ = record.a_H;
+  sum_acceleration_change_ += change;
+  acceleration_change_.push_back(static_cast<float>(change));
+}
+
+bool Summary::limits_held() const noexcept {
+  for (std::size_t i = 0; i < catalogue_.size(); ++i) {
+    const double tolerance = catalogue_[i].is_angle ? kToleranceRadians : kToleranceMetres;
+    if (worst_excess_[i] > tolerance) return false;
+  }
+  return true;
+}
+
+std::string Summary::to_json(const RunFacts& facts, const std::vector<std::string>& missing) {
+  nlohmann::ordered_json json;
+  json["version"] = facts.version;
+  json["scenario"] = facts.scenario;
+  json["rate_Hz"] = facts.rate_Hz;
+  json["fast"] = facts.is_fast;
+  json["duration_s"] = duration_s_;
+  json["wall_time_s"] = facts.wall_time_s;
+  json["cycles"] = cycles_;
+
+  json["events"] = nlohmann::ordered_json::array();
+  for (const Event& event : events_) {
+    json["events"].push_back(
+        {{"name", event.name}, {"time_s", event.time_s}, {"what", event.what}});
+  }
+  json["missing_events"] = missing;
+  json["limits"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < catalogue_.size(); ++i) {
+    json["limits"][catalogue_[i].name] = {{"worst_violation", worst_excess_[i]},
+                                          {"unit", catalogue_[i].is_angle ? "rad" : "m"}};
+  }
+  json["limits_held"] = limits_held();
+  json["sync_error"] = {{"max_m", max_sync_error_}, {"max_rad", max_sync_angle_}};
+  json["force"] = {{"mean_N", mean(sum_force_, running_cycles_)},
+                   {"max_N", max_force_},
+                   {"max_torque_Nm", max_torque_}};
+  json["solver"]["status"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < solver_status_.size(); ++i) {
+    json["solver"]["status"][std::string(to_string(static_cast<SolverStatus>(i)))] =
+        solver_status_[i];
+  }
+  json["solver"]["active_set_changes_per_second"] = per_second(active_set_changes_, duration_s_);
+  json["acceleration_change_per_cycle"] = evaluation::to_json(distribution(acceleration_change_));
+  json["acceleration_change_per_cycle"]["mean"] = mean(sum_acceleration_change_, running_cycles_);
+  json["acceleration_change_per_cycle"]["unit"] = "m/s^2";
+  json["cycle_time_us"] = evaluation::to_json(distribution(cycle_time_us_));
+  json["overruns"] = facts.overruns;
+  json["dropped_samples"] = facts.dropped;
+  json["allocations_in_loop"] = facts.allocations_in_loop;
+  json["recording"] = facts.recording;
+  json["fault"] = {{"code", static_cast<int>(fault_.code)},
+                   {"what", std::string(to_string(fault_.code))},
+                   {"index", fault_.index}};
+  return json.dump(2) + "\n";
+}
+
+std::string Summary::to_text(const RunFacts& facts, const std::vector<std::string>& missing) {
+  std::string text;
+  const auto line = [&](const char* label, const std::string& value) {
+    text += fmt::format("  {:<12} {}\n", label, value);
+  };
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < catalogue_.size(); ++i) {
+    if (worst_excess_[i] > worst_excess_[worst]) worst = i;
+  }
+  const Distribution time = distribution(cycle_time_us_);
+  const double wall = std::max(facts.wall_time_s, 1e-9);
+
+  line("run", fmt::format("{}, {:.1f} s in {:.1f} s ({:.1f}x real time), {:.0f} Hz", facts.scenario,
+                          duration_s_, facts.wall_time_s, duration_s_ / wall, facts.rate_Hz));
+  line("events", missing.empty() ? fmt::format("{} of {} in order", events_.size(), events_.size())
+                                 : fmt::format("{} happened; missing: {}", events_.size(),
+                                               fmt::join(missing, ", ")));
+  if (catalogue_.empty() || worst_excess_[worst] == 0.0) {
+    line("limits", "all held");
+  } else {
+    line("limits",
+         fmt::format("{}, worst {} by {:.3f} {}",
+                     limits_held() ? "held within tolerance" : "EXCEEDED", catalogue_[worst].name,
+                     1e3 * worst_excess_[worst], catalogue_[worst].is_angle ? "mrad" : "mm"));
+  }
+  line("hand - twin", fmt::format("at most {:.3f} mm apart", 1e3 * max_sync_error_));
+  line("force",
+       fmt::format("mean {:.1f} N, max {:.1f} N", mean(sum_force_, running_cycles_), max_force_));
+  line("solver", fmt::format("{} solved, {} not; {:.1f} active-set changes per second",
+                             solver_status_[1], solver_status_[2] + solver_status_[3],
+                             per_second(active_set_changes_, duration_s_)));
+  line("smoothness", fmt::format("acceleration changes by {:.4f} m/s^2 per cycle on average",
+                                 mean(sum_acceleration_change_, running_cycles_)));
+  line("cycle time", fmt::format("median {:.1f} us, 99.9 % {:.1f} us, max {:.1f} us; {} late",
+                                 time.median, time.p99_9, time.max, facts.overruns));
+  line("allocations", fmt::format("{} in the loop", facts.allocations_in_loop));
+  line("recording", facts.recording.empty() ? "off" : facts.recording);
+  if (fault_.code != FaultCode::kNone) {
+    line("FAULT",
+         fmt::format("{} {} (number {}: {:.4g}, limit {:.4g})", static_cast<int>(fault_.code),
+                     to_string(fault_.code), fault_.index, fault_.value, fault_.limit));
+  }
+  return text;
+}
+
+}  // namespace hg::evaluation

@@ -1,0 +1,41 @@
+#include "hg/prepositioning/prepositioning.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hg/core/error.h"
+#include "hg/model/haptic_giant.h"
+
+namespace hg::prepositioning {
+
+void check(const Config& config) {
+  const auto require = [](bool ok, const char* rule) {
+    if (!ok) throw SetupError(std::string("prepositioning: ") + rule);
+  };
+  require(config.n_p == 2, "the closed-form target needs two gantry joints");
+  require(std::isfinite(config.k_ppu) && config.k_ppu > 0.0, "k_ppu must be positive");
+  require(config.dq_max > 0.0, "dq_max must be positive");
+  for (int i = 0; i < config.n_p; ++i) {
+    require(!config.q_limits[static_cast<std::size_t>(i)].empty(), "limits must not be reversed");
+  }
+  limits::check(config.drive, "prepositioning");
+}
+
+Command step(const Config& config, const RobotState& robot, const VectorM& q_m,
+             bool device_blocked) noexcept {
+  Command command;
+  const Eigen::Vector2d q_target = model::haptic_giant::gantry_target(robot.q_p, q_m);
+  command.q_target = q_target;
+  command.dq = VectorP::Zero(config.n_p);
+  if (device_blocked) return command;
+  for (int i = 0; i < config.n_p; ++i) {
+    const Interval q_limits = config.q_limits[static_cast<std::size_t>(i)];
+    command.q_target[i] = std::clamp(command.q_target[i], q_limits.lb, q_limits.ub);
+    const Interval bounds = limits::braking_velocity_bounds(q_limits, config.drive, robot.q_p[i]);
+    const double dq = config.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
+    command.dq[i] = std::clamp(std::clamp(dq, bounds.lb, bounds.ub), -config.dq_max, config.dq_max);
+  }
+  return command;
+}
+
+}  // namespace hg::prepositioning

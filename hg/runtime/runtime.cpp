@@ -1,0 +1,142 @@
+#include "hg/runtime/runtime.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "hg/core/allocation_counter.h"
+#include "hg/core/error.h"
+
+namespace hg::runtime {
+namespace {
+
+constexpr long kNanoseconds = 1'000'000'000;
+constexpr double kLongestStop = 1.0;  // s; a device that is still moving then is left to its driver
+
+// SCHED_FIFO and locked memory where the system allows them
+bool become_real_time() noexcept {
+  sched_param priority{};
+  priority.sched_priority = 80;
+  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) != 0) return false;
+  return mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+}
+
+void advance(timespec& t, long nanoseconds) noexcept {
+  t.tv_nsec += nanoseconds;
+  while (t.tv_nsec >= kNanoseconds) {
+    t.tv_nsec -= kNanoseconds;
+    ++t.tv_sec;
+  }
+}
+
+bool is_past(const timespec& t) noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec > t.tv_sec || (now.tv_sec == t.tv_sec && now.tv_nsec > t.tv_nsec);
+}
+
+// the operator of a simulation: arms, runs, stops
+ModeRequest next_request(Mode mode, bool is_stopping) noexcept {
+  switch (mode) {
+    case Mode::kReady:
+      return ModeRequest::kArm;
+    case Mode::kArmed:
+      return is_stopping ? ModeRequest::kNone : ModeRequest::kRun;
+    case Mode::kRunning:
+      return is_stopping ? ModeRequest::kStop : ModeRequest::kNone;
+    case Mode::kOff:
+    case Mode::kStopping:
+    case Mode::kFault:
+      return ModeRequest::kNone;
+  }
+  return ModeRequest::kNone;
+}
+
+}  // namespace
+
+void check(const Options& options) {
+  const auto require = [](bool ok, const char* rule, double value) {
+    if (!ok) throw SetupError(std::string("runtime: ") + rule + ", got " + std::to_string(value));
+  };
+  require(options.rate_Hz >= 100.0 && options.rate_Hz <= 20000.0, "rate_Hz must be 100..20000",
+          options.rate_Hz);
+  require(std::isfinite(options.duration_s) && options.duration_s >= 0.0,
+          "duration_s must not be negative", options.duration_s);
+}
+
+Runtime::Runtime(const Options& options, cycle::Cycle& cycle, device::Device& device)
+    : options_((check(options), options)),
+      cycle_(cycle),
+      device_(device),
+      samples_(options.ring),
+      hand_targets_(256) {}
+
+Runtime::~Runtime() {
+  request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Runtime::start() {
+  thread_ = std::thread([this] { loop(); });
+}
+
+Report Runtime::join() {
+  if (thread_.joinable()) thread_.join();
+  report_.dropped = samples_.dropped();
+  return report_;
+}
+
+void Runtime::run_cycle(Sample& sample) noexcept {
+  const auto begin = std::chrono::steady_clock::now();
+  device_.read(sample.sensors);
+  while (hand_targets_.pop(sample.operator_input.hand_target)) {
+  }
+  cycle_.step(sample.sensors, sample.operator_input, sample.command, sample.record);
+  const auto end = std::chrono::steady_clock::now();
+  device_.write(sample.command);
+  sample.cycle_time_us = std::chrono::duration<double, std::micro>(end - begin).count();
+}
+
+void Runtime::loop() noexcept {
+  if (!options_.is_fast) report_.is_real_time = become_real_time();
+  const auto sample = std::make_unique<Sample>();
+  const long period_ns = std::lround(1e9 / options_.rate_Hz);
+  timespec due{};
+  clock_gettime(CLOCK_MONOTONIC, &due);
+
+  AllocationCounter allocations;
+  double stop_since_s = -1.0;
+  while (true) {
+    run_cycle(*sample);
+    const CycleRecord& record = sample->record;
+    ++report_.cycles;
+    if (options_.is_fast) {
+      while (!samples_.push(*sample)) std::this_thread::yield();
+    } else {
+      samples_.push(*sample);
+    }
+
+    const bool is_over = options_.duration_s > 0.0 && record.time_s >= options_.duration_s;
+    const bool is_stopping = is_over || stop_requested_.load(std::memory_order_relaxed);
+    if (is_stopping && stop_since_s < 0.0) stop_since_s = record.time_s;
+    const bool is_at_rest = record.mode != Mode::kRunning && record.mode != Mode::kStopping;
+    if (record.mode == Mode::kFault) break;
+    if (is_stopping && (is_at_rest || record.time_s > stop_since_s + kLongestStop)) break;
+    sample->operator_input.request = next_request(record.mode, is_stopping);
+
+    if (options_.is_fast) continue;
+    advance(due, period_ns);
+    if (is_past(due)) ++report_.overruns;
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr);
+  }
+  report_.allocations = allocations.count();
+  finished_.store(true);
+}
+
+}  // namespace hg::runtime

@@ -1,0 +1,71 @@
+/// Runs a cycle on a device: clock, thread, priority, and the rings to everybody else.
+///
+/// The control thread never waits for an observer: what the ring cannot take is dropped and
+/// counted. Only in fast mode, where there is no real time to keep, does it wait.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+#include "hg/core/spsc_ring.h"
+#include "hg/cycle/cycle.h"
+#include "hg/device/device.h"
+#include "hg/signals/state.h"
+
+namespace hg::runtime {
+
+/// Set-up data.
+struct Options {
+  double rate_Hz = 1000.0;
+  bool is_fast = false;     ///< as fast as it can instead of in real time
+  double duration_s = 0.0;  ///< then the device is stopped; 0 = until request_stop()
+  std::size_t ring = 4096;  ///< samples that an observer may fall behind
+};
+
+/// Throws SetupError naming the option that is out of range.
+void check(const Options& options);
+
+/// Known after join().
+struct Report {
+  std::uint64_t cycles = 0;
+  std::uint64_t overruns = 0;     ///< cycles that ended after the next one was due
+  std::uint64_t dropped = 0;      ///< samples that no observer saw
+  std::uint64_t allocations = 0;  ///< heap allocations inside the loop
+  bool is_real_time = false;      ///< the thread ran with SCHED_FIFO
+};
+
+class Runtime {
+ public:
+  /// `cycle` and `device` must outlive the runtime and belong to it from start() to join().
+  Runtime(const Options& options, cycle::Cycle& cycle, device::Device& device);
+  ~Runtime();
+
+  /// Starts the control thread: arms the device, runs, and stops it at the end.
+  void start();
+  /// Asks for a controlled stop; the device comes to rest first. May be called from any thread.
+  void request_stop() noexcept { stop_requested_.store(true); }
+  bool is_finished() const noexcept { return finished_.load(); }
+  Report join();
+
+  /// One observer thread: the next sample, false if there is none yet.
+  bool pop(Sample& sample) noexcept { return samples_.pop(sample); }
+  /// One operator thread: where a simulated hand should go; from the next cycle on.
+  void set_hand_target(const HandTarget& target) noexcept { hand_targets_.push(target); }
+
+ private:
+  void loop() noexcept;
+  void run_cycle(Sample& sample) noexcept;
+
+  Options options_;
+  cycle::Cycle& cycle_;
+  device::Device& device_;
+  SpscRing<Sample> samples_;
+  SpscRing<HandTarget> hand_targets_;
+  std::atomic<bool> stop_requested_{false};
+  std::atomic<bool> finished_{false};
+  Report report_;
+  std::thread thread_;
+};
+
+}  // namespace hg::runtime

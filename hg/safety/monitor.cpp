@@ -1,0 +1,106 @@
+#include "hg/safety/monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hg::safety {
+namespace {
+
+template <typename Vector>
+int first_not_finite(const Vector& v) noexcept {
+  for (int i = 0; i < v.size(); ++i) {
+    if (!std::isfinite(v[i])) return i;
+  }
+  return -1;
+}
+
+Fault make_fault(FaultCode code, int index, double value, double limit) noexcept {
+  return {code, static_cast<std::int16_t>(index), value, limit};
+}
+
+}  // namespace
+
+Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
+                    std::uint64_t expected_sequence) noexcept {
+  if (sensors.emergency_stop) return make_fault(FaultCode::kEmergencyStop, -1, 1.0, 0.0);
+  if (sensors.sequence != expected_sequence) {
+    return make_fault(FaultCode::kSequenceGap, -1, static_cast<double>(sensors.sequence),
+                      static_cast<double>(expected_sequence));
+  }
+
+  // components are counted through in this order: joints, joint speeds, gantry, wrench
+  int first = 0;
+  const auto not_finite = [&](const auto& v) {
+    const int i = first_not_finite(v);
+    const int index = i < 0 ? -1 : first + i;
+    first += static_cast<int>(v.size());
+    return index;
+  };
+  for (const int index : {not_finite(sensors.q_m), not_finite(sensors.dq_m),
+                          not_finite(sensors.q_p), not_finite(sensors.w_S)}) {
+    if (index >= 0) return make_fault(FaultCode::kSensorNotFinite, index, NAN, 0.0);
+  }
+
+  const double force = sensors.w_S.head<3>().norm();
+  if (force > config.force_max) {
+    return make_fault(FaultCode::kWrenchTooLarge, 0, force, config.force_max);
+  }
+  const double torque = sensors.w_S.tail<3>().norm();
+  if (torque > config.torque_max) {
+    return make_fault(FaultCode::kWrenchTooLarge, 1, torque, config.torque_max);
+  }
+  return {};
+}
+
+Fault check_reference(const MonitorConfig& config, const CycleRecord& record) noexcept {
+  if (record.solver_status != SolverStatus::kSolved) {
+    return make_fault(FaultCode::kSolverFailed, -1, static_cast<double>(record.solver_status), 0.0);
+  }
+  const ReferenceState& reference = record.reference;
+  int index = first_not_finite(reference.ddq_m);
+  if (index < 0) index = first_not_finite(record.twin.ddq_a);
+  if (index >= 0) return make_fault(FaultCode::kReferenceNotFinite, index, NAN, 0.0);
+
+  for (int i = 0; i < reference.q_m.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    const Interval range = config.joint_range[joint];
+    const double nearest = std::clamp(reference.q_m[i], range.lb, range.ub);
+    if (std::abs(reference.q_m[i] - nearest) > config.position_tolerance) {
+      return make_fault(FaultCode::kLimitExceeded, i, reference.q_m[i], nearest);
+    }
+    const double fastest = config.speed_tolerance * config.joint_speed_max[joint];
+    if (std::abs(reference.dq_m[i]) > fastest) {
+      return make_fault(FaultCode::kSpeedExceeded, i, reference.dq_m[i], fastest);
+    }
+    const double error = std::abs(reference.q_m[i] - record.robot.q_m[i]);
+    if (error > config.tracking_tolerance) {
+      return make_fault(FaultCode::kTrackingLost, i, error, config.tracking_tolerance);
+    }
+  }
+  for (int i = 0; i < record.limit_count; ++i) {
+    const LimitReport& limit = record.limits[static_cast<std::size_t>(i)];
+    if (i >= config.first_cartesian && i < config.end_cartesian &&
+        limit.excess > config.cartesian_tolerance) {
+      return make_fault(FaultCode::kLimitExceeded, i, limit.excess, config.cartesian_tolerance);
+    }
+  }
+  return {};
+}
+
+void sanitise(const MonitorConfig& config, CommandFrame& command) noexcept {
+  const bool is_finite = command.q_m.allFinite() && command.dq_m.allFinite() &&
+                         command.ddq_m.allFinite() && command.dq_p.allFinite();
+  if (!is_finite) {
+    command.enable = false;
+    command.dq_m.setZero();
+    command.ddq_m.setZero();
+    command.dq_p.setZero();
+    for (double& q : command.q_m) q = std::isfinite(q) ? q : 0.0;
+    return;
+  }
+  for (double& dq : command.dq_p) {
+    dq = std::clamp(dq, -config.gantry_speed_max, config.gantry_speed_max);
+  }
+}
+
+}  // namespace hg::safety
