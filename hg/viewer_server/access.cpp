@@ -1,0 +1,129 @@
+#include "hg/viewer_server/access.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+
+#include "hg/core/error.h"
+
+namespace hg::viewer_server {
+namespace {
+
+constexpr std::uintmax_t kLargestPage = 64u << 20;  // bytes; a built page has about 1 MB
+
+constexpr std::array<std::array<std::string_view, 2>, 9> kContentTypes = {{
+    {".html", "text/html; charset=utf-8"},
+    {".js", "text/javascript; charset=utf-8"},
+    {".css", "text/css; charset=utf-8"},
+    {".json", "application/json"},
+    {".svg", "image/svg+xml"},
+    {".png", "image/png"},
+    {".woff2", "font/woff2"},
+    {".wasm", "application/wasm"},
+    {".txt", "text/plain; charset=utf-8"},
+}};
+
+std::string content_type(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  for (const auto& [ending, type] : kContentTypes) {
+    if (extension == ending) return std::string(type);
+  }
+  return "application/octet-stream";
+}
+
+// Value of `name` in a list of name=value pairs.
+std::string_view pair_value(std::string_view pairs, char separator, std::string_view name) {
+  while (!pairs.empty()) {
+    const std::size_t end = std::min(pairs.find(separator), pairs.size());
+    std::string_view pair = pairs.substr(0, end);
+    pairs.remove_prefix(std::min(end + 1, pairs.size()));
+    while (pair.starts_with(' ')) pair.remove_prefix(1);
+    if (pair.starts_with(name) && pair.substr(name.size()).starts_with('=')) {
+      return pair.substr(name.size() + 1);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string random_token() {
+  std::array<unsigned char, 16> bytes;
+  if (getentropy(bytes.data(), bytes.size()) != 0) {
+    throw SetupError("viewer: the operating system must give random numbers for the token");
+  }
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string token;
+  for (const unsigned char byte : bytes) {
+    token += kDigits[byte >> 4];
+    token += kDigits[byte & 15];
+  }
+  return token;
+}
+
+bool is_same_secret(std::string_view a, std::string_view b) noexcept {
+  if (a.size() != b.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference |=
+        static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]));
+  }
+  return difference == 0;
+}
+
+bool is_own_host(std::string_view host, std::uint16_t port) {
+  for (const char* name : {"127.0.0.1:", "localhost:"}) {
+    if (host == name + std::to_string(port)) return true;
+  }
+  return false;
+}
+
+bool is_own_origin(std::string_view origin, std::uint16_t port) {
+  constexpr std::string_view kScheme = "http://";
+  return origin.starts_with(kScheme) && is_own_host(origin.substr(kScheme.size()), port);
+}
+
+std::string_view path_of(std::string_view target) noexcept {
+  return target.substr(0, target.find('?'));
+}
+
+std::string_view query_value(std::string_view target, std::string_view name) noexcept {
+  const std::size_t start = target.find('?');
+  if (start == std::string_view::npos) return {};
+  return pair_value(target.substr(start + 1), '&', name);
+}
+
+std::string_view cookie_value(std::string_view cookies, std::string_view name) noexcept {
+  return pair_value(cookies, ';', name);
+}
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw SetupError("viewer: " + file.string() + " must be readable");
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+AssetTable load_page(const std::filesystem::path& page) {
+  if (!std::filesystem::is_regular_file(page / "index.html")) {
+    throw SetupError("viewer: page folder must hold index.html, got " + page.string() +
+                     "; build it with: npm ci && npm run build (in viewer/)");
+  }
+  AssetTable assets;
+  std::uintmax_t size = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(page)) {
+    if (entry.is_symlink() || !entry.is_regular_file()) continue;
+    size += entry.file_size();
+    if (size > kLargestPage) {
+      throw SetupError("viewer: page folder must hold at most 64 MB, got more in " + page.string());
+    }
+    const auto path = std::filesystem::path("/") / entry.path().lexically_relative(page);
+    assets[path.generic_string()] = {content_type(entry.path()), read_file(entry.path())};
+  }
+  assets["/"] = assets["/index.html"];
+  return assets;
+}
+
+}  // namespace hg::viewer_server

@@ -1,0 +1,67 @@
+#include "hg/viewer_server/limit_text.h"
+
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+namespace hg::viewer_server {
+namespace {
+
+// Two significant digits below 10, whole numbers above.
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, std::abs(value) < 9.95 ? "%.2g" : "%.0f", value);
+  return text;
+}
+
+std::string side(LimitState state, std::string_view what) {
+  switch (state) {
+    case LimitState::kLower:
+      return "lower " + std::string(what);
+    case LimitState::kUpper:
+      return "upper " + std::string(what);
+    case LimitState::kInactive:
+    case LimitState::kViolated:
+      break;
+  }
+  return std::string(what);
+}
+
+std::string reason(const LimitReport& report) {
+  switch (report.cause) {
+    case LimitCause::kVelocity:
+      return "speed limit";
+    case LimitCause::kAcceleration:
+      return "acceleration limit";
+    case LimitCause::kLock:
+      return "locked";
+    case LimitCause::kLatch:
+      return "latched";
+    case LimitCause::kFriction:
+      return "held by friction";
+    case LimitCause::kNone:
+    case LimitCause::kPosition:
+      break;
+  }
+  return side(report.state, "limit");
+}
+
+}  // namespace
+
+std::string limit_text(const LimitInfo& info, const LimitReport& report) {
+  std::string text = info.name + ": " + reason(report);
+  if (report.state == LimitState::kViolated && report.excess > 0.0) {
+    return text + ", exceeded by " + number(1e3 * report.excess) +
+           (info.is_angle ? " mrad" : " mm");
+  }
+  return text + ", " + number(std::abs(report.reaction)) + (info.is_angle ? " Nm" : " N");
+}
+
+std::string fault_text(const Fault& fault) {
+  if (fault.code == FaultCode::kNone) return {};
+  std::string text(to_string(fault.code));
+  if (fault.index >= 0) text += " (number " + std::to_string(fault.index + 1) + ")";
+  return text + ": " + number(fault.value) + ", limit " + number(fault.limit);
+}
+
+}  // namespace hg::viewer_server

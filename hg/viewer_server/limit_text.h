@@ -1,0 +1,17 @@
+/// Limits and faults in words for people.
+#pragma once
+
+#include <string>
+
+#include "hg/signals/fault.h"
+#include "hg/signals/limit.h"
+
+namespace hg::viewer_server {
+
+/// For example "elbow x: upper limit, 23 N" or "hinge: locked, 4.1 Nm".
+std::string limit_text(const LimitInfo& info, const LimitReport& report);
+
+/// For example "joint too fast (number 3): 2.6, limit 2.5"; empty for kNone.
+std::string fault_text(const Fault& fault);
+
+}  // namespace hg::viewer_server

@@ -1,0 +1,70 @@
+/// Serves the browser page and streams what a running cycle does to it; takes the dragged handle
+/// back.
+///
+/// HTTP and WebSocket on 127.0.0.1 only. Every request needs the token of url() (or the cookie that
+/// the first page load sets) and a Host of this server; the WebSocket also an Origin of this server
+/// (against DNS rebinding). Protocol: docs/viewer.md, fields: viewer/src/messages.ts.
+///
+/// One thread of its own does all the work. The functions below may be called from one other thread
+/// that is not the control thread (they allocate and lock for the time of a copy).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "hg/signals/frames.h"
+#include "hg/signals/state.h"
+#include "hg/viewer_server/scene.h"
+
+namespace hg::viewer_server {
+
+struct Options {
+  std::uint16_t port = 0;        ///< 0 = any free port
+  std::filesystem::path page;    ///< folder of the built page, with index.html
+  double update_rate_hz = 60.0;  ///< frames per second sent to each client, > 0
+  std::string token;             ///< hexadecimal digits; empty = 128 random bits
+};
+
+/// What happened so far; `clients` is the present number.
+struct Counters {
+  std::uint64_t clients = 0;  ///< connected pages
+  std::uint64_t sent = 0;     ///< frames handed to the network
+  std::uint64_t dropped = 0;  ///< frames and events that a slow client did not get
+  std::uint64_t refused = 0;  ///< requests and messages that were refused
+};
+
+class ViewerServer {
+ public:
+  /// Listens when it returns. Throws SetupError: port taken, page or URDF file missing, scene
+  /// inconsistent.
+  ViewerServer(const Options& options, const Scene& scene);
+  ~ViewerServer();
+  ViewerServer(const ViewerServer&) = delete;
+  ViewerServer& operator=(const ViewerServer&) = delete;
+
+  /// The link to open: "http://127.0.0.1:PORT/?token=TOKEN".
+  std::string url() const;
+
+  /// Shows `sample`. Call it at the update rate or faster; calls in between are dropped. Each
+  /// client gets the newest frame when it is ready for it; slow clients are never waited for.
+  /// `status_text` is one line for people.
+  void publish(const Sample& sample, std::string_view status_text);
+
+  /// Adds a line to the list of events of all pages, also of those that connect later.
+  void announce_event(double time_s, std::string_view name, std::string_view text);
+
+  /// The newest hand target since the last call; false and `target` untouched if there is none.
+  /// A page that closes or is silent for 0.5 s gives one last, inactive target.
+  bool take_hand_target(HandTarget& target);
+
+  Counters counters() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hg::viewer_server

@@ -1,0 +1,108 @@
+// A chain on the stage: its URDF, placed in B and posed by coordinates.
+
+import {
+  type Material,
+  type Object3D,
+  BoxGeometry,
+  Color,
+  Group,
+  Mesh,
+  MeshPhongMaterial,
+  MeshStandardMaterial,
+  Quaternion,
+  Vector3,
+} from "three";
+import URDFLoader, { type URDFRobot } from "urdf-loader";
+
+import type { SceneChain } from "./messages";
+import { add_skeleton, has_shapes } from "./skeleton";
+import { current_theme } from "./theme";
+
+interface Rest {
+  position: Vector3;
+  quaternion: Quaternion;
+}
+
+export class ChainView {
+  readonly placement = new Group();
+  private readonly robot: URDFRobot | null;
+  private readonly rests = new Map<Object3D, Rest>();
+
+  constructor(
+    private readonly chain: SceneChain,
+    urdf: string,
+  ) {
+    this.robot = urdf === "" ? null : new URDFLoader().parse(urdf);
+    const [x, y, z, w] = chain.quaternion_B_root as [number, number, number, number];
+    this.placement.position.set(...chain.p_B_root_m);
+    this.placement.quaternion.set(x, y, z, w);
+    this.placement.add(this.robot ?? plain_body());
+    if (this.robot && !has_shapes(this.robot)) add_skeleton(this.robot, current_theme().link);
+    this.placement.traverse((part) => {
+      if (!(part instanceof Mesh)) return;
+      part.castShadow = true;
+      part.receiveShadow = true;
+      part.material = matt(part.material as Material);
+    });
+    for (const joint of Object.values(this.robot?.joints ?? {})) joint.ignoreLimits = true;
+  }
+
+  // `q` holds the coordinates of all joints in the order of the scene.
+  pose(q: number[]): void {
+    let first = 0;
+    for (const joint of this.chain.joints) {
+      if (joint.type === "floating") {
+        this.pose_floating(joint.name, q.slice(first, first + 7));
+        first += 7;
+      } else {
+        this.robot?.setJointValue(joint.name, q[first] ?? 0);
+        first += 1;
+      }
+    }
+  }
+
+  // The urdf library describes floating joints by angles; here they come as x y z qx qy qz qw.
+  private pose_floating(name: string, q: number[]): void {
+    const [x, y, z, qx, qy, qz, qw] = q as [number, number, number, number, number, number, number];
+    const part = this.robot?.joints[name] ?? this.placement.children[0]!;
+    const rest = this.rest(part);
+    const turn = new Quaternion(qx, qy, qz, qw).normalize();
+    part.position.set(x, y, z).applyQuaternion(rest.quaternion).add(rest.position);
+    part.quaternion.multiplyQuaternions(rest.quaternion, turn);
+  }
+
+  // Where a part is when its coordinates are zero.
+  private rest(part: Object3D): Rest {
+    const known = this.rests.get(part);
+    if (known) return known;
+    const rest = { position: part.position.clone(), quaternion: part.quaternion.clone() };
+    this.rests.set(part, rest);
+    return rest;
+  }
+}
+
+export async function load_chain(chain: SceneChain): Promise<ChainView> {
+  if (chain.urdf === "") return new ChainView(chain, "");
+  const response = await fetch(chain.urdf);
+  if (!response.ok) throw new Error(`${chain.urdf}: ${response.statusText}`);
+  return new ChainView(chain, await response.text());
+}
+
+function plain_body(): Group {
+  const body = new Group();
+  const material = new MeshStandardMaterial({ color: new Color(0x4a90a4), roughness: 0.5 });
+  body.add(new Mesh(new BoxGeometry(0.14, 0.14, 0.14), material));
+  return body;
+}
+
+function matt(material: Material): Material {
+  if (!(material instanceof MeshPhongMaterial)) return material;
+  return new MeshStandardMaterial({
+    color: material.color,
+    roughness: 0.62,
+    metalness: 0.05,
+    opacity: material.opacity,
+    transparent: material.opacity < 1,
+    depthWrite: material.opacity === 1,
+  });
+}

@@ -1,0 +1,32 @@
+// Keeps the picture fluent on slow graphics: when drawing takes long, first fewer pixels, then no
+// shadows, then fewer pixels still. Never goes back up, so that nothing flickers.
+
+const SLOW_MS = 45; // slower than 22 pictures per second
+const PATIENCE = 20; // pictures in a row
+
+export class Quality {
+  private level = 0;
+  private slow_in_row = 0;
+  private last_ms: number | null = null;
+
+  get has_shadows(): boolean {
+    return this.level < 2;
+  }
+
+  pixel_ratio(of_screen: number): number {
+    if (this.level === 0) return Math.min(2, of_screen);
+    return this.level < 3 ? 1 : 0.66;
+  }
+
+  // Notes the time of a picture; true when the quality has changed.
+  observe(now_ms: number): boolean {
+    const elapsed_ms = this.last_ms === null ? 0 : now_ms - this.last_ms;
+    this.last_ms = now_ms;
+    const is_pause = elapsed_ms > 1000; // a hidden tab is not a slow one
+    this.slow_in_row = elapsed_ms > SLOW_MS && !is_pause ? this.slow_in_row + 1 : 0;
+    if (this.slow_in_row < PATIENCE || this.level === 3) return false;
+    this.level += 1;
+    this.slow_in_row = 0;
+    return true;
+  }
+}
