@@ -33,8 +33,8 @@ class LevelByLevel {
  private:
   PrimalOutcome optimise(int level) noexcept;
   void fix(int level) noexcept;
-  void collect_targets(int level) noexcept;
-  void collect_touched(int level) noexcept;
+  void release_untouched() noexcept;
+  RowState state_of_fixed(int row) const noexcept;
   bool aim(int level) noexcept;
   bool aim_past_obstacles(int level) noexcept;
   double slopes(int level) noexcept;
@@ -52,14 +52,16 @@ class LevelByLevel {
   int& iterations_;
   Workspace& work_;
   LevelGradient size_ = {};
-  int base_ = 0;  ///< pivots of the levels above
+  int base_ = 0;                     ///< pivots of the levels above
+  bool is_settled_by_cone_ = false;  ///< the last level was held back by the rows of work_.cone
 };
 
 PrimalOutcome LevelByLevel::run(int& completed) noexcept {
   const int end = levels_ > 0 ? problem_.end_row(levels_ - 1) : 0;
-  std::fill_n(work_.state.begin(), end, RowState::kInactive);
+  std::fill_n(work_.point.state.begin(), end, RowState::kInactive);
   std::fill_n(work_.is_fixed.begin(), end, false);
-  work_.x.head(n_).setZero();
+  work_.point.x.head(n_).setZero();
+  work_.x_norm = 0.0;
   work_.elimination.reset(n_);
   update_values(problem_, levels_, work_);
 
@@ -68,35 +70,13 @@ PrimalOutcome LevelByLevel::run(int& completed) noexcept {
     if (outcome != PrimalOutcome::kOptimal) return outcome;
     fix(completed);
   }
-  if (!options_.minimum_norm || levels_ < problem_.levels()) return PrimalOutcome::kOptimal;
-  return optimise(problem_.levels());
-}
-
-// Rows of the level that are equalities or violated: the quadratic piece of its objective at x.
-void LevelByLevel::collect_targets(int level) noexcept {
-  work_.targets.clear();
-  for (int row = problem_.first_row(level); row < problem_.end_row(level); ++row) {
-    if (problem_.norm(row) == 0.0) continue;
-    const double distance = violation(problem_, options_, work_, row);
-    const Interval bounds = problem_.bounds(row);
-    if (is_equality(bounds) || distance != 0.0) {
-      work_.targets.push_back({row, distance < 0.0 ? bounds.lb : bounds.ub});
-    }
+  PrimalOutcome outcome = PrimalOutcome::kOptimal;
+  if (options_.minimum_norm && levels_ == problem_.levels()) {
+    outcome = optimise(problem_.levels());
+    fix(problem_.levels());
   }
-}
-
-// Rows of higher levels that x is at the bound of.
-void LevelByLevel::collect_touched(int level) noexcept {
-  work_.touched.clear();
-  for (int row = 0; row < end_of_levels_above(level); ++row) {
-    if (work_.is_fixed[at(row)] || problem_.norm(row) == 0.0) continue;
-    const auto [lb, ub] = problem_.bounds(row);
-    const double value = work_.value[at(row)];
-    const bool at_upper = touches(problem_, options_, work_, row, ub) || value > ub;
-    const bool at_lower = touches(problem_, options_, work_, row, lb) || value < lb;
-    if (at_upper) work_.touched.push_back({row, 1.0});
-    if (at_lower) work_.touched.push_back({row, -1.0});
-  }
+  release_untouched();
+  return outcome;
 }
 
 // Direction to the minimum of the quadratic piece within the free columns; false when it gains
@@ -105,12 +85,13 @@ bool LevelByLevel::aim(int level) noexcept {
   Elimination& elimination = work_.elimination;
   if (elimination.freedom() == 0) return false;
   if (is_norm_level(level)) {
-    elimination.project_to_free(work_.x.data(), work_.direction.data());
+    elimination.project_to_free(work_.point.x.data(), work_.direction.data());
     work_.direction.head(n_) *= -1.0;
     return work_.direction.head(n_).norm() > options_.feasibility_tolerance * work_.x_norm;
   }
   const int rank = elimination.rank();
-  elimination.add_least_squares(problem_, work_.targets, work_.x.data(), options_.rank_tolerance);
+  elimination.add_least_squares(problem_, work_.targets, work_.point.x.data(),
+                                options_.rank_tolerance);
   elimination.truncate(rank);
   work_.direction.head(n_) = elimination.step().head(n_);
   return std::any_of(work_.targets.begin(), work_.targets.end(), [&](const TargetRow& t) {
@@ -157,7 +138,7 @@ double LevelByLevel::way_to_obstacle(int level, int& obstacle) const noexcept {
 double LevelByLevel::best_length(int level, double longest) const noexcept {
   if (is_norm_level(level)) {
     const double d_d = work_.direction.head(n_).squaredNorm();
-    return std::min(longest, -work_.direction.head(n_).dot(work_.x.head(n_)) / d_d);
+    return std::min(longest, -work_.direction.head(n_).dot(work_.point.x.head(n_)) / d_d);
   }
   const int first = problem_.first_row(level);
   const int end = problem_.end_row(level);
@@ -225,15 +206,21 @@ bool LevelByLevel::aim_past_obstacles(int level) noexcept {
 PrimalOutcome LevelByLevel::optimise(int level) noexcept {
   Elimination& elimination = work_.elimination;
   base_ = elimination.rank();
+  work_.point.rank_at_level[at(level)] = base_;
+  work_.point.blocking_row[at(level)] = -1;
   while (true) {
     if (iterations_ >= options_.max_iterations) return PrimalOutcome::kIterationLimit;
     ++iterations_;
     elimination.truncate(base_);
 
     size_ = level_gradient(problem_, options_, level, work_);
-    if (size_.is_zero || elimination.freedom() == 0) return PrimalOutcome::kOptimal;
-    if (!is_norm_level(level)) collect_targets(level);
-    collect_touched(level);
+    is_settled_by_cone_ = !size_.is_zero && elimination.freedom() > 0;
+    if (!is_settled_by_cone_) return PrimalOutcome::kOptimal;
+    if (!is_norm_level(level)) collect_targets(problem_, options_, level, work_);
+    work_.touched.clear();
+    for (int above = 0; above < level; ++above) collect_touched(problem_, options_, above, work_);
+    std::erase_if(work_.touched,
+                  [this](const TouchedRow& t) { return work_.is_fixed[at(t.row)] != 0; });
     work_.cone.solve(problem_, work_.touched, work_.gradient.data(), size_.scale,
                      options_.rank_tolerance, elimination);
     if (!aim_past_obstacles(level)) return PrimalOutcome::kOptimal;
@@ -247,28 +234,55 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
   }
 }
 
+// State of a row that no level can move any more.
+RowState LevelByLevel::state_of_fixed(int row) const noexcept {
+  const double distance = violation(problem_, options_, work_, row);
+  if (distance > 0.0) return RowState::kAbove;
+  if (distance < 0.0) return RowState::kBelow;
+  return is_equality(problem_.bounds(row)) ? RowState::kEqual : RowState::kInactive;
+}
+
 // Keeps the optimal slacks of the level: its equality and violated rows, and the rows that surely
 // push, do not change any more.
 void LevelByLevel::fix(int level) noexcept {
   Elimination& elimination = work_.elimination;
   elimination.truncate(base_);
-  collect_targets(level);
-  elimination.add_least_squares(problem_, work_.targets, work_.x.data(), options_.rank_tolerance);
+  work_.targets.clear();
+  if (!is_norm_level(level)) collect_targets(problem_, options_, level, work_);
+  elimination.add_least_squares(problem_, work_.targets, work_.point.x.data(),
+                                options_.rank_tolerance);
   for (const TargetRow& t : work_.targets) {
     work_.is_fixed[at(t.row)] = true;
-    const double distance = violation(problem_, options_, work_, t.row);
-    work_.state[at(t.row)] = distance == 0.0  ? RowState::kEqual
-                             : distance > 0.0 ? RowState::kAbove
-                                              : RowState::kBelow;
+    work_.point.state[at(t.row)] = state_of_fixed(t.row);
   }
-  if (size_.is_zero) return;
+  if (!is_settled_by_cone_) return;
+  double largest_push = 0.0;
   for (int i = 0; i < work_.cone.pushing(); ++i) {
     const auto [row, sign] = work_.cone.row(i);
-    work_.state[at(row)] = sign > 0.0 ? RowState::kUpper : RowState::kLower;
-    if (work_.cone.mu(i) * problem_.norm(row) > kPushes * size_.scale + size_.rounding) {
+    const double push = work_.cone.mu(i) * problem_.norm(row);
+    work_.point.state[at(row)] = sign > 0.0 ? RowState::kUpper : RowState::kLower;
+    if (push > largest_push) {
+      largest_push = push;
+      work_.point.blocking_row[at(level)] = row;
+    }
+    if (push > kPushes * size_.scale + size_.rounding) {
       elimination.add_row(problem_, row, options_.rank_tolerance);
       work_.is_fixed[at(row)] = true;
     }
+  }
+}
+
+// Rows that held one level back may have been left by a later one.
+void LevelByLevel::release_untouched() noexcept {
+  const int end = levels_ > 0 ? problem_.end_row(levels_ - 1) : 0;
+  for (int row = 0; row < end; ++row) {
+    RowState& state = work_.point.state[at(row)];
+    const auto [lb, ub] = problem_.bounds(row);
+    if ((state == RowState::kUpper && !touches(problem_, options_, work_, row, ub)) ||
+        (state == RowState::kLower && !touches(problem_, options_, work_, row, lb))) {
+      state = RowState::kInactive;
+    }
+    if (problem_.norm(row) == 0.0) state = state_of_fixed(row);
   }
 }
 

@@ -11,7 +11,8 @@
 namespace hg::hqp {
 namespace {
 
-constexpr int kGuesses = 12;  // repairs of the guess before the level-by-level method takes over
+constexpr int kGuesses = 12;  // repairs of a guess before the level-by-level method takes over
+constexpr int kProofs = 3;    // repairs of that method's active set, which is almost always right
 
 int find_bad_row(const Problem& problem) noexcept {
   for (int row = 0; row < problem.rows(); ++row) {
@@ -24,27 +25,56 @@ int find_bad_row(const Problem& problem) noexcept {
   return -1;
 }
 
-void read_point(const Problem& problem, const Options& options, int levels, Workspace& work,
-                Solution& solution) noexcept {
-  update_values(problem, levels, work);
-  for (int level = 0; level < problem.levels(); ++level) {
-    LevelResult& result = solution.levels[at(level)];
-    result = {.slack_squared = 0.0, .freedom = 0, .blocking_row = -1};
-    for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-      const bool is_solved = level < levels;
-      solution.state[at(row)] = is_solved ? work.state[at(row)] : RowState::kInactive;
-      const double slack = is_solved ? -excess(problem.bounds(row), work.value[at(row)]) : 0.0;
-      solution.slack[at(row)] = slack;
-      const double weighted = problem.weight(row) * slack;
-      if (is_solved) result.slack_squared += weighted * weighted;
-    }
-    if (level < levels) {
-      result.freedom = problem.variables() - work.rank_at_level[at(level)];
-      result.blocking_row = work.blocking_row[at(level)];
-    }
+// Repairs the guess in work.point.state until it is proven; at most up to `max_iterations`.
+bool solve_by_guesses(const Problem& problem, const Options& options, int levels,
+                      int max_iterations, int& iterations, Workspace& work) noexcept {
+  while (iterations < max_iterations) {
+    ++iterations;
+    if (solve_guess(problem, options, levels, work)) return true;
   }
-  std::copy_n(work.x.data(), problem.variables(), solution.x.begin());
-  (void)options;
+  return false;
+}
+
+// Leaves the result in work; `levels` becomes the number of levels that are optimal.
+Status solve_levels(const Problem& problem, const Options& options, int& levels, int& iterations,
+                    Workspace& work) noexcept {
+  const int all_levels = levels;
+  make_consistent(problem, levels, work);
+  const int guesses = std::min(kGuesses, options.max_iterations);
+  if (solve_by_guesses(problem, options, levels, guesses, iterations, work)) {
+    return Status::kSolved;
+  }
+
+  const PrimalOutcome outcome =
+      solve_level_by_level(problem, options, all_levels, iterations, levels, work);
+  if (outcome == PrimalOutcome::kIterationLimit) return Status::kIterationLimit;
+  if (outcome == PrimalOutcome::kNotFinite) return Status::kNumericalFailure;
+
+  // the same active set always gives the same bits, whichever way it was found
+  work.saved = work.point;
+  const int proofs = std::min(iterations + kProofs, options.max_iterations);
+  if (!solve_by_guesses(problem, options, levels, proofs, iterations, work))
+    work.point = work.saved;
+  return Status::kSolved;
+}
+
+void read_levels(const Problem& problem, int levels, Workspace& work, Solution& solution) noexcept {
+  update_values(problem, levels, work);
+  for (int level = 0; level < levels; ++level) {
+    double slack_squared = 0.0;
+    for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+      const double slack = -excess(problem.bounds(row), work.value[at(row)]);
+      const double weighted = problem.weight(row) * slack;
+      solution.state[at(row)] = work.point.state[at(row)];
+      solution.slack[at(row)] = slack;
+      slack_squared += weighted * weighted;
+    }
+    solution.levels[at(level)] = {
+        .slack_squared = slack_squared,
+        .freedom = problem.variables() - work.point.rank_at_level[at(level)],
+        .blocking_row = work.point.blocking_row[at(level)]};
+  }
+  std::copy_n(work.point.x.data(), problem.variables(), solution.x.begin());
 }
 
 }  // namespace
@@ -62,38 +92,70 @@ Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& 
   Workspace& work = *workspace_;
   const int bad_row = find_bad_row(problem);
   const int levels = bad_row < 0 ? problem.levels() : problem.level_of(bad_row);
+
   solution.x.resize(at(problem.variables()));
-  solution.state.resize(at(problem.rows()));
-  solution.slack.resize(at(problem.rows()));
-  solution.levels.resize(at(problem.levels()));
+  solution.state.assign(at(problem.rows()), RowState::kInactive);
+  solution.slack.assign(at(problem.rows()), 0.0);
+  solution.levels.assign(at(problem.levels()), LevelResult{});
   solution.bad_row = bad_row;
   solution.bad_level = bad_row < 0 ? -1 : levels;
   solution.iterations = 0;
-  solution.completed_levels = 0;
-  solution.status = Status::kSolved;
-
-  work.x_norm = 0.0;
-  std::copy_n(active.state.begin(), problem.rows(), work.state.begin());
-  make_consistent(problem, levels, work);
-  bool is_proven = false;
-  while (!is_proven && solution.iterations < std::min(kGuesses, options.max_iterations)) {
-    is_proven = solve_guess(problem, options, levels, work);
-    ++solution.iterations;
-  }
   solution.completed_levels = levels;
 
-  if (!is_proven) {
-    work.x_norm = 0.0;
-    const PrimalOutcome outcome = solve_level_by_level(
-        problem, options, levels, solution.iterations, solution.completed_levels, work);
-    if (outcome == PrimalOutcome::kIterationLimit) solution.status = Status::kIterationLimit;
-    if (outcome == PrimalOutcome::kNotFinite) solution.status = Status::kNumericalFailure;
-  }
+  std::copy_n(active.state.begin(), problem.rows(), work.point.state.begin());
+  solution.status =
+      solve_levels(problem, options, solution.completed_levels, solution.iterations, work);
   if (bad_row >= 0 && solution.status == Status::kSolved) solution.status = Status::kBadRow;
 
-  read_point(problem, options, levels, work, solution);
+  read_levels(problem, levels, work, solution);
   std::copy_n(solution.state.begin(), problem.rows(), active.state.begin());
   return solution.status;
+}
+
+double Solver::multipliers(const Problem& problem, const Options& options, const Solution& solution,
+                           int level, std::span<double> mu) noexcept {
+  assert(level >= 0 && level < problem.levels());
+  assert(static_cast<int>(mu.size()) == problem.rows());
+  Workspace& work = *workspace_;
+  const int n = problem.variables();
+  std::fill(mu.begin(), mu.end(), 0.0);
+  std::copy_n(solution.x.begin(), n, work.point.x.data());
+  work.x_norm = work.point.x.head(n).norm();
+  update_values(problem, level + 1, work);
+
+  // rows of higher levels: those that may push either way first, then those at one bound
+  Elimination& elimination = work.elimination;
+  elimination.reset(n);
+  work.touched.clear();
+  for (int above = 0; above < level; ++above) {
+    collect_targets(problem, options, above, work);
+    elimination.add_least_squares(problem, work.targets, work.point.x.data(),
+                                  options.rank_tolerance);
+    collect_touched(problem, options, above, work);
+  }
+  std::erase_if(work.touched, [&](const TouchedRow& t) {
+    return violation(problem, options, work, t.row) != 0.0;
+  });
+  const int two_sided = elimination.rank();
+  const LevelGradient size = level_gradient(problem, options, level, work);
+  work.cone.solve(problem, work.touched, work.gradient.data(), size.scale, options.rank_tolerance,
+                  elimination);
+  for (int i = 0; i < work.cone.pushing(); ++i) {
+    const auto [row, sign] = work.cone.row(i);
+    mu[at(row)] = sign * work.cone.mu(i);
+    add_multiple(problem, row, mu[at(row)], work.gradient.data());
+  }
+  for (int t = two_sided - 1; t >= 0; --t) {
+    const int row = elimination.pivot_row(t);
+    mu[at(row)] =
+        -VectorView(elimination.column(t), n).dot(work.gradient.head(n)) / elimination.pivot(t);
+    add_multiple(problem, row, mu[at(row)], work.gradient.data());
+  }
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    const double factor = problem.weight(row) * problem.weight(row);
+    mu[at(row)] = factor * excess(problem.bounds(row), work.value[at(row)]);
+  }
+  return work.gradient.head(n).norm();
 }
 
 }  // namespace hg::hqp

@@ -21,7 +21,7 @@ void add_least_squares_rows(const Problem& problem, const Options& options, int 
   work.targets.clear();
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
     if (problem.norm(row) == 0.0) continue;
-    const RowState state = work.state[at(row)];
+    const RowState state = work.point.state[at(row)];
     if (state == RowState::kEqual || is_violated(state)) {
       work.targets.push_back({row, bound_of(problem.bounds(row), state)});
     }
@@ -29,7 +29,7 @@ void add_least_squares_rows(const Problem& problem, const Options& options, int 
   if (work.targets.empty()) return;
   Elimination& elimination = work.elimination;
   const int first = elimination.rank();
-  elimination.add_least_squares(problem, work.targets, work.x.data(), options.rank_tolerance);
+  elimination.add_least_squares(problem, work.targets, work.point.x.data(), options.rank_tolerance);
   std::fill(work.is_held.begin() + first, work.is_held.begin() + elimination.rank(), false);
 }
 
@@ -37,14 +37,15 @@ bool add_held_rows(const Problem& problem, const Options& options, int level,
                    Workspace& work) noexcept {
   Elimination& elimination = work.elimination;
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-    const RowState state = work.state[at(row)];
+    const RowState state = work.point.state[at(row)];
     if (elimination.freedom() == 0) return true;
     if (!is_held_state(state)) continue;
     if (!elimination.add_row(problem, row, options.rank_tolerance)) continue;
     const int t = elimination.rank() - 1;
     work.is_held[at(t)] = true;
     work.is_frozen[at(t)] = false;
-    const double distance = bound_of(problem.bounds(row), state) - dot(problem, row, work.x.data());
+    const double distance =
+        bound_of(problem.bounds(row), state) - dot(problem, row, work.point.x.data());
     work.direction.head(problem.variables()) =
         VectorView(elimination.column(t), problem.variables());
     if (!move(problem, work.direction, distance / elimination.pivot(t), work)) return false;
@@ -58,19 +59,20 @@ bool eliminate(const Problem& problem, const Options& options, int levels,
   const int n = problem.variables();
   Elimination& elimination = work.elimination;
   elimination.reset(n);
-  work.x.head(n).setZero();
+  work.point.x.head(n).setZero();
+  work.x_norm = 0.0;
 
   for (int level = 0; level < levels; ++level) {
-    work.rank_at_level[at(level)] = elimination.rank();
+    work.point.rank_at_level[at(level)] = elimination.rank();
     if (elimination.freedom() == 0) continue;
     const int first = elimination.rank();
     add_least_squares_rows(problem, options, level, work);
     if (elimination.rank() > first && !move(problem, elimination.step(), 1.0, work)) return false;
     if (!add_held_rows(problem, options, level, work)) return false;
   }
-  work.rank_at_level[at(levels)] = elimination.rank();
+  work.point.rank_at_level[at(levels)] = elimination.rank();
   if (options.minimum_norm && elimination.freedom() > 0) {
-    elimination.project_to_free(work.x.data(), work.direction.data());
+    elimination.project_to_free(work.point.x.data(), work.direction.data());
     if (!move(problem, work.direction, -1.0, work)) return false;
   }
   return true;
@@ -84,24 +86,24 @@ int check_multipliers(const Problem& problem, const LevelGradient& size, int lev
   const Elimination& elimination = work.elimination;
   int releases = 0;
   double largest_push = 0.0;
-  for (int t = work.rank_at_level[at(level)] - 1; t >= first_held; --t) {
+  for (int t = work.point.rank_at_level[at(level)] - 1; t >= first_held; --t) {
     const int row = elimination.pivot_row(t);
     const double mu =
         -VectorView(elimination.column(t), n).dot(work.gradient.head(n)) / elimination.pivot(t);
     add_multiple(problem, row, mu, work.gradient.data());
     if (!work.is_held[at(t)]) continue;
 
-    const double sign = work.state[at(row)] == RowState::kUpper ? 1.0 : -1.0;
+    const double sign = work.point.state[at(row)] == RowState::kUpper ? 1.0 : -1.0;
     const double push = sign * mu * problem.norm(row);
     if (push > largest_push) {
       largest_push = push;
-      work.blocking_row[at(level)] = row;
+      work.point.blocking_row[at(level)] = row;
     }
     if (work.is_frozen[at(t)]) continue;
     if (push > kPushes * size.scale + size.rounding) {
       work.is_frozen[at(t)] = true;
     } else if (push < -kWrongSign * size.scale - size.rounding) {
-      work.state[at(row)] = RowState::kInactive;
+      work.point.state[at(row)] = RowState::kInactive;
       ++releases;
     }
   }
@@ -117,8 +119,8 @@ int check_all_multipliers(const Problem& problem, const Options& options, int le
   int releases = 0;
   const int end = levels == problem.levels() && options.minimum_norm ? levels + 1 : levels;
   for (int level = 0; level < end; ++level) {
-    work.blocking_row[at(level)] = -1;
-    if (work.rank_at_level[at(level)] <= first_held) continue;
+    work.point.blocking_row[at(level)] = -1;
+    if (work.point.rank_at_level[at(level)] <= first_held) continue;
     const LevelGradient size = level_gradient(problem, options, level, work);
     if (!size.is_zero) releases += check_multipliers(problem, size, level, first_held, work);
   }
@@ -129,7 +131,7 @@ int check_all_multipliers(const Problem& problem, const Options& options, int le
 RowState next_state(const Problem& problem, const Options& options, int row,
                     const Workspace& work) noexcept {
   const Interval bounds = problem.bounds(row);
-  const RowState state = work.state[at(row)];
+  const RowState state = work.point.state[at(row)];
   const double distance = violation(problem, options, work, row);
   const RowState outside = distance > 0.0 ? RowState::kAbove : RowState::kBelow;
   const RowState held = distance > 0.0 ? RowState::kUpper : RowState::kLower;
@@ -159,7 +161,7 @@ void make_consistent(const Problem& problem, int levels, Workspace& work) noexce
   const int end = levels > 0 ? problem.end_row(levels - 1) : 0;
   for (int row = 0; row < end; ++row) {
     const Interval bounds = problem.bounds(row);
-    RowState& state = work.state[at(row)];
+    RowState& state = work.point.state[at(row)];
     if (is_equality(bounds)) {
       state = RowState::kEqual;
     } else if (problem.norm(row) == 0.0 || state == RowState::kEqual ||
@@ -178,7 +180,7 @@ bool solve_guess(const Problem& problem, const Options& options, int levels,
   const int end = levels > 0 ? problem.end_row(levels - 1) : 0;
   for (int row = 0; row < end; ++row) {
     const RowState next = next_state(problem, options, row, work);
-    RowState& state = work.state[at(row)];
+    RowState& state = work.point.state[at(row)];
     if (!is_same_guess(problem.bounds(row), problem.norm(row), state, next)) ++changes;
     state = next;
   }

@@ -6,14 +6,14 @@
 
 namespace hg::hqp {
 
-/// Makes work.state fit the bounds: no row held at an infinite bound, equalities as such.
+/// Makes work.point.state fit the bounds: no row held at an infinite bound, equalities as such.
 void make_consistent(const Problem& problem, int levels, Workspace& work) noexcept;
 
-/// Solves the first `levels` levels with equality, violated and held rows as work.state says.
-/// Returns true when the result, work.x, is proven optimal for each of them: no other row is
-/// violated, violated rows are, and multipliers have the right sign. Otherwise work.state becomes
-/// the next guess: rows found violated are held, held rows that cannot be reached are violated,
-/// rows that pull are released.
+/// Solves the first `levels` levels with equality, violated and held rows as work.point.state says.
+/// Returns true when the result, work.point.x, is proven optimal for each of them: no other row is
+/// violated, violated rows are, and multipliers have the right sign. Otherwise work.point.state
+/// becomes the next guess: rows found violated are held, held rows that cannot be reached are
+/// violated, rows that pull are released.
 bool solve_guess(const Problem& problem, const Options& options, int levels,
                  Workspace& work) noexcept;
 

@@ -9,14 +9,18 @@ constexpr double kRoundOff = 1e-14;  // error of c x relative to norm(c) |x|, wi
 
 }  // namespace
 
+Point::Point(const Capacity& c)
+    : x(c.variables),
+      state(at(c.rows)),
+      rank_at_level(at(c.levels) + 1),
+      blocking_row(at(c.levels) + 1) {}
+
 Workspace::Workspace(const Capacity& c)
     : elimination(c.variables, c.rows),
       cone(c.variables, c.rows),
-      x(c.variables),
-      state(at(c.rows)),
+      point(c),
+      saved(c),
       value(at(c.rows)),
-      rank_at_level(at(c.levels) + 1),
-      blocking_row(at(c.levels) + 1),
       is_held(at(c.variables)),
       is_frozen(at(c.variables)),
       slope(at(c.rows)),
@@ -50,24 +54,50 @@ bool touches(const Problem& problem, const Options& options, const Workspace& wo
 
 void update_values(const Problem& problem, int levels, Workspace& work) noexcept {
   const int end = levels > 0 ? problem.end_row(levels - 1) : 0;
-  for (int row = 0; row < end; ++row) work.value[at(row)] = dot(problem, row, work.x.data());
+  for (int row = 0; row < end; ++row) work.value[at(row)] = dot(problem, row, work.point.x.data());
 }
 
 bool move(const Problem& problem, const Eigen::VectorXd& step, double length,
           Workspace& work) noexcept {
   const int n = problem.variables();
-  work.x.head(n) += length * step.head(n);
-  const double norm = work.x.head(n).norm();
+  work.point.x.head(n) += length * step.head(n);
+  const double norm = work.point.x.head(n).norm();
   work.x_norm = std::max(work.x_norm, norm);
   return std::isfinite(norm);
+}
+
+void collect_targets(const Problem& problem, const Options& options, int level,
+                     Workspace& work) noexcept {
+  work.targets.clear();
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    if (problem.norm(row) == 0.0) continue;
+    const double distance = violation(problem, options, work, row);
+    const Interval bounds = problem.bounds(row);
+    if (is_equality(bounds) || distance != 0.0) {
+      work.targets.push_back({row, distance < 0.0 ? bounds.lb : bounds.ub});
+    }
+  }
+}
+
+void collect_touched(const Problem& problem, const Options& options, int level,
+                     Workspace& work) noexcept {
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    const auto [lb, ub] = problem.bounds(row);
+    if (problem.norm(row) == 0.0 || lb == ub) continue;
+    const double value = work.value[at(row)];
+    const bool at_upper = value > ub || touches(problem, options, work, row, ub);
+    const bool at_lower = value < lb || touches(problem, options, work, row, lb);
+    if (at_upper) work.touched.push_back({row, 1.0});
+    if (at_lower) work.touched.push_back({row, -1.0});
+  }
 }
 
 LevelGradient level_gradient(const Problem& problem, const Options& options, int level,
                              Workspace& work) noexcept {
   const int n = problem.variables();
   if (level == problem.levels()) {
-    work.gradient.head(n) = work.x.head(n);
-    const double norm = work.x.head(n).norm();
+    work.gradient.head(n) = work.point.x.head(n);
+    const double norm = work.point.x.head(n).norm();
     return {.is_zero = norm == 0.0, .scale = norm, .rounding = kRoundOff * work.x_norm};
   }
 

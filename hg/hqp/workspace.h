@@ -14,7 +14,17 @@
 
 namespace hg::hqp {
 
-/// One candidate point and everything known about it. Vectors have their largest size from the
+/// A point and what is known of it. Vectors have their largest size.
+struct Point {
+  explicit Point(const Capacity& capacity);
+
+  Eigen::VectorXd x;
+  std::vector<RowState> state;     ///< by row
+  std::vector<int> rank_at_level;  ///< pivots of the levels above; last: of all levels
+  std::vector<int> blocking_row;   ///< by level, -1: none
+};
+
+/// The point under test and everything needed to judge it. Vectors have their largest size from the
 /// start, except the lists, which are reserved.
 struct Workspace {
   explicit Workspace(const Capacity& capacity);
@@ -22,12 +32,10 @@ struct Workspace {
   Elimination elimination;
   Cone cone;
 
-  Eigen::VectorXd x;
-  double x_norm = 0.0;  ///< largest |x| met in this solve: rounding errors scale with it
-  std::vector<RowState> state;
-  std::vector<double> value;            ///< c x by row
-  std::vector<int> rank_at_level;       ///< pivots of the levels above; last: minimum norm
-  std::vector<int> blocking_row;        ///< by level, -1: none
+  Point point;
+  Point saved;                ///< the same, put aside
+  double x_norm = 0.0;        ///< largest |x| met in this solve: rounding errors scale with it
+  std::vector<double> value;  ///< c x by row
   std::vector<std::uint8_t> is_held;    ///< by pivot: a row at a bound, not a least-squares row
   std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
 
@@ -40,7 +48,7 @@ struct Workspace {
   Eigen::VectorXd direction;
 };
 
-/// Gradient of a level's objective at work.x, in work.gradient.
+/// Gradient of a level's objective at work.point.x, in work.gradient.
 struct LevelGradient {
   bool is_zero;     ///< every row of the level is met within its tolerance
   double scale;     ///< sum of the norms of the gradient's terms
@@ -67,6 +75,16 @@ void update_values(const Problem& problem, int levels, Workspace& work) noexcept
 /// x += length * step; false when x is no longer finite.
 [[nodiscard]] bool move(const Problem& problem, const Eigen::VectorXd& step, double length,
                         Workspace& work) noexcept;
+
+/// Rows of the level that are equalities or violated, into work.targets: the quadratic piece of the
+/// level's objective that x is on. Needs work.value.
+void collect_targets(const Problem& problem, const Options& options, int level,
+                     Workspace& work) noexcept;
+
+/// Appends the level's inequality rows that x is at a bound of, or beyond, to work.touched. Needs
+/// work.value.
+void collect_touched(const Problem& problem, const Options& options, int level,
+                     Workspace& work) noexcept;
 
 /// Gradient of `level`, of 1/2 |x|^2 for level == problem.levels(); needs work.value.
 LevelGradient level_gradient(const Problem& problem, const Options& options, int level,
