@@ -2,9 +2,12 @@
 /// enough for bounds R to carry the joint along.
 ///
 /// A joint that is viable when its limit begins to close in can be overrun, because it did not know
-/// that the limit would come. With bounds R, options o and A = ddq_max it is outside by at most
-///   max(v_rec tau_rec, v_rec^2 / (2 A (ddq_rec_factor - 1))) + v_rec dt + A dt^2
-/// (10 mrad with the defaults and A >= 25 rad/s^2), and inside again shortly after the limit rests.
+/// that the limit would come. With bounds R, f = ddq_rec_factor > 1 and A = ddq_max it gets outside
+/// by at most
+///   max(v_rec tau_rec, v_rec^2 / (2 A (f - 1))) + v_rec dt
+/// (10.5 mrad with the defaults, 1 kHz and A >= 25 rad/s^2): the lag of the return law, or the way
+/// that braking with A_rec still needs; then one step of the limit. It is inside again shortly
+/// after the limit rests.
 ///
 /// Joint space: rad or m; time in s. Plain value, part of the copyable state of a cycle; no
 /// allocation, noexcept.
