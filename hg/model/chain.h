@@ -47,7 +47,7 @@ struct ChainOptions {
 
 /// A single rigid body that moves freely: a twin without a URDF.
 struct FreeBody {
-  double mass = 6.0;                                             ///< kg, > 0; [HANDBOOK] 1.7
+  double mass = 6.0;  ///< kg, > 0; light, still stable with a stiff hand
   Eigen::Matrix3d inertia = 0.08 * Eigen::Matrix3d::Identity();  ///< kg m^2, about the COM
   Eigen::Vector3d p_handle_com = Eigen::Vector3d::Zero();        ///< m, in frame "handle"
 };

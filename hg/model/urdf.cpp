@@ -124,7 +124,8 @@ class Reader {
     return pose;
   }
 
-  Inertial inertial(const XMLElement& e, const std::string& item) const {
+  // Empty if mass and inertia are zero, which exporters write for links that are mere frames.
+  std::optional<Inertial> inertial(const XMLElement& e, const std::string& item) const {
     const Pose pose = origin(e, item);
     const XMLElement& i = child(e, "inertia", item);
     const double ixy = number(i, "ixy", item);
@@ -137,6 +138,7 @@ class Reader {
     const Inertial result = {.mass = number(child(e, "mass", item), "value", item),
                              .p_com = pose.p,
                              .inertia = pose.R * inertia * pose.R.transpose()};
+    if (result.mass == 0.0 && inertia.isZero(0.0)) return {};
     check(result, place(urdf_, e.GetLineNum()) + item);
     return result;
   }
