@@ -1,0 +1,82 @@
+/// CDR bytes back into messages; see cdr_writer.h for the format.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "hg/core/types.h"
+#include "hg/recording/cdr_writer.h"
+#include "hg/recording/message.h"
+
+namespace hg::recording {
+
+/// Decodes one message of fixed capacity: a sample. Does not allocate.
+class CdrReader {
+ public:
+  explicit CdrReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  /// False when the bytes end too early, are not little-endian CDR, or a length exceeds a capacity;
+  /// then `message` is only partly filled.
+  template <IsMessage Message>
+  [[nodiscard]] bool decode(Message& message) {
+    std::array<std::byte, 4> header{};
+    take(header.data(), header.size());
+    is_ok_ = is_ok_ && header == kCdrHeader;
+    get(message);
+    return is_ok_;
+  }
+
+  template <typename T>
+  void operator()(const char*, T& value, const char* = "") {
+    get(value);
+  }
+
+  template <typename T, std::size_t kCapacity>
+  void sequence(const char*, std::array<T, kCapacity>& items, int& count, const char*) {
+    count = static_cast<int>(get_length(kCapacity));
+    for (int i = 0; i < count; ++i) get(items[static_cast<std::size_t>(i)]);
+  }
+
+ private:
+  template <IsScalar T>
+  void get(T& value) {
+    const std::size_t past = (position_ - kCdrHeader.size()) % sizeof(T);
+    if (past != 0) position_ += sizeof(T) - past;
+    take(&value, sizeof(T));
+  }
+
+  template <IsMessage T>
+  void get(T& message) {
+    fields(*this, message);
+  }
+
+  template <int kRows, int kCols, int kOptions, int kMaxRows, int kMaxCols>
+  void get(Eigen::Matrix<double, kRows, kCols, kOptions, kMaxRows, kMaxCols>& matrix) {
+    if constexpr (kRows == Eigen::Dynamic) matrix.resize(get_length(kMaxRows));
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+      for (Eigen::Index col = 0; col < matrix.cols(); ++col) get(matrix(row, col));
+    }
+  }
+
+  std::uint32_t get_length(std::size_t capacity) {
+    std::uint32_t length = 0;
+    get(length);
+    is_ok_ = is_ok_ && length <= capacity;
+    return is_ok_ ? length : 0;
+  }
+
+  void take(void* data, std::size_t bytes) {
+    is_ok_ = is_ok_ && position_ + bytes <= bytes_.size();
+    if (is_ok_) std::memcpy(data, bytes_.data() + position_, bytes);
+    position_ += bytes;
+  }
+
+  std::span<const std::byte> bytes_;
+  std::size_t position_ = 0;
+  bool is_ok_ = true;
+};
+
+}  // namespace hg::recording

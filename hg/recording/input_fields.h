@@ -1,0 +1,106 @@
+/// The fields of what enters and leaves a cycle, each written once: encoding, decoding and the text
+/// of the schema all come from passing an archive to fields(). See message.h for the rules.
+#pragma once
+
+#include <string_view>
+
+#include "hg/recording/message.h"
+#include "hg/signals/state.h"
+
+namespace hg::recording {
+
+template <>
+inline constexpr std::string_view kMessageName<Pose> = "hapticgiant_msgs/Pose";
+template <>
+inline constexpr std::string_view kMessageName<SensorFrame> = "hapticgiant_msgs/SensorFrame";
+template <>
+inline constexpr std::string_view kMessageName<HandTarget> = "hapticgiant_msgs/HandTarget";
+template <>
+inline constexpr std::string_view kMessageName<OperatorFrame> = "hapticgiant_msgs/OperatorFrame";
+template <>
+inline constexpr std::string_view kMessageName<CommandFrame> = "hapticgiant_msgs/CommandFrame";
+template <>
+inline constexpr std::string_view kMessageName<Fault> = "hapticgiant_msgs/Fault";
+template <>
+inline constexpr std::string_view kMessageName<RobotState> = "hapticgiant_msgs/RobotState";
+template <>
+inline constexpr std::string_view kMessageName<ReferenceState> = "hapticgiant_msgs/ReferenceState";
+template <>
+inline constexpr std::string_view kMessageName<TwinState> = "hapticgiant_msgs/TwinState";
+
+template <typename Archive, Is<Pose> T>
+void fields(Archive& a, T& pose) {
+  a("p", pose.p, "m");
+  a("r", pose.R, "rotation matrix, row by row");
+}
+
+template <typename Archive, Is<SensorFrame> T>
+void fields(Archive& a, T& sensors) {
+  a("sequence", sensors.sequence, "counts up by one per sample");
+  a("time_s", sensors.time_s, "clock of the device");
+  a("q_m", sensors.q_m, "link-side encoders of the manipulator, rad");
+  a("dq_m", sensors.dq_m, "rad/s");
+  a("tau_m", sensors.tau_m, "joint torque sensors, Nm");
+  a("q_p", sensors.q_p, "gantry encoders, m");
+  a("w_s", sensors.w_S, "wrench at the force/torque sensor, resolved in it: force N, torque Nm");
+  a("dead_man", sensors.dead_man, "the dead-man switch is closed");
+  a("emergency_stop", sensors.emergency_stop, "the safety inputs ask for a stop");
+}
+
+template <typename Archive, Is<HandTarget> T>
+void fields(Archive& a, T& target) {
+  a("active", target.active, "false: the simulated person's script decides");
+  a("p_b", target.p_B, "target of the handle in the base frame, m");
+  a("press", target.press, "how far the hand presses its lever, 0..1");
+}
+
+template <typename Archive, Is<OperatorFrame> T>
+void fields(Archive& a, T& input) {
+  a("request", input.request, "0 none, 1 arm, 2 run, 3 stop, 4 reset");
+  a("hand_target", input.hand_target);
+}
+
+template <typename Archive, Is<CommandFrame> T>
+void fields(Archive& a, T& command) {
+  a("sequence", command.sequence, "of the sensor frame that it answers");
+  a("enable", command.enable, "drives powered");
+  a("q_m", command.q_m, "reference of the manipulator, rad");
+  a("dq_m", command.dq_m, "rad/s");
+  a("ddq_m", command.ddq_m, "rad/s^2");
+  a("dq_p", command.dq_p, "gantry, m/s");
+  a("hand_target", command.hand_target);
+}
+
+template <typename Archive, Is<Fault> T>
+void fields(Archive& a, T& fault) {
+  a("code", fault.code, "0 none; numbers are listed in hg/signals/fault.h");
+  a("index", fault.index, "joint, limit or component; -1 none");
+  a("value", fault.value, "the offending value");
+  a("limit", fault.limit, "what it was compared with");
+}
+
+template <typename Archive, Is<RobotState> T>
+void fields(Archive& a, T& robot) {
+  a("q_m", robot.q_m, "measured, unwrapped, rad");
+  a("dq_m", robot.dq_m, "rad/s");
+  a("q_p", robot.q_p, "gantry, m");
+  a("dq_p", robot.dq_p, "m/s");
+  a("ddq_p", robot.ddq_p, "m/s^2");
+  a("w_h", robot.w_H, "wrench of the user at the handle, resolved in the base: force N, torque Nm");
+}
+
+template <typename Archive, Is<ReferenceState> T>
+void fields(Archive& a, T& reference) {
+  a("q_m", reference.q_m, "rad");
+  a("dq_m", reference.dq_m, "rad/s");
+  a("ddq_m", reference.ddq_m, "rad/s^2");
+}
+
+template <typename Archive, Is<TwinState> T>
+void fields(Archive& a, T& twin) {
+  a("q_a", twin.q_a, "rad or m; a floating joint has x y z qx qy qz qw");
+  a("dq_a", twin.dq_a, "rad/s or m/s; a floating joint has v, omega in its own frame");
+  a("ddq_a", twin.ddq_a, "rad/s^2 or m/s^2");
+}
+
+}  // namespace hg::recording

@@ -1,0 +1,47 @@
+/// One MCAP file under way: owns the handle of mcap_sink.h and speaks in C++ types.
+///
+/// Errors stick: after the first one nothing more is written and error() says why. One thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hg/recording/mcap_sink/mcap_sink.h"
+
+namespace hg::recording {
+
+using KeyValues = std::vector<std::pair<std::string, std::string>>;
+
+class McapFile {
+ public:
+  /// Creates `path`, which must not exist.
+  explicit McapFile(const std::filesystem::path& path);
+
+  /// Adds a topic whose messages are encoded as CDR. Returns its number.
+  std::uint16_t add_channel(const std::string& topic, const std::string& schema_name,
+                            const std::string& schema_text);
+  void attach(const std::string& name, const std::string& text, std::uint64_t time_ns);
+  void add_metadata(const std::string& name, const KeyValues& pairs);
+  void write(std::uint16_t channel, std::uint64_t sequence, std::uint64_t time_ns,
+             std::span<const std::byte> message);
+
+  /// Ends a chunk: a crash of the program loses nothing written before.
+  void flush();
+  /// Writes the index and waits for the disk. The file is then complete.
+  void finish();
+
+  std::string error() const;  ///< empty while everything went well
+  bool has_failed() const;
+  std::uint64_t bytes() const;  ///< on the way to the disk
+
+ private:
+  std::unique_ptr<mcap_sink, decltype(&mcap_sink_free)> sink_;
+};
+
+}  // namespace hg::recording

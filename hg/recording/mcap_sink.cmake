@@ -1,0 +1,83 @@
+# The library mcap_sink: the official MCAP writer in Rust, or without a working Rust toolchain a
+# stand-in with which the program builds and says that recording is off.
+#
+# HG_CARGO names a cargo; empty: the first in PATH, then in /usr/bin, that runs, has a rustc beside
+# it and has (or can download) the crates of Cargo.lock; OFF: no recording.
+set(HG_CARGO "" CACHE STRING "cargo for recording; empty = search, OFF = build without recording")
+set(mcap_sink_dir ${CMAKE_CURRENT_LIST_DIR}/mcap_sink)
+
+# A cargo in PATH may be a proxy without a toolchain, or too old: try before trusting.
+function(hg_find_cargo result)
+  string(REPLACE ":" ";" folders "$ENV{PATH}")
+  list(TRANSFORM folders APPEND /cargo)
+  set(candidates ${HG_CARGO})
+  if(NOT candidates)
+    set(candidates ${folders} /usr/bin/cargo)
+    list(REMOVE_DUPLICATES candidates)
+  endif()
+  set(reason "no cargo in PATH")
+  foreach(cargo IN LISTS candidates)
+    get_filename_component(folder ${cargo} DIRECTORY)
+    if(NOT EXISTS ${cargo} OR NOT EXISTS ${folder}/rustc)
+      continue()
+    endif()
+    execute_process(COMMAND ${folder}/rustc --version RESULT_VARIABLE failed
+      OUTPUT_QUIET ERROR_VARIABLE reason)
+    if(failed)
+      continue()
+    endif()
+    execute_process(
+      COMMAND ${CMAKE_COMMAND} -E env RUSTC=${folder}/rustc
+        ${cargo} fetch --locked --quiet --manifest-path ${mcap_sink_dir}/Cargo.toml
+      RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE reason)
+    if(NOT failed)
+      set(${result} ${cargo} PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+  string(REGEX REPLACE "\n.*" "" reason "${reason}")
+  message(STATUS "Recording is off: no usable cargo (${reason}).")
+  set(${result} "" PARENT_SCOPE)
+endfunction()
+
+set(cargo "")
+if("${HG_CARGO}" STREQUAL "OFF")
+  message(STATUS "Recording is off: HG_CARGO is OFF.")
+else()
+  hg_find_cargo(cargo)
+endif()
+
+if(cargo)
+  set(target_dir ${CMAKE_BINARY_DIR}/mcap_sink)
+  set(library ${target_dir}/release/libmcap_sink.a)
+  file(GLOB rust_sources CONFIGURE_DEPENDS ${mcap_sink_dir}/src/*.rs)
+  get_filename_component(folder ${cargo} DIRECTORY)
+  add_custom_command(
+    OUTPUT ${library}
+    COMMAND ${CMAKE_COMMAND} -E env RUSTC=${folder}/rustc CARGO_TARGET_DIR=${target_dir}
+      ${cargo} build --release --locked --offline --quiet
+    WORKING_DIRECTORY ${mcap_sink_dir}
+    DEPENDS ${rust_sources} ${mcap_sink_dir}/Cargo.toml ${mcap_sink_dir}/Cargo.lock
+    COMMENT "Building the MCAP writer (Rust)"
+    VERBATIM)
+  add_custom_target(mcap_sink_build DEPENDS ${library})
+  add_library(mcap_sink STATIC IMPORTED GLOBAL)
+  add_dependencies(mcap_sink mcap_sink_build)
+  set_target_properties(mcap_sink PROPERTIES
+    IMPORTED_LOCATION ${library}
+    INTERFACE_LINK_LIBRARIES "Threads::Threads;${CMAKE_DL_LIBS};m")
+else()
+  add_library(mcap_sink STATIC ${mcap_sink_dir}/without_rust.cpp)
+  target_include_directories(mcap_sink PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(mcap_sink PUBLIC Threads::Threads)
+endif()
+
+# A recording as the official Python reader sees it.
+if(cargo)
+  add_executable(recording_example hg/recording/test/recording_example.cpp)
+  target_link_libraries(recording_example PRIVATE hg_recording)
+  add_test(NAME recording_read
+    COMMAND ${PROJECT_SOURCE_DIR}/.venv/bin/python hg/recording/test/read_recording.py
+      $<TARGET_FILE:recording_example>
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+endif()

@@ -1,0 +1,59 @@
+/// C interface of the official MCAP writer (crate `mcap`), the only door to Rust in this program.
+///
+/// One handle writes one file and serves one thread. The first error sticks: every later call
+/// returns false and does nothing, mcap_sink_error() says why. Strings are UTF-8, zero-terminated,
+/// and only read during the call. Without a Rust toolchain without_rust.cpp stands in.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct mcap_sink mcap_sink;
+
+/// False when the program was built without Rust: then mcap_sink_open() always fails.
+bool mcap_sink_available(void);
+
+/// Creates `path`, which must not exist, and writes the header. Never null: look at
+/// mcap_sink_error().
+mcap_sink* mcap_sink_open(const char* path);
+
+/// Empty while everything went well. Valid until the next call with this handle.
+const char* mcap_sink_error(const mcap_sink* sink);
+
+/// Adds a topic with CDR messages and a ros2msg schema. Returns its number, 0 after an error.
+uint16_t mcap_sink_add_channel(mcap_sink* sink, const char* topic, const char* schema_name,
+                               const char* schema_text);
+
+/// Adds a message; log time and publish time are both `time_ns` (since 1970, UTC).
+bool mcap_sink_write(mcap_sink* sink, uint16_t channel, uint32_t sequence, uint64_t time_ns,
+                     const uint8_t* data, size_t size);
+
+/// Embeds a text file.
+bool mcap_sink_attach(mcap_sink* sink, const char* name, uint64_t time_ns, const char* text,
+                      size_t size);
+
+/// Adds a metadata record of `count` pairs: key 0, value 0, key 1, value 1, ...
+bool mcap_sink_add_metadata(mcap_sink* sink, const char* name, const char* const* pairs,
+                            size_t count);
+
+/// Ends the chunk and hands everything to the operating system: a crash of this program loses
+/// nothing that was written before.
+bool mcap_sink_flush(mcap_sink* sink);
+
+/// Bytes handed to the operating system so far.
+uint64_t mcap_sink_bytes(const mcap_sink* sink);
+
+/// Writes the index and waits until the file is on the disk.
+bool mcap_sink_finish(mcap_sink* sink);
+
+/// Closes the file and frees the handle.
+void mcap_sink_free(mcap_sink* sink);
+
+#ifdef __cplusplus
+}
+#endif

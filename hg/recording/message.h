@@ -1,0 +1,31 @@
+/// What a recorded message is: a name and a function fields(archive, message) that shows its fields
+/// to an archive in the order of the schema.
+///
+/// For each field the function calls archive(name, value, note), or archive.sequence(name, items,
+/// count, note) where only the first `count` items of an array are in use. Values are numbers,
+/// enumerations, strings, Eigen vectors and matrices (matrices row by row; those of variable length
+/// are sequences), other messages and std::vector of these. Names are in lower case because ROS
+/// demands it; notes become comments of the schema.
+#pragma once
+
+#include <concepts>
+#include <string_view>
+#include <type_traits>
+
+namespace hg::recording {
+
+/// Name of a message type as ROS spells it inside a definition, for example "std_msgs/Header".
+template <typename Message>
+constexpr std::string_view kMessageName = "";
+
+template <typename T>
+concept IsMessage = !kMessageName<std::remove_cvref_t<T>>.empty();
+
+/// T is Message or const Message: archives that read need the former, those that write the latter.
+template <typename T, typename Message>
+concept Is = std::same_as<std::remove_const_t<T>, Message>;
+
+template <typename T>
+concept IsScalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+}  // namespace hg::recording

@@ -1,0 +1,362 @@
+#include "hg/recording/recorder.h"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cmath>
+#include <exception>
+#include <iterator>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "hg/core/error.h"
+#include "hg/core/spsc_ring.h"
+#include "hg/recording/cdr_writer.h"
+#include "hg/recording/mcap_file.h"
+#include "hg/recording/recording_folder.h"
+#include "hg/recording/ros_messages.h"
+#include "hg/recording/sample_fields.h"
+#include "hg/recording/schema.h"
+#include "hg/recording/tool_messages.h"
+
+namespace hg::recording {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kRingSeconds = 1.0;    // outlasts the pauses of a busy disk
+constexpr double kFlushSeconds = 0.25;  // of nominal time; what a crash may cost
+constexpr double kToolRate_Hz = 100.0;  // of the messages for other tools
+constexpr auto kPollPeriod = 5ms;       // the loop may not wake the thread: that is a system call
+constexpr int kIdlePolls = 50;          // then a loop that stands still is flushed, too
+constexpr auto kWaitForPlace = 100us;
+constexpr double kBudgetStep = 0.01;  // of the budget: how far a file grows between two looks at it
+
+std::string to_text(double value) {
+  char text[32];
+  const std::to_chars_result result = std::to_chars(std::begin(text), std::end(text), value);
+  return {text, result.ptr};
+}
+
+std::string join(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  return text;
+}
+
+std::string_view to_string(LimitKind kind) noexcept {
+  switch (kind) {
+    case LimitKind::kManipulatorJoint:
+      return "manipulator joint";
+    case LimitKind::kVirtualJoint:
+      return "virtual joint";
+    case LimitKind::kCartesian:
+      return "Cartesian";
+    case LimitKind::kTwinJoint:
+      return "twin joint";
+  }
+  return "";
+}
+
+void check(const RecordingInfo& info) {
+  const auto require_positive = [](const char* item, double value) {
+    if (!(value > 0.0 && std::isfinite(value))) {
+      throw SetupError(std::string("recording ") + item + ": must be positive, got " +
+                       to_text(value));
+    }
+  };
+  require_positive("rate_Hz", info.rate_Hz);
+  require_positive("disk_budget_bytes", info.disk_budget_bytes);
+  if (!recording_available()) {
+    throw SetupError("recording: this program was built without Rust; install cargo and rebuild");
+  }
+}
+
+std::uint64_t start_ns(const RecordingInfo& info) {
+  const auto since_1970 = info.start.time_since_epoch();
+  return static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(since_1970).count());
+}
+
+KeyValues run_metadata(const RecordingInfo& info) {
+  std::vector<std::string> twin_names;
+  for (const TwinJoint& joint : info.twin_joints) twin_names.push_back(joint.name);
+  return {{"name", info.name},
+          {"version", info.version},
+          {"start_ns", std::to_string(start_ns(info))},
+          {"rate_Hz", to_text(info.rate_Hz)},
+          {"gantry_joints", join(info.gantry_joints)},
+          {"manipulator_joints", join(info.manipulator_joints)},
+          {"twin_joints", join(twin_names)}};
+}
+
+KeyValues limit_metadata(const LimitCatalogue& limits) {
+  KeyValues pairs;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const LimitInfo& limit = limits[i];
+    const std::string index = (i < 10 ? "0" : "") + std::to_string(i);
+    pairs.emplace_back(index + ".name", limit.name);
+    pairs.emplace_back(index + ".kind", to_string(limit.kind));
+    pairs.emplace_back(index + ".unit", limit.is_angle ? "rad" : "m");
+    pairs.emplace_back(index + ".lower", to_text(limit.range.lb));
+    pairs.emplace_back(index + ".upper", to_text(limit.range.ub));
+  }
+  return pairs;
+}
+
+template <IsMessage Message>
+std::uint16_t add_topic(McapFile& file, const std::string& topic) {
+  return file.add_channel(topic, schema_name<Message>(), schema_text<Message>());
+}
+
+}  // namespace
+
+bool recording_available() noexcept { return mcap_sink_available(); }
+
+/// Both sides of the ring: push functions for the loop, run() for the thread.
+class Recorder::Writer {
+ public:
+  explicit Writer(const RecordingInfo& info);
+  ~Writer() { close(); }
+
+  bool push(const Sample& sample) noexcept;
+  void push_waiting(const Sample& sample);
+  void event(double time_s, std::string_view name, std::string_view text);
+  RecordingSummary close();
+  std::string error() const;
+
+ private:
+  void write_head(const RecordingInfo& info);
+  void run();
+  bool write_waiting_samples();
+  void write(const Sample& sample);
+  void write_events();
+  void flush();
+  void keep_budget();
+  void end(const std::string& why);
+  std::uint64_t log_time(double time_s) const;
+
+  const std::uint64_t start_ns_;
+  const double disk_budget_bytes_;
+  const std::uint64_t flush_samples_, tool_samples_;
+  SpscRing<Sample> ring_;
+  std::atomic<std::uint64_t> dropped_{0};
+  std::atomic<bool> is_closing_{false};
+
+  mutable std::mutex mutex_;  // guards the next two
+  std::vector<Event> events_;
+  std::string error_;
+
+  // used by the thread alone while it runs
+  RecordingFolder folder_;
+  std::filesystem::path path_;
+  McapFile file_;
+  CdrWriter cdr_;
+  ToolMessages tool_messages_;
+  std::uint16_t sample_topic_ = 0, event_topic_ = 0, device_topic_ = 0, twin_topic_ = 0,
+                wrench_topic_ = 0, transform_topic_ = 0;
+  Sample sample_;
+  std::uint64_t flushed_samples_ = 0;
+  std::uint64_t event_count_ = 0;
+  double budget_checked_bytes_ = 0.0;
+  bool has_ended_ = false;
+  RecordingSummary summary_;
+
+  std::thread thread_;
+};
+
+Recorder::Writer::Writer(const RecordingInfo& info)
+    : start_ns_(start_ns(info)),
+      disk_budget_bytes_(info.disk_budget_bytes),
+      flush_samples_(static_cast<std::uint64_t>(std::ceil(kFlushSeconds * info.rate_Hz))),
+      tool_samples_(std::max(1LL, std::llround(info.rate_Hz / kToolRate_Hz))),
+      ring_(static_cast<std::size_t>(std::ceil(kRingSeconds * info.rate_Hz))),
+      folder_(info.folder),
+      path_(folder_.new_path(info.name, info.start)),
+      file_(path_),
+      tool_messages_(info) {
+  write_head(info);
+  file_.flush();
+  if (file_.has_failed()) {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+    throw SetupError("recording file " + path_.string() +
+                     ": must be writable, got: " + file_.error());
+  }
+  folder_.link_latest(path_);
+  keep_budget();
+  thread_ = std::thread([this] { run(); });
+}
+
+/// What a reader needs besides messages goes first, so that a crash cannot lose it.
+void Recorder::Writer::write_head(const RecordingInfo& info) {
+  file_.add_metadata("run", run_metadata(info));
+  file_.add_metadata("limits", limit_metadata(info.limits));
+  for (const NamedText& text : info.configuration) file_.attach(text.name, text.text, start_ns_);
+  sample_topic_ = add_topic<Sample>(file_, "/hapticgiant/sample");
+  event_topic_ = add_topic<Event>(file_, "/hapticgiant/events");
+  device_topic_ = add_topic<JointState>(file_, "/joint_states");
+  twin_topic_ = add_topic<JointState>(file_, "/twin/joint_states");
+  wrench_topic_ = add_topic<WrenchStamped>(file_, "/user_wrench");
+  transform_topic_ = add_topic<TransformMessage>(file_, "/tf");
+}
+
+bool Recorder::Writer::push(const Sample& sample) noexcept {
+  const bool is_accepted = !is_closing_.load(std::memory_order_relaxed) && ring_.push(sample);
+  if (!is_accepted) dropped_.fetch_add(1, std::memory_order_relaxed);
+  return is_accepted;
+}
+
+void Recorder::Writer::push_waiting(const Sample& sample) {
+  while (!is_closing_ && !ring_.push(sample)) std::this_thread::sleep_for(kWaitForPlace);
+  if (is_closing_) dropped_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Recorder::Writer::event(double time_s, std::string_view name, std::string_view text) {
+  const std::lock_guard lock(mutex_);
+  events_.push_back({time_s, std::string(name), std::string(text)});
+}
+
+std::string Recorder::Writer::error() const {
+  const std::lock_guard lock(mutex_);
+  return error_;
+}
+
+RecordingSummary Recorder::Writer::close() {
+  if (thread_.joinable()) {
+    is_closing_ = true;
+    thread_.join();
+    summary_.dropped += dropped_;
+    summary_.error = error();
+  }
+  return summary_;
+}
+
+void Recorder::Writer::run() {
+  int idle_polls = 0;
+  try {
+    while (!is_closing_) {
+      const bool has_written = write_waiting_samples();
+      write_events();
+      idle_polls = has_written ? 0 : std::min(idle_polls + 1, kIdlePolls + 1);
+      if (idle_polls == kIdlePolls) flush();
+      if (!has_written) std::this_thread::sleep_for(kPollPeriod);
+    }
+    write_waiting_samples();
+    write_events();
+    end("");
+  } catch (const std::exception& exception) {
+    // whatever it is, the run goes on without a recording
+    end(exception.what());
+    is_closing_ = true;
+  }
+}
+
+bool Recorder::Writer::write_waiting_samples() {
+  bool has_written = false;
+  while (ring_.pop(sample_)) {
+    write(sample_);
+    has_written = true;
+  }
+  return has_written;
+}
+
+void Recorder::Writer::write(const Sample& sample) {
+  if (has_ended_) {
+    ++summary_.dropped;
+    return;
+  }
+  const CycleRecord& record = sample.record;
+  const std::uint64_t time_ns = log_time(record.time_s);
+  file_.write(sample_topic_, record.cycle, time_ns, cdr_.encode(sample));
+  ++summary_.samples;
+
+  if (record.cycle % tool_samples_ == 0) {
+    tool_messages_.update(sample, time_ns);
+    file_.write(device_topic_, record.cycle, time_ns, cdr_.encode(tool_messages_.device()));
+    file_.write(twin_topic_, record.cycle, time_ns, cdr_.encode(tool_messages_.twin()));
+    file_.write(wrench_topic_, record.cycle, time_ns, cdr_.encode(tool_messages_.user_wrench()));
+    file_.write(transform_topic_, record.cycle, time_ns, cdr_.encode(tool_messages_.transforms()));
+  }
+
+  if (summary_.samples - flushed_samples_ >= flush_samples_) flush();
+}
+
+void Recorder::Writer::write_events() {
+  std::vector<Event> events;
+  {
+    const std::lock_guard lock(mutex_);
+    events.swap(events_);
+  }
+  if (has_ended_) return;
+  for (const Event& event : events) {
+    file_.write(event_topic_, event_count_++, log_time(event.time_s), cdr_.encode(event));
+  }
+}
+
+void Recorder::Writer::flush() {
+  if (has_ended_) return;
+  file_.flush();
+  if (file_.has_failed()) {
+    end("");
+    return;
+  }
+  flushed_samples_ = summary_.samples;
+  const double bytes = static_cast<double>(file_.bytes());
+  if (bytes - budget_checked_bytes_ >= kBudgetStep * disk_budget_bytes_) keep_budget();
+  if (bytes >= disk_budget_bytes_) {
+    end("the file has reached the disk budget of " + to_text(disk_budget_bytes_) + " bytes");
+  }
+}
+
+void Recorder::Writer::keep_budget() {
+  budget_checked_bytes_ = static_cast<double>(file_.bytes());
+  std::vector<std::string> deleted =
+      folder_.make_room(path_, budget_checked_bytes_, disk_budget_bytes_);
+  std::move(deleted.begin(), deleted.end(), std::back_inserter(summary_.deleted));
+}
+
+/// Completes the file; after a write error it stays as it is. Later samples are dropped.
+void Recorder::Writer::end(const std::string& why) {
+  if (has_ended_) return;
+  has_ended_ = true;
+  file_.finish();
+  keep_budget();
+  if (file_.has_failed()) {
+    summary_.dropped += summary_.samples - flushed_samples_;
+    summary_.samples = flushed_samples_;
+  } else {
+    path_ = folder_.complete(path_);
+  }
+  summary_.file = path_;
+  summary_.bytes = file_.bytes();
+
+  const std::lock_guard lock(mutex_);
+  error_ = why.empty() ? file_.error() : why;
+}
+
+std::uint64_t Recorder::Writer::log_time(double time_s) const {
+  return start_ns_ + static_cast<std::uint64_t>(std::llround(1e9 * time_s));
+}
+
+Recorder::Recorder(const RecordingInfo& info) {
+  check(info);
+  writer_ = std::make_unique<Writer>(info);
+}
+
+Recorder::~Recorder() = default;
+
+bool Recorder::push(const Sample& sample) noexcept { return writer_->push(sample); }
+
+void Recorder::push_waiting(const Sample& sample) { writer_->push_waiting(sample); }
+
+void Recorder::event(double time_s, std::string_view name, std::string_view text) {
+  writer_->event(time_s, name, text);
+}
+
+RecordingSummary Recorder::close() { return writer_->close(); }
+
+std::string Recorder::error() const { return writer_->error(); }
+
+}  // namespace hg::recording

@@ -1,0 +1,127 @@
+#include "hg/recording/recording_folder.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <ctime>
+#include <regex>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "hg/core/error.h"
+
+namespace hg::recording {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPartial = ".partial";
+constexpr std::string_view kExtension = ".mcap";
+
+std::string utc_stamp(std::chrono::system_clock::time_point time) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[32];
+  const std::size_t length = std::strftime(text, sizeof(text), "%Y%m%d_%H%M%S", &parts);
+  return {text, length};
+}
+
+/// A finished, broken or current recording.
+struct Recording {
+  std::string stamp;  ///< age: date and time, then the number that tells files of one second apart
+  int number;
+  fs::path path;
+  double bytes;
+};
+
+std::vector<Recording> oldest_first(const fs::path& folder) {
+  static const std::regex pattern(R"(.*_(\d{8}_\d{6})(?:_(\d{1,6}))?(?:\.partial)?\.mcap)");
+  std::vector<Recording> recordings;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code no_file;
+    std::smatch match;
+    if (!std::regex_match(name, match, pattern) || entry->is_symlink(no_file)) continue;
+    const std::uintmax_t bytes = entry->file_size(no_file);
+    if (no_file) continue;
+    const int number = match[2].matched ? std::stoi(match[2]) : 1;
+    recordings.push_back({match[1], number, entry->path(), static_cast<double>(bytes)});
+  }
+  std::sort(recordings.begin(), recordings.end(), [](const Recording& a, const Recording& b) {
+    return std::tie(a.stamp, a.number, a.path) < std::tie(b.stamp, b.number, b.path);
+  });
+  return recordings;
+}
+
+}  // namespace
+
+RecordingFolder::RecordingFolder(fs::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) {
+    throw SetupError("recording folder " + folder_.string() +
+                     ": must be a folder that can be written, got: " + error.message());
+  }
+}
+
+fs::path RecordingFolder::new_path(const std::string& name,
+                                   std::chrono::system_clock::time_point start) const {
+  static const std::regex pattern("[A-Za-z0-9._-]+");
+  if (!std::regex_match(name, pattern)) {
+    throw SetupError(
+        "recording name: must consist of letters, digits, dots, dashes and underscores, got \"" +
+        name + "\"");
+  }
+
+  const std::string stem = name + "_" + utc_stamp(start);
+  for (int number = 1;; ++number) {
+    const std::string numbered = number == 1 ? stem : stem + "_" + std::to_string(number);
+    const fs::path complete = folder_ / (numbered + std::string(kExtension));
+    const fs::path partial = folder_ / (numbered + std::string(kPartial) + std::string(kExtension));
+    std::error_code ignored;
+    if (!fs::exists(complete, ignored) && !fs::exists(partial, ignored)) return partial;
+  }
+}
+
+fs::path RecordingFolder::complete(const fs::path& partial) const {
+  std::string name = partial.filename().string();
+  name.erase(name.rfind(kPartial), kPartial.size());
+  const fs::path complete = folder_ / name;
+  std::error_code error;
+  fs::rename(partial, complete, error);
+  if (error) return partial;
+  link_latest(complete);
+  return complete;
+}
+
+void RecordingFolder::link_latest(const fs::path& file) const {
+  // renaming replaces an old link in one step: there is always a link
+  const fs::path fresh = folder_ / "latest.new";
+  std::error_code ignored;
+  fs::remove(fresh, ignored);
+  fs::create_symlink(file.filename(), fresh, ignored);
+  fs::rename(fresh, folder_ / "latest.mcap", ignored);
+}
+
+std::vector<std::string> RecordingFolder::make_room(const fs::path& current, double current_bytes,
+                                                    double budget_bytes) const {
+  std::vector<Recording> others = oldest_first(folder_);
+  std::erase_if(others, [&](const Recording& r) { return r.path == current; });
+  double total = current_bytes;
+  for (const Recording& recording : others) total += recording.bytes;
+
+  std::vector<std::string> deleted;
+  for (const Recording& recording : others) {
+    if (total <= budget_bytes) break;
+    std::error_code ignored;
+    if (!fs::remove(recording.path, ignored)) continue;
+    total -= recording.bytes;
+    deleted.push_back(recording.path.filename().string());
+  }
+  return deleted;
+}
+
+}  // namespace hg::recording

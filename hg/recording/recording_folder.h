@@ -1,0 +1,41 @@
+/// The folder of the recordings: names of files, the link `latest.mcap`, and the disk budget.
+///
+/// A recording is called NAME_yyyymmdd_hhmmss.mcap (UTC), with _2, _3, ... where that exists; while
+/// it is written, or after a crash, it ends in .partial.mcap. Only files named like that count and
+/// are ever deleted: rename a recording to keep it.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hg::recording {
+
+class RecordingFolder {
+ public:
+  /// Creates the folder where it is missing. Throws SetupError when that fails.
+  explicit RecordingFolder(std::filesystem::path folder);
+
+  /// A free path ending in .partial.mcap. Throws SetupError unless `name` consists of letters,
+  /// digits, dots, dashes and underscores.
+  std::filesystem::path new_path(const std::string& name,
+                                 std::chrono::system_clock::time_point start) const;
+
+  /// Takes .partial out of the name and points `latest.mcap` at the file. Returns the new path, or
+  /// the old one where renaming fails.
+  std::filesystem::path complete(const std::filesystem::path& partial) const;
+
+  /// Points `latest.mcap` at a file of this folder; does nothing where links are not supported.
+  void link_latest(const std::filesystem::path& file) const;
+
+  /// Deletes the oldest recordings until all together, `current` with `current_bytes`, take at most
+  /// `budget_bytes`; never `current`. Returns the names of the deleted files.
+  std::vector<std::string> make_room(const std::filesystem::path& current, double current_bytes,
+                                     double budget_bytes) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace hg::recording

@@ -1,0 +1,97 @@
+/// The fields of the record of a cycle and of the whole sample, and the message of an event; see
+/// message.h for the rules.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "hg/recording/input_fields.h"
+#include "hg/recording/message.h"
+#include "hg/signals/state.h"
+
+namespace hg::recording {
+
+/// Something worth finding again in a recording.
+struct Event {
+  double time_s = 0.0;
+  std::string name, text;
+};
+
+template <>
+inline constexpr std::string_view kMessageName<Budget> = "hapticgiant_msgs/Budget";
+template <>
+inline constexpr std::string_view kMessageName<LimitReport> = "hapticgiant_msgs/LimitReport";
+template <>
+inline constexpr std::string_view kMessageName<CycleRecord> = "hapticgiant_msgs/CycleRecord";
+template <>
+inline constexpr std::string_view kMessageName<Sample> = "hapticgiant_msgs/Sample";
+template <>
+inline constexpr std::string_view kMessageName<Event> = "hapticgiant_msgs/Event";
+
+template <typename Archive, Is<Budget> T>
+void fields(Archive& a, T& budget) {
+  a("inertia", budget.inertia, "parts of J_a^T w in twin joint space, Nm or N");
+  a("damping", budget.damping);
+  a("friction", budget.friction);
+  a("spring", budget.spring);
+  a("surface", budget.surface);
+  a("limits", budget.limits);
+  a("conflict", budget.conflict);
+  a("structure", budget.structure, "part of the wrench that the twin's bearings carry");
+}
+
+template <typename Archive, Is<LimitReport> T>
+void fields(Archive& a, T& report) {
+  a("state", report.state, "0 inactive, 1 lower, 2 upper, 3 violated");
+  a("cause", report.cause,
+    "0 none, 1 position, 2 velocity, 3 acceleration, 4 lock, 5 latch, 6 friction");
+  a("position", report.position, "of the limited quantity, rad or m");
+  a("excess", report.excess, "how far it is outside its range");
+  a("slack", report.slack, "acceleration by which its row misses the bound");
+  a("reaction", report.reaction, "constraint force N or torque Nm");
+}
+
+template <typename Archive, Is<CycleRecord> T>
+void fields(Archive& a, T& record) {
+  a("cycle", record.cycle);
+  a("time_s", record.time_s, "nominal time; the log time is this plus the start of the run");
+  a("mode", record.mode, "0 off, 1 ready, 2 armed, 3 running, 4 stopping, 5 fault");
+  a("fault", record.fault);
+  a("robot", record.robot, "estimated state of the device");
+  a("reference", record.reference, "integrated reference of the manipulator");
+  a("twin", record.twin);
+  a("handle", record.T_B_H, "handle in the base frame, at the reference");
+  a("v_h", record.v_H, "its velocity, m/s");
+  a("a_h", record.a_H, "its acceleration, m/s^2");
+  a("p_b_elbow", record.p_B_elbow, "m");
+  a("sync_error", record.sync_error, "distance of handle and twin, m");
+  a("sync_error_angle", record.sync_error_angle, "rad");
+  a("tau_a", record.tau_a, "J_a^T w, Nm or N");
+  a("budget", record.budget, "where the user's wrench goes");
+  a.sequence("limits", record.limits, record.limit_count, "in the order of metadata \"limits\"");
+  a("felt_limit", record.felt_limit, "the limit that the user feels most, -1 none");
+  a("w_felt", record.w_felt, "its reaction as a wrench on the handle");
+  a("q_p_target", record.q_p_target, "where prepositioning wants the gantry, m");
+  a("solver_status", record.solver_status, "0 not run, 1 solved, 2 iteration limit, 3 failed");
+  a("solver_iterations", record.solver_iterations);
+  a("active_set_changes", record.active_set_changes);
+  a("state_hash", record.state_hash, "equal in a replay");
+}
+
+template <typename Archive, Is<Sample> T>
+void fields(Archive& a, T& sample) {
+  a("sensors", sample.sensors, "input of the cycle");
+  a("operator_input", sample.operator_input, "input of the cycle");
+  a("command", sample.command, "output of the cycle");
+  a("record", sample.record);
+  a("cycle_time_us", sample.cycle_time_us, "measured, not part of a replay");
+}
+
+template <typename Archive, Is<Event> T>
+void fields(Archive& a, T& event) {
+  a("time_s", event.time_s, "nominal time of the run");
+  a("name", event.name);
+  a("text", event.text);
+}
+
+}  // namespace hg::recording
