@@ -7,7 +7,7 @@ namespace hg::hqp {
 namespace {
 
 constexpr double kPushes = 1e-8;     // share of the gradient from which a row surely pushes
-constexpr double kParallel = 1e-12;  // cosine below which a direction does not approach a row
+constexpr double kParallel = 1e-12;  // cosine below which a direction does not change a row
 
 // Sides of a row that do not stop a step, as bits.
 constexpr std::uint8_t kUpperSide = 1;
@@ -35,9 +35,12 @@ class LevelByLevel {
   void fix(int level) noexcept;
   void release_untouched() noexcept;
   RowState state_of_fixed(int row) const noexcept;
+  void collect_pulling(int level) noexcept;
+  bool collect_broken(int level) noexcept;
   bool aim(int level) noexcept;
   bool aim_past_obstacles(int level) noexcept;
-  double slopes(int level) noexcept;
+  void find_slopes(int level) noexcept;
+  bool gains(int level, double length) const noexcept;
   double way_to_obstacle(int level, int& obstacle) const noexcept;
   double best_length(int level, double longest) const noexcept;
   bool is_norm_level(int level) const noexcept { return level == problem_.levels(); }
@@ -79,54 +82,94 @@ PrimalOutcome LevelByLevel::run(int& completed) noexcept {
   return outcome;
 }
 
-// Direction to the minimum of the quadratic piece within the free columns; false when it gains
-// nothing that counts.
+// Rows of the level that pull at x: the quadratic piece of its objective that x is on.
+void LevelByLevel::collect_pulling(int level) noexcept {
+  work_.targets.clear();
+  for (int row = problem_.first_row(level); row < problem_.end_row(level); ++row) {
+    const auto [lb, ub] = problem_.bounds(row);
+    const double value = work_.value[at(row)];
+    work_.is_pulling[at(row)] = problem_.norm(row) > 0.0 && (lb == ub || value < lb || value > ub);
+    if (work_.is_pulling[at(row)]) work_.targets.push_back({row, value < lb ? lb : ub});
+  }
+}
+
+// Adds the rows at a bound that the direction would break; false when there are none.
+bool LevelByLevel::collect_broken(int level) noexcept {
+  const std::size_t count = work_.targets.size();
+  for (int row = problem_.first_row(level); row < problem_.end_row(level); ++row) {
+    const double slope = work_.slope[at(row)];
+    if (work_.is_pulling[at(row)] || slope == 0.0) continue;
+    const Interval bounds = problem_.bounds(row);
+    const double bound = slope > 0.0 ? bounds.ub : bounds.lb;
+    if (!touches(problem_, options_, work_, row, bound)) continue;
+    work_.is_pulling[at(row)] = true;
+    work_.targets.push_back({row, bound});
+  }
+  return work_.targets.size() > count;
+}
+
+// Direction to the minimum of the level's quadratic piece within the free columns; false when it
+// gains nothing that counts. At a kink of the objective the piece is the one ahead.
 bool LevelByLevel::aim(int level) noexcept {
   Elimination& elimination = work_.elimination;
   if (elimination.freedom() == 0) return false;
   if (is_norm_level(level)) {
     elimination.project_to_free(work_.point.x.data(), work_.direction.data());
     work_.direction.head(n_) *= -1.0;
-    return work_.direction.head(n_).norm() > options_.feasibility_tolerance * work_.x_norm;
+    find_slopes(level);
+    return gains(level, 1.0);
   }
   const int rank = elimination.rank();
-  elimination.add_least_squares(problem_, work_.targets, work_.point.x.data(),
-                                options_.rank_tolerance);
-  elimination.truncate(rank);
-  work_.direction.head(n_) = elimination.step().head(n_);
+  do {
+    elimination.add_least_squares(problem_, work_.targets, work_.point.x.data(),
+                                  options_.rank_tolerance);
+    elimination.truncate(rank);
+    work_.direction.head(n_) = elimination.step().head(n_);
+    find_slopes(level);
+  } while (collect_broken(level));
+  return gains(level, 1.0);
+}
+
+// Whether a step of `length` along the direction changes a slack that the level wants changed by
+// more than the tolerance.
+bool LevelByLevel::gains(int level, double length) const noexcept {
+  if (is_norm_level(level)) {
+    return length * work_.direction.head(n_).norm() > options_.feasibility_tolerance * work_.x_norm;
+  }
   return std::any_of(work_.targets.begin(), work_.targets.end(), [&](const TargetRow& t) {
-    const double gain = dot(problem_, t.row, work_.direction.data());
-    return std::abs(gain) > tolerance(problem_, options_, work_, t.row, t.target);
+    return std::abs(length * work_.slope[at(t.row)]) >
+           tolerance(problem_, options_, work_, t.row, t.target);
   });
 }
 
-// c d of all rows that matter to the level, into work_.slope; returns |d|.
-double LevelByLevel::slopes(int level) noexcept {
+// c d of all rows that matter to the level, into work_.slope; 0 where it is but rounding.
+void LevelByLevel::find_slopes(int level) noexcept {
   const int end = is_norm_level(level) ? problem_.rows() : problem_.end_row(level);
+  const double direction_norm = work_.direction.head(n_).norm();
   for (int row = 0; row < end; ++row) {
-    work_.slope[at(row)] = dot(problem_, row, work_.direction.data());
+    const double slope = dot(problem_, row, work_.direction.data());
+    const bool is_rounding = std::abs(slope) <= kParallel * problem_.norm(row) * direction_norm;
+    work_.slope[at(row)] = is_rounding ? 0.0 : slope;
   }
-  return work_.direction.head(n_).norm();
 }
 
 // How far the direction can be followed before a row of a higher level is in the way.
 double LevelByLevel::way_to_obstacle(int level, int& obstacle) const noexcept {
-  const double direction_norm = work_.direction.head(n_).norm();
   double way = kInfinity;
-  double best_cosine = 0.0;
+  double best_steepness = 0.0;
   obstacle = -1;
   for (int row = 0; row < end_of_levels_above(level); ++row) {
-    if (work_.is_fixed[at(row)]) continue;
     const double slope = work_.slope[at(row)];
+    if (work_.is_fixed[at(row)] || slope == 0.0) continue;
     if (work_.skipped_sides[at(row)] & (slope > 0.0 ? kUpperSide : kLowerSide)) continue;
-    const double cosine = std::abs(slope) / (problem_.norm(row) * direction_norm);
-    if (!(cosine > kParallel)) continue;
+    const double steepness = std::abs(slope) / problem_.norm(row);
     const auto [lb, ub] = problem_.bounds(row);
     const double distance = slope > 0.0 ? ub - work_.value[at(row)] : work_.value[at(row)] - lb;
+    if (distance == kInfinity) continue;
     const double way_of_row = std::max(0.0, distance) / std::abs(slope);
-    if (way_of_row < way || (way_of_row == way && cosine > best_cosine)) {
+    if (way_of_row < way || (way_of_row == way && steepness > best_steepness)) {
       way = way_of_row;
-      best_cosine = cosine;
+      best_steepness = steepness;
       obstacle = row;
     }
   }
@@ -183,7 +226,6 @@ bool LevelByLevel::aim_past_obstacles(int level) noexcept {
   if (!aim(level)) return false;
 
   while (true) {
-    slopes(level);
     int obstacle = -1;
     way_to_obstacle(level, obstacle);
     const bool is_touched =
@@ -199,8 +241,8 @@ bool LevelByLevel::aim_past_obstacles(int level) noexcept {
   work_.direction.head(n_) = work_.cone.descent().head(n_);
   std::fill_n(work_.skipped_sides.begin(), end_of_levels_above(level), std::uint8_t{0});
   for (const TouchedRow& t : work_.touched) work_.skipped_sides[at(t.row)] |= side_of(t);
-  slopes(level);
-  return true;
+  find_slopes(level);
+  return gains(level, best_length(level, kInfinity));
 }
 
 PrimalOutcome LevelByLevel::optimise(int level) noexcept {
@@ -216,7 +258,7 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
     size_ = level_gradient(problem_, options_, level, work_);
     is_settled_by_cone_ = !size_.is_zero && elimination.freedom() > 0;
     if (!is_settled_by_cone_) return PrimalOutcome::kOptimal;
-    if (!is_norm_level(level)) collect_targets(problem_, options_, level, work_);
+    if (!is_norm_level(level)) collect_pulling(level);
     work_.touched.clear();
     for (int above = 0; above < level; ++above) collect_touched(problem_, options_, above, work_);
     std::erase_if(work_.touched,

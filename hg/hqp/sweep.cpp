@@ -5,8 +5,8 @@
 namespace hg::hqp {
 namespace {
 
-constexpr double kWrongSign = 1e-9;  // share of the gradient that a pulling row may have: rounding
-constexpr double kPushes = 1e-8;     // share from which a row surely pushes
+constexpr double kWrongSign = 1e-12;  // share of the gradient that a pulling row may have: rounding
+constexpr double kPushes = 1e-8;      // share from which a row surely pushes
 
 bool is_held_state(RowState state) noexcept {
   return state == RowState::kLower || state == RowState::kUpper;

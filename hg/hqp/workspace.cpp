@@ -25,6 +25,7 @@ Workspace::Workspace(const Capacity& c)
       is_frozen(at(c.variables)),
       slope(at(c.rows)),
       is_fixed(at(c.rows)),
+      is_pulling(at(c.rows)),
       skipped_sides(at(c.rows)),
       gradient(c.variables),
       direction(c.variables) {
