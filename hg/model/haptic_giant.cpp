@@ -11,6 +11,8 @@ using std::numbers::pi;
 
 // hand axis closer to the vertical than this: its heading is rounding noise
 constexpr double kVertical = 1e-12;
+// a cosine may leave [-1, 1] by rounding where the arm is stretched
+constexpr double kLargestCosine = 1.0 + 1e-12;
 
 Eigen::Vector2d e(double angle) noexcept { return {std::cos(angle), std::sin(angle)}; }
 
@@ -40,14 +42,14 @@ Wrist solve_wrist(const Pose& T_B_H, int f, int w) noexcept {
     wrist.psi = std::atan2(f * C(1, 2), f * C(0, 2));
     wrist.q6 = std::atan2(f * C(2, 1), -f * C(2, 0)) - pi;
   } else {
-    // s = 0: C = Rz(psi + pi - pi) Ry(pi), s = pi: C = Rz(psi + pi), both with q6 = 0
+    // with q6 = 0: C = Rz(psi) diag(1, -1, -1) for s = 0, C = Rz(psi + pi) for s = pi
     const double side = C(2, 2) > 0.0 ? 1.0 : -1.0;
     wrist.psi = std::atan2(side * C(1, 0), side * C(0, 0)) + pi;
     wrist.status = InverseStatus::kSingular;
   }
 
   const double cos_q4 = (-kD3 - kD6 * std::cos(wrist.s) - T_B_H.p.z()) / kL4;
-  if (std::abs(cos_q4) > 1.0) wrist.status = InverseStatus::kHeightOutOfReach;
+  if (std::abs(cos_q4) > kLargestCosine) wrist.status = InverseStatus::kHeightOutOfReach;
   wrist.q4 = w * std::acos(std::clamp(cos_q4, -1.0, 1.0));
 
   const double r = kL4 * std::sin(wrist.q4) + kD6 * std::sin(wrist.s);
@@ -101,7 +103,7 @@ InverseStatus inverse(const Pose& T_B_H, const Eigen::Vector2d& q_p, Branch bran
       std::atan2(d.y(), d.x()) - std::atan2(kL2 * std::sin(q2), kL1 + kL2 * std::cos(q2));
   q_m = assemble(wrist, q1, q2);
   if (wrist.status == InverseStatus::kHeightOutOfReach) return wrist.status;
-  return std::abs(cos_q2) > 1.0 ? InverseStatus::kDistanceOutOfReach : wrist.status;
+  return std::abs(cos_q2) > kLargestCosine ? InverseStatus::kDistanceOutOfReach : wrist.status;
 }
 
 double jacobian_determinant(const Vector6& q_m) noexcept {

@@ -3,10 +3,12 @@
 #include <tinyxml2.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <iterator>
 #include <sstream>
 
@@ -269,12 +271,13 @@ void check(const Inertial& inertial, std::string_view item) {
 
   const Eigen::Vector3d moments =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertial.inertia).eigenvalues();
-  const std::string got = "principal moments " + to_text(moments[0]) + ", " + to_text(moments[1]) +
-                          ", " + to_text(moments[2]);
-  require(moments[0] > 0.0, "inertia must be positive definite", got);
+  std::ostringstream got;
+  got << std::setprecision(4) << "principal moments " << moments[0] << ", " << moments[1] << ", "
+      << moments[2];
+  require(moments[0] > 0.0, "inertia must be positive definite", got.str());
   require(moments[0] + moments[1] >= moments[2] * (1.0 - kRounding),
           "inertia is of no body, the two smaller principal moments must add up to the largest",
-          got);
+          got.str());
 }
 
 Urdf read_urdf_text(std::string_view text, std::string_view source) {
@@ -282,7 +285,7 @@ Urdf read_urdf_text(std::string_view text, std::string_view source) {
   urdf.source = source;
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    fail(urdf, document.ErrorLineNum(),
+    fail(urdf, std::max(1, document.ErrorLineNum()),
          std::string("is not valid XML: ") +
              tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()));
   }

@@ -1,0 +1,334 @@
+#include "hg/model/urdf.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "hg/core/error.h"
+#include "hg/model/chain.h"
+
+namespace hg::model {
+namespace {
+
+constexpr const char* kInertial =
+    "<inertial><mass value='1'/>"
+    "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+
+// a sound chain of base, arm and tip; every test below breaks one line of it
+struct Text {
+  std::string base = "<link name='base'/>";
+  std::string arm = std::string("<link name='arm'>") + kInertial + "</link>";
+  std::string tip = "<link name='tip'/>";
+  std::string joint =
+      "<joint name='turn' type='revolute'><parent link='base'/><child link='arm'/>"
+      "<axis xyz='0 0 1'/><limit lower='-1' upper='2' velocity='3' effort='4'/></joint>";
+  std::string fix =
+      "<joint name='fix' type='fixed'><parent link='arm'/><child link='tip'/></joint>";
+
+  // lines: 1 robot, 2 base, 3 arm, 4 tip, 5 joint, 6 fix
+  std::string all() const {
+    return "<robot name='r'>\n" + base + "\n" + arm + "\n" + tip + "\n" + joint + "\n" + fix +
+           "\n</robot>\n";
+  }
+};
+
+std::string message_of(const std::string& text) {
+  try {
+    Chain::from_urdf_text(text, "arm.urdf");
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string arm_with(const std::string& mass, const std::string& inertia) {
+  return "<link name='arm'><inertial><mass value='" + mass + "'/><inertia " + inertia +
+         "/></inertial></link>";
+}
+
+std::string joint_with(const std::string& type, const std::string& inside) {
+  return "<joint name='turn' type='" + type + "'><parent link='base'/><child link='arm'/>" +
+         inside + "</joint>";
+}
+
+TEST(Urdf, ASoundFileIsRead) {
+  const Chain chain = Chain::from_urdf_text(Text().all(), "arm.urdf");
+  EXPECT_EQ(chain.name(), "r");
+  ASSERT_EQ(chain.joints().size(), 1u);
+  const Joint& joint = chain.joints()[0];
+  EXPECT_EQ(joint.name, "turn");
+  EXPECT_EQ(joint.type, JointType::kRevolute);
+  EXPECT_EQ(joint.position.lb, -1.0);
+  EXPECT_EQ(joint.position.ub, 2.0);
+  EXPECT_EQ(joint.velocity_max, 3.0);
+  EXPECT_EQ(joint.effort_max, 4.0);
+  EXPECT_EQ(chain.frame_names(), (std::vector<std::string>{"base", "arm", "tip"}));
+}
+
+TEST(Urdf, LimitsThatAreNotGivenAreUnbounded) {
+  Text text;
+  text.joint = joint_with("continuous", "<limit lower='-1' upper='1' velocity='2'/>");
+  const Chain chain = Chain::from_urdf_text(text.all(), "arm.urdf");
+  const Joint& joint = chain.joints()[0];
+  EXPECT_EQ(joint.type, JointType::kContinuous);
+  EXPECT_FALSE(joint.position.bounded());
+  EXPECT_EQ(joint.velocity_max, 2.0);
+  EXPECT_EQ(joint.effort_max, kInfinity);
+  text.joint = joint_with("prismatic", "<limit lower='-1' upper='1'/>");
+  EXPECT_EQ(Chain::from_urdf_text(text.all(), "").joints()[0].velocity_max, kInfinity);
+}
+
+TEST(Urdf, RotationsAreRollPitchYawAboutFixedAxes) {
+  Text text;
+  text.fix =
+      "<joint name='fix' type='fixed'><parent link='arm'/><child link='tip'/>"
+      "<origin xyz='1 2 3' rpy='0.3 -0.5 0.8'/></joint>";
+  const Pose& pose = read_urdf_text(text.all(), "").joints[1].T_parent_joint;
+  const double cr = std::cos(0.3), sr = std::sin(0.3), cp = std::cos(-0.5), sp = std::sin(-0.5);
+  const double cy = std::cos(0.8), sy = std::sin(0.8);
+  Eigen::Matrix3d R;
+  R << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,  //
+      sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,   //
+      -sp, cp * sr, cp * cr;
+  EXPECT_LT((pose.R - R).norm(), 1e-15);
+  EXPECT_EQ(pose.p, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(Urdf, InertiaIsTurnedIntoTheAxesOfTheLink) {
+  Text text;
+  text.arm =
+      "<link name='arm'><inertial><origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/>"
+      "<mass value='2'/><inertia ixx='1' iyy='2' izz='2.5' ixy='0.1' ixz='0.2' iyz='0.3'/>"
+      "</inertial></link>";
+  const auto inertial = read_urdf_text(text.all(), "").links[1].inertial;
+  ASSERT_TRUE(inertial.has_value());
+  Eigen::Matrix3d expected;
+  expected << 2, -0.1, -0.3, -0.1, 1, 0.2, -0.3, 0.2, 2.5;
+  EXPECT_LT((inertial->inertia - expected).norm(), 1e-14);
+  EXPECT_EQ(inertial->p_com, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(inertial->mass, 2.0);
+}
+
+TEST(Urdf, AZeroInertialMarksAMereFrame) {
+  Text text;
+  text.tip =
+      "<link name='tip'><inertial><mass value='0'/>"
+      "<inertia ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'/></inertial></link>";
+  EXPECT_EQ(message_of(text.all()), "accepted");
+}
+
+TEST(Urdf, NumbersMayHaveSignsExponentsAndAnyBlanks) {
+  Text text;
+  text.joint =
+      joint_with("revolute", "<axis xyz=' +0\t0  1e0 '/><limit lower='-1' upper='+2.5e-1'/>");
+  EXPECT_EQ(read_urdf_text(text.all(), "").joints[0].position.ub, 0.25);
+}
+
+struct Fault {
+  const char* what;
+  Text text;
+  std::string message;
+};
+
+std::vector<Fault> faults_of_elements() {
+  std::vector<Fault> faults;
+  const auto add = [&](const char* what, auto breaks, const std::string& message) {
+    Text text;
+    breaks(text);
+    faults.push_back({what, text, message});
+  };
+  const std::string unit = "ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'";
+
+  add(
+      "word instead of number", [](Text& t) { t.arm = arm_with("heavy", ""); },
+      "arm.urdf:3: link arm: <inertia> needs the attribute 'ixy'");
+  add(
+      "mass is a word", [&](Text& t) { t.arm = arm_with("heavy", unit); },
+      "arm.urdf:3: link arm: value must be numbers, got 'heavy'");
+  add(
+      "mass is infinite", [&](Text& t) { t.arm = arm_with("inf", unit); },
+      "arm.urdf:3: link arm: value must be numbers, got 'inf'");
+  add(
+      "negative mass", [&](Text& t) { t.arm = arm_with("-1", unit); },
+      "arm.urdf:3: link arm: mass must be positive, got -1");
+  add(
+      "inertia not positive",
+      [](Text& t) { t.arm = arm_with("1", "ixx='1' iyy='1' izz='1' ixy='2' ixz='0' iyz='0'"); },
+      "arm.urdf:3: link arm: inertia must be positive definite, got principal moments -1, 1, 3");
+  add(
+      "inertia of no body",
+      [](Text& t) { t.arm = arm_with("1", "ixx='1' iyy='1' izz='3' ixy='0' ixz='0' iyz='0'"); },
+      "arm.urdf:3: link arm: inertia is of no body, the two smaller principal moments must add up "
+      "to the largest, got principal moments 1, 1, 3");
+  add(
+      "no mass element", [](Text& t) { t.arm = "<link name='arm'><inertial/></link>"; },
+      "arm.urdf:3: link arm: <inertial> needs an element <inertia>");
+  add(
+      "link without name", [](Text& t) { t.tip = "<link/>"; },
+      "arm.urdf:4: link: <link> needs the attribute 'name'");
+  add(
+      "two links of one name", [](Text& t) { t.tip = "<link name='base'/>"; },
+      "arm.urdf:4: link base: name is taken already in line 2");
+  add(
+      "two joints of one name",
+      [](Text& t) {
+        t.fix = "<joint name='turn' type='fixed'><parent link='arm'/><child link='tip'/></joint>";
+      },
+      "arm.urdf:6: joint turn: name is taken already in line 5");
+  add(
+      "unknown link",
+      [](Text& t) {
+        t.fix = "<joint name='fix' type='fixed'><parent link='amr'/><child link='tip'/></joint>";
+      },
+      "arm.urdf:6: joint fix: parent must be a link, got 'amr', nearest is 'arm'");
+  add(
+      "unknown type", [](Text& t) { t.joint = joint_with("revolut", ""); },
+      "arm.urdf:5: joint turn: type is unknown, got 'revolut', nearest is 'revolute'");
+  add(
+      "planar joint", [](Text& t) { t.joint = joint_with("planar", ""); },
+      "arm.urdf:5: joint turn: planar joints are not supported; use two prismatic and a "
+      "continuous joint");
+  add(
+      "limit missing", [](Text& t) { t.joint = joint_with("revolute", ""); },
+      "arm.urdf:5: joint turn: <joint> needs an element <limit>");
+  add(
+      "limit without upper",
+      [](Text& t) { t.joint = joint_with("revolute", "<limit lower='0'/>"); },
+      "arm.urdf:5: joint turn: <limit> needs the attribute 'upper'");
+  add(
+      "limits reversed",
+      [](Text& t) { t.joint = joint_with("revolute", "<limit lower='1' upper='-1.5'/>"); },
+      "arm.urdf:5: joint turn: limit lower must be below upper, got lower 1, upper -1.5");
+  add(
+      "velocity zero",
+      [](Text& t) {
+        t.joint = joint_with("revolute", "<limit lower='0' upper='1' velocity='0'/>");
+      },
+      "arm.urdf:5: joint turn: limit velocity must be positive (leave it out for no limit), got 0");
+  add(
+      "axis zero",
+      [](Text& t) {
+        t.joint = joint_with("revolute", "<axis xyz='0 0 0'/><limit lower='0' upper='1'/>");
+      },
+      "arm.urdf:5: joint turn: axis must have a direction, got '0 0 0'");
+  add(
+      "axis of two numbers",
+      [](Text& t) {
+        t.joint = joint_with("revolute", "<axis xyz='0 1'/><limit lower='0' upper='1'/>");
+      },
+      "arm.urdf:5: joint turn: xyz must be 3 numbers, got '0 1'");
+  add(
+      "mimic",
+      [](Text& t) {
+        t.joint = joint_with("revolute", "<limit lower='0' upper='1'/><mimic joint='fix'/>");
+      },
+      "arm.urdf:5: joint turn: mimic joints are not supported");
+  return faults;
+}
+
+std::vector<Fault> faults_of_shape() {
+  std::vector<Fault> faults;
+  const auto add = [&](const char* what, auto breaks, const std::string& message) {
+    Text text;
+    breaks(text);
+    faults.push_back({what, text, message});
+  };
+  add(
+      "massless moving link", [](Text& t) { t.arm = "<link name='arm'/>"; },
+      "arm.urdf:3: link arm: moves with joint turn but has no mass; give it an <inertial> or make "
+      "the joint fixed");
+  add(
+      "branch",
+      [](Text& t) {
+        t.tip = std::string("<link name='tip'>") + kInertial + "</link>";
+        t.fix =
+            "<joint name='other' type='continuous'><parent link='base'/><child "
+            "link='tip'/></joint>";
+      },
+      "arm.urdf:6: link base: branches into the joints turn and other, only serial chains are "
+      "supported");
+  add(
+      "two roots", [](Text& t) { t.fix = ""; },
+      "arm.urdf:4: link tip: is not connected to link base, a chain has one root");
+  add(
+      "two parents",
+      [](Text& t) {
+        t.fix = "<joint name='fix' type='fixed'><parent link='base'/><child link='arm'/></joint>";
+      },
+      "arm.urdf:6: joint fix: link arm is the child of joint turn already");
+  add(
+      "loop",
+      [](Text& t) {
+        t.fix = "<joint name='fix' type='fixed'><parent link='arm'/><child link='base'/></joint>";
+        t.tip = "";
+      },
+      "arm.urdf:5: robot: joints form a loop, a chain has a root and a tip");
+  add(
+      "loop beside the chain",
+      [](Text& t) {
+        t.tip = "<link name='tip'/><link name='p'/><link name='q'/>";
+        t.fix +=
+            "<joint name='pq' type='fixed'><parent link='p'/><child link='q'/></joint>"
+            "<joint name='qp' type='fixed'><parent link='q'/><child link='p'/></joint>";
+      },
+      "arm.urdf:5: robot: joints form a loop, a chain has a root and a tip");
+  add(
+      "nothing moves",
+      [](Text& t) {
+        t.joint =
+            "<joint name='turn' type='fixed'><parent link='base'/><child link='arm'/></joint>";
+      },
+      "arm.urdf: robot has no moving joint");
+  return faults;
+}
+
+TEST(Urdf, EveryFaultNamesItsLineItemAndRule) {
+  for (const Fault& fault : faults_of_elements()) {
+    EXPECT_EQ(message_of(fault.text.all()), fault.message) << fault.what;
+  }
+}
+
+TEST(Urdf, ChainsOfTheWrongShapeAreRefused) {
+  for (const Fault& fault : faults_of_shape()) {
+    EXPECT_EQ(message_of(fault.text.all()), fault.message) << fault.what;
+  }
+}
+
+TEST(Urdf, BrokenXmlNamesItsLine) {
+  EXPECT_EQ(message_of("<robot name='r'>\n<link name='a'>\n</robot>"),
+            "arm.urdf:2: is not valid XML: XML_ERROR_MISMATCHED_ELEMENT");
+  EXPECT_EQ(message_of(""), "arm.urdf:1: is not valid XML: XML_ERROR_EMPTY_DOCUMENT");
+  EXPECT_EQ(message_of("<!-- hm -->"), "arm.urdf:1: root element must be <robot>, got <>");
+  EXPECT_EQ(message_of("<mujoco/>"), "arm.urdf:1: root element must be <robot>, got <mujoco>");
+  EXPECT_EQ(message_of("<robot name='r'/>"), "arm.urdf:1: robot: has no links");
+}
+
+TEST(Urdf, AMissingFileIsNamed) {
+  try {
+    Chain::from_urdf_file("models/no_such.urdf");
+    FAIL();
+  } catch (const SetupError& error) {
+    EXPECT_STREQ(error.what(), "models/no_such.urdf: cannot be read as a URDF file, is it there?");
+  }
+}
+
+TEST(Urdf, MoreJointsThanTheCapacityAreRefused) {
+  std::ostringstream text;
+  text << "<robot name='snake'><link name='l0'/>";
+  for (int i = 1; i <= kMaxTwin + 1; ++i) {
+    text << "<link name='l" << i << "'>" << kInertial << "</link><joint name='j" << i
+         << "' type='continuous'><parent link='l" << i - 1 << "'/><child link='l" << i
+         << "'/></joint>";
+  }
+  text << "</robot>";
+  EXPECT_EQ(message_of(text.str()), "arm.urdf: a chain has at most 30 degrees of freedom, got 31");
+}
+
+TEST(ToText, IsShortAndReadsBack) {
+  EXPECT_EQ(to_text(0.1), "0.1");
+  EXPECT_EQ(to_text(-2.0), "-2");
+  EXPECT_EQ(std::stod(to_text(1.0 / 3.0)), 1.0 / 3.0);
+}
+
+}  // namespace
+}  // namespace hg::model
