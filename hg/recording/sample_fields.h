@@ -46,6 +46,8 @@ void fields(Archive& a, T& report) {
   a("cause", report.cause,
     "0 none, 1 position, 2 velocity, 3 acceleration, 4 lock, 5 latch, 6 friction");
   a("position", report.position, "of the limited quantity, rad or m");
+  a("to_lower", report.to_lower, "distance left to the limit as rendered");
+  a("to_upper", report.to_upper);
   a("excess", report.excess, "how far it is outside its range");
   a("slack", report.slack, "acceleration by which its row misses the bound");
   a("reaction", report.reaction, "constraint force N or torque Nm");

@@ -60,11 +60,20 @@ impl mcap_sink {
         let file = self.open.as_mut()?;
         match catch_unwind(AssertUnwindSafe(|| action(file))) {
             Ok(Ok(value)) => return Some(value),
-            Ok(Err(failure)) => self.fail(failure.to_string()),
+            Ok(Err(failure)) => self.fail(root_cause(&*failure)),
             Err(_) => self.fail("the MCAP library panicked".to_string()),
         }
         None
     }
+}
+
+/// The library says that a write failed; what is wrong with the disk stands below that.
+fn root_cause(failure: &(dyn std::error::Error + 'static)) -> String {
+    let mut cause = failure;
+    while let Some(below) = cause.source() {
+        cause = below;
+    }
+    cause.to_string()
 }
 
 unsafe fn text<'a>(pointer: *const c_char) -> Cow<'a, str> {
@@ -90,7 +99,7 @@ pub extern "C" fn mcap_sink_available() -> bool {
 pub unsafe extern "C" fn mcap_sink_open(path: *const c_char) -> *mut mcap_sink {
     let path = text(path);
     let mut sink = Box::new(mcap_sink { open: None, error: CString::default() });
-    match catch_unwind(|| mcap_sink::open(&path).map_err(|failure| failure.to_string())) {
+    match catch_unwind(|| mcap_sink::open(&path).map_err(|failure| root_cause(&*failure))) {
         Ok(Ok(file)) => sink.open = Some(file),
         Ok(Err(message)) => sink.fail(message),
         Err(_) => sink.fail("the MCAP library panicked".to_string()),
