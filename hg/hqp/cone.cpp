@@ -15,11 +15,11 @@ std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-Cone::Cone(int max_variables, int max_rows)
+Cone::Cone(int max_variables, int max_candidates)
     : rows_(at(max_variables)),
       mu_(max_variables),
       mu_new_(max_variables),
-      is_barred_(at(max_rows)),
+      is_barred_(at(max_candidates)),
       candidate_(at(max_variables)),
       descent_(max_variables),
       rest_(max_variables) {}

@@ -24,7 +24,7 @@ struct TouchedRow {
 
 class Cone {
  public:
-  Cone(int max_variables, int max_rows);
+  Cone(int max_variables, int max_candidates);
 
   /// Runs on `candidates`, of which earlier ones are preferred among equals. Leaves the pushing
   /// rows as pivots of `elimination`, after those it had. `g_scale`: size of the terms that make up

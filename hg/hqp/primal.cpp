@@ -6,12 +6,15 @@
 namespace hg::hqp {
 namespace {
 
-constexpr double kPushes = 1e-8;     // share of the gradient from which a row surely pushes
-constexpr double kParallel = 1e-12;  // cosine below which a direction does not change a row
+constexpr double kWrongSign = 1e-12;  // share of the gradient that a pulling row may have: rounding
+constexpr double kPushes = 1e-8;      // share of the gradient from which a row surely pushes
+constexpr double kParallel = 1e-12;   // cosine below which a direction does not change a row
+constexpr int kExchangesPerRow = 3;   // rows released in a corner, per row that meets there
 
 // Sides of a row that do not stop a step, as bits.
 constexpr std::uint8_t kUpperSide = 1;
 constexpr std::uint8_t kLowerSide = 2;
+constexpr std::uint8_t kBothSides = kUpperSide | kLowerSide;
 
 std::uint8_t side_of(const TouchedRow& t) noexcept {
   return t.sign > 0.0 ? kUpperSide : kLowerSide;
@@ -31,6 +34,8 @@ class LevelByLevel {
   PrimalOutcome run(int& completed) noexcept;
 
  private:
+  enum class Aim { kAhead, kOptimal, kIterationLimit };
+
   PrimalOutcome optimise(int level) noexcept;
   void fix(int level) noexcept;
   void release_untouched() noexcept;
@@ -38,7 +43,10 @@ class LevelByLevel {
   void collect_pulling(int level) noexcept;
   bool collect_broken(int level) noexcept;
   bool aim(int level) noexcept;
-  bool aim_past_obstacles(int level) noexcept;
+  void hold_rows(int level) noexcept;
+  int find_pulling_row(bool take_first) noexcept;
+  int touched_obstacle(int level) const noexcept;
+  Aim aim_past_obstacles(int level) noexcept;
   void find_slopes(int level) noexcept;
   bool gains(int level, double length) const noexcept;
   double way_to_obstacle(int level, int& obstacle) const noexcept;
@@ -55,8 +63,8 @@ class LevelByLevel {
   int& iterations_;
   Workspace& work_;
   LevelGradient size_ = {};
-  int base_ = 0;                     ///< pivots of the levels above
-  bool is_settled_by_cone_ = false;  ///< the last level was held back by the rows of work_.cone
+  int base_ = 0;               ///< pivots of the levels above
+  bool is_held_back_ = false;  ///< the last level was settled by the rows of work_.held
 };
 
 PrimalOutcome LevelByLevel::run(int& completed) noexcept {
@@ -216,33 +224,87 @@ double LevelByLevel::best_length(int level, double longest) const noexcept {
   return length;
 }
 
-// A direction along which the objective falls and x can move at once; false at the optimum.
-bool LevelByLevel::aim_past_obstacles(int level) noexcept {
+// Makes the rows of held_ the pivots above those of the levels above.
+void LevelByLevel::hold_rows(int level) noexcept {
   Elimination& elimination = work_.elimination;
+  elimination.truncate(base_);
   std::fill_n(work_.skipped_sides.begin(), end_of_levels_above(level), std::uint8_t{0});
-  for (int i = 0; i < work_.cone.pushing(); ++i) {
-    work_.skipped_sides[at(work_.cone.row(i).row)] = kUpperSide | kLowerSide;
+  for (const TouchedRow& t : work_.held) {
+    elimination.add_row(problem_, t.row, options_.rank_tolerance);
+    work_.skipped_sides[at(t.row)] = kBothSides;
   }
-  if (!aim(level)) return false;
+}
 
-  while (true) {
-    int obstacle = -1;
-    way_to_obstacle(level, obstacle);
-    const bool is_touched =
-        obstacle >= 0 && std::any_of(work_.touched.begin(), work_.touched.end(),
-                                     [&](const TouchedRow& t) { return t.row == obstacle; });
-    if (!is_touched) return true;
-    work_.skipped_sides[at(obstacle)] = kUpperSide | kLowerSide;
-    elimination.add_row(problem_, obstacle, options_.rank_tolerance);
-    if (!aim(level)) break;
+// Multipliers of the held rows, into work_.mu; returns the one to release, -1 when all push.
+int LevelByLevel::find_pulling_row(bool take_first) noexcept {
+  const Elimination& elimination = work_.elimination;
+  work_.direction.head(n_) = work_.gradient.head(n_);
+  int released = -1;
+  double largest_pull = kWrongSign * size_.scale + size_.rounding;
+  for (int i = static_cast<int>(work_.held.size()) - 1; i >= 0; --i) {
+    const auto [row, sign] = work_.held[at(i)];
+    const int t = base_ + i;
+    const double mu =
+        -VectorView(elimination.column(t), n_).dot(work_.direction.head(n_)) / elimination.pivot(t);
+    add_multiple(problem_, row, mu, work_.direction.data());
+    work_.mu[i] = sign * mu;
+    const double pull = -sign * mu * problem_.norm(row);
+    if (pull <= kWrongSign * size_.scale + size_.rounding) continue;
+    const bool is_better =
+        take_first ? released < 0 || row < work_.held[at(released)].row : pull > largest_pull;
+    if (!is_better) continue;
+    largest_pull = pull;
+    released = i;
+  }
+  return released;
+}
+
+// Index in work_.touched of the row that bars the direction here and now, -1: none.
+int LevelByLevel::touched_obstacle(int level) const noexcept {
+  int obstacle = -1;
+  way_to_obstacle(level, obstacle);
+  if (obstacle < 0) return -1;
+  const double side = work_.slope[at(obstacle)] > 0.0 ? 1.0 : -1.0;
+  const auto found =
+      std::find_if(work_.touched.begin(), work_.touched.end(),
+                   [&](const TouchedRow& t) { return t.row == obstacle && t.sign == side; });
+  return found == work_.touched.end() ? -1 : static_cast<int>(found - work_.touched.begin());
+}
+
+// A direction along which the objective falls and x can move at once. In a corner, rows are held
+// and released until there is one, or all held rows push: x is optimal.
+LevelByLevel::Aim LevelByLevel::aim_past_obstacles(int level) noexcept {
+  work_.held.clear();
+  for (int i = 0; i < work_.cone.pushing(); ++i) work_.held.push_back(work_.cone.row(i));
+  hold_rows(level);
+
+  const int corner_size = static_cast<int>(work_.touched.size());
+  for (int exchange = 0; exchange <= kExchangesPerRow * corner_size; ++exchange) {
+    bool has_gain = aim(level);
+    for (int obstacle = touched_obstacle(level); has_gain && obstacle >= 0;
+         obstacle = touched_obstacle(level)) {
+      const TouchedRow t = work_.touched[at(obstacle)];
+      work_.skipped_sides[at(t.row)] = kBothSides;
+      if (!work_.elimination.add_row(problem_, t.row, options_.rank_tolerance)) continue;
+      work_.held.push_back(t);
+      has_gain = aim(level);
+    }
+    if (has_gain) return Aim::kAhead;
+
+    const int released = find_pulling_row(exchange > corner_size);
+    if (released < 0) return Aim::kOptimal;
+    if (iterations_ >= options_.max_iterations) return Aim::kIterationLimit;
+    ++iterations_;
+    work_.held.erase(work_.held.begin() + released);
+    hold_rows(level);
   }
 
-  // every better point of this face is barred: the steepest feasible descent leads off it
-  work_.direction.head(n_) = work_.cone.descent().head(n_);
+  // a cycle: the steepest feasible descent leads out of the corner
   std::fill_n(work_.skipped_sides.begin(), end_of_levels_above(level), std::uint8_t{0});
   for (const TouchedRow& t : work_.touched) work_.skipped_sides[at(t.row)] |= side_of(t);
+  work_.direction.head(n_) = work_.cone.descent().head(n_);
   find_slopes(level);
-  return gains(level, best_length(level, kInfinity));
+  return gains(level, best_length(level, kInfinity)) ? Aim::kAhead : Aim::kOptimal;
 }
 
 PrimalOutcome LevelByLevel::optimise(int level) noexcept {
@@ -256,8 +318,8 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
     elimination.truncate(base_);
 
     size_ = level_gradient(problem_, options_, level, work_);
-    is_settled_by_cone_ = !size_.is_zero && elimination.freedom() > 0;
-    if (!is_settled_by_cone_) return PrimalOutcome::kOptimal;
+    is_held_back_ = !size_.is_zero && elimination.freedom() > 0;
+    if (!is_held_back_) return PrimalOutcome::kOptimal;
     if (!is_norm_level(level)) collect_pulling(level);
     work_.touched.clear();
     for (int above = 0; above < level; ++above) collect_touched(problem_, options_, above, work_);
@@ -265,7 +327,9 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
                   [this](const TouchedRow& t) { return work_.is_fixed[at(t.row)] != 0; });
     work_.cone.solve(problem_, work_.touched, work_.gradient.data(), size_.scale,
                      options_.rank_tolerance, elimination);
-    if (!aim_past_obstacles(level)) return PrimalOutcome::kOptimal;
+    const Aim outcome = aim_past_obstacles(level);
+    if (outcome == Aim::kOptimal) return PrimalOutcome::kOptimal;
+    if (outcome == Aim::kIterationLimit) return PrimalOutcome::kIterationLimit;
 
     int obstacle = -1;
     const double longest = way_to_obstacle(level, obstacle);
@@ -297,11 +361,11 @@ void LevelByLevel::fix(int level) noexcept {
     work_.is_fixed[at(t.row)] = true;
     work_.point.state[at(t.row)] = state_of_fixed(t.row);
   }
-  if (!is_settled_by_cone_) return;
+  if (!is_held_back_) return;
   double largest_push = 0.0;
-  for (int i = 0; i < work_.cone.pushing(); ++i) {
-    const auto [row, sign] = work_.cone.row(i);
-    const double push = work_.cone.mu(i) * problem_.norm(row);
+  for (int i = 0; i < static_cast<int>(work_.held.size()); ++i) {
+    const auto [row, sign] = work_.held[at(i)];
+    const double push = work_.mu[i] * problem_.norm(row);
     work_.point.state[at(row)] = sign > 0.0 ? RowState::kUpper : RowState::kLower;
     if (push > largest_push) {
       largest_push = push;

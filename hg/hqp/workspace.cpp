@@ -17,12 +17,13 @@ Point::Point(const Capacity& c)
 
 Workspace::Workspace(const Capacity& c)
     : elimination(c.variables, c.rows),
-      cone(c.variables, c.rows),
+      cone(c.variables, 2 * c.rows),
       point(c),
       saved(c),
       value(at(c.rows)),
       is_held(at(c.variables)),
       is_frozen(at(c.variables)),
+      mu(c.variables),
       slope(at(c.rows)),
       is_fixed(at(c.rows)),
       is_pulling(at(c.rows)),
@@ -30,7 +31,8 @@ Workspace::Workspace(const Capacity& c)
       gradient(c.variables),
       direction(c.variables) {
   targets.reserve(at(c.rows));
-  touched.reserve(at(c.rows));
+  touched.reserve(2 * at(c.rows));
+  held.reserve(at(c.variables));
 }
 
 double tolerance(const Problem& problem, const Options& options, const Workspace& work, int row,

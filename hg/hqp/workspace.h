@@ -41,7 +41,9 @@ struct Workspace {
 
   std::vector<TargetRow> targets;
   std::vector<TouchedRow> touched;
-  std::vector<double> slope;                ///< c d by row, d the search direction
+  std::vector<TouchedRow> held;  ///< pivots of the level-by-level method, after the fixed ones
+  Eigen::VectorXd mu;            ///< their multipliers
+  std::vector<double> slope;     ///< c d by row, d the search direction
   std::vector<std::uint8_t> is_fixed;       ///< by row: eliminated for good
   std::vector<std::uint8_t> is_pulling;     ///< by row: among the targets
   std::vector<std::uint8_t> skipped_sides;  ///< by row: sides that are no obstacle to a step
