@@ -28,6 +28,13 @@ double speed_on_line(double d, double v, double tau, double dt) noexcept {
   return (d - 0.5 * dt * v) / (tau + 0.5 * dt);
 }
 
+// The speed v+ from which ddq_max just stops the joint, v+^2 = 2 ddq_max d+; [DP18] alg. 2.
+double speed_on_root(double d, double v, double ddq_max, double dt) noexcept {
+  const double half_step = 0.5 * ddq_max * dt;
+  const double sum_squared = half_step * half_step + ddq_max * (2.0 * d - dt * v);
+  return std::sqrt(std::max(sum_squared, 0.0)) - half_step;  // below 0 by rounding only
+}
+
 // The speed v+ = w(d+) of bounds R.
 double recoverable_speed(double d, double v, double ddq_max, const RecoverableOptions& options,
                          double dt) noexcept {
@@ -36,11 +43,7 @@ double recoverable_speed(double d, double v, double ddq_max, const RecoverableOp
   // line and root touch at v+ = A tau, the line is above: it decides on which of them v+ lies
   const double v_line = speed_on_line(d, v, options.tau, dt);
   if (v_line <= ddq_max * options.tau) return v_line;
-
-  // v+^2 = A (2 d+ - A tau^2); d+ is linear in v+
-  const double half_step = 0.5 * ddq_max * dt;
-  const double v_squared = ddq_max * (2.0 * d - dt * v - ddq_max * options.tau * options.tau);
-  return std::sqrt(half_step * half_step + v_squared) - half_step;
+  return speed_on_root(d - 0.5 * ddq_max * options.tau * options.tau, v, ddq_max, dt);
 }
 
 double recoverable_max(double d, double v, const JointLimits& limits,
@@ -61,20 +64,14 @@ double max_from_position(double d, double v, double dt) noexcept {
   const double ddq_stop = -v / dt;                          // stands still at the sample's end
 
   if (v <= 0.0 || ddq_touch > ddq_stop) return ddq_touch;
-  return std::min(-v * v / (2.0 * d), ddq_stop);  // turns back inside the sample
+  return -v * v / (2.0 * d);  // turns back inside the sample
 }
 
 // [DP18] alg. 2: after the sample, braking with ddq_max still stops the joint before the limit.
+// Where v+ < 0 the bound from position is the lower one and [DP18]'s case distinction superfluous.
 double max_from_viability(double d, double v, double ddq_max, double dt) noexcept {
   if (ddq_max == kInfinity) return kInfinity;
-  const double a = dt * dt;
-  const double b = dt * (2.0 * v + ddq_max * dt);
-  const double c = v * v - 2.0 * ddq_max * (d - v * dt);
-  const double delta = b * b - 4.0 * a * c;
-  const double ddq_stop = -v / dt;
-
-  if (delta < 0.0) return ddq_stop;
-  return std::max((-b + std::sqrt(delta)) / (2.0 * a), ddq_stop);
+  return (speed_on_root(d, v, ddq_max, dt) - v) / dt;
 }
 
 // A state as bounds A and B see it: inside the limits and viable.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ Joint random_viable(Random& random, const JointLimits& limits) {
 }
 
 Joint random_state(Random& random, const JointLimits& limits) {
-  return {uniform(random, limits.q_min - 0.3, limits.q_max + 0.3),
+  const double margin = log_uniform(random, 1e-6, 0.3);
+  return {uniform(random, limits.q_min - margin, limits.q_max + margin),
           uniform(random, -1.5, 1.5) * limits.dq_max};
 }
 
@@ -110,7 +112,8 @@ TEST(PaperBounds, MirroringTheJointMirrorsTheBounds) {
   for (int seed = 0; seed < 5000; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(static_cast<std::uint64_t>(seed));
-    const JointLimits limits = random_limits(random);
+    JointLimits limits = random_limits(random);
+    if (seed % 3 == 0) limits.q_min = limits.q_max - log_uniform(random, 1e-8, 1e-3);
     const JointLimits mirrored = {-limits.q_max, -limits.q_min, limits.dq_max, limits.ddq_max};
     const auto [q, dq] = random_state(random, limits);
     for (const PaperBounds bounds : kAll) {
@@ -184,8 +187,10 @@ TEST(PaperBounds, InfiniteLimitsLocksAndTinyRangesGiveNoNanAndNoEmptyInterval) {
       for (const double q : {-2.0, -1.0, 0.0, 0.5 - 0.5e-9, 0.5 - 1e-12, 0.5, 0.5001, 2.0}) {
         for (const double dq : {-3.0, -1e-3, 0.0, 1e-3, 3.0}) {
           for (const PaperBounds bounds : kNeverEmpty) {
+            std::feclearexcept(FE_ALL_EXCEPT);
             const Interval ddq = bounds(limits, q, dq, kDt);
             ASSERT_LE(ddq.lb, ddq.ub) << width << ", " << mask << ", " << q << ", " << dq;
+            ASSERT_FALSE(std::fetestexcept(FE_INVALID));  // no NaN on the way either
           }
         }
       }
@@ -199,6 +204,37 @@ TEST(PaperBounds, ALockAtRestStaysAtRest) {
     const Interval ddq = bounds(lock, 0.3, 0.0, kDt);
     EXPECT_EQ(ddq.lb, 0.0);
     EXPECT_EQ(ddq.ub, 0.0);
+  }
+}
+
+TEST(BoundsA, AtALimitEvenUnlimitedAccelerationAllowsNoSpeedTowardsIt) {
+  const JointLimits limits = {.q_max = 0.5, .dq_max = 2.0};
+  EXPECT_EQ(bounds_A(limits, 0.5, 1.0, kDt).ub, 0.0);
+}
+
+TEST(PaperBounds, PositionIsStrongerThanSpeed) {
+  // braking stops the joint in less than one sample: it comes back faster than dq_max
+  const JointLimits strong = {.q_max = 0.0, .dq_max = 0.3, .ddq_max = 1000.0};
+  const double q = -0.3 * 0.3 / 2000.0;
+  for (const PaperBounds bounds : kNeverEmpty) {
+    const Interval ddq = bounds(strong, q, 0.3, kDt);
+    EXPECT_NEAR(ddq.lb, -1000.0, 1e-9);
+    EXPECT_NEAR(ddq.ub, -1000.0, 1e-9);
+  }
+}
+
+TEST(BoundsB, WhereBrakingTakesHalfASampleRoundingGivesNoNan) {
+  for (int seed = 0; seed < 5000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(static_cast<std::uint64_t>(seed));
+    const double A = log_uniform(random, 2.0, 200.0);
+    const double dq = 0.5 * A * kDt;  // the two solutions of alg. 2 are one
+    const double d = dq * dq / (2.0 * A);
+    std::feclearexcept(FE_ALL_EXCEPT);
+    const Interval ddq = bounds_B({.q_max = 0.0, .dq_max = 2.0, .ddq_max = A}, -d, dq, kDt);
+    ASSERT_FALSE(std::fetestexcept(FE_INVALID));
+    ASSERT_NEAR(ddq.ub, -A, kAccelerationRounding * A);
+    ASSERT_NEAR(ddq.lb, -A, kAccelerationRounding * A);
   }
 }
 

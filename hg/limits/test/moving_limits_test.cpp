@@ -105,7 +105,7 @@ double largest_overrun(const JointLimits& limits, const RecoverableOptions& o, d
 TEST(MovingLimits, ALimitThatClosesInOverrunsTheJointNoFurtherThanStated) {
   constexpr double kTravel = 0.3;  // rad
   double closest = 0.0;            // largest overrun as a share of the stated one
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < 800; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(static_cast<std::uint64_t>(seed));
     JointLimits limits = random_limits(random);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -244,7 +245,9 @@ TEST(RecoverableBounds, InfiniteLimitsInAnyCombinationGiveNoNan) {
     check(options, limits, kDt, kItem);
     for (const double q : {-2.0, -1.0, 0.0, 0.499, 0.5, 0.5001, 2.0}) {
       for (const double dq : {-3.0, -1e-3, 0.0, 1e-3, 3.0}) {
+        std::feclearexcept(FE_ALL_EXCEPT);
         const Interval ddq = recoverable_bounds(limits, options, q, dq, kDt);
+        ASSERT_FALSE(std::fetestexcept(FE_INVALID)) << mask << ", " << q << ", " << dq;
         ASSERT_LE(ddq.lb, ddq.ub) << mask << ", " << q << ", " << dq;  // false for NaN
         ASSERT_LT(ddq.lb, kInfinity);
         ASSERT_GT(ddq.ub, -kInfinity);
