@@ -460,8 +460,8 @@ std::string ViewerServer::url() const {
 void ViewerServer::publish(const Sample& sample, std::string_view status_text) {
   const Clock::time_point now = Clock::now();
   if (now < impl_->due) return;
-  impl_->due += impl_->period;
-  if (impl_->due + impl_->period < now) impl_->due = now;
+  // half a period of slack, so that a caller at just this rate loses nothing by jitter
+  impl_->due = std::max(impl_->due + impl_->period, now + impl_->period / 2);
 
   auto frame = std::make_unique<Impl::NewestFrame>(
       Impl::NewestFrame{sample.record, sample.operator_input.hand_target, sample.cycle_time_us,

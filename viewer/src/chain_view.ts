@@ -7,7 +7,6 @@ import {
   Color,
   Group,
   Mesh,
-  MeshPhongMaterial,
   MeshStandardMaterial,
   Quaternion,
   Vector3,
@@ -31,6 +30,7 @@ export class ChainView {
   constructor(
     private readonly chain: SceneChain,
     urdf: string,
+    opacity: number,
   ) {
     this.robot = urdf === "" ? null : new URDFLoader().parse(urdf);
     const [x, y, z, w] = chain.quaternion_B_root as [number, number, number, number];
@@ -42,7 +42,7 @@ export class ChainView {
       if (!(part instanceof Mesh)) return;
       part.castShadow = true;
       part.receiveShadow = true;
-      part.material = matt(part.material as Material);
+      part.material = matt(part.material as Material, opacity);
     });
     for (const joint of Object.values(this.robot?.joints ?? {})) joint.ignoreLimits = true;
   }
@@ -81,11 +81,12 @@ export class ChainView {
   }
 }
 
-export async function load_chain(chain: SceneChain): Promise<ChainView> {
-  if (chain.urdf === "") return new ChainView(chain, "");
+// Below opacity 1 the chain is drawn so that solid things behind it stay visible.
+export async function load_chain(chain: SceneChain, opacity: number): Promise<ChainView> {
+  if (chain.urdf === "") return new ChainView(chain, "", opacity);
   const response = await fetch(chain.urdf);
   if (!response.ok) throw new Error(`${chain.urdf}: ${response.statusText}`);
-  return new ChainView(chain, await response.text());
+  return new ChainView(chain, await response.text(), opacity);
 }
 
 function plain_body(): Group {
@@ -95,14 +96,13 @@ function plain_body(): Group {
   return body;
 }
 
-function matt(material: Material): Material {
-  if (!(material instanceof MeshPhongMaterial)) return material;
+function matt(material: Material, opacity: number): Material {
+  const color = "color" in material ? (material.color as Color) : new Color(current_theme().link);
   return new MeshStandardMaterial({
-    color: material.color,
+    color,
     roughness: 0.62,
     metalness: 0.05,
-    opacity: material.opacity,
-    transparent: material.opacity < 1,
-    depthWrite: material.opacity === 1,
+    opacity: opacity * material.opacity,
+    transparent: opacity * material.opacity < 1,
   });
 }

@@ -10,6 +10,8 @@ import { Panel, element, show_connection } from "./panel";
 import { Stage } from "./stage";
 import { is_complete } from "./text";
 
+const TWIN_OPACITY = 0.8; // it is not there: the device shines through
+
 // What tests and the console may look at.
 export interface PageState {
   readonly scene: Scene;
@@ -34,7 +36,8 @@ async function load_scene(): Promise<Scene> {
 
 async function start(): Promise<void> {
   const scene = await load_scene();
-  const [device, twin] = await Promise.all([load_chain(scene.device), load_chain(scene.twin)]);
+  const device = await load_chain(scene.device, 1);
+  const twin = await load_chain(scene.twin, TWIN_OPACITY);
   const stage = new Stage(element("stage"));
   const panel = new Panel(scene);
   const handle_view = new HandleView();
@@ -43,7 +46,11 @@ async function start(): Promise<void> {
 
   let newest: Frame | null = null;
   const connection = new Connection({
-    on_frame: (frame) => (newest = is_complete(frame) ? frame : newest),
+    on_frame: (frame) => {
+      if (!is_complete(frame)) return;
+      if (!newest) stage.look_at(frame.p_B_H_m);
+      newest = frame;
+    },
     on_event: (event) => panel.add_event(event),
     on_state: (is_connected) => {
       show_connection(is_connected);

@@ -100,6 +100,7 @@ export class Panel {
 export function show_connection(is_connected: boolean): void {
   const line = element("connection");
   line.dataset.state = is_connected ? "open" : "lost";
+  document.body.dataset.connected = String(is_connected);
   line.textContent = is_connected
     ? "connected"
     : "connection lost, trying again; if the program was restarted, open its new link";

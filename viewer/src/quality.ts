@@ -2,11 +2,12 @@
 // shadows, then fewer pixels still. Never goes back up, so that nothing flickers.
 
 const SLOW_MS = 45; // slower than 22 pictures per second
-const PATIENCE = 20; // pictures in a row
+const PATIENCE_MS = 700;
+const PAUSE_MS = 1500; // a hidden tab is not a slow one
 
 export class Quality {
   private level = 0;
-  private slow_in_row = 0;
+  private slow_ms = 0; // how long it has been slow
   private last_ms: number | null = null;
 
   get has_shadows(): boolean {
@@ -15,18 +16,18 @@ export class Quality {
 
   pixel_ratio(of_screen: number): number {
     if (this.level === 0) return Math.min(2, of_screen);
-    return this.level < 3 ? 1 : 0.66;
+    return this.level < 3 ? 1 : 0.6;
   }
 
   // Notes the time of a picture; true when the quality has changed.
   observe(now_ms: number): boolean {
     const elapsed_ms = this.last_ms === null ? 0 : now_ms - this.last_ms;
     this.last_ms = now_ms;
-    const is_pause = elapsed_ms > 1000; // a hidden tab is not a slow one
-    this.slow_in_row = elapsed_ms > SLOW_MS && !is_pause ? this.slow_in_row + 1 : 0;
-    if (this.slow_in_row < PATIENCE || this.level === 3) return false;
+    const is_slow = elapsed_ms > SLOW_MS && elapsed_ms < PAUSE_MS;
+    this.slow_ms = is_slow ? this.slow_ms + elapsed_ms : 0;
+    if (this.slow_ms < PATIENCE_MS || this.level === 3) return false;
     this.level += 1;
-    this.slow_in_row = 0;
+    this.slow_ms = 0;
     return true;
   }
 }

@@ -14,7 +14,9 @@ const BAR_RADIUS = 0.03; // m
 const JOINT_RADIUS = 0.045; // m
 
 export function has_shapes(robot: URDFRobot): boolean {
-  return Object.keys(robot.visual).length > 0;
+  let found = false;
+  robot.traverse((part) => (found ||= "isURDFVisual" in part));
+  return found;
 }
 
 export function add_skeleton(robot: URDFRobot, color: number): void {

@@ -26,6 +26,14 @@ import { Quality } from "./quality";
 import { current_theme, on_theme_change } from "./theme";
 
 const FLOOR_Z = -2.15; // the root joint of the arm hangs 2.15 m above the floor
+const NARROW_PX = 760; // as in style.css
+const EYE_Z = 0.5; // m; just under the rails of the gantry
+const EYE_TARGET_Z = -0.75; // m
+
+// Pixels that the panel takes away at the right or, on a narrow screen, at the bottom.
+function hidden_by_panel(width: number, height: number): { x: number; y: number } {
+  return width > NARROW_PX ? { x: 288, y: 0 } : { x: 0, y: 0.45 * height };
+}
 
 export class Stage {
   readonly scene = new Scene();
@@ -81,8 +89,7 @@ export class Stage {
     requestAnimationFrame(draw);
   }
 
-  // Looks from outside a corner of the box, at the height of a tall person on a step, towards the
-  // handle.
+  // Looks into the cell through its open side, beside a corner, like a tall person.
   frame(box: SceneBox): void {
     const low = new Vector3(...box.min_m);
     const high = new Vector3(...box.max_m);
@@ -92,10 +99,16 @@ export class Stage {
 
     const size = new Vector3().subVectors(high, low);
     const center = new Vector3().addVectors(low, high).multiplyScalar(0.5);
-    const reach = Math.max(2, 0.5 * Math.hypot(size.x, size.y));
-    this.controls.target.set(center.x, center.y, -1);
-    this.camera.position.set(center.x + 1.25 * reach, center.y - 1.75 * reach, 0.55 * reach);
+    const away = Math.max(2, 0.7 * size.y);
+    this.controls.target.set(center.x, center.y, EYE_TARGET_Z);
+    this.camera.position.set(center.x + 0.36 * size.x, low.y - away, EYE_Z);
     this.controls.update();
+  }
+
+  // Turns the camera half way to what matters at first.
+  look_at(p_B: Vec3): void {
+    const middle = new Vector3(...p_B).lerp(this.controls.target, 0.5);
+    this.controls.target.set(middle.x, middle.y, EYE_TARGET_Z);
   }
 
   on_screen(p_B: Vec3): { x: number; y: number } {
@@ -108,10 +121,11 @@ export class Stage {
   }
 
   private add_sun(): void {
-    this.sun.position.set(2.5, -3.5, 6);
+    this.sun.position.set(1.8, -2.6, 7);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.radius = 5;
+    this.sun.shadow.radius = 6;
+    this.sun.shadow.intensity = 0.45;
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.02;
     const view = this.sun.shadow.camera;
@@ -143,7 +157,9 @@ export class Stage {
     this.renderer.setPixelRatio(this.quality.pixel_ratio(devicePixelRatio));
     this.renderer.setSize(width, height);
     this.camera.aspect = width / Math.max(1, height);
-    this.camera.updateProjectionMatrix();
+    this.camera.fov = width > NARROW_PX ? 38 : 58;
+    const hidden = hidden_by_panel(width, height);
+    this.camera.setViewOffset(width, height, 0.5 * hidden.x, 0.5 * hidden.y, width, height);
     this.sun.castShadow = this.quality.has_shadows;
   }
 }

@@ -37,7 +37,8 @@ export function is_complete(frame: Frame): boolean {
 }
 
 export function hint_text(has_lever: boolean, is_touch: boolean): string {
+  const grab = has_lever ? "Drag the ringed handle to push the door" : "Drag the ringed handle";
   const lift = is_touch ? "up / down lifts it" : "with Shift it goes up and down";
-  const lever = has_lever ? " Press the lever (Space) to unlatch the door." : "";
-  return `Drag the ringed handle; ${lift}.${lever} Drag anywhere else to look around.`;
+  const press = is_touch ? "press pushes the lever down" : "Space presses the lever";
+  return `${grab}; ${lift}${has_lever ? `; ${press}` : ""}. Drag elsewhere to look around.`;
 }

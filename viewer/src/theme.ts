@@ -19,8 +19,8 @@ export const TARGET_COLOR = 0x2f7bf6;
 const LIGHT: Theme = {
   background: 0xeef1f4,
   floor: 0xe4e8ec,
-  grid: 0xd2d8de,
-  grid_strong: 0xbcc5ce,
+  grid: 0xc6ced6,
+  grid_strong: 0xaab5c0,
   box: 0x7b8a99,
   link: 0x8795a3,
   sky_light: 0xffffff,
@@ -31,15 +31,15 @@ const LIGHT: Theme = {
 
 const DARK: Theme = {
   background: 0x14191f,
-  floor: 0x1b2128,
-  grid: 0x2a323b,
-  grid_strong: 0x3a4550,
+  floor: 0x3d444c,
+  grid: 0x2b333c,
+  grid_strong: 0x4a5661,
   box: 0x66788a,
   link: 0x8795a3,
-  sky_light: 0xcfe0f2,
-  ground_light: 0x20262d,
-  ambient: 1.1,
-  sun: 1.9,
+  sky_light: 0xe3e8ee,
+  ground_light: 0x4a525b,
+  ambient: 1.5,
+  sun: 2.0,
 };
 
 const query = matchMedia("(prefers-color-scheme: dark)");

@@ -59,12 +59,13 @@ try {
   expect(Math.abs(hinge) < 0.05, `the door is closed at first: ${hinge} rad`);
 
   const angles = Array.from({ length: 25 }, (_, i) => 0.05 * (i + 1));
+  let widest = 0;
   await drag_along(page, arc(handle, twin.p_B_root_m, angles), async () => {
+    widest = await page.evaluate(() => window.hapticgiant.frame.q_twin[0]);
     mkdirSync(resolve(here, "output"), { recursive: true });
     const file = process.env.SCREENSHOT ?? resolve(here, "output/drag_opens_door.png");
     await page.screenshot({ path: file });
   });
-  const widest = await page.evaluate(() => window.hapticgiant.frame.q_twin[0]);
   expect(widest > SMALLEST_OPENING, `dragging has opened the door to ${widest} rad`);
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
 } catch (error) {

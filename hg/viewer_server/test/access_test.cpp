@@ -1,0 +1,77 @@
+#include "hg/viewer_server/access.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <set>
+
+#include "hg/core/error.h"
+
+namespace hg::viewer_server {
+namespace {
+
+TEST(RandomToken, HasThirtyTwoHexadecimalDigitsAndNeverRepeats) {
+  std::set<std::string> tokens;
+  for (int i = 0; i < 100; ++i) {
+    const std::string token = random_token();
+    EXPECT_EQ(token.size(), 32u);
+    EXPECT_EQ(token.find_first_not_of("0123456789abcdef"), std::string::npos);
+    tokens.insert(token);
+  }
+  EXPECT_EQ(tokens.size(), 100u);
+}
+
+TEST(IsSameSecret, AgreesWithEquality) {
+  rc::check([](const std::string& a, const std::string& b) {
+    RC_ASSERT(is_same_secret(a, a));
+    RC_ASSERT(is_same_secret(a, b) == (a == b));
+  });
+  EXPECT_FALSE(is_same_secret("abc", "abd"));
+  EXPECT_FALSE(is_same_secret("abc", "ab"));
+}
+
+TEST(IsOwnHost, AcceptsThisMachineWithThisPortOnly) {
+  EXPECT_TRUE(is_own_host("127.0.0.1:8080", 8080));
+  EXPECT_TRUE(is_own_host("localhost:8080", 8080));
+  for (const char* host : {"", "127.0.0.1", "127.0.0.1:8081", "evil.example:8080",
+                           "localhost:8080.evil.example", "localhost.evil.example:8080"}) {
+    EXPECT_FALSE(is_own_host(host, 8080)) << host;
+  }
+}
+
+TEST(IsOwnOrigin, AcceptsPlainHttpOfThisServerOnly) {
+  EXPECT_TRUE(is_own_origin("http://127.0.0.1:8080", 8080));
+  EXPECT_TRUE(is_own_origin("http://localhost:8080", 8080));
+  for (const char* origin : {"", "null", "https://127.0.0.1:8080", "http://evil.example",
+                             "http://127.0.0.1:8080.evil.example", "http://127.0.0.1:9"}) {
+    EXPECT_FALSE(is_own_origin(origin, 8080)) << origin;
+  }
+}
+
+TEST(QueryAndCookie, AreFoundByTheirWholeName) {
+  EXPECT_EQ(path_of("/a/b?token=1"), "/a/b");
+  EXPECT_EQ(query_value("/?x=1&token=abc&y=2", "token"), "abc");
+  EXPECT_EQ(query_value("/?xtoken=abc", "token"), "");
+  EXPECT_EQ(query_value("/token=abc", "token"), "");
+  EXPECT_EQ(cookie_value("a=1; hapticgiant_80=xyz", "hapticgiant_80"), "xyz");
+  EXPECT_EQ(cookie_value("a=1; hapticgiant_8080=xyz", "hapticgiant_80"), "");
+}
+
+TEST(QueryValue, EndsForAnyInput) {
+  rc::check([](const std::string& text) {
+    RC_ASSERT(query_value(text, "token").size() <= text.size());
+    RC_ASSERT(cookie_value(text, "token").size() <= text.size());
+  });
+}
+
+TEST(LoadPage, WithoutIndexSaysHowToBuildIt) {
+  try {
+    load_page("hg/viewer_server");
+    FAIL() << "no SetupError";
+  } catch (const SetupError& error) {
+    EXPECT_NE(std::string(error.what()).find("npm run build"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace hg::viewer_server

@@ -1,0 +1,90 @@
+#include "hg/viewer_server/hand_target_box.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include "hg/viewer_server/message_rate.h"
+
+namespace hg::viewer_server {
+namespace {
+
+const Eigen::AlignedBox3d kLimits(Eigen::Vector3d(-1, -2, -1.4), Eigen::Vector3d(1, 2, -0.4));
+
+HandTarget dragged_to(double x) { return {true, Eigen::Vector3d(x, 0.0, -1.0), 1.0}; }
+
+TEST(HandTargetBox, GivesTheNewestTargetOnce) {
+  HandTargetBox box(kLimits);
+  HandTarget target;
+  EXPECT_FALSE(box.take(target, 0.0));
+  EXPECT_TRUE(box.put(1, dragged_to(0.1), 0.0));
+  EXPECT_TRUE(box.put(1, dragged_to(0.2), 0.1));
+  ASSERT_TRUE(box.take(target, 0.1));
+  EXPECT_TRUE(target.active);
+  EXPECT_EQ(target.p_B.x(), 0.2);
+  EXPECT_EQ(target.press, 1.0);
+  EXPECT_FALSE(box.take(target, 0.2));
+}
+
+TEST(HandTargetBox, SilenceOfHalfASecondLetsGoOnce) {
+  HandTargetBox box(kLimits);
+  HandTarget target;
+  box.put(1, dragged_to(0.1), 10.0);
+  ASSERT_TRUE(box.take(target, 10.4));
+  EXPECT_FALSE(box.take(target, 10.49));
+  ASSERT_TRUE(box.take(target, 10.51));
+  EXPECT_FALSE(target.active);
+  EXPECT_EQ(target.press, 0.0);
+  EXPECT_FALSE(box.take(target, 20.0));
+}
+
+TEST(HandTargetBox, ATargetThatIsNotPickedUpInTimeIsNeverActive) {
+  HandTargetBox box(kLimits);
+  HandTarget target;
+  box.put(1, dragged_to(0.1), 10.0);
+  ASSERT_TRUE(box.take(target, 11.0));
+  EXPECT_FALSE(target.active);
+}
+
+TEST(HandTargetBox, OnePageDragsUntilItLetsGoLeavesOrIsSilent) {
+  HandTarget target;
+  const auto second_may_drag = [&](auto&& end_of_first, double now_s) {
+    HandTargetBox box(kLimits);
+    EXPECT_TRUE(box.put(1, dragged_to(0.1), 0.0));
+    EXPECT_FALSE(box.put(2, dragged_to(0.2), 0.1));
+    EXPECT_TRUE(box.take(target, 0.1));
+    EXPECT_EQ(target.p_B.x(), 0.1);
+    end_of_first(box);
+    return box.put(2, dragged_to(0.3), now_s);
+  };
+  EXPECT_FALSE(second_may_drag([](HandTargetBox&) {}, 0.2));
+  EXPECT_TRUE(second_may_drag([](HandTargetBox& box) { box.put(1, {}, 0.2); }, 0.2));
+  EXPECT_TRUE(second_may_drag([](HandTargetBox& box) { box.leave(1); }, 0.2));
+  EXPECT_TRUE(second_may_drag([](HandTargetBox&) {}, 0.7));
+  EXPECT_FALSE(second_may_drag([](HandTargetBox& box) { box.leave(2); }, 0.2));
+}
+
+TEST(HandTargetBox, ClampsTargetsToTheLimitsPlusHalfAMetre) {
+  rc::check([] {
+    Eigen::Vector3d p;
+    for (double& x : p) x = *rc::gen::inRange(-100'000, 100'000) * 1e-3;
+    HandTargetBox box(kLimits);
+    HandTarget target;
+    RC_ASSERT(box.put(1, {true, p, 0.0}, 0.0));
+    RC_ASSERT(box.take(target, 0.0));
+    const Eigen::AlignedBox3d grown(kLimits.min().array() - 0.5, kLimits.max().array() + 0.5);
+    RC_ASSERT(grown.contains(target.p_B));
+    RC_ASSERT((target.p_B - p).norm() <= grown.exteriorDistance(p) + 1e-12);
+  });
+}
+
+TEST(MessageRate, AdmitsTheBurstAndThenTheRate) {
+  MessageRate rate;
+  int admitted = 0;
+  for (int i = 0; i < 1000; ++i) admitted += rate.admit(5.0) ? 1 : 0;
+  EXPECT_EQ(admitted, static_cast<int>(MessageRate::kBurst));
+  for (int i = 1; i <= 10'000; ++i) admitted += rate.admit(5.0 + 1e-3 * i) ? 1 : 0;  // 10 s
+  EXPECT_NEAR(admitted, MessageRate::kBurst + 10.0 * MessageRate::kRate_Hz, 2.0);
+}
+
+}  // namespace
+}  // namespace hg::viewer_server

@@ -1,0 +1,333 @@
+#include "hg/viewer_server/viewer_server.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "hg/core/error.h"
+#include "hg/viewer_server/test/raw_client.h"
+
+namespace hg::viewer_server {
+namespace {
+
+using test::RawClient;
+
+constexpr char kHand[] = R"({"type":"hand","active":true,"p_B_m":[0.1,0.2,-1],"press":1})";
+
+// Polls until `is_true`; gives up after a time that no machine needs.
+bool eventually(const std::function<bool()>& is_true) {
+  for (int i = 0; i < 20'000; ++i) {
+    if (is_true()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+class ViewerServerTest : public ::testing::Test {
+ protected:
+  ViewerServerTest() : folder_(make_folder()), server_(make_options(), make_scene()) {
+    const std::string url = server_.url();
+    const std::size_t colon = url.rfind(':');
+    port_ = static_cast<std::uint16_t>(std::stoi(url.substr(colon + 1)));
+    token_ = url.substr(url.find('=') + 1);
+    host_ = "Host: 127.0.0.1:" + std::to_string(port_) + "\r\n";
+    origin_ = "Origin: http://127.0.0.1:" + std::to_string(port_) + "\r\n";
+  }
+  ~ViewerServerTest() override { std::filesystem::remove_all(folder_); }
+
+  // A page, and beside it a file that must stay secret.
+  static std::filesystem::path make_folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "viewer_test_XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    const std::filesystem::path folder = name;
+    std::filesystem::create_directories(folder / "page" / "assets");
+    std::ofstream(folder / "page" / "index.html") << "the page";
+    std::ofstream(folder / "page" / "assets" / "main.js") << "the script";
+    std::ofstream(folder / "secret.txt") << "the secret";
+    std::filesystem::create_symlink(folder / "secret.txt", folder / "page" / "link.txt");
+    return folder;
+  }
+
+  Options make_options() const {
+    Options options;
+    options.page = folder_ / "page";
+    options.update_rate_hz = 1e6;  // tests publish faster than pages are shown
+    return options;
+  }
+
+  static Scene make_scene() {
+    Scene scene;
+    scene.title = "Test";
+    scene.twin.urdf = "hg/viewer_server/test/hinge.urdf";
+    scene.twin.joints = {{"hinge", JointType::kRevolute}};
+    scene.box = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -2, -1.4), Eigen::Vector3d(1, 2, -0.4));
+    return scene;
+  }
+
+  std::string get(const std::string& target, const std::string& headers) const {
+    return RawClient(port_).get(target, headers);
+  }
+  std::string with_token(const std::string& path) const { return path + "?token=" + token_; }
+
+  std::unique_ptr<RawClient> open_page(int receive_buffer = 0) {
+    auto client = std::make_unique<RawClient>(port_, receive_buffer);
+    const std::uint64_t before = server_.counters().clients;
+    const std::string answer = client->upgrade(with_token("/ws"), host_ + origin_);
+    EXPECT_TRUE(answer.starts_with("HTTP/1.1 101")) << answer;
+    EXPECT_TRUE(eventually([&] { return server_.counters().clients > before; }));
+    return client;
+  }
+
+  // A frame whose time is `time_s`, skipping older ones.
+  static bool receives(RawClient& client, double time_s) {
+    for (int i = 0; i < 100'000; ++i) {
+      const RawClient::Message message = client.read_message();
+      if (message.opcode != 1) return false;
+      const auto json = nlohmann::json::parse(message.text);
+      if (json["type"] == "frame" && json["time_s"] == time_s) return true;
+    }
+    return false;
+  }
+
+  void publish(double time_s) {
+    Sample sample;
+    sample.record.time_s = time_s;
+    sample.record.twin.q_a.setZero(1);
+    server_.publish(sample, "fine");
+  }
+
+  std::filesystem::path folder_;
+  ViewerServer server_;
+  std::uint16_t port_ = 0;
+  std::string token_, host_, origin_;
+};
+
+TEST_F(ViewerServerTest, TheLinkHasATokenOf128Bits) {
+  EXPECT_EQ(server_.url(), "http://127.0.0.1:" + std::to_string(port_) + "/?token=" + token_);
+  EXPECT_EQ(token_.size(), 32u);
+}
+
+TEST_F(ViewerServerTest, NothingIsServedWithoutTheToken) {
+  std::string wrong = token_;
+  wrong[0] = wrong[0] == '0' ? '1' : '0';
+  const std::string paths[] = {"/", "/assets/main.js", "/scene.json", "/models/twin.urdf", "/x"};
+  for (const std::string& path : paths) {
+    EXPECT_TRUE(get(path, host_).starts_with("HTTP/1.1 403")) << path;
+    EXPECT_TRUE(get(path + "?token=", host_).starts_with("HTTP/1.1 403")) << path;
+    EXPECT_TRUE(get(path + "?token=" + wrong, host_).starts_with("HTTP/1.1 403")) << path;
+  }
+  EXPECT_EQ(server_.counters().refused, 15u);
+}
+
+TEST_F(ViewerServerTest, TheTokenGivesThePageAndACookieThatReplacesIt) {
+  const std::string answer = get(with_token("/"), host_);
+  EXPECT_TRUE(answer.starts_with("HTTP/1.1 200")) << answer;
+  EXPECT_TRUE(answer.ends_with("the page"));
+  EXPECT_NE(answer.find("Content-Security-Policy: default-src 'self'"), std::string::npos);
+  EXPECT_NE(answer.find("HttpOnly; SameSite=Strict"), std::string::npos);
+
+  const std::string cookie = "Cookie: hapticgiant_" + std::to_string(port_) + "=" + token_ + "\r\n";
+  EXPECT_TRUE(get("/assets/main.js", host_ + cookie).ends_with("the script"));
+  EXPECT_NE(get("/scene.json", host_ + cookie).find("\"title\":\"Test\""), std::string::npos);
+  EXPECT_NE(get("/models/twin.urdf", host_ + cookie).find("<robot"), std::string::npos);
+  EXPECT_EQ(server_.counters().refused, 0u);
+}
+
+TEST_F(ViewerServerTest, AWrongHostIsRefused) {
+  for (const std::string host : {"Host: evil.example\r\n", "Host: 127.0.0.1\r\n", ""}) {
+    EXPECT_TRUE(get(with_token("/"), host).starts_with("HTTP/1.1 403")) << host;
+    RawClient client(port_);
+    EXPECT_TRUE(client.upgrade(with_token("/ws"), host + origin_).starts_with("HTTP/1.1 403"));
+  }
+  EXPECT_EQ(server_.counters().refused, 6u);
+}
+
+TEST_F(ViewerServerTest, AWebSocketNeedsOwnOriginAndToken) {
+  const std::string evil = "Origin: http://evil.example\r\n";
+  EXPECT_TRUE(
+      RawClient(port_).upgrade(with_token("/ws"), host_ + evil).starts_with("HTTP/1.1 403"));
+  EXPECT_TRUE(RawClient(port_).upgrade(with_token("/ws"), host_).starts_with("HTTP/1.1 403"));
+  EXPECT_TRUE(RawClient(port_).upgrade("/ws", host_ + origin_).starts_with("HTTP/1.1 403"));
+  EXPECT_TRUE(
+      RawClient(port_).upgrade(with_token("/x"), host_ + origin_).starts_with("HTTP/1.1 403"));
+  EXPECT_EQ(server_.counters().refused, 4u);
+  EXPECT_EQ(server_.counters().clients, 0u);
+}
+
+TEST_F(ViewerServerTest, FilesOutsideThePageAreNotThere) {
+  for (const char* path :
+       {"/../secret.txt", "/assets/../../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt",
+        "//etc/passwd", "/etc/passwd", "/link.txt", "/assets", "/models/../secret.txt", "/./"}) {
+    const std::string answer = get(with_token(path), host_);
+    EXPECT_TRUE(answer.starts_with("HTTP/1.1 404")) << path;
+    EXPECT_EQ(answer.find("secret"), std::string::npos) << path;
+  }
+}
+
+TEST_F(ViewerServerTest, OtherMethodsAndGarbageAreRefused) {
+  RawClient post(port_);
+  post.send("POST " + with_token("/") + " HTTP/1.1\r\n" + host_ + "\r\n");
+  EXPECT_TRUE(post.read_answer().starts_with("HTTP/1.1 405"));
+  RawClient garbage(port_);
+  garbage.send("\x16\x03\x01 not a request\r\n\r\n");
+  EXPECT_EQ(garbage.read_answer(), "");
+  RawClient large(port_);
+  large.send("GET / HTTP/1.1\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n");
+  EXPECT_EQ(large.read_answer(), "");
+  EXPECT_EQ(server_.counters().refused, 3u);
+}
+
+TEST_F(ViewerServerTest, TwoPagesSeeTheNewestFrame) {
+  const auto first = open_page();
+  const auto second = open_page();
+  publish(1.25);
+  EXPECT_TRUE(receives(*first, 1.25));
+  EXPECT_TRUE(receives(*second, 1.25));
+  const auto late = open_page();
+  EXPECT_TRUE(receives(*late, 1.25));
+}
+
+TEST_F(ViewerServerTest, EventsReachAlsoPagesThatConnectLater) {
+  const auto first = open_page();
+  server_.announce_event(2.5, "unlocked", "the lever is pressed");
+  EXPECT_NE(first->read_message().text.find("\"unlocked\""), std::string::npos);
+  const auto late = open_page();
+  EXPECT_NE(late->read_message().text.find("\"unlocked\""), std::string::npos);
+}
+
+TEST_F(ViewerServerTest, AHandTargetArrivesAndSilenceMakesItInactive) {
+  const auto page = open_page();
+  page->send_message(kHand);
+  HandTarget target;
+  ASSERT_TRUE(eventually([&] { return server_.take_hand_target(target); }));
+  EXPECT_TRUE(target.active);
+  EXPECT_EQ(target.p_B, Eigen::Vector3d(0.1, 0.2, -1.0));
+  EXPECT_EQ(target.press, 1.0);
+  ASSERT_TRUE(eventually([&] { return server_.take_hand_target(target); }));
+  EXPECT_FALSE(target.active);
+}
+
+TEST_F(ViewerServerTest, AClosedPageLetsGo) {
+  const auto page = open_page();
+  page->send_message(kHand);
+  HandTarget target;
+  ASSERT_TRUE(eventually([&] { return server_.take_hand_target(target); }));
+  page->close();
+  ASSERT_TRUE(eventually([&] { return server_.counters().clients == 0; }));
+  ASSERT_TRUE(server_.take_hand_target(target));
+  EXPECT_FALSE(target.active);
+}
+
+TEST_F(ViewerServerTest, MalformedMessagesAreCountedAndTheConnectionLives) {
+  const auto page = open_page();
+  for (const char* text : {"", "{", "[1,2]", R"({"type":"hand"})", "\"quote"}) {
+    page->send_message(text);
+  }
+  page->send_message(kHand, 2);  // binary
+  EXPECT_TRUE(eventually([&] { return server_.counters().refused == 6; }));
+  page->send_message(kHand);
+  HandTarget target;
+  EXPECT_TRUE(eventually([&] { return server_.take_hand_target(target); }));
+  EXPECT_EQ(server_.counters().refused, 6u);
+}
+
+TEST_F(ViewerServerTest, AnOversizedMessageClosesThatConnectionOnly) {
+  const auto page = open_page();
+  const auto other = open_page();
+  page->send_message(std::string(5000, ' '));
+  const RawClient::Message message = page->read_message();
+  ASSERT_EQ(message.opcode, 8);
+  EXPECT_EQ(message.text.substr(0, 2), "\x03\xf1");  // 1009, message too big
+  EXPECT_TRUE(eventually([&] { return server_.counters().clients == 1; }));
+  EXPECT_EQ(server_.counters().refused, 1u);
+  publish(3.5);
+  EXPECT_TRUE(receives(*other, 3.5));
+}
+
+TEST_F(ViewerServerTest, AFloodIsRefusedAndTheConnectionLives) {
+  const auto page = open_page();
+  for (int i = 0; i < 5000; ++i) page->send_message(kHand);
+  EXPECT_TRUE(eventually([&] { return server_.counters().refused > 0; }));
+  publish(4.5);
+  EXPECT_TRUE(receives(*page, 4.5));
+}
+
+TEST_F(ViewerServerTest, APageThatNeverReadsLosesFramesAndHoldsUpNobody) {
+  const auto slow = open_page(4096);
+  double time_s = 0.0;
+  EXPECT_TRUE(eventually([&] {
+    for (int i = 0; i < 100; ++i) publish(time_s += 1e-3);
+    return server_.counters().dropped > 1000;
+  }));
+  const auto other = open_page();
+  publish(1e6);
+  EXPECT_TRUE(receives(*other, 1e6));
+}
+
+TEST_F(ViewerServerTest, ATakenPortIsNamed) {
+  Options options = make_options();
+  options.port = port_;
+  try {
+    const ViewerServer second(options, make_scene());
+    FAIL() << "no SetupError";
+  } catch (const SetupError& error) {
+    EXPECT_NE(std::string(error.what()).find("port " + std::to_string(port_) + " is taken"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(ViewerServerTest, SetUpErrorsNameTheItem) {
+  const auto message = [](const Options& options, const Scene& scene) -> std::string {
+    try {
+      const ViewerServer server(options, scene);
+    } catch (const SetupError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  Options options = make_options();
+  options.page = folder_ / "nowhere";
+  EXPECT_NE(message(options, make_scene()).find("index.html"), std::string::npos);
+  Scene scene = make_scene();
+  scene.twin.urdf = "nowhere.urdf";
+  EXPECT_NE(message(make_options(), scene).find("twin URDF must be a file, got nowhere.urdf"),
+            std::string::npos);
+  scene = make_scene();
+  scene.box.setEmpty();
+  EXPECT_NE(message(make_options(), scene).find("box"), std::string::npos);
+  options = make_options();
+  options.update_rate_hz = 0.0;
+  EXPECT_NE(message(options, make_scene()).find("update_rate_hz"), std::string::npos);
+  options = make_options();
+  options.token = "not a token";
+  EXPECT_NE(message(options, make_scene()).find("hexadecimal"), std::string::npos);
+}
+
+TEST_F(ViewerServerTest, FramesAreThinnedToTheUpdateRate) {
+  Options options = make_options();
+  options.update_rate_hz = 1e-3;  // one frame, and the next after 1000 s
+  ViewerServer server(options, make_scene());
+  RawClient page(static_cast<std::uint16_t>(std::stoi(server.url().substr(17))));
+  const std::string own = "127.0.0.1:" + server.url().substr(17, server.url().find("/?") - 17);
+  const std::string target = "/ws" + server.url().substr(server.url().find('?'));
+  page.upgrade(target, "Host: " + own + "\r\nOrigin: http://" + own + "\r\n");
+  Sample sample;
+  for (sample.record.time_s = 1.0; sample.record.time_s < 100.0; sample.record.time_s += 1.0) {
+    server.publish(sample, "");
+  }
+  server.announce_event(0.0, "end", "");
+  const std::string first = page.read_message().text;
+  const std::string second = page.read_message().text;
+  EXPECT_NE((first + second).find("\"time_s\":1.0"), std::string::npos) << first << second;
+  EXPECT_NE((first + second).find("\"end\""), std::string::npos);
+  EXPECT_EQ(server.counters().sent, 1u);
+}
+
+}  // namespace
+}  // namespace hg::viewer_server
