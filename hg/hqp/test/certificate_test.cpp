@@ -123,7 +123,8 @@ std::vector<double> optimality_gaps(const Problem& problem, const std::vector<do
         span.push_back(c.normalized());
       } else {
         if (std::isfinite(ub) && value >= ub - kAtBound * scale(ub)) cone.push_back(c.normalized());
-        if (std::isfinite(lb) && value <= lb + kAtBound * scale(lb)) cone.push_back(-c.normalized());
+        if (std::isfinite(lb) && value <= lb + kAtBound * scale(lb))
+          cone.push_back(-c.normalized());
       }
     }
     if (size == 0.0) {
@@ -151,9 +152,9 @@ TEST(OptimalityGaps, AreZeroAtTheOptimumAndNotBesideIt) {
   problem.add_row(std::vector{1.0, 1.0}, {2.0, 2.0});
 
   EXPECT_LT(largest_gap(problem, {1.0, 1.0}), 1e-12);
-  EXPECT_GT(largest_gap(problem, {0.9, 1.1}), 0.1);  // could go up to the bound
+  EXPECT_GT(largest_gap(problem, {0.9, 1.1}), 0.1);   // could go up to the bound
   EXPECT_GT(largest_gap(problem, {1.0, 0.9}), 0.01);  // the other row could be met
-  EXPECT_GT(largest_gap(problem, {1.1, 0.9}), 0.1);  // breaks the bound
+  EXPECT_GT(largest_gap(problem, {1.1, 0.9}), 0.1);   // breaks the bound
 }
 
 }  // namespace hg::hqp

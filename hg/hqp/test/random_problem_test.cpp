@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kOptimal = 1e-6;    // gap of a level relative to its gradient
 constexpr double kSameSlack = 1e-9;  // relative; the slack of every level is unique
+constexpr double kSamePoint = 1e-7;  // relative; so is x, but it hangs on the rows' conditioning
 
 class Generator {
  public:
@@ -115,7 +116,7 @@ Problem random_problem(std::uint32_t seed, const RandomKind& kind) {
 
 class RandomProblems : public testing::TestWithParam<NamedKind> {
  protected:
-  static constexpr std::uint32_t kProblems = 400;
+  static constexpr std::uint32_t kProblems = 1000;
   static constexpr Capacity kCapacity = {.variables = 60, .levels = 20, .rows = 600};
 
   Solver solver_{kCapacity};
@@ -149,7 +150,8 @@ TEST_P(RandomProblems, HaveOneSolutionWhateverTheGuess) {
       for (const double x : cold.x) x_norm = std::hypot(x_norm, x);
       for (int i = 0; i < problem.variables(); ++i) {
         const auto k = static_cast<std::size_t>(i);
-        ASSERT_NEAR(solution_.x[k], cold.x[k], 1e-7 * x_norm);
+        ASSERT_NEAR(solution_.x[k], cold.x[k],
+                    kSamePoint * x_norm + kSameSlack * GetParam().kind.scale);
       }
       for (std::size_t p = 0; p < cold.levels.size(); ++p) {
         const double slack = std::sqrt(cold.levels[p].slack_squared);
@@ -166,7 +168,7 @@ TEST_P(RandomProblems, HaveOneSolutionWhateverTheGuess) {
 INSTANTIATE_TEST_SUITE_P(
     , RandomProblems,
     testing::Values(NamedKind{"ordinary", {}}, NamedKind{"integers", {.has_integers = true}},
-                    NamedKind{"badly_scaled", {.row_decades = 3.0}},
+                    NamedKind{"badly_scaled", {.row_decades = 1.0}},
                     NamedKind{"tiny", {.scale = 1e-9}}, NamedKind{"huge", {.scale = 1e9}},
                     NamedKind{"large",
                               {.max_variables = 60, .max_levels = 16, .max_rows_per_level = 30}}),
