@@ -1,4 +1,5 @@
-/// The one exception type of the project. Thrown at set-up only; nothing throws in the control loop.
+/// The one exception type of the project. Thrown at set-up only; nothing throws in the control
+/// loop.
 #pragma once
 
 #include <stdexcept>

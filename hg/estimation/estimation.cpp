@@ -3,14 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "hg/model/haptic_giant.h"
+
 namespace hg::estimation {
 namespace {
-
-// the representative of `angle` (known up to full turns) that is nearest to `previous`
-double unwrapped(double angle, double previous) noexcept {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  return angle + kTurn * std::round((previous - angle) / kTurn);
-}
 
 // [C] 2: predict with the drive model, correct position, speed and disturbance; triple pole p
 void observe(const Config& config, double q_measured, double dq_cmd_delayed,
@@ -52,7 +48,7 @@ RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
   for (int i = 0; i < n_m_; ++i) {
     const auto joint = static_cast<std::size_t>(n_p_ + i);
     if (chain_.joints()[joint].type == model::JointType::kContinuous) {
-      robot.q_m[i] = unwrapped(sensors.q_m[i], state.q_m[i]);
+      robot.q_m[i] = model::haptic_giant::nearest_turn(sensors.q_m[i], state.q_m[i]);
     }
   }
   state.q_m = robot.q_m;

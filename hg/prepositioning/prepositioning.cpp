@@ -24,8 +24,7 @@ void check(const Config& config) {
 Command step(const Config& config, const RobotState& robot, const VectorM& q_m,
              bool device_blocked) noexcept {
   Command command;
-  const Eigen::Vector2d q_target = model::haptic_giant::gantry_target(robot.q_p, q_m);
-  command.q_target = q_target;
+  command.q_target = model::haptic_giant::gantry_target(robot.q_p, q_m);
   command.dq = VectorP::Zero(config.n_p);
   if (device_blocked) return command;
   for (int i = 0; i < config.n_p; ++i) {

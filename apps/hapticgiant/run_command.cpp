@@ -1,0 +1,212 @@
+#include "apps/hapticgiant/run_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <thread>
+
+#include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/status_line.h"
+#include "apps/hapticgiant/version.h"
+#include "hg/core/error.h"
+#include "hg/evaluation/summary.h"
+#include "hg/runtime/runtime.h"
+
+namespace hg::apps {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kIdle(2);
+constexpr std::chrono::milliseconds kStatusPeriod(100);
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
+
+void interrupt(int) { interrupted.store(true); }
+
+// --summary is written at the end, but a place that cannot be written is refused at the start
+void check_writable(const std::string& file) {
+  if (file.empty()) return;
+  const bool existed = std::filesystem::exists(file);
+  const bool writable = std::ofstream(file, std::ios::app).good();
+  if (!existed && writable) std::filesystem::remove(file);
+  if (!writable) throw SetupError(file + ": the summary cannot be written there");
+}
+
+void write_summary(const std::string& file, const std::string& json) {
+  const std::string partial = file + ".partial";
+  std::ofstream(partial) << json;
+  std::filesystem::rename(partial, file);
+}
+
+/// Everything that watches a run from outside the control thread.
+struct Observers {
+  const config::Scenario& scenario;
+  evaluation::EventDetector detector;
+  evaluation::Summary summary;
+  StatusLine status_line;
+  std::unique_ptr<recording::Recorder> recorder;
+  std::unique_ptr<viewer_server::ViewerServer> viewer;
+  bool is_fast = false;
+  Clock::time_point last_status = {};
+  CycleRecord last_record = {};
+};
+
+void announce(Observers& observers, const evaluation::Event& event) {
+  observers.summary.add(event);
+  observers.status_line.print(event);
+  if (observers.recorder) observers.recorder->event(event.time_s, event.name, event.what);
+  if (observers.viewer) observers.viewer->announce_event(event.time_s, event.name, event.what);
+}
+
+void observe(Observers& observers, const Sample& sample) {
+  observers.summary.add(sample);
+  if (observers.recorder && observers.is_fast) observers.recorder->push_waiting(sample);
+  if (observers.recorder && !observers.is_fast) observers.recorder->push(sample);
+  if (const auto event = observers.detector.observe(sample.record)) announce(observers, *event);
+}
+
+// as often as people look
+void show(Observers& observers, const Sample& sample) {
+  const std::string status =
+      status_text(sample, observers.scenario.limits, observers.scenario.twin.model);
+  if (observers.viewer) observers.viewer->publish(sample, status);
+  const auto now = Clock::now();
+  if (now - observers.last_status < kStatusPeriod) return;
+  observers.last_status = now;
+  observers.status_line.show(status);
+}
+
+// drains the runtime until it has finished and everything has been seen
+void watch(runtime::Runtime& runtime, Observers& observers) {
+  auto sample = std::make_unique<Sample>();
+  while (true) {
+    const bool is_finished = runtime.is_finished();
+    bool any = false;
+    while (runtime.pop(*sample)) {
+      observe(observers, *sample);
+      any = true;
+    }
+    if (any && !observers.is_fast) show(observers, *sample);
+    if (any) observers.last_record = sample->record;
+    if (is_finished) break;
+    if (interrupted.load()) runtime.request_stop();
+    HandTarget target;
+    if (observers.viewer && observers.viewer->take_hand_target(target)) {
+      runtime.set_hand_target(target);
+    }
+    if (!any) std::this_thread::sleep_for(kIdle);
+  }
+  observers.status_line.clear();
+}
+
+std::unique_ptr<viewer_server::ViewerServer> make_viewer(const config::Scenario& scenario,
+                                                         const RunArguments& arguments) {
+  if (!arguments.has_viewer || arguments.is_fast) return nullptr;
+  const auto page = data_root() / "viewer" / "dist";
+  if (!std::filesystem::is_regular_file(page / "index.html")) {
+    fmt::print("page        not built (it needs node 18 or newer), running without it\n");
+    return nullptr;
+  }
+  viewer_server::Options options;
+  options.port = arguments.port;
+  options.page = page;
+  return std::make_unique<viewer_server::ViewerServer>(options, viewer_scene(scenario));
+}
+
+std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scenario,
+                                                   const RunArguments& arguments) {
+  if (!arguments.has_recording) return nullptr;
+  if (!recording::recording_available()) {
+    fmt::print("recording   off (the program was built without Rust)\n");
+    return nullptr;
+  }
+  return std::make_unique<recording::Recorder>(recording_info(scenario, arguments));
+}
+
+int exit_code(const evaluation::Summary& summary, const std::vector<std::string>& missing,
+              bool was_interrupted) {
+  if (summary.fault().code != FaultCode::kNone) return 3;
+  if (was_interrupted) return 0;
+  return missing.empty() && summary.limits_held() ? 0 : 1;
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  check_writable(arguments.summary);
+  const config::Scenario scenario = make_scenario(arguments);
+  const bool is_terminal = isatty(STDOUT_FILENO) == 1;
+  const double planned = planned_duration_s(scenario);
+
+  runtime::Options options;
+  options.rate_Hz = scenario.device.rate_Hz;
+  options.is_fast = arguments.is_fast;
+  options.duration_s = arguments.duration_s;
+  if (arguments.duration_s < 0.0) {
+    const bool goes_on = is_terminal && !arguments.is_fast && arguments.has_viewer;
+    options.duration_s = goes_on ? 0.0 : planned;
+    if (arguments.is_fast && planned == 0.0) {
+      throw SetupError("run: --fast without a script needs --duration S");
+    }
+  }
+  runtime::check(options);
+
+  cycle::Cycle cycle = make_cycle(scenario);
+  device::SimulatedDevice device = make_simulated_device(scenario);
+  Observers observers{.scenario = scenario,
+                      .detector = {scenario.events, scenario.limits},
+                      .summary = evaluation::Summary(scenario.limits),
+                      .status_line = StatusLine(is_terminal),
+                      .recorder = make_recorder(scenario, arguments),
+                      .viewer = make_viewer(scenario, arguments),
+                      .is_fast = arguments.is_fast};
+
+  fmt::print("HapticGiant {}  {}\n", kVersion, scenario.title);
+  if (observers.viewer) fmt::print("page        {}\n", observers.viewer->url());
+  if (options.duration_s == 0.0) fmt::print("stop        Ctrl-C\n");
+  std::fflush(stdout);
+
+  interrupted.store(false);
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  runtime::Runtime runtime(options, cycle, device);
+  const auto begin = Clock::now();
+  runtime.start();
+  watch(runtime, observers);
+  const runtime::Report report = runtime.join();
+
+  evaluation::RunFacts facts;
+  facts.scenario = scenario.title;
+  facts.version = kVersion;
+  facts.rate_Hz = options.rate_Hz;
+  facts.is_fast = options.is_fast;
+  facts.overruns = report.overruns;
+  facts.dropped = report.dropped;
+  facts.allocations_in_loop = report.allocations;
+  facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  if (observers.recorder) {
+    const recording::RecordingSummary recorded = observers.recorder->close();
+    facts.recording = recorded.file.string();
+    if (!recorded.error.empty()) fmt::print(stderr, "recording ended early: {}\n", recorded.error);
+    for (const auto& name : recorded.deleted) {
+      fmt::print("recording {} deleted to keep within the disk budget\n", name);
+    }
+  }
+  const std::vector<std::string> missing = observers.detector.missing();
+  fmt::print("\n{}", observers.summary.to_text(facts, missing));
+  if (!arguments.summary.empty()) {
+    write_summary(arguments.summary, observers.summary.to_json(facts, missing));
+  }
+  return exit_code(observers.summary, missing, interrupted.load());
+}
+
+}  // namespace hg::apps

@@ -1,0 +1,28 @@
+/// The main job: a person at a device, and the twin they feel.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace hg::apps {
+
+struct RunArguments {
+  std::string scenario = "door";
+  std::string device;      ///< device.yaml instead of the scenario's; empty = the scenario's
+  std::string twin;        ///< twin.yaml likewise
+  std::string user;        ///< script file, "mouse" or "none"; empty = the scenario's
+  double duration_s = -1;  ///< < 0: until the script has played; on a terminal until Ctrl-C
+  bool is_fast = false;    ///< as fast as it can, without page
+  double rate_Hz = -1;     ///< < 0: the device's
+  std::string summary;     ///< JSON file; empty = none
+  bool has_viewer = true;
+  std::uint16_t port = 0;  ///< of the page; 0 = any free one
+  std::string recordings = "recordings";
+  bool has_recording = true;
+};
+
+/// Exit code: 0 fine, 1 an expected event is missing or a limit was exceeded, 3 a fault stopped the
+/// device. Throws SetupError for bad input.
+int run(const RunArguments& arguments);
+
+}  // namespace hg::apps

@@ -1,0 +1,53 @@
+#include "apps/hapticgiant/status_line.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "hg/viewer_server/limit_text.h"
+
+namespace hg::apps {
+namespace {
+
+constexpr int kMostJoints = 4;  // more do not fit on a line
+
+}  // namespace
+
+std::string status_text(const Sample& sample, const LimitCatalogue& limits,
+                        const rendering::TwinModel& twin) {
+  const CycleRecord& record = sample.record;
+  std::string text = fmt::format("{:6.1f} s  {}  F {:4.1f} N", record.time_s,
+                                 to_string(record.mode), record.robot.w_H.head<3>().norm());
+  int shown = 0;
+  for (const auto& dof : twin.dofs) {
+    if (dof.q_index < 0 || shown++ == kMostJoints || record.twin.q_a.size() == 0) break;
+    text += fmt::format("  {} {:.2f}", dof.name, record.twin.q_a[dof.q_index]);
+  }
+  if (record.felt_limit >= 0) {
+    const auto felt = static_cast<std::size_t>(record.felt_limit);
+    text += "  " + viewer_server::limit_text(limits[felt], record.limits[felt]);
+  } else {
+    text += "  free";
+  }
+  return text + fmt::format("  {:.0f} us", sample.cycle_time_us);
+}
+
+void StatusLine::show(const std::string& text) {
+  if (!is_terminal_) return;
+  fmt::print("\r\033[K{}", text.substr(0, 118));
+  std::fflush(stdout);
+  is_drawn_ = true;
+}
+
+void StatusLine::print(const evaluation::Event& event) {
+  clear();
+  fmt::print("{:8.3f} s  {:<14} {}\n", event.time_s, event.name, event.what);
+  std::fflush(stdout);
+}
+
+void StatusLine::clear() {
+  if (is_drawn_) fmt::print("\r\033[K");
+  is_drawn_ = false;
+}
+
+}  // namespace hg::apps

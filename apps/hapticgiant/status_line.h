@@ -1,0 +1,31 @@
+/// One line on the terminal that tells what the hand feels; events scroll above it.
+#pragma once
+
+#include <string>
+
+#include "hg/evaluation/events.h"
+#include "hg/rendering/twin_model.h"
+#include "hg/signals/state.h"
+
+namespace hg::apps {
+
+/// For example "12.3 s  running  F 23 N  hinge 0.42  lever 0.61  hinge: upper limit, 4 Nm  21 us".
+std::string status_text(const Sample& sample, const LimitCatalogue& limits,
+                        const rendering::TwinModel& twin);
+
+class StatusLine {
+ public:
+  /// Redraws on terminals only; elsewhere only events are printed.
+  explicit StatusLine(bool is_terminal) : is_terminal_(is_terminal) {}
+  ~StatusLine() { clear(); }
+
+  void show(const std::string& text);
+  void print(const evaluation::Event& event);
+  void clear();
+
+ private:
+  bool is_terminal_;
+  bool is_drawn_ = false;
+};
+
+}  // namespace hg::apps
