@@ -78,7 +78,13 @@ PrimalOutcome LevelByLevel::run(int& completed) noexcept {
 
   for (completed = 0; completed < levels_; ++completed) {
     const PrimalOutcome outcome = optimise(completed);
-    if (outcome != PrimalOutcome::kOptimal) return outcome;
+    if (outcome != PrimalOutcome::kOptimal) {
+      const auto ranks = work_.point.rank_at_level.begin();
+      std::fill(ranks + completed, ranks + levels_ + 1, base_);
+      std::fill_n(work_.point.blocking_row.begin() + completed, levels_ - completed, -1);
+      release_untouched();
+      return outcome;
+    }
     fix(completed);
   }
   PrimalOutcome outcome = PrimalOutcome::kOptimal;
