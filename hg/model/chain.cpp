@@ -8,8 +8,7 @@
 #include <pinocchio/algorithm/joint-configuration.hpp>
 #include <pinocchio/algorithm/kinematics.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
-#include <pinocchio/multibody/data.hpp>
-#include <pinocchio/multibody/model.hpp>
+#include <pinocchio/multibody.hpp>
 #include <utility>
 
 #include "hg/core/error.h"
@@ -345,12 +344,32 @@ void Chain::update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept {
 }
 
 void Chain::update(const VectorIn& q, const VectorIn& dq) noexcept {
+  assert(q.size() == nq() && dq.size() == nv());
+  const pinocchio::Model& model = impl_->parts.model;
   pinocchio::Data& data = impl_->data;
-  pinocchio::crba(impl_->parts.model, data, q, pinocchio::Convention::WORLD);
+
+  // poses, Jacobians, M
+  pinocchio::crba(model, data, q, pinocchio::Convention::WORLD);
   data.M.triangularView<Eigen::StrictlyLower>() = data.M.transpose();
-  pinocchio::nonLinearEffects(impl_->parts.model, data, q, dq);
-  pinocchio::computeGeneralizedGravity(impl_->parts.model, data, q);
-  update_kinematics(q, dq);
+
+  // velocities, c, and accelerations at ddq = 0 in a frame that falls with gravity
+  pinocchio::nonLinearEffects(model, data, q, dq);
+  const Eigen::Vector3d g = model.gravity.linear();
+  for (pinocchio::JointIndex i = 1; i < data.a.size(); ++i) {
+    data.a[i] = data.a_gf[i];
+    data.a[i].linear() += data.oMi[i].rotation().transpose() * g;
+  }
+
+  // each joint carries the weight of all bodies beyond it
+  for (pinocchio::JointIndex i = 1; i < data.oYcrb.size(); ++i) {
+    const Eigen::Vector3d weight = data.oYcrb[i].mass() * g;
+    Vector6 wrench;
+    wrench << weight, data.oYcrb[i].lever().cross(weight);
+    const int v_index = model.idx_vs[i];
+    const int size = model.nvs[i];
+    data.g.segment(v_index, size).noalias() =
+        -data.J.middleCols(v_index, size).transpose() * wrench;
+  }
 }
 
 Pose Chain::pose(int frame) const noexcept {
