@@ -1,0 +1,197 @@
+#include "hg/cycle/cycle.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "hg/core/allocation_counter.h"
+#include "hg/rendering/test/test_models.h"
+
+namespace hg::cycle {
+namespace {
+
+const VectorM kPosture = rendering::posture({0.3, 1.5, -0.6, 1.3, 0.2, 0.4});
+
+// A free body in the hand of a device that follows perfectly, and a constant push.
+struct Loop {
+  rendering::DeviceModel device = rendering::unlimited_device();
+  std::unique_ptr<Cycle> cycle;
+  SensorFrame sensors;
+  OperatorFrame operator_input;
+  CommandFrame command;
+  CycleRecord record;
+  std::array<double, 2> gantry_speed{};
+  std::array<CommandDelay, 2> delay{};
+
+  Loop() {
+    rendering::TwinModel twin = rendering::unlimited_twin(
+        model::Chain::free_body({.mass = 6.0}, {.gravity = false}), "handle");
+    twin.q_start =
+        rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
+    Config config;
+    config.prepositioning.n_p = 2;
+    config.prepositioning.q_limits.fill({-1.4, 1.4});
+    config.monitor.joint_range.assign(6, {-10.0, 10.0});
+    config.monitor.joint_speed_max.assign(6, 10.0);
+    cycle = std::make_unique<Cycle>(config, device, twin);
+    sensors.q_m = kPosture;
+    sensors.dq_m = VectorM::Zero(6);
+    sensors.q_p = VectorP::Zero(2);
+    sensors.dead_man = true;
+  }
+
+  void step() {
+    cycle->step(sensors, operator_input, command, record);
+    if (command.enable) {
+      sensors.q_m = command.q_m;
+      sensors.dq_m = command.dq_m;
+    }
+    for (int i = 0; i < 2; ++i) {
+      const auto axis = static_cast<std::size_t>(i);
+      const double ddq =
+          drive_acceleration({}, gantry_speed[axis], delay[axis].shift(command.dq_p[i], 4));
+      sensors.q_p[i] += 1e-3 * gantry_speed[axis] + 0.5e-6 * ddq;
+      gantry_speed[axis] += 1e-3 * ddq;
+    }
+    ++sensors.sequence;
+  }
+
+  void start_running() {
+    for (const ModeRequest request : {ModeRequest::kNone, ModeRequest::kArm, ModeRequest::kRun}) {
+      operator_input.request = request;
+      step();
+    }
+    ASSERT_EQ(record.mode, Mode::kRunning);
+    operator_input.request = ModeRequest::kNone;
+  }
+
+  void run(int steps) {
+    for (int k = 0; k < steps; ++k) step();
+  }
+};
+
+TEST(Cycle, ArmsRunsAndMovesTheTwinWithTheHand) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[0] = 3.0;
+  loop.run(300);
+  EXPECT_EQ(loop.record.mode, Mode::kRunning);
+  EXPECT_GT(loop.record.v_H.norm(), 0.05);
+  EXPECT_LT(loop.record.sync_error, 1e-4);
+}
+
+TEST(Cycle, BeforeRunningNothingMoves) {
+  Loop loop;
+  loop.sensors.w_S[0] = 30.0;
+  loop.run(5);
+  EXPECT_EQ(loop.record.mode, Mode::kReady);
+  EXPECT_FALSE(loop.command.enable);
+  loop.operator_input.request = ModeRequest::kArm;
+  loop.run(100);
+  EXPECT_EQ(loop.record.mode, Mode::kArmed);
+  EXPECT_TRUE(loop.command.enable);
+  EXPECT_EQ(loop.command.q_m, kPosture);
+  EXPECT_TRUE(loop.command.dq_p.isZero());
+}
+
+TEST(Cycle, AStopBringsEverythingToRestAgainstAPushingHand) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[0] = 5.0;
+  loop.run(500);
+  loop.operator_input.request = ModeRequest::kStop;
+  loop.run(500);
+  EXPECT_EQ(loop.record.mode, Mode::kArmed);
+  const VectorM q_m = loop.command.q_m;
+  loop.run(200);
+  EXPECT_EQ(loop.command.q_m, q_m);
+}
+
+void expect_safe_stop(Loop& loop, FaultCode code) {
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kFault);
+  EXPECT_EQ(loop.record.fault.code, code);
+  EXPECT_FALSE(loop.command.enable);
+  EXPECT_TRUE(loop.command.dq_p.isZero());
+  EXPECT_TRUE(loop.command.q_m.allFinite() && loop.command.dq_m.allFinite());
+}
+
+TEST(Cycle, ANanInTheWrenchEndsInASafeCommandWithItsCause) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[2] = std::numeric_limits<double>::quiet_NaN();
+  expect_safe_stop(loop, FaultCode::kSensorNotFinite);
+  EXPECT_EQ(loop.record.fault.index, 16);
+}
+
+TEST(Cycle, AnInfinityInTheJointsEndsInASafeCommand) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.q_m[1] = kInfinity;
+  expect_safe_stop(loop, FaultCode::kSensorNotFinite);
+}
+
+TEST(Cycle, ALostSampleStopsTheDevice) {
+  Loop loop;
+  loop.start_running();
+  ++loop.sensors.sequence;
+  expect_safe_stop(loop, FaultCode::kSequenceGap);
+}
+
+TEST(Cycle, AFaultLastsUntilItIsResetAndThenRunsAgain) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.emergency_stop = true;
+  expect_safe_stop(loop, FaultCode::kEmergencyStop);
+  loop.sensors.emergency_stop = false;
+  loop.run(10);
+  EXPECT_EQ(loop.record.mode, Mode::kFault);
+  loop.operator_input.request = ModeRequest::kReset;
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kReady);
+  loop.start_running();
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kNone);
+}
+
+TEST(Cycle, ASnapshotContinuesBitForBit) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S << 2, 1, -3, 0.1, 0.2, 0.1;
+  loop.run(100);
+  const State snapshot = loop.cycle->state();
+  const SensorFrame sensors = loop.sensors;
+  const auto gantry_speed = loop.gantry_speed;
+  const auto delay = loop.delay;
+  std::vector<std::uint64_t> hashes;
+  for (int k = 0; k < 100; ++k) {
+    loop.step();
+    hashes.push_back(loop.record.state_hash);
+  }
+  loop.cycle->restore(snapshot);
+  loop.sensors = sensors;
+  loop.gantry_speed = gantry_speed;
+  loop.delay = delay;
+  for (int k = 0; k < 100; ++k) {
+    loop.step();
+    ASSERT_EQ(loop.record.state_hash, hashes[static_cast<std::size_t>(k)]) << k;
+  }
+}
+
+TEST(Cycle, AStepMakesNoAllocation) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S << 2, 1, -3, 0.1, 0.2, 0.1;
+  const AllocationCounter allocations;
+  loop.run(200);
+  loop.operator_input.request = ModeRequest::kStop;
+  loop.run(10);
+  loop.sensors.w_S[0] = std::numeric_limits<double>::quiet_NaN();
+  loop.run(2);
+  EXPECT_EQ(allocations.count(), 0u);
+}
+
+}  // namespace
+}  // namespace hg::cycle

@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hg/evaluation/events.h"
+#include "hg/evaluation/summary.h"
+
+namespace hg::evaluation {
+namespace {
+
+LimitCatalogue catalogue() {
+  return {{LimitKind::kManipulatorJoint, "m4", true, {0.2, 2.45}},
+          {LimitKind::kTwinJoint, "hinge", true, {0.0, 1.75}}};
+}
+
+CycleRecord running(double time_s) {
+  CycleRecord record;
+  record.mode = Mode::kRunning;
+  record.solver_status = SolverStatus::kSolved;
+  record.time_s = time_s;
+  record.reference.q_m = VectorM::Zero(6);
+  record.twin.q_a = ConfigurationA::Zero(2);
+  record.robot.q_p = VectorP::Zero(2);
+  record.limit_count = 2;
+  return record;
+}
+
+EventRule rule(const char* name, std::vector<Condition> all_of) {
+  return {name, "", std::move(all_of)};
+}
+
+TEST(EventDetector, FindsRulesInTheirOrderOnly) {
+  EventDetector detector(
+      {rule("opened", {{.kind = ConditionKind::kTwinAbove, .index = 0, .value = 1.0}}),
+       rule("closed", {{.kind = ConditionKind::kTwinBelow, .index = 0, .value = 0.1}})},
+      catalogue());
+  CycleRecord record = running(0.0);
+  EXPECT_FALSE(detector.observe(record));  // closed, but it has not been open
+  record.twin.q_a[0] = 1.2;
+  ASSERT_TRUE(detector.observe(record));
+  EXPECT_EQ(detector.missing(), std::vector<std::string>{"closed"});
+  record.twin.q_a[0] = 0.0;
+  EXPECT_EQ(detector.observe(record)->name, "closed");
+  EXPECT_TRUE(detector.missing().empty());
+}
+
+TEST(EventDetector, ALimitIsHitWhenItActsAndIsNear) {
+  const Condition upper{.kind = ConditionKind::kLimit, .index = 0, .side = LimitState::kUpper};
+  EventDetector detector({rule("hit", {upper})}, catalogue());
+  CycleRecord record = running(1.0);
+  LimitReport& limit = record.limits[0];
+  limit.to_upper = 0.004;
+  EXPECT_FALSE(detector.observe(record));  // near, but inactive
+  limit.state = LimitState::kUpper;
+  limit.to_upper = 0.2;
+  EXPECT_FALSE(detector.observe(record));  // active (braking), but not near
+  limit.to_upper = 0.004;
+  limit.cause = LimitCause::kLock;
+  EXPECT_FALSE(detector.observe(record));  // a lock is not the limit
+  limit.cause = LimitCause::kPosition;
+  EXPECT_TRUE(detector.observe(record));
+}
+
+TEST(EventDetector, AllConditionsMustHoldTogether) {
+  EventDetector detector({rule("leaning", {{.kind = ConditionKind::kLocked, .index = 1},
+                                           {.kind = ConditionKind::kForceAbove, .value = 10.0}})},
+                         catalogue());
+  CycleRecord record = running(0.0);
+  record.robot.w_H[0] = 11.0;
+  EXPECT_FALSE(detector.observe(record));
+  record.limits[1].cause = LimitCause::kLock;
+  record.robot.w_H[0] = 9.0;
+  EXPECT_FALSE(detector.observe(record));
+  record.robot.w_H[0] = 11.0;
+  EXPECT_TRUE(detector.observe(record));
+}
+
+TEST(EventDetector, WithoutRulesEveryLimitThatBeginsToActIsAnEvent) {
+  EventDetector detector({}, catalogue());
+  CycleRecord record = running(0.0);
+  EXPECT_FALSE(detector.observe(record));
+  record.limits[1].state = LimitState::kLower;
+  record.limits[1].to_lower = 0.0;
+  EXPECT_EQ(detector.observe(record)->name, "hinge");
+  EXPECT_FALSE(detector.observe(record));
+}
+
+TEST(Distribution, GivesMedianPercentileAndMaximum) {
+  std::vector<float> values;
+  for (int i = 1000; i >= 0; --i) values.push_back(static_cast<float>(i));
+  const Distribution d = distribution(values);
+  EXPECT_EQ(d.median, 500.0);
+  EXPECT_EQ(d.p99_9, 999.0);
+  EXPECT_EQ(d.max, 1000.0);
+  std::vector<float> none;
+  EXPECT_EQ(distribution(none).max, 0.0);
+}
+
+TEST(Summary, TheJsonHoldsWhatScriptsNeed) {
+  Summary summary(catalogue());
+  Sample sample;
+  for (int k = 0; k < 10; ++k) {
+    sample.record = running(1e-3 * k);
+    sample.record.limits[1].excess = 1e-3;
+    sample.record.robot.w_H[1] = 4.0;
+    sample.record.a_H = Eigen::Vector3d(k, 0, 0);
+    sample.record.active_set_changes = 1;
+    sample.cycle_time_us = k;
+    summary.add(sample);
+  }
+  summary.add(Event{"open", 0.5, "the door is open"});
+  const auto json = nlohmann::json::parse(summary.to_json({.version = "1.2.3"}, {"closed"}));
+  EXPECT_EQ(json["version"], "1.2.3");
+  EXPECT_EQ(json["events"][0]["name"], "open");
+  EXPECT_EQ(json["events"][0]["time_s"], 0.5);
+  EXPECT_EQ(json["missing_events"][0], "closed");
+  EXPECT_EQ(json["limits"]["hinge"]["worst_violation"], 1e-3);
+  EXPECT_EQ(json["limits"]["m4"]["worst_violation"], 0.0);
+  EXPECT_EQ(json["force"]["mean_N"], 4.0);
+  EXPECT_EQ(json["solver"]["status"]["solved"], 10);
+  EXPECT_NEAR(json["solver"]["active_set_changes_per_second"].get<double>(), 10 / 9e-3, 1e-6);
+  EXPECT_EQ(json["acceleration_change_per_cycle"]["median"], 1.0);
+  EXPECT_EQ(json["cycle_time_us"]["max"], 9.0);
+  EXPECT_EQ(json["allocations_in_loop"], 0);
+  EXPECT_TRUE(json["limits_held"].get<bool>());
+}
+
+TEST(Summary, MoreThanFiveMilliradiansOutsideIsALimitExceeded) {
+  Summary summary(catalogue());
+  Sample sample;
+  sample.record = running(0.0);
+  sample.record.limits[0].excess = 5.1e-3;
+  summary.add(sample);
+  EXPECT_FALSE(summary.limits_held());
+}
+
+}  // namespace
+}  // namespace hg::evaluation

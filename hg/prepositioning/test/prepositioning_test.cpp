@@ -1,0 +1,106 @@
+#include "hg/prepositioning/prepositioning.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hg/core/error.h"
+#include "hg/model/haptic_giant.h"
+#include "hg/signals/drive_model.h"
+
+namespace hg::prepositioning {
+namespace {
+
+constexpr double kDt = 1e-3;
+
+Config config() {
+  Config gantry;
+  gantry.n_p = 2;
+  gantry.q_limits = {Interval{-1.40, 1.40}, Interval{-1.60, 1.60}};
+  return gantry;
+}
+
+// The hand is held at a fixed pose while the gantry moves below it, with the drive of `drive`.
+struct HeldHand {
+  DriveModel drive;
+  Pose T_B_H;
+  Eigen::Vector2d q{0.0, 0.0}, dq{0.0, 0.0};
+  std::array<CommandDelay, 2> delay{};
+  double worst_excess = 0.0;
+
+  Command run(const Config& gantry, double seconds) {
+    Command command;
+    for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
+      Vector6 q_m;
+      EXPECT_EQ(model::haptic_giant::inverse(T_B_H, q, {}, q_m),
+                model::haptic_giant::InverseStatus::kSolved);
+      RobotState robot;
+      robot.q_p = q;
+      robot.dq_p = dq;
+      command = step(gantry, robot, q_m, false);
+      for (int i = 0; i < 2; ++i) {
+        const double ddq = drive_acceleration(
+            drive, dq[i], delay[static_cast<std::size_t>(i)].shift(command.dq[i], 4));
+        q[i] += kDt * dq[i] + 0.5 * kDt * kDt * ddq;
+        dq[i] += kDt * ddq;
+        const Interval limits = gantry.q_limits[static_cast<std::size_t>(i)];
+        worst_excess = std::max({worst_excess, q[i] - limits.ub, limits.lb - q[i]});
+      }
+    }
+    return command;
+  }
+};
+
+Pose hand_at(double x, double y) {
+  Vector6 q_m;
+  q_m << 0.3, 0.5 * std::numbers::pi, -std::atan2(0.53, 0.67), 1.4, 0.0, 0.0;
+  Pose pose = model::haptic_giant::hand_pose({0.0, 0.0}, q_m);
+  pose.p.x() = x;
+  pose.p.y() = y;
+  return pose;
+}
+
+TEST(Prepositioning, BringsJoints2And3ToTheirGoals) {
+  HeldHand hand{.drive = {}, .T_B_H = hand_at(0.2, 0.1)};
+  hand.q << 0.15, 0.05;
+  hand.run(config(), 6.0);
+  Vector6 q_m;
+  ASSERT_EQ(model::haptic_giant::inverse(hand.T_B_H, hand.q, {}, q_m),
+            model::haptic_giant::InverseStatus::kSolved);
+  EXPECT_NEAR(q_m[1], 0.5 * std::numbers::pi, 1e-6);
+  EXPECT_NEAR(q_m[2], -std::atan2(0.53, 0.67), 1e-6);
+}
+
+TEST(Prepositioning, StopsAtItsLimitsWhateverTheTarget) {
+  Config gantry = config();
+  gantry.q_limits = {Interval{-0.05, 0.05}, Interval{-0.03, 0.03}};
+  HeldHand hand{.drive = {}, .T_B_H = hand_at(0.5, -0.4)};
+  const Command last = hand.run(gantry, 4.0);
+  EXPECT_LE(hand.worst_excess, 1e-6);
+  EXPECT_NEAR(hand.q[0], 0.05, 1e-3);
+  EXPECT_NEAR(hand.q[1], -0.03, 1e-3);
+  EXPECT_EQ(last.q_target[0], 0.05);
+}
+
+TEST(Prepositioning, StandsStillWhileTheDeviceIsBlocked) {
+  Vector6 q_m;
+  q_m << 0, 1, 0, 1.4, 0, 0;
+  RobotState robot;
+  robot.q_p = VectorP::Zero(2);
+  EXPECT_GT(step(config(), robot, q_m, false).dq.norm(), 0.01);
+  EXPECT_EQ(step(config(), robot, q_m, true).dq.norm(), 0.0);
+}
+
+TEST(Prepositioning, RefusesImpossibleConfigurations) {
+  Config gantry = config();
+  gantry.k_ppu = 0.0;
+  EXPECT_THROW(check(gantry), SetupError);
+  gantry = config();
+  gantry.q_limits[1] = {1.0, -1.0};
+  EXPECT_THROW(check(gantry), SetupError);
+}
+
+}  // namespace
+}  // namespace hg::prepositioning

@@ -1,0 +1,118 @@
+#include "hg/runtime/runtime.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "hg/core/error.h"
+#include "hg/rendering/test/test_models.h"
+
+namespace hg::runtime {
+namespace {
+
+const VectorM kPosture = rendering::posture({0.3, 1.5, -0.6, 1.3, 0.2, 0.4});
+
+// Follows perfectly; the gantry stands still whatever it is told.
+class StillDevice final : public device::Device {
+ public:
+  StillDevice() {
+    sensors_.q_m = kPosture;
+    sensors_.dq_m = VectorM::Zero(6);
+    sensors_.q_p = VectorP::Zero(2);
+    sensors_.dead_man = true;
+  }
+  void read(SensorFrame& sensors) noexcept override { sensors = sensors_; }
+  void write(const CommandFrame& command) noexcept override {
+    ++sensors_.sequence;
+    if (sensors_.sequence == lost_sample) ++sensors_.sequence;
+    last_target = command.hand_target;
+  }
+
+  std::uint64_t lost_sample = 0;
+  HandTarget last_target;
+
+ private:
+  SensorFrame sensors_;
+};
+
+struct Parts {
+  StillDevice device;
+  std::unique_ptr<cycle::Cycle> cycle;
+
+  Parts() {
+    const rendering::DeviceModel model = rendering::unlimited_device();
+    rendering::TwinModel twin =
+        rendering::unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
+    twin.q_start =
+        rendering::floating_at(rendering::handle_pose(model, Eigen::Vector2d::Zero(), kPosture));
+    cycle::Config config;
+    config.prepositioning.n_p = 2;
+    config.monitor.joint_range.assign(6, {-10.0, 10.0});
+    config.monitor.joint_speed_max.assign(6, 10.0);
+    cycle = std::make_unique<cycle::Cycle>(config, model, twin);
+  }
+};
+
+Report run(Parts& parts, const Options& options, std::uint64_t& seen) {
+  Runtime runtime(options, *parts.cycle, parts.device);
+  runtime.start();
+  auto sample = std::make_unique<Sample>();
+  seen = 0;
+  while (true) {
+    const bool is_finished = runtime.is_finished();
+    while (runtime.pop(*sample)) ++seen;
+    if (is_finished) break;
+  }
+  return runtime.join();
+}
+
+TEST(Runtime, FastModePlaysTheWholeDurationAndLosesNoSample) {
+  Parts parts;
+  std::uint64_t seen = 0;
+  const Report report = run(parts, {.is_fast = true, .duration_s = 0.5, .ring = 16}, seen);
+  EXPECT_GE(report.cycles, 501u);
+  EXPECT_LE(report.cycles, 501u + 1000u);
+  EXPECT_EQ(seen, report.cycles);
+  EXPECT_EQ(report.allocations, 0u);
+}
+
+TEST(Runtime, RealTimeModePlaysTheWholeDuration) {
+  Parts parts;
+  std::uint64_t seen = 0;
+  const Report report = run(parts, {.rate_Hz = 500.0, .duration_s = 0.2}, seen);
+  EXPECT_GE(report.cycles, 100u);
+  EXPECT_EQ(report.dropped + seen, report.cycles);
+  EXPECT_EQ(report.allocations, 0u);
+}
+
+TEST(Runtime, EndsAtAFault) {
+  Parts parts;
+  parts.device.lost_sample = 50;
+  std::uint64_t seen = 0;
+  const Report report = run(parts, {.is_fast = true, .duration_s = 10.0}, seen);
+  EXPECT_LE(report.cycles, 60u);
+}
+
+TEST(Runtime, HandsTheHandTargetThrough) {
+  Parts parts;
+  Runtime runtime({.is_fast = true, .duration_s = 0.1}, *parts.cycle, parts.device);
+  HandTarget target;
+  target.active = true;
+  target.p_B.x() = 0.25;
+  runtime.set_hand_target(target);
+  runtime.start();
+  auto sample = std::make_unique<Sample>();
+  while (!runtime.is_finished()) runtime.pop(*sample);
+  runtime.join();
+  EXPECT_TRUE(parts.device.last_target.active);
+  EXPECT_EQ(parts.device.last_target.p_B.x(), 0.25);
+}
+
+TEST(Runtime, RefusesImpossibleOptions) {
+  EXPECT_THROW(check({.rate_Hz = 0.0}), SetupError);
+  EXPECT_THROW(check({.rate_Hz = kInfinity}), SetupError);
+  EXPECT_THROW(check({.duration_s = -1.0}), SetupError);
+}
+
+}  // namespace
+}  // namespace hg::runtime
