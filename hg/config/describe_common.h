@@ -1,0 +1,59 @@
+/// Descriptions shared by several files: limits, poses.
+///
+/// A description is a function template: V is Loader or DocWriter.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "hg/config/range.h"
+#include "hg/core/types.h"
+#include "hg/limits/acceleration_bounds.h"
+#include "hg/model/urdf.h"
+
+namespace hg::config {
+
+inline constexpr JointKey kLowest = {"q_min_rad", "q_min_m"};
+inline constexpr JointKey kHighest = {"q_max_rad", "q_max_m"};
+inline constexpr JointKey kSpeed = {"dq_max_rad_per_s", "dq_max_m_per_s"};
+inline constexpr JointKey kAcceleration = {"ddq_max_rad_per_s2", "ddq_max_m_per_s2"};
+
+template <class V>
+void describe_positions(V& v, limits::JointLimits& limits, bool is_angle) {
+  v.joint_number(kLowest, is_angle, limits.q_min, kUnlimited, "lowest position");
+  v.joint_number(kHighest, is_angle, limits.q_max, kUnlimited, "highest position");
+  v.rule(limits.q_min <= limits.q_max, kHighest.of(is_angle), "q_max must not be below q_min",
+         model::to_text(limits.q_max) + " with q_min " + model::to_text(limits.q_min));
+}
+
+template <class V>
+void describe_ratings(V& v, limits::JointLimits& limits, bool is_angle, Need need) {
+  v.joint_number(kSpeed, is_angle, limits.dq_max, kPositiveOrNone, "largest speed", need);
+  v.joint_number(kAcceleration, is_angle, limits.ddq_max, kPositiveOrNone, "largest acceleration",
+                 need);
+}
+
+/// Position and roll, pitch, yaw as in a URDF: R = Rz(yaw) Ry(pitch) Rx(roll).
+struct Placement {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  double roll = 0.0, pitch = 0.0, yaw = 0.0;
+};
+
+inline Pose pose_of(const Placement& placement) {
+  const auto rotation = Eigen::AngleAxisd(placement.yaw, Eigen::Vector3d::UnitZ()) *
+                        Eigen::AngleAxisd(placement.pitch, Eigen::Vector3d::UnitY()) *
+                        Eigen::AngleAxisd(placement.roll, Eigen::Vector3d::UnitX());
+  return {placement.p, rotation.toRotationMatrix()};
+}
+
+template <class V>
+void describe(V& v, Placement& placement) {
+  v.number("x_m", placement.p.x(), kAnyNumber, "position");
+  v.number("y_m", placement.p.y(), kAnyNumber, "position");
+  v.number("z_m", placement.p.z(), kAnyNumber, "position");
+  v.number("roll_rad", placement.roll, kAnyNumber, "about x, first");
+  v.number("pitch_rad", placement.pitch, kAnyNumber, "about y, second");
+  v.number("yaw_rad", placement.yaw, kAnyNumber, "about z, last");
+}
+
+}  // namespace hg::config

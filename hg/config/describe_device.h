@@ -1,0 +1,139 @@
+/// Description of device.yaml.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hg/config/describe_common.h"
+#include "hg/config/device.h"
+
+namespace hg::config {
+
+struct DeviceJoint {
+  std::string name;
+  bool is_angle = true;
+  limits::JointLimits limits;
+};
+
+/// What stands in device.yaml, before it becomes a Device.
+struct DeviceDraft {
+  std::string name;
+  std::filesystem::path urdf;
+  std::vector<std::string> joint_names, frame_names;  ///< of the URDF
+  std::vector<DeviceJoint> joints;                    ///< all, with the limits of the URDF
+  std::vector<int> gantry, manipulator;               ///< indices of joints
+  std::vector<std::string> manipulator_names;
+  int handle = -1, elbow = -1;
+  Placement sensor;
+  double rate_Hz = 1000.0;
+  Kinematics kinematics = Kinematics::kHapticGiant;
+  PostureBranch start_branch;
+  std::vector<rendering::VirtualJoint> virtual_joints;
+  std::vector<rendering::CartesianLimit> cartesian_limits;
+  DriveModel drive;
+  rendering::Options rendering;
+  prepositioning::Config prepositioning;
+  estimation::Config estimation;
+  safety::MonitorConfig monitor;
+};
+
+inline constexpr std::array<Choice<Kinematics>, 1> kKinematics = {
+    {{"haptic_giant", Kinematics::kHapticGiant}}};
+inline constexpr std::array<Choice<int>, 2> kSigns = {{{"positive", 1}, {"negative", -1}}};
+
+template <class V>
+void describe_chain(V& v, DeviceDraft& d) {
+  v.words("name", d.name, "name of the device", Need::kRequired);
+  v.path("urdf", d.urdf, "kinematics and inertia; its limits are the defaults of joints",
+         Need::kRequired);
+}
+
+template <class V>
+void describe_structure(V& v, DeviceDraft& d) {
+  v.names("gantry", d.gantry, d.joint_names, "a joint of the URDF",
+          "prepositioning joints, from the root on", Need::kRequired);
+  v.names("manipulator", d.manipulator, d.joint_names, "a joint of the URDF",
+          "the joints after the gantry, to the tip", Need::kRequired);
+  v.name("handle", d.handle, d.frame_names, "a link of the URDF", "frame H, held by the user",
+         Need::kRequired);
+  v.name("elbow", d.elbow, d.frame_names, "a link of the URDF", "frame to be recorded and shown");
+  v.group(
+      "sensor", [&](auto& child) { describe(child, d.sensor); },
+      "force/torque sensor S in the handle frame H");
+  v.choice("kinematics", d.kinematics, kKinematics, "how the start posture is found");
+  v.group(
+      "start_branch",
+      [&](auto& child) {
+        child.choice("q2", d.start_branch.q2, kSigns, "sign of joint 2");
+        child.choice("q4", d.start_branch.q4, kSigns, "sign of joint 4");
+        child.choice("s", d.start_branch.s, kSigns, "sign of q4 + q5");
+      },
+      "which of the postures that reach the start pose is taken");
+  v.number("rate_Hz", d.rate_Hz, {.lb = 100.0, .ub = 20000.0}, "cycles per second");
+}
+
+template <class V>
+void describe(V& v, DeviceJoint& joint, bool is_gantry) {
+  describe_positions(v, joint.limits, joint.is_angle);
+  if (v.covers(!is_gantry)) describe_ratings(v, joint.limits, joint.is_angle, Need::kOptional);
+}
+
+template <class V>
+void describe(V& v, rendering::VirtualJoint& joint, const std::vector<std::string>& names) {
+  v.words("name", joint.name, "shown with the limit", Need::kRequired);
+  joint.weights = VectorM::Zero(static_cast<int>(names.size()));
+  v.numbers_by_name(
+      "weights", names, "a manipulator joint", kAnyNumber,
+      [&](int index, double weight) { joint.weights[index] = weight; },
+      "factor of each revolute joint in the sum");
+  v.rule(joint.weights.norm() > 0.0, "weights", "at least one joint must have a weight");
+  describe_positions(v, joint.limits, true);
+  describe_ratings(v, joint.limits, true, Need::kRequired);
+}
+
+template <class V>
+void describe(V& v, rendering::CartesianLimit& limit, const std::vector<std::string>& frames) {
+  v.words("name", limit.name, "shown with the limit", Need::kRequired);
+  v.name("frame", limit.frame, frames, "a link of the URDF", "its origin is limited",
+         Need::kRequired);
+  limits::JointLimits ratings = {.dq_max = 1.5, .ddq_max = 5.0};  // [DESIGN] 4
+  describe_ratings(v, ratings, false, Need::kOptional);
+  v.number("margin_m", limit.margin, kNotNegative, "the rendered box is smaller on every side");
+  constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+  for (std::size_t i = 0; i < kAxes.size(); ++i) {
+    limits::JointLimits axis = ratings;
+    const auto read = [&](auto& child) { describe_positions(child, axis, false); };
+    if (!v.group(kAxes[i], read, "along this axis of B; without it there is no limit")) continue;
+    v.rule(axis.q_max - axis.q_min > 2.0 * limit.margin, kAxes[i],
+           "the margin must leave some of the range");
+    limit.axes[i] = axis;
+  }
+}
+
+template <class V>
+void describe_limits(V& v, DeviceDraft& d) {
+  v.groups_by_name(
+      "joints", d.joint_names, "a joint of the URDF",
+      [&](auto& child, int index) {
+        const bool is_gantry = std::ranges::find(d.gantry, index) != d.gantry.end();
+        describe(child, d.joints[static_cast<std::size_t>(index)], is_gantry);
+      },
+      "limits; what is not given is taken from the URDF");
+  v.list(
+      "virtual_joints",
+      [&](auto& child) { describe(child, d.virtual_joints.emplace_back(), d.manipulator_names); },
+      "limits of sums of joints, for example near a singularity; at most 2");
+  v.list(
+      "cartesian_limits",
+      [&](auto& child) { describe(child, d.cartesian_limits.emplace_back(), d.frame_names); },
+      "boxes in B, highest priority first; at most 2");
+  v.rule(d.virtual_joints.size() <= kMaxVirtualJoints, "virtual_joints", "at most 2 are possible");
+  v.rule(d.cartesian_limits.size() <= kMaxCartesianFrames, "cartesian_limits",
+         "at most 2 are possible");
+}
+
+}  // namespace hg::config

@@ -1,0 +1,67 @@
+/// Description of device.yaml, second part: drive, gains, estimation, monitor.
+#pragma once
+
+#include "hg/config/describe_device.h"
+
+namespace hg::config {
+
+template <class V>
+void describe(V& v, safety::MonitorConfig& monitor) {
+  v.number("force_max_N", monitor.force_max, kPositive, "force of the user");
+  v.number("torque_max_Nm", monitor.torque_max, kPositive, "torque of the user");
+  v.number("position_tolerance_rad", monitor.position_tolerance, kPositive, "beyond a joint limit");
+  v.number("cartesian_tolerance_m", monitor.cartesian_tolerance, kPositive,
+           "outside a Cartesian limit");
+  v.number("speed_tolerance", monitor.speed_tolerance, {.lb = 1.0}, "times the largest speed");
+  v.number("tracking_tolerance_rad", monitor.tracking_tolerance, kPositive,
+           "between reference and measured joint");
+}
+
+template <class V>
+void describe_behaviour(V& v, DeviceDraft& d) {
+  v.group(
+      "drive",
+      [&](auto& child) {
+        child.number("dead_time_s", d.drive.dead_time, kNotNegative, "until a command has effect");
+        child.number("lag_s", d.drive.lag, kPositive, "time constant of the speed");
+        child.number("dq_max_m_per_s", d.drive.dq_max, kPositive, "largest speed");
+        child.number("ddq_max_m_per_s2", d.drive.ddq_max, kPositive, "largest acceleration");
+        child.rule(d.drive.dead_time * d.rate_Hz < CommandDelay::kCapacity, "dead_time_s",
+                   "the dead time must be shorter than 256 cycles");
+      },
+      "how the gantry follows its velocity command");
+  v.group(
+      "synchronisation",
+      [&](auto& child) {
+        child.number("kP_tran_1_per_s2", d.rendering.kP_tran, kPositive, "position");
+        child.number("kD_tran_1_per_s", d.rendering.kD_tran, kPositive, "velocity");
+        child.number("kP_rot_1_per_s2", d.rendering.kP_rot, kPositive, "orientation");
+        child.number("kD_rot_1_per_s", d.rendering.kD_rot, kPositive, "angular velocity");
+      },
+      "gains that pull the handle onto the twin, eq. (11)");
+  v.group(
+      "prepositioning",
+      [&](auto& child) {
+        child.number("k_ppu_1_per_s", d.prepositioning.k_ppu, kPositive, "gain, eq. (27)");
+        child.number("dq_max_m_per_s", d.prepositioning.dq_max, kPositive, "largest speed used");
+        child.number("ddq_brake_m_per_s2", d.prepositioning.drive.ddq_max, kPositive,
+                     "deceleration that can be relied on");
+        child.rule(d.prepositioning.dq_max <= d.drive.dq_max, "dq_max_m_per_s",
+                   "must not exceed the speed of the drive");
+        child.rule(d.prepositioning.drive.ddq_max <= d.drive.ddq_max, "ddq_brake_m_per_s2",
+                   "must not exceed the acceleration of the drive");
+      },
+      "how the gantry moves along with the hand");
+  v.group(
+      "estimation",
+      [&](auto& child) {
+        child.number("observer_pole_Hz", d.estimation.observer_pole_Hz, kPositive,
+                     "triple pole of the observer of the gantry's motion");
+      },
+      "from sensors to state");
+  v.group(
+      "monitor", [&](auto& child) { describe(child, d.monitor); },
+      "when the device is stopped by a fault");
+}
+
+}  // namespace hg::config

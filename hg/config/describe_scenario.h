@@ -1,0 +1,123 @@
+/// Description of scenario.yaml.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hg/config/range.h"
+#include "hg/evaluation/events.h"
+#include "hg/user/person.h"
+
+namespace hg::config {
+
+/// Names that events may use, and what they stand for.
+struct EventNames {
+  std::vector<std::string> limits;       ///< of the catalogue
+  std::vector<std::string> twin_joints;  ///< without floating ones
+  std::vector<int> twin_limits;          ///< their indices in the catalogue
+  std::vector<int> twin_coordinates;     ///< their indices in q_a
+  std::vector<std::string> manipulator;
+  std::vector<std::string> gantry;
+};
+
+/// What stands in scenario.yaml, before it becomes a Scenario.
+struct ScenarioDraft {
+  std::string title, description;
+  std::filesystem::path device, twin, script;
+  user::PersonKind person = user::PersonKind::kScript;
+  double duration_s = 0.0;
+  EventNames names;
+  std::vector<evaluation::EventRule> events;
+};
+
+inline constexpr std::array<Choice<user::PersonKind>, 2> kPersons = {
+    {{"mouse", user::PersonKind::kMouse}, {"none", user::PersonKind::kNone}}};
+inline constexpr std::array<Choice<LimitState>, 2> kSides = {
+    {{"lower", LimitState::kLower}, {"upper", LimitState::kUpper}}};
+
+template <class V>
+void describe_parts(V& v, ScenarioDraft& d) {
+  v.words("title", d.title, "one line", Need::kRequired);
+  v.words("description", d.description, "one sentence", Need::kRequired);
+  v.path("device", d.device, "device.yaml", Need::kRequired);
+  v.path("twin", d.twin, "twin.yaml", Need::kRequired);
+  v.path_or_choice("person", d.script, d.person, kPersons,
+                   "script.yaml of the hand, or mouse, or none", Need::kRequired);
+  v.number("duration_s", d.duration_s, kPositive, "length of the run", Need::kRequired);
+}
+
+/// Conditions on single limits.
+template <class V>
+void describe_limit_conditions(V& v, const EventNames& names, evaluation::EventRule& event) {
+  using evaluation::ConditionKind;
+  LimitState side = LimitState::kInactive;
+  v.choice("side", side, kSides, "of limit and speed_limit; without it either side");
+  int index = 0;
+  if (v.name("limit", index, names.limits, "a limit", "this limit is felt")) {
+    event.all_of.push_back({.kind = ConditionKind::kLimit, .index = index, .side = side});
+  }
+  if (v.name("speed_limit", index, names.limits, "a limit", "its largest speed is felt")) {
+    event.all_of.push_back({.kind = ConditionKind::kSpeedLimit, .index = index, .side = side});
+  }
+  if (v.name("locked", index, names.twin_joints, "a joint of the twin", "a lock holds it")) {
+    const int limit = names.twin_limits[static_cast<std::size_t>(index)];
+    event.all_of.push_back({.kind = ConditionKind::kLocked, .index = limit});
+  }
+}
+
+template <class V>
+void describe_conditions(V& v, const EventNames& names, evaluation::EventRule& event) {
+  using evaluation::ConditionKind;
+  describe_limit_conditions(v, names, event);
+  const auto number = [&](const char* key, ConditionKind kind, const char* text) {
+    double value = 0.0;
+    if (v.number(key, value, kNotNegative, text)) {
+      event.all_of.push_back({.kind = kind, .value = value});
+    }
+  };
+  const auto by_name = [&](const char* key, ConditionKind kind, const std::vector<std::string>& of,
+                           const char* what, const char* text) {
+    v.numbers_by_name(
+        key, of, what, kAnyNumber,
+        [&](int index, double value) {
+          const bool is_twin =
+              kind == ConditionKind::kTwinAbove || kind == ConditionKind::kTwinBelow;
+          if (is_twin) index = names.twin_coordinates[static_cast<std::size_t>(index)];
+          event.all_of.push_back({.kind = kind, .index = index, .value = value});
+        },
+        text);
+  };
+  number("force_above_N", ConditionKind::kForceAbove, "norm of the user's force");
+  number("force_below_N", ConditionKind::kForceBelow, "norm of the user's force");
+  by_name("twin_above", ConditionKind::kTwinAbove, names.twin_joints, "a joint of the twin",
+          "positions in rad or m");
+  by_name("twin_below", ConditionKind::kTwinBelow, names.twin_joints, "a joint of the twin",
+          "positions in rad or m");
+  by_name("turns", ConditionKind::kTurns, names.manipulator, "a manipulator joint",
+          "full turns since the start, with sign");
+  by_name("gantry_above", ConditionKind::kGantryAbove, names.gantry, "a gantry joint",
+          "positions in m");
+  by_name("gantry_below", ConditionKind::kGantryBelow, names.gantry, "a gantry joint",
+          "positions in m");
+  number("elapsed_s", ConditionKind::kElapsed, "time since the start");
+  v.rule(!event.all_of.empty(), "", "an event needs at least one condition");
+}
+
+template <class V>
+void describe_events(V& v, ScenarioDraft& d) {
+  v.list(
+      "events",
+      [&](auto& child) {
+        evaluation::EventRule& event = d.events.emplace_back();
+        child.words("name", event.name, "short, for example t_a", Need::kRequired);
+        child.words("what", event.what, "one sentence for people", Need::kRequired);
+        child.group(
+            "when", [&](auto& conditions) { describe_conditions(conditions, d.names, event); },
+            "conditions, all true at the same time", Need::kRequired);
+      },
+      "expected events: each is looked for once the one before it has happened");
+}
+
+}  // namespace hg::config

@@ -1,0 +1,152 @@
+#include "hg/config/device.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hg/config/describe_device.h"
+#include "hg/config/describe_device_behaviour.h"
+#include "hg/config/loader.h"
+#include "hg/config/read_chain.h"
+#include "hg/core/error.h"
+
+namespace hg::config {
+namespace {
+
+void take_joints(const model::Chain& chain, DeviceDraft& draft) {
+  draft.frame_names = chain.frame_names();
+  for (const model::Joint& joint : chain.joints()) {
+    draft.joint_names.push_back(joint.name);
+    draft.joints.push_back(
+        {joint.name,
+         joint.type != model::JointType::kPrismatic,
+         {.q_min = joint.position.lb, .q_max = joint.position.ub, .dq_max = joint.velocity_max}});
+  }
+}
+
+// The chain has the gantry first, then the manipulator, and nothing else.
+void check_order(Loader& loader, const model::Chain& chain, const DeviceDraft& draft) {
+  std::vector<int> named = draft.gantry;
+  named.insert(named.end(), draft.manipulator.begin(), draft.manipulator.end());
+  std::string expected;
+  bool is_right = named.size() == chain.joints().size();
+  for (std::size_t i = 0; i < chain.joints().size(); ++i) {
+    (expected += i > 0 ? ", " : "") += chain.joints()[i].name;
+    is_right = is_right && named[i] == static_cast<int>(i);
+  }
+  loader.rule(
+      is_right, "manipulator",
+      "gantry and manipulator together must be the joints of the URDF in its order, " + expected);
+  loader.rule(draft.gantry.size() <= kMaxGantry, "gantry", "at most 2 joints are possible");
+  loader.rule(draft.manipulator.size() <= kMaxManipulator, "manipulator",
+              "at most 7 joints are possible");
+}
+
+void check_joints(Loader& loader, const model::Chain& chain, const DeviceDraft& draft) {
+  for (int i : draft.gantry) {
+    const model::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
+    loader.rule(joint.type == model::JointType::kPrismatic, "gantry",
+                "gantry joints must be prismatic", "'" + joint.name + "'");
+  }
+  for (int i : draft.manipulator) {
+    const DeviceJoint& joint = draft.joints[static_cast<std::size_t>(i)];
+    loader.rule(chain.joints()[static_cast<std::size_t>(i)].nv == 1, "manipulator",
+                "a device has no floating joints", "'" + joint.name + "'");
+    loader.rule(std::isfinite(joint.limits.dq_max) && std::isfinite(joint.limits.ddq_max), "joints",
+                joint.name + " needs " + std::string(kSpeed.of(joint.is_angle)) + " and " +
+                    std::string(kAcceleration.of(joint.is_angle)));
+  }
+  for (const rendering::VirtualJoint& sum : draft.virtual_joints) {
+    for (int i = 0; i < sum.weights.size(); ++i) {
+      const int joint = draft.manipulator[static_cast<std::size_t>(i)];
+      loader.rule(sum.weights[i] == 0.0 || draft.joints[static_cast<std::size_t>(joint)].is_angle,
+                  "virtual_joints", "only revolute joints can be added",
+                  "'" + draft.manipulator_names[static_cast<std::size_t>(i)] + "'");
+    }
+  }
+  loader.rule(draft.gantry.size() == 2 && draft.manipulator.size() == 6, "kinematics",
+              "haptic_giant needs two gantry joints and six manipulator joints");
+}
+
+rendering::DeviceModel make_model(model::Chain chain, const DeviceDraft& draft) {
+  rendering::DeviceModel model = {.chain = std::move(chain),
+                                  .n_p = static_cast<int>(draft.gantry.size()),
+                                  .n_m = static_cast<int>(draft.manipulator.size()),
+                                  .handle = draft.handle,
+                                  .elbow = draft.elbow,
+                                  .joint_limits = {},
+                                  .virtual_joints = draft.virtual_joints,
+                                  .cartesian_limits = draft.cartesian_limits};
+  for (int i : draft.manipulator) {
+    model.joint_limits.push_back(draft.joints[static_cast<std::size_t>(i)].limits);
+  }
+  return model;
+}
+
+// What follows from other values: periods, the drive in all its roles, monitored ranges.
+void derive(Device& device, const DeviceDraft& draft) {
+  const double dt = 1.0 / device.rate_Hz;
+  device.rendering.dt = dt;
+  device.estimation.dt = dt;
+  device.estimation.drive = device.drive;
+  device.estimation.T_H_S = device.T_H_S;
+
+  device.prepositioning.n_p = device.model.n_p;
+  for (std::size_t i = 0; i < draft.gantry.size(); ++i) {
+    const limits::JointLimits& axis =
+        draft.joints[static_cast<std::size_t>(draft.gantry[i])].limits;
+    device.prepositioning.q_limits[i] = {axis.q_min, axis.q_max};
+  }
+  device.prepositioning.drive.tau = device.drive.dead_time + device.drive.lag + dt;
+
+  device.monitor.gantry_speed_max = device.prepositioning.dq_max;
+  for (const limits::JointLimits& joint : device.model.joint_limits) {
+    device.monitor.joint_range.push_back({joint.q_min, joint.q_max});
+    device.monitor.joint_speed_max.push_back(joint.dq_max);
+  }
+}
+
+}  // namespace
+
+Device load_device(const std::filesystem::path& file) {
+  SourceReader reader;
+  return load_device(file, reader);
+}
+
+Device load_device(const std::filesystem::path& path, SourceReader& reader) {
+  const std::size_t first_source = reader.texts().size();
+  LoaderFile file = {path, reader, Faults(path.generic_string())};
+  DeviceDraft draft;
+  std::optional<model::Chain> chain;
+  load_file(file, [&](Loader& loader) {
+    describe_chain(loader, draft);
+    chain = read_chain(file, draft.urdf, {});
+    take_joints(*chain, draft);
+    describe_structure(loader, draft);
+    for (int i : draft.manipulator) {
+      draft.manipulator_names.push_back(draft.joint_names[static_cast<std::size_t>(i)]);
+    }
+    describe_limits(loader, draft);
+    describe_behaviour(loader, draft);
+    check_order(loader, *chain, draft);
+    check_joints(loader, *chain, draft);
+  });
+
+  Device device = {.name = draft.name,
+                   .urdf = draft.urdf,
+                   .rate_Hz = draft.rate_Hz,
+                   .kinematics = draft.kinematics,
+                   .start_branch = draft.start_branch,
+                   .drive = draft.drive,
+                   .T_H_S = pose_of(draft.sensor),
+                   .model = make_model(std::move(*chain), draft),
+                   .rendering = draft.rendering,
+                   .prepositioning = draft.prepositioning,
+                   .estimation = draft.estimation,
+                   .monitor = draft.monitor,
+                   .sources = reader.since(first_source)};
+  derive(device, draft);
+  return device;
+}
+
+}  // namespace hg::config

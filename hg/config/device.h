@@ -1,0 +1,51 @@
+/// A device from its YAML file: device.yaml, described in docs/configuration.md.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hg/config/sources.h"
+#include "hg/core/types.h"
+#include "hg/estimation/estimation.h"
+#include "hg/prepositioning/prepositioning.h"
+#include "hg/rendering/device_model.h"
+#include "hg/rendering/options.h"
+#include "hg/safety/monitor.h"
+#include "hg/signals/drive_model.h"
+
+namespace hg::config {
+
+/// How a posture for a handle pose is found at the start.
+enum class Kinematics {
+  kHapticGiant,  ///< closed form of [HANDBOOK] 2.3: two gantry axes, six joints
+};
+
+/// Signs that select one of the postures which reach the same handle pose, +1 or -1.
+struct PostureBranch {
+  int q2 = 1;
+  int q4 = 1;
+  int s = 1;  ///< q4 + q5
+};
+
+struct Device {
+  std::string name;
+  std::filesystem::path urdf;
+  double rate_Hz = 1000.0;
+  Kinematics kinematics = Kinematics::kHapticGiant;
+  PostureBranch start_branch;
+  DriveModel drive;
+  Pose T_H_S;  ///< force/torque sensor S in the handle frame H
+  rendering::DeviceModel model;
+  rendering::Options rendering;
+  prepositioning::Config prepositioning;
+  estimation::Config estimation;
+  safety::MonitorConfig monitor;
+  std::vector<SourceText> sources;  ///< the YAML file first
+};
+
+/// Throws SetupError with all faults of the file, one per line.
+Device load_device(const std::filesystem::path& file);
+Device load_device(const std::filesystem::path& file, SourceReader& reader);
+
+}  // namespace hg::config

@@ -1,0 +1,356 @@
+#include "hg/config/loader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "hg/core/error.h"
+#include "hg/core/nearest_name.h"
+
+namespace hg::config {
+namespace {
+
+constexpr std::size_t kShown = 40;  // characters of a wrong value; enough to recognise it
+
+Place place_of(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
+
+std::string in_quotes(std::string_view text) {
+  std::string result = "'";
+  result += text.substr(0, kShown);
+  if (text.size() > kShown) result += "...";
+  return result += "'";
+}
+
+// What stands in the file, for "got ...".
+std::string shown(const YAML::Node& node) {
+  switch (node.Type()) {
+    case YAML::NodeType::Scalar:
+      return in_quotes(node.Scalar());
+    case YAML::NodeType::Sequence:
+      return "a list";
+    case YAML::NodeType::Map:
+      return "a map";
+    case YAML::NodeType::Null:
+    case YAML::NodeType::Undefined:
+      break;
+  }
+  return "nothing";
+}
+
+std::string did_you_mean(std::string_view name, std::span<const std::string> names) {
+  const std::string nearest = nearest_name(name, names);
+  return nearest.empty() ? "" : ", did you mean '" + nearest + "'?";
+}
+
+// A plain (unquoted) number of YAML, with its words for infinity and "not a number".
+std::optional<double> parse_number(const YAML::Node& node) {
+  if (!node.IsScalar() || node.Tag() == "!") return {};
+  std::string_view text = node.Scalar();
+  if (text == ".nan" || text == ".NaN") return std::numeric_limits<double>::quiet_NaN();
+  if (text == "-.inf") return -kInfinity;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text == ".inf") return kInfinity;
+  if (text.empty() || text.find_first_of("0123456789") == std::string_view::npos) return {};
+
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
+}  // namespace
+
+Loader::Loader(const YAML::Node& map, std::string item, LoaderFile& file)
+    : item_(std::move(item)), place_(place_of(map.Mark())), file_(file) {
+  for (const auto& pair : map) add_entry(pair.first, pair.second);
+}
+
+void Loader::add_entry(const YAML::Node& key, const YAML::Node& value) {
+  if (!key.IsScalar()) return fault(key, item_, "a key must be a word, got " + shown(key));
+  const std::string& name = key.Scalar();
+  const auto first = std::ranges::find(entries_, name, &Entry::key);
+  if (first != entries_.end()) {
+    return fault(key, item_of(name),
+                 "given twice, first in line " + std::to_string(first->place.line));
+  }
+  entries_.push_back({name, place_of(key.Mark()), value, false});
+}
+
+bool Loader::number(std::string_view key, double& value, const Range& range, std::string_view,
+                    Need need) {
+  const Entry* entry = find(key, need);
+  return entry != nullptr && read_number(entry->value, item_of(key), unit_of(key), range, value);
+}
+
+bool Loader::joint_number(const JointKey& key, bool is_angle, double& value, const Range& range,
+                          std::string_view text, Need need) {
+  return number(key.of(is_angle), value, range, text, need);
+}
+
+bool Loader::vector(std::string_view key, Eigen::Vector3d& value, const Range& range,
+                    std::string_view) {
+  const Entry* entry = find(key, Need::kOptional);
+  if (entry == nullptr) return false;
+  const YAML::Node& node = entry->value;
+  if (!node.IsSequence() || node.size() != 3) {
+    fault(node, item_of(key),
+          "must be a list of three numbers [x, y, z], got " +
+              (node.IsSequence() ? std::to_string(node.size()) + " of them" : shown(node)));
+    return false;
+  }
+  Eigen::Vector3d read;
+  bool is_right = true;
+  for (int i = 0; i < 3; ++i) {
+    is_right &= read_number(node[i], item_of(key) + "[" + std::to_string(i) + "]", unit_of(key),
+                            range, read[i]);
+  }
+  if (is_right) value = read;
+  return is_right;
+}
+
+bool Loader::flag(std::string_view key, bool& value, std::string_view) {
+  const Entry* entry = find(key, Need::kOptional);
+  if (entry == nullptr) return false;
+  const bool is_true = is_word(key, "true");
+  if (!is_true && !is_word(key, "false")) {
+    fault(entry->value, item_of(key), "must be true or false, got " + shown(entry->value));
+    return false;
+  }
+  value = is_true;
+  return true;
+}
+
+bool Loader::words(std::string_view key, std::string& value, std::string_view, Need need) {
+  const Entry* entry = find(key, need);
+  if (entry == nullptr) return false;
+  if (!entry->value.IsScalar() || entry->value.Scalar().empty()) {
+    fault(entry->value, item_of(key), "must be text, got " + shown(entry->value));
+    return false;
+  }
+  value = entry->value.Scalar();
+  return true;
+}
+
+bool Loader::path(std::string_view key, std::filesystem::path& value, std::string_view text,
+                  Need need) {
+  std::string given;
+  if (!words(key, given, text, need)) return false;
+  const std::filesystem::path file = (file_.path.parent_path() / given).lexically_normal();
+  if (!file_.sources.exists(file)) {
+    fault(find(key, need)->value, item_of(key),
+          "no such file, got " + in_quotes(given) +
+              did_you_mean(file.filename().string(), file_.sources.siblings(file)));
+    return false;
+  }
+  value = file;
+  return true;
+}
+
+bool Loader::name(std::string_view key, int& index, Names names, std::string_view kind,
+                  std::string_view, Need need) {
+  const Entry* entry = find(key, need);
+  return entry != nullptr && read_name(entry->value, item_of(key), names, kind, index);
+}
+
+bool Loader::names(std::string_view key, std::vector<int>& indices, Names names,
+                   std::string_view kind, std::string_view, Need need) {
+  const Entry* entry = find(key, need);
+  if (entry == nullptr) return false;
+  const YAML::Node& node = entry->value;
+  if (!node.IsSequence()) {
+    fault(node, item_of(key), "must be a list of names, got " + shown(node));
+    return false;
+  }
+  std::vector<int> read;
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    const std::string item = item_of(key) + "[" + std::to_string(i) + "]";
+    int index = 0;
+    if (!read_name(node[i], item, names, kind, index)) continue;
+    if (std::ranges::count(read, index) > 0) {
+      fault(node[i], item, "named twice, got " + shown(node[i]));
+    }
+    read.push_back(index);
+  }
+  indices = read;
+  return read.size() == node.size();
+}
+
+bool Loader::group(std::string_view key, const std::function<void(Loader&)>& read, std::string_view,
+                   Need need) {
+  const Entry* entry = find(key, need);
+  if (entry == nullptr) return false;
+  read_map(entry->value, item_of(key), read);
+  return true;
+}
+
+bool Loader::list(std::string_view key, const std::function<void(Loader&)>& read, std::string_view,
+                  Need need) {
+  const Entry* entry = find(key, need);
+  if (entry == nullptr) return false;
+  if (!entry->value.IsSequence()) {
+    fault(entry->value, item_of(key), "must be a list, got " + shown(entry->value));
+    return false;
+  }
+  for (std::size_t i = 0; i < entry->value.size(); ++i) {
+    read_map(entry->value[i], item_of(key) + "[" + std::to_string(i) + "]", read);
+  }
+  return true;
+}
+
+bool Loader::groups_by_name(std::string_view key, Names names, std::string_view kind,
+                            const std::function<void(Loader&, int)>& read, std::string_view) {
+  return each_by_name(key, names, kind,
+                      [&](const Entry& entry, const std::string& item, int index) {
+                        read_map(entry.value, item, [&](Loader& child) { read(child, index); });
+                      });
+}
+
+bool Loader::numbers_by_name(std::string_view key, Names names, std::string_view kind,
+                             const Range& range, const std::function<void(int, double)>& read,
+                             std::string_view) {
+  return each_by_name(key, names, kind,
+                      [&](const Entry& entry, const std::string& item, int index) {
+                        double value = 0.0;
+                        if (read_number(entry.value, item, unit_of(entry.key), range, value))
+                          read(index, value);
+                      });
+}
+
+void Loader::rule(bool holds, std::string_view key, std::string_view what, std::string_view got) {
+  if (holds) return;
+  std::string message(what);
+  if (!got.empty()) (message += ", got ") += got;
+  const auto entry = std::ranges::find(entries_, key, &Entry::key);
+  const bool is_given = entry != entries_.end();
+  file_.faults.add(is_given ? place_of(entry->value.Mark()) : place_,
+                   is_given ? item_of(key) : item_, message);
+}
+
+void Loader::finish() {
+  for (const Entry& entry : entries_) {
+    if (entry.is_known) continue;
+    file_.faults.add(entry.place, item_of(entry.key),
+                     "unknown key" + did_you_mean(entry.key, known_keys_));
+  }
+}
+
+Loader::Entry* Loader::find(std::string_view key, Need need) {
+  known_keys_.emplace_back(key);
+  const auto entry = std::ranges::find(entries_, key, &Entry::key);
+  if (entry == entries_.end()) {
+    if (need == Need::kRequired) {
+      file_.faults.add(place_, item_, "key " + in_quotes(key) + " is missing");
+    }
+    return nullptr;
+  }
+  entry->is_known = true;
+  return &*entry;
+}
+
+bool Loader::is_word(std::string_view key, std::string_view word) const {
+  const auto entry = std::ranges::find(entries_, key, &Entry::key);
+  return entry != entries_.end() && entry->value.IsScalar() && entry->value.Tag() != "!" &&
+         entry->value.Scalar() == word;
+}
+
+std::string Loader::one_of(Names names) {
+  std::string text = names.size() > 1 ? "one of " : "";
+  for (std::size_t i = 0; i < names.size(); ++i) (text += i > 0 ? ", " : "") += names[i];
+  return text;
+}
+
+void Loader::read_map(const YAML::Node& node, const std::string& item,
+                      const std::function<void(Loader&)>& read) {
+  if (!node.IsMap()) return fault(node, item, "must be a map of keys, got " + shown(node));
+  Loader child(node, item, file_);
+  read(child);
+  child.finish();
+}
+
+bool Loader::read_number(const YAML::Node& node, const std::string& item, std::string_view unit,
+                         const Range& range, double& value) {
+  const std::optional<double> number = parse_number(node);
+  if (!number) {
+    fault(node, item,
+          (unit.empty() ? "must be a number" : "must be a number in " + std::string(unit)) +
+              ", got " + shown(node));
+    return false;
+  }
+  if (!contains(range, *number)) {
+    fault(node, item, "must be " + to_text(range) + ", got " + node.Scalar());
+    return false;
+  }
+  value = *number;
+  return true;
+}
+
+bool Loader::read_name(const YAML::Node& node, const std::string& item, Names names,
+                       std::string_view kind, int& index) {
+  if (!node.IsScalar()) {
+    fault(node, item, "must be " + std::string(kind) + ", got " + shown(node));
+    return false;
+  }
+  const auto found = std::ranges::find(names, node.Scalar());
+  if (found == names.end()) {
+    fault(node, item,
+          "must be " + std::string(kind) + ", got " + shown(node) +
+              did_you_mean(node.Scalar(), names));
+    return false;
+  }
+  index = static_cast<int>(found - names.begin());
+  return true;
+}
+
+bool Loader::each_by_name(std::string_view key, Names names, std::string_view kind,
+                          const std::function<void(const Entry&, const std::string&, int)>& read) {
+  const Entry* entry = find(key, Need::kOptional);
+  if (entry == nullptr) return false;
+  if (!entry->value.IsMap()) {
+    fault(entry->value, item_of(key),
+          "must be a map with names as keys, got " + shown(entry->value));
+    return false;
+  }
+  const Loader child(entry->value, item_of(key), file_);
+  for (const Entry& named : child.entries_) {
+    const auto found = std::ranges::find(names, named.key);
+    const std::string item = child.item_of(named.key);
+    if (found == names.end()) {
+      file_.faults.add(named.place, item,
+                       "must be " + std::string(kind) + ", got " + in_quotes(named.key) +
+                           did_you_mean(named.key, names));
+    } else {
+      read(named, item, static_cast<int>(found - names.begin()));
+    }
+  }
+  return true;
+}
+
+std::string Loader::item_of(std::string_view key) const {
+  std::string item = item_;
+  if (!item.empty()) item += '.';
+  return item += key;
+}
+
+void Loader::fault(const YAML::Node& node, const std::string& item, const std::string& what) {
+  file_.faults.add(place_of(node.Mark()), item, what);
+}
+
+void load_file(LoaderFile& file, const std::function<void(Loader&)>& read) {
+  YAML::Node root;
+  try {
+    root = YAML::Load(file.sources.read(file.path));
+  } catch (const YAML::Exception& error) {
+    file.faults.add(place_of(error.mark), "not valid YAML", error.msg);
+    file.faults.throw_if_any();
+  }
+  if (!root.IsMap()) {
+    file.faults.add({}, "", "the file must be a map of keys, got " + shown(root));
+  } else {
+    Loader loader(root, "", file);
+    read(loader);
+    loader.finish();
+  }
+  file.faults.throw_if_any();
+}
+
+}  // namespace hg::config

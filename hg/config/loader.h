@@ -1,0 +1,136 @@
+/// Visitor that reads a described thing from one map of a YAML file.
+///
+/// A description (describe_*.h) calls one function per key: key, field, what is allowed, and one
+/// line of text, which is for the reference page. The field keeps its value, the default, unless
+/// the key is given and right. Every function returns whether it was. Whatever is wrong goes into
+/// Faults.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hg/config/faults.h"
+#include "hg/config/range.h"
+#include "hg/config/sources.h"
+
+namespace hg::config {
+
+/// The file at hand; outlives its loaders.
+struct LoaderFile {
+  std::filesystem::path path;
+  SourceReader& sources;
+  Faults faults;
+};
+
+class Loader {
+ public:
+  using Names = std::span<const std::string>;
+
+  /// `item` is the path of keys that leads to `map`.
+  Loader(const YAML::Node& map, std::string item, LoaderFile& file);
+
+  bool number(std::string_view key, double& value, const Range& range, std::string_view text,
+              Need need = Need::kOptional);
+  /// A number whose key depends on the joint: rad family or m family.
+  bool joint_number(const JointKey& key, bool is_angle, double& value, const Range& range,
+                    std::string_view text, Need need = Need::kOptional);
+  /// [x, y, z].
+  bool vector(std::string_view key, Eigen::Vector3d& value, const Range& range,
+              std::string_view text);
+  bool flag(std::string_view key, bool& value, std::string_view text);
+  bool words(std::string_view key, std::string& value, std::string_view text,
+             Need need = Need::kOptional);
+  /// An existing file; a relative path starts at the folder of this file.
+  bool path(std::string_view key, std::filesystem::path& value, std::string_view text,
+            Need need = Need::kOptional);
+  /// A file as above, or one of `choices`: it sets `choice` and leaves `value` alone.
+  template <class T>
+  bool path_or_choice(std::string_view key, std::filesystem::path& value, T& choice,
+                      Choices<T> choices, std::string_view text, Need need = Need::kOptional) {
+    for (const Choice<T>& candidate : choices) {
+      if (!is_word(key, candidate.name)) continue;
+      choice = candidate.value;
+      return find(key, need) != nullptr;
+    }
+    return path(key, value, text, need);
+  }
+  template <class T>
+  bool choice(std::string_view key, T& value, Choices<T> choices, std::string_view text) {
+    std::vector<std::string> names;
+    for (const Choice<T>& candidate : choices) names.emplace_back(candidate.name);
+    int index = 0;
+    if (!name(key, index, names, one_of(names), text)) return false;
+    value = choices[static_cast<std::size_t>(index)].value;
+    return true;
+  }
+  /// Index in `names`; `kind` says what they are, for example "a joint".
+  bool name(std::string_view key, int& index, Names names, std::string_view kind,
+            std::string_view text, Need need = Need::kOptional);
+  /// A list of names, each at most once.
+  bool names(std::string_view key, std::vector<int>& indices, Names names, std::string_view kind,
+             std::string_view text, Need need = Need::kOptional);
+
+  /// A map with keys of its own.
+  bool group(std::string_view key, const std::function<void(Loader&)>& read, std::string_view text,
+             Need need = Need::kOptional);
+  /// A list of maps; `read` is called for each.
+  bool list(std::string_view key, const std::function<void(Loader&)>& read, std::string_view text,
+            Need need = Need::kOptional);
+  /// A map of maps, keyed by some of `names`.
+  bool groups_by_name(std::string_view key, Names names, std::string_view kind,
+                      const std::function<void(Loader&, int index)>& read, std::string_view text);
+  /// A map of numbers, keyed by some of `names`.
+  bool numbers_by_name(std::string_view key, Names names, std::string_view kind, const Range& range,
+                       const std::function<void(int index, double value)>& read,
+                       std::string_view text);
+
+  /// What concerns more than one value: `what` must hold. Reported at `key`, or at the map if the
+  /// key is not given.
+  void rule(bool holds, std::string_view key, std::string_view what, std::string_view got = {});
+  /// Whether the thing at hand has the keys that follow; the reference page shows them always.
+  bool covers(bool applies) const { return applies; }
+
+  /// Reports the keys that no function has asked for. Called last.
+  void finish();
+
+ private:
+  struct Entry {
+    std::string key;
+    Place place;
+    YAML::Node value;
+    bool is_known = false;
+  };
+
+  void add_entry(const YAML::Node& key, const YAML::Node& value);
+  Entry* find(std::string_view key, Need need);
+  bool is_word(std::string_view key, std::string_view word) const;
+  static std::string one_of(Names names);
+  void read_map(const YAML::Node& node, const std::string& item,
+                const std::function<void(Loader&)>& read);
+  bool read_number(const YAML::Node& node, const std::string& item, std::string_view unit,
+                   const Range& range, double& value);
+  bool read_name(const YAML::Node& node, const std::string& item, Names names,
+                 std::string_view kind, int& index);
+  bool each_by_name(std::string_view key, Names names, std::string_view kind,
+                    const std::function<void(const Entry&, const std::string&, int)>& read);
+  std::string item_of(std::string_view key) const;
+  void fault(const YAML::Node& node, const std::string& item, const std::string& what);
+
+  std::string item_;
+  Place place_;
+  LoaderFile& file_;
+  std::vector<Entry> entries_;
+  std::vector<std::string> known_keys_;
+};
+
+/// Reads the file and lets `read` visit its top map. Throws SetupError with all faults at once.
+void load_file(LoaderFile& file, const std::function<void(Loader&)>& read);
+
+}  // namespace hg::config

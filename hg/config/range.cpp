@@ -1,0 +1,64 @@
+#include "hg/config/range.h"
+
+#include <array>
+#include <cmath>
+
+#include "hg/model/urdf.h"
+
+namespace hg::config {
+namespace {
+
+struct Unit {
+  std::string_view suffix;
+  std::string_view text;
+};
+
+// longer suffixes first: "_m_per_s" also ends in "_s"
+constexpr std::array<Unit, 18> kUnits = {{
+    {"_Nms_per_rad", "Nms/rad"},
+    {"_rad_per_s2", "rad/s^2"},
+    {"_Nm_per_rad", "Nm/rad"},
+    {"_rad_per_s", "rad/s"},
+    {"_Ns_per_m", "Ns/m"},
+    {"_m_per_s2", "m/s^2"},
+    {"_1_per_s2", "1/s^2"},
+    {"_N_per_m", "N/m"},
+    {"_m_per_s", "m/s"},
+    {"_1_per_s", "1/s"},
+    {"_kg_m2", "kg m^2"},
+    {"_rad", "rad"},
+    {"_kg", "kg"},
+    {"_Nm", "Nm"},
+    {"_Hz", "Hz"},
+    {"_N", "N"},
+    {"_m", "m"},
+    {"_s", "s"},
+}};
+
+}  // namespace
+
+bool contains(const Range& range, double value) noexcept {
+  if (std::isnan(value)) return false;
+  if (std::isinf(value) && !range.allows_infinity) return false;
+  if (range.excludes_lb && value <= range.lb) return false;
+  return range.lb <= value && value <= range.ub;
+}
+
+std::string to_text(const Range& range) {
+  const bool has_lb = range.lb > -kInfinity;
+  const bool has_ub = range.ub < kInfinity;
+  const char* above = range.excludes_lb ? "> " : ">= ";
+  if (has_lb && has_ub) return model::to_text(range.lb) + " .. " + model::to_text(range.ub);
+  if (has_lb) return above + model::to_text(range.lb);
+  if (has_ub) return "<= " + model::to_text(range.ub);
+  return range.allows_infinity ? "a number, .inf or -.inf" : "finite";
+}
+
+std::string_view unit_of(std::string_view key) noexcept {
+  for (const Unit& unit : kUnits) {
+    if (key.ends_with(unit.suffix)) return unit.text;
+  }
+  return {};
+}
+
+}  // namespace hg::config

@@ -1,0 +1,16 @@
+/// Chains from the URDFs that configuration files name.
+#pragma once
+
+#include <filesystem>
+
+#include "hg/config/loader.h"
+#include "hg/model/chain.h"
+
+namespace hg::config {
+
+/// The chain in `urdf`. Throws SetupError with all faults of `file` so far if there is none:
+/// without a chain no name in the rest of the file means anything.
+model::Chain read_chain(LoaderFile& file, const std::filesystem::path& urdf,
+                        const model::ChainOptions& options);
+
+}  // namespace hg::config

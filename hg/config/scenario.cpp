@@ -1,0 +1,105 @@
+#include "hg/config/scenario.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "hg/config/describe_scenario.h"
+#include "hg/config/loader.h"
+#include "hg/core/error.h"
+#include "hg/rendering/catalogue.h"
+
+namespace hg::config {
+namespace {
+
+// What load() returns; its faults join those of the scenario.
+template <class Load>
+auto part(LoaderFile& file, const std::filesystem::path& path, Load load)
+    -> std::optional<decltype(load())> {
+  if (path.empty()) return {};
+  try {
+    return load();
+  } catch (const SetupError& error) {
+    file.faults.add_complete(error.what());
+    return {};
+  }
+}
+
+EventNames names_of(const Device& device, const Twin& twin, const LimitCatalogue& catalogue) {
+  EventNames names;
+  for (const LimitInfo& limit : catalogue) names.limits.push_back(limit.name);
+  const std::size_t first_twin_limit = catalogue.size() - twin.model.dofs.size();
+  for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
+    if (twin.model.dofs[i].q_index < 0) continue;
+    names.twin_joints.push_back(twin.model.dofs[i].name);
+    names.twin_limits.push_back(static_cast<int>(first_twin_limit + i));
+    names.twin_coordinates.push_back(twin.model.dofs[i].q_index);
+  }
+  for (int i = 0; i < device.model.n_m; ++i) {
+    names.manipulator.push_back(device.model.manipulator_joint(i));
+  }
+  for (int i = 0; i < device.model.n_p; ++i) {
+    names.gantry.push_back(device.model.chain.joints()[static_cast<std::size_t>(i)].name);
+  }
+  return names;
+}
+
+// Two limits of one name could not be told apart in events, figures and on the page.
+void check_names(Loader& loader, const LimitCatalogue& catalogue) {
+  for (auto limit = catalogue.begin(); limit != catalogue.end(); ++limit) {
+    const bool is_first =
+        std::ranges::find(catalogue.begin(), limit, limit->name, &LimitInfo::name) == limit;
+    loader.rule(is_first, "twin", "device and twin together must not use a name twice",
+                "'" + limit->name + "'");
+  }
+}
+
+Scenario load(const std::filesystem::path& path, SourceReader& reader) {
+  LoaderFile file = {path, reader, Faults(path.generic_string())};
+  ScenarioDraft draft;
+  std::optional<Device> device;
+  std::optional<Twin> twin;
+  std::optional<Script> script = Script{};
+  LimitCatalogue catalogue;
+  load_file(file, [&](Loader& loader) {
+    describe_parts(loader, draft);
+    device = part(file, draft.device, [&] { return load_device(draft.device, reader); });
+    twin = part(file, draft.twin, [&] { return load_twin(draft.twin, reader); });
+    if (twin && !draft.script.empty()) {
+      script =
+          part(file, draft.script, [&] { return load_script(draft.script, twin->model, reader); });
+    }
+    if (!device || !twin || !script) file.faults.throw_if_any();
+    catalogue = rendering::make_catalogue(device->model, twin->model);
+    check_names(loader, catalogue);
+    draft.names = names_of(*device, *twin, catalogue);
+    describe_events(loader, draft);
+  });
+
+  return {.title = draft.title,
+          .description = draft.description,
+          .duration_s = draft.duration_s,
+          .device = std::move(*device),
+          .twin = std::move(*twin),
+          .person = draft.person,
+          .script = std::move(*script),
+          .limits = std::move(catalogue),
+          .events = std::move(draft.events),
+          .sources = reader.texts()};
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::filesystem::path& file) {
+  SourceReader reader;
+  return load(file, reader);
+}
+
+Scenario load_scenario(std::vector<SourceText> recorded) {
+  if (recorded.empty()) throw SetupError("recording: holds no configuration");
+  const std::filesystem::path file = recorded.front().name;
+  SourceReader reader(std::move(recorded));
+  return load(file, reader);
+}
+
+}  // namespace hg::config

@@ -1,0 +1,36 @@
+/// A whole run from its YAML file: scenario.yaml, described in docs/configuration.md.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hg/config/device.h"
+#include "hg/config/script.h"
+#include "hg/config/sources.h"
+#include "hg/config/twin.h"
+#include "hg/evaluation/events.h"
+#include "hg/signals/limit.h"
+#include "hg/user/person.h"
+
+namespace hg::config {
+
+struct Scenario {
+  std::string title;
+  std::string description;  ///< one sentence
+  double duration_s = 0.0;
+  Device device;
+  Twin twin;
+  user::PersonKind person = user::PersonKind::kNone;
+  Script script;  ///< empty unless person is kScript
+  LimitCatalogue limits;
+  std::vector<evaluation::EventRule> events;  ///< expected, in this order
+  std::vector<SourceText> sources;            ///< of all files, the scenario first
+};
+
+/// Throws SetupError with the faults of the scenario, its device, twin and script, one per line.
+Scenario load_scenario(const std::filesystem::path& file);
+/// The same from a recording, without the disk: `recorded` is Scenario::sources of that run.
+Scenario load_scenario(std::vector<SourceText> recorded);
+
+}  // namespace hg::config

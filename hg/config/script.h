@@ -1,0 +1,30 @@
+/// A scripted hand from its YAML file: script.yaml, described in docs/configuration.md.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "hg/config/sources.h"
+#include "hg/rendering/twin_model.h"
+#include "hg/user/person.h"
+#include "hg/user/script.h"
+
+namespace hg::config {
+
+struct Script {
+  user::HandImpedance hand;
+  user::Script script;
+  /// Pose channels whose start value is in the file. The others start where the twin starts: who
+  /// builds the run fills them in.
+  std::array<bool, user::kPoseChannels> start_given{};
+  std::vector<SourceText> sources;
+};
+
+/// The channels of frame twin_joints are the joints of `twin`. Throws SetupError with all faults of
+/// the file, one per line.
+Script load_script(const std::filesystem::path& file, const rendering::TwinModel& twin);
+Script load_script(const std::filesystem::path& file, const rendering::TwinModel& twin,
+                   SourceReader& reader);
+
+}  // namespace hg::config

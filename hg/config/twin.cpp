@@ -1,0 +1,146 @@
+#include "hg/config/twin.h"
+
+#include <array>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "hg/config/describe_twin.h"
+#include "hg/config/describe_twin_joints.h"
+#include "hg/config/loader.h"
+#include "hg/config/read_chain.h"
+#include "hg/core/error.h"
+
+namespace hg::config {
+namespace {
+
+model::Chain make_chain(LoaderFile& file, TwinDraft& draft) {
+  const model::ChainOptions options = {.T_B_root = pose_of(draft.placement),
+                                       .gravity = draft.gravity,
+                                       .floating_root = draft.floating_root};
+  if (!draft.is_free_body) return read_chain(file, draft.urdf, options);
+  draft.body.inertia = draft.principal_inertia.asDiagonal();
+  try {
+    return model::Chain::free_body(draft.body, options);
+  } catch (const SetupError& error) {
+    file.faults.add_complete(file.path.generic_string() + ": free_body: " + error.what());
+    file.faults.throw_if_any();
+    throw;
+  }
+}
+
+void take_joints(const model::Chain& chain, TwinDraft& draft) {
+  draft.frame_names = chain.frame_names();
+  for (const model::Joint& joint : chain.joints()) {
+    const bool is_floating = joint.type == model::JointType::kFloating;
+    if (!is_floating) {
+      draft.scalar_joints.push_back(static_cast<int>(draft.joints.size()));
+      draft.scalar_names.push_back(joint.name);
+    }
+    draft.joint_names.push_back(joint.name);
+    TwinJoint& taken = draft.joints.emplace_back();
+    taken.type = joint.type;
+    taken.v_index = joint.v_index;
+    taken.dof.name = joint.name;
+    taken.dof.q_index = is_floating ? -1 : joint.q_index;
+    taken.dof.is_angle = joint.type != model::JointType::kPrismatic;
+    taken.dof.limits = {
+        .q_min = joint.position.lb, .q_max = joint.position.ub, .dq_max = joint.velocity_max};
+  }
+}
+
+// What the file may leave to its defaults has to fit as well.
+void check_starts(Loader& loader, const model::Chain& chain, const TwinDraft& draft) {
+  for (const TwinJoint& joint : draft.joints) {
+    const limits::JointLimits& limits = joint.dof.limits;
+    loader.rule(limits.q_min <= joint.start && joint.start <= limits.q_max, "joints",
+                joint.dof.name + " starts outside its limits", model::to_text(joint.start));
+  }
+  for (std::size_t i = 1; i < draft.joints.size(); ++i) {
+    loader.rule(chain.joints()[i].type != model::JointType::kFloating, "urdf",
+                "only the first joint of a twin may be floating",
+                "'" + chain.joints()[i].name + "'");
+  }
+}
+
+void add_dofs(const TwinJoint& joint, std::vector<rendering::TwinDof>& dofs) {
+  if (joint.type != model::JointType::kFloating) {
+    dofs.push_back(joint.dof);
+    return;
+  }
+  constexpr std::array<const char*, 6> kDirections = {"x", "y", "z", "rx", "ry", "rz"};
+  for (std::size_t i = 0; i < kDirections.size(); ++i) {
+    rendering::TwinDof dof;
+    dof.name = joint.dof.name + " " + kDirections[i];
+    dof.is_angle = i >= 3;
+    dof.damping = dof.is_angle ? joint.floating.angular_damping : joint.floating.damping;
+    dof.friction = dof.is_angle ? joint.floating.angular_friction : joint.floating.friction;
+    dofs.push_back(dof);
+  }
+}
+
+// Coordinates at the start. A floating first joint takes the end effector to its start pose.
+ConfigurationA start_of(const rendering::TwinModel& model, const Pose& T_B_root,
+                        const TwinDraft& draft) {
+  ConfigurationA q = model.chain.neutral();
+  for (std::size_t i = 0; i < draft.joints.size(); ++i) {
+    if (draft.joints[i].type != model::JointType::kFloating) {
+      q[model.chain.joints()[i].q_index] = draft.joints[i].start;
+    }
+  }
+  if (draft.joints.empty() || draft.joints[0].type != model::JointType::kFloating) return q;
+
+  // at the identity the body is at the root link: T_B_E = T_B_root T_root_E
+  model::Chain chain = model.chain;
+  chain.update_kinematics(q, VectorA::Zero(chain.nv()));
+  const Pose T_root_E = inverse(T_B_root) * chain.pose(model.end_effector);
+  const Pose T_root_body =
+      inverse(T_B_root) * pose_of(draft.joints[0].floating.start) * inverse(T_root_E);
+  q.head<3>() = T_root_body.p;
+  q.segment<4>(3) = Eigen::Quaterniond(T_root_body.R).normalized().coeffs();
+  return q;
+}
+
+}  // namespace
+
+Pose pose_of(const HandPose& hand) {
+  // [G]: C_H^B = Rz(psi) Ry(pi - s) Rz(pi + q6)
+  const auto rotation = Eigen::AngleAxisd(hand.azimuth, Eigen::Vector3d::UnitZ()) *
+                        Eigen::AngleAxisd(std::numbers::pi - hand.pitch, Eigen::Vector3d::UnitY()) *
+                        Eigen::AngleAxisd(std::numbers::pi + hand.roll, Eigen::Vector3d::UnitZ());
+  return {hand.p, rotation.toRotationMatrix()};
+}
+
+Twin load_twin(const std::filesystem::path& file) {
+  SourceReader reader;
+  return load_twin(file, reader);
+}
+
+Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
+  const std::size_t first_source = reader.texts().size();
+  LoaderFile file = {path, reader, Faults(path.generic_string())};
+  TwinDraft draft;
+  std::optional<model::Chain> chain;
+  load_file(file, [&](Loader& loader) {
+    describe_chain(loader, draft);
+    chain = make_chain(file, draft);
+    take_joints(*chain, draft);
+    describe_joints(loader, draft);
+    check_starts(loader, *chain, draft);
+  });
+
+  Twin twin = {.name = draft.name,
+               .urdf = draft.urdf,
+               .T_B_root = pose_of(draft.placement),
+               .model = {.chain = std::move(*chain),
+                         .end_effector = draft.end_effector,
+                         .q_start = {},
+                         .dofs = {},
+                         .locks = draft.locks},
+               .sources = reader.since(first_source)};
+  for (const TwinJoint& joint : draft.joints) add_dofs(joint, twin.model.dofs);
+  twin.model.q_start = start_of(twin.model, twin.T_B_root, draft);
+  return twin;
+}
+
+}  // namespace hg::config

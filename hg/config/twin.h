@@ -1,0 +1,36 @@
+/// A twin from its YAML file: twin.yaml, described in docs/configuration.md.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hg/config/sources.h"
+#include "hg/core/types.h"
+#include "hg/rendering/twin_model.h"
+
+namespace hg::config {
+
+struct Twin {
+  std::string name;
+  std::filesystem::path urdf;  ///< what a page draws; empty for a free body without one
+  Pose T_B_root;               ///< placement of the root link
+  rendering::TwinModel model;
+  std::vector<SourceText> sources;  ///< the YAML file first
+};
+
+/// Throws SetupError with all faults of the file, one per line.
+Twin load_twin(const std::filesystem::path& file);
+Twin load_twin(const std::filesystem::path& file, SourceReader& reader);
+
+/// Pose from what people can say about a hand: position in B, heading of the forearm, tilt s = q4 +
+/// q5 and roll q6 of the HapticGiant: R = Rz(azimuth) Ry(pi - pitch) Rz(pi + roll).
+struct HandPose {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  double azimuth = 0.0;
+  double pitch = 1.5707963267948966;  ///< hand axis horizontal
+  double roll = 0.0;
+};
+Pose pose_of(const HandPose& hand);
+
+}  // namespace hg::config

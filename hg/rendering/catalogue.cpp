@@ -1,0 +1,34 @@
+#include "hg/rendering/catalogue.h"
+
+namespace hg::rendering {
+namespace {
+
+Interval range_of(const limits::JointLimits& limits) { return {limits.q_min, limits.q_max}; }
+
+}  // namespace
+
+LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin) {
+  LimitCatalogue catalogue;
+  for (int i = 0; i < device.n_m; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(device.n_p) + index];
+    catalogue.push_back({LimitKind::kManipulatorJoint, joint.name,
+                         joint.type != model::JointType::kPrismatic,
+                         range_of(device.joint_limits[index])});
+  }
+  for (const VirtualJoint& joint : device.virtual_joints) {
+    catalogue.push_back({LimitKind::kVirtualJoint, joint.name, true, range_of(joint.limits)});
+  }
+  for (const CartesianLimit& limit : device.cartesian_limits) {
+    for (std::size_t axis = 0; axis < limit.axes.size(); ++axis) {
+      catalogue.push_back({LimitKind::kCartesian, limit.name + " " + "xyz"[axis], false,
+                           range_of(limit.axes[axis])});
+    }
+  }
+  for (const TwinDof& dof : twin.dofs) {
+    catalogue.push_back({LimitKind::kTwinJoint, dof.name, dof.is_angle, range_of(dof.limits)});
+  }
+  return catalogue;
+}
+
+}  // namespace hg::rendering
