@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/jacobian.hpp>
-#include <pinocchio/algorithm/joint-configuration.hpp>
 #include <pinocchio/algorithm/kinematics.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 #include <pinocchio/multibody.hpp>
+#include <pinocchio/spatial.hpp>
 #include <utility>
 
 #include "hg/core/error.h"
@@ -52,6 +53,25 @@ int find(std::string_view name, const std::vector<std::string>& names, const std
   if (found != names.end()) return static_cast<int>(found - names.begin());
   throw SetupError(chain + ": " + kind + " must be one of the chain, got '" + std::string(name) +
                    "', nearest is '" + nearest_name(name, names) + "'");
+}
+
+// The pose q after moving along the twist `step` of the body for one unit of time.
+Eigen::Matrix<double, 7, 1> integrate_floating(const Eigen::Matrix<double, 7, 1>& q,
+                                               const Vector6& step) noexcept {
+  const Eigen::Quaterniond R(q[6], q[3], q[4], q[5]);
+  const Eigen::Vector3d omega = step.tail<3>();
+  const double half = 0.5 * omega.norm();
+
+  // sin(x) / x to the last digit also where x is small
+  const double sinc = half > 1e-4 ? std::sin(half) / half : 1.0 - half * half / 6.0;
+  Eigen::Quaterniond turn;
+  turn.w() = std::cos(half);
+  turn.vec() = 0.5 * sinc * omega;
+
+  const pinocchio::SE3 moved = pinocchio::exp6(pinocchio::Motion(step));
+  Eigen::Matrix<double, 7, 1> q_next;
+  q_next << q.head<3>() + R * moved.translation(), (R * turn).normalized().coeffs();
+  return q_next;
 }
 
 // What a chain is made of: joints and frames, and the rigid-body model that moves them.
@@ -331,8 +351,14 @@ ConfigurationA Chain::neutral() const noexcept {
 ConfigurationA Chain::integrate(const VectorIn& q, const VectorIn& step) const noexcept {
   assert(q.size() == nq() && step.size() == nv());
   ConfigurationA q_next(nq());
-  Eigen::Ref<Eigen::VectorXd> out(q_next);
-  pinocchio::integrate(impl_->parts.model, q, step, out);
+  for (const Joint& joint : impl_->parts.joints) {
+    if (joint.type == JointType::kFloating) {
+      q_next.segment<7>(joint.q_index) =
+          integrate_floating(q.segment<7>(joint.q_index), step.segment<6>(joint.v_index));
+    } else {
+      q_next[joint.q_index] = q[joint.q_index] + step[joint.v_index];
+    }
+  }
   return q_next;
 }
 

@@ -274,6 +274,16 @@ TEST(Chain, IntegrationFollowsTheExponentialOfAConstantTwist) {
   }
 }
 
+TEST(Chain, IntegrationIsExactForTinySteps) {
+  Chain body = Chain::free_body({});
+  const Eigen::VectorXd step = 1e-5 * Eigen::VectorXd{{1.0, -2.0, 3.0, -4.0, 5.0, 6.0}};
+  const ConfigurationA q = body.integrate(body.neutral(), step);
+  const double half = 0.5 * step.tail<3>().norm();
+  const Eigen::Vector3d axis_part = std::sin(half) * step.tail<3>().normalized();
+  EXPECT_LT((q.segment<3>(3) - axis_part).norm(), 1e-19);
+  EXPECT_LT((q.head<3>() - step.head<3>()).norm(), 2e-9);
+}
+
 TEST(Chain, IntegrationKeepsQuaternionsNormalisedOverAMillionSteps) {
   Chain body = Chain::free_body({});
   ConfigurationA q = body.neutral();
