@@ -1,6 +1,10 @@
 // The only file that includes Boost.Beast: it takes half a minute to compile.
 #include "hg/viewer_server/viewer_server.h"
 
+#ifdef __SANITIZE_THREAD__
+#pragma GCC diagnostic ignored "-Wtsan"  // Asio's fences: unknown to the sanitizer, not needed here
+#endif
+
 #include <algorithm>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
