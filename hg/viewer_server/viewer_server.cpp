@@ -6,179 +6,24 @@
 #endif
 
 #include <algorithm>
-#include <atomic>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <mutex>
-#include <optional>
-#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "hg/core/error.h"
 #include "hg/viewer_server/access.h"
-#include "hg/viewer_server/hand_target_box.h"
-#include "hg/viewer_server/message_rate.h"
+#include "hg/viewer_server/hub.h"
 #include "hg/viewer_server/messages.h"
+#include "hg/viewer_server/page.h"
+#include "hg/viewer_server/visitor.h"
 
 namespace hg::viewer_server {
-namespace {
-
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-namespace websocket = beast::websocket;
-using asio::ip::tcp;
-using boost::system::error_code;
-using Clock = std::chrono::steady_clock;
-using Text = std::shared_ptr<const std::string>;
-using Request = http::request<http::empty_body>;
-using Response = http::response<http::string_body>;
-
-constexpr auto kRequestTimeout = std::chrono::seconds(15);
-constexpr std::uint32_t kLargestHeader = 8192;  // bytes
-constexpr std::size_t kLargestMessage = 4096;   // bytes; a hand target has about 80
-constexpr int kSendBuffer = 64 * 1024;          // bytes; small, so that what arrives is fresh
-constexpr long kMaxConnections = 64;
-constexpr std::size_t kMaxEvents = 200;  // kept for pages that connect later
-
-constexpr std::string_view kContentPolicy =
-    "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; "
-    "frame-ancestors 'none'";
-
-double now_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
-
-std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
-
-class Page;
-
-// What all connections share. Everything but the counters and the hand target belongs to the
-// server's thread.
-struct Hub {
-  explicit Hub(const Eigen::AlignedBox3d& limits) : hand(limits) {}
-
-  bool has_token(const Request& request) const;
-  void join(const std::shared_ptr<Page>& page);
-  void leave(const std::shared_ptr<Page>& page);
-  void put_hand(std::uint64_t page, const HandTarget& target);
-  void show(Text frame);
-  void announce(Text event);
-
-  std::uint16_t port = 0;
-  std::string token;
-  AssetTable assets;
-  std::set<std::shared_ptr<Page>> pages;
-  std::deque<Text> events;
-  Text newest_frame;
-  std::uint64_t next_page = 1;
-  std::shared_ptr<int> connections = std::make_shared<int>();  // one more owner per connection
-
-  std::atomic<std::uint64_t> clients{0};
-  std::atomic<std::uint64_t> sent{0};
-  std::atomic<std::uint64_t> dropped{0};
-  std::atomic<std::uint64_t> refused{0};
-  std::mutex hand_mutex;
-  HandTargetBox hand;
-};
-
-// One open page: sends all events and the newest frame, reads hand targets.
-class Page : public std::enable_shared_from_this<Page> {
- public:
-  Page(Hub& hub, beast::tcp_stream&& stream, std::shared_ptr<int> connection)
-      : hub_(hub), socket_(std::move(stream)), connection_(std::move(connection)) {}
-
-  void start(const Request& request) {
-    beast::get_lowest_layer(socket_).expires_never();
-    socket_.set_option(websocket::stream_base::timeout{kRequestTimeout, kRequestTimeout, true});
-    socket_.read_message_max(kLargestMessage);
-    socket_.text(true);
-    socket_.async_accept(request, [self = shared_from_this()](error_code error) {
-      if (error) return;
-      self->hub_.join(self);
-      self->read();
-    });
-  }
-
-  // Replaces a frame that is still waiting.
-  void show(Text frame) {
-    if (frame_) ++hub_.dropped;
-    frame_ = std::move(frame);
-    write();
-  }
-
-  void tell(Text event) {
-    if (events_.size() == kMaxEvents) {
-      events_.pop_front();
-      ++hub_.dropped;
-    }
-    events_.push_back(std::move(event));
-    write();
-  }
-
-  std::uint64_t number = 0;
-
- private:
-  void read() {
-    socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
-      if (error) {
-        if (error == websocket::error::message_too_big) ++self->hub_.refused;
-        self->hub_.leave(self);
-        return;
-      }
-      self->listen();
-      self->read();
-    });
-  }
-
-  void listen() {
-    const auto bytes = buffer_.cdata();
-    const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
-    HandTarget target;
-    if (rate_.admit(now_s()) && socket_.got_text() &&
-        decode_hand(text, target) == DecodeStatus::kOk) {
-      hub_.put_hand(number, target);
-    } else {
-      ++hub_.refused;
-    }
-    buffer_.clear();
-  }
-
-  void write() {
-    if (current_) return;  // one at a time; the end of it calls again
-    if (!events_.empty()) {
-      current_ = std::move(events_.front());
-      events_.pop_front();
-    } else if (frame_) {
-      current_ = std::move(frame_);
-      ++hub_.sent;
-    } else {
-      return;
-    }
-    socket_.async_write(asio::buffer(*current_),
-                        [self = shared_from_this()](error_code error, std::size_t) {
-                          self->current_.reset();
-                          if (!error) self->write();
-                        });
-  }
-
-  Hub& hub_;
-  websocket::stream<beast::tcp_stream> socket_;
-  std::shared_ptr<int> connection_;
-  beast::flat_buffer buffer_;
-  MessageRate rate_;
-  std::deque<Text> events_;  // waiting
-  Text frame_;               // waiting
-  Text current_;             // on its way
-};
 
 bool Hub::has_token(const Request& request) const {
   if (is_same_secret(query_value(view(request.target()), "token"), token)) return true;
@@ -217,105 +62,12 @@ void Hub::announce(Text event) {
   for (const auto& page : pages) page->tell(event);
 }
 
-// One HTTP connection, until it ends or becomes a page.
-class Visitor : public std::enable_shared_from_this<Visitor> {
- public:
-  Visitor(Hub& hub, tcp::socket&& socket)
-      : hub_(hub), stream_(std::move(socket)), connection_(hub.connections) {}
+namespace {
 
-  void read() {
-    parser_.emplace();
-    parser_->header_limit(kLargestHeader);
-    parser_->body_limit(0);
-    stream_.expires_after(kRequestTimeout);
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = shared_from_this()](error_code error, std::size_t) {
-                       if (!error) {
-                         self->answer();
-                       } else if (error.category() ==
-                                  http::make_error_code(http::error::bad_method).category()) {
-                         if (error != http::error::end_of_stream) self->refuse_and_close();
-                       }
-                     });
-  }
+using Clock = std::chrono::steady_clock;
 
- private:
-  void answer() {
-    const Request& request = parser_->get();
-    const beast::string_view origin = request[http::field::origin];
-    const bool is_upgrade = websocket::is_upgrade(request);
-
-    if (!is_own_host(view(request[http::field::host]), hub_.port)) {
-      refuse(http::status::forbidden, "wrong host");
-    } else if (!origin.empty() && !is_own_origin(view(origin), hub_.port)) {
-      refuse(http::status::forbidden, "wrong origin");
-    } else if (request.method() != http::verb::get) {
-      refuse(http::status::method_not_allowed, "only GET");
-    } else if (!hub_.has_token(request)) {
-      refuse(http::status::forbidden, "Open the link that the program printed: it has the token.");
-    } else if (is_upgrade && (origin.empty() || path_of(view(request.target())) != "/ws")) {
-      refuse(http::status::forbidden, "wrong origin or path");
-    } else if (is_upgrade) {
-      std::make_shared<Page>(hub_, std::move(stream_), std::move(connection_))->start(request);
-    } else {
-      serve(view(request.target()));
-    }
-  }
-
-  void serve(std::string_view target) {
-    const auto asset = hub_.assets.find(path_of(target));
-    if (asset == hub_.assets.end()) {
-      respond(http::status::not_found, "text/plain", "not found\n");
-    } else {
-      respond(http::status::ok, asset->second.content_type, asset->second.content);
-    }
-  }
-
-  void refuse(http::status status, std::string_view reason) {
-    ++hub_.refused;
-    respond(status, "text/plain", std::string(reason) + "\n");
-  }
-
-  // After bytes that are not a request.
-  void refuse_and_close() {
-    ++hub_.refused;
-    error_code ignored;
-    stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
-  }
-
-  void respond(http::status status, std::string_view content_type, std::string body) {
-    const Request& request = parser_->get();
-    response_ = Response(status, request.version());
-    response_.set(http::field::content_type, content_type);
-    response_.set(http::field::cache_control, "no-store");
-    response_.set("Content-Security-Policy", kContentPolicy);
-    response_.set("Cross-Origin-Opener-Policy", "same-origin");
-    response_.set("Cross-Origin-Resource-Policy", "same-origin");
-    response_.set("Referrer-Policy", "no-referrer");
-    response_.set("X-Content-Type-Options", "nosniff");
-    if (status == http::status::ok && path_of(view(request.target())) == "/") {
-      response_.set(http::field::set_cookie, "hapticgiant_" + std::to_string(hub_.port) + "=" +
-                                                 hub_.token +
-                                                 "; Path=/; HttpOnly; SameSite=Strict");
-    }
-    response_.body() = std::move(body);
-    response_.keep_alive(status == http::status::ok && request.keep_alive());
-    response_.prepare_payload();
-    http::async_write(stream_, response_,
-                      [self = shared_from_this()](error_code error, std::size_t) {
-                        if (!error && self->response_.keep_alive()) return self->read();
-                        error_code ignored;
-                        self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-                      });
-  }
-
-  Hub& hub_;
-  beast::tcp_stream stream_;
-  std::shared_ptr<int> connection_;
-  beast::flat_buffer buffer_;
-  std::optional<http::request_parser<http::empty_body>> parser_;
-  Response response_;
-};
+constexpr int kSendBuffer = 64 * 1024;  // bytes; small, so that what arrives is fresh
+constexpr long kMaxConnections = 64;
 
 tcp::acceptor listen_on(asio::io_context& context, std::uint16_t port) {
   tcp::acceptor acceptor(context);

@@ -1,0 +1,75 @@
+/// What all connections of the server share, and the names that they take from Beast.
+///
+/// hub.h, page.h and visitor.h include Boost.Beast and are included by viewer_server.cpp only.
+#pragma once
+
+#include <atomic>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "hg/viewer_server/access.h"
+#include "hg/viewer_server/hand_target_box.h"
+
+namespace hg::viewer_server {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using boost::system::error_code;
+using Text = std::shared_ptr<const std::string>;
+using Request = http::request<http::empty_body>;
+
+constexpr auto kRequestTimeout = std::chrono::seconds(15);
+constexpr std::size_t kMaxEvents = 200;  // kept for pages that connect later, and per page
+
+inline std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// Of the clock that all times of the server are measured with.
+inline double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class Page;
+
+/// Everything but the counters and the hand target belongs to the
+/// server's thread.
+struct Hub {
+  explicit Hub(const Eigen::AlignedBox3d& limits) : hand(limits) {}
+
+  bool has_token(const Request& request) const;
+  void join(const std::shared_ptr<Page>& page);
+  void leave(const std::shared_ptr<Page>& page);
+  void put_hand(std::uint64_t page, const HandTarget& target);
+  void show(Text frame);
+  void announce(Text event);
+
+  std::uint16_t port = 0;
+  std::string token;
+  AssetTable assets;
+  std::set<std::shared_ptr<Page>> pages;
+  std::deque<Text> events;
+  Text newest_frame;
+  std::uint64_t next_page = 1;
+  std::shared_ptr<int> connections = std::make_shared<int>();  // one more owner per connection
+
+  std::atomic<std::uint64_t> clients{0};
+  std::atomic<std::uint64_t> sent{0};
+  std::atomic<std::uint64_t> dropped{0};
+  std::atomic<std::uint64_t> refused{0};
+  std::mutex hand_mutex;
+  HandTargetBox hand;
+};
+
+}  // namespace hg::viewer_server

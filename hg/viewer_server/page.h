@@ -1,0 +1,108 @@
+/// One open page: sends it all events and the newest frame, reads its hand targets.
+#pragma once
+
+#include <boost/asio/buffer.hpp>
+#include <deque>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "hg/viewer_server/hub.h"
+#include "hg/viewer_server/message_rate.h"
+#include "hg/viewer_server/messages.h"
+
+namespace hg::viewer_server {
+
+constexpr std::size_t kLargestMessage = 4096;  // bytes; a hand target has about 80
+
+/// Lives as long as its connection.
+class Page : public std::enable_shared_from_this<Page> {
+ public:
+  Page(Hub& hub, beast::tcp_stream&& stream, std::shared_ptr<int> connection)
+      : hub_(hub), socket_(std::move(stream)), connection_(std::move(connection)) {}
+
+  void start(const Request& request) {
+    beast::get_lowest_layer(socket_).expires_never();
+    socket_.set_option(websocket::stream_base::timeout{kRequestTimeout, kRequestTimeout, true});
+    socket_.read_message_max(kLargestMessage);
+    socket_.text(true);
+    socket_.async_accept(request, [self = shared_from_this()](error_code error) {
+      if (error) return;
+      self->hub_.join(self);
+      self->read();
+    });
+  }
+
+  /// Replaces a frame that is still waiting.
+  void show(Text frame) {
+    if (frame_) ++hub_.dropped;
+    frame_ = std::move(frame);
+    write();
+  }
+
+  void tell(Text event) {
+    if (events_.size() == kMaxEvents) {
+      events_.pop_front();
+      ++hub_.dropped;
+    }
+    events_.push_back(std::move(event));
+    write();
+  }
+
+  std::uint64_t number = 0;
+
+ private:
+  void read() {
+    socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error) {
+        if (error == websocket::error::message_too_big) ++self->hub_.refused;
+        self->hub_.leave(self);
+        return;
+      }
+      self->listen();
+      self->read();
+    });
+  }
+
+  void listen() {
+    const auto bytes = buffer_.cdata();
+    const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
+    HandTarget target;
+    if (rate_.admit(now_s()) && socket_.got_text() &&
+        decode_hand(text, target) == DecodeStatus::kOk) {
+      hub_.put_hand(number, target);
+    } else {
+      ++hub_.refused;
+    }
+    buffer_.clear();
+  }
+
+  void write() {
+    if (current_) return;  // one at a time; the end of it calls again
+    if (!events_.empty()) {
+      current_ = std::move(events_.front());
+      events_.pop_front();
+    } else if (frame_) {
+      current_ = std::move(frame_);
+      ++hub_.sent;
+    } else {
+      return;
+    }
+    socket_.async_write(asio::buffer(*current_),
+                        [self = shared_from_this()](error_code error, std::size_t) {
+                          self->current_.reset();
+                          if (!error) self->write();
+                        });
+  }
+
+  Hub& hub_;
+  websocket::stream<beast::tcp_stream> socket_;
+  std::shared_ptr<int> connection_;
+  beast::flat_buffer buffer_;
+  MessageRate rate_;
+  std::deque<Text> events_;  // waiting
+  Text frame_;               // waiting
+  Text current_;             // on its way
+};
+
+}  // namespace hg::viewer_server

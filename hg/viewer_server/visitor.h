@@ -1,0 +1,121 @@
+/// One HTTP connection: checks each request, hands out what is in the table, or becomes a page.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "hg/viewer_server/hub.h"
+#include "hg/viewer_server/page.h"
+
+namespace hg::viewer_server {
+
+constexpr std::uint32_t kLargestHeader = 8192;  // bytes
+
+constexpr std::string_view kContentPolicy =
+    "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'";
+
+/// Lives as long as its connection, or until that becomes a page.
+class Visitor : public std::enable_shared_from_this<Visitor> {
+ public:
+  Visitor(Hub& hub, tcp::socket&& socket)
+      : hub_(hub), stream_(std::move(socket)), connection_(hub.connections) {}
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(kLargestHeader);
+    parser_->body_limit(0);
+    stream_.expires_after(kRequestTimeout);
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this()](error_code error, std::size_t) {
+                       if (!error) {
+                         self->answer();
+                       } else if (error.category() ==
+                                  http::make_error_code(http::error::bad_method).category()) {
+                         if (error != http::error::end_of_stream) self->refuse_and_close();
+                       }
+                     });
+  }
+
+ private:
+  void answer() {
+    const Request& request = parser_->get();
+    const beast::string_view origin = request[http::field::origin];
+    const bool is_upgrade = websocket::is_upgrade(request);
+
+    if (!is_own_host(view(request[http::field::host]), hub_.port)) {
+      refuse(http::status::forbidden, "wrong host");
+    } else if (!origin.empty() && !is_own_origin(view(origin), hub_.port)) {
+      refuse(http::status::forbidden, "wrong origin");
+    } else if (request.method() != http::verb::get) {
+      refuse(http::status::method_not_allowed, "only GET");
+    } else if (!hub_.has_token(request)) {
+      refuse(http::status::forbidden, "Open the link that the program printed: it has the token.");
+    } else if (is_upgrade && (origin.empty() || path_of(view(request.target())) != "/ws")) {
+      refuse(http::status::forbidden, "wrong origin or path");
+    } else if (is_upgrade) {
+      std::make_shared<Page>(hub_, std::move(stream_), std::move(connection_))->start(request);
+    } else {
+      serve(view(request.target()));
+    }
+  }
+
+  void serve(std::string_view target) {
+    const auto asset = hub_.assets.find(path_of(target));
+    if (asset == hub_.assets.end()) {
+      respond(http::status::not_found, "text/plain", "not found\n");
+    } else {
+      respond(http::status::ok, asset->second.content_type, asset->second.content);
+    }
+  }
+
+  void refuse(http::status status, std::string_view reason) {
+    ++hub_.refused;
+    respond(status, "text/plain", std::string(reason) + "\n");
+  }
+
+  // After bytes that are not a request.
+  void refuse_and_close() {
+    ++hub_.refused;
+    error_code ignored;
+    stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
+  }
+
+  void respond(http::status status, std::string_view content_type, std::string body) {
+    const Request& request = parser_->get();
+    response_ = {status, request.version()};
+    response_.set(http::field::content_type, content_type);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("Content-Security-Policy", kContentPolicy);
+    response_.set("Cross-Origin-Opener-Policy", "same-origin");
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.set("X-Content-Type-Options", "nosniff");
+    if (status == http::status::ok && path_of(view(request.target())) == "/") {
+      response_.set(http::field::set_cookie, "hapticgiant_" + std::to_string(hub_.port) + "=" +
+                                                 hub_.token +
+                                                 "; Path=/; HttpOnly; SameSite=Strict");
+    }
+    response_.body() = std::move(body);
+    response_.keep_alive(status == http::status::ok && request.keep_alive());
+    response_.prepare_payload();
+    http::async_write(stream_, response_,
+                      [self = shared_from_this()](error_code error, std::size_t) {
+                        if (!error && self->response_.keep_alive()) return self->read();
+                        error_code ignored;
+                        self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+                      });
+  }
+
+  Hub& hub_;
+  beast::tcp_stream stream_;
+  std::shared_ptr<int> connection_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  http::response<http::string_body> response_;
+};
+
+}  // namespace hg::viewer_server
