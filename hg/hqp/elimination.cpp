@@ -46,10 +46,10 @@ void Elimination::reduce(const Problem& problem, int row, double factor, double*
 }
 
 // Turns the free columns so that the row reduced to y meets only the first of them; returns its
-// product with that column. y is left unchanged, the reflection is kept.
-double Elimination::reflect(double* y, int size) noexcept {
+// product with that column. The reflection is kept.
+double Elimination::reflect(const double* y, int size) noexcept {
   auto h = reflection_.head(size);
-  h = Eigen::Map<Eigen::VectorXd>(y, size);
+  h = VectorView(y, size);
   const double length = h.norm();
   const double pivot = h[0] > 0.0 ? -length : length;
   h[0] -= pivot;

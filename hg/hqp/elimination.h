@@ -52,7 +52,7 @@ class Elimination {
  private:
   Eigen::Map<Eigen::MatrixXd> free_columns() noexcept;
   void reduce(const Problem& problem, int row, double factor, double* y) noexcept;
-  double reflect(double* y, int size) noexcept;
+  double reflect(const double* y, int size) noexcept;
   int choose_pivots(std::span<const TargetRow> rows, double tolerance,
                     const Problem& problem) noexcept;
 

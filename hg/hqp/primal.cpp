@@ -6,10 +6,8 @@
 namespace hg::hqp {
 namespace {
 
-constexpr double kWrongSign = 1e-12;  // share of the gradient that a pulling row may have: rounding
-constexpr double kPushes = 1e-8;      // share of the gradient from which a row surely pushes
-constexpr double kParallel = 1e-12;   // cosine below which a direction does not change a row
-constexpr int kExchangesPerRow = 3;   // rows released in a corner, per row that meets there
+constexpr double kParallel = 1e-12;  // cosine below which a direction does not change a row
+constexpr int kExchangesPerRow = 3;  // rows released in a corner, per row that meets there
 
 // Sides of a row that do not stop a step, as bits.
 constexpr std::uint8_t kUpperSide = 1;
@@ -246,7 +244,7 @@ int LevelByLevel::find_pulling_row(bool take_first) noexcept {
   const Elimination& elimination = work_.elimination;
   work_.direction.head(n_) = work_.gradient.head(n_);
   int released = -1;
-  double largest_pull = kWrongSign * size_.scale + size_.rounding;
+  double largest_pull = size_.surely_pulling();
   for (int i = static_cast<int>(work_.held.size()) - 1; i >= 0; --i) {
     const auto [row, sign] = work_.held[at(i)];
     const int t = base_ + i;
@@ -255,7 +253,7 @@ int LevelByLevel::find_pulling_row(bool take_first) noexcept {
     add_multiple(problem_, row, mu, work_.direction.data());
     work_.mu[i] = sign * mu;
     const double pull = -sign * mu * problem_.norm(row);
-    if (pull <= kWrongSign * size_.scale + size_.rounding) continue;
+    if (pull <= size_.surely_pulling()) continue;
     const bool is_better =
         take_first ? released < 0 || row < work_.held[at(released)].row : pull > largest_pull;
     if (!is_better) continue;
@@ -377,7 +375,7 @@ void LevelByLevel::fix(int level) noexcept {
       largest_push = push;
       work_.point.blocking_row[at(level)] = row;
     }
-    if (push > kPushes * size_.scale + size_.rounding) {
+    if (push > size_.surely_pushing()) {
       elimination.add_row(problem_, row, options_.rank_tolerance);
       work_.is_fixed[at(row)] = true;
     }

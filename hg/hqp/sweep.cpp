@@ -5,9 +5,6 @@
 namespace hg::hqp {
 namespace {
 
-constexpr double kWrongSign = 1e-12;  // share of the gradient that a pulling row may have: rounding
-constexpr double kPushes = 1e-8;      // share from which a row surely pushes
-
 bool is_held_state(RowState state) noexcept {
   return state == RowState::kLower || state == RowState::kUpper;
 }
@@ -100,9 +97,9 @@ int check_multipliers(const Problem& problem, const LevelGradient& size, int lev
       work.point.blocking_row[at(level)] = row;
     }
     if (work.is_frozen[at(t)]) continue;
-    if (push > kPushes * size.scale + size.rounding) {
+    if (push > size.surely_pushing()) {
       work.is_frozen[at(t)] = true;
-    } else if (push < -kWrongSign * size.scale - size.rounding) {
+    } else if (push < -size.surely_pulling()) {
       work.point.state[at(row)] = RowState::kInactive;
       ++releases;
     }
@@ -151,8 +148,31 @@ RowState next_state(const Problem& problem, const Options& options, int row,
   return is_lower ? RowState::kLower : RowState::kUpper;
 }
 
-bool is_same_guess(Interval bounds, double norm, RowState a, RowState b) noexcept {
-  return a == b || is_equality(bounds) || norm == 0.0;
+// Corrects the state of the row that is farthest off, of the highest level where one is off: rows
+// of lower levels may only follow from it. False when no state contradicts its value.
+bool correct_worst_row(const Problem& problem, const Options& options, int levels,
+                       Workspace& work) noexcept {
+  for (int level = 0; level < levels; ++level) {
+    int worst_row = -1;
+    double worst = -1.0;
+    for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+      const RowState next = next_state(problem, options, row, work);
+      RowState& state = work.point.state[at(row)];
+      const double norm = problem.norm(row);
+      if (is_equality(problem.bounds(row)) || norm == 0.0) {
+        state = next;  // no guess, only a finding
+      } else if (next != state) {
+        const double distance = std::abs(excess(problem.bounds(row), work.value[at(row)])) / norm;
+        if (distance <= worst) continue;
+        worst = distance;
+        worst_row = row;
+      }
+    }
+    if (worst_row < 0) continue;
+    work.point.state[at(worst_row)] = next_state(problem, options, worst_row, work);
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -176,15 +196,8 @@ bool solve_guess(const Problem& problem, const Options& options, int levels,
   if (!eliminate(problem, options, levels, work)) return false;
   update_values(problem, levels, work);
 
-  int changes = check_all_multipliers(problem, options, levels, work);
-  const int end = levels > 0 ? problem.end_row(levels - 1) : 0;
-  for (int row = 0; row < end; ++row) {
-    const RowState next = next_state(problem, options, row, work);
-    RowState& state = work.point.state[at(row)];
-    if (!is_same_guess(problem.bounds(row), problem.norm(row), state, next)) ++changes;
-    state = next;
-  }
-  return changes == 0;
+  if (correct_worst_row(problem, options, levels, work)) return false;
+  return check_all_multipliers(problem, options, levels, work) == 0;
 }
 
 }  // namespace hg::hqp

@@ -51,11 +51,17 @@ struct Workspace {
   Eigen::VectorXd direction;
 };
 
-/// Gradient of a level's objective at work.point.x, in work.gradient.
+/// Gradient of a level's objective at a point; the vector itself is work.gradient.
 struct LevelGradient {
   bool is_zero;     ///< every row of the level is met within its tolerance
   double scale;     ///< sum of the norms of the gradient's terms
   double rounding;  ///< the part of it that rounding may have made up
+
+  /// Size of mu norm(c) from which a held row surely belongs to the optimum, and from which, with
+  /// the wrong sign, it surely does not. In between a row is held, but may be released by lower
+  /// levels.
+  double surely_pushing() const noexcept { return 1e-8 * scale + rounding; }
+  double surely_pulling() const noexcept { return 1e-12 * scale + rounding; }
 };
 
 inline std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }

@@ -104,6 +104,7 @@ class Generator {
 struct NamedKind {
   const char* name;
   RandomKind kind;
+  std::uint32_t problems = 1000;
 };
 
 void PrintTo(const NamedKind& kind, std::ostream* out) { *out << kind.name; }
@@ -116,7 +117,6 @@ Problem random_problem(std::uint32_t seed, const RandomKind& kind) {
 
 class RandomProblems : public testing::TestWithParam<NamedKind> {
  protected:
-  static constexpr std::uint32_t kProblems = 1000;
   static constexpr Capacity kCapacity = {.variables = 60, .levels = 20, .rows = 600};
 
   Solver solver_{kCapacity};
@@ -124,7 +124,7 @@ class RandomProblems : public testing::TestWithParam<NamedKind> {
 };
 
 TEST_P(RandomProblems, AreSolvedToOptimality) {
-  for (std::uint32_t seed = 0; seed < kProblems; ++seed) {
+  for (std::uint32_t seed = 0; seed < GetParam().problems; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Problem problem = random_problem(seed, GetParam().kind);
     ActiveSet active;
@@ -136,7 +136,7 @@ TEST_P(RandomProblems, AreSolvedToOptimality) {
 
 TEST_P(RandomProblems, HaveOneSolutionWhateverTheGuess) {
   std::mt19937 random(7);
-  for (std::uint32_t seed = 0; seed < kProblems; ++seed) {
+  for (std::uint32_t seed = 0; seed < GetParam().problems; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Problem problem = random_problem(seed, GetParam().kind);
     ActiveSet active;
@@ -170,8 +170,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(NamedKind{"ordinary", {}}, NamedKind{"integers", {.has_integers = true}},
                     NamedKind{"badly_scaled", {.row_decades = 1.0}},
                     NamedKind{"tiny", {.scale = 1e-9}}, NamedKind{"huge", {.scale = 1e9}},
-                    NamedKind{"large",
-                              {.max_variables = 60, .max_levels = 16, .max_rows_per_level = 30}}),
+                    NamedKind{
+                        .name = "large",
+                        .kind = {.max_variables = 60, .max_levels = 16, .max_rows_per_level = 30},
+                        .problems = 100}),
     [](const auto& kind) { return std::string(kind.param.name); });
 
 }  // namespace hg::hqp
