@@ -17,6 +17,12 @@ TEST(NearestName, FindsOneWrongMissingOrExtraLetter) {
 
 TEST(NearestName, FindsSwappedLetters) { EXPECT_EQ(nearest_name("hadnle", kJoints), "handle"); }
 
+TEST(NearestName, WrongMissingAndExtraLettersWeighTheSame) {
+  EXPECT_EQ(nearest_name("ax", std::vector<std::string>{"axyz", "ay"}), "ay");
+  EXPECT_EQ(nearest_name("ppuu1", std::vector<std::string>{"qpuu2", "ppu1"}), "ppu1");
+  EXPECT_EQ(nearest_name("ppu1", std::vector<std::string>{"qpu2", "ppuu1"}), "ppuu1");
+}
+
 TEST(NearestName, IgnoresCase) { EXPECT_EQ(nearest_name("ELBOW", kJoints), "elbow"); }
 
 TEST(NearestName, TakesTheFirstOfEquals) { EXPECT_EQ(nearest_name("m3", kJoints), "m1"); }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <utility>
 
 #include "hg/model/chain.h"
 #include "hg/model/test/dh_reference.h"
@@ -124,11 +125,12 @@ TEST(HapticGiant, OperatingBranchReturnsTheJoints) {
 TEST(HapticGiant, InverseIsExactWhenTheHandAxisIsVertical) {
   const Eigen::Vector2d q_p(0.2, -0.1);
   for (const double s : {0.0, pi}) {
-    for (const int f : {1, -1}) {
+    for (const auto& [f, lean] : {std::pair{1, 0.0}, {-1, 0.0}, {1, 1e-14}, {-1, 1e-14}}) {
       const Vector6 q_m{{0.3, 1.2, -0.4, 1.1, s - 1.1, 0.7}};
       Pose pose = hand_pose(q_p, q_m);
       pose.R.col(2) << 0.0, 0.0, s == 0.0 ? -1.0 : 1.0;
       pose.R.row(2) = pose.R.col(2).transpose();
+      pose.R(0, 2) = lean;
       Vector6 solution;
       ASSERT_EQ(inverse(pose, q_p, {.f = f}, solution), InverseStatus::kSingular);
       EXPECT_LT(distance(hand_pose(q_p, solution), pose), 1e-10) << s << " " << f;
@@ -157,6 +159,16 @@ TEST(HapticGiant, InverseSaysWhatIsOutOfReachAndReturnsTheNearest) {
   const double toward_hand = std::atan2(-1.0, -1.0);
   EXPECT_NEAR(std::remainder(solution[0] - toward_hand, 2 * pi), 0.0, 0.2);
   EXPECT_TRUE(solution.allFinite());
+}
+
+TEST(HapticGiant, HeightOutOfReachIsSaidBeforeDistance) {
+  Pose pose;
+  pose.p << 9.0, 0.0, -9.0;
+  Eigen::Vector2d q_p(0.0, 0.0);
+  Vector6 solution;
+  pose.R = Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_EQ(inverse(pose, q_p, {}, solution), InverseStatus::kHeightOutOfReach);
+  EXPECT_EQ(inverse_at_target(pose, q_p, solution), InverseStatus::kHeightOutOfReach);
 }
 
 TEST(HapticGiant, DeterminantEqualsThatOfTheJacobian) {

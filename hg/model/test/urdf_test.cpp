@@ -76,6 +76,8 @@ TEST(Urdf, LimitsThatAreNotGivenAreUnbounded) {
   EXPECT_EQ(joint.effort_max, kInfinity);
   text.joint = joint_with("prismatic", "<limit lower='-1' upper='1'/>");
   EXPECT_EQ(Chain::from_urdf_text(text.all(), "").joints()[0].velocity_max, kInfinity);
+  text.joint = joint_with("floating", "<limit velocity='2'/>");
+  EXPECT_EQ(Chain::from_urdf_text(text.all(), "").joints()[0].velocity_max, kInfinity);
 }
 
 TEST(Urdf, RotationsAreRollPitchYawAboutFixedAxes) {
@@ -145,6 +147,19 @@ std::vector<Fault> faults_of_elements() {
   add(
       "mass is a word", [&](Text& t) { t.arm = arm_with("heavy", unit); },
       "arm.urdf:3: link arm: value must be numbers, got 'heavy'");
+  add(
+      "unit behind a number", [&](Text& t) { t.arm = arm_with("1kg", unit); },
+      "arm.urdf:3: link arm: value must be numbers, got '1kg'");
+  add(
+      "mass without inertia",
+      [](Text& t) { t.arm = arm_with("1", "ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'"); },
+      "arm.urdf:3: link arm: inertia must be positive definite, got principal moments 0, 0, 0");
+  add(
+      "axis of four numbers",
+      [](Text& t) {
+        t.joint = joint_with("revolute", "<axis xyz='0 1 0 0'/><limit lower='0' upper='1'/>");
+      },
+      "arm.urdf:5: joint turn: xyz must be 3 numbers, got '0 1 0 0'");
   add(
       "mass is infinite", [&](Text& t) { t.arm = arm_with("inf", unit); },
       "arm.urdf:3: link arm: value must be numbers, got 'inf'");
