@@ -209,8 +209,11 @@ bool Recorder::Writer::push(const Sample& sample) noexcept {
 }
 
 void Recorder::Writer::push_waiting(const Sample& sample) {
-  while (!is_closing_ && !ring_.push(sample)) std::this_thread::sleep_for(kWaitForPlace);
-  if (is_closing_) dropped_.fetch_add(1, std::memory_order_relaxed);
+  while (!is_closing_) {
+    if (ring_.push(sample)) return;
+    std::this_thread::sleep_for(kWaitForPlace);
+  }
+  dropped_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void Recorder::Writer::event(double time_s, std::string_view name, std::string_view text) {
@@ -227,10 +230,11 @@ RecordingSummary Recorder::Writer::close() {
   if (thread_.joinable()) {
     is_closing_ = true;
     thread_.join();
-    summary_.dropped += dropped_;
-    summary_.error = error();
   }
-  return summary_;
+  RecordingSummary summary = summary_;
+  summary.dropped += dropped_;
+  summary.error = error();
+  return summary;
 }
 
 void Recorder::Writer::run() {

@@ -73,7 +73,7 @@ class Recorder {
   /// Notes an event. From any thread but the control loop.
   void event(double time_s, std::string_view name, std::string_view text);
 
-  /// Writes everything that was pushed and completes the file. Call it once, after the last push.
+  /// Writes everything that was pushed and completes the file. After it, samples are dropped.
   RecordingSummary close();
 
   /// Why recording ended early; empty while all is well. From any thread but the control loop.

@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <thread>
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
@@ -108,7 +109,9 @@ TEST_F(RecorderTest, DropsWhatComesAfterClosing) {
   recorder.close();
   EXPECT_FALSE(recorder.push(example_sample(0, kRate_Hz)));
   recorder.push_waiting(example_sample(0, kRate_Hz));
-  EXPECT_EQ(recorder.close().samples, 0u);
+  const RecordingSummary summary = recorder.close();
+  EXPECT_EQ(summary.samples, 0u);
+  EXPECT_EQ(summary.dropped, 2u);
 }
 
 TEST_F(RecorderTest, DoesNotAllocateInPush) {
@@ -120,18 +123,43 @@ TEST_F(RecorderTest, DoesNotAllocateInPush) {
 }
 
 TEST_F(RecorderTest, DeletesTheOldestRecordingsForTheBudget) {
-  temporary_.write("door_20260101_000000.mcap", 600'000);
-  temporary_.write("door_20260102_000000.mcap", 600'000);
+  temporary_.write("door_20260101_000000.mcap", 1'800'000);
+  temporary_.write("door_20260102_000000.mcap", 1'800'000);
   RecordingInfo small = info();
-  small.disk_budget_bytes = 1.5e6;
+  small.disk_budget_bytes = 4e6;
   Recorder recorder(small);
-  for (std::uint64_t cycle = 0; cycle < 1000; ++cycle) {
+  for (std::uint64_t cycle = 0; cycle < 2000; ++cycle) {
     recorder.push_waiting(example_sample(cycle, kRate_Hz));
   }
+  // at most 1000 samples wait in the ring: enough of the others are in the file already
+  EXPECT_FALSE(std::filesystem::exists(temporary_.path() / "door_20260101_000000.mcap"));
   const RecordingSummary summary = recorder.close();
   EXPECT_EQ(summary.deleted, std::vector<std::string>{"door_20260101_000000.mcap"});
-  EXPECT_FALSE(std::filesystem::exists(temporary_.path() / "door_20260101_000000.mcap"));
-  EXPECT_EQ(summary.samples, 1000u);
+  EXPECT_EQ(summary.samples, 2000u);
+}
+
+TEST_F(RecorderTest, KeepsTheBudgetWhenItCloses) {
+  temporary_.write("door_20260101_000000.mcap", 1'000'000);
+  RecordingInfo small = info();
+  small.disk_budget_bytes = 1.05e6;
+  Recorder recorder(small);
+  EXPECT_TRUE(std::filesystem::exists(temporary_.path() / "door_20260101_000000.mcap"));
+  for (std::uint64_t cycle = 0; cycle < 200; ++cycle) {
+    recorder.push_waiting(example_sample(cycle, kRate_Hz));
+  }
+  EXPECT_EQ(recorder.close().deleted, std::vector<std::string>{"door_20260101_000000.mcap"});
+}
+
+TEST_F(RecorderTest, FlushesWhenNoSamplesCome) {
+  Recorder recorder(info());
+  const auto path = temporary_.path() / "door_20270115_080000.partial.mcap";
+  const std::uintmax_t head = std::filesystem::file_size(path);
+  recorder.push(example_sample(0, kRate_Hz));
+  constexpr int kPatience = 3000;
+  for (int i = 0; i < kPatience && std::filesystem::file_size(path) == head; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_GT(std::filesystem::file_size(path), head);
 }
 
 TEST_F(RecorderTest, DeletesAtTheStartWhatIsTooMuchAlready) {
@@ -149,7 +177,10 @@ TEST_F(RecorderTest, EndsWithACompleteFileWhenItAloneFillsTheBudget) {
   for (std::uint64_t cycle = 0; cycle < 10'000; ++cycle) {
     recorder.push_waiting(example_sample(cycle, kRate_Hz));
   }
+  recorder.event(10.0, "late", "there is no file to write it to");
+  testing::internal::CaptureStderr();
   const RecordingSummary summary = recorder.close();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_NE(summary.error.find("disk budget of 1e+06 bytes"), std::string::npos) << summary.error;
   EXPECT_EQ(recorder.error(), summary.error);
   EXPECT_EQ(summary.file.filename(), "door_20270115_080000.mcap");
@@ -174,6 +205,7 @@ TEST_F(RecorderTest, OutlivesAFullDisk) {
   EXPECT_EQ(summary.file.filename(), "door_20270115_080000.partial.mcap");
   EXPECT_EQ(summary.samples + summary.dropped, 10'000u);
   EXPECT_GT(summary.samples, 0u);
+  EXPECT_LT(summary.samples, 2000u);  // about 760 bytes each
   EXPECT_LE(std::filesystem::file_size(summary.file), 1'000'000u);
 }
 

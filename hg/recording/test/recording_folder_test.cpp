@@ -24,8 +24,12 @@ std::string message_of(const auto& action) {
 TEST(RecordingFolder, NamesFilesByUtcTime) {
   const TemporaryFolder temporary;
   const RecordingFolder folder(temporary.path());
-  EXPECT_EQ(folder.new_path("door", kStart),
-            temporary.path() / "door_20270115_080000.partial.mcap");
+  setenv("TZ", "ABC-3", 1);  // three hours east
+  tzset();
+  const auto path = folder.new_path("door", kStart);
+  unsetenv("TZ");
+  tzset();
+  EXPECT_EQ(path, temporary.path() / "door_20270115_080000.partial.mcap");
 }
 
 TEST(RecordingFolder, NumbersFilesOfOneSecond) {
@@ -72,16 +76,16 @@ TEST(RecordingFolder, DeletesTheOldestUntilTheBudgetHolds) {
   // neither the order of names nor of writing is the order of age
   temporary.write("b_20270101_000000.mcap", 100);
   temporary.write("a_20270103_000000.mcap", 100);
-  temporary.write("c_20270101_000000_2.partial.mcap", 100);
-  temporary.write("d_20270101_000000_10.mcap", 100);
+  temporary.write("d_20270101_000000_2.partial.mcap", 100);
+  temporary.write("c_20270101_000000_10.mcap", 100);
   temporary.write("z_20261231_235959.mcap", 100);
   EXPECT_EQ(folder.make_room(temporary.path() / "e_20270104_000000.partial.mcap", 50.0, 550.0),
             Names{});
   EXPECT_EQ(folder.make_room(temporary.path() / "e_20270104_000000.partial.mcap", 51.0, 550.0),
             Names{"z_20261231_235959.mcap"});
   EXPECT_EQ(folder.make_room(temporary.path() / "e_20270104_000000.partial.mcap", 50.0, 200.0),
-            (Names{"b_20270101_000000.mcap", "c_20270101_000000_2.partial.mcap",
-                   "d_20270101_000000_10.mcap"}));
+            (Names{"b_20270101_000000.mcap", "d_20270101_000000_2.partial.mcap",
+                   "c_20270101_000000_10.mcap"}));
   EXPECT_EQ(temporary.names(), std::set<std::string>{"a_20270103_000000.mcap"});
 }
 
