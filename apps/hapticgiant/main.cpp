@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <exception>
+#include <cmath>
+#include <string>
 
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/run_command.h"
@@ -13,6 +14,13 @@
 namespace {
 
 constexpr int kBadInput = 2;
+
+// ranges let "nan" through
+std::string finite_number(const std::string& text) {
+  double value = 0.0;
+  const bool is_finite = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+  return is_finite ? "" : "expected a number, got '" + text + "'";
+}
 
 void add_run(CLI::App& app, hg::apps::RunArguments& run) {
   CLI::App* command =
@@ -28,9 +36,11 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run) {
   command->add_option("--twin", run.twin, "twin.yaml instead of the scenario's");
   command->add_option("--user", run.user, "script file, mouse or none");
   command->add_option("--duration", run.duration_s, "seconds; default: until the script has played")
+      ->check(finite_number)
       ->check(CLI::PositiveNumber);
   command->add_flag("--fast", run.is_fast, "as fast as it can instead of in real time");
   command->add_option("--rate-hz", run.rate_Hz, "control rate, 100..20000; default: the device's")
+      ->check(finite_number)
       ->check(CLI::Range(100.0, 20000.0));
   command->add_option("--summary", run.summary, "write the closing summary as JSON to this file");
   command->add_flag("!--no-viewer", run.has_viewer, "without the page");

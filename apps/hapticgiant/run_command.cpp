@@ -53,8 +53,8 @@ struct Observers {
   evaluation::EventDetector detector;
   evaluation::Summary summary;
   StatusLine status_line;
-  std::unique_ptr<recording::Recorder> recorder;
   std::unique_ptr<viewer_server::ViewerServer> viewer;
+  std::unique_ptr<recording::Recorder> recorder;  ///< last: a refused run leaves no file
   bool is_fast = false;
   Clock::time_point last_status = {};
   CycleRecord last_record = {};
@@ -150,13 +150,10 @@ int run(const RunArguments& arguments) {
   runtime::Options options;
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = arguments.is_fast;
-  options.duration_s = arguments.duration_s;
-  if (arguments.duration_s < 0.0) {
-    const bool goes_on = is_terminal && !arguments.is_fast && arguments.has_viewer;
-    options.duration_s = goes_on ? 0.0 : planned;
-    if (arguments.is_fast && planned == 0.0) {
-      throw SetupError("run: --fast without a script needs --duration S");
-    }
+  const bool goes_on = is_terminal && !arguments.is_fast && arguments.has_viewer;
+  options.duration_s = arguments.duration_s.value_or(goes_on ? 0.0 : planned);
+  if (arguments.is_fast && options.duration_s == 0.0) {
+    throw SetupError("run: --fast without a script needs --duration S");
   }
   runtime::check(options);
 
@@ -166,8 +163,8 @@ int run(const RunArguments& arguments) {
                       .detector = {scenario.events, scenario.limits},
                       .summary = evaluation::Summary(scenario.limits),
                       .status_line = StatusLine(is_terminal),
-                      .recorder = make_recorder(scenario, arguments),
                       .viewer = make_viewer(scenario, arguments),
+                      .recorder = make_recorder(scenario, arguments),
                       .is_fast = arguments.is_fast};
 
   fmt::print("HapticGiant {}  {}\n", kVersion, scenario.title);

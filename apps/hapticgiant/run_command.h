@@ -2,19 +2,21 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace hg::apps {
 
 struct RunArguments {
   std::string scenario = "door";
-  std::string device;      ///< device.yaml instead of the scenario's; empty = the scenario's
-  std::string twin;        ///< twin.yaml likewise
-  std::string user;        ///< script file, "mouse" or "none"; empty = the scenario's
-  double duration_s = -1;  ///< < 0: until the script has played; on a terminal until Ctrl-C
-  bool is_fast = false;    ///< as fast as it can, without page
-  double rate_Hz = -1;     ///< < 0: the device's
-  std::string summary;     ///< JSON file; empty = none
+  std::string device;  ///< device.yaml instead of the scenario's; empty = the scenario's
+  std::string twin;    ///< twin.yaml likewise
+  std::string user;    ///< script file, "mouse" or "none"; empty = the scenario's
+  /// Unset: until the script has played; on a terminal with a page until Ctrl-C.
+  std::optional<double> duration_s;
+  bool is_fast = false;           ///< as fast as it can, without page
+  std::optional<double> rate_Hz;  ///< unset: the device's
+  std::string summary;            ///< JSON file; empty = none
   bool has_viewer = true;
   std::uint16_t port = 0;  ///< of the page; 0 = any free one
   std::string recordings = "recordings";

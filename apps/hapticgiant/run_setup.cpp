@@ -154,7 +154,7 @@ viewer_server::SceneJoint scene_joint(const model::Joint& joint) {
 config::Scenario make_scenario(const RunArguments& arguments) {
   config::Scenario scenario = config::load_scenario(find_scenario(arguments.scenario));
   apply(arguments, scenario);
-  if (arguments.rate_Hz > 0.0) set_rate(scenario.device, arguments.rate_Hz);
+  if (arguments.rate_Hz) set_rate(scenario.device, *arguments.rate_Hz);
   return scenario;
 }
 

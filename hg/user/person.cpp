@@ -105,8 +105,10 @@ Vector6 Person::wrench(double t, const HandleMotion& handle, const HandTarget& t
   // [HANDBOOK] 5.1 without the arm's mass, clipped: nobody pulls harder than needed
   const HandImpedance& hand = config_.hand;
   const Eigen::Matrix3d& R = handle.T_B_H.R;
+  Eigen::Vector3d stretch = goal.pose.p - handle.T_B_H.p;
+  if (target.active) stretch.z() *= 1.0 - target.press;  // a hand that presses holds no height
   const Eigen::Vector3d force =
-      hand.stiffness.cwiseProduct(goal.pose.p - handle.T_B_H.p) +
+      hand.stiffness.cwiseProduct(stretch) +
       hand.damping.cwiseProduct(goal.twist.head<3>() - handle.twist.head<3>());
   Eigen::Vector3d torque_in_H = hand.angular_damping.cwiseProduct(
       R.transpose() * (goal.twist.tail<3>() - handle.twist.tail<3>()));

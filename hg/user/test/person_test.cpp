@@ -80,6 +80,16 @@ TEST(Person, TheMouseOverrulesTheScriptAndPressesTheLever) {
   EXPECT_LT(w.tail<3>().norm(), 1e-9);  // the mouse holds no orientation
 }
 
+TEST(Person, AHandThatPressesDoesNotHoldTheHeight) {
+  Person person = make(scripted());
+  HandTarget target;
+  target.active = true;
+  target.p_B = {0.0, 0.0, 0.3};
+  EXPECT_NEAR(person.wrench(0.0, {start_pose()}, target)[2], 60.0, 1e-9);
+  target.press = 1.0;
+  EXPECT_NEAR(person.wrench(0.0, {start_pose()}, target)[2], -14.0, 1e-9);
+}
+
 TEST(Person, NobodyPushesNothing) {
   Config config = scripted();
   config.kind = PersonKind::kNone;
