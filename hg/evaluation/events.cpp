@@ -25,12 +25,41 @@ LimitState reached_side(const LimitInfo& info, const LimitReport& report) noexce
   return LimitState::kInactive;
 }
 
+using Situation = EventDetector::Situation;
+
+Situation situation_of(const LimitInfo& info, const LimitReport& report) noexcept {
+  if (report.cause == LimitCause::kLock) return Situation::kLocked;
+  switch (reached_side(info, report)) {
+    case LimitState::kLower:
+      return Situation::kAtLower;
+    case LimitState::kUpper:
+      return Situation::kAtUpper;
+    case LimitState::kInactive:
+    case LimitState::kViolated:
+      return Situation::kFree;
+  }
+  return Situation::kFree;
+}
+
+// empty: not worth telling
+const char* event_text(Situation before, Situation now) noexcept {
+  switch (now) {
+    case Situation::kAtLower:
+      return "lower limit reached";
+    case Situation::kAtUpper:
+      return "upper limit reached";
+    case Situation::kLocked:
+      return "locked";
+    case Situation::kFree:
+      return before == Situation::kLocked ? "unlocked" : "";
+  }
+  return "";
+}
+
 }  // namespace
 
 EventDetector::EventDetector(std::vector<EventRule> rules, LimitCatalogue catalogue)
-    : rules_(std::move(rules)),
-      catalogue_(std::move(catalogue)),
-      last_states_(catalogue_.size(), LimitState::kInactive) {}
+    : rules_(std::move(rules)), catalogue_(std::move(catalogue)) {}
 
 bool EventDetector::holds(const Condition& condition, const CycleRecord& record) const {
   const auto i = static_cast<std::size_t>(condition.index);
@@ -80,16 +109,21 @@ std::optional<Event> EventDetector::observe(const CycleRecord& record) {
     return Event{rule.name, record.time_s, rule.what};
   }
 
-  std::optional<Event> event;
+  return observe_limits(record);
+}
+
+// One event per record; what happens at the same time follows with the next records.
+std::optional<Event> EventDetector::observe_limits(const CycleRecord& record) {
+  const bool is_first = situations_.empty();
+  situations_.resize(catalogue_.size(), Situation::kFree);
   for (std::size_t i = 0; i < catalogue_.size(); ++i) {
-    const LimitState side = reached_side(catalogue_[i], record.limits[i]);
-    if (side != LimitState::kInactive && last_states_[i] == LimitState::kInactive && !event) {
-      event =
-          Event{catalogue_[i].name, record.time_s, std::string(to_string(side)) + " limit reached"};
-    }
-    last_states_[i] = side;
+    const Situation now = situation_of(catalogue_[i], record.limits[i]);
+    const Situation before = std::exchange(situations_[i], now);
+    if (is_first || now == before) continue;
+    const char* what = event_text(before, now);
+    if (what[0] != '\0') return Event{catalogue_[i].name, record.time_s, what};
   }
-  return event;
+  return std::nullopt;
 }
 
 std::vector<std::string> EventDetector::missing() const {

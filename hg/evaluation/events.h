@@ -46,7 +46,10 @@ struct Event {
 /// Looks for the rules in their order: each is looked for once the one before it has happened.
 class EventDetector {
  public:
-  /// With no rules, every limit that begins to be felt is an event.
+  /// What a limit does to its quantity, for the events of a run without rules.
+  enum class Situation { kFree, kAtLower, kAtUpper, kLocked };
+
+  /// With no rules, every limit that begins to act and every lock that opens or closes is an event.
   EventDetector(std::vector<EventRule> rules, LimitCatalogue catalogue);
 
   /// The event that this record completes, if any.
@@ -56,13 +59,14 @@ class EventDetector {
   std::vector<std::string> missing() const;
 
  private:
+  std::optional<Event> observe_limits(const CycleRecord& record);
   bool holds(const Condition& condition, const CycleRecord& record) const;
 
   std::vector<EventRule> rules_;
   LimitCatalogue catalogue_;
   std::size_t next_ = 0;
   VectorM q_m_start_;
-  std::vector<LimitState> last_states_;
+  std::vector<Situation> situations_;  ///< of every limit in the last record
 };
 
 }  // namespace hg::evaluation

@@ -81,8 +81,23 @@ TEST(EventDetector, WithoutRulesEveryLimitThatBeginsToActIsAnEvent) {
   EXPECT_FALSE(detector.observe(record));
   record.limits[1].state = LimitState::kLower;
   record.limits[1].to_lower = 0.0;
-  EXPECT_EQ(detector.observe(record)->name, "hinge");
+  record.limits[0].state = LimitState::kUpper;
+  record.limits[0].to_upper = 0.0;
+  EXPECT_EQ(detector.observe(record)->name, "m4");
+  EXPECT_EQ(detector.observe(record)->what, "lower limit reached");  // at the same time: hinge
   EXPECT_FALSE(detector.observe(record));
+}
+
+TEST(EventDetector, WithoutRulesLocksThatOpenAndCloseAreEvents) {
+  EventDetector detector({}, catalogue());
+  CycleRecord record = running(0.0);
+  record.limits[1].state = LimitState::kLower;
+  record.limits[1].cause = LimitCause::kLock;
+  EXPECT_FALSE(detector.observe(record));  // it began locked
+  record.limits[1] = {};
+  EXPECT_EQ(detector.observe(record)->what, "unlocked");
+  record.limits[1].cause = LimitCause::kLock;
+  EXPECT_EQ(detector.observe(record)->what, "locked");
 }
 
 TEST(Distribution, GivesMedianPercentileAndMaximum) {
