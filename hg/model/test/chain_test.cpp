@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "hg/core/allocation_counter.h"
@@ -255,6 +258,7 @@ TEST(Chain, AFreeBodyObeysNewtonAndEuler) {
 TEST(Chain, AnImpossibleFreeBodyIsRefused) {
   EXPECT_THROW(Chain::free_body({.mass = 0.0}), SetupError);
   EXPECT_THROW(Chain::free_body({.inertia = Eigen::Vector3d(1, 1, 3).asDiagonal()}), SetupError);
+  EXPECT_THROW(Chain::free_body({.p_handle_com = Eigen::Vector3d(0, std::nan(""), 0)}), SetupError);
 }
 
 TEST(Chain, IntegrationFollowsTheExponentialOfAConstantTwist) {

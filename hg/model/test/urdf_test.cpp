@@ -119,6 +119,12 @@ TEST(Urdf, AZeroInertialMarksAMereFrame) {
   EXPECT_EQ(message_of(text.all()), "accepted");
 }
 
+TEST(Urdf, AFlatPlateRoundedToSixDigitsIsABody) {
+  Text text;
+  text.arm = arm_with("1", "ixx='0.333333' iyy='0.333333' izz='0.666667' ixy='0' ixz='0' iyz='0'");
+  EXPECT_EQ(message_of(text.all()), "accepted");
+}
+
 TEST(Urdf, NumbersMayHaveSignsExponentsAndAnyBlanks) {
   Text text;
   text.joint =
