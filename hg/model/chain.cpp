@@ -419,8 +419,7 @@ Jacobian Chain::jacobian(int frame) const noexcept {
   const Eigen::Vector3d p_B_frame = impl_->data.oMi[f.joint].act(f.T_joint_frame.translation());
 
   // joints beyond the frame do not move it
-  const int columns =
-      f.joint == 0 ? 0 : impl_->parts.model.idx_vs[f.joint] + impl_->parts.model.nvs[f.joint];
+  const int columns = impl_->parts.model.idx_vs[f.joint] + impl_->parts.model.nvs[f.joint];
   Jacobian J = Jacobian::Zero(6, nv());
   for (int i = 0; i < columns; ++i) {
     // columns of data.J are twists at the origin of B
