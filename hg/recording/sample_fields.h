@@ -63,6 +63,7 @@ void fields(Archive& a, T& record) {
   a("reference", record.reference, "integrated reference of the manipulator");
   a("twin", record.twin);
   a("handle", record.T_B_H, "handle in the base frame, at the reference");
+  a("twin_end", record.T_B_E, "end effector of the twin in the base frame");
   a("v_h", record.v_H, "its velocity, m/s");
   a("a_h", record.a_H, "its acceleration, m/s^2");
   a("p_b_elbow", record.p_B_elbow, "m");

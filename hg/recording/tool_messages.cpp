@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
 
-enum FrameIndex : std::size_t { kHandle = 0, kElbow = 1 };
+enum FrameIndex : std::size_t { kHandle = 0, kElbow = 1, kTwinEnd = 2 };
 
 template <typename Vector>
 double value_or_nan(const Vector& vector, int index) {
@@ -19,6 +19,11 @@ double value_or_nan(const Vector& vector, int index) {
 }
 
 Vector3 to_ros(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Transform to_ros(const Pose& pose) {
+  const Eigen::Quaterniond rotation(pose.R);
+  return {to_ros(pose.p), {rotation.x(), rotation.y(), rotation.z(), rotation.w()}};
+}
 
 void resize(JointState& state) {
   state.position.resize(state.name.size());
@@ -48,9 +53,10 @@ ToolMessages::ToolMessages(const RecordingInfo& info)
   resize(twin_);
 
   user_wrench_.header.frame_id = "handle";
-  transforms_.transforms.resize(2);
+  transforms_.transforms.resize(3);
   transforms_.transforms[kHandle].child_frame_id = "handle";
   transforms_.transforms[kElbow].child_frame_id = "elbow";
+  transforms_.transforms[kTwinEnd].child_frame_id = "twin_end";
   for (TransformStamped& transform : transforms_.transforms) transform.header.frame_id = "base";
 }
 
@@ -94,9 +100,8 @@ void ToolMessages::update_frames(const CycleRecord& record) {
   user_wrench_.wrench.force = to_ros(R_H_B * record.robot.w_H.head<3>());
   user_wrench_.wrench.torque = to_ros(R_H_B * record.robot.w_H.tail<3>());
 
-  const Eigen::Quaterniond rotation(record.T_B_H.R);
-  transforms_.transforms[kHandle].transform = {
-      to_ros(record.T_B_H.p), {rotation.x(), rotation.y(), rotation.z(), rotation.w()}};
+  transforms_.transforms[kHandle].transform = to_ros(record.T_B_H);
+  transforms_.transforms[kTwinEnd].transform = to_ros(record.T_B_E);
   transforms_.transforms[kElbow].transform.translation = to_ros(record.p_B_elbow);
 }
 

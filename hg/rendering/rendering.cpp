@@ -174,9 +174,9 @@ void Rendering::report_kinematics(const State& state, CycleRecord& record) const
   record.a_H =
       (J_a * state.twin.ddq_a + twin_.chain.bias_acceleration(twin_.end_effector)).head<3>();
   if (device_.elbow >= 0) record.p_B_elbow = device_.chain.pose(device_.elbow).p;
-  const Pose T_B_E = twin_.chain.pose(twin_.end_effector);
-  record.sync_error = (T_B_E.p - record.T_B_H.p).norm();
-  record.sync_error_angle = Eigen::AngleAxisd(record.T_B_H.R.transpose() * T_B_E.R).angle();
+  record.T_B_E = twin_.chain.pose(twin_.end_effector);
+  record.sync_error = (record.T_B_E.p - record.T_B_H.p).norm();
+  record.sync_error_angle = Eigen::AngleAxisd(record.T_B_H.R.transpose() * record.T_B_E.R).angle();
 }
 
 void Rendering::integrate(State& state) const noexcept {

@@ -51,7 +51,7 @@ std::string_view to_string(LimitCause cause) noexcept;
 struct LimitReport {
   LimitState state = LimitState::kInactive;
   LimitCause cause = LimitCause::kNone;
-  double position = 0.0;  ///< of the limited quantity
+  double position = 0.0;        ///< of the limited quantity
   double to_lower = kInfinity;  ///< distance left to the limit as rendered: with margin and locks
   double to_upper = kInfinity;
   double excess = 0.0;    ///< how far it is outside its configured range, >= 0

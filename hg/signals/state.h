@@ -79,6 +79,7 @@ struct CycleRecord {
   ReferenceState reference;
   TwinState twin;
   Pose T_B_H;                                     ///< handle at the reference
+  Pose T_B_E;                                     ///< end effector of the twin
   Eigen::Vector3d v_H = Eigen::Vector3d::Zero();  ///< its velocity
   Eigen::Vector3d a_H = Eigen::Vector3d::Zero();  ///< its acceleration asked for this sample
   Eigen::Vector3d p_B_elbow = Eigen::Vector3d::Zero();

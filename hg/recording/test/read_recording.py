@@ -57,9 +57,11 @@ def check_joint_states(device, twin, sample):
 
 
 def check_frames(transforms, wrench, sample):
-    handle, elbow = transforms.transforms
+    handle, elbow, twin_end = transforms.transforms
     assert (handle.header.frame_id, handle.child_frame_id) == ("base", "handle")
     assert (elbow.header.frame_id, elbow.child_frame_id) == ("base", "elbow")
+    assert (twin_end.header.frame_id, twin_end.child_frame_id) == ("base", "twin_end")
+    assert twin_end.transform.translation.x == sample.record.twin_end.p[0]
     translation, q = handle.transform.translation, handle.transform.rotation
     assert [translation.x, translation.y, translation.z] == sample.record.handle.p
     assert abs(1 - 2 * (q.y**2 + q.z**2) - sample.record.handle.r[0]) < 1e-14

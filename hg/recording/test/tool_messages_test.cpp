@@ -78,6 +78,8 @@ TEST(ToolMessages, PlaceHandleAndElbowInTheBase) {
   Sample sample;
   sample.record.T_B_H.p = {1.0, 2.0, 3.0};
   sample.record.T_B_H.R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  sample.record.T_B_E = sample.record.T_B_H;
+  sample.record.T_B_E.p.x() = 1.5;
   sample.record.p_B_elbow = {4.0, 5.0, 6.0};
   ToolMessages messages(info());
   messages.update(sample, 1'800'000'000'250'000'000);
@@ -93,6 +95,10 @@ TEST(ToolMessages, PlaceHandleAndElbowInTheBase) {
   EXPECT_EQ(elbow.child_frame_id, "elbow");
   EXPECT_EQ(elbow.transform.translation.z, 6.0);
   EXPECT_EQ(elbow.transform.rotation.w, 1.0);
+  const auto& twin_end = messages.transforms().transforms[2];
+  EXPECT_EQ(twin_end.child_frame_id, "twin_end");
+  EXPECT_EQ(twin_end.transform.translation.x, 1.5);
+  EXPECT_NEAR(twin_end.transform.rotation.z, std::sqrt(0.5), kRounding);
 }
 
 }  // namespace
