@@ -9,9 +9,14 @@
 #include "hg/config/range.h"
 #include "hg/core/types.h"
 #include "hg/limits/acceleration_bounds.h"
+#include "hg/model/chain.h"
 #include "hg/model/urdf.h"
 
 namespace hg::config {
+
+inline JointUnit unit_of(model::JointType type) {
+  return type == model::JointType::kPrismatic ? JointUnit::kLength : JointUnit::kAngle;
+}
 
 inline constexpr JointKey kLowest = {"q_min_rad", "q_min_m"};
 inline constexpr JointKey kHighest = {"q_max_rad", "q_max_m"};
@@ -19,17 +24,17 @@ inline constexpr JointKey kSpeed = {"dq_max_rad_per_s", "dq_max_m_per_s"};
 inline constexpr JointKey kAcceleration = {"ddq_max_rad_per_s2", "ddq_max_m_per_s2"};
 
 template <class V>
-void describe_positions(V& v, limits::JointLimits& limits, bool is_angle) {
-  v.joint_number(kLowest, is_angle, limits.q_min, kUnlimited, "lowest position");
-  v.joint_number(kHighest, is_angle, limits.q_max, kUnlimited, "highest position");
-  v.rule(limits.q_min <= limits.q_max, kHighest.of(is_angle), "q_max must not be below q_min",
+void describe_positions(V& v, limits::JointLimits& limits, JointUnit unit) {
+  v.joint_number(kLowest, unit, limits.q_min, kUnlimited, "lowest position");
+  v.joint_number(kHighest, unit, limits.q_max, kUnlimited, "highest position");
+  v.rule(limits.q_min <= limits.q_max, kHighest.of(unit), "q_max must not be below q_min",
          model::to_text(limits.q_max) + " with q_min " + model::to_text(limits.q_min));
 }
 
 template <class V>
-void describe_ratings(V& v, limits::JointLimits& limits, bool is_angle, Need need) {
-  v.joint_number(kSpeed, is_angle, limits.dq_max, kPositiveOrNone, "largest speed", need);
-  v.joint_number(kAcceleration, is_angle, limits.ddq_max, kPositiveOrNone, "largest acceleration",
+void describe_ratings(V& v, limits::JointLimits& limits, JointUnit unit, Need need) {
+  v.joint_number(kSpeed, unit, limits.dq_max, kPositiveOrNone, "largest speed", need);
+  v.joint_number(kAcceleration, unit, limits.ddq_max, kPositiveOrNone, "largest acceleration",
                  need);
 }
 

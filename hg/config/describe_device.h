@@ -15,7 +15,7 @@ namespace hg::config {
 
 struct DeviceJoint {
   std::string name;
-  bool is_angle = true;
+  JointUnit unit = JointUnit::kEither;
   limits::JointLimits limits;
 };
 
@@ -26,6 +26,7 @@ struct DeviceDraft {
   std::vector<std::string> joint_names, frame_names;  ///< of the URDF
   std::vector<DeviceJoint> joints;                    ///< all, with the limits of the URDF
   std::vector<int> gantry, manipulator;               ///< indices of joints
+  bool has_joints = false;                            ///< both lists are usable
   std::vector<std::string> manipulator_names;
   int handle = -1, elbow = -1;
   Placement sensor;
@@ -54,10 +55,12 @@ void describe_chain(V& v, DeviceDraft& d) {
 
 template <class V>
 void describe_structure(V& v, DeviceDraft& d) {
-  v.names("gantry", d.gantry, d.joint_names, "a joint of the URDF",
-          "prepositioning joints, from the root on", Need::kRequired);
-  v.names("manipulator", d.manipulator, d.joint_names, "a joint of the URDF",
-          "the joints after the gantry, to the tip", Need::kRequired);
+  const bool has_gantry = v.names("gantry", d.gantry, d.joint_names, "a joint of the URDF",
+                                  "prepositioning joints, from the root on", Need::kRequired);
+  const bool has_manipulator =
+      v.names("manipulator", d.manipulator, d.joint_names, "a joint of the URDF",
+              "the joints after the gantry, to the tip", Need::kRequired);
+  d.has_joints = has_gantry && has_manipulator;
   v.name("handle", d.handle, d.frame_names, "a link of the URDF", "frame H, held by the user",
          Need::kRequired);
   v.name("elbow", d.elbow, d.frame_names, "a link of the URDF", "frame to be recorded and shown");
@@ -78,8 +81,8 @@ void describe_structure(V& v, DeviceDraft& d) {
 
 template <class V>
 void describe(V& v, DeviceJoint& joint, bool is_gantry) {
-  describe_positions(v, joint.limits, joint.is_angle);
-  if (v.covers(!is_gantry)) describe_ratings(v, joint.limits, joint.is_angle, Need::kOptional);
+  describe_positions(v, joint.limits, joint.unit);
+  if (v.covers(!is_gantry)) describe_ratings(v, joint.limits, joint.unit, Need::kOptional);
 }
 
 template <class V>
@@ -91,8 +94,8 @@ void describe(V& v, rendering::VirtualJoint& joint, const std::vector<std::strin
       [&](int index, double weight) { joint.weights[index] = weight; },
       "factor of each revolute joint in the sum");
   v.rule(joint.weights.norm() > 0.0, "weights", "at least one joint must have a weight");
-  describe_positions(v, joint.limits, true);
-  describe_ratings(v, joint.limits, true, Need::kRequired);
+  describe_positions(v, joint.limits, JointUnit::kAngle);
+  describe_ratings(v, joint.limits, JointUnit::kAngle, Need::kRequired);
 }
 
 template <class V>
@@ -101,12 +104,12 @@ void describe(V& v, rendering::CartesianLimit& limit, const std::vector<std::str
   v.name("frame", limit.frame, frames, "a link of the URDF", "its origin is limited",
          Need::kRequired);
   limits::JointLimits ratings = {.dq_max = 1.5, .ddq_max = 5.0};  // [DESIGN] 4
-  describe_ratings(v, ratings, false, Need::kOptional);
+  describe_ratings(v, ratings, JointUnit::kLength, Need::kOptional);
   v.number("margin_m", limit.margin, kNotNegative, "the rendered box is smaller on every side");
   constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
   for (std::size_t i = 0; i < kAxes.size(); ++i) {
     limits::JointLimits axis = ratings;
-    const auto read = [&](auto& child) { describe_positions(child, axis, false); };
+    const auto read = [&](auto& child) { describe_positions(child, axis, JointUnit::kLength); };
     if (!v.group(kAxes[i], read, "along this axis of B; without it there is no limit")) continue;
     v.rule(axis.q_max - axis.q_min > 2.0 * limit.margin, kAxes[i],
            "the margin must leave some of the range");

@@ -27,7 +27,7 @@ void describe_behaviour(V& v, DeviceDraft& d) {
         child.number("dq_max_m_per_s", d.drive.dq_max, kPositive, "largest speed");
         child.number("ddq_max_m_per_s2", d.drive.ddq_max, kPositive, "largest acceleration");
         child.rule(d.drive.dead_time * d.rate_Hz < CommandDelay::kCapacity, "dead_time_s",
-                   "the dead time must be shorter than 256 cycles");
+                   "must be shorter than 256 cycles", model::to_text(d.drive.dead_time));
       },
       "how the gantry follows its velocity command");
   v.group(
@@ -47,9 +47,12 @@ void describe_behaviour(V& v, DeviceDraft& d) {
         child.number("ddq_brake_m_per_s2", d.prepositioning.drive.ddq_max, kPositive,
                      "deceleration that can be relied on");
         child.rule(d.prepositioning.dq_max <= d.drive.dq_max, "dq_max_m_per_s",
-                   "must not exceed the speed of the drive");
-        child.rule(d.prepositioning.drive.ddq_max <= d.drive.ddq_max, "ddq_brake_m_per_s2",
-                   "must not exceed the acceleration of the drive");
+                   "must not exceed the speed of the drive, " + model::to_text(d.drive.dq_max),
+                   model::to_text(d.prepositioning.dq_max));
+        child.rule(
+            d.prepositioning.drive.ddq_max <= d.drive.ddq_max, "ddq_brake_m_per_s2",
+            "must not exceed the acceleration of the drive, " + model::to_text(d.drive.ddq_max),
+            model::to_text(d.prepositioning.drive.ddq_max));
       },
       "how the gantry moves along with the hand");
   v.group(

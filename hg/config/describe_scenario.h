@@ -72,7 +72,7 @@ void describe_conditions(V& v, const EventNames& names, evaluation::EventRule& e
   using evaluation::ConditionKind;
   describe_limit_conditions(v, names, event);
   const auto number = [&](const char* key, ConditionKind kind, const char* text) {
-    double value = 0.0;
+    double value = kNoDefault;
     if (v.number(key, value, kNotNegative, text)) {
       event.all_of.push_back({.kind = kind, .value = value});
     }

@@ -31,8 +31,7 @@ struct ScriptDraft {
   std::array<double, user::kChannels> start{};
   std::array<bool, user::kChannels> start_given{};
   std::vector<user::Segment> segments;
-  double duration_s = 0.0;
-  bool duration_given = false;
+  double duration_s = kNoDefault;
 };
 
 inline constexpr std::array<Choice<user::ScriptFrame>, 3> kScriptFrames = {
@@ -63,7 +62,7 @@ void describe_frame(V& v, ScriptDraft& d) {
 template <class V, class Take>
 void describe_channels(V& v, const ScriptDraft& d, Take take) {
   for (const Channel& channel : d.channels) {
-    double value = 0.0;
+    double value = kNoDefault;
     if (v.number(channel.key, value, channel.range, channel.text)) take(channel.index, value);
   }
 }
@@ -89,7 +88,7 @@ void describe_segment(V& v, ScriptDraft& d) {
       "by", [&](auto& child) { describe_channels(child, d, add(user::Blend::kBy)); },
       "channels and what is added to them");
   if (v.covers(d.frame == user::ScriptFrame::kBase)) {
-    double turns = 0.0;
+    double turns = kNoDefault;
     const bool is_given = v.number("circle_turns", turns, kAnyNumber,
                                    "turns about the origin of B, walking tangentially");
     if (is_given) add(user::Blend::kCircle)(0, turns);
@@ -111,8 +110,8 @@ void describe_segments(V& v, ScriptDraft& d) {
   v.list(
       "segments", [&](auto& child) { describe_segment(child, d); },
       "ramps, which may overlap; later ones act on what earlier ones have made");
-  d.duration_given = v.number("duration_s", d.duration_s, kPositive,
-                              "length of the script; without it, until the last ramp ends");
+  v.number("duration_s", d.duration_s, kPositive,
+           "length of the script; without it, until the last ramp ends");
 }
 
 }  // namespace hg::config

@@ -22,8 +22,9 @@ struct FloatingPart {
 struct TwinJoint {
   model::JointType type = model::JointType::kRevolute;
   int v_index = 0;
+  JointUnit unit = JointUnit::kEither;
   rendering::TwinDof dof;
-  double start = 0.0;
+  double start = kNoDefault;
   FloatingPart floating;
 };
 
@@ -64,7 +65,7 @@ void describe_chain(V& v, TwinDraft& d) {
         child.vector("centre_of_mass_m", d.body.p_handle_com, kAnyNumber, "in the handle frame");
       },
       "a single rigid body: joint 'root', frame 'handle'");
-  v.rule(d.is_free_body || !d.urdf.empty(), "", "a twin needs 'urdf' or 'free_body'");
+  v.rule(d.is_free_body || v.is_given("urdf"), "", "a twin needs 'urdf' or 'free_body'");
   v.group(
       "placement", [&](auto& child) { describe(child, d.placement); }, "of the root link in B");
   v.flag("gravity", d.gravity, "whether the twin's links have weight");

@@ -1,6 +1,8 @@
 /// Description of twin.yaml, second part: joints and locks.
 #pragma once
 
+#include <cmath>
+
 #include "hg/config/describe_twin.h"
 
 namespace hg::config {
@@ -35,21 +37,23 @@ void describe(V& v, TwinJoint& joint) {
   rendering::TwinDof& dof = joint.dof;
   const bool is_floating = joint.type == model::JointType::kFloating;
   if (v.covers(!is_floating)) {
-    describe_positions(v, dof.limits, dof.is_angle);
-    describe_ratings(v, dof.limits, dof.is_angle, Need::kOptional);
-    v.joint_number({"stiffness_Nm_per_rad", "stiffness_N_per_m"}, dof.is_angle, dof.stiffness,
+    describe_positions(v, dof.limits, joint.unit);
+    describe_ratings(v, dof.limits, joint.unit, Need::kOptional);
+    v.joint_number({"stiffness_Nm_per_rad", "stiffness_N_per_m"}, joint.unit, dof.stiffness,
                    kNotNegative, "spring");
-    v.joint_number({"rest_rad", "rest_m"}, dof.is_angle, dof.rest, kAnyNumber,
+    v.joint_number({"rest_rad", "rest_m"}, joint.unit, dof.rest, kAnyNumber,
                    "where the spring is relaxed");
-    v.joint_number({"preload_Nm", "preload_N"}, dof.is_angle, dof.preload, kAnyNumber,
+    v.joint_number({"preload_Nm", "preload_N"}, joint.unit, dof.preload, kAnyNumber,
                    "constant pull towards smaller positions");
-    v.joint_number({"damping_Nms_per_rad", "damping_Ns_per_m"}, dof.is_angle, dof.damping,
+    v.joint_number({"damping_Nms_per_rad", "damping_Ns_per_m"}, joint.unit, dof.damping,
                    kNotNegative, "viscous");
-    v.joint_number({"friction_Nm", "friction_N"}, dof.is_angle, dof.friction, kNotNegative,
+    v.joint_number({"friction_Nm", "friction_N"}, joint.unit, dof.friction, kNotNegative,
                    "Coulomb");
-    v.joint_number(kStart, dof.is_angle, joint.start, kAnyNumber, "position at the start");
-    v.rule(dof.limits.q_min <= joint.start && joint.start <= dof.limits.q_max,
-           kStart.of(dof.is_angle), "the start must be within the limits",
+    v.joint_number(kStart, joint.unit, joint.start, kAnyNumber,
+                   "position at the start; without it the allowed one nearest to 0");
+    v.rule(std::isnan(joint.start) ||
+               (dof.limits.q_min <= joint.start && joint.start <= dof.limits.q_max),
+           kStart.of(joint.unit), "the start must be within the limits",
            model::to_text(joint.start));
   }
   if (v.covers(is_floating)) describe(v, joint.floating);
@@ -63,17 +67,17 @@ void describe(V& v, rendering::Lock& lock, const TwinDraft& d) {
          Need::kRequired);
   const TwinJoint& joint = d.scalar_joint(index);
   lock.dof = joint.v_index;
-  v.joint_number(kLockPosition, joint.dof.is_angle, lock.position, kAnyNumber, "where it is held");
+  v.joint_number(kLockPosition, joint.unit, lock.position, kAnyNumber, "where it is held");
   v.rule(joint.dof.limits.q_min <= lock.position && lock.position <= joint.dof.limits.q_max,
-         kLockPosition.of(joint.dof.is_angle), "must be within the limits of the joint",
+         kLockPosition.of(joint.unit), "must be within the limits of the joint",
          model::to_text(lock.position));
   v.groups_by_name(
       "engaged_while", d.scalar_names, "a joint of the twin",
       [&](auto& child, int other) {
-        const bool is_angle = d.scalar_joint(other).dof.is_angle;
+        const JointUnit unit = d.scalar_joint(other).unit;
         Interval range;
-        child.joint_number({"above_rad", "above_m"}, is_angle, range.lb, kAnyNumber, "lower end");
-        child.joint_number({"below_rad", "below_m"}, is_angle, range.ub, kAnyNumber, "upper end");
+        child.joint_number({"above_rad", "above_m"}, unit, range.lb, kAnyNumber, "lower end");
+        child.joint_number({"below_rad", "below_m"}, unit, range.ub, kAnyNumber, "upper end");
         child.rule(range.bounded() && !range.empty(), "",
                    "the condition needs 'above' or 'below', and something between them");
         lock.engaged_while.push_back({.dof = d.scalar_joint(other).v_index, .range = range});

@@ -19,7 +19,7 @@ void take_joints(const model::Chain& chain, DeviceDraft& draft) {
     draft.joint_names.push_back(joint.name);
     draft.joints.push_back(
         {joint.name,
-         joint.type != model::JointType::kPrismatic,
+         unit_of(joint.type),
          {.q_min = joint.position.lb, .q_max = joint.position.ub, .dq_max = joint.velocity_max}});
   }
 }
@@ -53,19 +53,28 @@ void check_joints(Loader& loader, const model::Chain& chain, const DeviceDraft& 
     loader.rule(chain.joints()[static_cast<std::size_t>(i)].nv == 1, "manipulator",
                 "a device has no floating joints", "'" + joint.name + "'");
     loader.rule(std::isfinite(joint.limits.dq_max) && std::isfinite(joint.limits.ddq_max), "joints",
-                joint.name + " needs " + std::string(kSpeed.of(joint.is_angle)) + " and " +
-                    std::string(kAcceleration.of(joint.is_angle)));
+                joint.name + " needs " + std::string(kSpeed.of(joint.unit)) + " and " +
+                    std::string(kAcceleration.of(joint.unit)));
   }
   for (const rendering::VirtualJoint& sum : draft.virtual_joints) {
     for (int i = 0; i < sum.weights.size(); ++i) {
       const int joint = draft.manipulator[static_cast<std::size_t>(i)];
-      loader.rule(sum.weights[i] == 0.0 || draft.joints[static_cast<std::size_t>(joint)].is_angle,
-                  "virtual_joints", "only revolute joints can be added",
+      const JointUnit unit = draft.joints[static_cast<std::size_t>(joint)].unit;
+      loader.rule(sum.weights[i] == 0.0 || unit == JointUnit::kAngle, "virtual_joints",
+                  "only revolute joints can be added",
                   "'" + draft.manipulator_names[static_cast<std::size_t>(i)] + "'");
     }
   }
   loader.rule(draft.gantry.size() == 2 && draft.manipulator.size() == 6, "kinematics",
               "haptic_giant needs two gantry joints and six manipulator joints");
+}
+
+// Without a usable list of joints every name counts: one fault is enough.
+std::vector<std::string> manipulator_names(const DeviceDraft& draft) {
+  if (!draft.has_joints) return draft.joint_names;
+  std::vector<std::string> names;
+  for (int i : draft.manipulator) names.push_back(draft.joint_names[static_cast<std::size_t>(i)]);
+  return names;
 }
 
 rendering::DeviceModel make_model(model::Chain chain, const DeviceDraft& draft) {
@@ -123,11 +132,10 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
     chain = read_chain(file, draft.urdf, {});
     take_joints(*chain, draft);
     describe_structure(loader, draft);
-    for (int i : draft.manipulator) {
-      draft.manipulator_names.push_back(draft.joint_names[static_cast<std::size_t>(i)]);
-    }
+    draft.manipulator_names = manipulator_names(draft);
     describe_limits(loader, draft);
     describe_behaviour(loader, draft);
+    if (!draft.has_joints) return;
     check_order(loader, *chain, draft);
     check_joints(loader, *chain, draft);
   });

@@ -23,7 +23,7 @@ class Faults {
   /// A message of another file or reader, which says itself where it belongs.
   void add_complete(std::string_view message);
 
-  bool empty() const noexcept { return faults_.empty(); }
+  std::size_t count() const noexcept { return faults_.size(); }
   /// Throws SetupError with one fault per line, in the order of the file.
   void throw_if_any() const;
 

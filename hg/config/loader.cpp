@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <optional>
 
 #include "hg/core/error.h"
@@ -61,7 +62,10 @@ std::optional<double> parse_number(const YAML::Node& node) {
 }  // namespace
 
 Loader::Loader(const YAML::Node& map, std::string item, LoaderFile& file)
-    : item_(std::move(item)), place_(place_of(map.Mark())), file_(file) {
+    : item_(std::move(item)),
+      place_(place_of(map.Mark())),
+      file_(file),
+      faults_before_(file.faults.count()) {
   for (const auto& pair : map) add_entry(pair.first, pair.second);
 }
 
@@ -82,9 +86,9 @@ bool Loader::number(std::string_view key, double& value, const Range& range, std
   return entry != nullptr && read_number(entry->value, item_of(key), unit_of(key), range, value);
 }
 
-bool Loader::joint_number(const JointKey& key, bool is_angle, double& value, const Range& range,
+bool Loader::joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,
                           std::string_view text, Need need) {
-  return number(key.of(is_angle), value, range, text, need);
+  return number(key.of(unit), value, range, text, need);
 }
 
 bool Loader::vector(std::string_view key, Eigen::Vector3d& value, const Range& range,
@@ -166,13 +170,15 @@ bool Loader::names(std::string_view key, std::vector<int>& indices, Names names,
     const std::string item = item_of(key) + "[" + std::to_string(i) + "]";
     int index = 0;
     if (!read_name(node[i], item, names, kind, index)) continue;
-    if (std::ranges::count(read, index) > 0) {
+    if (std::ranges::find(read, index) != read.end()) {
       fault(node[i], item, "named twice, got " + shown(node[i]));
+    } else {
+      read.push_back(index);
     }
-    read.push_back(index);
   }
+  if (read.size() != node.size()) return false;
   indices = read;
-  return read.size() == node.size();
+  return true;
 }
 
 bool Loader::group(std::string_view key, const std::function<void(Loader&)>& read, std::string_view,
@@ -221,9 +227,18 @@ void Loader::rule(bool holds, std::string_view key, std::string_view what, std::
   std::string message(what);
   if (!got.empty()) (message += ", got ") += got;
   const auto entry = std::ranges::find(entries_, key, &Entry::key);
-  const bool is_given = entry != entries_.end();
-  file_.faults.add(is_given ? place_of(entry->value.Mark()) : place_,
-                   is_given ? item_of(key) : item_, message);
+  const bool is_at_key = entry != entries_.end();
+  const Place place = is_at_key ? place_of(entry->value.Mark()) : place_;
+  const std::string item = is_at_key ? item_of(key) : item_;
+  if (item_.empty()) {
+    file_.faults.add(place, item, message);
+  } else {
+    broken_rules_.push_back({place, item, message});
+  }
+}
+
+bool Loader::is_given(std::string_view key) const {
+  return std::ranges::find(entries_, key, &Entry::key) != entries_.end();
 }
 
 void Loader::finish() {
@@ -231,6 +246,10 @@ void Loader::finish() {
     if (entry.is_known) continue;
     file_.faults.add(entry.place, item_of(entry.key),
                      "unknown key" + did_you_mean(entry.key, known_keys_));
+  }
+  if (file_.faults.count() > faults_before_) return;
+  for (const BrokenRule& rule : broken_rules_) {
+    file_.faults.add(rule.place, rule.item, rule.message);
   }
 }
 
@@ -277,7 +296,9 @@ bool Loader::read_number(const YAML::Node& node, const std::string& item, std::s
     return false;
   }
   if (!contains(range, *number)) {
-    fault(node, item, "must be " + to_text(range) + ", got " + node.Scalar());
+    const bool is_infinite = std::isinf(*number) && !range.allows_infinity;
+    fault(node, item,
+          "must be " + (is_infinite ? "finite" : to_text(range)) + ", got " + node.Scalar());
     return false;
   }
   value = *number;
@@ -338,7 +359,13 @@ void Loader::fault(const YAML::Node& node, const std::string& item, const std::s
 void load_file(LoaderFile& file, const std::function<void(Loader&)>& read) {
   YAML::Node root;
   try {
-    root = YAML::Load(file.sources.read(file.path));
+    const std::vector<YAML::Node> documents = YAML::LoadAll(file.sources.read(file.path));
+    if (documents.size() > 1) {
+      file.faults.add({}, "",
+                      "the file must hold one document, got " + std::to_string(documents.size()));
+      file.faults.throw_if_any();
+    }
+    if (!documents.empty()) root = documents.front();
   } catch (const YAML::Exception& error) {
     file.faults.add(place_of(error.mark), "not valid YAML", error.msg);
     file.faults.throw_if_any();

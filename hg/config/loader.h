@@ -39,7 +39,7 @@ class Loader {
   bool number(std::string_view key, double& value, const Range& range, std::string_view text,
               Need need = Need::kOptional);
   /// A number whose key depends on the joint: rad family or m family.
-  bool joint_number(const JointKey& key, bool is_angle, double& value, const Range& range,
+  bool joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,
                     std::string_view text, Need need = Need::kOptional);
   /// [x, y, z].
   bool vector(std::string_view key, Eigen::Vector3d& value, const Range& range,
@@ -92,12 +92,14 @@ class Loader {
                        std::string_view text);
 
   /// What concerns more than one value: `what` must hold. Reported at `key`, or at the map if the
-  /// key is not given.
+  /// key is not given; below the top map only where nothing else is wrong, so that one fault does
+  /// not cause another.
   void rule(bool holds, std::string_view key, std::string_view what, std::string_view got = {});
+  bool is_given(std::string_view key) const;
   /// Whether the thing at hand has the keys that follow; the reference page shows them always.
   bool covers(bool applies) const { return applies; }
 
-  /// Reports the keys that no function has asked for. Called last.
+  /// Reports the keys that no function has asked for, and broken rules. Called last.
   void finish();
 
  private:
@@ -106,6 +108,12 @@ class Loader {
     Place place;
     YAML::Node value;
     bool is_known = false;
+  };
+
+  struct BrokenRule {
+    Place place;
+    std::string item;
+    std::string message;
   };
 
   void add_entry(const YAML::Node& key, const YAML::Node& value);
@@ -128,6 +136,8 @@ class Loader {
   LoaderFile& file_;
   std::vector<Entry> entries_;
   std::vector<std::string> known_keys_;
+  std::size_t faults_before_;  ///< in the file, before this map
+  std::vector<BrokenRule> broken_rules_;
 };
 
 /// Reads the file and lets `read` visit its top map. Throws SetupError with all faults at once.

@@ -46,12 +46,13 @@ bool contains(const Range& range, double value) noexcept {
 
 std::string to_text(const Range& range) {
   const bool has_lb = range.lb > -kInfinity;
-  const bool has_ub = range.ub < kInfinity;
-  const char* above = range.excludes_lb ? "> " : ">= ";
-  if (has_lb && has_ub) return model::to_text(range.lb) + " .. " + model::to_text(range.ub);
-  if (has_lb) return above + model::to_text(range.lb);
-  if (has_ub) return "<= " + model::to_text(range.ub);
-  return range.allows_infinity ? "a number, .inf or -.inf" : "finite";
+  if (has_lb && range.ub < kInfinity) {
+    return model::to_text(range.lb) + " .. " + model::to_text(range.ub);
+  }
+  if (!has_lb) return range.allows_infinity ? "a number, .inf or -.inf" : "finite";
+  std::string text = range.excludes_lb ? "> " : ">= ";
+  text += model::to_text(range.lb);
+  return range.allows_infinity ? text + " or .inf" : text;
 }
 
 std::string_view unit_of(std::string_view key) noexcept {

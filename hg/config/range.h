@@ -4,6 +4,7 @@
 /// unit.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,9 @@ struct Range {
   bool allows_infinity = false;  ///< ".inf" stands for "no limit"
 };
 
+/// Default of a number that has none: it only counts when it is given.
+inline constexpr double kNoDefault = std::numeric_limits<double>::quiet_NaN();
+
 inline constexpr Range kAnyNumber = {};
 inline constexpr Range kPositive = {.lb = 0.0, .excludes_lb = true};
 inline constexpr Range kNotNegative = {.lb = 0.0};
@@ -37,12 +41,17 @@ std::string to_text(const Range& range);
 /// "rad/s^2" for "ddq_max_rad_per_s2"; empty if the key names no unit.
 std::string_view unit_of(std::string_view key) noexcept;
 
+/// What a joint's position is measured in; kEither stands for any joint on the reference page.
+enum class JointUnit { kAngle, kLength, kEither };
+
 /// The two spellings of a key that belongs to a joint: rad family and m family.
 struct JointKey {
   std::string_view angle;
   std::string_view length;
 
-  std::string_view of(bool is_angle) const noexcept { return is_angle ? angle : length; }
+  std::string_view of(JointUnit unit) const noexcept {
+    return unit == JointUnit::kLength ? length : angle;
+  }
 };
 
 /// One name of a choice and the value it stands for.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "hg/config/describe_script.h"
@@ -90,12 +91,11 @@ Script load_script(const std::filesystem::path& path, const rendering::TwinModel
   script.script.start = draft.start;
   script.script.segments = std::move(draft.segments);
   std::ranges::stable_sort(script.script.segments, {}, &user::Segment::start_s);
-  script.script.duration_s = draft.duration_s;
   for (const user::Segment& segment : script.script.segments) {
-    if (draft.duration_given) break;
     script.script.duration_s =
         std::max(script.script.duration_s, segment.start_s + segment.duration_s);
   }
+  if (!std::isnan(draft.duration_s)) script.script.duration_s = draft.duration_s;
   std::copy_n(draft.start_given.begin(), script.start_given.size(), script.start_given.begin());
   script.sources = reader.since(first_source);
   return script;

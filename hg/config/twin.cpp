@@ -1,6 +1,8 @@
 #include "hg/config/twin.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -41,26 +43,26 @@ void take_joints(const model::Chain& chain, TwinDraft& draft) {
     TwinJoint& taken = draft.joints.emplace_back();
     taken.type = joint.type;
     taken.v_index = joint.v_index;
+    taken.unit = unit_of(joint.type);
     taken.dof.name = joint.name;
     taken.dof.q_index = is_floating ? -1 : joint.q_index;
-    taken.dof.is_angle = joint.type != model::JointType::kPrismatic;
+    taken.dof.is_angle = taken.unit == JointUnit::kAngle;
     taken.dof.limits = {
         .q_min = joint.position.lb, .q_max = joint.position.ub, .dq_max = joint.velocity_max};
   }
 }
 
-// What the file may leave to its defaults has to fit as well.
-void check_starts(Loader& loader, const model::Chain& chain, const TwinDraft& draft) {
-  for (const TwinJoint& joint : draft.joints) {
-    const limits::JointLimits& limits = joint.dof.limits;
-    loader.rule(limits.q_min <= joint.start && joint.start <= limits.q_max, "joints",
-                joint.dof.name + " starts outside its limits", model::to_text(joint.start));
-  }
-  for (std::size_t i = 1; i < draft.joints.size(); ++i) {
+void check_types(Loader& loader, const model::Chain& chain) {
+  for (std::size_t i = 1; i < chain.joints().size(); ++i) {
     loader.rule(chain.joints()[i].type != model::JointType::kFloating, "urdf",
                 "only the first joint of a twin may be floating",
                 "'" + chain.joints()[i].name + "'");
   }
+}
+
+double start_of(const TwinJoint& joint) {
+  if (!std::isnan(joint.start)) return joint.start;
+  return std::clamp(0.0, joint.dof.limits.q_min, joint.dof.limits.q_max);
 }
 
 void add_dofs(const TwinJoint& joint, std::vector<rendering::TwinDof>& dofs) {
@@ -85,7 +87,7 @@ ConfigurationA start_of(const rendering::TwinModel& model, const Pose& T_B_root,
   ConfigurationA q = model.chain.neutral();
   for (std::size_t i = 0; i < draft.joints.size(); ++i) {
     if (draft.joints[i].type != model::JointType::kFloating) {
-      q[model.chain.joints()[i].q_index] = draft.joints[i].start;
+      q[model.chain.joints()[i].q_index] = start_of(draft.joints[i]);
     }
   }
   if (draft.joints.empty() || draft.joints[0].type != model::JointType::kFloating) return q;
@@ -126,7 +128,7 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
     chain = make_chain(file, draft);
     take_joints(*chain, draft);
     describe_joints(loader, draft);
-    check_starts(loader, *chain, draft);
+    check_types(loader, *chain);
   });
 
   Twin twin = {.name = draft.name,

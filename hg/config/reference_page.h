@@ -1,0 +1,10 @@
+/// The reference of all configuration files, docs/configuration.md, from their descriptions.
+#pragma once
+
+#include <string>
+
+namespace hg::config {
+
+std::string reference_page();
+
+}  // namespace hg::config

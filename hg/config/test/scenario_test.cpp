@@ -1,0 +1,339 @@
+#include "hg/config/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "hg/rendering/catalogue.h"
+
+namespace hg::config {
+namespace {
+
+using evaluation::ConditionKind;
+using evaluation::EventRule;
+using std::numbers::pi;
+
+constexpr double kRounding = 1e-12;
+constexpr double kWritten = 1e-5;  // angles in the files have six digits
+
+const Scenario& door() {
+  static const Scenario scenario = load_scenario("models/scenarios/door.yaml");
+  return scenario;
+}
+
+const Scenario& free_space() {
+  static const Scenario scenario = load_scenario("models/scenarios/free_space.yaml");
+  return scenario;
+}
+
+const Scenario& excavator() {
+  static const Scenario scenario = load_scenario("models/scenarios/excavator.yaml");
+  return scenario;
+}
+
+std::vector<std::string> names_of(const std::vector<EventRule>& events) {
+  std::vector<std::string> names;
+  for (const EventRule& event : events) names.push_back(event.name);
+  return names;
+}
+
+TEST(Device, HasTheLimitsOfTheHandbook) {
+  const rendering::DeviceModel& model = door().device.model;
+  ASSERT_EQ(model.n_p, 2);
+  ASSERT_EQ(model.n_m, 6);
+  const std::vector<limits::JointLimits> expected = {
+      {-kInfinity, kInfinity, 2.0, 12.0}, {0.20, 2.75, 2.0, 12.0},
+      {-2.60, 2.60, 2.6, 25.0},           {0.20, 2.45, 2.6, 20.0},
+      {-2.00, 2.10, 3.1, 40.0},           {-2.60, 2.10, 3.5, 40.0}};
+  ASSERT_EQ(model.joint_limits.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    SCOPED_TRACE(model.manipulator_joint(static_cast<int>(i)));
+    EXPECT_EQ(model.joint_limits[i].q_min, expected[i].q_min);
+    EXPECT_EQ(model.joint_limits[i].q_max, expected[i].q_max);
+    EXPECT_EQ(model.joint_limits[i].dq_max, expected[i].dq_max);
+    EXPECT_EQ(model.joint_limits[i].ddq_max, expected[i].ddq_max);
+  }
+}
+
+TEST(Device, LimitsTheSumOfJointsFourAndFive) {
+  const auto& sums = door().device.model.virtual_joints;
+  ASSERT_EQ(sums.size(), 1u);
+  EXPECT_EQ(sums[0].name, "q4+q5");
+  EXPECT_EQ(sums[0].weights, (VectorM(6) << 0, 0, 0, 1, 1, 0).finished());
+  EXPECT_EQ(sums[0].limits.q_min, 0.26);
+  EXPECT_EQ(sums[0].limits.q_max, 2.88);
+  EXPECT_EQ(sums[0].limits.dq_max, 4.0);
+  EXPECT_EQ(sums[0].limits.ddq_max, 40.0);
+}
+
+TEST(Device, KeepsHandAndElbowInTheBox) {
+  const rendering::DeviceModel& model = door().device.model;
+  ASSERT_EQ(model.cartesian_limits.size(), 2u);
+  const rendering::CartesianLimit& hand = model.cartesian_limits[0];
+  const rendering::CartesianLimit& elbow = model.cartesian_limits[1];
+  EXPECT_EQ(hand.name, "hand");
+  EXPECT_EQ(hand.frame, model.handle);
+  EXPECT_EQ(elbow.frame, model.elbow);
+  EXPECT_EQ(hand.axes[1].q_min, -1.95);
+  EXPECT_EQ(hand.axes[2].q_max, -0.30);
+  EXPECT_EQ(hand.axes[0].dq_max, 1.5);
+  EXPECT_EQ(hand.axes[0].ddq_max, 5.0);
+  EXPECT_EQ(hand.margin, 0.005);
+  EXPECT_EQ(elbow.axes[0].q_max, 1.65);
+
+  // Table III: 12.2 m^3
+  double volume = 1.0;
+  for (const limits::JointLimits& axis : hand.axes) volume *= axis.q_max - axis.q_min;
+  EXPECT_NEAR(volume, 12.2, 0.05);
+
+  // the height of the elbow is constant: no limit of any kind
+  EXPECT_EQ(elbow.axes[2].q_max, kInfinity);
+  EXPECT_EQ(elbow.axes[2].dq_max, kInfinity);
+}
+
+TEST(Device, GivesEveryPartThePeriodAndTheDrive) {
+  const Device& device = door().device;
+  EXPECT_EQ(device.rendering.dt, 1e-3);
+  EXPECT_EQ(device.estimation.dt, 1e-3);
+  EXPECT_EQ(device.estimation.drive.lag, 40e-3);
+  EXPECT_EQ(device.prepositioning.n_p, 2);
+  EXPECT_EQ(device.prepositioning.k_ppu, 4.0);
+  EXPECT_EQ(device.prepositioning.dq_max, 1.5);
+  EXPECT_EQ(device.prepositioning.q_limits[0].ub, 1.40);
+  EXPECT_EQ(device.prepositioning.q_limits[1].lb, -1.60);
+  EXPECT_NEAR(device.prepositioning.drive.tau, 45e-3, kRounding);
+  EXPECT_EQ(device.prepositioning.drive.ddq_max, 2.0);
+  EXPECT_EQ(device.monitor.gantry_speed_max, 1.5);
+  ASSERT_EQ(device.monitor.joint_range.size(), 6u);
+  EXPECT_EQ(device.monitor.joint_range[3].ub, 2.45);
+  EXPECT_EQ(device.monitor.joint_speed_max[5], 3.5);
+  EXPECT_EQ(device.T_H_S.p, Eigen::Vector3d(0, 0, -0.0375));
+  EXPECT_EQ(device.estimation.T_H_S.p, device.T_H_S.p);
+}
+
+TEST(Twin, DoorHasCloserSpringAndBolt) {
+  const rendering::TwinModel& twin = door().twin.model;
+  ASSERT_EQ(twin.dofs.size(), 2u);
+  const rendering::TwinDof& hinge = twin.dofs[0];
+  EXPECT_EQ(hinge.name, "hinge");
+  EXPECT_EQ(hinge.preload, 3.0);
+  EXPECT_EQ(hinge.stiffness, 4.0);
+  EXPECT_EQ(hinge.damping, 2.0);
+  EXPECT_EQ(hinge.limits.q_max, 1.75);
+  EXPECT_EQ(hinge.limits.dq_max, 1.2);
+  EXPECT_TRUE(std::isfinite(hinge.limits.ddq_max));
+  const rendering::TwinDof& lever = twin.dofs[1];
+  EXPECT_EQ(lever.preload, 0.6);
+  EXPECT_EQ(lever.stiffness, 1.2);
+  EXPECT_EQ(lever.limits.q_max, 0.80);
+
+  ASSERT_EQ(twin.locks.size(), 1u);
+  EXPECT_EQ(twin.locks[0].dof, 0);
+  EXPECT_EQ(twin.locks[0].position, 0.0);
+  ASSERT_EQ(twin.locks[0].engaged_while.size(), 2u);
+  EXPECT_EQ(twin.locks[0].engaged_while[0].dof, 1);
+  EXPECT_EQ(twin.locks[0].engaged_while[0].range.ub, 0.50);
+  EXPECT_EQ(twin.locks[0].engaged_while[1].range.ub, 0.03);
+}
+
+TEST(Twin, FreeBodyStartsWhereTheFileSays) {
+  rendering::TwinModel twin = free_space().twin.model;
+  ASSERT_EQ(twin.dofs.size(), 6u);
+  EXPECT_EQ(twin.dofs[0].name, "root x");
+  EXPECT_EQ(twin.dofs[5].name, "root rz");
+  EXPECT_EQ(twin.dofs[2].damping, 4.0);
+  EXPECT_EQ(twin.dofs[3].damping, 0.1);
+  EXPECT_FALSE(twin.dofs[2].is_angle);
+  EXPECT_TRUE(twin.dofs[3].is_angle);
+
+  twin.chain.update(twin.q_start, VectorA::Zero(6));
+  EXPECT_NEAR(twin.chain.M()(0, 0), 6.0, kRounding);
+  EXPECT_NEAR(twin.chain.M()(4, 4), 0.08, kRounding);
+  const Pose pose = twin.chain.pose(twin.end_effector);
+  EXPECT_TRUE(pose.p.isApprox(Eigen::Vector3d(0.9, 0.0, -0.75), kRounding));
+  // [HANDBOOK] 2.2: hand axis z_H = (sin s) u - (cos s) z with u along y
+  EXPECT_TRUE(pose.R.col(2).isApprox(Eigen::Vector3d(0, std::sin(1.4), -std::cos(1.4)), kWritten));
+  // at roll 0 the grip stands upright: x_H points up, leaning with the hand axis
+  EXPECT_TRUE(pose.R.col(0).isApprox(Eigen::Vector3d(0, std::cos(1.4), std::sin(1.4)), kWritten));
+}
+
+TEST(Twin, PlacementAndFrameOffsetsDoNotMoveTheStartPose) {
+  constexpr const char* kUrdf = R"(<robot name="tool"><link name="body"><inertial><mass value="3"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="fix" type="fixed"><parent link="body"/><child link="tip"/>
+    <origin xyz="0.1 0.2 0.3" rpy="0.4 0 0.5"/></joint><link name="tip"/></robot>)";
+  SourceReader reader(
+      {{"tool.urdf", kUrdf},
+       {"twin.yaml",
+        "name: tool\nurdf: tool.urdf\nfloating_root: true\nend_effector: tip\n"
+        "placement: {x_m: 1, yaw_rad: 0.7, roll_rad: 0.2}\n"
+        "joints: {root: {start: {x_m: 0.5, z_m: -0.8, azimuth_rad: 1, roll_rad: 2}}}\n"}});
+  rendering::TwinModel twin = load_twin("twin.yaml", reader).model;
+  twin.chain.update_kinematics(twin.q_start, VectorA::Zero(6));
+  const Pose pose = twin.chain.pose(twin.end_effector);
+  const Pose expected =
+      pose_of(HandPose{.p = {0.5, 0.0, -0.8}, .azimuth = 1.0, .pitch = 0.5 * pi, .roll = 2.0});
+  EXPECT_TRUE(pose.p.isApprox(expected.p, kRounding));
+  EXPECT_TRUE(pose.R.isApprox(expected.R, kRounding));
+}
+
+TEST(Twin, ExcavatorStartsInTheMiddleOfItsWork) {
+  const rendering::TwinModel& twin = excavator().twin.model;
+  EXPECT_TRUE(twin.q_start.isApprox(Eigen::Vector4d(0.0, 0.35, 0.9, 0.4)));
+  EXPECT_EQ(twin.dofs[2].name, "stick");
+  EXPECT_EQ(twin.dofs[2].damping, 8.0);
+  EXPECT_EQ(twin.dofs[1].limits.q_min, 0.0);
+  EXPECT_EQ(twin.dofs[1].limits.q_max, 0.95);
+}
+
+TEST(Script, FreeSpaceHandWalksTheCircleOfTheHandbook) {
+  user::Script script = free_space().script.script;
+  const auto& given = free_space().script.start_given;
+  EXPECT_EQ(script.frame, user::ScriptFrame::kBase);
+  EXPECT_TRUE(std::ranges::none_of(given, [](bool is_given) { return is_given; }));
+  EXPECT_EQ(script.start[user::kGripChannel], 1.0);
+
+  script.start[0] = 0.9;
+  script.start[2] = -0.75;
+  script.start[3] = 0.5 * pi;
+  const auto after_circle = user::evaluate(script, 15.2);
+  const double angle = 2.0 * pi * 1.15;
+  EXPECT_NEAR(after_circle[0], 0.9 * std::cos(angle), kRounding);
+  EXPECT_NEAR(after_circle[1], 0.9 * std::sin(angle), kRounding);
+  EXPECT_NEAR(after_circle[3], 0.5 * pi + angle, kRounding);
+  EXPECT_NEAR(user::evaluate(script, 17.6)[3], 3.0 * pi, kWritten);
+  EXPECT_NEAR(user::evaluate(script, 21.4)[3], 2.5 * pi + 0.25, kWritten);
+  EXPECT_EQ(script.duration_s, 48.0);
+}
+
+TEST(Script, DoorHandPushesAndPressesInTheFrameOfTheHandle) {
+  const Script& script = door().script;
+  EXPECT_EQ(script.script.frame, user::ScriptFrame::kTwinJoints);
+  EXPECT_EQ(script.script.start[user::kGripChannel], 0.0);
+  EXPECT_EQ(script.hand.angular_stiffness.norm(), 0.0);
+  EXPECT_EQ(script.hand.force_max, 35.0);
+
+  const auto wrench_at = [&](double t) {
+    const auto channels = user::evaluate(script.script, t);
+    return Vector6(Eigen::Map<const Vector6>(channels.data() + user::kWrenchChannel));
+  };
+  // torques on hinge and lever: J^T R w
+  const auto torque = [&](double t, double hinge, double lever) {
+    model::Chain chain = door().twin.model.chain;
+    const int frame = door().twin.model.end_effector;
+    chain.update_kinematics(Eigen::Vector2d(hinge, lever), Eigen::Vector2d::Zero());
+    const Eigen::Matrix3d R = chain.pose(frame).R;
+    const Vector6 w = wrench_at(t);
+    Vector6 w_B;
+    w_B << R * w.head<3>(), R * w.tail<3>();
+    return Eigen::VectorXd(chain.jacobian(frame).transpose() * w_B);
+  };
+  EXPECT_NEAR(torque(1.3125, 0.0, 0.0)[0], 0.75 * 30.0, 1e-9) << "pushes";
+  EXPECT_NEAR(torque(1.9375, 0.0, 0.0)[0], -0.75 * 30.0, 1e-9) << "pulls";
+  EXPECT_NEAR(torque(4.9, 0.0, 0.4)[1], 0.11 * 14.0, 1e-9) << "presses";
+  EXPECT_NEAR(torque(5.5, 0.0, 0.0)[0], -0.75 * 25.0, 1e-9) << "pulls with the lever down";
+  EXPECT_NEAR(torque(8.45, 0.0, 0.0)[0], 0.75 * 35.0, 1e-9) << "leans with the lever down";
+  EXPECT_EQ(wrench_at(7.2).norm(), 0.0) << "has let go";
+
+  const auto following = user::evaluate(script.script, 11.0);
+  EXPECT_NEAR(following[0], 2.0, kRounding);
+  EXPECT_NEAR(following[1], 0.0, kRounding);
+  EXPECT_EQ(following[user::kGripChannel], 1.0);
+  EXPECT_EQ(user::evaluate(script.script, 11.3)[user::kGripChannel], 0.0);
+}
+
+TEST(Script, ExcavatorHandTurnsTheBucketAboutItsAxis) {
+  const Script& script = excavator().script;
+  EXPECT_EQ(script.script.frame, user::ScriptFrame::kCylindrical);
+  EXPECT_EQ(script.hand.stiffness, Eigen::Vector3d::Constant(350));
+  model::Chain chain = excavator().twin.model.chain;
+  const int frame = excavator().twin.model.end_effector;
+  chain.update_kinematics(excavator().twin.model.q_start, Eigen::Vector4d::Zero());
+  const auto channels = user::evaluate(script.script, 3.5);
+  const Eigen::Vector3d torque =
+      chain.pose(frame).R *
+      Eigen::Map<const Eigen::Vector3d>(channels.data() + user::kWrenchChannel + 3);
+  const Eigen::VectorXd tau = chain.jacobian(frame).bottomRows<3>().transpose() * torque;
+  // -9 Nm about the pitch axis: boom up is positive, stick and bucket down
+  constexpr double kDigits = 5e-3;  // Nm; the file has three digits per component
+  EXPECT_NEAR(tau[0], 0.0, kDigits);
+  EXPECT_NEAR(tau[1], -9.0, kDigits);
+  EXPECT_NEAR(tau[2], 9.0, kDigits);
+  EXPECT_NEAR(tau[3], 9.0, kDigits);
+}
+
+TEST(Scenario, NamesEveryLimitInTheOrderOfTheTasks) {
+  std::vector<std::string> names;
+  for (const LimitInfo& limit : door().limits) names.push_back(limit.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"m1", "m2", "m3", "m4", "m5", "m6", "q4+q5", "hand x",
+                                             "hand y", "hand z", "elbow x", "elbow y", "elbow z",
+                                             "hinge", "lever"}));
+  EXPECT_EQ(door().limits[6].kind, LimitKind::kVirtualJoint);
+  EXPECT_EQ(door().limits[7].kind, LimitKind::kCartesian);
+  EXPECT_FALSE(door().limits[7].is_angle);
+  EXPECT_EQ(door().limits[13].kind, LimitKind::kTwinJoint);
+  EXPECT_EQ(door().limits[13].range.ub, 1.75);
+  EXPECT_FALSE(door().limits[12].range.bounded());
+}
+
+TEST(Scenario, ExpectsTheEventsOfTheFiguresInTheirOrder) {
+  EXPECT_EQ(names_of(free_space().events),
+            (std::vector<std::string>{"t_a", "t_b", "t_b'", "t_c", "t_d", "t_e", "t_f", "t_g"}));
+  EXPECT_EQ(names_of(excavator().events),
+            (std::vector<std::string>{"boom", "t_a", "t_b", "t_c", "t_d", "t_e", "unload"}));
+  EXPECT_EQ(names_of(door().events), (std::vector<std::string>{"t_a", "t_b", "t_b'", "locked",
+                                                               "t_c", "t_d", "t_e", "shut"}));
+  EXPECT_EQ(door().person, user::PersonKind::kScript);
+  EXPECT_EQ(door().duration_s, 14.0);
+}
+
+TEST(Scenario, ConditionsPointAtLimitsJointsAndCoordinates) {
+  const auto& pushed = door().events[0].all_of;
+  ASSERT_EQ(pushed.size(), 2u);
+  EXPECT_EQ(pushed[0].kind, ConditionKind::kLocked);
+  EXPECT_EQ(pushed[0].index, 13);  // hinge in the catalogue
+  EXPECT_EQ(pushed[1].kind, ConditionKind::kForceAbove);
+  EXPECT_EQ(pushed[1].value, 10.0);
+
+  const auto& popped = door().events[4].all_of;
+  ASSERT_EQ(popped.size(), 2u);
+  EXPECT_EQ(popped[0].kind, ConditionKind::kTwinAbove);
+  EXPECT_EQ(popped[0].index, 1);  // lever in q_a
+  EXPECT_EQ(popped[0].value, 0.5);
+  EXPECT_EQ(popped[1].index, 0);
+
+  const auto& turned = free_space().events[0].all_of;
+  EXPECT_EQ(turned[0].kind, ConditionKind::kTurns);
+  EXPECT_EQ(turned[0].index, 0);
+  const auto& elbow = free_space().events[1].all_of;
+  EXPECT_EQ(elbow[0].kind, ConditionKind::kLimit);
+  EXPECT_EQ(elbow[0].index, 10);
+  EXPECT_EQ(elbow[0].side, LimitState::kUpper);
+  const auto& gantry = free_space().events[6].all_of;
+  EXPECT_EQ(gantry[0].kind, ConditionKind::kGantryAbove);
+  EXPECT_EQ(gantry[0].index, 1);
+}
+
+TEST(Scenario, LoadsAgainFromItsSourcesAlone) {
+  const std::vector<SourceText>& sources = door().sources;
+  ASSERT_EQ(sources.size(), 6u);
+  EXPECT_EQ(sources.front().name, "models/scenarios/door.yaml");
+  EXPECT_EQ(door().device.sources.front().name, "models/haptic_giant/device.yaml");
+  EXPECT_EQ(door().device.sources.size(), 2u);
+  EXPECT_EQ(door().twin.sources.size(), 2u);
+  EXPECT_EQ(door().script.sources.size(), 1u);
+
+  std::vector<SourceText> recorded = sources;
+  for (SourceText& source : recorded) source.name.insert(0, "recorded/");  // not on this disk
+  const Scenario again = load_scenario(recorded);
+  EXPECT_EQ(again.title, "Door");
+  EXPECT_EQ(again.events.size(), door().events.size());
+  EXPECT_EQ(again.limits.size(), door().limits.size());
+}
+
+}  // namespace
+}  // namespace hg::config
