@@ -2,7 +2,15 @@
 
 import { Raycaster, Vector2, Vector3 } from "three";
 
-import { type Ray, add, drag_normal, meet_plane, meet_vertical, subtract, within_reach } from "./drag_plane";
+import {
+  type Ray,
+  add,
+  drag_normal,
+  meet_plane,
+  meet_vertical,
+  subtract,
+  within_reach,
+} from "./drag_plane";
 import type { Hand, Vec3 } from "./messages";
 import type { Stage } from "./stage";
 

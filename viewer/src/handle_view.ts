@@ -43,7 +43,9 @@ export class HandleView {
     this.target = new Mesh(new SphereGeometry(0.03, 24, 16), pull);
     this.arrow.add(this.shaft, this.head);
     this.group.add(this.band, this.target, this.arrow);
-    this.group.children.forEach((part, order) => part.traverse((p) => (p.renderOrder = 10 + order)));
+    this.group.children.forEach((part, order) => {
+      part.traverse((piece) => (piece.renderOrder = 10 + order));
+    });
   }
 
   show_force(p_B: Vec3, force_N: Vec3): void {
@@ -53,10 +55,12 @@ export class HandleView {
     if (!this.arrow.visible) return;
     this.arrow.position.set(...p_B);
     this.arrow.quaternion.setFromUnitVectors(UP, force.normalize());
-    const shaft_length = Math.max(0.001, length - HEAD_LENGTH);
-    this.shaft.scale.y = shaft_length;
+    const size = Math.min(1, length / (1.5 * HEAD_LENGTH)); // small forces get a small arrow
+    const shaft_length = length - size * HEAD_LENGTH;
+    this.shaft.scale.set(size, shaft_length, size);
     this.shaft.position.y = 0.5 * shaft_length;
-    this.head.position.y = shaft_length + 0.5 * HEAD_LENGTH;
+    this.head.scale.setScalar(size);
+    this.head.position.y = shaft_length + 0.5 * size * HEAD_LENGTH;
   }
 
   show_target(p_B: Vec3, target: Vec3 | null): void {

@@ -28,7 +28,7 @@ export function force_of(frame: Frame): number {
 
 export function felt_text(frame: Frame): string {
   if (frame.felt) return frame.felt.text;
-  return force_of(frame) < 1 ? "nothing holds you" : "the twin's own mass and friction";
+  return force_of(frame) < 1 ? "nothing holds you" : "the twin's mass, friction, springs";
 }
 
 // False while a number is missing: it was not finite in the program.

@@ -3,8 +3,8 @@
 //   node test/drag_opens_door.mjs PROGRAM [ARGS...]
 //
 // The program prints the link of its page. Without a program: the demonstration server of
-// hg/viewer_server/test. Environment: CHROMIUM (default /usr/bin/chromium), HG_BUILD (build folder of
-// the demonstration server), SCREENSHOT (file name, default drag_opens_door.png in test/output).
+// hg/viewer_server/test. Environment: CHROMIUM (default /usr/bin/chromium), HG_BUILD (build folder
+// of the demonstration server), SCREENSHOT (default test/output/drag_opens_door.png).
 import { drag_along, hide_and_compare, open_page, start_program } from "./browser.mjs";
 import { mkdirSync } from "node:fs";
 import { dirname, resolve } from "node:path";

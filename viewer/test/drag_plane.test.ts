@@ -38,7 +38,8 @@ describe("meet_plane", () => {
 
   it("gives nothing along the plane or behind the camera", () => {
     expect(meet_plane(down, [0, 0, 3], [0, 0, 1])).toBeNull();
-    expect(meet_plane({ origin: [0, 0, 1], direction: [0, 1, 0] }, [0, 0, 0], [0, 0, 1])).toBeNull();
+    const level: Ray = { origin: [0, 0, 1], direction: [0, 1, 0] };
+    expect(meet_plane(level, [0, 0, 0], [0, 0, 1])).toBeNull();
   });
 });
 

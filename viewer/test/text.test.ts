@@ -1,7 +1,14 @@
 import { describe, expect, it } from "vitest";
 
 import type { Frame } from "../src/messages";
-import { felt_text, hint_text, is_complete, joint_text, share_of_range, time_text } from "../src/text";
+import {
+  felt_text,
+  hint_text,
+  is_complete,
+  joint_text,
+  share_of_range,
+  time_text,
+} from "../src/text";
 
 const frame: Frame = {
   type: "frame",
@@ -54,7 +61,7 @@ describe("felt_text", () => {
     expect(felt_text({ ...frame, felt: { index: 0, name: "m4", text: "m4: upper limit" } })).toBe(
       "m4: upper limit",
     );
-    expect(felt_text(frame)).toContain("mass and friction");
+    expect(felt_text(frame)).toContain("twin's mass");
     expect(felt_text({ ...frame, force_N: [0, 0, 0.2] })).toBe("nothing holds you");
   });
 });
