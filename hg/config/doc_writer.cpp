@@ -7,7 +7,10 @@
 namespace hg::config {
 namespace {
 
-std::string default_of(double value) { return std::isinf(value) ? "none" : model::to_text(value); }
+std::string default_of(double value) {
+  if (std::isnan(value)) return "";
+  return std::isinf(value) ? "none" : model::to_text(value);
+}
 
 std::string with_unit(const std::string& allowed, std::string_view key) {
   const std::string_view unit = unit_of(key);
