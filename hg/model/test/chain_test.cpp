@@ -61,8 +61,10 @@ TEST(Chain, JointsAreListedWithTheirPlacesInQAndDq) {
   EXPECT_EQ(chain.joint("spin"), 3);
 }
 
-TEST(Chain, AFloatingRootIsTheFirstJoint) {
-  const Chain chain = all_chains().back();
+TEST(Chain, AFloatingRootIsTheFirstJointAndStartsAtItsPlacement) {
+  Chain chain = all_chains().back();
+  chain.update_kinematics(chain.neutral(), Eigen::VectorXd::Zero(7));
+  EXPECT_LT(distance(chain.pose(chain.frame("body")), slanted()), kRounding);
   EXPECT_EQ(chain.joints()[0].name, "root");
   EXPECT_EQ(chain.joints()[0].type, JointType::kFloating);
   EXPECT_EQ(chain.nv(), 7);
@@ -125,6 +127,21 @@ TEST(Chain, FixedLinksAndJointsFollowTheUrdf) {
   EXPECT_LT(distance(chain.pose(chain.frame("a")), turned), kRounding);
   EXPECT_LT(distance(chain.pose(chain.frame("a_tool")), tool), kRounding);
   EXPECT_LT(distance(chain.pose(chain.frame("b")), slid), kRounding);
+}
+
+TEST(Chain, LinksOnFixedJointsAddTheirMassWhereTheyAre) {
+  constexpr std::string_view kText = R"(<robot name="flail"><link name="base"/>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+  </joint>
+  <link name="arm"><inertial><mass value="1"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="weld" type="fixed"><parent link="arm"/><child link="ball"/>
+    <origin xyz="0.5 0 0" rpy="1.5707963267948966 0 0"/></joint>
+  <link name="ball"><inertial><origin xyz="0 0 0.3"/><mass value="2"/>
+    <inertia ixx="0.1" iyy="0.2" izz="0.15" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>)";
+  Chain chain = Chain::from_urdf_text(kText, "flail.urdf");
+  chain.update(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1));
+  EXPECT_NEAR(chain.M()(0, 0), 1.0 + 0.2 + 2.0 * (0.5 * 0.5 + 0.3 * 0.3), kRounding);
 }
 
 TEST(Chain, JacobianAndTwistAreTheDerivativeOfThePose) {

@@ -157,7 +157,7 @@ struct Placement {
 const Placement kDoor = {"door", {{-0.30, -0.20, -0.80}, Eigen::Matrix3d::Identity()}};
 const Placement kExcavator = {
     "excavator",
-    {{-1.00, -0.80, -0.40},
+    {{-1.00, -0.80, -0.42},
      Eigen::AngleAxisd(pi / 6, Eigen::Vector3d::UnitZ()).toRotationMatrix()}};
 
 // smallest distances to the limits of the device, with the gantry at its target
@@ -255,10 +255,10 @@ TEST(Placements, TheExcavatorReachesEveryPostureOfItsScenario) {
   Chain excavator = twin_chain(kExcavator.twin, {.T_B_root = kExcavator.T_B_root});
   Margins margins;
   for (const Eigen::Vector4d& q :
-       {Eigen::Vector4d(0, 0.35, 0.9, 0.4), Eigen::Vector4d(0, 0, 0.75, 0.1),
-        Eigen::Vector4d(0, 0, 0.65, 1.0), Eigen::Vector4d(0, 0, 0, 0),
-        Eigen::Vector4d(-0.9, 0.5, 0.8, 1.0), Eigen::Vector4d(0.9, 0.65, 1.1, 0.9),
-        Eigen::Vector4d(0, 0.3, 0.95, 1.0), Eigen::Vector4d(0.6, 0.8, 1.4, 1.0)}) {
+       {Eigen::Vector4d(0, 0.35, 0.9, 0.4), Eigen::Vector4d(0, 0, 0.4, 0.0),
+        Eigen::Vector4d(0, 0, 0.62, 1.0), Eigen::Vector4d(0, 0.03, 0, 0),
+        Eigen::Vector4d(-0.9, 0.5, 1.0, 0.4), Eigen::Vector4d(0.9, 0.43, 0.8, 0.8),
+        Eigen::Vector4d(0, 0.3, 0.95, 1.0), Eigen::Vector4d(0.6, 0.8, 1.65, 0.0)}) {
     add_margins(excavator, q, margins);
   }
   EXPECT_GT(margins.cartesian, 0.30);
