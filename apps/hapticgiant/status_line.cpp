@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "hg/viewer_server/limit_text.h"
@@ -11,17 +12,20 @@ namespace {
 
 constexpr int kMostJoints = 4;  // more do not fit on a line
 
+// without the sign of a zero
+double rounded(double value) { return std::round(100.0 * value) / 100.0 + 0.0; }
+
 }  // namespace
 
 std::string status_text(const Sample& sample, const LimitCatalogue& limits,
                         const rendering::TwinModel& twin) {
   const CycleRecord& record = sample.record;
-  std::string text = fmt::format("{:6.1f} s  {}  F {:4.1f} N", record.time_s,
+  std::string text = fmt::format("{:6.1f} s  {:<8} F {:4.1f} N", record.time_s,
                                  to_string(record.mode), record.robot.w_H.head<3>().norm());
   int shown = 0;
   for (const auto& dof : twin.dofs) {
     if (dof.q_index < 0 || shown++ == kMostJoints || record.twin.q_a.size() == 0) break;
-    text += fmt::format("  {} {:.2f}", dof.name, record.twin.q_a[dof.q_index]);
+    text += fmt::format("  {} {:.2f}", dof.name, rounded(record.twin.q_a[dof.q_index]));
   }
   if (record.felt_limit >= 0) {
     const auto felt = static_cast<std::size_t>(record.felt_limit);

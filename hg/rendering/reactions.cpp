@@ -160,13 +160,17 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
     report.reaction = value_[i];
   }
 
-  // what is felt most: the limit that changes the twin's motion most, in the metric of M_a
+  // what is felt most: the limit that takes most of the acceleration, in the metric of M_a, which
+  // the user's wrench asks for; a stop that only carries a spring is not felt
   Budget& budget = record.budget;
   budget.limits = VectorA::Zero(n_a_);
   budget.conflict = VectorA::Zero(n_a_);
   record.felt_limit = -1;
   record.w_felt.setZero();
-  double felt = kFeltMin;
+  const auto L = tasks.L().triangularView<Eigen::Lower>();
+  VectorA pushed = record.tau_a;
+  L.solveInPlace(pushed);
+  double most = kFeltMin * kFeltMin;
   for (int j = 0; j < active_count_; ++j) {
     const auto limit = static_cast<std::size_t>(active_[static_cast<std::size_t>(j)]);
     VectorA tau = direction_.col(j) * value_[limit];
@@ -175,9 +179,10 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
     } else {
       budget.limits -= tau;
     }
-    tasks.L().triangularView<Eigen::Lower>().solveInPlace(tau);
-    if (tau.norm() > felt) {
-      felt = tau.norm();
+    L.solveInPlace(tau);
+    const double opposed = -tau.dot(pushed);
+    if (opposed > most) {
+      most = opposed;
       record.felt_limit = static_cast<int>(limit);
       record.w_felt = wrench_.col(j) * value_[limit];
     }

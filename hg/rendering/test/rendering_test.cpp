@@ -265,6 +265,16 @@ TEST(Rendering, NothingChattersAtAHeldLimit) {
   EXPECT_NEAR(door.record.limits[6].reaction, -(20.0 - 3.0 - 4.0 * 1.75), 1e-3);
 }
 
+TEST(Rendering, AStopThatOnlyCarriesASpringIsNotFelt) {
+  Playing door(door_twin({}));
+  door.run(0.1, 0, 0.0);
+  EXPECT_EQ(door.record.limits[6].state, LimitState::kLower);
+  EXPECT_NEAR(door.record.limits[6].reaction, 3.0, 1e-6);  // of the closer
+  EXPECT_EQ(door.record.felt_limit, -1);
+  door.run(0.1, 0, -5.0);  // pulled against the stop
+  EXPECT_EQ(door.record.felt_limit, 6);
+}
+
 TEST(Rendering, CoulombFrictionHoldsUpToItsTorqueAndSlipsBeyond) {
   TwinModel twin = door_twin({});
   for (TwinDof& dof : twin.dofs) dof.stiffness = dof.preload = dof.damping = 0.0;
