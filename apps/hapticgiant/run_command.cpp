@@ -43,7 +43,10 @@ void check_writable(const std::string& file) {
 
 void write_summary(const std::string& file, const std::string& json) {
   const std::string partial = file + ".partial";
-  std::ofstream(partial) << json;
+  std::ofstream stream(partial);
+  stream << json;
+  stream.close();
+  if (!stream) throw SetupError(partial + ": could not be written");
   std::filesystem::rename(partial, file);
 }
 
@@ -57,17 +60,22 @@ struct Observers {
   std::unique_ptr<recording::Recorder> recorder;  ///< last: a refused run leaves no file
   bool is_fast = false;
   Clock::time_point last_status = {};
-  CycleRecord last_record = {};
+  double script_end_s = 0.0;  ///< > 0: the run goes on after the script, tell so
 };
 
 void announce(Observers& observers, const evaluation::Event& event) {
   observers.summary.add(event);
-  observers.status_line.print(event);
+  observers.status_line.print(
+      fmt::format("{:8.3f} s  {:<14} {}", event.time_s, event.name, event.what));
   if (observers.recorder) observers.recorder->event(event.time_s, event.name, event.what);
   if (observers.viewer) observers.viewer->announce_event(event.time_s, event.name, event.what);
 }
 
 void observe(Observers& observers, const Sample& sample) {
+  if (observers.script_end_s > 0.0 && sample.record.time_s > observers.script_end_s) {
+    observers.script_end_s = 0.0;
+    observers.status_line.print("the script has played; drag the handle in the page");
+  }
   observers.summary.add(sample);
   if (observers.recorder && observers.is_fast) observers.recorder->push_waiting(sample);
   if (observers.recorder && !observers.is_fast) observers.recorder->push(sample);
@@ -76,13 +84,12 @@ void observe(Observers& observers, const Sample& sample) {
 
 // as often as people look
 void show(Observers& observers, const Sample& sample) {
-  const std::string status =
-      status_text(sample, observers.scenario.limits, observers.scenario.twin.model);
-  if (observers.viewer) observers.viewer->publish(sample, status);
+  if (observers.viewer) observers.viewer->publish(sample, observers.scenario.description);
   const auto now = Clock::now();
   if (now - observers.last_status < kStatusPeriod) return;
   observers.last_status = now;
-  observers.status_line.show(status);
+  observers.status_line.show(
+      status_text(sample, observers.scenario.limits, observers.scenario.twin.model));
 }
 
 // drains the runtime until it has finished and everything has been seen
@@ -96,7 +103,6 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
       any = true;
     }
     if (any && !observers.is_fast) show(observers, *sample);
-    if (any) observers.last_record = sample->record;
     if (is_finished) break;
     if (interrupted.load()) runtime.request_stop();
     HandTarget target;
@@ -132,10 +138,34 @@ std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scena
   return std::make_unique<recording::Recorder>(recording_info(scenario, arguments));
 }
 
-int exit_code(const evaluation::Summary& summary, const std::vector<std::string>& missing,
-              bool was_interrupted) {
+runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments,
+                                 bool is_terminal) {
+  const bool goes_on = is_terminal && !arguments.is_fast && arguments.has_viewer;
+  runtime::Options options;
+  options.rate_Hz = scenario.device.rate_Hz;
+  options.is_fast = arguments.is_fast;
+  options.duration_s = arguments.duration_s.value_or(goes_on ? 0.0 : planned_duration_s(scenario));
+  if (arguments.is_fast && options.duration_s == 0.0) {
+    throw SetupError("run: --fast without a script needs --duration S");
+  }
+  runtime::check(options);
+  return options;
+}
+
+// completes the recording; its file name, or empty
+std::string close_recording(recording::Recorder* recorder) {
+  if (recorder == nullptr) return {};
+  const recording::RecordingSummary recorded = recorder->close();
+  if (!recorded.error.empty()) fmt::print(stderr, "recording ended early: {}\n", recorded.error);
+  for (const auto& name : recorded.deleted) {
+    fmt::print("recording {} deleted to keep within the disk budget\n", name);
+  }
+  return recorded.file.string();
+}
+
+int exit_code(const evaluation::Summary& summary, const std::vector<std::string>& missing) {
   if (summary.fault().code != FaultCode::kNone) return 3;
-  if (was_interrupted) return 0;
+  if (interrupted.load()) return 0;
   return missing.empty() && summary.limits_held() ? 0 : 1;
 }
 
@@ -145,27 +175,18 @@ int run(const RunArguments& arguments) {
   check_writable(arguments.summary);
   const config::Scenario scenario = make_scenario(arguments);
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
-  const double planned = planned_duration_s(scenario);
-
-  runtime::Options options;
-  options.rate_Hz = scenario.device.rate_Hz;
-  options.is_fast = arguments.is_fast;
-  const bool goes_on = is_terminal && !arguments.is_fast && arguments.has_viewer;
-  options.duration_s = arguments.duration_s.value_or(goes_on ? 0.0 : planned);
-  if (arguments.is_fast && options.duration_s == 0.0) {
-    throw SetupError("run: --fast without a script needs --duration S");
-  }
-  runtime::check(options);
-
+  const runtime::Options options = runtime_options(scenario, arguments, is_terminal);
   cycle::Cycle cycle = make_cycle(scenario);
   device::SimulatedDevice device = make_simulated_device(scenario);
-  Observers observers{.scenario = scenario,
-                      .detector = {scenario.events, scenario.limits},
-                      .summary = evaluation::Summary(scenario.limits),
-                      .status_line = StatusLine(is_terminal),
-                      .viewer = make_viewer(scenario, arguments),
-                      .recorder = make_recorder(scenario, arguments),
-                      .is_fast = arguments.is_fast};
+  Observers observers{
+      .scenario = scenario,
+      .detector = {scenario.events, scenario.limits},
+      .summary = evaluation::Summary(scenario.limits),
+      .status_line = StatusLine(is_terminal),
+      .viewer = make_viewer(scenario, arguments),
+      .recorder = make_recorder(scenario, arguments),
+      .is_fast = arguments.is_fast,
+      .script_end_s = options.duration_s == 0.0 ? planned_duration_s(scenario) : 0.0};
 
   fmt::print("HapticGiant {}  {}\n", kVersion, scenario.title);
   if (observers.viewer) fmt::print("page        {}\n", observers.viewer->url());
@@ -181,29 +202,22 @@ int run(const RunArguments& arguments) {
   watch(runtime, observers);
   const runtime::Report report = runtime.join();
 
-  evaluation::RunFacts facts;
-  facts.scenario = scenario.title;
-  facts.version = kVersion;
-  facts.rate_Hz = options.rate_Hz;
-  facts.is_fast = options.is_fast;
-  facts.overruns = report.overruns;
-  facts.dropped = report.dropped;
-  facts.allocations_in_loop = report.allocations;
-  facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
-  if (observers.recorder) {
-    const recording::RecordingSummary recorded = observers.recorder->close();
-    facts.recording = recorded.file.string();
-    if (!recorded.error.empty()) fmt::print(stderr, "recording ended early: {}\n", recorded.error);
-    for (const auto& name : recorded.deleted) {
-      fmt::print("recording {} deleted to keep within the disk budget\n", name);
-    }
-  }
+  const std::chrono::duration<double> wall_time = Clock::now() - begin;
+  const evaluation::RunFacts facts{.scenario = scenario.title,
+                                   .version = kVersion,
+                                   .rate_Hz = options.rate_Hz,
+                                   .is_fast = options.is_fast,
+                                   .overruns = report.overruns,
+                                   .dropped = report.dropped,
+                                   .allocations_in_loop = report.allocations,
+                                   .recording = close_recording(observers.recorder.get()),
+                                   .wall_time_s = wall_time.count()};
   const std::vector<std::string> missing = observers.detector.missing();
   fmt::print("\n{}", observers.summary.to_text(facts, missing));
   if (!arguments.summary.empty()) {
     write_summary(arguments.summary, observers.summary.to_json(facts, missing));
   }
-  return exit_code(observers.summary, missing, interrupted.load());
+  return exit_code(observers.summary, missing);
 }
 
 }  // namespace hg::apps

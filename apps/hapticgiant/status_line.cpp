@@ -43,9 +43,9 @@ void StatusLine::show(const std::string& text) {
   is_drawn_ = true;
 }
 
-void StatusLine::print(const evaluation::Event& event) {
+void StatusLine::print(const std::string& text) {
   clear();
-  fmt::print("{:8.3f} s  {:<14} {}\n", event.time_s, event.name, event.what);
+  fmt::print("{}\n", text);
   std::fflush(stdout);
 }
 

@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "hg/evaluation/events.h"
 #include "hg/rendering/twin_model.h"
 #include "hg/signals/state.h"
 
@@ -20,7 +19,8 @@ class StatusLine {
   ~StatusLine() { clear(); }
 
   void show(const std::string& text);
-  void print(const evaluation::Event& event);
+  /// A line that stays.
+  void print(const std::string& text);
   void clear();
 
  private:
