@@ -1,9 +1,12 @@
 #include "hg/config/loader.h"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <sstream>
 
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
@@ -41,6 +44,37 @@ std::string shown(const YAML::Node& node) {
 std::string did_you_mean(std::string_view name, std::span<const std::string> names) {
   const std::string nearest = nearest_name(name, names);
   return nearest.empty() ? "" : ", did you mean '" + nearest + "'?";
+}
+
+// Notes where documents begin.
+class DocumentStarts final : public YAML::EventHandler {
+ public:
+  std::vector<Place> places;
+
+  void OnDocumentStart(const YAML::Mark& mark) override { places.push_back(place_of(mark)); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+// YAML::Load would ignore what follows the first document, which a stray bracket can end, and
+// YAML::LoadAll does not return from some stray brackets.
+void refuse_second_document(const std::string& text, Faults& faults) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStarts starts;
+  for (int i = 0; i < 2; ++i) parser.HandleNextDocument(starts);
+  if (starts.places.size() < 2) return;
+  faults.add(starts.places.back(), "", "the file must be one map, but it has ended before this");
+  faults.throw_if_any();
 }
 
 // A plain (unquoted) number of YAML, with its words for infinity and "not a number".
@@ -359,13 +393,9 @@ void Loader::fault(const YAML::Node& node, const std::string& item, const std::s
 void load_file(LoaderFile& file, const std::function<void(Loader&)>& read) {
   YAML::Node root;
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(file.sources.read(file.path));
-    if (documents.size() > 1) {
-      file.faults.add({}, "",
-                      "the file must hold one document, got " + std::to_string(documents.size()));
-      file.faults.throw_if_any();
-    }
-    if (!documents.empty()) root = documents.front();
+    const std::string text = file.sources.read(file.path);
+    refuse_second_document(text, file.faults);
+    root = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     file.faults.add(place_of(error.mark), "not valid YAML", error.msg);
     file.faults.throw_if_any();

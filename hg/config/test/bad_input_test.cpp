@@ -184,7 +184,11 @@ TEST(BadFile, EveryKindOfUnreadableFileIsNamed) {
   EXPECT_EQ(twin_message("name: door\n\turdf: x\n"),
             "door.yaml:2:1: not valid YAML: illegal tab when looking for indentation");
   EXPECT_EQ(twin_message("name: a\n---\nname: b\n"),
-            "door.yaml:1:1: the file must hold one document, got 2");
+            "door.yaml:2:1: the file must be one map, but it has ended before this");
+  EXPECT_EQ(twin_message("name: a\n}\nurdf: b\n"),
+            "door.yaml:2:1: not valid YAML: illegal flow end");
+  EXPECT_EQ(twin_message("{name: a}\nurdf: b\n"),
+            "door.yaml:2:1: the file must be one map, but it has ended before this");
 }
 
 TEST(BadFile, MissingKeysAreNamedAtTheMapThatNeedsThem) {
