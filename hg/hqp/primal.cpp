@@ -6,8 +6,9 @@
 namespace hg::hqp {
 namespace {
 
-constexpr double kParallel = 1e-12;  // cosine below which a direction does not change a row
-constexpr int kExchangesPerRow = 3;  // rows released in a corner, per row that meets there
+constexpr double kParallel = 1e-12;    // cosine below which a direction does not change a row
+constexpr double kResolution = 1e-16;  // share of |x| below which a step does not change x
+constexpr int kExchangesPerRow = 3;    // rows released in a corner, per row that meets there
 
 // Sides of a row that do not stop a step, as bits.
 constexpr std::uint8_t kUpperSide = 1;
@@ -39,7 +40,6 @@ class LevelByLevel {
   void release_untouched() noexcept;
   RowState state_of_fixed(int row) const noexcept;
   void collect_pulling(int level) noexcept;
-  bool collect_broken(int level) noexcept;
   bool aim(int level) noexcept;
   void hold_rows(int level) noexcept;
   int find_pulling_row(bool take_first) noexcept;
@@ -100,28 +100,13 @@ void LevelByLevel::collect_pulling(int level) noexcept {
   for (int row = problem_.first_row(level); row < problem_.end_row(level); ++row) {
     const auto [lb, ub] = problem_.bounds(row);
     const double value = work_.value[at(row)];
-    work_.is_pulling[at(row)] = problem_.norm(row) > 0.0 && (lb == ub || value < lb || value > ub);
-    if (work_.is_pulling[at(row)]) work_.targets.push_back({row, value < lb ? lb : ub});
+    const bool is_pulling = problem_.norm(row) > 0.0 && (lb == ub || value < lb || value > ub);
+    if (is_pulling) work_.targets.push_back({row, value < lb ? lb : ub});
   }
-}
-
-// Adds the rows at a bound that the direction would break; false when there are none.
-bool LevelByLevel::collect_broken(int level) noexcept {
-  const std::size_t count = work_.targets.size();
-  for (int row = problem_.first_row(level); row < problem_.end_row(level); ++row) {
-    const double slope = work_.slope[at(row)];
-    if (work_.is_pulling[at(row)] || slope == 0.0) continue;
-    const Interval bounds = problem_.bounds(row);
-    const double bound = slope > 0.0 ? bounds.ub : bounds.lb;
-    if (!touches(problem_, options_, work_, row, bound)) continue;
-    work_.is_pulling[at(row)] = true;
-    work_.targets.push_back({row, bound});
-  }
-  return work_.targets.size() > count;
 }
 
 // Direction to the minimum of the level's quadratic piece within the free columns; false when it
-// gains nothing that counts. At a kink of the objective the piece is the one ahead.
+// gains nothing that counts.
 bool LevelByLevel::aim(int level) noexcept {
   Elimination& elimination = work_.elimination;
   if (elimination.freedom() == 0) return false;
@@ -132,13 +117,11 @@ bool LevelByLevel::aim(int level) noexcept {
     return gains(level, 1.0);
   }
   const int rank = elimination.rank();
-  do {
-    elimination.add_least_squares(problem_, work_.targets, work_.point.x.data(),
-                                  options_.rank_tolerance);
-    elimination.truncate(rank);
-    work_.direction.head(n_) = elimination.step().head(n_);
-    find_slopes(level);
-  } while (collect_broken(level));
+  elimination.add_least_squares(problem_, work_.targets, work_.point.x.data(),
+                                options_.rank_tolerance);
+  elimination.truncate(rank);
+  work_.direction.head(n_) = elimination.step().head(n_);
+  find_slopes(level);
   return gains(level, 1.0);
 }
 
@@ -168,20 +151,16 @@ void LevelByLevel::find_slopes(int level) noexcept {
 // How far the direction can be followed before a row of a higher level is in the way.
 double LevelByLevel::way_to_obstacle(int level, int& obstacle) const noexcept {
   double way = kInfinity;
-  double best_steepness = 0.0;
   obstacle = -1;
   for (int row = 0; row < end_of_levels_above(level); ++row) {
     const double slope = work_.slope[at(row)];
     if (work_.is_fixed[at(row)] || slope == 0.0) continue;
     if (work_.skipped_sides[at(row)] & (slope > 0.0 ? kUpperSide : kLowerSide)) continue;
-    const double steepness = std::abs(slope) / problem_.norm(row);
     const auto [lb, ub] = problem_.bounds(row);
     const double distance = slope > 0.0 ? ub - work_.value[at(row)] : work_.value[at(row)] - lb;
-    if (distance == kInfinity) continue;
     const double way_of_row = std::max(0.0, distance) / std::abs(slope);
-    if (way_of_row < way || (way_of_row == way && steepness > best_steepness)) {
+    if (way_of_row < way) {
       way = way_of_row;
-      best_steepness = steepness;
       obstacle = row;
     }
   }
@@ -327,8 +306,6 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
     if (!is_norm_level(level)) collect_pulling(level);
     work_.touched.clear();
     for (int above = 0; above < level; ++above) collect_touched(problem_, options_, above, work_);
-    std::erase_if(work_.touched,
-                  [this](const TouchedRow& t) { return work_.is_fixed[at(t.row)] != 0; });
     work_.cone.solve(problem_, work_.touched, work_.gradient.data(), size_.scale,
                      options_.rank_tolerance, elimination);
     const Aim outcome = aim_past_obstacles(level);
@@ -338,7 +315,8 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
     int obstacle = -1;
     const double longest = way_to_obstacle(level, obstacle);
     const double length = best_length(level, longest);
-    if (!(length > 0.0)) return PrimalOutcome::kOptimal;
+    const double way = length * work_.direction.head(n_).norm();
+    if (!(way > kResolution * work_.x_norm)) return PrimalOutcome::kOptimal;
     if (!move(problem_, work_.direction, length, work_)) return PrimalOutcome::kNotFinite;
     update_values(problem_, levels_, work_);
   }
@@ -374,10 +352,6 @@ void LevelByLevel::fix(int level) noexcept {
     if (push > largest_push) {
       largest_push = push;
       work_.point.blocking_row[at(level)] = row;
-    }
-    if (push > size_.surely_pushing()) {
-      elimination.add_row(problem_, row, options_.rank_tolerance);
-      work_.is_fixed[at(row)] = true;
     }
   }
 }

@@ -90,6 +90,9 @@ Solver& Solver::operator=(Solver&&) noexcept = default;
 Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& active,
                      Solution& solution) noexcept {
   Workspace& work = *workspace_;
+  assert(problem.variables() <= work.point.x.size());
+  assert(problem.levels() < static_cast<int>(work.point.rank_at_level.size()));
+  assert(problem.rows() <= static_cast<int>(work.point.state.size()));
   const int bad_row = find_bad_row(problem);
   const int levels = bad_row < 0 ? problem.levels() : problem.level_of(bad_row);
 
@@ -133,9 +136,6 @@ double Solver::multipliers(const Problem& problem, const Options& options, const
                                   options.rank_tolerance);
     collect_touched(problem, options, above, work);
   }
-  std::erase_if(work.touched, [&](const TouchedRow& t) {
-    return violation(problem, options, work, t.row) != 0.0;
-  });
   const int two_sided = elimination.rank();
   const LevelGradient size = level_gradient(problem, options, level, work);
   work.cone.solve(problem, work.touched, work.gradient.data(), size.scale, options.rank_tolerance,

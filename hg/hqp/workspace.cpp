@@ -26,7 +26,6 @@ Workspace::Workspace(const Capacity& c)
       mu(c.variables),
       slope(at(c.rows)),
       is_fixed(at(c.rows)),
-      is_pulling(at(c.rows)),
       skipped_sides(at(c.rows)),
       gradient(c.variables),
       direction(c.variables) {

@@ -45,7 +45,6 @@ struct Workspace {
   Eigen::VectorXd mu;            ///< their multipliers
   std::vector<double> slope;     ///< c d by row, d the search direction
   std::vector<std::uint8_t> is_fixed;       ///< by row: eliminated for good
-  std::vector<std::uint8_t> is_pulling;     ///< by row: among the targets
   std::vector<std::uint8_t> skipped_sides;  ///< by row: sides that are no obstacle to a step
   Eigen::VectorXd gradient;
   Eigen::VectorXd direction;

@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
 #include <vector>
 
 namespace hg::hqp {
@@ -50,14 +54,46 @@ TEST(Cone, ProvesACornerWithMoreRowsThanVariables) {
   EXPECT_NEAR(sum_0, 2.0, 1e-14);
 }
 
-TEST(Cone, DropsARowThatALaterOneRelieves) {
-  // steepest descent (3, 1) first meets row 2, x0 + x1 <= 0, and then x0 <= 0, which takes it all
-  // but for what points down
-  Corner corner;
-  corner.solve({{2, 1.0}, {0, 1.0}, {1, -1.0}}, {-3.0, 1.0});
-  ASSERT_EQ(corner.cone.pushing(), 2);
-  for (int i = 0; i < 2; ++i) EXPECT_NE(corner.cone.row(i).row, 2);
-  EXPECT_LT(corner.cone.descent().norm(), 1e-15);
+TEST(Cone, MeetsTheConditionsOfItsMinimum) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  int largest = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    SCOPED_TRACE("trial " + std::to_string(trial));
+    const int n = 2 + trial % 7;
+    const int m = 3 * n;
+    Problem problem({.variables = n, .levels = 1, .rows = m});
+    problem.add_level();
+    std::vector<TouchedRow> candidates;
+    Eigen::MatrixXd C(m, n);
+    for (int i = 0; i < m; ++i) {
+      for (int j = 0; j < n; ++j) C(i, j) = normal(random) + (j == 0 ? 1.0 : 0.0);
+      const Eigen::VectorXd c = C.row(i);
+      candidates.push_back(
+          {problem.add_row({c.data(), c.data() + n}, {}), i % 4 == 0 ? -1.0 : 1.0});
+    }
+    const Eigen::VectorXd g = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
+    Elimination elimination(n, m);
+    elimination.reset(n);
+    Cone cone(n, m);
+    cone.solve(problem, candidates, g.data(), g.norm(), kRank, elimination);
+
+    // descent = -(g + sum mu s c), opposed by no row and neutral to those that push
+    const Eigen::VectorXd descent = cone.descent().head(n);
+    Eigen::VectorXd sum = g + descent;
+    for (int i = 0; i < cone.pushing(); ++i) {
+      ASSERT_GT(cone.mu(i), 0.0);
+      const auto [row, sign] = cone.row(i);
+      sum += cone.mu(i) * sign * C.row(row).transpose();
+      ASSERT_LT(std::abs(C.row(row).dot(descent)), 1e-9 * C.row(row).norm() * g.norm());
+    }
+    ASSERT_LT(sum.norm(), 1e-9 * g.norm());
+    for (const auto& [row, sign] : candidates) {
+      ASSERT_LT(sign * C.row(row).dot(descent), 1e-9 * C.row(row).norm() * g.norm());
+    }
+    largest = std::max(largest, cone.pushing());
+  }
+  EXPECT_EQ(largest, 8);
 }
 
 }  // namespace

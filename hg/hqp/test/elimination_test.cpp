@@ -87,6 +87,22 @@ TEST(Elimination, StepsToTheSmallestLeastSquaresPointBesideFixedRows) {
   EXPECT_LT((elimination.step() - d).norm(), 1e-9);
 }
 
+TEST(Elimination, JudgesRankByTheMostIndependentRows) {
+  // rows 0 and 1 differ by 2e-9 of row 2: taken in order, row 1 would give a bad direction, and row
+  // 2 would seem to add a third one
+  const Eigen::RowVector3d a = Eigen::RowVector3d(1, 2, 3).normalized();
+  const Eigen::RowVector3d b = Eigen::RowVector3d(-3, 1, 2).normalized();
+  Eigen::MatrixXd C(3, 3);
+  C << a, a + 2e-9 * b, b;
+  const Problem problem = problem_of(C);
+  Elimination elimination(3, 3);
+  elimination.reset(3);
+  const std::vector<TargetRow> rows = {{0, 1.0}, {1, 1.0}, {2, 1.0}};
+  const Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  elimination.add_least_squares(problem, rows, x.data(), kRank);
+  EXPECT_EQ(elimination.rank(), 2);
+}
+
 TEST(Elimination, ProjectsToWhatIsFree) {
   const Eigen::MatrixXd C = Eigen::RowVector3d(0, 2, 0);
   const Problem problem = problem_of(C);
@@ -110,6 +126,20 @@ TEST(SolveLeastSquares, KeepsSmallRowsAccurateBesideLargeOnes) {
   solve_least_squares(4, 2, A.data(), e.data(), order.data(), z.data());
   EXPECT_NEAR(z[0], 1.0, 1e-12);
   EXPECT_NEAR(z[1], 2.0, 1e-12);
+}
+
+TEST(SolveLeastSquares, PivotsColumnsForStiffRows) {
+  // C. Van Loan, SIAM J. Numer. Anal. 22(5), 1985: stiff rows that need another order of the
+  // columns
+  const double M = 1e10;
+  Eigen::MatrixXd A(4, 3);
+  A << 0, 2, 1, M, M, 0, M, 0, M, 0, 1, 1;
+  Eigen::VectorXd e(4);
+  e << 3, 2 * M, 2 * M, 2;
+  Eigen::VectorXd z(3);
+  Eigen::VectorXi order(3);
+  solve_least_squares(4, 3, A.data(), e.data(), order.data(), z.data());
+  EXPECT_LT((z - Eigen::Vector3d::Ones()).norm(), 1e-12);
 }
 
 }  // namespace

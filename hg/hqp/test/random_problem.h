@@ -14,6 +14,7 @@ struct RandomKind {
   int max_rows_per_level = 9;
   bool has_integers = false;  ///< small integers only: corners where many bounds meet
   double row_decades = 0.0;   ///< rows are scaled by up to 10^+-this
+  double noise = 0.0;         ///< relative error of duplicates
   double scale = 1.0;         ///< of all bounds
 };
 

@@ -13,7 +13,6 @@
 namespace hg::hqp {
 namespace {
 
-constexpr double kOptimal = 1e-6;    // gap of a level relative to its gradient
 constexpr double kSameSlack = 1e-9;  // relative; the slack of every level is unique
 constexpr double kSamePoint = 1e-7;  // relative; so is x, but it hangs on the rows' conditioning
 
@@ -53,6 +52,9 @@ class Generator {
     if (kind < 0.05) return c;
     if (kind < 0.2 && !earlier_.empty()) {
       c = earlier_[static_cast<std::size_t>(integer(0, static_cast<int>(earlier_.size()) - 1))];
+      if (kind_.noise > 0.0) {
+        for (double& c_j : c) c_j *= 1.0 + kind_.noise * value();
+      }
     } else if (kind < 0.35 && !earlier_.empty()) {
       for (const auto& row : earlier_) {
         const double factor = chance(0.3) ? value() : 0.0;
@@ -104,7 +106,8 @@ class Generator {
 struct NamedKind {
   const char* name;
   RandomKind kind;
-  std::uint32_t problems = 1000;
+  std::uint32_t problems = 2000;
+  double gap = 1e-6;  ///< largest gap of a level relative to its gradient
 };
 
 void PrintTo(const NamedKind& kind, std::ostream* out) { *out << kind.name; }
@@ -130,7 +133,7 @@ TEST_P(RandomProblems, AreSolvedToOptimality) {
     ActiveSet active;
     ASSERT_EQ(solver_.solve(problem, Options{}, active, solution_), Status::kSolved);
     ASSERT_EQ(solution_.completed_levels, problem.levels());
-    ASSERT_LT(largest_gap(problem, solution_.x), kOptimal);
+    ASSERT_LT(largest_gap(problem, solution_.x), GetParam().gap);
   }
 }
 
@@ -169,6 +172,8 @@ INSTANTIATE_TEST_SUITE_P(
     , RandomProblems,
     testing::Values(NamedKind{"ordinary", {}}, NamedKind{"integers", {.has_integers = true}},
                     NamedKind{"badly_scaled", {.row_decades = 1.0}},
+                    // what a nearly dependent row asks for beyond the others is not done
+                    NamedKind{.name = "nearly_dependent", .kind = {.noise = 1e-12}, .gap = 1e-5},
                     NamedKind{"tiny", {.scale = 1e-9}}, NamedKind{"huge", {.scale = 1e9}},
                     NamedKind{
                         .name = "large",
