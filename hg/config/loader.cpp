@@ -85,7 +85,7 @@ std::optional<double> parse_number(const YAML::Node& node) {
   if (text == "-.inf") return -kInfinity;
   if (text.starts_with('+')) text.remove_prefix(1);
   if (text == ".inf") return kInfinity;
-  if (text.empty() || text.find_first_of("0123456789") == std::string_view::npos) return {};
+  if (text.find_first_of("0123456789") == std::string_view::npos) return {};
 
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

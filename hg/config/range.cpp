@@ -38,10 +38,9 @@ constexpr std::array<Unit, 18> kUnits = {{
 }  // namespace
 
 bool contains(const Range& range, double value) noexcept {
-  if (std::isnan(value)) return false;
   if (std::isinf(value) && !range.allows_infinity) return false;
   if (range.excludes_lb && value <= range.lb) return false;
-  return range.lb <= value && value <= range.ub;
+  return range.lb <= value && value <= range.ub;  // false for NaN
 }
 
 std::string to_text(const Range& range) {

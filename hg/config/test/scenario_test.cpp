@@ -266,6 +266,37 @@ TEST(Script, ExcavatorHandTurnsTheBucketAboutItsAxis) {
   EXPECT_NEAR(tau[3], 9.0, kDigits);
 }
 
+TEST(Script, SegmentsActInTheOrderOfTheirStart) {
+  const std::vector<SourceText> texts = {
+      {"script.yaml",
+       "segments:\n  - {start_s: 4, duration_s: 1, by: {x_m: 1}}\n"
+       "  - {start_s: 2, duration_s: 1, x_m: 5}\n"}};
+  SourceReader reader(texts);
+  const Script script = load_script("script.yaml", free_space().twin.model, reader);
+  EXPECT_EQ(user::evaluate(script.script, 3.5)[0], 5.0);
+  EXPECT_EQ(user::evaluate(script.script, 6.0)[0], 6.0);
+  EXPECT_EQ(script.script.duration_s, 5.0);
+}
+
+TEST(Twin, LocksHoldTheJointTheyName) {
+  const std::string yaml =
+      "name: door\nurdf: models/twins/door/door.urdf\nend_effector: handle\n"
+      "locks: [{name: jam, joint: lever, position_rad: 0.1, "
+      "engaged_while: {hinge: {above_rad: 0.2, below_rad: 0.4}}}]\n";
+  std::vector<SourceText> texts = door().twin.sources;
+  texts[1].name = "models/twins/door/door.urdf";
+  texts.push_back({"twin.yaml", yaml});
+  SourceReader reader(texts);
+  const Twin twin = load_twin("twin.yaml", reader);
+  ASSERT_EQ(twin.model.locks.size(), 1u);
+  const rendering::Lock& lock = twin.model.locks[0];
+  EXPECT_EQ(lock.dof, 1);
+  EXPECT_EQ(lock.position, 0.1);
+  EXPECT_EQ(lock.engaged_while[0].dof, 0);
+  EXPECT_EQ(lock.engaged_while[0].range.lb, 0.2);
+  EXPECT_EQ(lock.engaged_while[0].range.ub, 0.4);
+}
+
 TEST(Scenario, NamesEveryLimitInTheOrderOfTheTasks) {
   std::vector<std::string> names;
   for (const LimitInfo& limit : door().limits) names.push_back(limit.name);
