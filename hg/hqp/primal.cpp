@@ -137,14 +137,16 @@ bool LevelByLevel::gains(int level, double length) const noexcept {
   });
 }
 
-// c d of all rows that matter to the level, into work_.slope; 0 where it is but rounding.
+// c d of all rows that matter to the level, into work_.slope; 0 where it is but rounding or, for
+// rows of the level, the free part of a dependent row.
 void LevelByLevel::find_slopes(int level) noexcept {
   const int end = is_norm_level(level) ? problem_.rows() : problem_.end_row(level);
   const double direction_norm = work_.direction.head(n_).norm();
   for (int row = 0; row < end; ++row) {
     const double slope = dot(problem_, row, work_.direction.data());
-    const bool is_rounding = std::abs(slope) <= kParallel * problem_.norm(row) * direction_norm;
-    work_.slope[at(row)] = is_rounding ? 0.0 : slope;
+    const double parallel = row < end_of_levels_above(level) ? kParallel : options_.rank_tolerance;
+    const bool is_none = std::abs(slope) <= parallel * problem_.norm(row) * direction_norm;
+    work_.slope[at(row)] = is_none ? 0.0 : slope;
   }
 }
 

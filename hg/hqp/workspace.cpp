@@ -86,11 +86,8 @@ void collect_touched(const Problem& problem, const Options& options, int level,
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
     const auto [lb, ub] = problem.bounds(row);
     if (problem.norm(row) == 0.0 || lb == ub) continue;
-    const double value = work.value[at(row)];
-    const bool at_upper = value > ub || touches(problem, options, work, row, ub);
-    const bool at_lower = value < lb || touches(problem, options, work, row, lb);
-    if (at_upper) work.touched.push_back({row, 1.0});
-    if (at_lower) work.touched.push_back({row, -1.0});
+    if (touches(problem, options, work, row, ub)) work.touched.push_back({row, 1.0});
+    if (touches(problem, options, work, row, lb)) work.touched.push_back({row, -1.0});
   }
 }
 

@@ -89,8 +89,7 @@ void update_values(const Problem& problem, int levels, Workspace& work) noexcept
 void collect_targets(const Problem& problem, const Options& options, int level,
                      Workspace& work) noexcept;
 
-/// Appends the level's inequality rows that x is at a bound of, or beyond, to work.touched. Needs
-/// work.value.
+/// Appends the level's inequality rows that x is at a bound of to work.touched. Needs work.value.
 void collect_touched(const Problem& problem, const Options& options, int level,
                      Workspace& work) noexcept;
 
