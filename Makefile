@@ -22,7 +22,7 @@ test:
 	@tools/setup.sh test
 	@tools/configure.sh $(PRESET)
 	@cmake --build $(BUILD)
-	@ctest --test-dir $(BUILD) --output-on-failure
+	@PATH="$(CURDIR)/.venv/bin:$$PATH" ctest --test-dir $(BUILD) --output-on-failure --no-tests=error
 
 format:
 	@git ls-files '*.h' '*.cpp' | xargs clang-format -i
