@@ -106,6 +106,16 @@ void Reactions::split(const DeviceModel& device, const TwinModel& twin, const Ta
   find_active(device, twin, tasks, solution);
   if (active_count_ == 0) return;
 
+  // a row above one that could not be met may be held for that row's sake, against its own sign
+  const auto state_of = [&](int limit) {
+    return solution.state[static_cast<std::size_t>(tasks.first_limit_row() + limit)];
+  };
+  int last_violated = -1;
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    if (hqp::is_violated(state_of(limit))) last_violated = limit;
+  }
+
   const auto& rows = tasks.limit_rows();
   std::array<double, kMaxLimits> scale{};
   problem_.clear(active_count_);
@@ -113,10 +123,11 @@ void Reactions::split(const DeviceModel& device, const TwinModel& twin, const Ta
   for (int j = 0; j < active_count_; ++j) {
     const auto limit = static_cast<std::size_t>(active_[static_cast<std::size_t>(j)]);
     scale[static_cast<std::size_t>(j)] = 1.0 / rows[limit].rating;
-    const auto state = solution.state[static_cast<std::size_t>(tasks.first_limit_row()) + limit];
+    const hqp::RowState state = state_of(static_cast<int>(limit));
+    const bool has_sign = static_cast<int>(limit) > last_violated;
     Interval sign;
-    if (state == hqp::RowState::kLower) sign.lb = 0.0;
-    if (state == hqp::RowState::kUpper) sign.ub = 0.0;
+    if (has_sign && state == hqp::RowState::kLower) sign.lb = 0.0;
+    if (has_sign && state == hqp::RowState::kUpper) sign.ub = 0.0;
     problem_.add_bound(j, sign);
   }
   problem_.add_level();

@@ -1,9 +1,10 @@
 /// "Why do I feel this": which limits act, how hard, and where the user's wrench goes.
 ///
 /// The total constraint torque M_a ddq_a - tau is unique; its split among the active rows is not
-/// when rows depend on each other. Rule: reactions have the sign of their bound; among all splits
-/// that add up, the smallest one, rows scaled by their rating; rows that could not be met get a
-/// share only for what the others cannot explain.
+/// when rows depend on each other. Rule: reactions have the sign of their bound, except above a
+/// row that could not be met, for whose sake they may be held; among all splits that add up, the
+/// smallest one, rows scaled by their rating; rows that could not be met get a share only for what
+/// the others cannot explain.
 ///
 /// No allocation after construction.
 #pragma once
