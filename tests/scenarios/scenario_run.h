@@ -1,24 +1,62 @@
 /// Plays a scenario without threads: the same cycle and simulated device as the program, in a loop.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/hapticgiant/run_setup.h"
+#include "hg/core/allocation_counter.h"
 #include "hg/evaluation/events.h"
 #include "hg/evaluation/summary.h"
 
 namespace hg {
 
+/// A scenario that ships with the program, to be played as it is or changed first.
+inline config::Scenario shipped(const std::string& name) {
+  return apps::make_scenario(apps::RunArguments{.scenario = name});
+}
+inline config::Scenario shipped(const std::string& name, double rate_Hz) {
+  return apps::make_scenario(apps::RunArguments{.scenario = name, .rate_Hz = rate_Hz});
+}
+
+/// What must hold in every cycle of every run, collected over the cycles that render.
+struct Quality {
+  int cycles = 0;
+  int unsolved = 0;
+  int changes = 0;                     ///< cycles in which a limit begins or ceases to act
+  double sum_acceleration_change = 0;  ///< of the hand, m/s^2
+  double worst_budget = 0;             ///< see budget_error
+  double largest_reaction = 0;         ///< of any limit, N or Nm
+  std::uint64_t allocations = 0;       ///< in Cycle::step
+
+  double mean_acceleration_change() const { return sum_acceleration_change / cycles; }
+};
+
+/// How far the parts of the budget are from adding up to tau_a, relative to the largest part.
+inline double budget_error(const CycleRecord& record) {
+  const Budget& b = record.budget;
+  double scale = 1.0;  // Nm or N
+  VectorA rest = record.tau_a;
+  for (const VectorA* part :
+       {&b.inertia, &b.damping, &b.friction, &b.spring, &b.surface, &b.limits, &b.conflict}) {
+    rest -= *part;
+    scale = std::max(scale, part->lpNorm<Eigen::Infinity>());
+  }
+  return rest.lpNorm<Eigen::Infinity>() / scale;
+}
+
 class ScenarioRun {
  public:
-  explicit ScenarioRun(const std::string& name)
-      : ScenarioRun(apps::RunArguments{.scenario = name}) {}
+  explicit ScenarioRun(const std::string& name) : ScenarioRun(shipped(name)) {}
 
-  explicit ScenarioRun(const apps::RunArguments& arguments)
-      : scenario_(apps::make_scenario(arguments)),
+  explicit ScenarioRun(config::Scenario scenario)
+      : scenario_(std::move(scenario)),
         cycle_(apps::make_cycle(scenario_)),
         device_(apps::make_simulated_device(scenario_)),
         detector_(scenario_.events, scenario_.limits),
@@ -30,19 +68,25 @@ class ScenarioRun {
     const double end = std::min(seconds, apps::planned_duration_s(scenario_));
     do {
       device_.read(sample->sensors);
-      cycle_.step(sample->sensors, sample->operator_input, sample->command, sample->record);
+      {
+        const AllocationCounter counter;
+        cycle_.step(sample->sensors, sample->operator_input, sample->command, sample->record);
+        quality_.allocations += counter.count();
+      }
       device_.write(sample->command);
       sample->operator_input.request = sample->record.mode == Mode::kReady   ? ModeRequest::kArm
                                        : sample->record.mode == Mode::kArmed ? ModeRequest::kRun
                                                                              : ModeRequest::kNone;
       summary_.add(*sample);
       if (const auto event = detector_.observe(sample->record)) summary_.add(*event);
+      if (sample->record.mode == Mode::kRunning) add_quality(sample->record);
       if (look) look(*sample);
     } while (sample->record.time_s < end && sample->record.mode != Mode::kFault);
   }
 
   const config::Scenario& scenario() const { return scenario_; }
   const evaluation::Summary& summary() const { return summary_; }
+  const Quality& quality() const { return quality_; }
   std::vector<std::string> missing() const { return detector_.missing(); }
 
   /// Time of an event; -1 if it did not happen.
@@ -62,11 +106,33 @@ class ScenarioRun {
   }
 
  private:
+  void add_quality(const CycleRecord& record) {
+    ++quality_.cycles;
+    if (record.solver_status != SolverStatus::kSolved) ++quality_.unsolved;
+    if (quality_.cycles > 1) {
+      quality_.sum_acceleration_change += (record.a_H - last_acceleration_).norm();
+    }
+    last_acceleration_ = record.a_H;
+    bool has_changed = false;
+    for (std::size_t i = 0; i < is_acting_.size(); ++i) {
+      quality_.largest_reaction =
+          std::max(quality_.largest_reaction, std::abs(record.limits[i].reaction));
+      const bool is_acting = record.limits[i].state != LimitState::kInactive;
+      if (is_acting != is_acting_[i]) has_changed = true;
+      is_acting_[i] = is_acting;
+    }
+    if (has_changed) ++quality_.changes;
+    quality_.worst_budget = std::max(quality_.worst_budget, budget_error(record));
+  }
+
   config::Scenario scenario_;
   cycle::Cycle cycle_;
   device::SimulatedDevice device_;
   evaluation::EventDetector detector_;
   evaluation::Summary summary_;
+  Quality quality_;
+  std::array<bool, kMaxLimits> is_acting_{};
+  Eigen::Vector3d last_acceleration_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace hg
