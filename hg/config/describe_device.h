@@ -32,7 +32,6 @@ struct DeviceDraft {
   Placement sensor;
   double rate_Hz = 1000.0;
   Kinematics kinematics = Kinematics::kHapticGiant;
-  PostureBranch start_branch;
   std::vector<rendering::VirtualJoint> virtual_joints;
   std::vector<rendering::CartesianLimit> cartesian_limits;
   DriveModel drive;
@@ -44,7 +43,6 @@ struct DeviceDraft {
 
 inline constexpr std::array<Choice<Kinematics>, 1> kKinematics = {
     {{"haptic_giant", Kinematics::kHapticGiant}}};
-inline constexpr std::array<Choice<int>, 2> kSigns = {{{"positive", 1}, {"negative", -1}}};
 
 template <class V>
 void describe_chain(V& v, DeviceDraft& d) {
@@ -68,14 +66,6 @@ void describe_structure(V& v, DeviceDraft& d) {
       "sensor", [&](auto& child) { describe(child, d.sensor); },
       "force/torque sensor S in the handle frame H");
   v.choice("kinematics", d.kinematics, kKinematics, "how the start posture is found");
-  v.group(
-      "start_branch",
-      [&](auto& child) {
-        child.choice("q2", d.start_branch.q2, kSigns, "sign of joint 2");
-        child.choice("q4", d.start_branch.q4, kSigns, "sign of joint 4");
-        child.choice("s", d.start_branch.s, kSigns, "sign of q4 + q5");
-      },
-      "which of the postures that reach the start pose is taken");
   v.number("rate_Hz", d.rate_Hz, {.lb = 100.0, .ub = 20000.0}, "cycles per second");
 }
 

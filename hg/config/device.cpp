@@ -144,7 +144,6 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .urdf = draft.urdf,
                    .rate_Hz = draft.rate_Hz,
                    .kinematics = draft.kinematics,
-                   .start_branch = draft.start_branch,
                    .drive = draft.drive,
                    .T_H_S = pose_of(draft.sensor),
                    .model = make_model(std::move(*chain), draft),

@@ -21,19 +21,11 @@ enum class Kinematics {
   kHapticGiant,  ///< closed form of [HANDBOOK] 2.3: two gantry axes, six joints
 };
 
-/// Signs that select one of the postures which reach the same handle pose, +1 or -1.
-struct PostureBranch {
-  int q2 = 1;
-  int q4 = 1;
-  int s = 1;  ///< q4 + q5
-};
-
 struct Device {
   std::string name;
   std::filesystem::path urdf;
   double rate_Hz = 1000.0;
   Kinematics kinematics = Kinematics::kHapticGiant;
-  PostureBranch start_branch;
   DriveModel drive;
   Pose T_H_S;  ///< force/torque sensor S in the handle frame H
   rendering::DeviceModel model;
