@@ -3,26 +3,45 @@
 #   make demo    sets up, builds, and runs the main job; ARGS="..." are handed on
 #   make test    sets up, builds and runs every test
 #   make build   sets up and builds the program: build/release/hapticgiant
+#   make sanitize  builds and runs the tests that pay off under sanitizers: address and undefined
+#                  behaviour for the control cycle and what it calls, threads for what has threads
 
 ARGS ?=
 PRESET ?= release
 BUILD := build/$(PRESET)
+ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering prepositioning safety cycle \
+  user simulation evaluation)
+TSAN_TESTS := $(addsuffix _test, core runtime viewer_server)
+# run_tests,PRESET,NAMES: builds these tests and runs them
+empty :=
+space := $(empty) $(empty)
+define run_tests
+@tools/configure.sh $(1) test
+@cmake --build build/$(1) --target $(2)
+@ctest --test-dir build/$(1) --output-on-failure --no-tests=error \
+  --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
+endef
 
-.PHONY: demo build test format check clean
+.PHONY: demo build test sanitize format check clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
 
 build:
 	@tools/setup.sh build
-	@tools/configure.sh $(PRESET)
+	@tools/configure.sh $(PRESET) build
 	@cmake --build $(BUILD) --target hapticgiant
 
 test:
 	@tools/setup.sh test
-	@tools/configure.sh $(PRESET)
+	@tools/configure.sh $(PRESET) test
 	@cmake --build $(BUILD)
 	@PATH="$(CURDIR)/.venv/bin:$$PATH" ctest --test-dir $(BUILD) --output-on-failure --no-tests=error
+
+sanitize:
+	@tools/setup.sh test
+	$(call run_tests,asan,$(ASAN_TESTS))
+	$(call run_tests,tsan,$(TSAN_TESTS))
 
 format:
 	@git ls-files '*.h' '*.cpp' | xargs clang-format -i

@@ -1,16 +1,29 @@
 #!/usr/bin/env bash
-# Configures build/PRESET, again when test libraries have come or gone; otherwise builds reconfigure
-# themselves when CMakeLists.txt changes.
-#   tools/configure.sh PRESET
+# Configures build/PRESET, again only when the purpose or the place of the clone has changed or when
+# recording was off; otherwise builds reconfigure themselves when CMakeLists.txt changes.
+#   tools/configure.sh PRESET build    test libraries and recording may be missing
+#   tools/configure.sh PRESET test     they must be there
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd -P "$(dirname "$0")/.."
 preset=$1
-options=()
+purpose=$2
+build=build/$preset
+stamp=$build/.configured
+log=$build/configure.log
+
+options=(-DHG_REQUIRE_TESTS="$([ "$purpose" = test ] && echo ON || echo OFF)")
 command -v ccache >/dev/null 2>&1 && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-stamp=build/$preset/.configured
-have_tests=$(dpkg-query -W -f='${Status}' libgtest-dev librapidcheck-dev 2>/dev/null || true)
-if [ ! -f "build/$preset/build.ninja" ] || [ "$(cat "$stamp" 2>/dev/null)" != "$have_tests" ]; then
-  echo "build: configuring build/$preset"
-  cmake --preset "$preset" "${options[@]}" >/dev/null
-  echo "$have_tests" >"$stamp"
+[ "$(cat "$stamp" 2>/dev/null)" != "$purpose in $PWD" ] || exit 0
+
+echo "build: configuring $build"
+mkdir -p "$build"
+if ! grep -qsxF "CMAKE_CACHEFILE_DIR:INTERNAL=$PWD/$build" "$build/CMakeCache.txt"; then
+  rm -rf "$build/CMakeCache.txt" "$build/CMakeFiles"
 fi
+rm -f "$stamp"
+if ! cmake --preset "$preset" -Wno-dev "${options[@]}" >"$log" 2>&1; then
+  cat "$log" >&2
+  exit 1
+fi
+if grep 'Recording is off' "$log"; then exit 0; fi
+echo "$purpose in $PWD" >"$stamp"

