@@ -12,42 +12,40 @@
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
+#include "hg/runtime/schedule.h"
 
 namespace hg::runtime {
 namespace {
 
-constexpr long kNanoseconds = 1'000'000'000;
-constexpr double kLongestStop = 1.0;  // s; a device that is still moving then is left to its driver
+constexpr std::int64_t kNanoseconds = 1'000'000'000;
+constexpr double kLongestStop = 1.0;  // s; a device that is still moving then is left to its brakes
 
-// SCHED_FIFO and locked memory where the system allows them
+// SCHED_FIFO where the system allows it
 bool become_real_time() noexcept {
   sched_param priority{};
   priority.sched_priority = 80;
-  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) != 0) return false;
-  return mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0;
 }
 
-void advance(timespec& t, long nanoseconds) noexcept {
-  t.tv_nsec += nanoseconds;
-  while (t.tv_nsec >= kNanoseconds) {
-    t.tv_nsec -= kNanoseconds;
-    ++t.tv_sec;
-  }
-}
-
-bool is_past(const timespec& t) noexcept {
+std::int64_t now_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec > t.tv_sec || (now.tv_sec == t.tv_sec && now.tv_nsec > t.tv_nsec);
+  return now.tv_sec * kNanoseconds + now.tv_nsec;
 }
 
-// the operator of a simulation: arms, runs, stops
-ModeRequest next_request(Mode mode, bool is_stopping) noexcept {
+void sleep_until(std::int64_t time_ns) noexcept {
+  const timespec time{.tv_sec = time_ns / kNanoseconds, .tv_nsec = time_ns % kNanoseconds};
+  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr);
+}
+
+// the operator of a simulation: arms, runs, stops; requests act on their edge, so that running is
+// asked for only while the dead-man is closed
+ModeRequest next_request(Mode mode, bool dead_man, bool is_stopping) noexcept {
   switch (mode) {
     case Mode::kReady:
       return ModeRequest::kArm;
     case Mode::kArmed:
-      return is_stopping ? ModeRequest::kNone : ModeRequest::kRun;
+      return dead_man && !is_stopping ? ModeRequest::kRun : ModeRequest::kNone;
     case Mode::kRunning:
       return is_stopping ? ModeRequest::kStop : ModeRequest::kNone;
     case Mode::kOff:
@@ -103,12 +101,27 @@ void Runtime::run_cycle(Sample& sample) noexcept {
   sample.cycle_time_us = std::chrono::duration<double, std::micro>(end - begin).count();
 }
 
+void Runtime::hand_out(const Sample& sample) noexcept {
+  while (options_.is_fast && samples_.is_full()) std::this_thread::yield();
+  samples_.push(sample);
+}
+
+// drives off, brakes closed, nothing moves
+void Runtime::release(CommandFrame& command) noexcept {
+  command.enable = false;
+  command.dq_m.setZero();
+  command.ddq_m.setZero();
+  command.dq_p.setZero();
+  device_.write(command);
+}
+
 void Runtime::loop() noexcept {
-  if (!options_.is_fast) report_.is_real_time = become_real_time();
+  if (!options_.is_fast) {
+    report_.is_real_time = become_real_time();
+    report_.is_memory_locked = report_.is_real_time && mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  }
   const auto sample = std::make_unique<Sample>();
-  const long period_ns = std::lround(1e9 / options_.rate_Hz);
-  timespec due{};
-  clock_gettime(CLOCK_MONOTONIC, &due);
+  Schedule schedule(now_ns(), std::llround(1e9 / options_.rate_Hz));
 
   AllocationCounter allocations;
   double stop_since_s = -1.0;
@@ -116,25 +129,23 @@ void Runtime::loop() noexcept {
     run_cycle(*sample);
     const CycleRecord& record = sample->record;
     ++report_.cycles;
-    if (options_.is_fast) {
-      while (!samples_.push(*sample)) std::this_thread::yield();
-    } else {
-      samples_.push(*sample);
-    }
+    hand_out(*sample);
 
     const bool is_over = options_.duration_s > 0.0 && record.time_s >= options_.duration_s;
     const bool is_stopping = is_over || stop_requested_.load(std::memory_order_relaxed);
     if (is_stopping && stop_since_s < 0.0) stop_since_s = record.time_s;
     const bool is_at_rest = record.mode != Mode::kRunning && record.mode != Mode::kStopping;
-    if (record.mode == Mode::kFault) break;
-    if (is_stopping && (is_at_rest || record.time_s > stop_since_s + kLongestStop)) break;
-    sample->operator_input.request = next_request(record.mode, is_stopping);
+    if (record.mode == Mode::kFault || (is_stopping && is_at_rest)) break;
+    report_.stop_timed_out = is_stopping && record.time_s > stop_since_s + kLongestStop;
+    if (report_.stop_timed_out) break;
+    sample->operator_input.request =
+        next_request(record.mode, sample->sensors.dead_man, is_stopping);
 
     if (options_.is_fast) continue;
-    advance(due, period_ns);
-    if (is_past(due)) ++report_.overruns;
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr);
+    report_.overruns += schedule.advance(now_ns());
+    sleep_until(schedule.due_ns());
   }
+  release(sample->command);
   report_.allocations = allocations.count();
   finished_.store(true);
 }

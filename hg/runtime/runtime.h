@@ -29,10 +29,12 @@ void check(const Options& options);
 /// Known after join().
 struct Report {
   std::uint64_t cycles = 0;
-  std::uint64_t overruns = 0;     ///< cycles that ended after the next one was due
+  std::uint64_t overruns = 0;     ///< cycles that ended after the next one was due, or were skipped
   std::uint64_t dropped = 0;      ///< samples that no observer saw
   std::uint64_t allocations = 0;  ///< heap allocations inside the loop
   bool is_real_time = false;      ///< the thread ran with SCHED_FIFO
+  bool is_memory_locked = false;  ///< and could not be paged out
+  bool stop_timed_out = false;    ///< the device was still moving when it was left to its brakes
 };
 
 class Runtime {
@@ -41,7 +43,8 @@ class Runtime {
   Runtime(const Options& options, cycle::Cycle& cycle, device::Device& device);
   ~Runtime();
 
-  /// Starts the control thread: arms the device, runs, and stops it at the end.
+  /// Starts the control thread: arms the device, runs while the dead-man is closed, and stops it at
+  /// the end. Whatever ends the loop, the last command disables the drives.
   void start();
   /// Asks for a controlled stop; the device comes to rest first. May be called from any thread.
   void request_stop() noexcept { stop_requested_.store(true); }
@@ -56,6 +59,8 @@ class Runtime {
  private:
   void loop() noexcept;
   void run_cycle(Sample& sample) noexcept;
+  void hand_out(const Sample& sample) noexcept;
+  void release(CommandFrame& command) noexcept;
 
   Options options_;
   cycle::Cycle& cycle_;

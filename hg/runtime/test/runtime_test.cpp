@@ -6,6 +6,7 @@
 
 #include "hg/core/error.h"
 #include "hg/rendering/test/test_models.h"
+#include "hg/runtime/schedule.h"
 
 namespace hg::runtime {
 namespace {
@@ -25,10 +26,16 @@ class StillDevice final : public device::Device {
   void write(const CommandFrame& command) noexcept override {
     ++sensors_.sequence;
     if (sensors_.sequence == lost_sample) ++sensors_.sequence;
+    sensors_.dead_man = !(sensors_.sequence >= opens_at && sensors_.sequence < closes_at);
     last_target = command.hand_target;
+    last_command = command;
+    was_enabled |= command.enable;
   }
 
   std::uint64_t lost_sample = 0;
+  std::uint64_t opens_at = 0, closes_at = 0;  ///< samples with an open dead-man
+  CommandFrame last_command;
+  bool was_enabled = false;
   HandTarget last_target;
 
  private:
@@ -73,6 +80,8 @@ TEST(Runtime, FastModePlaysTheWholeDurationAndLosesNoSample) {
   EXPECT_GE(report.cycles, 501u);
   EXPECT_LE(report.cycles, 501u + 1000u);
   EXPECT_EQ(seen, report.cycles);
+  EXPECT_EQ(report.dropped, 0u);
+  EXPECT_FALSE(report.stop_timed_out);
   EXPECT_EQ(report.allocations, 0u);
 }
 
@@ -91,6 +100,74 @@ TEST(Runtime, EndsAtAFault) {
   std::uint64_t seen = 0;
   const Report report = run(parts, {.is_fast = true, .duration_s = 10.0}, seen);
   EXPECT_LE(report.cycles, 60u);
+}
+
+// The last mode of a run of one second in which the dead-man is open for a while.
+Mode mode_after_open_dead_man(std::uint64_t opens_at, std::uint64_t closes_at) {
+  Parts parts;
+  parts.device.opens_at = opens_at;
+  parts.device.closes_at = closes_at;
+  Runtime runtime({.is_fast = true, .duration_s = 1.0}, *parts.cycle, parts.device);
+  runtime.start();
+  auto sample = std::make_unique<Sample>();
+  Mode mode = Mode::kOff;
+  while (true) {
+    const bool is_finished = runtime.is_finished();
+    while (runtime.pop(*sample)) {
+      if (sample->record.time_s < 0.99) mode = sample->record.mode;
+    }
+    if (is_finished) return mode;
+  }
+}
+
+TEST(Runtime, RunsWhenTheDeadManIsClosedLate) {
+  EXPECT_EQ(mode_after_open_dead_man(0, 100), Mode::kRunning);
+}
+
+TEST(Runtime, RunsAgainAfterTheDeadManWasOpen) {
+  EXPECT_EQ(mode_after_open_dead_man(200, 400), Mode::kRunning);
+}
+
+TEST(Runtime, StandsStillWhileTheDeadManIsOpen) {
+  EXPECT_EQ(mode_after_open_dead_man(200, 5000), Mode::kArmed);
+}
+
+TEST(Runtime, TheLastCommandDisablesTheDrives) {
+  for (const std::uint64_t lost_sample : {0u, 50u}) {  // at the end of the duration, at a fault
+    Parts parts;
+    parts.device.lost_sample = lost_sample;
+    std::uint64_t seen = 0;
+    run(parts, {.is_fast = true, .duration_s = 0.3}, seen);
+    EXPECT_TRUE(parts.device.was_enabled);
+    EXPECT_FALSE(parts.device.last_command.enable);
+    EXPECT_EQ(parts.device.last_command.dq_p.norm(), 0.0);
+    EXPECT_EQ(parts.device.last_command.dq_m.norm(), 0.0);
+  }
+}
+
+TEST(Schedule, MakesUpForAShortDelayAndGivesUpALongOne) {
+  Schedule schedule(0, 100);
+  EXPECT_EQ(schedule.advance(100), 0u);
+  EXPECT_EQ(schedule.due_ns(), 100);
+  EXPECT_EQ(schedule.advance(450), 1u);  // 250 behind 200: three cycles are late, each counts one
+  EXPECT_EQ(schedule.advance(450), 1u);
+  EXPECT_EQ(schedule.advance(450), 1u);
+  EXPECT_EQ(schedule.advance(450), 0u);
+  EXPECT_EQ(schedule.due_ns(), 500);
+  EXPECT_EQ(schedule.advance(5600), 51u);  // 5000 behind 600
+  EXPECT_EQ(schedule.due_ns(), 5600);
+  EXPECT_EQ(schedule.advance(5650), 0u);
+}
+
+TEST(SpscRing, TellsThatItIsFullWithoutCounting) {
+  SpscRing<int> ring(1);
+  EXPECT_FALSE(ring.is_full());
+  ring.push(1);
+  EXPECT_TRUE(ring.is_full());
+  EXPECT_EQ(ring.dropped(), 0u);
+  int item = 0;
+  ring.pop(item);
+  EXPECT_FALSE(ring.is_full());
 }
 
 TEST(Runtime, HandsTheHandTargetThrough) {
