@@ -1,6 +1,8 @@
 /// Description of device.yaml, second part: drive, gains, estimation, monitor.
 #pragma once
 
+#include <cmath>
+
 #include "hg/config/describe_device.h"
 
 namespace hg::config {
@@ -13,6 +15,7 @@ void describe(V& v, safety::MonitorConfig& monitor) {
   v.number("cartesian_tolerance_m", monitor.cartesian_tolerance, kPositive,
            "outside a Cartesian limit");
   v.number("speed_tolerance", monitor.speed_tolerance, {.lb = 1.0}, "times the largest speed");
+  v.number("sync_tolerance_m", monitor.sync_tolerance, kPositive, "between handle and twin");
   v.number("tracking_tolerance_rad", monitor.tracking_tolerance, kPositive,
            "between reference and measured joint");
 }
@@ -26,8 +29,9 @@ void describe_behaviour(V& v, DeviceDraft& d) {
         child.number("lag_s", d.drive.lag, kPositive, "time constant of the speed");
         child.number("dq_max_m_per_s", d.drive.dq_max, kPositive, "largest speed");
         child.number("ddq_max_m_per_s2", d.drive.ddq_max, kPositive, "largest acceleration");
-        child.rule(d.drive.dead_time * d.rate_Hz < CommandDelay::kCapacity, "dead_time_s",
-                   "must be shorter than 256 cycles", model::to_text(d.drive.dead_time));
+        child.rule(std::lround(d.drive.dead_time * d.rate_Hz) <= CommandDelay::kMaxPeriods,
+                   "dead_time_s", "must be shorter than 256 cycles",
+                   model::to_text(d.drive.dead_time));
       },
       "how the gantry follows its velocity command");
   v.group(

@@ -94,9 +94,6 @@ rendering::DeviceModel make_model(model::Chain chain, const DeviceDraft& draft) 
 
 // What follows from other values: periods, the drive in all its roles, monitored ranges.
 void derive(Device& device, const DeviceDraft& draft) {
-  const double dt = 1.0 / device.rate_Hz;
-  device.rendering.dt = dt;
-  device.estimation.dt = dt;
   device.estimation.drive = device.drive;
   device.estimation.T_H_S = device.T_H_S;
 
@@ -106,16 +103,33 @@ void derive(Device& device, const DeviceDraft& draft) {
         draft.joints[static_cast<std::size_t>(draft.gantry[i])].limits;
     device.prepositioning.q_limits[i] = {axis.q_min, axis.q_max};
   }
-  device.prepositioning.drive.tau = device.drive.dead_time + device.drive.lag + dt;
 
   device.monitor.gantry_speed_max = device.prepositioning.dq_max;
   for (const limits::JointLimits& joint : device.model.joint_limits) {
     device.monitor.joint_range.push_back({joint.q_min, joint.q_max});
     device.monitor.joint_speed_max.push_back(joint.dq_max);
   }
+  device.monitor.first_cartesian =
+      device.model.n_m + static_cast<int>(device.model.virtual_joints.size());
+  device.monitor.end_cartesian =
+      device.monitor.first_cartesian + 3 * static_cast<int>(device.model.cartesian_limits.size());
+  set_rate(device, device.rate_Hz);
 }
 
 }  // namespace
+
+void set_rate(Device& device, double rate_Hz) {
+  const double dt = 1.0 / rate_Hz;
+  if (std::lround(device.drive.dead_time / dt) > CommandDelay::kMaxPeriods) {
+    throw SetupError("drive.dead_time_s: at most " + std::to_string(CommandDelay::kMaxPeriods) +
+                     " periods, got " + model::to_text(device.drive.dead_time) + " s at " +
+                     model::to_text(rate_Hz) + " Hz");
+  }
+  device.rate_Hz = rate_Hz;
+  device.rendering.dt = dt;
+  device.estimation.dt = dt;
+  device.prepositioning.drive.tau = device.drive.dead_time + device.drive.lag + dt;
+}
 
 Device load_device(const std::filesystem::path& file) {
   SourceReader reader;

@@ -36,6 +36,10 @@ struct Device {
   std::vector<SourceText> sources;  ///< the YAML file first
 };
 
+/// Changes the rate and all that follows from it. Throws SetupError when the drive's dead time
+/// would span too many periods.
+void set_rate(Device& device, double rate_Hz);
+
 /// Throws SetupError with all faults of the file, one per line.
 Device load_device(const std::filesystem::path& file);
 Device load_device(const std::filesystem::path& file, SourceReader& reader);

@@ -58,7 +58,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   safety::advance(state_.supervisor, operator_input.request, sensors.dead_man, fault);
 
   // estimation -> rendering -> prepositioning
-  if (fault.code != FaultCode::kSensorNotFinite) {
+  if (safety::is_finite(sensors)) {
     record.robot = estimation_.step(sensors, state_.dq_p, state_.estimation);
     const Mode mode = state_.supervisor.mode;
     if (mode == Mode::kRunning || mode == Mode::kStopping) {
@@ -80,22 +80,26 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   record.state_hash = hash_of(state_.rendering, record.robot);
 }
 
-// The twin rests, the device stays where it is.
+// Nothing moves. Before it is armed the device may be moved by others: the twin goes along.
 void Cycle::hold(CycleRecord& record) noexcept {
   rendering::State& rendering = state_.rendering;
-  if (state_.supervisor.mode != Mode::kArmed) rendering.reference.q_m = record.robot.q_m;
+  if (state_.supervisor.mode != Mode::kArmed) {
+    rendering.reference.q_m = record.robot.q_m;
+    rendering_.align(record.robot, rendering);
+  }
   rendering.reference.dq_m.setZero();
   rendering.twin.dq_a.setZero();
-  const Vector6 w_H = record.robot.w_H;
-  record.robot.w_H.setZero();
   rendering_.step(rendering, kBrakingRate, record);
-  record.robot.w_H = w_H;
+  rendering.reference.ddq_m.setZero();
+  rendering.twin.ddq_a.setZero();
+  record.reference = rendering.reference;
+  record.twin = rendering.twin;
   state_.dq_p.setZero();
+  state_.is_blocked = false;
 }
 
 void Cycle::render(CycleRecord& record) noexcept {
   const bool is_stopping = state_.supervisor.mode == Mode::kStopping;
-  if (is_stopping) record.robot.w_H.setZero();
   rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record);
 
   const Fault fault = safety::check_reference(config_.monitor, record);

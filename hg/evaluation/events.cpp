@@ -13,7 +13,8 @@ constexpr double kNearMetres = 2e-3;
 constexpr double kNearRadians = 5e-3;
 
 bool is_held(LimitCause cause) noexcept {
-  return cause == LimitCause::kLock || cause == LimitCause::kFriction;
+  return cause == LimitCause::kLock || cause == LimitCause::kLatch ||
+         cause == LimitCause::kFriction;
 }
 
 // the side of the position limit that is reached and acts, kInactive if none
@@ -43,6 +44,7 @@ Situation situation_of(const LimitInfo& info, const LimitReport& report) noexcep
 
 // empty: not worth telling
 const char* event_text(Situation before, Situation now) noexcept {
+  if (before == Situation::kLocked) return "unlocked";
   switch (now) {
     case Situation::kAtLower:
       return "lower limit reached";
@@ -51,7 +53,7 @@ const char* event_text(Situation before, Situation now) noexcept {
     case Situation::kLocked:
       return "locked";
     case Situation::kFree:
-      return before == Situation::kLocked ? "unlocked" : "";
+      return "";
   }
   return "";
 }
@@ -69,9 +71,11 @@ bool EventDetector::holds(const Condition& condition, const CycleRecord& record)
       return side != LimitState::kInactive &&
              (condition.side == LimitState::kInactive || condition.side == side);
     }
-    case ConditionKind::kSpeedLimit:
-      return record.limits[i].state != LimitState::kInactive &&
-             record.limits[i].cause == LimitCause::kVelocity;
+    case ConditionKind::kSpeedLimit: {
+      const LimitReport& limit = record.limits[i];
+      return limit.state != LimitState::kInactive && limit.cause == LimitCause::kVelocity &&
+             (condition.side == LimitState::kInactive || condition.side == limit.state);
+    }
     case ConditionKind::kLocked:
       return record.limits[i].cause == LimitCause::kLock;
     case ConditionKind::kForceAbove:
@@ -82,9 +86,11 @@ bool EventDetector::holds(const Condition& condition, const CycleRecord& record)
       return record.twin.q_a[condition.index] > condition.value;
     case ConditionKind::kTwinBelow:
       return record.twin.q_a[condition.index] < condition.value;
-    case ConditionKind::kTurns:
-      return std::abs(record.reference.q_m[condition.index] - q_m_start_[condition.index]) >=
-             2.0 * std::numbers::pi * condition.value;
+    case ConditionKind::kTurns: {
+      const double angle = record.reference.q_m[condition.index] - q_m_start_[condition.index];
+      return std::copysign(1.0, condition.value) * angle >=
+             2.0 * std::numbers::pi * std::abs(condition.value);
+    }
     case ConditionKind::kGantryAbove:
       return record.robot.q_p[condition.index] > condition.value;
     case ConditionKind::kGantryBelow:

@@ -37,19 +37,37 @@ LimitState limit_state(hqp::RowState state, double reaction) noexcept {
   return LimitState::kInactive;
 }
 
-// which of the conditions behind recoverable_bounds gives the bound on `side`
-LimitCause cause_of(const LimitRow& row, LimitState side, double dt) noexcept {
-  if (side == LimitState::kInactive) return LimitCause::kNone;
-  if (row.held_by != LimitCause::kNone) return row.held_by;
-  const double sign = side == LimitState::kLower ? -1.0 : 1.0;
+bool is_upper_side(hqp::RowState state, double reaction) noexcept {
+  switch (state) {
+    case hqp::RowState::kUpper:
+    case hqp::RowState::kAbove:
+      return true;
+    case hqp::RowState::kEqual:
+      return reaction <= 0.0;
+    case hqp::RowState::kInactive:
+    case hqp::RowState::kLower:
+    case hqp::RowState::kBelow:
+      return false;
+  }
+  return false;
+}
+
+// which of the conditions behind recoverable_bounds gives the bound that acts
+LimitCause cause_of(const LimitRow& row, hqp::RowState state, double reaction, double dt) noexcept {
+  if (state == hqp::RowState::kInactive) return LimitCause::kNone;
+  const bool is_upper = is_upper_side(state, reaction);
+  const LimitCause held_by = is_upper ? row.held_by.upper : row.held_by.lower;
+  const double sign = is_upper ? 1.0 : -1.0;
   const Interval ddq = limits::recoverable_bounds(row.limits, row.options, row.q, row.dq, dt);
-  const double bound = sign > 0.0 ? ddq.ub : -ddq.lb;
+  const double bound = is_upper ? ddq.ub : -ddq.lb;
   const auto is_bound = [&](double value) {
     return std::abs(bound - value) <= 1e-9 * (1.0 + std::abs(bound));
   };
+  const bool holds_always = held_by == LimitCause::kLock || held_by == LimitCause::kFriction;
+  if (holds_always) return held_by;
   if (is_bound((row.limits.dq_max - sign * row.dq) / dt)) return LimitCause::kVelocity;
   if (is_bound(row.limits.ddq_max)) return LimitCause::kAcceleration;
-  return LimitCause::kPosition;
+  return held_by == LimitCause::kNone ? LimitCause::kPosition : held_by;
 }
 
 }  // namespace
@@ -162,7 +180,7 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
     const std::size_t row = static_cast<std::size_t>(tasks.first_limit_row()) + i;
     LimitReport& report = record.limits[i];
     report.state = limit_state(solution.state[row], value_[i]);
-    report.cause = cause_of(rows[i], report.state, dt);
+    report.cause = cause_of(rows[i], solution.state[row], value_[i], dt);
     report.position = rows[i].q;
     report.to_lower = rows[i].q - rows[i].limits.q_min;
     report.to_upper = rows[i].limits.q_max - rows[i].q;

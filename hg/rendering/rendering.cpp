@@ -1,9 +1,12 @@
 #include "hg/rendering/rendering.h"
 
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "hg/core/error.h"
+#include "hg/core/rotation.h"
 #include "hg/rendering/integration.h"
 
 namespace hg::rendering {
@@ -11,6 +14,12 @@ namespace {
 
 // slower than this a joint with Coulomb friction stands still, rad/s or m/s
 constexpr double kStandstill = 1e-9;
+
+// the active sets that one solve may try; a warm start needs one or two, a new contact some dozens
+constexpr int kMaxActiveSets = 200;
+
+constexpr int kAlignIterations = 10;
+constexpr double kAligned = 1e-12;  // m and rad
 
 SolverStatus to_solver_status(hqp::Status status) noexcept {
   switch (status) {
@@ -81,7 +90,9 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options)
       tasks_(device_, twin_, options_),
       reactions_(device_, twin_),
       solver_(tasks_.problem().capacity()),
-      solution_(tasks_.problem().capacity()) {}
+      solution_(tasks_.problem().capacity()) {
+  solver_options_.max_iterations = kMaxActiveSets;
+}
 
 State Rendering::start(const VectorM& q_m) const {
   State state;
@@ -91,29 +102,38 @@ State Rendering::start(const VectorM& q_m) const {
   return state;
 }
 
-SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record) noexcept {
+void Rendering::update_device(const RobotState& robot, const ReferenceState& reference) noexcept {
   const int n_p = device_.n_p, n_m = device_.n_m;
   VectorUpTo<kMaxGantry + kMaxManipulator> q(n_p + n_m), dq(n_p + n_m);
-  q << record.robot.q_p, state.reference.q_m;
-  dq << record.robot.dq_p, state.reference.dq_m;
+  q << robot.q_p, reference.q_m;
+  dq << robot.dq_p, reference.dq_m;
   device_.chain.update_kinematics(q, dq);
+}
+
+SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record) noexcept {
+  update_device(record.robot, state.reference);
   twin_.chain.update(state.twin.q_a, state.twin.dq_a);
   advance_locks(twin_, state.twin.q_a, state.inner);
 
-  const VectorA tau_a = twin_.chain.jacobian(twin_.end_effector).transpose() * record.robot.w_H;
-  record.tau_a = tau_a;
+  const int n_a = twin_.chain.nv();
   Budget& budget = record.budget;
-  budget.spring = spring_torque(twin_, state.twin.q_a);
-  budget.damping = damping_torque(twin_, state.twin.dq_a);
+  budget.surface = VectorA::Zero(n_a);
   if (braking_rate > 0.0) {
     const VectorA braking = braking_rate * state.twin.dq_a;
+    record.tau_a = VectorA::Zero(n_a);
+    budget.spring = -twin_.chain.gravity();
+    budget.damping = VectorA::Zero(n_a);
     budget.damping.noalias() += twin_.chain.M() * braking;
+    budget.friction = VectorA::Zero(n_a);
+  } else {
+    record.tau_a = twin_.chain.jacobian(twin_.end_effector).transpose() * record.robot.w_H;
+    budget.spring = spring_torque(twin_, state.twin.q_a);
+    budget.damping = damping_torque(twin_, state.twin.dq_a);
+    budget.friction = slip_torque(twin_, state.twin.dq_a, state.inner);
   }
-  budget.friction = slip_torque(twin_, state.twin.dq_a, state.inner);
-  budget.surface = VectorA::Zero(twin_.chain.nv());
 
   const hqp::ActiveSet previous = state.active_set;
-  solve(state, record, budget.friction);
+  solve(state, record);
   record.active_set_changes =
       changed_rows(previous, state.active_set, tasks_.first_limit_row(), record.limit_count);
   catch_reversals(twin_, state.twin, options_.dt, state.inner);
@@ -121,14 +141,36 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   return record.solver_status;
 }
 
+void Rendering::align(const RobotState& robot, State& state) noexcept {
+  update_device(robot, state.reference);
+  const Pose T_B_H = device_.chain.pose(device_.handle);
+  const VectorA at_rest = VectorA::Zero(twin_.chain.nv());
+  for (int iteration = 0; iteration < kAlignIterations; ++iteration) {
+    twin_.chain.update_kinematics(state.twin.q_a, at_rest);
+    const Pose T_B_E = twin_.chain.pose(twin_.end_effector);
+    Vector6 error;
+    error << T_B_H.p - T_B_E.p, rotation_between(T_B_E.R, T_B_H.R);
+    if (error.norm() < kAligned) return;
+    const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
+    const VectorA step = J_a.completeOrthogonalDecomposition().solve(error);
+    state.twin.q_a = twin_.chain.integrate(state.twin.q_a, step);
+    for (const TwinDof& dof : twin_.dofs) {
+      if (dof.q_index < 0) continue;
+      double& q = state.twin.q_a[dof.q_index];
+      q = std::clamp(q, dof.limits.q_min, dof.limits.q_max);
+    }
+  }
+}
+
 // Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
-void Rendering::solve(State& state, CycleRecord& record, VectorA& friction) noexcept {
+void Rendering::solve(State& state, CycleRecord& record) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
   const int first_twin_limit = static_cast<int>(tasks_.limit_rows().size()) - n_a;
   record.solver_iterations = 0;
   for (int attempt = 0; attempt <= n_a; ++attempt) {
-    const Budget& budget = record.budget;
-    const VectorA tau = record.tau_a - budget.damping - friction - budget.spring - budget.surface;
+    Budget& budget = record.budget;
+    const VectorA tau =
+        record.tau_a - budget.damping - budget.friction - budget.spring - budget.surface;
     tasks_.fill(device_, twin_, {record.robot, state.reference, state.twin, state.inner, tau});
     record.solver_status = to_solver_status(
         solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_));
@@ -137,9 +179,9 @@ void Rendering::solve(State& state, CycleRecord& record, VectorA& friction) noex
     const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);
     state.reference.ddq_m = x.head(n_m);
     state.twin.ddq_a = x.tail(n_a);
-    record.budget.inertia = twin_.chain.c();
-    record.budget.inertia.noalias() += twin_.chain.M() * state.twin.ddq_a;
-    const VectorA tau_constraint = record.budget.inertia - tau;
+    budget.inertia = twin_.chain.c();
+    budget.inertia.noalias() += twin_.chain.M() * state.twin.ddq_a;
+    const VectorA tau_constraint = budget.inertia - tau;
     reactions_.split(device_, twin_, tasks_, solution_, tau_constraint);
 
     bool released = false;
@@ -149,7 +191,7 @@ void Rendering::solve(State& state, CycleRecord& record, VectorA& friction) noex
       const double most = twin_.dofs[static_cast<std::size_t>(i)].friction;
       if (!sticks || std::abs(holding) <= most) continue;
       sticks = false;
-      friction[i] = -std::copysign(most, holding);
+      budget.friction[i] = -std::copysign(most, holding);
       released = true;
     }
     if (!released) break;

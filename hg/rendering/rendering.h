@@ -39,8 +39,12 @@ class Rendering {
 
   /// Solves for the accelerations of this sample and reports why they are what they are. Needs
   /// record.robot; fills the rest that concerns device, twin, limits and solver. Does not move the
-  /// state: integrate() does. `braking_rate` > 0 (1/s) damps the twin to a standstill.
+  /// state: integrate() does. `braking_rate` > 0 (1/s) brings the twin to rest: it is then a body
+  /// without springs, friction and weight that nobody touches, under the same limits.
   SolverStatus step(State& state, double braking_rate, CycleRecord& record) noexcept;
+
+  /// Moves the twin at rest to where its end effector meets the handle, as far as its joints allow.
+  void align(const RobotState& robot, State& state) noexcept;
 
   /// A joint or virtual joint of the device could not be kept within its limits: what the gantry
   /// does to a held twin stands above them.
@@ -50,7 +54,8 @@ class Rendering {
   void integrate(State& state) const noexcept;
 
  private:
-  void solve(State& state, CycleRecord& record, VectorA& friction) noexcept;
+  void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
+  void solve(State& state, CycleRecord& record) noexcept;
   void report_kinematics(const State& state, CycleRecord& record) const noexcept;
 
   DeviceModel device_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/core/rotation.h"
+
 namespace hg::rendering {
 namespace {
 
@@ -25,13 +27,6 @@ LimitRow make_row(const limits::JointLimits& limits, double margin, double dt) {
   row.options = limits::recoverable_options(limits, dt, dt);
   row.rating = std::isfinite(limits.ddq_max) ? limits.ddq_max : 1.0;
   return row;
-}
-
-// [HG] (11), rotational part: axis times angle of R_H_E, resolved in B
-Eigen::Vector3d rotation_error(const Eigen::Matrix3d& R_B_H,
-                               const Eigen::Matrix3d& R_B_E) noexcept {
-  const Eigen::AngleAxisd difference(R_B_H.transpose() * R_B_E);
-  return R_B_H * (difference.angle() * difference.axis());
 }
 
 }  // namespace
@@ -91,7 +86,7 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
       twin.chain.twist(twin.end_effector) - device.chain.twist(device.handle);
   s_.head<3>() =
       options_.kP_tran * (T_B_E.p - T_B_H.p) + options_.kD_tran * velocity_error.head<3>();
-  s_.tail<3>() = options_.kP_rot * rotation_error(T_B_H.R, T_B_E.R) +
+  s_.tail<3>() = options_.kP_rot * rotation_between(T_B_H.R, T_B_E.R) +
                  options_.kD_rot * velocity_error.tail<3>();
 
   const model::Jacobian J = device.chain.jacobian(device.handle);
@@ -162,15 +157,15 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
     const double q = dof.q_index >= 0 ? input.twin.q_a[dof.q_index] : 0.0;
     const double dq = input.twin.dq_a[i];
     LimitRow& row = limit_rows_[static_cast<std::size_t>(first + i)];
-    row.held_by = effective.cause;
+    row.held_by = effective.held_by;
     set_limit(first + i, effective.limits, q, dq, 0.0);
 
     // stick: the joint stands still at the end of the sample, as far as its limits allow
-    if (input.inner.sticks[static_cast<std::size_t>(i)] && row.held_by != LimitCause::kLock) {
+    if (input.inner.sticks[static_cast<std::size_t>(i)] && row.held_by.upper != LimitCause::kLock) {
       const Interval bounds = problem_.bounds(first_limit_row() + first + i);
       const double ddq_stop = std::clamp(-dq / options_.dt, bounds.lb, bounds.ub);
       problem_.set_bounds(first_limit_row() + first + i, {ddq_stop, ddq_stop});
-      row.held_by = LimitCause::kFriction;
+      row.held_by = {LimitCause::kFriction, LimitCause::kFriction};
     }
   }
 }

@@ -32,9 +32,9 @@ struct LimitRow {
   Interval range;              ///< configured positions
   limits::JointLimits limits;  ///< as rendered: with margins, and this cycle's locks
   limits::RecoverableOptions options;
-  double rating = 1.0;                     ///< weight of the row is 1 / rating
-  LimitCause held_by = LimitCause::kNone;  ///< lock, latch or friction, this cycle
-  double q = 0.0, dq = 0.0;                ///< this cycle
+  double rating = 1.0;       ///< weight of the row is 1 / rating
+  Holds held_by;             ///< locks, latches and friction, this cycle
+  double q = 0.0, dq = 0.0;  ///< this cycle
 };
 
 /// What the law knows of one cycle besides the chains, which must have been updated.

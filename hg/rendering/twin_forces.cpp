@@ -38,22 +38,26 @@ void advance_locks(const TwinModel& twin, const ConfigurationA& q_a,
 
 EffectiveLimits effective_limits(const TwinModel& twin, int dof,
                                  const TwinInnerState& inner) noexcept {
-  EffectiveLimits result{twin.dofs[static_cast<std::size_t>(dof)].limits, LimitCause::kNone};
+  EffectiveLimits result{twin.dofs[static_cast<std::size_t>(dof)].limits, {}};
   for (std::size_t i = 0; i < twin.locks.size(); ++i) {
     const Lock& lock = twin.locks[i];
     const LockState& state = inner.locks[i];
     if (lock.dof != dof || !state.is_engaged) continue;
     if (state.is_locked) {
       result.limits.q_min = result.limits.q_max = lock.position;
-      result.cause = LimitCause::kLock;
+      result.held_by = {LimitCause::kLock, LimitCause::kLock};
       return result;
     }
+    // between the latch, which follows, and the lock, where the joint comes to rest
     if (state.edge >= lock.position) {
+      result.limits.q_min = std::max(result.limits.q_min, lock.position);
       result.limits.q_max = std::min(result.limits.q_max, state.edge);
+      result.held_by.upper = LimitCause::kLatch;
     } else {
       result.limits.q_min = std::max(result.limits.q_min, state.edge);
+      result.limits.q_max = std::min(result.limits.q_max, lock.position);
+      result.held_by.lower = LimitCause::kLatch;
     }
-    result.cause = LimitCause::kLatch;
   }
   return result;
 }

@@ -30,11 +30,16 @@ inline constexpr double kLockReached = 1e-4;
 void advance_locks(const TwinModel& twin, const ConfigurationA& q_a,
                    TwinInnerState& inner) noexcept;
 
-/// The limits of a degree of freedom under the locks that hold it; `cause` is kLock or kLatch for
-/// such a lock and kNone otherwise.
+/// What holds the two sides of a limit besides its own ratings; kNone where nothing does.
+struct Holds {
+  LimitCause lower = LimitCause::kNone;
+  LimitCause upper = LimitCause::kNone;
+};
+
+/// The limits of a degree of freedom under the locks that hold it.
 struct EffectiveLimits {
   limits::JointLimits limits;
-  LimitCause cause = LimitCause::kNone;
+  Holds held_by;
 };
 EffectiveLimits effective_limits(const TwinModel& twin, int dof,
                                  const TwinInnerState& inner) noexcept;

@@ -20,6 +20,11 @@ Fault make_fault(FaultCode code, int index, double value, double limit) noexcept
 
 }  // namespace
 
+bool is_finite(const SensorFrame& sensors) noexcept {
+  return sensors.q_m.allFinite() && sensors.dq_m.allFinite() && sensors.q_p.allFinite() &&
+         sensors.w_S.allFinite();
+}
+
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
                     std::uint64_t expected_sequence) noexcept {
   if (sensors.emergency_stop) return make_fault(FaultCode::kEmergencyStop, -1, 1.0, 0.0);
@@ -77,12 +82,14 @@ Fault check_reference(const MonitorConfig& config, const CycleRecord& record) no
       return make_fault(FaultCode::kTrackingLost, i, error, config.tracking_tolerance);
     }
   }
-  for (int i = 0; i < record.limit_count; ++i) {
-    const LimitReport& limit = record.limits[static_cast<std::size_t>(i)];
-    if (i >= config.first_cartesian && i < config.end_cartesian &&
-        limit.excess > config.cartesian_tolerance) {
-      return make_fault(FaultCode::kLimitExceeded, i, limit.excess, config.cartesian_tolerance);
+  for (int i = config.first_cartesian; i < config.end_cartesian; ++i) {
+    const double excess = record.limits[static_cast<std::size_t>(i)].excess;
+    if (excess > config.cartesian_tolerance) {
+      return make_fault(FaultCode::kLimitExceeded, i, excess, config.cartesian_tolerance);
     }
+  }
+  if (record.sync_error > config.sync_tolerance) {
+    return make_fault(FaultCode::kSyncLost, -1, record.sync_error, config.sync_tolerance);
   }
   return {};
 }

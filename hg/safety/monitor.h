@@ -19,12 +19,16 @@ struct MonitorConfig {
   double cartesian_tolerance = 0.03;  ///< outside a Cartesian limit, m
   double speed_tolerance = 1.1;       ///< times the rating
   double tracking_tolerance = 0.08;   ///< reference minus measured joint, rad
+  double sync_tolerance = 0.02;         ///< between handle and twin, m
   double gantry_speed_max = 1.5;      ///< m/s
   std::vector<Interval> joint_range;  ///< of the manipulator joints
   int first_cartesian = 0;  ///< Cartesian limits in the catalogue: first and one past the last
   int end_cartesian = 0;
   std::vector<double> joint_speed_max;  ///< rad/s
 };
+
+/// Whether every measured value is a number: others must not reach the estimation.
+bool is_finite(const SensorFrame& sensors) noexcept;
 
 /// The first thing wrong with what was measured, or kNone.
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,

@@ -21,12 +21,13 @@ inline double drive_acceleration(const DriveModel& drive, double dq, double dq_c
   return std::clamp((dq_limited - dq) / drive.lag, -drive.ddq_max, drive.ddq_max);
 }
 
-/// Commands on their way to the drive. At most kCapacity - 1 periods long.
+/// Commands on their way to the drive.
 class CommandDelay {
  public:
-  static constexpr int kCapacity = 256;
+  static constexpr int kMaxPeriods = 255;
 
-  /// Takes the command of this period, returns the one given `periods` periods ago (0 before).
+  /// Takes the command of this period, returns the one given `periods` (0..kMaxPeriods) periods
+  /// ago; 0 before the first.
   double shift(double command, int periods) noexcept {
     values_[static_cast<std::size_t>(next_)] = command;
     const int delayed = (next_ - periods + kCapacity) % kCapacity;
@@ -35,6 +36,7 @@ class CommandDelay {
   }
 
  private:
+  static constexpr int kCapacity = kMaxPeriods + 1;
   std::array<double, kCapacity> values_{};
   int next_ = 0;
 };

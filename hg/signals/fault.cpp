@@ -24,6 +24,8 @@ std::string_view to_string(FaultCode code) noexcept {
       return "speed rating exceeded";
     case FaultCode::kTrackingLost:
       return "device does not follow its reference";
+    case FaultCode::kSyncLost:
+      return "handle and twin are apart";
   }
   return "unknown fault";
 }

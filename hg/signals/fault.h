@@ -17,6 +17,7 @@ enum class FaultCode : std::uint16_t {
   kLimitExceeded = 300,       ///< a joint or frame left its limit by more than the tolerance
   kSpeedExceeded = 301,       ///< a joint is faster than its rating allows
   kTrackingLost = 302,        ///< the device is too far from its reference
+  kSyncLost = 303,            ///< handle and twin are too far apart
 };
 
 /// One line for humans, for example "measured value is not finite".

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hg/core/error.h"
+#include "hg/core/rotation.h"
 
 namespace hg::user {
 namespace {
@@ -13,12 +14,6 @@ constexpr double kGoalStep = 1e-4;  // s, for the velocity of the goal by differ
 
 Eigen::Matrix3d rotation(double angle, const Eigen::Vector3d& axis) noexcept {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-}
-
-// rotation vector that turns `from` into `to`, resolved in B
-Eigen::Vector3d rotation_between(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) noexcept {
-  const Eigen::AngleAxisd difference(to * from.transpose());
-  return difference.angle() * difference.axis();
 }
 
 Eigen::Vector3d clipped(const Eigen::Vector3d& v, double longest) noexcept {

@@ -316,8 +316,10 @@ TEST(Scenario, ExpectsTheEventsOfTheFiguresInTheirOrder) {
             (std::vector<std::string>{"t_a", "t_b", "t_b'", "t_c", "t_d", "t_e", "t_f", "t_g"}));
   EXPECT_EQ(names_of(excavator().events),
             (std::vector<std::string>{"boom", "t_a", "t_b", "t_c", "t_d", "t_e", "unload"}));
-  EXPECT_EQ(names_of(door().events), (std::vector<std::string>{"t_a", "t_b", "t_b'", "locked",
-                                                               "t_c", "t_d", "t_e", "shut"}));
+  EXPECT_EQ(
+      names_of(door().events),
+      (std::vector<std::string>{"locked", "handle pressed", "pulled", "locked again", "unlocked",
+                                "open stop", "velocity limit", "closed and locked"}));
   EXPECT_EQ(door().person, user::PersonKind::kScript);
   EXPECT_EQ(door().duration_s, 14.0);
 }

@@ -95,6 +95,8 @@ TEST(Cycle, BeforeRunningNothingMoves) {
   EXPECT_TRUE(loop.command.enable);
   EXPECT_EQ(loop.command.q_m, kPosture);
   EXPECT_TRUE(loop.command.dq_p.isZero());
+  EXPECT_TRUE(loop.command.ddq_m.isZero());
+  EXPECT_NEAR(loop.record.robot.w_H.norm(), 30.0, 1e-9);  // what is felt is still told
 }
 
 TEST(Cycle, AStopBringsEverythingToRestAgainstAPushingHand) {
@@ -154,6 +156,49 @@ TEST(Cycle, AFaultLastsUntilItIsResetAndThenRunsAgain) {
   EXPECT_EQ(loop.record.mode, Mode::kReady);
   loop.start_running();
   EXPECT_EQ(loop.record.fault.code, FaultCode::kNone);
+}
+
+TEST(Cycle, AnEmergencyStopThatCutsTheSensorsOffDoesNotSpoilTheEstimation) {
+  Loop loop;
+  loop.start_running();
+  loop.run(20);
+  const SensorFrame good = loop.sensors;
+  loop.sensors.emergency_stop = true;
+  loop.sensors.q_p[0] = loop.sensors.q_m[0] = std::numeric_limits<double>::quiet_NaN();
+  expect_safe_stop(loop, FaultCode::kEmergencyStop);
+  const std::uint64_t sequence = loop.sensors.sequence;
+  loop.sensors = good;
+  loop.sensors.sequence = sequence;
+  loop.operator_input.request = ModeRequest::kReset;
+  loop.step();
+  loop.start_running();
+  loop.run(50);
+  EXPECT_EQ(loop.record.mode, Mode::kRunning);
+  EXPECT_TRUE(loop.command.q_m.allFinite() && loop.record.robot.q_p.allFinite());
+}
+
+TEST(Cycle, TheTwinMeetsTheHandleAgainAfterAFaultInMotion) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.emergency_stop = true;
+  loop.step();
+  loop.sensors.emergency_stop = false;
+  loop.sensors.q_p[0] += 0.3;  // the gantry has coasted
+  loop.operator_input.request = ModeRequest::kReset;
+  loop.run(1000);
+  EXPECT_LT(loop.record.sync_error, 1e-6);
+  loop.start_running();
+  loop.run(50);
+  EXPECT_EQ(loop.record.mode, Mode::kRunning);
+}
+
+TEST(Cycle, HandleAndTwinApartIsAFault) {
+  Loop loop;
+  loop.start_running();
+  State state = loop.cycle->state();
+  state.rendering.twin.q_a[0] += 0.03;
+  loop.cycle->restore(state);
+  expect_safe_stop(loop, FaultCode::kSyncLost);
 }
 
 TEST(Cycle, ASnapshotContinuesBitForBit) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "hg/evaluation/events.h"
@@ -98,17 +99,63 @@ TEST(EventDetector, WithoutRulesLocksThatOpenAndCloseAreEvents) {
   EXPECT_EQ(detector.observe(record)->what, "unlocked");
   record.limits[1].cause = LimitCause::kLock;
   EXPECT_EQ(detector.observe(record)->what, "locked");
+  record.limits[1].cause =
+      LimitCause::kPosition;  // the bolt opens while the door rests on its stop
+  record.limits[1].state = LimitState::kLower;
+  record.limits[1].to_lower = 0.0;
+  EXPECT_EQ(detector.observe(record)->what, "unlocked");
 }
 
-TEST(Distribution, GivesMedianPercentileAndMaximum) {
-  std::vector<float> values;
-  for (int i = 1000; i >= 0; --i) values.push_back(static_cast<float>(i));
-  const Distribution d = distribution(values);
-  EXPECT_EQ(d.median, 500.0);
-  EXPECT_EQ(d.p99_9, 999.0);
-  EXPECT_EQ(d.max, 1000.0);
-  std::vector<float> none;
-  EXPECT_EQ(distribution(none).max, 0.0);
+TEST(EventDetector, TurnsAndSpeedLimitsHaveASide) {
+  EventDetector detector(
+      {rule("back", {{.kind = ConditionKind::kTurns, .index = 0, .value = -1.0}}),
+       rule("fast",
+            {{.kind = ConditionKind::kSpeedLimit, .index = 1, .side = LimitState::kLower}})},
+      catalogue());
+  CycleRecord record = running(0.0);
+  EXPECT_FALSE(detector.observe(record));
+  record.reference.q_m[0] = 6.3;
+  EXPECT_FALSE(detector.observe(record));
+  record.reference.q_m[0] = -6.3;
+  EXPECT_EQ(detector.observe(record)->name, "back");
+  record.limits[1].cause = LimitCause::kVelocity;
+  record.limits[1].state = LimitState::kUpper;
+  EXPECT_FALSE(detector.observe(record));
+  record.limits[1].state = LimitState::kLower;
+  EXPECT_EQ(detector.observe(record)->name, "fast");
+}
+
+TEST(Histogram, GivesMedianAndPercentileToOnePercentAndTheExactMaximum) {
+  for (const double unit : {1e-7, 1.0, 1e5}) {
+    Histogram histogram;
+    for (int i = 1000; i >= 0; --i) histogram.add(unit * i);
+    const Distribution d = histogram.distribution();
+    EXPECT_NEAR(d.median, 500.0 * unit, 5.0 * unit);
+    EXPECT_NEAR(d.p99_9, 999.0 * unit, 9.99 * unit);
+    EXPECT_EQ(d.max, 1000.0 * unit);
+  }
+}
+
+TEST(Histogram, TakesValuesOutsideItsBins) {
+  EXPECT_EQ(Histogram().distribution().max, 0.0);
+  Histogram histogram;
+  histogram.add(0.0);
+  histogram.add(std::numeric_limits<double>::quiet_NaN());
+  histogram.add(kInfinity);
+  EXPECT_EQ(histogram.distribution().median, 0.0);
+  EXPECT_EQ(histogram.distribution().max, kInfinity);
+}
+
+TEST(Summary, TellsPriorityAndATimedOutStop) {
+  const Summary summary(catalogue());
+  const auto text = [&](const RunFacts& facts) { return summary.to_text(facts, {}); };
+  EXPECT_NE(text({}).find("normal (SCHED_FIFO refused)"), std::string::npos);
+  EXPECT_NE(text({.is_real_time = true}).find("real time (memory not locked)"), std::string::npos);
+  EXPECT_EQ(text({}).find("timed out"), std::string::npos);
+  EXPECT_NE(text({.stop_timed_out = true}).find("timed out"), std::string::npos);
+  const auto json = nlohmann::json::parse(summary.to_json({.stop_timed_out = true}, {}));
+  EXPECT_TRUE(json["stop_timed_out"].get<bool>());
+  EXPECT_FALSE(json["real_time"].get<bool>());
 }
 
 TEST(Summary, TheJsonHoldsWhatScriptsNeed) {
@@ -134,7 +181,7 @@ TEST(Summary, TheJsonHoldsWhatScriptsNeed) {
   EXPECT_EQ(json["force"]["mean_N"], 4.0);
   EXPECT_EQ(json["solver"]["status"]["solved"], 10);
   EXPECT_NEAR(json["solver"]["active_set_changes_per_second"].get<double>(), 10 / 9e-3, 1e-6);
-  EXPECT_EQ(json["acceleration_change_per_cycle"]["median"], 1.0);
+  EXPECT_NEAR(json["acceleration_change_per_cycle"]["median"].get<double>(), 1.0, 0.01);
   EXPECT_EQ(json["cycle_time_us"]["max"], 9.0);
   EXPECT_EQ(json["allocations_in_loop"], 0);
   EXPECT_TRUE(json["limits_held"].get<bool>());

@@ -332,6 +332,96 @@ TEST(Rendering, ALatchLetsTheDoorCloseButNotOpenAgain) {
   EXPECT_NEAR(door.state.twin.q_a[0], 0.0, kLockReached);
 }
 
+TEST(Rendering, ALatchBringsTheJointToRestAtALockInMidRange) {
+  TwinModel twin = door_twin({});
+  Lock lock = door_lock();
+  lock.position = 0.9;
+  lock.engaged_while.erase(lock.engaged_while.begin());
+  twin.locks = {lock};
+  twin.q_start[0] = 1.5;
+  Playing door(twin);
+  door.run(0.5, 0, 0.0);
+  EXPECT_NE(door.record.limits[6].cause, LimitCause::kLatch);  // falls freely towards the lock
+  door.run(3.0, 0, 0.0);
+  EXPECT_NEAR(door.state.twin.q_a[0], 0.9, kLockReached);
+  EXPECT_EQ(door.record.limits[6].cause, LimitCause::kLock);
+}
+
+TEST(Rendering, BrakingStopsATwinWithASpring) {
+  Playing door(door_twin({}));
+  door.state.twin.q_a[0] = 1.0;
+  door.state.twin.dq_a[0] = -0.8;
+  for (int k = 0; k < 600; ++k) {
+    door.record = record_with(kGantryAtHome, kPosture, door.wrench_for(0, 20.0));
+    door.state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+    door.rendering.step(door.state, 20.0, door.record);
+    door.rendering.integrate(door.state);
+  }
+  EXPECT_LT(std::abs(door.state.twin.dq_a[0]), 1e-3);
+}
+
+// The free body at the handle, pushed by `force` along x, while the gantry accelerates by `ddq_p`.
+CycleRecord pushed_along_x(const DeviceModel& device, double force, double ddq_p) {
+  TwinModel twin = golden_twin();
+  twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
+  Rendering rendering(device, twin, {});
+  State state = rendering.start(kPosture);
+  Vector6 w = Vector6::Zero();
+  w[0] = force;
+  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
+  record.robot.ddq_p[0] = ddq_p;
+  EXPECT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+  return record;
+}
+
+TEST(Rendering, ACartesianLimitHoldsTheHandWhateverTheGantryDoes) {
+  DeviceModel device = unlimited_device();
+  const double x = handle_pose(device, kGantryAtHome, kPosture).p.x();
+  device.cartesian_limits = {{.name = "hand", .frame = device.handle, .axes = {}, .margin = 0.0}};
+  device.cartesian_limits[0].axes[0] = {-10.0, x, 1.5, 5.0};
+  for (const double ddq_p : {0.0, 2.0, -2.0}) {
+    const CycleRecord held = pushed_along_x(device, 20.0, ddq_p);
+    EXPECT_EQ(held.limits[6].state, LimitState::kUpper);
+    EXPECT_NEAR(held.a_H.x(), 0.0, 1e-9) << ddq_p;
+    EXPECT_NEAR(held.limits[6].reaction, held.w_felt[0], 1e-9);
+    EXPECT_LT(held.limits[6].reaction, -1.0);
+    EXPECT_GT(pushed_along_x(device, -20.0, ddq_p).a_H.x(), -100.0);
+    EXPECT_LT(pushed_along_x(device, -20.0, ddq_p).a_H.x(), -1.0);
+  }
+}
+
+TEST(Rendering, AVirtualJointIsHeldAtItsEnd) {
+  DeviceModel device = unlimited_device();
+  const double s = kPosture[3] + kPosture[4];
+  device.virtual_joints = {
+      {.name = "q4+q5", .weights = posture({0, 0, 0, 1, 1, 0}), .limits = {s, 2.88, 4, 40}}};
+  int held = 0;
+  for (const double force : {20.0, -20.0}) {
+    const CycleRecord record = pushed_along_x(device, force, 0.0);
+    const double ddq_s = record.reference.ddq_m[3] + record.reference.ddq_m[4];
+    EXPECT_GE(ddq_s, -1e-9);
+    if (record.limits[6].state == LimitState::kLower) ++held;
+  }
+  EXPECT_EQ(held, 1);  // one way it is pushed onto its end, the other way off
+}
+
+TEST(Rendering, AGantryThatDragsJointsFromTheirLimitsBlocksTheDevice) {
+  DeviceModel device = unlimited_device();
+  for (int i = 0; i < 6; ++i) {
+    device.joint_limits[static_cast<std::size_t>(i)] = {kPosture[i], kPosture[i], 1.0, 10.0};
+  }
+  Rendering rendering(device, door_twin({}), without_synchronisation());
+  State state = rendering.start(kPosture);
+  CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
+  rendering.step(state, 0.0, record);
+  EXPECT_FALSE(rendering.is_blocked(record));
+  // a door cannot follow in all six directions, and the hand stays on it
+  record.robot.ddq_p[0] = 2.0;
+  ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+  EXPECT_TRUE(rendering.is_blocked(record));
+  EXPECT_LT(budget_gap(record), 1e-9);
+}
+
 TEST(Rendering, TheHandFollowsTheTwinAndTheErrorDecays) {
   const DeviceModel device = unlimited_device();
   TwinModel twin = golden_twin();

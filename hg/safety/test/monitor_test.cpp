@@ -91,6 +91,9 @@ TEST(CheckReference, FindsEachKindOfFault) {
   record.limits[7].excess = 0.031;
   EXPECT_EQ(check_reference(config(), record).code, FaultCode::kLimitExceeded);
   EXPECT_EQ(check_reference(config(), record).index, 7);
+  record = good_record();
+  record.sync_error = 0.021;
+  EXPECT_EQ(check_reference(config(), record).code, FaultCode::kSyncLost);
 }
 
 CommandFrame good_command() {
