@@ -14,6 +14,10 @@ namespace {
 constexpr double kToleranceMetres = 2e-3;
 constexpr double kToleranceRadians = 5e-3;
 
+// bins of histograms; the first takes what is smaller
+constexpr double kLowest = 1e-9;
+const double kLogWidth = std::log(1.01);
+
 nlohmann::ordered_json to_json(const Distribution& d) {
   return {{"median", d.median}, {"p99_9", d.p99_9}, {"max", d.max}};
 }
@@ -26,17 +30,37 @@ double mean(double sum, std::uint64_t count) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
+std::string priority_of(const RunFacts& facts) {
+  if (facts.is_fast) return "normal (fast)";
+  if (!facts.is_real_time) return "normal (SCHED_FIFO refused)";
+  return facts.is_memory_locked ? "real time" : "real time (memory not locked)";
+}
+
 }  // namespace
 
-Distribution distribution(std::vector<float>& values) {
-  if (values.empty()) return {};
-  const auto at = [&](double share) {
-    const auto rank = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
-    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(values.begin(), nth, values.end());
-    return static_cast<double>(*nth);
-  };
-  return {at(0.5), at(0.999), at(1.0)};
+void Histogram::add(double value) noexcept {
+  std::size_t bin = 0;
+  if (value > kLowest) {
+    const double position = 1.0 + std::log(value / kLowest) / kLogWidth;
+    bin = static_cast<std::size_t>(std::min(position, static_cast<double>(kBins - 1)));
+  }
+  ++counts_[bin];
+  ++count_;
+  max_ = std::max(max_, value);
+}
+
+double Histogram::at(double share) const noexcept {
+  const auto rank = static_cast<std::uint64_t>(share * static_cast<double>(count_ - 1));
+  std::size_t bin = 0;
+  for (std::uint64_t below = counts_[0]; below <= rank; below += counts_[bin]) ++bin;
+  if (bin == 0) return 0.0;
+  const double middle = static_cast<double>(bin) - 0.5;
+  return std::min(kLowest * std::exp(middle * kLogWidth), max_);
+}
+
+Distribution Histogram::distribution() const noexcept {
+  if (count_ == 0) return {};
+  return {at(0.5), at(0.999), max_};
 }
 
 Summary::Summary(LimitCatalogue catalogue)
@@ -45,7 +69,7 @@ Summary::Summary(LimitCatalogue catalogue)
 void Summary::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
   ++cycles_;
-  cycle_time_us_.push_back(static_cast<float>(sample.cycle_time_us));
+  cycle_time_us_.add(sample.cycle_time_us);
   if (record.fault.code != FaultCode::kNone && fault_.code == FaultCode::kNone) {
     fault_ = record.fault;
   }
@@ -70,7 +94,7 @@ void Summary::add(const Sample& sample) {
   const double change = (record.a_H - last_acceleration_).norm();
   last_acceleration_ = record.a_H;
   sum_acceleration_change_ += change;
-  acceleration_change_.push_back(static_cast<float>(change));
+  acceleration_change_.add(change);
 }
 
 bool Summary::limits_held() const noexcept {
@@ -81,7 +105,7 @@ bool Summary::limits_held() const noexcept {
   return true;
 }
 
-std::string Summary::to_json(const RunFacts& facts, const std::vector<std::string>& missing) {
+std::string Summary::to_json(const RunFacts& facts, const std::vector<std::string>& missing) const {
   nlohmann::ordered_json json;
   json["version"] = facts.version;
   json["scenario"] = facts.scenario;
@@ -113,13 +137,16 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
         solver_status_[i];
   }
   json["solver"]["active_set_changes_per_second"] = per_second(active_set_changes_, duration_s_);
-  json["acceleration_change_per_cycle"] = evaluation::to_json(distribution(acceleration_change_));
+  json["acceleration_change_per_cycle"] = evaluation::to_json(acceleration_change_.distribution());
   json["acceleration_change_per_cycle"]["mean"] = mean(sum_acceleration_change_, running_cycles_);
   json["acceleration_change_per_cycle"]["unit"] = "m/s^2";
-  json["cycle_time_us"] = evaluation::to_json(distribution(cycle_time_us_));
+  json["cycle_time_us"] = evaluation::to_json(cycle_time_us_.distribution());
   json["overruns"] = facts.overruns;
   json["dropped_samples"] = facts.dropped;
   json["allocations_in_loop"] = facts.allocations_in_loop;
+  json["real_time"] = facts.is_real_time;
+  json["memory_locked"] = facts.is_memory_locked;
+  json["stop_timed_out"] = facts.stop_timed_out;
   json["recording"] = facts.recording;
   json["fault"] = {{"code", static_cast<int>(fault_.code)},
                    {"what", std::string(to_string(fault_.code))},
@@ -127,7 +154,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   return json.dump(2) + "\n";
 }
 
-std::string Summary::to_text(const RunFacts& facts, const std::vector<std::string>& missing) {
+std::string Summary::to_text(const RunFacts& facts, const std::vector<std::string>& missing) const {
   std::string text;
   const auto line = [&](const char* label, const std::string& value) {
     text += fmt::format("  {:<12} {}\n", label, value);
@@ -136,7 +163,7 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   for (std::size_t i = 1; i < catalogue_.size(); ++i) {
     if (worst_excess_[i] > worst_excess_[worst]) worst = i;
   }
-  const Distribution time = distribution(cycle_time_us_);
+  const Distribution time = cycle_time_us_.distribution();
   const double wall = std::max(facts.wall_time_s, 1e-9);
 
   line("run", fmt::format("{}, {:.1f} s in {:.1f} s ({:.1f}x real time), {:.0f} Hz", facts.scenario,
@@ -162,8 +189,10 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
                                  mean(sum_acceleration_change_, running_cycles_)));
   line("cycle time", fmt::format("median {:.1f} us, 99.9 % {:.1f} us, max {:.1f} us; {} late",
                                  time.median, time.p99_9, time.max, facts.overruns));
+  line("priority", priority_of(facts));
   line("allocations", fmt::format("{} in the loop", facts.allocations_in_loop));
   line("recording", facts.recording.empty() ? "off" : facts.recording);
+  if (facts.stop_timed_out) line("STOP", "timed out: drives off while the device was moving");
   if (fault_.code != FaultCode::kNone) {
     line("FAULT",
          fmt::format("{} {} (number {}: {:.4g}, limit {:.4g})", static_cast<int>(fault_.code),

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -19,8 +20,22 @@ struct Distribution {
   double median = 0.0, p99_9 = 0.0, max = 0.0;
 };
 
-/// Of `values`, which are reordered; zeros when there are none.
-Distribution distribution(std::vector<float>& values);
+/// Counts values in bins 1 % wide, so that hours of samples need no more memory than seconds.
+class Histogram {
+ public:
+  /// Values below 1e-9, which count as zero, and above 1e9 are not told apart.
+  void add(double value) noexcept;
+  /// Median and percentile to 1 %, the maximum exactly; zeros when there are no values.
+  Distribution distribution() const noexcept;
+
+ private:
+  static constexpr std::size_t kBins = 4168;
+  double at(double share) const noexcept;
+
+  std::vector<std::uint64_t> counts_ = std::vector<std::uint64_t>(kBins);
+  std::uint64_t count_ = 0;
+  double max_ = 0.0;
+};
 
 /// What the runtime alone knows.
 struct RunFacts {
@@ -31,7 +46,10 @@ struct RunFacts {
   std::uint64_t overruns = 0;
   std::uint64_t dropped = 0;
   std::uint64_t allocations_in_loop = 0;
-  std::string recording;  ///< file, empty when off
+  bool is_real_time = false;      ///< SCHED_FIFO
+  bool is_memory_locked = false;  ///< mlockall
+  bool stop_timed_out = false;    ///< drives were disabled while the device was moving
+  std::string recording;          ///< file, empty when off
   double wall_time_s = 0.0;
 };
 
@@ -49,9 +67,9 @@ class Summary {
   double max_sync_error() const noexcept { return max_sync_error_; }
 
   /// The JSON text of --summary. `missing` are expected events that did not happen.
-  std::string to_json(const RunFacts& facts, const std::vector<std::string>& missing);
+  std::string to_json(const RunFacts& facts, const std::vector<std::string>& missing) const;
   /// The closing lines of a run.
-  std::string to_text(const RunFacts& facts, const std::vector<std::string>& missing);
+  std::string to_text(const RunFacts& facts, const std::vector<std::string>& missing) const;
 
  private:
   LimitCatalogue catalogue_;
@@ -63,8 +81,8 @@ class Summary {
   double sum_force_ = 0.0, max_force_ = 0.0, max_torque_ = 0.0;
   std::array<std::uint64_t, 4> solver_status_{};
   std::uint64_t active_set_changes_ = 0;
-  std::vector<float> cycle_time_us_;
-  std::vector<float> acceleration_change_;
+  Histogram cycle_time_us_;
+  Histogram acceleration_change_;
   double sum_acceleration_change_ = 0.0;
   Eigen::Vector3d last_acceleration_ = Eigen::Vector3d::Zero();
   Fault fault_;
