@@ -3,8 +3,9 @@
 #   make demo    sets up, builds, and runs the main job; ARGS="..." are handed on
 #   make test    sets up, builds and runs every test
 #   make build   sets up and builds the program: build/release/hapticgiant
-#   make sanitize  builds and runs the tests that pay off under sanitizers: address and undefined
-#                  behaviour for the control cycle and what it calls, threads for what has threads
+#   make sanitize
+#                builds and runs the tests that pay off under sanitizers: address and undefined
+#                behaviour for the control cycle and what it calls, threads for what has threads
 
 ARGS ?=
 PRESET ?= release
@@ -12,9 +13,9 @@ BUILD := build/$(PRESET)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering prepositioning safety cycle \
   user simulation evaluation)
 TSAN_TESTS := $(addsuffix _test, core runtime viewer_server)
-# run_tests,PRESET,NAMES: builds these tests and runs them
 empty :=
 space := $(empty) $(empty)
+# run_tests,PRESET,NAMES: builds these tests and runs them
 define run_tests
 @tools/configure.sh $(1) test
 @cmake --build build/$(1) --target $(2)
