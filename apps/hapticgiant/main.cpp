@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <exception>
 #include <string>
 
 #include "apps/hapticgiant/hqp_solve.h"
@@ -13,6 +14,7 @@
 
 namespace {
 
+constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
 
 // ranges let "nan" through
@@ -79,5 +81,8 @@ int main(int argc, char** argv) {
   } catch (const hg::SetupError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "internal error: {}\n", error.what());
+    return kInternalError;
   }
 }

@@ -12,19 +12,20 @@ namespace fs = std::filesystem;
 fs::path data_root() {
   std::error_code error;
   fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (fs::is_directory("models/scenarios")) return ".";
+  if (fs::is_directory("models/scenarios", error)) return ".";
   for (fs::path folder = program.parent_path(); folder.has_relative_path();
        folder = folder.parent_path()) {
-    if (fs::is_directory(folder / "models" / "scenarios")) return folder;
+    if (fs::is_directory(folder / "models" / "scenarios", error)) return folder;
   }
   throw SetupError("models/scenarios: not found in the working directory or above the program");
 }
 
 fs::path find_scenario(const std::string& name) {
-  if (fs::is_regular_file(name)) return name;
+  std::error_code error;  // a name may be longer than the system takes
+  if (fs::is_regular_file(name, error)) return name;
   const fs::path folder = data_root() / "models" / "scenarios";
   const fs::path known = folder / (name + ".yaml");
-  if (fs::is_regular_file(known)) return known;
+  if (fs::is_regular_file(known, error)) return known;
 
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) {

@@ -6,10 +6,14 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string>
+#include <system_error>
 #include <thread>
+#include <utility>
 
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/run_setup.h"
@@ -22,6 +26,7 @@
 namespace hg::apps {
 namespace {
 
+namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kIdle(2);
@@ -32,22 +37,47 @@ static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal h
 
 void interrupt(int) { interrupted.store(true); }
 
+// a recording is completed when the terminal closes or the reader of a pipe goes
+void handle_signals() {
+  interrupted.store(false);
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  if (std::signal(SIGHUP, interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+// only what is, or becomes, a regular file is replaced; others (/dev/stdout) are written to
+bool is_replaced(const std::string& file) {
+  std::error_code error;
+  const auto type = fs::symlink_status(file, error).type();
+  return type == fs::file_type::regular || type == fs::file_type::not_found;
+}
+
 // --summary is written at the end, but a place that cannot be written is refused at the start
 void check_writable(const std::string& file) {
   if (file.empty()) return;
-  const bool existed = std::filesystem::exists(file);
-  const bool writable = std::ofstream(file, std::ios::app).good();
-  if (!existed && writable) std::filesystem::remove(file);
-  if (!writable) throw SetupError(file + ": the summary cannot be written there");
+  const std::string partial = file + ".partial";
+  std::error_code error;
+  bool is_writable = false;
+  if (is_replaced(file)) {
+    const bool existed = fs::exists(partial, error);
+    is_writable = std::ofstream(partial, std::ios::app).good();
+    if (!existed) fs::remove(partial, error);
+  } else {
+    is_writable = !fs::is_directory(file, error) && access(file.c_str(), W_OK) == 0;
+  }
+  if (!is_writable) throw SetupError(file + ": the summary cannot be written there");
 }
 
 void write_summary(const std::string& file, const std::string& json) {
-  const std::string partial = file + ".partial";
-  std::ofstream stream(partial);
+  const bool replaces = is_replaced(file);
+  const std::string written = replaces ? file + ".partial" : file;
+  std::ofstream stream(written);
   stream << json;
   stream.close();
-  if (!stream) throw SetupError(partial + ": could not be written");
-  std::filesystem::rename(partial, file);
+  std::error_code error;
+  if (stream && replaces) fs::rename(written, file, error);
+  if (!stream || error) throw SetupError(file + ": the summary could not be written");
 }
 
 /// Everything that watches a run from outside the control thread.
@@ -118,8 +148,9 @@ std::unique_ptr<viewer_server::ViewerServer> make_viewer(const config::Scenario&
                                                          const RunArguments& arguments) {
   if (!arguments.has_viewer || arguments.is_fast) return nullptr;
   const auto page = data_root() / "viewer" / "dist";
-  if (!std::filesystem::is_regular_file(page / "index.html")) {
-    fmt::print("page        not built (it needs node 18 or newer), running without it\n");
+  std::error_code error;
+  if (!fs::is_regular_file(page / "index.html", error)) {
+    print_out("page        not built (it needs node 18 or newer), running without it\n");
     return nullptr;
   }
   viewer_server::Options options;
@@ -132,15 +163,15 @@ std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scena
                                                    const RunArguments& arguments) {
   if (!arguments.has_recording) return nullptr;
   if (!recording::recording_available()) {
-    fmt::print("recording   off (the program was built without Rust)\n");
+    print_out("recording   off (the program was built without Rust)\n");
     return nullptr;
   }
   return std::make_unique<recording::Recorder>(recording_info(scenario, arguments));
 }
 
+// `goes_on`: after the script, until Ctrl-C
 runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments,
-                                 bool is_terminal) {
-  const bool goes_on = is_terminal && !arguments.is_fast && arguments.has_viewer;
+                                 bool goes_on) {
   runtime::Options options;
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = arguments.is_fast;
@@ -156,9 +187,10 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
 std::string close_recording(recording::Recorder* recorder) {
   if (recorder == nullptr) return {};
   const recording::RecordingSummary recorded = recorder->close();
-  if (!recorded.error.empty()) fmt::print(stderr, "recording ended early: {}\n", recorded.error);
+  if (!recorded.error.empty())
+    std::fputs(fmt::format("recording ended early: {}\n", recorded.error).c_str(), stderr);
   for (const auto& name : recorded.deleted) {
-    fmt::print("recording {} deleted to keep within the disk budget\n", name);
+    print_out(fmt::format("recording {} deleted to keep within the disk budget\n", name));
   }
   return recorded.file.string();
 }
@@ -174,28 +206,27 @@ int exit_code(const evaluation::Summary& summary, const std::vector<std::string>
 int run(const RunArguments& arguments) {
   check_writable(arguments.summary);
   const config::Scenario scenario = make_scenario(arguments);
-  const bool is_terminal = isatty(STDOUT_FILENO) == 1;
-  const runtime::Options options = runtime_options(scenario, arguments, is_terminal);
+  handle_signals();
   cycle::Cycle cycle = make_cycle(scenario);
   device::SimulatedDevice device = make_simulated_device(scenario);
+  auto viewer = make_viewer(scenario, arguments);
+  const bool is_terminal = isatty(STDOUT_FILENO) == 1;
+  const bool goes_on = is_terminal && viewer != nullptr;
+  const runtime::Options options = runtime_options(scenario, arguments, goes_on);
   Observers observers{
       .scenario = scenario,
       .detector = {scenario.events, scenario.limits},
       .summary = evaluation::Summary(scenario.limits),
       .status_line = StatusLine(is_terminal),
-      .viewer = make_viewer(scenario, arguments),
+      .viewer = std::move(viewer),
       .recorder = make_recorder(scenario, arguments),
       .is_fast = arguments.is_fast,
       .script_end_s = options.duration_s == 0.0 ? planned_duration_s(scenario) : 0.0};
 
-  fmt::print("HapticGiant {}  {}\n", kVersion, scenario.title);
-  if (observers.viewer) fmt::print("page        {}\n", observers.viewer->url());
-  if (options.duration_s == 0.0) fmt::print("stop        Ctrl-C\n");
-  std::fflush(stdout);
+  print_out(fmt::format("HapticGiant {}  {}\n", kVersion, scenario.title));
+  if (observers.viewer) print_out(fmt::format("page        {}\n", observers.viewer->url()));
+  if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
 
-  interrupted.store(false);
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
   runtime::Runtime runtime(options, cycle, device);
   const auto begin = Clock::now();
   runtime.start();
@@ -210,10 +241,13 @@ int run(const RunArguments& arguments) {
                                    .overruns = report.overruns,
                                    .dropped = report.dropped,
                                    .allocations_in_loop = report.allocations,
+                                   .is_real_time = report.is_real_time,
+                                   .is_memory_locked = report.is_memory_locked,
+                                   .stop_timed_out = report.stop_timed_out,
                                    .recording = close_recording(observers.recorder.get()),
                                    .wall_time_s = wall_time.count()};
   const std::vector<std::string> missing = observers.detector.missing();
-  fmt::print("\n{}", observers.summary.to_text(facts, missing));
+  print_out(fmt::format("\n{}", observers.summary.to_text(facts, missing)));
   if (!arguments.summary.empty()) {
     write_summary(arguments.summary, observers.summary.to_json(facts, missing));
   }

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "apps/hapticgiant/paths.h"
@@ -15,9 +18,15 @@
 namespace hg::apps {
 namespace {
 
-void set_rate(config::Device& device, double rate_Hz) {
-  device.rate_Hz = rate_Hz;
-  device.rendering.dt = device.estimation.dt = 1.0 / rate_Hz;
+// two limits of one name could not be told apart
+void check_names(const LimitCatalogue& catalogue) {
+  std::set<std::string> names;
+  for (const LimitInfo& limit : catalogue) {
+    if (!names.insert(limit.name).second) {
+      throw SetupError("device and twin together must not use a name twice, got '" + limit.name +
+                       "'");
+    }
+  }
 }
 
 // what --device, --twin and --user change; expected events belong to the scenario as it stands
@@ -36,6 +45,7 @@ void apply(const RunArguments& arguments, config::Scenario& scenario) {
   }
   if (!arguments.twin.empty() || !arguments.device.empty()) {
     scenario.limits = rendering::make_catalogue(scenario.device.model, scenario.twin.model);
+    check_names(scenario.limits);
     scenario.events.clear();
   }
   if (!arguments.user.empty()) scenario.events.clear();
@@ -59,43 +69,64 @@ struct Start {
   Vector6 q_m;
 };
 
-// the device, in its best posture, with the handle where the twin's end effector starts
-Start start_of(const config::Scenario& scenario) {
-  const rendering::TwinModel& twin = scenario.twin.model;
+Pose handle_start(const rendering::TwinModel& twin) {
   model::Chain chain = twin.chain;
   chain.update_kinematics(twin.q_start, VectorA::Zero(chain.nv()));
-  Start start;
-  start.T_B_H = chain.pose(twin.end_effector);
+  return chain.pose(twin.end_effector);
+}
 
-  const auto status = model::haptic_giant::inverse_at_target(start.T_B_H, start.q_p, start.q_m);
-  const Eigen::Vector3d& p = start.T_B_H.p;
-  if (status != model::haptic_giant::InverseStatus::kSolved) {
+// throws SetupError when the device may not be at `start`
+void check_limits(const config::Scenario& scenario, const Start& start) {
+  const rendering::DeviceModel& device = scenario.device.model;
+  const auto require = [&](const std::string& item, double value,
+                           const limits::JointLimits& limits) {
+    if (value >= limits.q_min && value <= limits.q_max) return;
     throw SetupError(fmt::format(
-        "twin {}: the device cannot reach its handle at ({:.2f}, {:.2f}, {:.2f}) m: {}; move the "
-        "twin's placement",
-        scenario.twin.name, p.x(), p.y(), p.z(), to_string(status)));
-  }
+        "twin {}: at its start {} of the device would be at {:.3f}, outside {:.3f} .. {:.3f}; move "
+        "or turn the twin's placement",
+        scenario.twin.name, item, value, limits.q_min, limits.q_max));
+  };
   for (int i = 0; i < 6; ++i) {
-    const auto& limits = scenario.device.model.joint_limits[static_cast<std::size_t>(i)];
-    if (start.q_m[i] < limits.q_min || start.q_m[i] > limits.q_max) {
-      throw SetupError(fmt::format(
-          "twin {}: at its start joint {} of the device would be at {:.3f} rad, outside {:.3f} .. "
-          "{:.3f}; move or turn the twin's placement",
-          scenario.twin.name, scenario.device.model.manipulator_joint(i), start.q_m[i],
-          limits.q_min, limits.q_max));
+    require("joint " + device.manipulator_joint(i), start.q_m[i],
+            device.joint_limits[static_cast<std::size_t>(i)]);
+  }
+  for (const rendering::VirtualJoint& joint : device.virtual_joints) {
+    require(joint.name, joint.weights.dot(start.q_m), joint.limits);
+  }
+
+  model::Chain chain = device.chain;
+  Eigen::Matrix<double, 8, 1> q;
+  q << start.q_p, start.q_m;
+  chain.update_kinematics(q, Eigen::Matrix<double, 8, 1>::Zero());
+  for (const rendering::CartesianLimit& limit : device.cartesian_limits) {
+    const Eigen::Vector3d p = chain.pose(limit.frame).p;
+    for (int axis = 0; axis < 3; ++axis) {
+      require(limit.name + " " + "xyz"[axis], p[axis], limit.axes[static_cast<std::size_t>(axis)]);
     }
   }
+}
+
+// the device, in its best posture, with the handle where the twin's end effector starts
+Start start_of(const config::Scenario& scenario) {
+  Start start;
+  start.T_B_H = handle_start(scenario.twin.model);
+  const auto require_solved = [&](model::haptic_giant::InverseStatus status, const char* what) {
+    if (status == model::haptic_giant::InverseStatus::kSolved) return;
+    const Eigen::Vector3d& p = start.T_B_H.p;
+    throw SetupError(
+        fmt::format("twin {}: {} its handle at ({:.2f}, {:.2f}, {:.2f}) m: {}; move the "
+                    "twin's placement",
+                    scenario.twin.name, what, p.x(), p.y(), p.z(), to_string(status)));
+  };
+  require_solved(model::haptic_giant::inverse_at_target(start.T_B_H, start.q_p, start.q_m),
+                 "the device cannot reach");
   for (int i = 0; i < 2; ++i) {
     const Interval range = scenario.device.prepositioning.q_limits[static_cast<std::size_t>(i)];
     start.q_p[i] = std::clamp(start.q_p[i], range.lb, range.ub);
   }
-  const auto at_limit = model::haptic_giant::inverse(start.T_B_H, start.q_p, {}, start.q_m);
-  if (at_limit != model::haptic_giant::InverseStatus::kSolved) {
-    throw SetupError(
-        fmt::format("twin {}: its handle at ({:.2f}, {:.2f}, {:.2f}) m is out of the "
-                    "gantry's reach; move the twin's placement",
-                    scenario.twin.name, p.x(), p.y(), p.z()));
-  }
+  require_solved(model::haptic_giant::inverse(start.T_B_H, start.q_p, {}, start.q_m),
+                 "the gantry's reach ends before");
+  check_limits(scenario, start);
   return start;
 }
 
@@ -149,12 +180,57 @@ viewer_server::SceneJoint scene_joint(const model::Joint& joint) {
   return {joint.name, JointType::kRevolute};
 }
 
+std::string recording_name(const std::filesystem::path& scenario) {
+  constexpr std::string_view kMarks = "._-";
+  std::string name = scenario.stem().string();
+  for (char& c : name) {
+    const bool is_plain =
+        (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    if (!is_plain && kMarks.find(c) == std::string_view::npos) c = '_';
+  }
+  return name;
+}
+
+// the options that change what the scenario says, one per line
+std::string changes(const RunArguments& arguments) {
+  std::string text;
+  const auto line = [&](const char* option, const std::string& value) {
+    if (!value.empty()) text += fmt::format("{} {}\n", option, value);
+  };
+  line("--device", arguments.device);
+  line("--twin", arguments.twin);
+  line("--user", arguments.user);
+  if (arguments.rate_Hz) line("--rate-hz", fmt::format("{}", *arguments.rate_Hz));
+  return text;
+}
+
+// where the handle may be; on axes without limits the page shows 4 m around its start
+Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
+  constexpr double kHalf = 2.0;  // m
+  const Eigen::Vector3d p = handle_start(scenario.twin.model).p;
+  Eigen::Vector3d lower = Eigen::Vector3d::Constant(-kInfinity);
+  Eigen::Vector3d upper = Eigen::Vector3d::Constant(kInfinity);
+  for (const rendering::CartesianLimit& limit : scenario.device.model.cartesian_limits) {
+    if (limit.frame != scenario.device.model.handle) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      const limits::JointLimits& range = limit.axes[static_cast<std::size_t>(axis)];
+      lower[axis] = std::max(lower[axis], range.q_min);
+      upper[axis] = std::min(upper[axis], range.q_max);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(lower[axis])) lower[axis] = p[axis] - kHalf;
+    if (!std::isfinite(upper[axis])) upper[axis] = p[axis] + kHalf;
+  }
+  return {lower, upper};
+}
+
 }  // namespace
 
 config::Scenario make_scenario(const RunArguments& arguments) {
   config::Scenario scenario = config::load_scenario(find_scenario(arguments.scenario));
   apply(arguments, scenario);
-  if (arguments.rate_Hz) set_rate(scenario.device, *arguments.rate_Hz);
+  if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
   return scenario;
 }
 
@@ -194,7 +270,7 @@ recording::RecordingInfo recording_info(const config::Scenario& scenario,
   const rendering::DeviceModel& device = scenario.device.model;
   recording::RecordingInfo info;
   info.folder = arguments.recordings;
-  info.name = std::filesystem::path(arguments.scenario).stem().string();
+  info.name = recording_name(arguments.scenario);
   info.gantry_joints = joint_names(device, 0, device.n_p);
   info.manipulator_joints = joint_names(device, device.n_p, device.n_m);
   for (const model::Joint& joint : scenario.twin.model.chain.joints()) {
@@ -203,6 +279,9 @@ recording::RecordingInfo recording_info(const config::Scenario& scenario,
   info.limits = scenario.limits;
   for (const auto& source : scenario.sources) {
     info.configuration.push_back({source.name, source.content});
+  }
+  if (const std::string options = changes(arguments); !options.empty()) {
+    info.configuration.push_back({"arguments", options});
   }
   info.version = kVersion;
   info.rate_Hz = scenario.device.rate_Hz;
@@ -223,13 +302,7 @@ viewer_server::Scene viewer_scene(const config::Scenario& scenario) {
   }
   scene.limits = scenario.limits;
   scene.rate_hz = scenario.device.rate_Hz;
-  for (const rendering::CartesianLimit& limit : scenario.device.model.cartesian_limits) {
-    if (limit.frame != scenario.device.model.handle) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      scene.box.min()[axis] = limit.axes[static_cast<std::size_t>(axis)].q_min;
-      scene.box.max()[axis] = limit.axes[static_cast<std::size_t>(axis)].q_max;
-    }
-  }
+  scene.box = box_of(scenario);
   return scene;
 }
 

@@ -1,8 +1,11 @@
 #include "apps/hapticgiant/status_line.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 
 #include "hg/viewer_server/limit_text.h"
@@ -14,6 +17,12 @@ constexpr int kMostJoints = 4;  // more do not fit on a line
 
 // without the sign of a zero
 double rounded(double value) { return std::round(100.0 * value) / 100.0 + 0.0; }
+
+std::size_t terminal_width() {
+  winsize size{};
+  const bool is_known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return is_known ? size.ws_col : 80;
+}
 
 }  // namespace
 
@@ -36,21 +45,25 @@ std::string status_text(const Sample& sample, const LimitCatalogue& limits,
   return text + fmt::format("  {:.0f} us", sample.cycle_time_us);
 }
 
+void print_out(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
 void StatusLine::show(const std::string& text) {
   if (!is_terminal_) return;
-  fmt::print("\r\033[K{}", text.substr(0, 118));
-  std::fflush(stdout);
+  print_out(
+      fmt::format("\r\033[K{}", text.substr(0, terminal_width() - 1)));  // a full line would wrap
   is_drawn_ = true;
 }
 
 void StatusLine::print(const std::string& text) {
   clear();
-  fmt::print("{}\n", text);
-  std::fflush(stdout);
+  print_out(text + "\n");
 }
 
 void StatusLine::clear() {
-  if (is_drawn_) fmt::print("\r\033[K");
+  if (is_drawn_) print_out("\r\033[K");
   is_drawn_ = false;
 }
 

@@ -12,12 +12,16 @@ namespace hg::apps {
 std::string status_text(const Sample& sample, const LimitCatalogue& limits,
                         const rendering::TwinModel& twin);
 
+/// To standard output. Nothing happens when nobody reads it any more: the run goes on.
+void print_out(const std::string& text);
+
 class StatusLine {
  public:
   /// Redraws on terminals only; elsewhere only events are printed.
   explicit StatusLine(bool is_terminal) : is_terminal_(is_terminal) {}
   ~StatusLine() { clear(); }
 
+  /// Cut to the width of the terminal.
   void show(const std::string& text);
   /// A line that stays.
   void print(const std::string& text);

@@ -3,14 +3,21 @@
 Usage: command_line_test.py PROGRAM   (from the repository root)
 """
 
+import contextlib
+import fcntl
 import json
+import os
 import pathlib
+import pty
+import re
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import time
 import unittest
 
@@ -96,6 +103,68 @@ class MainJob(TemporaryFolder):
             statistics = make_reader(stream).get_summary().statistics
         self.assertGreater(statistics.message_count, 500)
 
+    def test_a_recording_is_completed_when_terminal_or_pipe_close(self):
+        for closes, number in (("terminal", signal.SIGHUP), ("pipe", None)):
+            folder = self.folder / closes
+            process = subprocess.Popen(
+                [PROGRAM, "run", "door", "--no-viewer", "--duration", "3", "--recordings", folder],
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            process.stdout.readline()
+            if number is None:
+                process.stdout.close()
+            else:
+                time.sleep(1.0)
+                process.send_signal(number)
+            process.stderr.read()
+            self.assertIn(process.wait(timeout=20), (0, 1), closes)  # 1: events are missing
+            process.stderr.close()
+            process.stdout.close()
+            file, = (f for f in folder.glob("*.mcap") if not f.is_symlink())
+            self.assertNotIn("partial", file.name)
+            with file.open("rb") as stream:
+                self.assertGreater(make_reader(stream).get_summary().statistics.message_count, 100)
+
+    def test_the_status_line_is_cut_to_the_terminal(self):
+        primary, secondary = pty.openpty()
+        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 40, 0, 0))
+        process = subprocess.Popen([PROGRAM, "run", "door", "--no-viewer", "--no-recording",
+                                    "--duration", "1"], stdout=secondary)
+        os.close(secondary)
+        shown = b""
+        with contextlib.suppress(OSError):  # the end of a terminal
+            while part := os.read(primary, 4096):
+                shown += part
+        os.close(primary)
+        process.wait(timeout=20)
+        lines = re.findall(rb"\r\x1b\[K([^\r\n\x1b]+)", shown)
+        self.assertTrue(lines)
+        self.assertEqual(max(map(len, lines)), 39)
+
+    def test_the_summary_may_go_to_something_that_is_no_file(self):
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        with subprocess.Popen(["cat", pipe], stdout=subprocess.PIPE) as reader:
+            code, out, err = run("run", "door", "--user", "none", "--fast", "--duration", "0.5",
+                                 "--no-recording", "--summary", pipe)
+            told = json.loads(reader.stdout.read())
+        self.assertEqual((code, err), (0, ""), out)
+        self.assertTrue(told["fast"])
+        self.assertEqual(told["dropped_samples"], 0)
+        self.assertTrue(pipe.is_fifo())
+
+    def test_a_recording_holds_what_the_command_line_changed(self):
+        shutil.copytree(MODELS, self.folder / "models")
+        scenario = self.folder / "models/scenarios/my door.yaml"
+        shutil.copy(MODELS / "scenarios/door.yaml", scenario)
+        recordings = self.folder / "recordings"
+        code, out, err = run("run", scenario, "--user", "none", "--rate-hz", "500", "--fast",
+                             "--duration", "0.5", "--recordings", recordings)
+        self.assertEqual((code, err), (0, ""), out)
+        file, = recordings.glob("my_door_*.mcap")
+        with file.open("rb") as stream:
+            told = {a.name: a.data.decode() for a in make_reader(stream).iter_attachments()}
+        self.assertEqual(told["arguments"], "--user none\n--rate-hz 500\n")
+
     def test_real_time_without_terminal_ends_when_the_duration_is_over(self):
         begin = time.monotonic()
         code, out, err = run("run", "door", "--user", "none", "--duration", "1.5",
@@ -147,6 +216,24 @@ class BadInput(TemporaryFolder):
         self.refused("nothing.yaml", arguments=["door", "--twin", "nothing.yaml"])
         self.refused("nothing.yaml", arguments=["door", "--device", "nothing.yaml"])
         self.refused("nothing.yaml", arguments=["door", "--user", "nothing.yaml"])
+
+    def test_names_that_are_too_long(self):
+        name = 300 * "x"
+        self.refused(arguments=[name])
+        for option in ("--twin", "--device", "--user", "--summary"):
+            code, _, err = run("run", "door", "--fast", "--no-recording", option, name)
+            self.assertEqual(code, 2, f"{option} {err}")
+
+    def test_start_outside_the_box_of_the_handle(self):
+        text = self.device.read_text()
+        self.device.write_text(re.sub(r"(- name: hand\n.*\n *x: ).*", r"\1{q_min_m: 1.60, q_max_m: 1.65}",
+                                      text))
+        self.refused("hand x", "placement")
+
+    def test_a_twin_that_names_a_joint_as_the_device_does(self):
+        for file in (self.twin, self.urdf):
+            file.write_text(re.sub(r"\bhinge\b", "m4", file.read_text()))
+        self.refused("twice", "'m4'", arguments=["excavator", "--twin", self.twin])
 
     def test_missing_urdf(self):
         self.edit(self.twin, "urdf: door.urdf", "urdf: dor.urdf")
@@ -221,10 +308,12 @@ class BadInput(TemporaryFolder):
         self.assertIn("file/x", err)
 
     def test_summary_that_cannot_be_written(self):
-        code, _, err = run("run", "door", "--fast", "--no-recording", "--summary",
-                           self.folder / "no" / "s.json")
-        self.assertEqual(code, 2)
-        self.assertIn("s.json", err)
+        (self.folder / "taken.json.partial").mkdir()
+        for place in ("no/s.json", "models", "taken.json"):
+            code, _, err = run("run", "door", "--fast", "--no-recording", "--summary",
+                               self.folder / place)
+            self.assertEqual(code, 2)
+            self.assertIn(place, err)
 
     def test_port_that_is_taken(self):
         with socket.socket() as taken:
