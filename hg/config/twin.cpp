@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "hg/config/loader.h"
 #include "hg/config/read_chain.h"
 #include "hg/core/error.h"
+#include "hg/model/haptic_giant.h"
 
 namespace hg::config {
 namespace {
@@ -106,11 +106,7 @@ ConfigurationA start_of(const rendering::TwinModel& model, const Pose& T_B_root,
 }  // namespace
 
 Pose pose_of(const HandPose& hand) {
-  // [G]: C_H^B = Rz(psi) Ry(pi - s) Rz(pi + q6)
-  const auto rotation = Eigen::AngleAxisd(hand.azimuth, Eigen::Vector3d::UnitZ()) *
-                        Eigen::AngleAxisd(std::numbers::pi - hand.pitch, Eigen::Vector3d::UnitY()) *
-                        Eigen::AngleAxisd(std::numbers::pi + hand.roll, Eigen::Vector3d::UnitZ());
-  return {hand.p, rotation.toRotationMatrix()};
+  return {hand.p, model::haptic_giant::hand_orientation(hand.azimuth, hand.pitch, hand.roll)};
 }
 
 Twin load_twin(const std::filesystem::path& file) {

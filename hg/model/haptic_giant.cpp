@@ -84,13 +84,17 @@ Eigen::Vector3d elbow(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept {
   return {xy.x(), xy.y(), -kD3};
 }
 
+Eigen::Matrix3d hand_orientation(double psi, double s, double q6) noexcept {
+  return Rz(psi) * Ry(pi - s) * Rz(q6 + pi);
+}
+
 Pose hand_pose(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept {
   const double psi = q_m[0] + q_m[1] + q_m[2] + pi;
   const double s = q_m[3] + q_m[4];
   const Eigen::Vector2d reach = (kL4 * std::sin(q_m[3]) + kD6 * std::sin(s)) * e(psi);
   const double height = -kL4 * std::cos(q_m[3]) - kD6 * std::cos(s);
   return {elbow(q_p, q_m) + Eigen::Vector3d(reach.x(), reach.y(), height),
-          Rz(psi) * Ry(pi - s) * Rz(q_m[5] + pi)};
+          hand_orientation(psi, s, q_m[5])};
 }
 
 InverseStatus inverse(const Pose& T_B_H, const Eigen::Vector2d& q_p, Branch branch,

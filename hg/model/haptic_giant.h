@@ -38,6 +38,9 @@ enum class InverseStatus {
 
 std::string_view to_string(InverseStatus status) noexcept;
 
+/// R_B_H for heading psi, tilt s = q4+q5 and roll q6: Rz(psi) Ry(pi - s) Rz(q6 + pi).
+Eigen::Matrix3d hand_orientation(double psi, double s, double q6) noexcept;
+
 Pose hand_pose(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept;
 
 /// Origin of joint 4 in B.

@@ -69,18 +69,38 @@ int changed_rows(const hqp::ActiveSet& a, const hqp::ActiveSet& b, int first, in
 }  // namespace
 
 void check(const DeviceModel& device, const TwinModel& twin, const Options& options) {
-  if (!(options.dt > 0.0)) throw SetupError("rendering: the period must be positive");
-  if (device.n_m != 6) {
-    throw SetupError("device: the rendering needs six manipulator joints, got " +
-                     std::to_string(device.n_m));
+  const auto require = [](bool ok, const std::string& text) {
+    if (!ok) throw SetupError(text);
+  };
+  require(options.dt > 0.0, "rendering: the period must be positive");
+  require(device.n_m == 6,
+          "device: the rendering needs six manipulator joints, got " + std::to_string(device.n_m));
+  require(device.n_p + device.n_m == device.chain.nv(),
+          "device: gantry and manipulator must be all joints of the chain");
+  require(device.handle >= 0, "device: a handle frame is needed");
+  require(device.joint_limits.size() == static_cast<std::size_t>(device.n_m),
+          "device: one limit per manipulator joint is needed");
+  for (int i = 0; i < device.n_m; ++i) {
+    limits::check(device.joint_limits[static_cast<std::size_t>(i)],
+                  "joint " + device.manipulator_joint(i));
   }
-  if (twin.chain.nv() > kMaxTwin) {
-    throw SetupError("twin: at most " + std::to_string(kMaxTwin) + " degrees of freedom, got " +
-                     std::to_string(twin.chain.nv()));
+  for (const VirtualJoint& joint : device.virtual_joints) {
+    require(joint.weights.size() == device.n_m, joint.name + ": one weight per manipulator joint");
+    limits::check(joint.limits, joint.name);
   }
-  if (twin.locks.size() > static_cast<std::size_t>(kMaxLocks)) {
-    throw SetupError("twin: at most " + std::to_string(kMaxLocks) + " locks");
+  for (const CartesianLimit& frame : device.cartesian_limits) {
+    for (const limits::JointLimits& axis : frame.axes) limits::check(axis, frame.name);
   }
+
+  const auto n_a = static_cast<std::size_t>(twin.chain.nv());
+  require(n_a <= kMaxTwin, "twin: at most " + std::to_string(kMaxTwin) +
+                               " degrees of freedom, got " + std::to_string(n_a));
+  require(twin.end_effector >= 0, "twin: an end effector is needed");
+  require(twin.q_start.size() == twin.chain.nq(), "twin: one start value per coordinate is needed");
+  require(twin.dofs.size() == n_a, "twin: one entry per degree of freedom is needed");
+  for (const TwinDof& dof : twin.dofs) limits::check(dof.limits, "twin joint " + dof.name);
+  require(twin.locks.size() <= static_cast<std::size_t>(kMaxLocks),
+          "twin: at most " + std::to_string(kMaxLocks) + " locks");
 }
 
 Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options)

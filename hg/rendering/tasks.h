@@ -57,7 +57,6 @@ class Tasks {
   const hqp::Problem& problem() const noexcept { return problem_; }
   const std::vector<LimitRow>& limit_rows() const noexcept { return limit_rows_; }
   int first_limit_row() const noexcept { return 6; }
-  int last_level() const noexcept { return problem_.levels() - 1; }
   /// Level 0's right-hand side (11): how H has to accelerate relative to E.
   const Vector6& synchronisation() const noexcept { return s_; }
   /// M_a = L L^T of this cycle.

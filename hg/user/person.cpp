@@ -1,20 +1,16 @@
 #include "hg/user/person.h"
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "hg/core/error.h"
 #include "hg/core/rotation.h"
+#include "hg/model/haptic_giant.h"
 
 namespace hg::user {
 namespace {
 
 constexpr double kGoalStep = 1e-4;  // s, for the velocity of the goal by differences
-
-Eigen::Matrix3d rotation(double angle, const Eigen::Vector3d& axis) noexcept {
-  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-}
 
 Eigen::Vector3d clipped(const Eigen::Vector3d& v, double longest) noexcept {
   const double norm = v.norm();
@@ -49,11 +45,8 @@ Pose Person::channel_pose(const std::array<double, kChannels>& channels) noexcep
   Pose pose;
   switch (config_.script.frame) {
     case ScriptFrame::kBase:
-      // [G]: R_B_H = Rz(azimuth) Ry(pi - s) Rz(pi + q6)
       pose.p = {channels[0], channels[1], channels[2]};
-      pose.R = rotation(channels[3], Eigen::Vector3d::UnitZ()) *
-               rotation(std::numbers::pi - channels[4], Eigen::Vector3d::UnitY()) *
-               rotation(std::numbers::pi + channels[5], Eigen::Vector3d::UnitZ());
+      pose.R = model::haptic_giant::hand_orientation(channels[3], channels[4], channels[5]);
       return pose;
     case ScriptFrame::kCylindrical:
       pose.p = T_B_twin_.p + T_B_twin_.R * Eigen::Vector3d(channels[1] * std::cos(channels[0]),

@@ -471,6 +471,18 @@ TEST(Rendering, AStepMakesNoAllocation) {
   EXPECT_EQ(record.solver_status, SolverStatus::kSolved);
 }
 
+TEST(Rendering, RefusesModelsThatDoNotFitTogether) {
+  DeviceModel device = unlimited_device();
+  device.joint_limits.pop_back();
+  EXPECT_THROW(Rendering(device, golden_twin(), {}), SetupError);
+  device = unlimited_device();
+  device.joint_limits[2] = {1.0, -1.0, 1.0, 1.0};
+  EXPECT_THROW(Rendering(device, golden_twin(), {}), SetupError);
+  TwinModel twin = golden_twin();
+  twin.dofs.pop_back();
+  EXPECT_THROW(Rendering(unlimited_device(), twin, {}), SetupError);
+}
+
 TEST(Rendering, RefusesADeviceWithoutSixManipulatorJoints) {
   DeviceModel device = unlimited_device();
   device.n_p = 3;
