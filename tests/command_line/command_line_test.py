@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import termios
+import threading
 import time
 import unittest
 
@@ -32,6 +33,16 @@ def run(*arguments, timeout=120):
     done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
                           timeout=timeout, stdin=subprocess.DEVNULL)
     return done.returncode, done.stdout, done.stderr
+
+
+def drain(terminal):
+    """Reads what a terminal shows until it closes."""
+    shown = b""
+    with contextlib.suppress(OSError):  # how a terminal ends
+        while part := os.read(terminal, 4096):
+            shown += part
+    os.close(terminal)
+    return shown
 
 
 class TemporaryFolder(unittest.TestCase):
@@ -130,15 +141,39 @@ class MainJob(TemporaryFolder):
         process = subprocess.Popen([PROGRAM, "run", "door", "--no-viewer", "--no-recording",
                                     "--duration", "1"], stdout=secondary)
         os.close(secondary)
-        shown = b""
-        with contextlib.suppress(OSError):  # the end of a terminal
-            while part := os.read(primary, 4096):
-                shown += part
-        os.close(primary)
+        shown = drain(primary)
         process.wait(timeout=20)
         lines = re.findall(rb"\r\x1b\[K([^\r\n\x1b]+)", shown)
         self.assertTrue(lines)
         self.assertEqual(max(map(len, lines)), 39)
+
+    def test_a_terminal_without_page_ends_after_the_script(self):
+        shutil.copytree(MODELS, self.folder / "models")  # the page is looked for beside models
+        scenario = self.folder / "models/scenarios/door.yaml"
+        scenario.write_text(scenario.read_text().replace("duration_s: 14", "duration_s: 0.5"))
+        script = self.folder / "models/scripts/door.yaml"
+        script.write_text(re.sub(r"(?m)^duration_s: .*", "duration_s: 1", script.read_text()))
+        primary, secondary = pty.openpty()
+        process = subprocess.Popen([PROGRAM, "run", "door", "--no-recording"], stdout=secondary,
+                                   cwd=self.folder)
+        os.close(secondary)
+        self.addCleanup(os.close, primary)
+        self.addCleanup(process.kill)
+        threading.Thread(target=drain, args=[os.dup(primary)], daemon=True).start()
+        self.assertEqual(process.wait(timeout=30), 1)  # events are missing
+
+    def test_a_page_needs_no_box_around_the_handle(self):
+        shutil.copytree(MODELS, self.folder / "models")
+        device = self.folder / "models/haptic_giant/device.yaml"
+        text = device.read_text()
+        for without in (text.replace("x: {q_min_m: -1.65,", "x: {q_min_m: -.inf,"),
+                        re.sub(r"cartesian_limits:\n(  .*\n)*", "", text)):
+            self.assertNotEqual(without, text)
+            device.write_text(without)
+            code, out, err = run("run", "door", "--device", device, "--user", "none", "--duration",
+                                 "0.2", "--no-recording")
+            self.assertEqual((code, err), (0, ""), out)
+            self.assertIn("http://127.0.0.1:", out)
 
     def test_the_summary_may_go_to_something_that_is_no_file(self):
         pipe = self.folder / "pipe"
