@@ -96,7 +96,7 @@ struct Observers {
 void announce(Observers& observers, const evaluation::Event& event) {
   observers.summary.add(event);
   observers.status_line.print(
-      fmt::format("{:8.3f} s  {:<14} {}", event.time_s, event.name, event.what));
+      fmt::format("{:8.3f} s  {:<18} {}", event.time_s, event.name, event.what));
   if (observers.recorder) observers.recorder->event(event.time_s, event.name, event.what);
   if (observers.viewer) observers.viewer->announce_event(event.time_s, event.name, event.what);
 }
