@@ -58,10 +58,13 @@ void catch_reversals(const TwinModel& twin, const TwinState& state, double dt,
   }
 }
 
+// rows that begin or cease to act; a lock whose reaction changes its sign does neither
 int changed_rows(const hqp::ActiveSet& a, const hqp::ActiveSet& b, int first, int count) noexcept {
   int changes = 0;
   for (int i = first; i < first + count; ++i) {
-    if (a.state[static_cast<std::size_t>(i)] != b.state[static_cast<std::size_t>(i)]) ++changes;
+    const auto row = static_cast<std::size_t>(i);
+    const bool acted = a.state[row] != hqp::RowState::kInactive;
+    if (acted != (b.state[row] != hqp::RowState::kInactive)) ++changes;
   }
   return changes;
 }
