@@ -51,8 +51,11 @@ function arc(handle, hinge, angles) {
 
 const command = process.argv.length > 2 ? process.argv.slice(2) : demo;
 const program = await start_program(command);
-const { page, problems, close } = await open_page(program.link);
+let close = () => {};
 try {
+  const opened = await open_page(program.link);
+  const { page, problems } = opened;
+  close = opened.close;
   await page.waitForFunction(() => window.hapticgiant?.frame, null, { timeout: 30_000 });
   const rate = await best_rate(page);
   expect(rate >= SMALLEST_RATE, `${rate} frames per second arrive (at least ${SMALLEST_RATE})`);
