@@ -19,7 +19,7 @@ struct MonitorConfig {
   double cartesian_tolerance = 0.03;  ///< outside a Cartesian limit, m
   double speed_tolerance = 1.1;       ///< times the rating
   double tracking_tolerance = 0.08;   ///< reference minus measured joint, rad
-  double sync_tolerance = 0.02;         ///< between handle and twin, m
+  double sync_tolerance = 0.02;       ///< between handle and twin, m
   double gantry_speed_max = 1.5;      ///< m/s
   std::vector<Interval> joint_range;  ///< of the manipulator joints
   int first_cartesian = 0;  ///< Cartesian limits in the catalogue: first and one past the last
