@@ -19,6 +19,7 @@
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
 #include "hg/evaluation/summary.h"
 #include "hg/runtime/runtime.h"
@@ -175,7 +176,8 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   runtime::Options options;
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = arguments.is_fast;
-  options.duration_s = arguments.duration_s.value_or(goes_on ? 0.0 : planned_duration_s(scenario));
+  options.duration_s =
+      arguments.duration_s.value_or(goes_on ? 0.0 : assembly::planned_duration_s(scenario));
   if (arguments.is_fast && options.duration_s == 0.0) {
     throw SetupError("run: --fast without a script needs --duration S");
   }
@@ -207,8 +209,8 @@ int run(const RunArguments& arguments) {
   check_writable(arguments.summary);
   const config::Scenario scenario = make_scenario(arguments);
   handle_signals();
-  cycle::Cycle cycle = make_cycle(scenario);
-  device::SimulatedDevice device = make_simulated_device(scenario);
+  cycle::Cycle cycle = assembly::make_cycle(scenario);
+  device::SimulatedDevice device = assembly::make_simulated_device(scenario);
   auto viewer = make_viewer(scenario, arguments);
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && viewer != nullptr;
@@ -221,7 +223,7 @@ int run(const RunArguments& arguments) {
       .viewer = std::move(viewer),
       .recorder = make_recorder(scenario, arguments),
       .is_fast = arguments.is_fast,
-      .script_end_s = options.duration_s == 0.0 ? planned_duration_s(scenario) : 0.0};
+      .script_end_s = options.duration_s == 0.0 ? assembly::planned_duration_s(scenario) : 0.0};
 
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, scenario.title));
   if (observers.viewer) print_out(fmt::format("page        {}\n", observers.viewer->url()));

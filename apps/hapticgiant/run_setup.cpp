@@ -11,8 +11,8 @@
 
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/assembly/start_posture.h"
 #include "hg/core/error.h"
-#include "hg/model/haptic_giant.h"
 #include "hg/rendering/catalogue.h"
 
 namespace hg::apps {
@@ -60,101 +60,6 @@ void apply(const RunArguments& arguments, config::Scenario& scenario) {
     add_sources(scenario.script.sources);
   } else if (!arguments.twin.empty()) {
     scenario.person = user::PersonKind::kMouse;  // a script is made for one twin
-  }
-}
-
-struct Start {
-  Pose T_B_H;
-  Eigen::Vector2d q_p;
-  Vector6 q_m;
-};
-
-Pose handle_start(const rendering::TwinModel& twin) {
-  model::Chain chain = twin.chain;
-  chain.update_kinematics(twin.q_start, VectorA::Zero(chain.nv()));
-  return chain.pose(twin.end_effector);
-}
-
-// throws SetupError when the device may not be at `start`
-void check_limits(const config::Scenario& scenario, const Start& start) {
-  const rendering::DeviceModel& device = scenario.device.model;
-  const auto require = [&](const std::string& item, double value,
-                           const limits::JointLimits& limits) {
-    if (value >= limits.q_min && value <= limits.q_max) return;
-    throw SetupError(fmt::format(
-        "twin {}: at its start {} of the device would be at {:.3f}, outside {:.3f} .. {:.3f}; move "
-        "or turn the twin's placement",
-        scenario.twin.name, item, value, limits.q_min, limits.q_max));
-  };
-  for (int i = 0; i < 6; ++i) {
-    require("joint " + device.manipulator_joint(i), start.q_m[i],
-            device.joint_limits[static_cast<std::size_t>(i)]);
-  }
-  for (const rendering::VirtualJoint& joint : device.virtual_joints) {
-    require(joint.name, joint.weights.dot(start.q_m), joint.limits);
-  }
-
-  model::Chain chain = device.chain;
-  Eigen::Matrix<double, 8, 1> q;
-  q << start.q_p, start.q_m;
-  chain.update_kinematics(q, Eigen::Matrix<double, 8, 1>::Zero());
-  for (const rendering::CartesianLimit& limit : device.cartesian_limits) {
-    const Eigen::Vector3d p = chain.pose(limit.frame).p;
-    for (int axis = 0; axis < 3; ++axis) {
-      require(limit.name + " " + "xyz"[axis], p[axis], limit.axes[static_cast<std::size_t>(axis)]);
-    }
-  }
-}
-
-// the device, in its best posture, with the handle where the twin's end effector starts
-Start start_of(const config::Scenario& scenario) {
-  Start start;
-  start.T_B_H = handle_start(scenario.twin.model);
-  const auto require_solved = [&](model::haptic_giant::InverseStatus status, const char* what) {
-    if (status == model::haptic_giant::InverseStatus::kSolved) return;
-    const Eigen::Vector3d& p = start.T_B_H.p;
-    throw SetupError(
-        fmt::format("twin {}: {} its handle at ({:.2f}, {:.2f}, {:.2f}) m: {}; move the "
-                    "twin's placement",
-                    scenario.twin.name, what, p.x(), p.y(), p.z(), to_string(status)));
-  };
-  require_solved(model::haptic_giant::inverse_at_target(start.T_B_H, start.q_p, start.q_m),
-                 "the device cannot reach");
-  for (int i = 0; i < 2; ++i) {
-    const Interval range = scenario.device.prepositioning.q_limits[static_cast<std::size_t>(i)];
-    start.q_p[i] = std::clamp(start.q_p[i], range.lb, range.ub);
-  }
-  require_solved(model::haptic_giant::inverse(start.T_B_H, start.q_p, {}, start.q_m),
-                 "the gantry's reach ends before");
-  check_limits(scenario, start);
-  return start;
-}
-
-// channels that the script leaves open begin where the handle is
-void fill_in_start(const config::Scenario& scenario, const Start& start, user::Script& script) {
-  std::array<double, user::kPoseChannels> pose{};
-  switch (script.frame) {
-    case user::ScriptFrame::kBase:
-      pose = {start.T_B_H.p.x(),
-              start.T_B_H.p.y(),
-              start.T_B_H.p.z(),
-              model::haptic_giant::nearest_turn(start.q_m.head<3>().sum() + M_PI, 0.0),
-              start.q_m[3] + start.q_m[4],
-              start.q_m[5]};
-      break;
-    case user::ScriptFrame::kCylindrical: {
-      const Eigen::Vector3d p = (inverse(scenario.twin.T_B_root) * start.T_B_H).p;
-      pose = {std::atan2(p.y(), p.x()), std::hypot(p.x(), p.y()), p.z()};
-      break;
-    }
-    case user::ScriptFrame::kTwinJoints: {
-      const ConfigurationA& q = scenario.twin.model.q_start;
-      std::copy_n(q.data(), std::min<Eigen::Index>(q.size(), user::kPoseChannels), pose.begin());
-      break;
-    }
-  }
-  for (std::size_t i = 0; i < pose.size(); ++i) {
-    if (!scenario.script.start_given[i]) script.start[i] = pose[i];
   }
 }
 
@@ -207,7 +112,7 @@ std::string changes(const RunArguments& arguments) {
 // where the handle may be; on axes without limits the page shows 4 m around its start
 Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
   constexpr double kHalf = 2.0;  // m
-  const Eigen::Vector3d p = handle_start(scenario.twin.model).p;
+  const Eigen::Vector3d p = assembly::handle_start(scenario.twin.model).p;
   Eigen::Vector3d lower = Eigen::Vector3d::Constant(-kInfinity);
   Eigen::Vector3d upper = Eigen::Vector3d::Constant(kInfinity);
   for (const rendering::CartesianLimit& limit : scenario.device.model.cartesian_limits) {
@@ -232,37 +137,6 @@ config::Scenario make_scenario(const RunArguments& arguments) {
   apply(arguments, scenario);
   if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
   return scenario;
-}
-
-cycle::Cycle make_cycle(const config::Scenario& scenario) {
-  const config::Device& device = scenario.device;
-  return cycle::Cycle({.estimation = device.estimation,
-                       .prepositioning = device.prepositioning,
-                       .rendering = device.rendering,
-                       .monitor = device.monitor},
-                      device.model, scenario.twin.model);
-}
-
-device::SimulatedDevice make_simulated_device(const config::Scenario& scenario) {
-  const config::Device& device = scenario.device;
-  const Start start = start_of(scenario);
-  user::Config person{scenario.person, scenario.script.hand, scenario.script.script};
-  if (scenario.person == user::PersonKind::kScript) fill_in_start(scenario, start, person.script);
-
-  const simulation::Config config{.dt = device.rendering.dt,
-                                  .drive = device.drive,
-                                  .T_H_S = device.T_H_S,
-                                  .q_m_start = start.q_m,
-                                  .q_p_start = start.q_p};
-  return device::SimulatedDevice(simulation::Simulation(
-      config, device.model.chain, device.model.handle,
-      user::Person(person, scenario.twin.model.chain, scenario.twin.model.end_effector,
-                   scenario.twin.T_B_root)));
-}
-
-double planned_duration_s(const config::Scenario& scenario) {
-  if (scenario.person != user::PersonKind::kScript) return 0.0;
-  return std::max(scenario.duration_s, scenario.script.script.duration_s);
 }
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,

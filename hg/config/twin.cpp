@@ -109,6 +109,23 @@ Pose pose_of(const HandPose& hand) {
   return {hand.p, model::haptic_giant::hand_orientation(hand.azimuth, hand.pitch, hand.roll)};
 }
 
+HandPose hand_of(const Pose& pose) {
+  constexpr double kVertical = 1e-9;  // sine of the tilt below which azimuth and roll are one
+  const Eigen::Matrix3d& R = pose.R;
+  const double sine = std::hypot(R(0, 2), R(1, 2));
+  HandPose hand;
+  hand.p = pose.p;
+  hand.pitch = M_PI - std::atan2(sine, R(2, 2));
+  if (sine > kVertical) {
+    hand.azimuth = std::atan2(R(1, 2), R(0, 2));
+    hand.roll = std::remainder(std::atan2(R(2, 1), -R(2, 0)) - M_PI, 2.0 * M_PI);
+  } else {
+    const double turn = std::atan2(R(1, 0), R(0, 0));
+    hand.azimuth = std::remainder(R(2, 2) > 0.0 ? turn - M_PI : turn, 2.0 * M_PI);
+  }
+  return hand;
+}
+
 Twin load_twin(const std::filesystem::path& file) {
   SourceReader reader;
   return load_twin(file, reader);

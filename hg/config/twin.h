@@ -32,5 +32,7 @@ struct HandPose {
   double roll = 0.0;
 };
 Pose pose_of(const HandPose& hand);
+/// The hand of a pose, pitch in [0, pi]; at 0 and pi, where only a sum is determined, roll is 0.
+HandPose hand_of(const Pose& pose);
 
 }  // namespace hg::config

@@ -13,6 +13,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,9 +40,20 @@ struct Joint {
   double effort_max = kInfinity;    ///< Nm or N
 };
 
+/// What is screwed onto a link of a chain: a handle with its force/torque sensor, for example.
+struct Tool {
+  std::string link;                                   ///< of the URDF, to which it is fixed
+  std::string handle = "handle";                      ///< name of the frame that it adds
+  Pose T_link_handle;                                 ///< that frame in the link
+  double mass = 0.0;                                  ///< kg, >= 0
+  Eigen::Vector3d p_com = Eigen::Vector3d::Zero();    ///< m, in the link
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about the COM, axes of the link
+};
+
 struct ChainOptions {
-  Pose T_B_root;               ///< placement of the root link in frame B
-  bool gravity = true;         ///< false: c() and inverse_dynamics() are without gravity
+  Pose T_B_root;        ///< placement of the root link in frame B
+  bool gravity = true;  ///< false: c() and inverse_dynamics() are without gravity
+  std::optional<Tool> tool;
   bool floating_root = false;  ///< true: the root link moves freely in B by a floating joint "root"
 };
 

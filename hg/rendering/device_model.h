@@ -38,6 +38,9 @@ struct DeviceModel {
   std::vector<limits::JointLimits> joint_limits;  ///< of the manipulator joints
   std::vector<VirtualJoint> virtual_joints;
   std::vector<CartesianLimit> cartesian_limits;  ///< highest priority first
+  /// Goals of the manipulator joints (n_m, or empty: none), NaN = no goal. The gantry moves so that
+  /// they are reached; a manipulator with more joints than the task needs moves there by itself.
+  VectorM posture;
 
   const std::string& manipulator_joint(int i) const {
     return chain.joints()[static_cast<std::size_t>(n_p + i)].name;

@@ -1,14 +1,33 @@
 /// Parameters of the rendering law.
 #pragma once
 
+#include <cstdint>
+
 namespace hg::rendering {
 
+/// How limits become forces; docs/law.md.
+enum class Law : std::uint8_t {
+  kGauss,  ///< Gauss' principle of least constraint as the last level
+  kPaper,  ///< [HG] (20)-(26) with constraint torques as unknowns; needs six manipulator joints
+};
+
+/// How limits become bounds on accelerations.
+enum class Bounds : std::uint8_t {
+  kRecoverable,  ///< bounds R
+  kPaper,        ///< [HG]: A for joints, C for virtual joints and frames, B as levels of their own
+};
+
 struct Options {
-  double dt = 1e-3;      ///< nominal period, s; integration uses it
-  double kP_tran = 400;  ///< synchronisation (11), 1/s^2; double pole at 20 rad/s with kD
-  double kD_tran = 40;   ///< 1/s
-  double kP_rot = 400;   ///< 1/s^2
-  double kD_rot = 40;    ///< 1/s
+  Law law = Law::kGauss;
+  Bounds bounds = Bounds::kRecoverable;
+  double T_C = 20e-3;      ///< horizon of bounds C, s; the period, as printed in (8), bounces
+  double dt = 1e-3;        ///< nominal period, s; integration uses it
+  double kP_tran = 400;    ///< synchronisation (11), 1/s^2; double pole at 20 rad/s with kD
+  double kD_tran = 40;     ///< 1/s
+  double kP_rot = 400;     ///< 1/s^2
+  double kD_rot = 40;      ///< 1/s
+  double kP_posture = 25;  ///< of joints that the task leaves free, 1/s^2; double pole at 5 rad/s
+  double kD_posture = 10;  ///< 1/s
 };
 
 }  // namespace hg::rendering

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/hapticgiant/run_setup.h"
+#include "hg/assembly/assembly.h"
 #include "hg/core/allocation_counter.h"
 #include "hg/evaluation/events.h"
 #include "hg/evaluation/summary.h"
@@ -57,15 +58,15 @@ class ScenarioRun {
 
   explicit ScenarioRun(config::Scenario scenario)
       : scenario_(std::move(scenario)),
-        cycle_(apps::make_cycle(scenario_)),
-        device_(apps::make_simulated_device(scenario_)),
+        cycle_(assembly::make_cycle(scenario_)),
+        device_(assembly::make_simulated_device(scenario_)),
         detector_(scenario_.events, scenario_.limits),
         summary_(scenario_.limits) {}
 
   /// Plays until the script has played, or `seconds` of it; `look` sees every sample.
   void play(const std::function<void(const Sample&)>& look = {}, double seconds = 1e9) {
     auto sample = std::make_unique<Sample>();
-    const double end = std::min(seconds, apps::planned_duration_s(scenario_));
+    const double end = std::min(seconds, assembly::planned_duration_s(scenario_));
     do {
       device_.read(sample->sensors);
       {

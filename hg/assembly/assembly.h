@@ -1,0 +1,20 @@
+/// From a loaded scenario to the parts of a run.
+#pragma once
+
+#include "hg/config/scenario.h"
+#include "hg/cycle/cycle.h"
+#include "hg/device/simulated_device.h"
+
+namespace hg::assembly {
+
+/// The control cycle of the scenario's device and twin. Throws SetupError.
+cycle::Cycle make_cycle(const config::Scenario& scenario);
+
+/// A simulated device that starts where the twin starts, held by the scenario's person. Throws
+/// SetupError when the device cannot reach that pose.
+device::SimulatedDevice make_simulated_device(const config::Scenario& scenario);
+
+/// Seconds until everything planned has happened; 0 = nothing is planned.
+double planned_duration_s(const config::Scenario& scenario);
+
+}  // namespace hg::assembly

@@ -1,0 +1,23 @@
+/// Where a run starts: the twin at its start, the device with its handle there.
+#pragma once
+
+#include "hg/config/scenario.h"
+#include "hg/core/types.h"
+#include "hg/rendering/twin_model.h"
+
+namespace hg::assembly {
+
+struct Start {
+  Pose T_B_H;   ///< handle = end effector of the twin at its start
+  VectorP q_p;  ///< gantry
+  VectorM q_m;  ///< manipulator
+};
+
+/// Pose of the twin's end effector at its start.
+Pose handle_start(const rendering::TwinModel& twin);
+
+/// The device in its best posture with the handle where the twin's end effector starts. Throws
+/// SetupError, saying what to change, when the device cannot be there within its limits.
+Start find_start(const config::Scenario& scenario);
+
+}  // namespace hg::assembly
