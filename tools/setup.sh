@@ -90,18 +90,23 @@ fi
 
 # --- wheels ------------------------------------------------------------------------------------
 # The programs of a .venv name its folder: one that was moved, or whose python is gone, is remade.
-stamp=.venv/.hapticgiant-requirements
 if [ -d .venv ] && ! { .venv/bin/python -c '' && grep -qF "$PWD/.venv/bin/" .venv/bin/pip; } \
     >/dev/null 2>&1; then
   say "removing a .venv that does not work here"
   rm -rf .venv
 fi
 install_wheels() { .venv/bin/python -m pip install --quiet --disable-pip-version-check -r "$1"; }
-if ! cmp -s tools/requirements.txt "$stamp"; then
-  say "installing wheels into .venv (Pinocchio, Coal, Eigen, Boost headers)"
+install_list() {  # install_list LIST STAMP WHAT
+  if cmp -s "$1" "$2"; then return; fi
+  say "installing wheels into .venv ($3)"
   [ -d .venv ] || "$(find_python)" -m venv .venv
-  install_wheels tools/requirements.txt
-  cp tools/requirements.txt "$stamp"
+  install_wheels "$1"
+  cp "$1" "$2"
+}
+install_list tools/requirements.txt .venv/.hapticgiant-requirements \
+  "Pinocchio, Coal, Eigen, Boost headers"
+if [ "$purpose" = test ]; then
+  install_list tools/requirements-test.txt .venv/.hapticgiant-requirements-test "robots for tests"
 fi
 
 # --- viewer page -------------------------------------------------------------------------------
