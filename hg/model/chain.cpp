@@ -14,7 +14,9 @@
 
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
+#include "hg/model/tool.h"
 #include "hg/model/urdf.h"
+#include "hg/model/urdf_parts.h"
 
 namespace hg::model {
 namespace {
@@ -205,7 +207,9 @@ class Builder {
         if (j.parent != at.link || j.type == UrdfJointType::kFixed) continue;
         if (found != nullptr) {
           fail(j.line, "link " + link(at.link).name + ": branches into the joints " + found->name +
-                           " and " + j.name + ", only serial chains are supported");
+                           " and " + j.name +
+                           "; name the last link of the chain with tip_link (and its first "
+                           "with root_link): the other joints then stand still");
         }
         found = &j;
         T_joint_next_ = at.T_joint_link * to_SE3(j.T_parent_joint);
@@ -216,19 +220,34 @@ class Builder {
 
   pinocchio::JointIndex add(Assembly& chain, pinocchio::JointIndex parent,
                             const UrdfJoint& j) const {
+    if (j.mimic_line > 0)
+      fail(j.mimic_line, "joint " + j.name + ": mimic joints are not supported");
+    if (j.type != UrdfJointType::kPlanar) return add(chain, parent, j, T_joint_next_, "");
+    pinocchio::SE3 placement = T_joint_next_;
+    for (const UrdfJoint& part : planar_parts(j)) {
+      parent = add(chain, parent, part, placement, j.name);
+      placement.setIdentity();
+    }
+    return parent;
+  }
+
+  static pinocchio::JointIndex add(Assembly& chain, pinocchio::JointIndex parent,
+                                   const UrdfJoint& j, const pinocchio::SE3& placement,
+                                   const std::string& planar) {
     Joint joint = {.name = j.name,
                    .position = j.position,
                    .velocity_max = j.velocity_max,
-                   .effort_max = j.effort_max};
+                   .effort_max = j.effort_max,
+                   .planar = planar};
     if (j.type == UrdfJointType::kFloating) {
       joint.type = JointType::kFloating;
-      return chain.add_joint(parent, joint, pinocchio::JointModelFreeFlyer(), T_joint_next_);
+      return chain.add_joint(parent, joint, pinocchio::JointModelFreeFlyer(), placement);
     }
     joint.type = j.type == UrdfJointType::kPrismatic    ? JointType::kPrismatic
                  : j.type == UrdfJointType::kContinuous ? JointType::kContinuous
                                                         : JointType::kRevolute;
     const bool turns = j.type != UrdfJointType::kPrismatic;
-    return chain.add_joint(parent, joint, scalar_joint(turns, j.axis), T_joint_next_);
+    return chain.add_joint(parent, joint, scalar_joint(turns, j.axis), placement);
   }
 
   void refuse_massless(pinocchio::JointIndex joint, const UrdfLink& body,
@@ -246,7 +265,9 @@ class Builder {
 };
 
 Assembly build(const Urdf& urdf, const ChainOptions& options) {
-  Assembly chain = Builder(urdf, options).build();
+  Urdf part = serial_part(urdf, options.root_link, options.tip_link);
+  if (options.tool) attach(*options.tool, part);
+  Assembly chain = Builder(part, options).build();
   if (chain.model.nv > kMaxTwin || chain.model.nq > kMaxTwinCoords) {
     throw SetupError(urdf.source + ": a chain has at most " + std::to_string(kMaxTwin) +
                      " degrees of freedom, got " + std::to_string(chain.model.nv));

@@ -1,10 +1,10 @@
 /// A serial kinematic chain: poses, Jacobians and dynamics of devices and twins.
 ///
-/// Joints are revolute, continuous, prismatic or floating; fixed joints merge their links. A
-/// continuous joint has one unwrapped coordinate. A floating joint has seven coordinates (x y z qx
-/// qy qz qw: pose of the child in its parent) and six velocities (twist of the child, resolved in
-/// the child). All results are resolved in frame B, wrenches and twists linear part first. Units
-/// SI.
+/// Joints are revolute, continuous, prismatic or floating; fixed joints merge their links, planar
+/// ones become three scalar joints. A continuous joint has one unwrapped coordinate. A floating
+/// joint has seven coordinates (x y z qx qy qz qw: pose of the child in its parent) and six
+/// velocities (twist of the child, resolved in the child). All results are resolved in frame B,
+/// wrenches and twists linear part first. Units SI.
 ///
 /// Set-up throws SetupError, `file:line: item: rule, got value`. After it nothing allocates or
 /// throws. Accessors return the results of the last update. One chain serves one thread; copy it
@@ -38,6 +38,7 @@ struct Joint {
   Interval position;                ///< rad or m; unbounded where the URDF gives no limit
   double velocity_max = kInfinity;  ///< rad/s or m/s
   double effort_max = kInfinity;    ///< Nm or N
+  std::string planar;  ///< planar joint of the URDF that this one is a part of; see urdf_parts.h
 };
 
 /// What is screwed onto a link of a chain: a handle with its force/torque sensor, for example.
@@ -55,6 +56,8 @@ struct ChainOptions {
   bool gravity = true;  ///< false: c() and inverse_dynamics() are without gravity
   std::optional<Tool> tool;
   bool floating_root = false;  ///< true: the root link moves freely in B by a floating joint "root"
+  /// The serial part of a branched URDF, see serial_part() in urdf_parts.h; empty = all of it.
+  std::string root_link, tip_link;
 };
 
 /// A single rigid body that moves freely: a twin without a URDF.
@@ -91,7 +94,7 @@ class Chain {
   int nq() const noexcept;                   ///< number of coordinates
   int nv() const noexcept;                   ///< number of velocities, <= nq
   const std::vector<Joint>& joints() const noexcept;
-  const std::vector<std::string>& frame_names() const noexcept;  ///< every link of the URDF
+  const std::vector<std::string>& frame_names() const noexcept;  ///< every link of the part
 
   /// Index for the accessors below; throws SetupError with the nearest valid name.
   int frame(std::string_view name) const;

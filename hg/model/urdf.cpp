@@ -20,12 +20,13 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr std::array<std::pair<std::string_view, UrdfJointType>, 5> kJointTypes = {{
+constexpr std::array<std::pair<std::string_view, UrdfJointType>, 6> kJointTypes = {{
     {"fixed", UrdfJointType::kFixed},
     {"revolute", UrdfJointType::kRevolute},
     {"continuous", UrdfJointType::kContinuous},
     {"prismatic", UrdfJointType::kPrismatic},
     {"floating", UrdfJointType::kFloating},
+    {"planar", UrdfJointType::kPlanar},
 }};
 
 std::string in_quotes(std::string_view text) {
@@ -173,10 +174,6 @@ class Reader {
       if (name == text) return type;
       names.emplace_back(name);
     }
-    if (text == "planar") {
-      fail(urdf_, e.GetLineNum(),
-           item + ": planar joints are not supported; use two prismatic and a continuous joint");
-    }
     fail(urdf_, e.GetLineNum(),
          item + ": type is unknown, got " + in_quotes(text) + ", nearest is " +
              in_quotes(nearest_name(text, names)));
@@ -229,9 +226,11 @@ class Reader {
     result.child = link_index(child(e, "child", item), item);
     result.T_parent_joint = origin(e, item);
     result.axis = axis(e, item);
-    if (result.type != UrdfJointType::kFloating) limits(e, item, result);
+    const bool is_scalar =
+        result.type != UrdfJointType::kFloating && result.type != UrdfJointType::kPlanar;
+    if (is_scalar) limits(e, item, result);
     if (const XMLElement* mimic = e.FirstChildElement("mimic")) {
-      fail(urdf_, mimic->GetLineNum(), item + ": mimic joints are not supported");
+      result.mimic_line = mimic->GetLineNum();
     }
     return result;
   }

@@ -29,19 +29,21 @@ struct UrdfLink {
   std::optional<Inertial> inertial;
 };
 
-enum class UrdfJointType { kFixed, kRevolute, kContinuous, kPrismatic, kFloating };
+enum class UrdfJointType { kFixed, kRevolute, kContinuous, kPrismatic, kFloating, kPlanar };
 
 struct UrdfJoint {
   std::string name;
   int line = 0;
   UrdfJointType type = UrdfJointType::kFixed;
-  int parent = 0;                                   ///< index of a link
-  int child = 0;                                    ///< index of a link
-  Pose T_parent_joint;                              ///< at position 0
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit vector in the joint frame
-  Interval position;                                ///< rad or m
-  double velocity_max = kInfinity;                  ///< rad/s or m/s
-  double effort_max = kInfinity;                    ///< Nm or N
+  int parent = 0;       ///< index of a link
+  int child = 0;        ///< index of a link
+  Pose T_parent_joint;  ///< at position 0
+  Eigen::Vector3d axis =
+      Eigen::Vector3d::UnitX();     ///< unit vector in the joint frame; of a planar joint: normal
+  Interval position;                ///< rad or m
+  double velocity_max = kInfinity;  ///< rad/s or m/s
+  double effort_max = kInfinity;    ///< Nm or N
+  int mimic_line = 0;               ///< where it says <mimic>; 0 = nowhere
 };
 
 struct Urdf {

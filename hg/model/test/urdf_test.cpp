@@ -206,10 +206,6 @@ std::vector<Fault> faults_of_elements() {
       "unknown type", [](Text& t) { t.joint = joint_with("revolut", ""); },
       "arm.urdf:5: joint turn: type is unknown, got 'revolut', nearest is 'revolute'");
   add(
-      "planar joint", [](Text& t) { t.joint = joint_with("planar", ""); },
-      "arm.urdf:5: joint turn: planar joints are not supported; use two prismatic and a "
-      "continuous joint");
-  add(
       "limit missing", [](Text& t) { t.joint = joint_with("revolute", ""); },
       "arm.urdf:5: joint turn: <joint> needs an element <limit>");
   add(
@@ -266,8 +262,8 @@ std::vector<Fault> faults_of_shape() {
             "<joint name='other' type='continuous'><parent link='base'/><child "
             "link='tip'/></joint>";
       },
-      "arm.urdf:6: link base: branches into the joints turn and other, only serial chains are "
-      "supported");
+      "arm.urdf:6: link base: branches into the joints turn and other; name the last link of the "
+      "chain with tip_link (and its first with root_link): the other joints then stand still");
   add(
       "two roots", [](Text& t) { t.fix = ""; },
       "arm.urdf:4: link tip: is not connected to link base, a chain has one root");

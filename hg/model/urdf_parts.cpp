@@ -1,0 +1,114 @@
+#include "hg/model/urdf_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "hg/core/error.h"
+#include "hg/core/nearest_name.h"
+
+namespace hg::model {
+namespace {
+
+int find_link(const Urdf& urdf, const std::string& name, const std::string& key) {
+  std::vector<std::string> names;
+  for (const UrdfLink& link : urdf.links) {
+    if (link.name == name) return static_cast<int>(names.size());
+    names.push_back(link.name);
+  }
+  throw SetupError(urdf.source + ": " + key + " must be a link of the URDF, got '" + name +
+                   "', nearest is '" + nearest_name(name, names) + "'");
+}
+
+// index of the joint that carries a link; -1 for the root
+int joint_above(const Urdf& urdf, int link) {
+  const auto found = std::ranges::find(urdf.joints, link, &UrdfJoint::child);
+  return found == urdf.joints.end() ? -1 : static_cast<int>(found - urdf.joints.begin());
+}
+
+// indices of the joints from `tip` up to `root` (-1: to the root of the URDF)
+std::vector<int> path_between(const Urdf& urdf, int root, int tip) {
+  std::vector<int> path;
+  int link = tip;
+  while (link != root && path.size() <= urdf.joints.size()) {  // more: a loop, refused later
+    const int joint = joint_above(urdf, link);
+    if (joint < 0) {
+      if (root < 0) break;
+      throw SetupError(
+          urdf.source + ": root_link '" + urdf.links[static_cast<std::size_t>(root)].name +
+          "' does not carry tip_link '" + urdf.links[static_cast<std::size_t>(tip)].name +
+          "'; a chain goes from the root of the URDF outwards");
+    }
+    path.push_back(joint);
+    link = urdf.joints[static_cast<std::size_t>(joint)].parent;
+  }
+  return path;
+}
+
+// `urdf` without the links that do not hang on `root`
+Urdf hanging_on(const Urdf& urdf, int root) {
+  std::vector<bool> hangs(urdf.links.size(), false);
+  hangs[static_cast<std::size_t>(root)] = true;
+  for (std::size_t pass = 0; pass < urdf.joints.size(); ++pass) {
+    for (const UrdfJoint& joint : urdf.joints) {
+      if (hangs[static_cast<std::size_t>(joint.parent)]) {
+        hangs[static_cast<std::size_t>(joint.child)] = true;
+      }
+    }
+  }
+
+  Urdf part = {.name = urdf.name, .source = urdf.source, .links = {}, .joints = {}};
+  std::vector<int> index(urdf.links.size(), -1);
+  for (std::size_t i = 0; i < urdf.links.size(); ++i) {
+    if (!hangs[i]) continue;
+    index[i] = static_cast<int>(part.links.size());
+    part.links.push_back(urdf.links[i]);
+  }
+  for (UrdfJoint joint : urdf.joints) {
+    joint.parent = index[static_cast<std::size_t>(joint.parent)];
+    joint.child = index[static_cast<std::size_t>(joint.child)];
+    if (joint.parent >= 0 && part.links[static_cast<std::size_t>(joint.child)].name !=
+                                 urdf.links[static_cast<std::size_t>(root)].name) {
+      part.joints.push_back(std::move(joint));
+    }
+  }
+  return part;
+}
+
+}  // namespace
+
+Urdf serial_part(const Urdf& urdf, const std::string& root, const std::string& tip) {
+  const int root_index = root.empty() ? -1 : find_link(urdf, root, "root_link");
+  Urdf part = urdf;
+  if (!tip.empty()) {
+    const std::vector<int> path = path_between(urdf, root_index, find_link(urdf, tip, "tip_link"));
+    for (int i = 0; i < static_cast<int>(part.joints.size()); ++i) {
+      if (std::ranges::find(path, i) != path.end()) continue;
+      part.joints[static_cast<std::size_t>(i)].type = UrdfJointType::kFixed;
+    }
+  }
+  return root_index < 0 ? part : hanging_on(part, root_index);
+}
+
+std::array<UrdfJoint, 3> planar_parts(const UrdfJoint& planar) {
+  constexpr double kCos45 = 0.7071067811865476;
+  const Eigen::Vector3d& normal = planar.axis;
+  const Eigen::Vector3d nearest =
+      std::abs(normal.x()) > kCos45 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d x = (nearest - normal.dot(nearest) * normal).normalized();
+
+  std::array<UrdfJoint, 3> parts = {planar, planar, planar};
+  parts[0].name += " x";
+  parts[0].type = UrdfJointType::kPrismatic;
+  parts[0].axis = x;
+  parts[1].name += " y";
+  parts[1].type = UrdfJointType::kPrismatic;
+  parts[1].axis = normal.cross(x);
+  parts[2].name += " turn";
+  parts[2].type = UrdfJointType::kContinuous;
+  for (std::size_t i = 1; i < parts.size(); ++i) parts[i].T_parent_joint = {};
+  return parts;
+}
+
+}  // namespace hg::model
