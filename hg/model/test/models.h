@@ -1,10 +1,12 @@
 /// The chains that the tests of this module share, and random states of them.
 #pragma once
 
+#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "hg/core/error.h"
 #include "hg/model/chain.h"
 
 namespace hg::model {
@@ -15,6 +17,20 @@ inline Chain haptic_giant_chain(const ChainOptions& options = {}) {
 
 inline Chain twin_chain(const std::string& name, const ChainOptions& options = {}) {
   return Chain::from_urdf_file("models/twins/" + name + "/" + name + ".urdf", options);
+}
+
+/// The file of a robot of the wheel example-robot-data, tools/requirements-test.txt.
+inline std::filesystem::path example_robot_file(const std::string& file) {
+  for (const auto& python : std::filesystem::directory_iterator(".venv/lib")) {
+    const auto path =
+        python.path() / "site-packages/cmeel.prefix/share/example-robot-data/robots" / file;
+    if (std::filesystem::exists(path)) return path;
+  }
+  throw SetupError(file + ": no such robot; pip install -r tools/requirements-test.txt");
+}
+
+inline Chain example_robot(const std::string& file, const std::string& tip_link = "") {
+  return Chain::from_urdf_file(example_robot_file(file), {.tip_link = tip_link});
 }
 
 /// A placement that is no multiple of a right angle.

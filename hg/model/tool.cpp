@@ -1,0 +1,50 @@
+#include "hg/model/tool.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "hg/core/error.h"
+#include "hg/core/nearest_name.h"
+
+namespace hg::model {
+namespace {
+
+int find(const Urdf& urdf, const std::string& link) {
+  const auto found = std::ranges::find(urdf.links, link, &UrdfLink::name);
+  return found == urdf.links.end() ? -1 : static_cast<int>(found - urdf.links.begin());
+}
+
+}  // namespace
+
+void attach(const Tool& tool, Urdf& urdf) {
+  const int flange = find(urdf, tool.link);
+  if (flange < 0) {
+    std::vector<std::string> names;
+    for (const UrdfLink& link : urdf.links) names.push_back(link.name);
+    throw SetupError(urdf.source + ": tool: the flange must be a link of the chain, got '" +
+                     tool.link + "', nearest is '" + nearest_name(tool.link, names) + "'");
+  }
+  if (find(urdf, tool.handle) >= 0) {
+    throw SetupError(urdf.source + ": tool: the URDF has a link '" + tool.handle +
+                     "' already; give the frame of the tool another name");
+  }
+
+  // mass in the axes of the handle, which is a link of its own
+  UrdfLink link = {.name = tool.handle, .line = urdf.links[static_cast<std::size_t>(flange)].line};
+  if (tool.mass > 0.0) {
+    const Pose T_handle_link = inverse(tool.T_link_handle);
+    const Inertial inertial = {tool.mass, T_handle_link.p + T_handle_link.R * tool.p_com,
+                               T_handle_link.R * tool.inertia * T_handle_link.R.transpose()};
+    check(inertial, "tool");
+    link.inertial = inertial;
+  }
+  urdf.links.push_back(link);
+  urdf.joints.push_back({.name = tool.handle + "_fixed",
+                         .line = link.line,
+                         .type = UrdfJointType::kFixed,
+                         .parent = flange,
+                         .child = static_cast<int>(urdf.links.size()) - 1,
+                         .T_parent_joint = tool.T_link_handle});
+}
+
+}  // namespace hg::model
