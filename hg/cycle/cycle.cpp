@@ -34,13 +34,28 @@ bool stands_still(const CycleRecord& record) noexcept {
          record.robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
 }
 
+prepositioning::TargetConfig target_of(const prepositioning::Config& gantry,
+                                       const rendering::DeviceModel& device) {
+  prepositioning::TargetConfig target = {.has_closed_form = gantry.has_closed_form,
+                                         .n_p = device.n_p,
+                                         .n_m = device.n_m,
+                                         .handle = device.handle,
+                                         .goal = device.posture};
+  target.range.assign(gantry.q_limits.begin(), gantry.q_limits.begin() + device.n_p);
+  for (const limits::JointLimits& joint : device.joint_limits) {
+    target.range.push_back({joint.q_min, joint.q_max});
+  }
+  return target;
+}
+
 }  // namespace
 
 Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
              const rendering::TwinModel& twin)
     : config_(config),
       estimation_(config.estimation, device.chain, device.n_p, device.n_m, device.handle),
-      rendering_(device, twin, config.rendering) {
+      rendering_(device, twin, config.rendering),
+      gantry_target_(target_of(config.prepositioning, device), device.chain) {
   prepositioning::check(config_.prepositioning);
   state_.rendering = rendering_.start(VectorM::Zero(device.n_m));
   state_.dq_p = VectorP::Zero(device.n_p);
@@ -55,7 +70,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   // supervisor: may this sample be used, and what is the device allowed to do
   if (state_.cycle == 0) state_.next_sequence = sensors.sequence;
   const Fault fault = safety::check_sensors(config_.monitor, sensors, state_.next_sequence);
-  safety::advance(state_.supervisor, operator_input.request, sensors.dead_man, fault);
+  safety::advance(state_.supervisor, operator_input.request, is_held(sensors), fault);
 
   // estimation -> rendering -> prepositioning
   if (safety::is_finite(sensors)) {
@@ -107,11 +122,13 @@ void Cycle::render(CycleRecord& record) noexcept {
     stop_with(fault);
     return;
   }
-  const prepositioning::Command gantry = prepositioning::step(
-      config_.prepositioning, record.robot, state_.rendering.reference.q_m, state_.is_blocked);
+  const VectorP q_p_target =
+      gantry_target_.step(record.robot, state_.rendering.reference.q_m, state_.gantry_target);
+  const prepositioning::Command gantry =
+      prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked);
   record.q_p_target = gantry.q_target;
   state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
-  state_.is_blocked = rendering_.is_blocked(record);
+  state_.is_blocked = rendering_.is_blocked();
   rendering_.integrate(state_.rendering);
   if (is_stopping && stands_still(record)) safety::has_stopped(state_.supervisor);
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "hg/estimation/estimation.h"
+#include "hg/prepositioning/gantry_target.h"
 #include "hg/prepositioning/prepositioning.h"
 #include "hg/rendering/rendering.h"
 #include "hg/safety/monitor.h"
@@ -28,6 +29,7 @@ struct State {
   safety::SupervisorState supervisor;
   estimation::State estimation;
   rendering::State rendering;
+  prepositioning::TargetState gantry_target;
   VectorP dq_p;             ///< gantry command of the last cycle
   bool is_blocked = false;  ///< a device limit could not be met in the last cycle
 };
@@ -41,8 +43,15 @@ class Cycle {
   void step(const SensorFrame& sensors, const OperatorFrame& operator_input, CommandFrame& command,
             CycleRecord& record) noexcept;
 
+  /// Whether somebody holds the handle, as far as the device can tell.
+  bool is_held(const SensorFrame& sensors) const noexcept {
+    return safety::is_held(config_.monitor, sensors);
+  }
+
   const State& state() const noexcept { return state_; }
   void restore(const State& state) noexcept { state_ = state; }
+  /// What the solver was given in the last step.
+  const hqp::Problem& problem() const noexcept { return rendering_.problem(); }
 
  private:
   void hold(CycleRecord& record) noexcept;
@@ -54,6 +63,7 @@ class Cycle {
   Config config_;
   estimation::Estimation estimation_;
   rendering::Rendering rendering_;
+  prepositioning::GantryTarget gantry_target_;
   State state_;
 };
 

@@ -42,6 +42,10 @@ struct DeviceModel {
   /// they are reached; a manipulator with more joints than the task needs moves there by itself.
   VectorM posture;
 
+  /// Entries of the catalogue that belong to the device.
+  int limit_count() const {
+    return n_m + static_cast<int>(virtual_joints.size() + 3 * cartesian_limits.size());
+  }
   const std::string& manipulator_joint(int i) const {
     return chain.joints()[static_cast<std::size_t>(n_p + i)].name;
   }

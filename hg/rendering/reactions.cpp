@@ -12,12 +12,7 @@ namespace {
 constexpr double kFeltMin = 0.1;
 
 hqp::Capacity capacity_for(int limits, int n_a) {
-  return {.variables = limits, .levels = 3, .rows = 2 * limits + n_a};
-}
-
-int limit_count(const DeviceModel& device) {
-  return device.n_m + static_cast<int>(device.virtual_joints.size()) +
-         3 * static_cast<int>(device.cartesian_limits.size());
+  return {.variables = limits, .levels = 4, .rows = 2 * limits + 1 + n_a};
 }
 
 LimitState limit_state(hqp::RowState state, double reaction) noexcept {
@@ -52,19 +47,19 @@ bool is_upper_side(hqp::RowState state, double reaction) noexcept {
   return false;
 }
 
-// which of the conditions behind recoverable_bounds gives the bound that acts
-LimitCause cause_of(const LimitRow& row, hqp::RowState state, double reaction, double dt) noexcept {
+// which rating of the limited quantity gives the bound that acts
+LimitCause cause_of(const LimitRow& row, Interval ddq, hqp::RowState state, double reaction,
+                    double dt) noexcept {
   if (state == hqp::RowState::kInactive) return LimitCause::kNone;
   const bool is_upper = is_upper_side(state, reaction);
   const LimitCause held_by = is_upper ? row.held_by.upper : row.held_by.lower;
+  const bool holds_always = held_by == LimitCause::kLock || held_by == LimitCause::kFriction;
+  if (holds_always) return held_by;
   const double sign = is_upper ? 1.0 : -1.0;
-  const Interval ddq = limits::recoverable_bounds(row.limits, row.options, row.q, row.dq, dt);
   const double bound = is_upper ? ddq.ub : -ddq.lb;
   const auto is_bound = [&](double value) {
     return std::abs(bound - value) <= 1e-9 * (1.0 + std::abs(bound));
   };
-  const bool holds_always = held_by == LimitCause::kLock || held_by == LimitCause::kFriction;
-  if (holds_always) return held_by;
   if (is_bound((row.limits.dq_max - sign * row.dq) / dt)) return LimitCause::kVelocity;
   if (is_bound(row.limits.ddq_max)) return LimitCause::kAcceleration;
   return held_by == LimitCause::kNone ? LimitCause::kPosition : held_by;
@@ -75,99 +70,116 @@ LimitCause cause_of(const LimitRow& row, hqp::RowState state, double reaction, d
 Reactions::Reactions(const DeviceModel& device, const TwinModel& twin)
     : n_m_(device.n_m),
       n_a_(twin.chain.nv()),
-      device_limits_(limit_count(device)),
-      direction_(n_a_, kMaxLimits),
-      wrench_(6, kMaxLimits),
+      device_limits_(device.limit_count()),
+      rest_(VectorA::Zero(n_a_)),
+      directions_(device, twin),
       problem_(capacity_for(device_limits_ + n_a_, n_a_)),
       solver_(problem_.capacity()),
       solution_(problem_.capacity()) {}
+
+// torque of a unit reaction on the twin
+VectorA Reactions::torque(int limit) const noexcept {
+  if (limit < device_limits_) return directions_.torque(limit);
+  return VectorA::Unit(n_a_, limit - device_limits_);
+}
 
 void Reactions::find_active(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
                             const hqp::Solution& solution) noexcept {
   active_count_ = 0;
   for (int limit = 0; limit < device_limits_ + n_a_; ++limit) {
-    const auto row = static_cast<std::size_t>(tasks.first_limit_row() + limit);
-    if (solution.state[row] == hqp::RowState::kInactive) continue;
+    const auto row = static_cast<std::size_t>(tasks.acting_row(limit, solution));
+    const bool acts = solution.state[row] != hqp::RowState::kInactive;
+    if (!acts && value_[static_cast<std::size_t>(limit)] == 0.0) continue;
     active_[static_cast<std::size_t>(active_count_++)] = limit;
   }
   if (active_count_ == 0) return;
-
-  // [HG] (21), (24): a device row C ddq_m pushes the handle with y, J_m^T y = C^T
-  const model::Jacobian J = device.chain.jacobian(device.handle);
-  const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxManipulator, 6>>
-      J_m_T(J.middleCols(device.n_p, n_m_).transpose());
-  const model::Jacobian J_a = twin.chain.jacobian(twin.end_effector);
+  directions_.update(device, twin);
   for (int j = 0; j < active_count_; ++j) {
     const int limit = active_[static_cast<std::size_t>(j)];
-    if (limit >= device_limits_) {
-      wrench_.col(j).setZero();
-      direction_.col(j).setZero();
-      direction_(limit - device_limits_, j) = 1.0;
-      continue;
-    }
-    VectorM C = VectorM::Zero(n_m_);
-    if (limit < n_m_) {
-      C[limit] = 1.0;
-    } else {
-      const auto row = tasks.problem().coefficients(tasks.first_limit_row() + limit);
-      C = Eigen::Map<const Eigen::VectorXd>(row.data(), n_m_);
-    }
-    const Vector6 y = J_m_T.solve(C);
-    wrench_.col(j) = y;
-    direction_.col(j).noalias() = J_a.transpose() * y;
+    if (limit >= device_limits_) break;
+    directions_.find(tasks.problem(), tasks.first_limit_row() + limit, limit);
   }
 }
 
 void Reactions::split(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
                       const hqp::Solution& solution, const VectorA& tau_constraint) noexcept {
   value_.fill(0.0);
+  rest_.setZero();
+  const bool is_paper = tasks.alpha(0) >= 0;
+  for (int limit = 0; is_paper && limit < device_limits_ + n_a_; ++limit) {
+    value_[static_cast<std::size_t>(limit)] =
+        solution.x[static_cast<std::size_t>(tasks.alpha(limit))];
+  }
   find_active(device, twin, tasks, solution);
-  if (active_count_ == 0) return;
+  if (!is_paper) {
+    if (active_count_ > 0) split_active(tasks, solution, tau_constraint);
+    return;
+  }
+  rest_ = tau_constraint;
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    rest_ -= torque(limit) * value_[static_cast<std::size_t>(limit)];
+  }
+}
 
-  // a row above one that could not be met may be held for that row's sake, against its own sign
+void Reactions::split_active(const Tasks& tasks, const hqp::Solution& solution,
+                             const VectorA& tau_constraint) noexcept {
+  problem_.clear(active_count_);
+  add_signs(tasks, solution);
+  add_sum(tau_constraint);
+  problem_.add_level();
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    const auto row = static_cast<std::size_t>(tasks.acting_row(limit, solution));
+    if (hqp::is_violated(solution.state[row])) problem_.add_bound(j, {0.0, 0.0});
+  }
+  active_set_ = {};
+  solver_.solve(problem_, {}, active_set_, solution_);
+  for (std::size_t j = 0; j < static_cast<std::size_t>(active_count_); ++j) {
+    value_[static_cast<std::size_t>(active_[j])] = solution_.x[j] * scale_[j];
+  }
+}
+
+void Reactions::add_signs(const Tasks& tasks, const hqp::Solution& solution) noexcept {
   const auto state_of = [&](int limit) {
-    return solution.state[static_cast<std::size_t>(tasks.first_limit_row() + limit)];
+    return solution.state[static_cast<std::size_t>(tasks.acting_row(limit, solution))];
   };
+  // a row above one that could not be met may be held for that row's sake, against its own sign
   int last_violated = -1;
   for (int j = 0; j < active_count_; ++j) {
     const int limit = active_[static_cast<std::size_t>(j)];
     if (hqp::is_violated(state_of(limit))) last_violated = limit;
   }
-
-  const auto& rows = tasks.limit_rows();
-  std::array<double, kMaxLimits> scale{};
-  problem_.clear(active_count_);
   problem_.add_level();
   for (int j = 0; j < active_count_; ++j) {
-    const auto limit = static_cast<std::size_t>(active_[static_cast<std::size_t>(j)]);
-    scale[static_cast<std::size_t>(j)] = 1.0 / rows[limit].rating;
-    const hqp::RowState state = state_of(static_cast<int>(limit));
-    const bool has_sign = static_cast<int>(limit) > last_violated;
+    const int limit = active_[static_cast<std::size_t>(j)];
+    scale_[static_cast<std::size_t>(j)] =
+        1.0 / tasks.limit_rows()[static_cast<std::size_t>(limit)].rating;
+    const hqp::RowState state = state_of(limit);
+    const bool has_sign = limit > last_violated;
     Interval sign;
     if (has_sign && state == hqp::RowState::kLower) sign.lb = 0.0;
     if (has_sign && state == hqp::RowState::kUpper) sign.ub = 0.0;
     problem_.add_bound(j, sign);
   }
-  problem_.add_level();
+}
+
+// no push against idle motion of the manipulator, and the torques on the twin add up
+void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
   std::array<double, kMaxLimits> row{};
-  for (int i = 0; i < n_a_; ++i) {
-    for (int j = 0; j < active_count_; ++j) {
-      row[static_cast<std::size_t>(j)] = direction_(i, j) * scale[static_cast<std::size_t>(j)];
+  const std::span<const double> coefficients(row.data(), static_cast<std::size_t>(active_count_));
+  problem_.add_level();
+  if (n_m_ > 6) {
+    for (std::size_t j = 0; j < coefficients.size(); ++j) {
+      row[j] = active_[j] < device_limits_ ? directions_.idle(active_[j]) * scale_[j] : 0.0;
     }
-    problem_.add_row({row.data(), static_cast<std::size_t>(active_count_)},
-                     {tau_constraint[i], tau_constraint[i]});
+    problem_.add_row(coefficients, {0.0, 0.0});
   }
   problem_.add_level();
-  for (int j = 0; j < active_count_; ++j) {
-    const auto limit = static_cast<std::size_t>(active_[static_cast<std::size_t>(j)]);
-    const auto state = solution.state[static_cast<std::size_t>(tasks.first_limit_row()) + limit];
-    if (hqp::is_violated(state)) problem_.add_bound(j, {0.0, 0.0});
-  }
-  active_set_ = {};
-  solver_.solve(problem_, {}, active_set_, solution_);
-  for (int j = 0; j < active_count_; ++j) {
-    value_[static_cast<std::size_t>(active_[static_cast<std::size_t>(j)])] =
-        solution_.x[static_cast<std::size_t>(j)] * scale[static_cast<std::size_t>(j)];
+  for (int i = 0; i < n_a_; ++i) {
+    for (std::size_t j = 0; j < coefficients.size(); ++j)
+      row[j] = torque(active_[j])[i] * scale_[j];
+    problem_.add_row(coefficients, {tau_constraint[i], tau_constraint[i]});
   }
 }
 
@@ -177,10 +189,13 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
   record.limit_count = device_limits_ + n_a_;
   for (int limit = 0; limit < record.limit_count; ++limit) {
     const auto i = static_cast<std::size_t>(limit);
-    const std::size_t row = static_cast<std::size_t>(tasks.first_limit_row()) + i;
+    const int acting_row = tasks.acting_row(limit, solution);
+    const auto row = static_cast<std::size_t>(acting_row);
+    const Interval ddq =
+        acting_row == rows[i].rating_row ? tasks.problem().bounds(acting_row) : rows[i].ddq;
     LimitReport& report = record.limits[i];
     report.state = limit_state(solution.state[row], value_[i]);
-    report.cause = cause_of(rows[i], solution.state[row], value_[i], dt);
+    report.cause = cause_of(rows[i], ddq, solution.state[row], value_[i], dt);
     report.position = rows[i].q;
     report.to_lower = rows[i].q - rows[i].limits.q_min;
     report.to_upper = rows[i].limits.q_max - rows[i].q;
@@ -188,12 +203,22 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
     report.slack = solution.slack[row];
     report.reaction = value_[i];
   }
+  report_felt(tasks, record);
 
-  // what is felt most: the limit that takes most of the acceleration, in the metric of M_a, which
-  // the user's wrench asks for; a stop that only carries a spring is not felt
+  // part of the wrench that moves no joint of the twin
+  const model::Jacobian J_a = twin.chain.jacobian(twin.end_effector);
+  const Eigen::ColPivHouseholderQR<model::Jacobian> J_a_qr(J_a);
+  Vector6 moving = J_a_qr.householderQ().adjoint() * record.robot.w_H;
+  moving.tail(6 - J_a_qr.rank()).setZero();
+  record.budget.structure = record.robot.w_H - J_a_qr.householderQ() * moving;
+}
+
+// what is felt most: the limit that takes most of the acceleration, in the metric of M_a, which
+// the user's wrench asks for; a stop that only carries a spring is not felt
+void Reactions::report_felt(const Tasks& tasks, CycleRecord& record) const noexcept {
   Budget& budget = record.budget;
   budget.limits = VectorA::Zero(n_a_);
-  budget.conflict = VectorA::Zero(n_a_);
+  budget.conflict = -rest_;
   record.felt_limit = -1;
   record.w_felt.setZero();
   const auto L = tasks.L().triangularView<Eigen::Lower>();
@@ -201,9 +226,10 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
   L.solveInPlace(pushed);
   double most = kFeltMin * kFeltMin;
   for (int j = 0; j < active_count_; ++j) {
-    const auto limit = static_cast<std::size_t>(active_[static_cast<std::size_t>(j)]);
-    VectorA tau = direction_.col(j) * value_[limit];
-    if (record.limits[limit].state == LimitState::kViolated) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    const double value = value_[static_cast<std::size_t>(limit)];
+    VectorA tau = torque(limit) * value;
+    if (record.limits[static_cast<std::size_t>(limit)].state == LimitState::kViolated) {
       budget.conflict -= tau;
     } else {
       budget.limits -= tau;
@@ -212,17 +238,11 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
     const double opposed = -tau.dot(pushed);
     if (opposed > most) {
       most = opposed;
-      record.felt_limit = static_cast<int>(limit);
-      record.w_felt = wrench_.col(j) * value_[limit];
+      record.felt_limit = limit;
+      record.w_felt.setZero();
+      if (limit < device_limits_) record.w_felt = directions_.wrench(limit) * value;
     }
   }
-
-  // part of the wrench that moves no joint of the twin
-  const model::Jacobian J_a = twin.chain.jacobian(twin.end_effector);
-  const Eigen::ColPivHouseholderQR<model::Jacobian> J_a_qr(J_a);
-  Vector6 moving = J_a_qr.householderQ().adjoint() * record.robot.w_H;
-  moving.tail(6 - J_a_qr.rank()).setZero();
-  budget.structure = record.robot.w_H - J_a_qr.householderQ() * moving;
 }
 
 }  // namespace hg::rendering

@@ -1,10 +1,12 @@
 /// "Why do I feel this": which limits act, how hard, and where the user's wrench goes.
 ///
-/// The total constraint torque M_a ddq_a - tau is unique; its split among the active rows is not
-/// when rows depend on each other. Rule: reactions have the sign of their bound, except above a
-/// row that could not be met, for whose sake they may be held; among all splits that add up, the
-/// smallest one, rows scaled by their rating; rows that could not be met get a share only for what
-/// the others cannot explain.
+/// Law gauss: the total constraint torque M_a ddq_a - tau is unique; its split among the active
+/// rows is not when rows depend on each other. Rule: reactions have the sign of their bound, except
+/// above a row that could not be met, for whose sake they may be held; with a joint to spare they
+/// do not push against its idle motion; among all splits that add up, the smallest one, rows scaled
+/// by their rating; rows that could not be met get a share only for what the others cannot explain.
+/// Law paper: the constraint torques are part of the solution; what they do not explain is
+/// conflict.
 ///
 /// No allocation after construction.
 #pragma once
@@ -12,6 +14,7 @@
 #include <array>
 
 #include "hg/hqp/solver.h"
+#include "hg/rendering/constraint_directions.h"
 #include "hg/rendering/tasks.h"
 #include "hg/signals/state.h"
 
@@ -21,7 +24,7 @@ class Reactions {
  public:
   Reactions(const DeviceModel& device, const TwinModel& twin);
 
-  /// Splits the constraint torque of `solution`, which solves tasks.problem().
+  /// Splits the constraint torque of `solution`, which solves tasks.problem(), or reads it from x.
   /// `tau_constraint` (n_a) = M_a ddq_a + c_a - tau.
   void split(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
              const hqp::Solution& solution, const VectorA& tau_constraint) noexcept;
@@ -36,14 +39,20 @@ class Reactions {
  private:
   void find_active(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
                    const hqp::Solution& solution) noexcept;
+  void split_active(const Tasks& tasks, const hqp::Solution& solution,
+                    const VectorA& tau_constraint) noexcept;
+  void add_signs(const Tasks& tasks, const hqp::Solution& solution) noexcept;
+  void add_sum(const VectorA& tau_constraint) noexcept;
+  VectorA torque(int limit) const noexcept;
+  void report_felt(const Tasks& tasks, CycleRecord& record) const noexcept;
 
   int n_m_, n_a_, device_limits_;
   std::array<double, kMaxLimits> value_{};
-  std::array<int, kMaxLimits> active_{};  ///< limits whose row is at or beyond a bound
+  std::array<int, kMaxLimits> active_{};  ///< limits that may have a reaction
   int active_count_ = 0;
-  /// Per active limit: its direction in twin torques, and for device limits as a handle wrench.
-  MatrixUpTo<kMaxTwin, kMaxLimits> direction_;
-  MatrixUpTo<6, kMaxLimits> wrench_;
+  std::array<double, kMaxLimits> scale_{};  ///< of active limit j, in the split
+  VectorA rest_;                            ///< part of the constraint torque that nothing explains
+  ConstraintDirections directions_;
   hqp::Problem problem_;
   hqp::Solver solver_;
   hqp::Solution solution_;

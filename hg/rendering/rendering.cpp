@@ -76,8 +76,16 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
     if (!ok) throw SetupError(text);
   };
   require(options.dt > 0.0, "rendering: the period must be positive");
-  require(device.n_m == 6,
-          "device: the rendering needs six manipulator joints, got " + std::to_string(device.n_m));
+  const bool is_paper = options.law == Law::kPaper;
+  require(!is_paper || device.n_m == 6, "device: law paper needs six manipulator joints, got " +
+                                            std::to_string(device.n_m) +
+                                            "; law gauss takes seven as well");
+  require(device.n_m == 6 || device.n_m == 7,
+          "device: six or seven manipulator joints are needed, got " + std::to_string(device.n_m));
+  require(device.posture.size() == 0 || device.posture.size() == device.n_m,
+          "device: one posture goal per manipulator joint is needed, or none");
+  require(options.bounds != Bounds::kPaper || options.T_C >= options.dt,
+          "rendering: T_C must not be below the period");
   require(device.n_p + device.n_m == device.chain.nv(),
           "device: gantry and manipulator must be all joints of the chain");
   require(device.handle >= 0, "device: a handle frame is needed");
@@ -158,7 +166,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   const hqp::ActiveSet previous = state.active_set;
   solve(state, record);
   record.active_set_changes =
-      changed_rows(previous, state.active_set, tasks_.first_limit_row(), record.limit_count);
+      changed_rows(previous, state.active_set, tasks_.first_limit_row(), tasks_.limit_row_count());
   catch_reversals(twin_, state.twin, options_.dt, state.inner);
   report_kinematics(state, record);
   return record.solver_status;
@@ -194,7 +202,13 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
     Budget& budget = record.budget;
     const VectorA tau =
         record.tau_a - budget.damping - budget.friction - budget.spring - budget.surface;
-    tasks_.fill(device_, twin_, {record.robot, state.reference, state.twin, state.inner, tau});
+    tasks_.fill(device_, twin_,
+                {.robot = record.robot,
+                 .reference = state.reference,
+                 .twin = state.twin,
+                 .inner = state.inner,
+                 .touched = state.touched,
+                 .tau = tau});
     record.solver_status = to_solver_status(
         solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_));
     record.solver_iterations += solution_.iterations;
@@ -210,22 +224,26 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
     bool released = false;
     for (int i = 0; i < n_a; ++i) {
       bool& sticks = state.inner.sticks[static_cast<std::size_t>(i)];
+      const auto limit = static_cast<std::size_t>(first_twin_limit + i);
       const double holding = reactions_.of(first_twin_limit + i);
       const double most = twin_.dofs[static_cast<std::size_t>(i)].friction;
       if (!sticks || std::abs(holding) <= most) continue;
       sticks = false;
       budget.friction[i] = -std::copysign(most, holding);
+      state.touched.lower[limit] = state.touched.upper[limit] = false;
       released = true;
     }
     if (!released) break;
   }
+  if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
   reactions_.report(twin_, tasks_, solution_, options_.dt, record);
 }
 
-bool Rendering::is_blocked(const CycleRecord& record) const noexcept {
+bool Rendering::is_blocked() const noexcept {
   const int count = device_.n_m + static_cast<int>(device_.virtual_joints.size());
   for (int i = 0; i < count; ++i) {
-    if (record.limits[static_cast<std::size_t>(i)].state == LimitState::kViolated) return true;
+    const auto row = static_cast<std::size_t>(tasks_.first_limit_row() + i);
+    if (hqp::is_violated(solution_.state[row])) return true;
   }
   return false;
 }

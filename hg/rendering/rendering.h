@@ -1,7 +1,7 @@
-/// The rendering law `gauss`: from the state of device and twin and the user's wrench to
+/// The rendering law: from the state of device and twin and the user's wrench to
 /// accelerations, integrated to the next reference.
 ///
-/// Source: [HG] sec. VI-C; departures in docs/architecture.md. One object serves one thread.
+/// Source: [HG] sec. VI-C; docs/law.md. One object serves one thread.
 /// No allocation, noexcept after construction.
 #pragma once
 
@@ -22,6 +22,7 @@ struct State {
   TwinState twin;
   TwinInnerState inner;
   hqp::ActiveSet active_set;
+  TouchedEnds touched;  ///< by the last result; law paper only
 };
 
 /// Throws SetupError naming the first thing in the models that the law cannot use.
@@ -46,9 +47,12 @@ class Rendering {
   /// Moves the twin at rest to where its end effector meets the handle, as far as its joints allow.
   void align(const RobotState& robot, State& state) noexcept;
 
-  /// A joint or virtual joint of the device could not be kept within its limits: what the gantry
-  /// does to a held twin stands above them.
-  bool is_blocked(const CycleRecord& record) const noexcept;
+  /// In the last step a joint or virtual joint of the device could not be kept within its limits:
+  /// what the gantry does to a held twin stands above them.
+  bool is_blocked() const noexcept;
+
+  /// The problem of the last step: rows, bounds and weights.
+  const hqp::Problem& problem() const noexcept { return tasks_.problem(); }
 
   /// Moves reference and twin by one period.
   void integrate(State& state) const noexcept;

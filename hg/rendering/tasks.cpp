@@ -9,13 +9,25 @@
 namespace hg::rendering {
 namespace {
 
-hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin) {
-  const int n_a = twin.chain.nv();
+hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
+                          const Options& options) {
+  const int n_m = device.n_m, n_a = twin.chain.nv();
+  const int limits = device.limit_count() + n_a;
   const int frames = static_cast<int>(device.cartesian_limits.size());
-  const int virtual_joints = static_cast<int>(device.virtual_joints.size());
-  return {.variables = device.n_m + n_a,
-          .levels = 5 + frames,
-          .rows = 6 + device.n_m + virtual_joints + 3 * frames + 2 * n_a};
+  hqp::Capacity capacity{.variables = n_m + n_a, .levels = 4 + frames, .rows = 6 + limits + n_a};
+  if (options.bounds == Bounds::kPaper) {
+    capacity.levels += 2;
+    capacity.rows += n_m + n_a;
+  }
+  if (options.law == Law::kPaper) {
+    capacity.variables += limits;
+    capacity.levels += 3;
+    capacity.rows += 2 * limits;
+  } else {
+    capacity.levels += 2;
+    capacity.rows += n_m;
+  }
+  return capacity;
 }
 
 LimitRow make_row(const limits::JointLimits& limits, double margin, double dt) {
@@ -35,20 +47,15 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
     : options_(options),
       n_m_(device.n_m),
       n_a_(twin.chain.nv()),
-      problem_(capacity_of(device, twin)),
-      coefficients_(static_cast<std::size_t>(n_m_ + n_a_), 0.0),
+      problem_(capacity_of(device, twin, options)),
+      coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0),
       L_(n_a_, n_a_) {
-  problem_.clear(n_m_ + n_a_);
-  const auto add_limit = [&](const limits::JointLimits& limits, int variable, double margin) {
-    limit_rows_.push_back(make_row(limits, margin, options.dt));
-    const double weight = 1.0 / limit_rows_.back().rating;
-    if (variable >= 0) {
-      problem_.add_bound(variable, {}, weight);
-    } else {
-      problem_.add_row(coefficients_, {}, weight);
-    }
-  };
+  if (options.law == Law::kPaper) paper_.emplace(device, twin);
+  problem_.clear(problem_.capacity().variables);
+  add_levels(device, twin);
+}
 
+void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   problem_.add_level();
   for (int i = 0; i < 6; ++i) problem_.add_row(coefficients_, {});
   problem_.add_level();
@@ -65,8 +72,43 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
   for (int i = 0; i < n_a_; ++i) {
     add_limit(twin.dofs[static_cast<std::size_t>(i)].limits, n_m_ + i, 0.0);
   }
+  if (options_.bounds == Bounds::kPaper) {
+    problem_.add_level();
+    for (int i = 0; i < n_m_; ++i) add_rating(i, i);
+    problem_.add_level();
+    for (int i = 0; i < n_a_; ++i) add_rating(device.limit_count() + i, n_m_ + i);
+  }
+  limit_row_count_ = problem_.rows() - first_limit_row();
+
+  if (paper_) {
+    paper_->add_levels(problem_);
+    return;
+  }
   problem_.add_level();
+  dynamics_row_ = problem_.rows();
   for (int i = 0; i < n_a_; ++i) problem_.add_row(coefficients_, {});
+  if (n_m_ == 6) return;
+  problem_.add_level();
+  for (int i = 0; i < n_m_; ++i) problem_.add_bound(i, {});
+}
+
+double Tasks::weight_of(const LimitRow& row) const noexcept {
+  return options_.law == Law::kPaper ? 1.0 : 1.0 / row.rating;
+}
+
+void Tasks::add_limit(const limits::JointLimits& limits, int variable, double margin) {
+  limit_rows_.push_back(make_row(limits, margin, options_.dt));
+  const double weight = weight_of(limit_rows_.back());
+  if (variable >= 0) {
+    problem_.add_bound(variable, {}, weight);
+  } else {
+    problem_.add_row(coefficients_, {}, weight);
+  }
+}
+
+void Tasks::add_rating(int limit, int variable) {
+  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  row.rating_row = problem_.add_bound(variable, {}, weight_of(row));
 }
 
 void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
@@ -74,7 +116,17 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   fill_coupling(device, twin, input);
   fill_device_limits(device, input);
   fill_twin_limits(twin, input);
-  fill_dynamics(twin, input);
+
+  L_ = twin.chain.M();
+  const Eigen::LLT<Eigen::Ref<MatrixUpTo<kMaxTwin, kMaxTwin>>> cholesky(L_);
+  const VectorA tau = input.tau - twin.chain.c();
+  if (paper_) {
+    paper_->fill(device, twin, L_, tau, first_limit_row(), problem_);
+    fill_ranges(input);
+  } else {
+    fill_dynamics(tau);
+    if (n_m_ > 6) fill_posture(device, input.reference);
+  }
 }
 
 // [HG] (12) with (11): J_m ddq_m - J_a ddq_a = s - J_p ddq_p - dJ dq + dJ_a dq_a
@@ -94,10 +146,11 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
   const Vector6 known = s_ - J.leftCols(device.n_p) * input.robot.ddq_p -
                         device.chain.bias_acceleration(device.handle) +
                         twin.chain.bias_acceleration(twin.end_effector);
-  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), n_m_ + n_a_);
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
   for (int i = 0; i < 6; ++i) {
     row.head(n_m_) = J.row(i).segment(device.n_p, n_m_);
-    row.tail(n_a_) = -J_a.row(i);
+    row.segment(n_m_, n_a_) = -J_a.row(i);
     problem_.set_row(i, coefficients_);
     problem_.set_bounds(i, {known[i], known[i]});
   }
@@ -109,9 +162,24 @@ void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, do
   row.limits = limits;
   row.q = q;
   row.dq = dq;
-  const Interval ddq = limits::recoverable_bounds(limits, row.options, q, dq, options_.dt);
+  if (options_.bounds == Bounds::kRecoverable) {
+    row.ddq = limits::recoverable_bounds(limits, row.options, q, dq, options_.dt);
+  } else if (row.rating_row >= 0) {
+    row.ddq = limits::bounds_A(limits, q, dq, options_.dt);
+    problem_.set_bounds(row.rating_row, limits::bounds_B(limits, q, dq, options_.dt));
+  } else {
+    row.ddq = limits::bounds_C(limits, q, dq, options_.T_C);
+  }
   problem_.set_bounds(first_limit_row() + limit,
-                      {ddq.lb - known_acceleration, ddq.ub - known_acceleration});
+                      {row.ddq.lb - known_acceleration, row.ddq.ub - known_acceleration});
+}
+
+// a joint that is held by a lock or by friction
+void Tasks::hold(int limit, double ddq) noexcept {
+  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  row.ddq = {ddq, ddq};
+  problem_.set_bounds(first_limit_row() + limit, row.ddq);
+  if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, row.ddq);
 }
 
 void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept {
@@ -122,7 +190,7 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
               reference.dq_m[limit], 0.0);
   }
 
-  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), n_m_ + n_a_);
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (const VirtualJoint& joint : device.virtual_joints) {
     row.head(n_m_) = joint.weights;
@@ -160,32 +228,73 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
     row.held_by = effective.held_by;
     set_limit(first + i, effective.limits, q, dq, 0.0);
 
+    // [HG] (31): a lock of bounds paper stops the joint where it is, as far as its rating allows
+    const bool is_locked = row.held_by.upper == LimitCause::kLock;
+    double ddq_stop = -dq / options_.dt;
+    if (options_.bounds == Bounds::kPaper) {
+      const double ddq_max = effective.limits.ddq_max;
+      ddq_stop = std::clamp(ddq_stop, -ddq_max, ddq_max);
+      if (is_locked) hold(first + i, ddq_stop);
+    }
+
     // stick: the joint stands still at the end of the sample, as far as its limits allow
-    if (input.inner.sticks[static_cast<std::size_t>(i)] && row.held_by.upper != LimitCause::kLock) {
-      const Interval bounds = problem_.bounds(first_limit_row() + first + i);
-      const double ddq_stop = std::clamp(-dq / options_.dt, bounds.lb, bounds.ub);
-      problem_.set_bounds(first_limit_row() + first + i, {ddq_stop, ddq_stop});
+    if (input.inner.sticks[static_cast<std::size_t>(i)] && !is_locked) {
+      hold(first + i, std::clamp(ddq_stop, row.ddq.lb, row.ddq.ub));
       row.held_by = {LimitCause::kFriction, LimitCause::kFriction};
     }
   }
 }
 
 // Gauss: minimise |L^T ddq_a - L^-1 (tau - c)|^2 = (ddq_a - ddq_free)^T M (ddq_a - ddq_free)
-void Tasks::fill_dynamics(const TwinModel& twin, const TaskInput& input) noexcept {
-  L_ = twin.chain.M();
-  Eigen::LLT<Eigen::Ref<MatrixUpTo<kMaxTwin, kMaxTwin>>> cholesky(L_);
-  VectorA b = input.tau - twin.chain.c();
+void Tasks::fill_dynamics(const VectorA& tau) noexcept {
+  VectorA b = tau;
   L_.triangularView<Eigen::Lower>().solveInPlace(b);
-
-  const int first = problem_.rows() - n_a_;
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), n_m_ + n_a_);
   row.setZero();
   for (int i = 0; i < n_a_; ++i) {
     row.segment(n_m_, i).setZero();
     row.segment(n_m_ + i, n_a_ - i) = L_.col(i).tail(n_a_ - i);
-    problem_.set_row(first + i, coefficients_);
-    problem_.set_bounds(first + i, {b[i], b[i]});
+    problem_.set_row(dynamics_row_ + i, coefficients_);
+    problem_.set_bounds(dynamics_row_ + i, {b[i], b[i]});
   }
+}
+
+// A joint to spare moves towards its goal like a damped spring; without a goal it comes to rest.
+void Tasks::fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept {
+  for (int i = 0; i < n_m_; ++i) {
+    const bool has_goal = device.posture.size() > 0 && std::isfinite(device.posture[i]);
+    const double error = has_goal ? device.posture[i] - reference.q_m[i] : 0.0;
+    const double ddq = options_.kP_posture * error - options_.kD_posture * reference.dq_m[i];
+    problem_.set_bounds(dynamics_row_ + n_a_ + i, {ddq, ddq});
+  }
+}
+
+void Tasks::fill_ranges(const TaskInput& input) noexcept {
+  for (std::size_t i = 0; i < limit_rows_.size(); ++i) {
+    const LimitCause held_by = limit_rows_[i].held_by.upper;
+    const bool is_locked = held_by == LimitCause::kLock || held_by == LimitCause::kFriction;
+    paper_->set_range(static_cast<int>(i), input.touched.lower[i], input.touched.upper[i],
+                      is_locked, problem_);
+  }
+}
+
+int Tasks::acting_row(int limit, const hqp::Solution& solution) const noexcept {
+  const int row = first_limit_row() + limit;
+  const int rating_row = limit_rows_[static_cast<std::size_t>(limit)].rating_row;
+  const bool acts = solution.state[static_cast<std::size_t>(row)] != hqp::RowState::kInactive;
+  return acts || rating_row < 0 ? row : rating_row;
+}
+
+TouchedEnds Tasks::touched_ends(const hqp::Solution& solution) const noexcept {
+  TouchedEnds touched;
+  for (std::size_t i = 0; i < limit_rows_.size(); ++i) {
+    for (const int row : {first_limit_row() + static_cast<int>(i), limit_rows_[i].rating_row}) {
+      if (row < 0) continue;
+      touched.lower[i] = touched.lower[i] || touches_lower(problem_, row, solution.x);
+      touched.upper[i] = touched.upper[i] || touches_upper(problem_, row, solution.x);
+    }
+  }
+  return touched;
 }
 
 }  // namespace hg::rendering

@@ -1,18 +1,22 @@
 /// The tasks of the rendering law as one lexicographic problem, refilled every cycle.
 ///
-/// Source: [HG] (9)-(19) and Table II, tasks 1-6; the last level is Gauss' principle of least
-/// constraint instead of (20)-(26), see docs/architecture.md. Decision variable x = (ddq_m, ddq_a).
+/// Source: [HG] (9)-(19) and Table II, tasks 1-8; law and bounds are options, see docs/law.md.
 ///
 ///   level 0         coupling of H and E (12), 6 equalities
 ///   level 1         manipulator joints
 ///   level 2         virtual joints (singularity)
 ///   level 3, 4, ... Cartesian limits, a level per frame
 ///   then            twin joints and locks
-///   last            L^T ddq_a = L^-1 tau with M_a = L L^T
+///   bounds paper    acceleration ratings of the manipulator joints, then of the twin joints
+///   law gauss       L^T ddq_a = L^-1 tau with M_a = L L^T; x = (ddq_m, ddq_a)
+///                   posture, where the manipulator has a joint to spare
+///   law paper       dynamics, range and norm of the constraint torques; paper_law.h
 ///
-/// No allocation after construction.
+/// Rows have the weight 1 / rating in law gauss, none in law paper. No allocation after
+/// construction.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "hg/hqp/problem.h"
@@ -20,21 +24,24 @@
 #include "hg/limits/acceleration_bounds.h"
 #include "hg/rendering/device_model.h"
 #include "hg/rendering/options.h"
+#include "hg/rendering/paper_law.h"
 #include "hg/rendering/twin_forces.h"
 #include "hg/rendering/twin_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::rendering {
 
-/// One row of levels 1.. to the last but one, in catalogue order: limit i is row first_limit_row()
-/// + i.
+/// One limit, in catalogue order: limit i is row first_limit_row() + i. With bounds paper a joint
+/// has a second row, for its acceleration rating.
 struct LimitRow {
   Interval range;              ///< configured positions
   limits::JointLimits limits;  ///< as rendered: with margins, and this cycle's locks
   limits::RecoverableOptions options;
-  double rating = 1.0;       ///< weight of the row is 1 / rating
+  double rating = 1.0;       ///< largest acceleration, 1 where there is none
+  int rating_row = -1;       ///< row of bounds B, -1: none
   Holds held_by;             ///< locks, latches and friction, this cycle
   double q = 0.0, dq = 0.0;  ///< this cycle
+  Interval ddq;              ///< bounds of the first row, this cycle, without known accelerations
 };
 
 /// What the law knows of one cycle besides the chains, which must have been updated.
@@ -43,7 +50,8 @@ struct TaskInput {
   const ReferenceState& reference;
   const TwinState& twin;
   const TwinInnerState& inner;
-  VectorA tau;  ///< all torques on the twin that are not constraints, without c_a
+  const TouchedEnds& touched;  ///< by the last result; law paper only
+  VectorA tau;                 ///< all torques on the twin that are not constraints, without c_a
 };
 
 class Tasks {
@@ -57,27 +65,46 @@ class Tasks {
   const hqp::Problem& problem() const noexcept { return problem_; }
   const std::vector<LimitRow>& limit_rows() const noexcept { return limit_rows_; }
   int first_limit_row() const noexcept { return 6; }
+  /// Rows of limits follow each other from first_limit_row() on: bounds, then acceleration ratings.
+  int limit_row_count() const noexcept { return limit_row_count_; }
+  /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
+  int acting_row(int limit, const hqp::Solution& solution) const noexcept;
+  /// The ends that `solution` touches or leaves, of both rows of a joint.
+  TouchedEnds touched_ends(const hqp::Solution& solution) const noexcept;
+  /// Law paper: index of the constraint force or torque of a limit in x; law gauss: -1.
+  int alpha(int limit) const noexcept { return paper_ ? paper_->alpha(limit) : -1; }
   /// Level 0's right-hand side (11): how H has to accelerate relative to E.
   const Vector6& synchronisation() const noexcept { return s_; }
   /// M_a = L L^T of this cycle.
   const MatrixUpTo<kMaxTwin, kMaxTwin>& L() const noexcept { return L_; }
 
  private:
+  void add_levels(const DeviceModel& device, const TwinModel& twin);
+  void add_limit(const limits::JointLimits& limits, int variable, double margin);
+  void add_rating(int limit, int variable);
+  double weight_of(const LimitRow& row) const noexcept;
+
   void fill_coupling(const DeviceModel& device, const TwinModel& twin,
                      const TaskInput& input) noexcept;
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
-  void fill_dynamics(const TwinModel& twin, const TaskInput& input) noexcept;
+  void fill_dynamics(const VectorA& tau) noexcept;
+  void fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept;
+  void fill_ranges(const TaskInput& input) noexcept;
   void set_limit(int limit, const limits::JointLimits& limits, double q, double dq,
                  double known_acceleration) noexcept;
+  void hold(int limit, double ddq) noexcept;
 
   Options options_;
   int n_m_, n_a_;
+  int limit_row_count_ = 0;
+  int dynamics_row_ = 0;  ///< first row of Gauss' principle
   hqp::Problem problem_;
   std::vector<LimitRow> limit_rows_;
   std::vector<double> coefficients_;  ///< scratch, one row
   Vector6 s_ = Vector6::Zero();
   MatrixUpTo<kMaxTwin, kMaxTwin> L_;
+  std::optional<PaperLaw> paper_;  ///< law paper only
 };
 
 }  // namespace hg::rendering

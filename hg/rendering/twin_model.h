@@ -1,6 +1,7 @@
-/// The digital twin: a serial chain with limits, springs, dampers, friction and locks.
+/// The digital twin: a serial chain with limits, springs, dampers, friction, closers and locks.
 ///
-/// Set-up data: filled by config, checked once, constant afterwards. SI units.
+/// Set-up data: filled by config, checked once, constant afterwards. What may change while the twin
+/// runs starts with the values here and lives in TwinParameters. SI units.
 #pragma once
 
 #include <string>
@@ -11,6 +12,14 @@
 #include "hg/model/chain.h"
 
 namespace hg::rendering {
+
+/// Pulls a joint towards its lower limit q_min with torque + stiffness (q - q_min), and lets it
+/// close no faster than `speed`.
+struct Closer {
+  double torque = 0.0;       ///< Nm or N
+  double stiffness = 0.0;    ///< Nm/rad or N/m; > 0 needs a lower limit
+  double speed = kInfinity;  ///< largest speed towards the lower limit, > 0, rad/s or m/s
+};
 
 /// What acts along one degree of freedom. The degrees of freedom of a floating joint (three linear,
 /// three angular, in the body's frame) have damping and friction only.
@@ -24,6 +33,8 @@ struct TwinDof {
   double preload = 0.0;    ///< constant part of the spring, pulls towards smaller positions
   double damping = 0.0;    ///< Nms/rad or Ns/m
   double friction = 0.0;   ///< Coulomb friction, Nm or N
+  double quadratic_damping = 0.0;  ///< torque = this |dq| dq, Nms^2/rad^2 or Ns^2/m^2
+  Closer closer;
 };
 
 struct JointCondition {
@@ -32,6 +43,7 @@ struct JointCondition {
 };
 
 inline constexpr int kMaxLocks = 4;
+inline constexpr int kMaxConditionalLimits = 4;
 
 /// Holds one joint at `position` while all conditions are true. A joint that is not there yet when
 /// the conditions become true is latched: it may move towards `position` but not away from it.
@@ -42,12 +54,30 @@ struct Lock {
   std::vector<JointCondition> engaged_while;
 };
 
+enum class Moving { kEitherWay, kLower, kUpper };
+
+/// Limits that hold in addition while all conditions are true; the tighter one counts. Positions
+/// travel there and back (limits::advanced), speed and acceleration change at once.
+struct ConditionalLimit {
+  std::string name;
+  int dof = 0;
+  limits::JointLimits limits;
+  Moving moving = Moving::kEitherWay;  ///< towards which end the speed limit holds
+  std::vector<JointCondition> conditions;
+};
+
 struct TwinModel {
   model::Chain chain;
   int end_effector = -1;      ///< frame E
   ConfigurationA q_start;     ///< coordinates at the start
   std::vector<TwinDof> dofs;  ///< one per velocity of the chain
   std::vector<Lock> locks;    ///< at most kMaxLocks
+  std::vector<ConditionalLimit> conditional_limits;  ///< at most kMaxConditionalLimits
+  Vector6 w_ref = Vector6::Zero();  ///< reference wrench of [HG] (9), at E, resolved in B
+  double mass_scale = 1.0;          ///< all masses times this, 0.1..10
 };
+
+/// Throws SetupError naming the first thing that does not fit together.
+void check(const TwinModel& twin);
 
 }  // namespace hg::rendering

@@ -33,6 +33,7 @@ struct Loop {
         rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
     Config config;
     config.prepositioning.n_p = 2;
+    config.prepositioning.has_closed_form = true;
     config.prepositioning.q_limits.fill({-1.4, 1.4});
     config.monitor.joint_range.assign(6, {-10.0, 10.0});
     config.monitor.joint_speed_max.assign(6, 10.0);

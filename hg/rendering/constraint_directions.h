@@ -1,0 +1,49 @@
+/// How a unit constraint force of a device limit reaches the handle and the twin.
+///
+/// Source: [HG] (21)-(24), which are one formula: a row C ddq_m pushes the handle with the wrench
+/// y, J_m^T y = C^T, and the twin with J_a^T y. For a Cartesian limit of the handle y is a unit
+/// force, for q4 + q5 a unit torque about their common axis. J_m^-T is never formed. No allocation,
+/// noexcept after construction.
+#pragma once
+
+#include <Eigen/QR>
+
+#include "hg/hqp/problem.h"
+#include "hg/rendering/device_model.h"
+#include "hg/rendering/twin_model.h"
+#include "hg/signals/limit.h"
+
+namespace hg::rendering {
+
+static_assert(kMaxManipulator == 7, "at most one joint to spare");
+
+class ConstraintDirections {
+ public:
+  ConstraintDirections(const DeviceModel& device, const TwinModel& twin);
+
+  /// Takes J_m and J_a of this cycle; before any find().
+  void update(const DeviceModel& device, const TwinModel& twin) noexcept;
+
+  /// Fills the columns of device limit `limit`, whose row of `problem` is `row`.
+  void find(const hqp::Problem& problem, int row, int limit) noexcept;
+
+  /// y: wrench on the handle, in B.
+  Vector6 wrench(int limit) const noexcept { return wrench_.col(limit); }
+  /// J_a^T y: torques on the twin (n_a).
+  auto torque(int limit) const noexcept { return torque_.col(limit); }
+  /// C N, with N the motion of seven joints that leaves the handle at rest; 0 with six joints.
+  double idle(int limit) const noexcept { return idle_[limit]; }
+
+ private:
+  using Factor = Eigen::ColPivHouseholderQR<
+      Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxManipulator, 6>>;
+
+  int n_p_, n_m_;
+  Factor J_m_T_;
+  model::Jacobian J_a_;
+  MatrixUpTo<6, kMaxLimits> wrench_;
+  MatrixUpTo<kMaxTwin, kMaxLimits> torque_;
+  VectorUpTo<kMaxLimits> idle_;
+};
+
+}  // namespace hg::rendering
