@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/hapticgiant/hqp_solve.h"
+#include "apps/hapticgiant/new_command.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
@@ -17,6 +18,11 @@ namespace {
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
 
+struct HqpArguments {
+  std::string file;
+  bool has_timing = false;
+};
+
 // ranges let "nan" through
 std::string finite_number(const std::string& text) {
   double value = 0.0;
@@ -24,7 +30,7 @@ std::string finite_number(const std::string& text) {
   return is_finite ? "" : "expected a number, got '" + text + "'";
 }
 
-void add_run(CLI::App& app, hg::apps::RunArguments& run) {
+void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("run", "A person at the device feels the twin (the main job).");
   command->footer(
@@ -50,6 +56,45 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run) {
   command->add_option("--recordings", run.recordings, "folder of the recordings")
       ->capture_default_str();
   command->add_flag("!--no-recording", run.has_recording, "without a recording");
+  command->callback([&run, &exit_code] { exit_code = hg::apps::run(run); });
+}
+
+void add_new(CLI::App& app, hg::apps::NewArguments& arguments, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("new", "Write a first device.yaml or twin.yaml for a URDF.");
+  command->require_subcommand(1);
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant new device my_arm.urdf\n"
+      "  hapticgiant new twin my_gate.urdf --device my_arm_device.yaml");
+  const auto add = [&](const char* kind, const char* text,
+                       int (*run)(const hg::apps::NewArguments&)) {
+    CLI::App* what = command->add_subcommand(kind, text);
+    what->add_option("urdf", arguments.part.urdf, "URDF of the robot or mechanism")
+        ->required()
+        ->check(CLI::ExistingFile);
+    what->add_option("--root", arguments.part.root_link, "first link of the part that is taken");
+    what->add_option("--tip", arguments.part.tip_link, "last link of the part that is taken");
+    what->add_option("-o,--output", arguments.output, "file to write; default: URDF_device.yaml");
+    what->add_flag("--force", arguments.may_overwrite, "overwrite the file");
+    what->callback([&arguments, &exit_code, run] { exit_code = run(arguments); });
+    return what;
+  };
+  add("device", "the robot whose handle is held", hg::apps::new_device);
+  add("twin", "the mechanism that is felt", hg::apps::new_twin)
+      ->add_option("--device", arguments.device, "device.yaml that the twin is placed for");
+}
+
+void add_hqp(CLI::App& app, HqpArguments& arguments, int& exit_code) {
+  CLI::App* hqp = app.add_subcommand("hqp", "The lexicographic QP solver on its own.");
+  hqp->require_subcommand(1);
+  CLI::App* solve = hqp->add_subcommand("solve", "Solve the problems of a file (plain or .gz).");
+  solve->footer("Example:\n  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --timing");
+  solve->add_option("file", arguments.file, "problem file, format in docs/hqp.md")->required();
+  solve->add_flag("--timing", arguments.has_timing, "microseconds, cold and warm");
+  solve->callback([&arguments, &exit_code] {
+    exit_code = hg::apps::run_hqp_solve(arguments.file, arguments.has_timing);
+  });
 }
 
 }  // namespace
@@ -59,25 +104,20 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", hg::apps::kVersion);
   app.require_subcommand(1);
 
+  // a subcommand that has been parsed runs at once
+  int exit_code = 0;
   hg::apps::RunArguments run;
-  add_run(app, run);
-  CLI::App* hqp = app.add_subcommand("hqp", "The lexicographic QP solver on its own.");
-  hqp->require_subcommand(1);
-  std::string problem_file;
-  bool has_timing = false;
-  CLI::App* solve = hqp->add_subcommand("solve", "Solve the problems of a file (plain or .gz).");
-  solve->footer("Example:\n  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --timing");
-  solve->add_option("file", problem_file, "problem file, format in docs/hqp.md")->required();
-  solve->add_flag("--timing", has_timing, "microseconds, cold and warm");
+  hg::apps::NewArguments created;
+  HqpArguments hqp;
+  add_run(app, run, exit_code);
+  add_new(app, created, exit_code);
+  add_hqp(app, hqp, exit_code);
 
   try {
     app.parse(argc, argv);
+    return exit_code;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadInput;
-  }
-  try {
-    if (app.got_subcommand("run")) return hg::apps::run(run);
-    return hg::apps::run_hqp_solve(problem_file, has_timing);
   } catch (const hg::SetupError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;

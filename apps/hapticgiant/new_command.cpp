@@ -1,0 +1,65 @@
+#include "apps/hapticgiant/new_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "apps/hapticgiant/paths.h"
+#include "hg/core/error.h"
+#include "hg/scaffold/scaffold.h"
+
+namespace hg::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path output_of(const NewArguments& arguments, const char* kind) {
+  const fs::path output = arguments.output.empty()
+                              ? arguments.part.urdf.stem().string() + "_" + kind + ".yaml"
+                              : arguments.output;
+  std::error_code error;
+  if (fs::exists(output, error) && !arguments.may_overwrite) {
+    throw SetupError(output.string() +
+                     ": exists already; --force overwrites it, -o FILE writes another file");
+  }
+  return output;
+}
+
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream stream(file);
+  stream << text;
+  stream.close();
+  if (!stream) throw SetupError(file.string() + ": cannot be written");
+}
+
+}  // namespace
+
+int new_device(const NewArguments& arguments) {
+  const fs::path output = output_of(arguments, "device");
+  write(output, scaffold::device_yaml(arguments.part, output.parent_path()));
+  fmt::print(
+      "{0} written. Next:\n"
+      "  hapticgiant check {0}\n"
+      "  hapticgiant new twin TWIN.urdf --device {0}\n",
+      output.string());
+  return 0;
+}
+
+int new_twin(const NewArguments& arguments) {
+  const fs::path output = output_of(arguments, "twin");
+  const bool is_own = !arguments.device.empty();
+  const config::Device device = config::load_device(
+      is_own ? fs::path(arguments.device) : data_root() / "models/haptic_giant/device.yaml");
+  write(output, scaffold::twin_yaml(arguments.part, output.parent_path(), device));
+  const std::string with = is_own ? " --device " + arguments.device : "";
+  fmt::print(
+      "{0} written. Next:\n"
+      "  hapticgiant check {2}{0}\n"
+      "  hapticgiant run{1} --twin {0}\n",
+      output.string(), with, is_own ? arguments.device + " " : "");
+  return 0;
+}
+
+}  // namespace hg::apps

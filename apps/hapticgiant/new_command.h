@@ -1,0 +1,22 @@
+/// `hapticgiant new device|twin URDF`: a commented YAML file with values read from the URDF.
+#pragma once
+
+#include <string>
+
+#include "hg/scaffold/chain_part.h"
+
+namespace hg::apps {
+
+struct NewArguments {
+  scaffold::ChainPart part;
+  std::string output;  ///< file to write; empty: named after the URDF, in this folder
+  std::string device;  ///< device that a twin is placed for; empty: the HapticGiant
+  bool may_overwrite = false;
+};
+
+/// Write the file, say what to do next, return the exit code. Throw SetupError when the URDF cannot
+/// be used or the file exists already.
+int new_device(const NewArguments& arguments);
+int new_twin(const NewArguments& arguments);
+
+}  // namespace hg::apps
