@@ -12,6 +12,7 @@
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
+#include "hg/runtime/requests.h"
 #include "hg/runtime/schedule.h"
 
 namespace hg::runtime {
@@ -36,24 +37,6 @@ std::int64_t now_ns() noexcept {
 void sleep_until(std::int64_t time_ns) noexcept {
   const timespec time{.tv_sec = time_ns / kNanoseconds, .tv_nsec = time_ns % kNanoseconds};
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr);
-}
-
-// the operator of a simulation: arms, runs, stops; requests act on their edge, so that running is
-// asked for only while the dead-man is closed
-ModeRequest next_request(Mode mode, bool dead_man, bool is_stopping) noexcept {
-  switch (mode) {
-    case Mode::kReady:
-      return ModeRequest::kArm;
-    case Mode::kArmed:
-      return dead_man && !is_stopping ? ModeRequest::kRun : ModeRequest::kNone;
-    case Mode::kRunning:
-      return is_stopping ? ModeRequest::kStop : ModeRequest::kNone;
-    case Mode::kOff:
-    case Mode::kStopping:
-    case Mode::kFault:
-      return ModeRequest::kNone;
-  }
-  return ModeRequest::kNone;
 }
 
 }  // namespace
@@ -139,7 +122,7 @@ void Runtime::loop() noexcept {
     report_.stop_timed_out = is_stopping && record.time_s > stop_since_s + kLongestStop;
     if (report_.stop_timed_out) break;
     sample->operator_input.request =
-        next_request(record.mode, sample->sensors.dead_man, is_stopping);
+        next_request(record.mode, cycle_.is_held(sample->sensors), is_stopping);
 
     if (options_.is_fast) continue;
     report_.overruns += schedule.advance(now_ns());
