@@ -390,7 +390,15 @@ void Chain::update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept {
   pinocchio::computeJointJacobians(impl_->parts.model, impl_->data);
 }
 
+Loads Chain::default_loads() const noexcept {
+  return {.mass = 1.0, .gravity = impl_->parts.model.gravity.linear().isZero(0.0) ? 0.0 : 1.0};
+}
+
 void Chain::update(const VectorIn& q, const VectorIn& dq) noexcept {
+  update(q, dq, default_loads());
+}
+
+void Chain::update(const VectorIn& q, const VectorIn& dq, const Loads& loads) noexcept {
   assert(q.size() == nq() && dq.size() == nv());
   const pinocchio::Model& model = impl_->parts.model;
   pinocchio::Data& data = impl_->data;
@@ -408,8 +416,9 @@ void Chain::update(const VectorIn& q, const VectorIn& dq) noexcept {
   }
 
   // each joint carries the weight of all bodies beyond it
+  const Eigen::Vector3d g_earth(0.0, 0.0, -9.81);
   for (pinocchio::JointIndex i = 1; i < data.oYcrb.size(); ++i) {
-    const Eigen::Vector3d weight = data.oYcrb[i].mass() * g;
+    const Eigen::Vector3d weight = data.oYcrb[i].mass() * g_earth;
     Vector6 wrench;
     wrench << weight, data.oYcrb[i].lever().cross(weight);
     const int v_index = model.idx_vs[i];
@@ -417,6 +426,11 @@ void Chain::update(const VectorIn& q, const VectorIn& dq) noexcept {
     data.g.segment(v_index, size).noalias() =
         -data.J.middleCols(v_index, size).transpose() * wrench;
   }
+  const double gravity_change = loads.gravity - default_loads().gravity;
+  if (gravity_change != 0.0) data.nle += gravity_change * data.g;
+  data.nle *= loads.mass;
+  data.M *= loads.mass;
+  data.g *= loads.mass * loads.gravity;
 }
 
 Pose Chain::pose(int frame) const noexcept {

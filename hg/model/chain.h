@@ -60,6 +60,12 @@ struct ChainOptions {
   std::string root_link, tip_link;
 };
 
+/// Heavier or lighter than built: factors of the masses and of the earth's gravity.
+struct Loads {
+  double mass = 1.0;     ///< > 0
+  double gravity = 1.0;  ///< 0 = weightless
+};
+
 /// A single rigid body that moves freely: a twin without a URDF.
 struct FreeBody {
   double mass = 6.0;  ///< kg, > 0; light, still stable with a stiff hand
@@ -110,6 +116,9 @@ class Chain {
   void update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept;
   /// The same and M, c, gravity.
   void update(const VectorIn& q, const VectorIn& dq) noexcept;
+  void update(const VectorIn& q, const VectorIn& dq, const Loads& loads) noexcept;
+  /// As built: mass 1, gravity as ChainOptions says.
+  Loads default_loads() const noexcept;
 
   /// Pose of a frame relative to B.
   Pose pose(int frame) const noexcept;

@@ -16,6 +16,9 @@ inline constexpr std::string_view kMessageName<SensorFrame> = "hapticgiant_msgs/
 template <>
 inline constexpr std::string_view kMessageName<HandTarget> = "hapticgiant_msgs/HandTarget";
 template <>
+inline constexpr std::string_view kMessageName<ParameterChange> =
+    "hapticgiant_msgs/ParameterChange";
+template <>
 inline constexpr std::string_view kMessageName<OperatorFrame> = "hapticgiant_msgs/OperatorFrame";
 template <>
 inline constexpr std::string_view kMessageName<CommandFrame> = "hapticgiant_msgs/CommandFrame";
@@ -54,10 +57,18 @@ void fields(Archive& a, T& target) {
   a("press", target.press, "how far the hand presses its lever, 0..1");
 }
 
+template <typename Archive, Is<ParameterChange> T>
+void fields(Archive& a, T& change) {
+  a("parameter", change.parameter, "0 none; numbers are listed in hg/signals/frames.h");
+  a("index", change.index, "degree of freedom of the twin, or component of the wrench");
+  a("value", change.value, "new value, SI units");
+}
+
 template <typename Archive, Is<OperatorFrame> T>
 void fields(Archive& a, T& input) {
   a("request", input.request, "0 none, 1 arm, 2 run, 3 stop, 4 reset");
   a("hand_target", input.hand_target);
+  a("change", input.change, "of a parameter of the twin");
 }
 
 template <typename Archive, Is<CommandFrame> T>

@@ -59,6 +59,7 @@ void fields(Archive& a, T& record) {
   a("time_s", record.time_s, "nominal time; the log time is this plus the start of the run");
   a("mode", record.mode, "0 off, 1 ready, 2 armed, 3 running, 4 stopping, 5 fault");
   a("fault", record.fault);
+  a("change", record.change, "of a parameter: 0 none, 1 taken, 2 refused");
   a("robot", record.robot, "estimated state of the device");
   a("reference", record.reference, "integrated reference of the manipulator");
   a("twin", record.twin);

@@ -35,10 +35,10 @@ SolverStatus to_solver_status(hqp::Status status) noexcept {
 }
 
 // torque of Coulomb friction while slipping, as part of tau_dis
-VectorA slip_torque(const TwinModel& twin, const VectorA& dq_a, TwinInnerState& inner) noexcept {
+VectorA slip_torque(const VectorA& dq_a, TwinInnerState& inner) noexcept {
   VectorA torque = VectorA::Zero(dq_a.size());
   for (int i = 0; i < dq_a.size(); ++i) {
-    const double friction = twin.dofs[static_cast<std::size_t>(i)].friction;
+    const double friction = inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction;
     bool& sticks = inner.sticks[static_cast<std::size_t>(i)];
     if (friction <= 0.0) continue;
     if (std::abs(dq_a[i]) <= kStandstill) sticks = true;
@@ -48,10 +48,9 @@ VectorA slip_torque(const TwinModel& twin, const VectorA& dq_a, TwinInnerState& 
 }
 
 // a slipping joint that would turn round within the sample sticks from the next one on
-void catch_reversals(const TwinModel& twin, const TwinState& state, double dt,
-                     TwinInnerState& inner) noexcept {
+void catch_reversals(const TwinState& state, double dt, TwinInnerState& inner) noexcept {
   for (int i = 0; i < state.dq_a.size(); ++i) {
-    if (twin.dofs[static_cast<std::size_t>(i)].friction <= 0.0) continue;
+    if (inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction <= 0.0) continue;
     if (state.dq_a[i] * (state.dq_a[i] + dt * state.ddq_a[i]) < 0.0) {
       inner.sticks[static_cast<std::size_t>(i)] = true;
     }
@@ -103,15 +102,7 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
     for (const limits::JointLimits& axis : frame.axes) limits::check(axis, frame.name);
   }
 
-  const auto n_a = static_cast<std::size_t>(twin.chain.nv());
-  require(n_a <= kMaxTwin, "twin: at most " + std::to_string(kMaxTwin) +
-                               " degrees of freedom, got " + std::to_string(n_a));
-  require(twin.end_effector >= 0, "twin: an end effector is needed");
-  require(twin.q_start.size() == twin.chain.nq(), "twin: one start value per coordinate is needed");
-  require(twin.dofs.size() == n_a, "twin: one entry per degree of freedom is needed");
-  for (const TwinDof& dof : twin.dofs) limits::check(dof.limits, "twin joint " + dof.name);
-  require(twin.locks.size() <= static_cast<std::size_t>(kMaxLocks),
-          "twin: at most " + std::to_string(kMaxLocks) + " locks");
+  check(twin);
 }
 
 Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options)
@@ -130,7 +121,12 @@ State Rendering::start(const VectorM& q_m) const {
   state.reference = {q_m, VectorM::Zero(q_m.size()), VectorM::Zero(q_m.size())};
   const int n_a = twin_.chain.nv();
   state.twin = {twin_.q_start, VectorA::Zero(n_a), VectorA::Zero(n_a)};
+  state.inner.parameters = initial_parameters(twin_);
   return state;
+}
+
+ChangeStatus Rendering::change(const ParameterChange& change, State& state) const noexcept {
+  return apply(twin_, change, state.inner.parameters);
 }
 
 void Rendering::update_device(const RobotState& robot, const ReferenceState& reference) noexcept {
@@ -143,12 +139,13 @@ void Rendering::update_device(const RobotState& robot, const ReferenceState& ref
 
 SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record) noexcept {
   update_device(record.robot, state.reference);
-  twin_.chain.update(state.twin.q_a, state.twin.dq_a);
+  advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
+  const TwinValues& values = state.inner.parameters.now;
+  twin_.chain.update(state.twin.q_a, state.twin.dq_a, values.loads);
   advance_locks(twin_, state.twin.q_a, state.inner);
 
   const int n_a = twin_.chain.nv();
   Budget& budget = record.budget;
-  budget.surface = VectorA::Zero(n_a);
   if (braking_rate > 0.0) {
     const VectorA braking = braking_rate * state.twin.dq_a;
     record.tau_a = VectorA::Zero(n_a);
@@ -156,18 +153,21 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
     budget.damping = VectorA::Zero(n_a);
     budget.damping.noalias() += twin_.chain.M() * braking;
     budget.friction = VectorA::Zero(n_a);
+    budget.surface = VectorA::Zero(n_a);
   } else {
-    record.tau_a = twin_.chain.jacobian(twin_.end_effector).transpose() * record.robot.w_H;
-    budget.spring = spring_torque(twin_, state.twin.q_a);
-    budget.damping = damping_torque(twin_, state.twin.dq_a);
-    budget.friction = slip_torque(twin_, state.twin.dq_a, state.inner);
+    const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
+    record.tau_a = J_a.transpose() * record.robot.w_H;
+    budget.spring = spring_torque(twin_, state.twin.q_a, values);
+    budget.damping = damping_torque(twin_.chain.M(), state.twin.dq_a, options_.dt, values);
+    budget.friction = slip_torque(state.twin.dq_a, state.inner);
+    budget.surface = J_a.transpose() * values.w_ref;
   }
 
   const hqp::ActiveSet previous = state.active_set;
   solve(state, record);
   record.active_set_changes =
       changed_rows(previous, state.active_set, tasks_.first_limit_row(), tasks_.limit_row_count());
-  catch_reversals(twin_, state.twin, options_.dt, state.inner);
+  catch_reversals(state.twin, options_.dt, state.inner);
   report_kinematics(state, record);
   return record.solver_status;
 }
@@ -185,10 +185,11 @@ void Rendering::align(const RobotState& robot, State& state) noexcept {
     const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
     const VectorA step = J_a.completeOrthogonalDecomposition().solve(error);
     state.twin.q_a = twin_.chain.integrate(state.twin.q_a, step);
-    for (const TwinDof& dof : twin_.dofs) {
-      if (dof.q_index < 0) continue;
-      double& q = state.twin.q_a[dof.q_index];
-      q = std::clamp(q, dof.limits.q_min, dof.limits.q_max);
+    for (std::size_t i = 0; i < twin_.dofs.size(); ++i) {
+      if (twin_.dofs[i].q_index < 0) continue;
+      const Interval& range = state.inner.parameters.moving[i].q;
+      double& q = state.twin.q_a[twin_.dofs[i].q_index];
+      q = std::clamp(q, range.lb, range.ub);
     }
   }
 }
@@ -226,7 +227,7 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
       bool& sticks = state.inner.sticks[static_cast<std::size_t>(i)];
       const auto limit = static_cast<std::size_t>(first_twin_limit + i);
       const double holding = reactions_.of(first_twin_limit + i);
-      const double most = twin_.dofs[static_cast<std::size_t>(i)].friction;
+      const double most = state.inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction;
       if (!sticks || std::abs(holding) <= most) continue;
       sticks = false;
       budget.friction[i] = -std::copysign(most, holding);

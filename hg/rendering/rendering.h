@@ -38,6 +38,9 @@ class Rendering {
   /// At rest: the manipulator at `q_m`, the twin at its start.
   State start(const VectorM& q_m) const;
 
+  /// Lets a parameter of the twin change, from the next step() on.
+  ChangeStatus change(const ParameterChange& change, State& state) const noexcept;
+
   /// Solves for the accelerations of this sample and reports why they are what they are. Needs
   /// record.robot; fills the rest that concerns device, twin, limits and solver. Does not move the
   /// state: integrate() does. `braking_rate` > 0 (1/s) brings the twin to rest: it is then a body
@@ -53,6 +56,8 @@ class Rendering {
 
   /// The problem of the last step: rows, bounds and weights.
   const hqp::Problem& problem() const noexcept { return tasks_.problem(); }
+  /// s of the last step (11): how H had to accelerate relative to E.
+  const Vector6& synchronisation() const noexcept { return tasks_.synchronisation(); }
 
   /// Moves reference and twin by one period.
   void integrate(State& state) const noexcept;

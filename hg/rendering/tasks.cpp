@@ -221,11 +221,13 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
   const int first = static_cast<int>(limit_rows_.size()) - n_a_;
   for (int i = 0; i < n_a_; ++i) {
     const TwinDof& dof = twin.dofs[static_cast<std::size_t>(i)];
-    const EffectiveLimits effective = effective_limits(twin, i, input.inner);
     const double q = dof.q_index >= 0 ? input.twin.q_a[dof.q_index] : 0.0;
     const double dq = input.twin.dq_a[i];
+    const EffectiveLimits effective = effective_limits(twin, i, dq, input.inner);
     LimitRow& row = limit_rows_[static_cast<std::size_t>(first + i)];
     row.held_by = effective.held_by;
+    row.range = input.inner.parameters.moving[static_cast<std::size_t>(i)].q;
+    row.options = limits::recoverable_options(effective.limits, options_.dt, options_.dt);
     set_limit(first + i, effective.limits, q, dq, 0.0);
 
     // [HG] (31): a lock of bounds paper stops the joint where it is, as far as its rating allows

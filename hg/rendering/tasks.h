@@ -34,7 +34,7 @@ namespace hg::rendering {
 /// One limit, in catalogue order: limit i is row first_limit_row() + i. With bounds paper a joint
 /// has a second row, for its acceleration rating.
 struct LimitRow {
-  Interval range;              ///< configured positions
+  Interval range;              ///< configured positions; of the twin as changed, this cycle
   limits::JointLimits limits;  ///< as rendered: with margins, and this cycle's locks
   limits::RecoverableOptions options;
   double rating = 1.0;       ///< largest acceleration, 1 where there is none

@@ -1,5 +1,6 @@
 #include "hg/rendering/twin_forces.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -36,9 +37,33 @@ void advance_locks(const TwinModel& twin, const ConfigurationA& q_a,
   }
 }
 
-EffectiveLimits effective_limits(const TwinModel& twin, int dof,
+namespace {
+
+// without locks
+limits::JointLimits free_limits(const TwinModel& twin, int dof, double dq,
+                                const TwinParameters& parameters) noexcept {
+  const auto index = static_cast<std::size_t>(dof);
+  limits::JointLimits limits = twin.dofs[index].limits;
+  limits.q_min = parameters.moving[index].q.lb;
+  limits.q_max = parameters.moving[index].q.ub;
+  limits.dq_max = parameters.now.dofs[index].dq_max;
+  if (dq < 0.0) limits.dq_max = std::min(limits.dq_max, twin.dofs[index].closer.speed);
+  for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
+    const ConditionalLimit& limit = twin.conditional_limits[i];
+    if (limit.dof != dof || !parameters.holds[i]) continue;
+    limits.ddq_max = std::min(limits.ddq_max, limit.limits.ddq_max);
+    const bool is_towards = limit.moving == Moving::kEitherWay ||
+                            (limit.moving == Moving::kLower ? dq < 0.0 : dq > 0.0);
+    if (is_towards) limits.dq_max = std::min(limits.dq_max, limit.limits.dq_max);
+  }
+  return limits;
+}
+
+}  // namespace
+
+EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
                                  const TwinInnerState& inner) noexcept {
-  EffectiveLimits result{twin.dofs[static_cast<std::size_t>(dof)].limits, {}};
+  EffectiveLimits result{free_limits(twin, dof, dq, inner.parameters), {}};
   for (std::size_t i = 0; i < twin.locks.size(); ++i) {
     const Lock& lock = twin.locks[i];
     const LockState& state = inner.locks[i];
@@ -62,23 +87,49 @@ EffectiveLimits effective_limits(const TwinModel& twin, int dof,
   return result;
 }
 
-VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a) noexcept {
+VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
+                      const TwinValues& values) noexcept {
   VectorA torque = VectorA::Zero(twin.chain.nv());
   for (int i = 0; i < twin.chain.nv(); ++i) {
-    const TwinDof& dof = twin.dofs[static_cast<std::size_t>(i)];
-    if (dof.q_index >= 0) {
-      torque[i] = dof.preload + dof.stiffness * (q_a[dof.q_index] - dof.rest);
-    }
+    const auto index = static_cast<std::size_t>(i);
+    const TwinDof& dof = twin.dofs[index];
+    if (dof.q_index < 0) continue;
+    const DofValues& spring = values.dofs[index];
+    const double q = q_a[dof.q_index];
+    torque[i] = spring.preload + spring.stiffness * (q - spring.rest) + dof.closer.torque;
+    if (dof.closer.stiffness > 0.0) torque[i] += dof.closer.stiffness * (q - dof.limits.q_min);
   }
   return torque;
 }
 
-VectorA damping_torque(const TwinModel& twin, const VectorA& dq_a) noexcept {
-  VectorA torque = dq_a;
-  for (int i = 0; i < twin.chain.nv(); ++i) {
-    torque[i] *= twin.dofs[static_cast<std::size_t>(i)].damping;
+VectorA damping_torque(const Eigen::MatrixXd& M, const VectorA& dq_a, double dt,
+                       const TwinValues& values) noexcept {
+  using Matrix = MatrixUpTo<kMaxTwin, kMaxTwin>;
+  const Eigen::Index n = dq_a.size();
+  VectorA D(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const DofValues& dof = values.dofs[static_cast<std::size_t>(i)];
+    D[i] = dof.damping + dof.quadratic_damping * std::abs(dq_a[i]);
   }
-  return torque;
+  VectorA torque = D.cwiseProduct(dq_a);
+  if (D.isZero(0.0)) return torque;
+
+  // B^T B = dt D^1/2 M^-1 D^1/2
+  Matrix L = M;
+  Eigen::LLT<Eigen::Ref<Matrix>> cholesky(L);
+  const VectorA root = D.cwiseSqrt();
+  Matrix B = (std::sqrt(dt) * root).asDiagonal();
+  L.triangularView<Eigen::Lower>().solveInPlace(B);
+  const double trace = B.squaredNorm();
+  if (trace <= 1.0) return torque;
+
+  // D' = D^1/2 (1 + s B^T B)^-1 D^1/2
+  Matrix series = Matrix::Identity(n, n);
+  series.noalias() += (1.0 - 1.0 / trace) * B.transpose() * B;
+  Eigen::LLT<Eigen::Ref<Matrix>> series_cholesky(series);
+  torque = root.cwiseProduct(dq_a);
+  series_cholesky.solveInPlace(torque);
+  return root.cwiseProduct(torque);
 }
 
 }  // namespace hg::rendering

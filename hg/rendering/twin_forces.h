@@ -1,4 +1,11 @@
-/// What acts inside the twin besides the user: springs, dampers, friction, locks.
+/// What acts inside the twin besides the user: springs, closers, dampers, friction, locks.
+///
+/// Dampers enter the law with the velocity at the begin of a sample. A damper that is stiff for its
+/// inertia and the period would make that ring or diverge. damping_torque() therefore takes
+///   D' = (D^-1 + s dt M^-1)^-1,  s = max(0, 1 - 1 / trace(dt M^-1 D)),
+/// the damper D in series with one that stops the inertia M within s^-1 samples: exactly D while
+/// the trace is at most 1, and with all eigenvalues of dt M^-1 D' in [0, 1], so that damping alone
+/// never turns a velocity round. One joint: d' = min(d, M / dt).
 ///
 /// No allocation, noexcept.
 #pragma once
@@ -7,6 +14,7 @@
 
 #include "hg/core/types.h"
 #include "hg/rendering/twin_model.h"
+#include "hg/rendering/twin_parameters.h"
 #include "hg/signals/state.h"
 
 namespace hg::rendering {
@@ -21,6 +29,7 @@ struct LockState {
 struct TwinInnerState {
   std::array<LockState, kMaxLocks> locks{};
   std::array<bool, kMaxTwin> sticks{};  ///< Coulomb friction holds this degree of freedom
+  TwinParameters parameters;
 };
 
 /// A joint counts as being at its lock within this distance, rad or m.
@@ -36,16 +45,20 @@ struct Holds {
   LimitCause upper = LimitCause::kNone;
 };
 
-/// The limits of a degree of freedom under the locks that hold it.
+/// The limits of a degree of freedom with its closer, conditional limits and locks. A speed limit
+/// that holds towards one end only counts while the joint moves there.
 struct EffectiveLimits {
   limits::JointLimits limits;
   Holds held_by;
 };
-EffectiveLimits effective_limits(const TwinModel& twin, int dof,
+EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
                                  const TwinInnerState& inner) noexcept;
 
-/// Torques of springs and dampers (n_a each); signs as in the budget.
-VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a) noexcept;
-VectorA damping_torque(const TwinModel& twin, const VectorA& dq_a) noexcept;
+/// Torques of springs and closers (n_a); sign as in the budget.
+VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
+                      const TwinValues& values) noexcept;
+/// Torques of linear and quadratic dampers (n_a); sign as in the budget. `M` is the mass matrix.
+VectorA damping_torque(const Eigen::MatrixXd& M, const VectorA& dq_a, double dt,
+                       const TwinValues& values) noexcept;
 
 }  // namespace hg::rendering

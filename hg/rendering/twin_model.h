@@ -28,11 +28,11 @@ struct TwinDof {
   int q_index = -1;      ///< coordinate in q_a; -1 for floating joints
   bool is_angle = true;  ///< rad and Nm, otherwise m and N
   limits::JointLimits limits;
-  double stiffness = 0.0;  ///< spring, Nm/rad or N/m
-  double rest = 0.0;       ///< position where the spring part is zero
-  double preload = 0.0;    ///< constant part of the spring, pulls towards smaller positions
-  double damping = 0.0;    ///< Nms/rad or Ns/m
-  double friction = 0.0;   ///< Coulomb friction, Nm or N
+  double stiffness = 0.0;          ///< spring, Nm/rad or N/m
+  double rest = 0.0;               ///< position where the spring part is zero
+  double preload = 0.0;            ///< constant part of the spring, pulls towards smaller positions
+  double damping = 0.0;            ///< Nms/rad or Ns/m
+  double friction = 0.0;           ///< Coulomb friction, Nm or N
   double quadratic_damping = 0.0;  ///< torque = this |dq| dq, Nms^2/rad^2 or Ns^2/m^2
   Closer closer;
 };
@@ -44,6 +44,7 @@ struct JointCondition {
 
 inline constexpr int kMaxLocks = 4;
 inline constexpr int kMaxConditionalLimits = 4;
+inline constexpr Interval kMassScale = {0.1, 10.0};  ///< of TwinModel::mass_scale
 
 /// Holds one joint at `position` while all conditions are true. A joint that is not there yet when
 /// the conditions become true is latched: it may move towards `position` but not away from it.
@@ -68,10 +69,10 @@ struct ConditionalLimit {
 
 struct TwinModel {
   model::Chain chain;
-  int end_effector = -1;      ///< frame E
-  ConfigurationA q_start;     ///< coordinates at the start
-  std::vector<TwinDof> dofs;  ///< one per velocity of the chain
-  std::vector<Lock> locks;    ///< at most kMaxLocks
+  int end_effector = -1;                             ///< frame E
+  ConfigurationA q_start;                            ///< coordinates at the start
+  std::vector<TwinDof> dofs;                         ///< one per velocity of the chain
+  std::vector<Lock> locks;                           ///< at most kMaxLocks
   std::vector<ConditionalLimit> conditional_limits;  ///< at most kMaxConditionalLimits
   Vector6 w_ref = Vector6::Zero();  ///< reference wrench of [HG] (9), at E, resolved in B
   double mass_scale = 1.0;          ///< all masses times this, 0.1..10

@@ -32,10 +32,35 @@ struct HandTarget {
 
 enum class ModeRequest : std::uint8_t { kNone = 0, kArm = 1, kRun = 2, kStop = 3, kReset = 4 };
 
+/// What of a twin may change while it runs. Numbers are recorded and never change their meaning.
+enum class Parameter : std::uint8_t {
+  kNone = 0,
+  kStiffness = 1,         ///< Nm/rad or N/m, >= 0
+  kRest = 2,              ///< rad or m
+  kPreload = 3,           ///< Nm or N
+  kDamping = 4,           ///< Nms/rad or Ns/m, >= 0
+  kQuadraticDamping = 5,  ///< Nms^2/rad^2 or Ns^2/m^2, >= 0
+  kFriction = 6,          ///< Nm or N, >= 0
+  kLowerLimit = 7,        ///< rad or m; may be -infinity
+  kUpperLimit = 8,        ///< rad or m; may be infinity
+  kSpeedLimit = 9,        ///< rad/s or m/s, > 0; may be infinity
+  kReferenceWrench = 10,  ///< N or Nm; index 0..5: force x y z, torque x y z
+  kGravity = 11,          ///< share of the earth's, 0..1
+  kMassScale = 12,        ///< all masses of the twin times this, 0.1..10
+};
+
+/// One parameter of the twin gets a new value, approached within a second without a bump.
+struct ParameterChange {
+  Parameter parameter = Parameter::kNone;
+  std::int16_t index = -1;  ///< degree of freedom of the twin, or component; see Parameter
+  double value = 0.0;
+};
+
 /// Everything that enters a cycle from outside other than sensors.
 struct OperatorFrame {
   ModeRequest request = ModeRequest::kNone;
   HandTarget hand_target;
+  ParameterChange change;
 };
 
 /// What the device is asked to do until the next sample.

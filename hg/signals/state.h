@@ -69,12 +69,20 @@ enum class SolverStatus : std::uint8_t {
 
 std::string_view to_string(SolverStatus status) noexcept;
 
+/// What became of the change of a parameter that came in with a cycle.
+enum class ChangeStatus : std::uint8_t {
+  kNone = 0,     ///< there was none
+  kTaken = 1,    ///< its value is being approached
+  kRefused = 2,  ///< parameter or index unknown to this twin, or value out of range: ignored
+};
+
 /// Everything that a cycle has to say: recorded, shown, and judged after the run.
 struct CycleRecord {
   std::uint64_t cycle = 0;
   double time_s = 0.0;  ///< nominal time since the cycle was created
   Mode mode = Mode::kOff;
   Fault fault;
+  ChangeStatus change = ChangeStatus::kNone;
   RobotState robot;
   ReferenceState reference;
   TwinState twin;

@@ -1,0 +1,54 @@
+/// The values of a twin that may change while it runs, and how they change without a bump.
+///
+/// A change sets a target. Every cycle the values in use approach their targets with a time
+/// constant of 0.1 s and are exactly there when they differ by a billionth. Position limits travel
+/// (limits::advanced) instead. A speed limit that appears begins at the speed of the joint; one
+/// that disappears goes at once.
+///
+/// Part of the copyable state of a cycle; no allocation, noexcept. SI units.
+#pragma once
+
+#include <array>
+
+#include "hg/limits/moving_limits.h"
+#include "hg/rendering/twin_model.h"
+#include "hg/signals/frames.h"
+#include "hg/signals/state.h"
+
+namespace hg::rendering {
+
+/// Of one degree of freedom; see TwinDof.
+struct DofValues {
+  double stiffness = 0.0, rest = 0.0, preload = 0.0;
+  double damping = 0.0, quadratic_damping = 0.0, friction = 0.0;
+  double dq_max = kInfinity;
+};
+
+struct TwinValues {
+  std::array<DofValues, kMaxTwin> dofs{};
+  Vector6 w_ref = Vector6::Zero();
+  model::Loads loads;
+};
+
+struct TwinParameters {
+  TwinValues now;                          ///< in use
+  TwinValues target;                       ///< approached
+  std::array<Interval, kMaxTwin> range{};  ///< of positions, as set up or changed
+  /// Position limits in use: `range` and the conditional limits that hold, travelling.
+  std::array<limits::MovingLimits, kMaxTwin> moving{};
+  std::array<bool, kMaxConditionalLimits> holds{};  ///< conditional limits, this cycle
+};
+
+/// As the twin was set up, nothing changing.
+TwinParameters initial_parameters(const TwinModel& twin);
+
+/// Takes `change` as a target, or refuses it and leaves everything as it is: unknown parameter or
+/// index, a value outside the range of its Parameter or beyond 1e9, limits that would cross.
+[[nodiscard]] ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
+                                 TwinParameters& parameters) noexcept;
+
+/// One period later: values approach their targets, limits travel, conditions are looked at.
+void advance_parameters(const TwinModel& twin, const TwinState& state, double dt,
+                        TwinParameters& parameters) noexcept;
+
+}  // namespace hg::rendering
