@@ -72,6 +72,8 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   const Fault fault = safety::check_sensors(config_.monitor, sensors, state_.next_sequence);
   safety::advance(state_.supervisor, operator_input.request, is_held(sensors), fault);
 
+  record.change = rendering_.change(operator_input.change, state_.rendering);
+
   // estimation -> rendering -> prepositioning
   if (safety::is_finite(sensors)) {
     record.robot = estimation_.step(sensors, state_.dq_p, state_.estimation);
