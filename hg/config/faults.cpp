@@ -8,6 +8,16 @@
 
 namespace hg::config {
 
+Place Places::nearest(std::string item) const {
+  while (true) {
+    const auto found = places_.find(item);
+    if (found != places_.end()) return found->second;
+    const std::size_t end = item.find_last_of(".[");
+    if (end == std::string::npos) return {};
+    item.resize(end);
+  }
+}
+
 void Faults::add(Place place, std::string_view item, std::string_view what) {
   std::string message =
       file_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column) + ": ";

@@ -1,6 +1,7 @@
 /// Collects everything that is wrong with one configuration file, to be told at once.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,19 @@ namespace hg::config {
 struct Place {
   int line = 1;
   int column = 1;
+};
+
+/// Where each key of a file stands, by its path: "joints.m1.q_max_rad", "virtual_joints[0]". A
+/// value that is a word or a number counts with its own place, a map or list with that of its key.
+class Places {
+ public:
+  /// The first place of an item counts.
+  void add(const std::string& item, Place place) { places_.emplace(item, place); }
+  /// Place of `item` or, where it is not given, of the innermost map or list that would hold it.
+  Place nearest(std::string item) const;
+
+ private:
+  std::map<std::string, Place> places_;
 };
 
 class Faults {

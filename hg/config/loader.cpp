@@ -3,6 +3,7 @@
 #include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -100,6 +101,7 @@ Loader::Loader(const YAML::Node& map, std::string item, LoaderFile& file)
       place_(place_of(map.Mark())),
       file_(file),
       faults_before_(file.faults.count()) {
+  file_.places.add(item_, place_);
   for (const auto& pair : map) add_entry(pair.first, pair.second);
 }
 
@@ -112,6 +114,7 @@ void Loader::add_entry(const YAML::Node& key, const YAML::Node& value) {
                  "given twice, first in line " + std::to_string(first->place.line));
   }
   entries_.push_back({name, place_of(key.Mark()), value, false});
+  file_.places.add(item_of(name), place_of(value.IsScalar() ? value.Mark() : key.Mark()));
 }
 
 bool Loader::number(std::string_view key, double& value, const Range& range, std::string_view,
@@ -137,13 +140,25 @@ bool Loader::vector(std::string_view key, Eigen::Vector3d& value, const Range& r
     return false;
   }
   Eigen::Vector3d read;
-  bool is_right = true;
-  for (int i = 0; i < 3; ++i) {
-    is_right &= read_number(node[i], item_of(key) + "[" + std::to_string(i) + "]", unit_of(key),
-                            range, read[i]);
+  if (!read_numbers(node, key, range, {read.data(), 3})) return false;
+  value = read;
+  return true;
+}
+
+bool Loader::inertia(std::string_view key, Eigen::Matrix3d& value, std::string_view) {
+  const Entry* entry = find(key, Need::kOptional);
+  if (entry == nullptr) return false;
+  const YAML::Node& node = entry->value;
+  if (!node.IsSequence() || (node.size() != 3 && node.size() != 6)) {
+    fault(node, item_of(key),
+          "must be a list of numbers [xx, yy, zz] or [xx, yy, zz, xy, xz, yz], got " +
+              (node.IsSequence() ? std::to_string(node.size()) + " of them" : shown(node)));
+    return false;
   }
-  if (is_right) value = read;
-  return is_right;
+  std::array<double, 6> i{};
+  if (!read_numbers(node, key, kAnyNumber, {i.data(), node.size()})) return false;
+  value << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
+  return true;
 }
 
 bool Loader::flag(std::string_view key, bool& value, std::string_view) {
@@ -339,6 +354,16 @@ bool Loader::read_number(const YAML::Node& node, const std::string& item, std::s
   return true;
 }
 
+bool Loader::read_numbers(const YAML::Node& node, std::string_view key, const Range& range,
+                          std::span<double> values) {
+  bool is_right = true;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    is_right &= read_number(node[i], item_of(key) + "[" + std::to_string(i) + "]", unit_of(key),
+                            range, values[i]);
+  }
+  return is_right;
+}
+
 bool Loader::read_name(const YAML::Node& node, const std::string& item, Names names,
                        std::string_view kind, int& index) {
   if (!node.IsScalar()) {
@@ -390,7 +415,10 @@ void Loader::fault(const YAML::Node& node, const std::string& item, const std::s
   file_.faults.add(place_of(node.Mark()), item, what);
 }
 
-void load_file(LoaderFile& file, const std::function<void(Loader&)>& read) {
+namespace {
+
+// the top map; throws SetupError unless the file holds one
+YAML::Node read_top_map(LoaderFile& file) {
   YAML::Node root;
   try {
     const std::string text = file.sources.read(file.path);
@@ -398,15 +426,28 @@ void load_file(LoaderFile& file, const std::function<void(Loader&)>& read) {
     root = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     file.faults.add(place_of(error.mark), "not valid YAML", error.msg);
-    file.faults.throw_if_any();
   }
-  if (!root.IsMap()) {
+  if (file.faults.count() == 0 && !root.IsMap()) {
     file.faults.add({}, "", "the file must be a map of keys, got " + shown(root));
-  } else {
-    Loader loader(root, "", file);
-    read(loader);
-    loader.finish();
   }
+  file.faults.throw_if_any();
+  return root;
+}
+
+}  // namespace
+
+std::vector<std::string> read_keys(LoaderFile& file) {
+  std::vector<std::string> keys;
+  for (const auto& pair : read_top_map(file)) {
+    if (pair.first.IsScalar()) keys.push_back(pair.first.Scalar());
+  }
+  return keys;
+}
+
+void load_file(LoaderFile& file, const std::function<void(Loader&)>& read) {
+  Loader loader(read_top_map(file), "", file);
+  read(loader);
+  loader.finish();
   file.faults.throw_if_any();
 }
 

@@ -27,6 +27,7 @@ struct LoaderFile {
   std::filesystem::path path;
   SourceReader& sources;
   Faults faults;
+  Places places = {};
 };
 
 class Loader {
@@ -44,6 +45,8 @@ class Loader {
   /// [x, y, z].
   bool vector(std::string_view key, Eigen::Vector3d& value, const Range& range,
               std::string_view text);
+  /// [xx, yy, zz] or [xx, yy, zz, xy, xz, yz].
+  bool inertia(std::string_view key, Eigen::Matrix3d& value, std::string_view text);
   bool flag(std::string_view key, bool& value, std::string_view text);
   bool words(std::string_view key, std::string& value, std::string_view text,
              Need need = Need::kOptional);
@@ -124,6 +127,8 @@ class Loader {
                 const std::function<void(Loader&)>& read);
   bool read_number(const YAML::Node& node, const std::string& item, std::string_view unit,
                    const Range& range, double& value);
+  bool read_numbers(const YAML::Node& node, std::string_view key, const Range& range,
+                    std::span<double> values);
   bool read_name(const YAML::Node& node, const std::string& item, Names names,
                  std::string_view kind, int& index);
   bool each_by_name(std::string_view key, Names names, std::string_view kind,
@@ -139,6 +144,9 @@ class Loader {
   std::size_t faults_before_;  ///< in the file, before this map
   std::vector<BrokenRule> broken_rules_;
 };
+
+/// Keys of the file's top map, in its order. Throws SetupError when it is no YAML map.
+std::vector<std::string> read_keys(LoaderFile& file);
 
 /// Reads the file and lets `read` visit its top map. Throws SetupError with all faults at once.
 void load_file(LoaderFile& file, const std::function<void(Loader&)>& read);
