@@ -54,6 +54,7 @@ device::SimulatedDevice make_simulated_device(const config::Scenario& scenario) 
   const simulation::Config config{.dt = device.rendering.dt,
                                   .drive = device.drive,
                                   .T_H_S = device.T_H_S,
+                                  .has_dead_man = device.monitor.has_dead_man,
                                   .q_m_start = start.q_m,
                                   .q_p_start = start.q_p};
   return device::SimulatedDevice(simulation::Simulation(

@@ -22,16 +22,21 @@ struct DeviceJoint {
 /// What stands in device.yaml, before it becomes a Device.
 struct DeviceDraft {
   std::string name;
-  std::filesystem::path urdf;
-  std::vector<std::string> joint_names, frame_names;  ///< of the URDF
+  std::filesystem::path urdf, tool;
+  std::string root_link, tip_link;
+  std::vector<std::string> link_names;  ///< of the URDF
+  int flange = -1;
+  std::vector<std::string> joint_names, frame_names;  ///< of the chain
   std::vector<DeviceJoint> joints;                    ///< all, with the limits of the URDF
   std::vector<int> gantry, manipulator;               ///< indices of joints
   bool has_joints = false;                            ///< both lists are usable
+  JointUnit gantry_unit = JointUnit::kEither;
   std::vector<std::string> manipulator_names;
   int handle = -1, elbow = -1;
   Placement sensor;
   double rate_Hz = 1000.0;
-  Kinematics kinematics = Kinematics::kHapticGiant;
+  Kinematics kinematics = Kinematics::kGeneric;
+  VectorM posture;
   std::vector<rendering::VirtualJoint> virtual_joints;
   std::vector<rendering::CartesianLimit> cartesian_limits;
   DriveModel drive;
@@ -41,31 +46,55 @@ struct DeviceDraft {
   safety::MonitorConfig monitor;
 };
 
-inline constexpr std::array<Choice<Kinematics>, 1> kKinematics = {
-    {{"haptic_giant", Kinematics::kHapticGiant}}};
+inline constexpr std::array<Choice<Kinematics>, 2> kKinematics = {
+    {{"haptic_giant", Kinematics::kHapticGiant}, {"generic", Kinematics::kGeneric}}};
+
+inline constexpr JointKey kBrake = {"ddq_brake_rad_per_s2", "ddq_brake_m_per_s2"};
 
 template <class V>
 void describe_chain(V& v, DeviceDraft& d) {
   v.words("name", d.name, "name of the device", Need::kRequired);
   v.path("urdf", d.urdf, "kinematics and inertia; its limits are the defaults of joints",
          Need::kRequired);
+  v.words("root_link", d.root_link, "first link of the chain in a URDF with branches");
+  v.words("tip_link", d.tip_link,
+          "last link of the chain; joints beyond or beside it stand still at 0");
+}
+
+/// The end effector: what the user holds, either a link of the URDF or a tool.
+template <class V>
+void describe_tool(V& v, DeviceDraft& d) {
+  v.path("tool", d.tool, "handle with its sensor, screwed onto the flange: a tool file");
+  v.name("flange", d.flange, d.link_names, "a link of the URDF", "to which the tool is screwed");
+  v.rule(v.is_given("tool") == v.is_given("flange"), "tool",
+         "a tool needs 'flange', and a flange needs 'tool'");
+  v.rule(!v.is_given("tool") || !v.is_given("handle"), "handle",
+         "the tool brings the handle: give either 'handle' or 'tool'");
+  v.rule(!v.is_given("tool") || !v.is_given("sensor"), "sensor",
+         "the file of the tool says where the sensor is");
+  v.rule(v.is_given("tool") || v.is_given("handle"), "",
+         "a device needs 'handle' (a link of the URDF) or 'tool' with 'flange'");
 }
 
 template <class V>
 void describe_structure(V& v, DeviceDraft& d) {
   const bool has_gantry = v.names("gantry", d.gantry, d.joint_names, "a joint of the URDF",
-                                  "prepositioning joints, from the root on", Need::kRequired);
+                                  "prepositioning joints, from the root on: at most 2, prismatic "
+                                  "or revolute; without it there is no gantry") ||
+                          !v.is_given("gantry");
   const bool has_manipulator =
       v.names("manipulator", d.manipulator, d.joint_names, "a joint of the URDF",
               "the joints after the gantry, to the tip", Need::kRequired);
   d.has_joints = has_gantry && has_manipulator;
-  v.name("handle", d.handle, d.frame_names, "a link of the URDF", "frame H, held by the user",
-         Need::kRequired);
+  v.name("handle", d.handle, d.frame_names, "a link of the URDF",
+         "frame H, held by the user; with a tool it has the name 'handle'");
   v.name("elbow", d.elbow, d.frame_names, "a link of the URDF", "frame to be recorded and shown");
   v.group(
       "sensor", [&](auto& child) { describe(child, d.sensor); },
       "force/torque sensor S in the handle frame H");
-  v.choice("kinematics", d.kinematics, kKinematics, "how the start posture is found");
+  v.choice("kinematics", d.kinematics, kKinematics,
+           "how the start posture and the gantry's target are found: in closed form or, for any "
+           "device, numerically");
   v.number("rate_Hz", d.rate_Hz, {.lb = 100.0, .ub = 20000.0}, "cycles per second");
 }
 
@@ -116,6 +145,12 @@ void describe_limits(V& v, DeviceDraft& d) {
         describe(child, d.joints[static_cast<std::size_t>(index)], is_gantry);
       },
       "limits; what is not given is taken from the URDF");
+  d.posture = VectorM::Constant(static_cast<int>(d.manipulator_names.size()), kNoDefault);
+  v.numbers_by_name(
+      "posture", d.manipulator_names, "a manipulator joint", kAnyNumber,
+      [&](int index, double goal) { d.posture[index] = goal; },
+      "where these joints should be, rad or m: the gantry moves so that they are, a seventh joint "
+      "goes there, and the start is chosen near it");
   v.list(
       "virtual_joints",
       [&](auto& child) { describe(child, d.virtual_joints.emplace_back(), d.manipulator_names); },

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hg/config/describe_device.h"
+#include "hg/config/law_names.h"
 
 namespace hg::config {
 
@@ -11,24 +12,46 @@ template <class V>
 void describe(V& v, safety::MonitorConfig& monitor) {
   v.number("force_max_N", monitor.force_max, kPositive, "force of the user");
   v.number("torque_max_Nm", monitor.torque_max, kPositive, "torque of the user");
-  v.number("position_tolerance_rad", monitor.position_tolerance, kPositive, "beyond a joint limit");
+  v.number("position_tolerance_rad", monitor.position_tolerance, kPositive,
+           "beyond the limit of a revolute joint");
+  v.number("position_tolerance_m", monitor.slide_tolerance, kPositive,
+           "beyond the limit of a prismatic joint");
   v.number("cartesian_tolerance_m", monitor.cartesian_tolerance, kPositive,
            "outside a Cartesian limit");
   v.number("speed_tolerance", monitor.speed_tolerance, {.lb = 1.0}, "times the largest speed");
   v.number("sync_tolerance_m", monitor.sync_tolerance, kPositive, "between handle and twin");
   v.number("tracking_tolerance_rad", monitor.tracking_tolerance, kPositive,
-           "between reference and measured joint");
+           "between reference and measured position of a revolute joint");
+  v.number("tracking_tolerance_m", monitor.slide_tracking_tolerance, kPositive,
+           "the same of a prismatic joint");
+}
+
+template <class V>
+void describe(V& v, rendering::Options& options, std::size_t manipulator_joints) {
+  v.choice("law", options.law, kLaws, "how limits become forces; paper needs six joints");
+  v.choice("bounds", options.bounds, kBounds, "how limits become bounds on accelerations");
+  v.number("T_C_s", options.T_C, kPositive,
+           "bounds paper: time within which virtual joints and frames return, at least a period");
+  v.number("kP_posture_1_per_s2", options.kP_posture, kNotNegative,
+           "of a seventh joint, towards its goal");
+  v.number("kD_posture_1_per_s", options.kD_posture, kNotNegative, "of a seventh joint, damping");
+  v.rule(options.law != rendering::Law::kPaper || manipulator_joints <= 6, "law",
+         "paper needs six manipulator joints: use gauss", "'paper'");
 }
 
 template <class V>
 void describe_behaviour(V& v, DeviceDraft& d) {
+  for (const char* key : {"drive", "prepositioning", "estimation"}) {
+    v.rule(!d.gantry.empty() || !v.is_given(key), key, "concerns the gantry, and there is none");
+  }
   v.group(
       "drive",
       [&](auto& child) {
         child.number("dead_time_s", d.drive.dead_time, kNotNegative, "until a command has effect");
         child.number("lag_s", d.drive.lag, kPositive, "time constant of the speed");
-        child.number("dq_max_m_per_s", d.drive.dq_max, kPositive, "largest speed");
-        child.number("ddq_max_m_per_s2", d.drive.ddq_max, kPositive, "largest acceleration");
+        child.joint_number(kSpeed, d.gantry_unit, d.drive.dq_max, kPositive, "largest speed");
+        child.joint_number(kAcceleration, d.gantry_unit, d.drive.ddq_max, kPositive,
+                           "largest acceleration");
         child.rule(std::lround(d.drive.dead_time * d.rate_Hz) <= CommandDelay::kMaxPeriods,
                    "dead_time_s", "must be shorter than 256 cycles",
                    model::to_text(d.drive.dead_time));
@@ -44,17 +67,21 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       },
       "gains that pull the handle onto the twin, eq. (11)");
   v.group(
+      "rendering", [&](auto& child) { describe(child, d.rendering, d.manipulator.size()); },
+      "the law, see docs/law.md");
+  v.group(
       "prepositioning",
       [&](auto& child) {
         child.number("k_ppu_1_per_s", d.prepositioning.k_ppu, kPositive, "gain, eq. (27)");
-        child.number("dq_max_m_per_s", d.prepositioning.dq_max, kPositive, "largest speed used");
-        child.number("ddq_brake_m_per_s2", d.prepositioning.drive.ddq_max, kPositive,
-                     "deceleration that can be relied on");
-        child.rule(d.prepositioning.dq_max <= d.drive.dq_max, "dq_max_m_per_s",
+        child.joint_number(kSpeed, d.gantry_unit, d.prepositioning.dq_max, kPositive,
+                           "largest speed used");
+        child.joint_number(kBrake, d.gantry_unit, d.prepositioning.drive.ddq_max, kPositive,
+                           "deceleration that can be relied on");
+        child.rule(d.prepositioning.dq_max <= d.drive.dq_max, kSpeed.of(d.gantry_unit),
                    "must not exceed the speed of the drive, " + model::to_text(d.drive.dq_max),
                    model::to_text(d.prepositioning.dq_max));
         child.rule(
-            d.prepositioning.drive.ddq_max <= d.drive.ddq_max, "ddq_brake_m_per_s2",
+            d.prepositioning.drive.ddq_max <= d.drive.ddq_max, kBrake.of(d.gantry_unit),
             "must not exceed the acceleration of the drive, " + model::to_text(d.drive.ddq_max),
             model::to_text(d.prepositioning.drive.ddq_max));
       },

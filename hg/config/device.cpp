@@ -8,10 +8,42 @@
 #include "hg/config/describe_device_behaviour.h"
 #include "hg/config/loader.h"
 #include "hg/config/read_chain.h"
+#include "hg/config/tool.h"
 #include "hg/core/error.h"
+#include "hg/model/urdf.h"
 
 namespace hg::config {
 namespace {
+
+// Of a URDF that is wrong the chain tells what.
+std::vector<std::string> link_names(const std::string& urdf) {
+  std::vector<std::string> names;
+  try {
+    for (const model::UrdfLink& link : model::read_urdf_text(urdf, "").links) {
+      names.push_back(link.name);
+    }
+  } catch (const SetupError&) {
+  }
+  return names;
+}
+
+model::ChainOptions chain_options(const DeviceDraft& draft, const std::optional<Tool>& tool) {
+  model::ChainOptions options = {.root_link = draft.root_link, .tip_link = draft.tip_link};
+  if (!tool) return options;
+  options.tool = tool->body;
+  options.tool->link = draft.link_names[static_cast<std::size_t>(draft.flange)];
+  return options;
+}
+
+std::optional<Tool> read_tool(LoaderFile& file, const DeviceDraft& draft) {
+  if (draft.tool.empty() || draft.flange < 0) return {};
+  try {
+    return load_tool(draft.tool, file.sources);
+  } catch (const SetupError& error) {
+    file.faults.add_complete(error.what());
+    return {};
+  }
+}
 
 void take_joints(const model::Chain& chain, DeviceDraft& draft) {
   draft.frame_names = chain.frame_names();
@@ -42,12 +74,27 @@ void check_order(Loader& loader, const model::Chain& chain, const DeviceDraft& d
               "at most 7 joints are possible");
 }
 
-void check_joints(Loader& loader, const model::Chain& chain, const DeviceDraft& draft) {
+void check_gantry(Loader& loader, const model::Chain& chain, const DeviceDraft& draft) {
   for (int i : draft.gantry) {
     const model::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
-    loader.rule(joint.type == model::JointType::kPrismatic, "gantry",
-                "gantry joints must be prismatic", "'" + joint.name + "'");
+    loader.rule(joint.nv == 1, "gantry", "a device has no floating joints", "'" + joint.name + "'");
+    loader.rule(unit_of(joint.type) == draft.gantry_unit, "gantry",
+                "gantry joints must be all prismatic or all revolute", "'" + joint.name + "'");
   }
+  const bool has_posture = draft.posture.array().isFinite().any();
+  if (draft.kinematics == Kinematics::kHapticGiant) {
+    loader.rule(draft.gantry.size() == 2 && draft.manipulator.size() == 6 &&
+                    draft.gantry_unit == JointUnit::kLength,
+                "kinematics",
+                "haptic_giant needs two prismatic gantry joints and six manipulator joints");
+    loader.rule(!has_posture, "posture", "haptic_giant has the posture of eq. (30)");
+  } else {
+    loader.rule(draft.gantry.empty() || has_posture, "gantry",
+                "a gantry needs 'posture': without goals of the joints it has nowhere to go");
+  }
+}
+
+void check_joints(Loader& loader, const model::Chain& chain, const DeviceDraft& draft) {
   for (int i : draft.manipulator) {
     const DeviceJoint& joint = draft.joints[static_cast<std::size_t>(i)];
     loader.rule(chain.joints()[static_cast<std::size_t>(i)].nv == 1, "manipulator",
@@ -65,8 +112,16 @@ void check_joints(Loader& loader, const model::Chain& chain, const DeviceDraft& 
                   "'" + draft.manipulator_names[static_cast<std::size_t>(i)] + "'");
     }
   }
-  loader.rule(draft.gantry.size() == 2 && draft.manipulator.size() == 6, "kinematics",
-              "haptic_giant needs two gantry joints and six manipulator joints");
+  for (int i = 0; i < draft.posture.size(); ++i) {
+    const auto named = static_cast<std::size_t>(i);
+    const limits::JointLimits& limits =
+        draft.joints[static_cast<std::size_t>(draft.manipulator[named])].limits;
+    loader.rule(std::isnan(draft.posture[i]) ||
+                    (limits.q_min <= draft.posture[i] && draft.posture[i] <= limits.q_max),
+                "posture",
+                draft.manipulator_names[named] + " must be within the limits of the joint",
+                model::to_text(draft.posture[i]));
+  }
 }
 
 // Without a usable list of joints every name counts: one fault is enough.
@@ -85,7 +140,8 @@ rendering::DeviceModel make_model(model::Chain chain, const DeviceDraft& draft) 
                                   .elbow = draft.elbow,
                                   .joint_limits = {},
                                   .virtual_joints = draft.virtual_joints,
-                                  .cartesian_limits = draft.cartesian_limits};
+                                  .cartesian_limits = draft.cartesian_limits,
+                                  .posture = draft.posture};
   for (int i : draft.manipulator) {
     model.joint_limits.push_back(draft.joints[static_cast<std::size_t>(i)].limits);
   }
@@ -98,6 +154,7 @@ void derive(Device& device, const DeviceDraft& draft) {
   device.estimation.T_H_S = device.T_H_S;
 
   device.prepositioning.n_p = device.model.n_p;
+  device.prepositioning.has_closed_form = device.kinematics == Kinematics::kHapticGiant;
   for (std::size_t i = 0; i < draft.gantry.size(); ++i) {
     const limits::JointLimits& axis =
         draft.joints[static_cast<std::size_t>(draft.gantry[i])].limits;
@@ -105,6 +162,10 @@ void derive(Device& device, const DeviceDraft& draft) {
   }
 
   device.monitor.gantry_speed_max = device.prepositioning.dq_max;
+  for (int i : draft.manipulator) {
+    device.monitor.is_slide.push_back(draft.joints[static_cast<std::size_t>(i)].unit ==
+                                      JointUnit::kLength);
+  }
   for (const limits::JointLimits& joint : device.model.joint_limits) {
     device.monitor.joint_range.push_back({joint.q_min, joint.q_max});
     device.monitor.joint_speed_max.push_back(joint.dq_max);
@@ -141,16 +202,26 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   DeviceDraft draft;
   std::optional<model::Chain> chain;
+  std::optional<Tool> tool;
   load_file(file, [&](Loader& loader) {
     describe_chain(loader, draft);
-    chain = read_chain(file, draft.urdf, {});
+    const std::string urdf = read_urdf(file, draft.urdf);
+    draft.link_names = link_names(urdf);
+    describe_tool(loader, draft);
+    tool = read_tool(file, draft);
+    chain = parse_chain(file, draft.urdf, urdf, chain_options(draft, tool));
     take_joints(*chain, draft);
     describe_structure(loader, draft);
+    if (tool) draft.handle = chain->frame(tool->body.handle);
+    draft.gantry_unit = draft.gantry.empty()
+                            ? JointUnit::kLength
+                            : draft.joints[static_cast<std::size_t>(draft.gantry[0])].unit;
     draft.manipulator_names = manipulator_names(draft);
     describe_limits(loader, draft);
     describe_behaviour(loader, draft);
     if (!draft.has_joints) return;
     check_order(loader, *chain, draft);
+    check_gantry(loader, *chain, draft);
     check_joints(loader, *chain, draft);
   });
 
@@ -165,7 +236,12 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .prepositioning = draft.prepositioning,
                    .estimation = draft.estimation,
                    .monitor = draft.monitor,
-                   .sources = reader.since(first_source)};
+                   .sources = reader.since(first_source),
+                   .places = std::move(file.places)};
+  if (tool) {
+    device.T_H_S = tool->T_H_S;
+    device.monitor.has_dead_man = tool->has_dead_man;
+  }
   derive(device, draft);
   return device;
 }

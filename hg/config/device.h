@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/config/faults.h"
 #include "hg/config/sources.h"
 #include "hg/core/types.h"
 #include "hg/estimation/estimation.h"
@@ -19,13 +20,14 @@ namespace hg::config {
 /// How a posture for a handle pose is found at the start.
 enum class Kinematics {
   kHapticGiant,  ///< closed form of [HANDBOOK] 2.3: two gantry axes, six joints
+  kGeneric,      ///< numerically, for any device
 };
 
 struct Device {
   std::string name;
   std::filesystem::path urdf;
   double rate_Hz = 1000.0;
-  Kinematics kinematics = Kinematics::kHapticGiant;
+  Kinematics kinematics = Kinematics::kGeneric;
   DriveModel drive;
   Pose T_H_S;  ///< force/torque sensor S in the handle frame H
   rendering::DeviceModel model;
@@ -34,6 +36,7 @@ struct Device {
   estimation::Config estimation;
   safety::MonitorConfig monitor;
   std::vector<SourceText> sources;  ///< the YAML file first
+  Places places;                    ///< of the keys of the YAML file
 };
 
 /// Changes the rate and all that follows from it. Throws SetupError when the drive's dead time

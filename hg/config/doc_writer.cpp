@@ -41,6 +41,10 @@ bool DocWriter::vector(std::string_view key, const Eigen::Vector3d& value, const
              text);
 }
 
+bool DocWriter::inertia(std::string_view key, const Eigen::Matrix3d&, std::string_view text) {
+  return row(key, "", Need::kOptional, "three or six numbers " + std::string(unit_of(key)), text);
+}
+
 bool DocWriter::flag(std::string_view key, bool value, std::string_view text) {
   return row(key, value ? "true" : "false", Need::kOptional, "true, false", text);
 }

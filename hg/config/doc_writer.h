@@ -24,6 +24,7 @@ class DocWriter {
                     std::string_view text, Need need = Need::kOptional);
   bool vector(std::string_view key, const Eigen::Vector3d& value, const Range& range,
               std::string_view text);
+  bool inertia(std::string_view key, const Eigen::Matrix3d& value, std::string_view text);
   bool flag(std::string_view key, bool value, std::string_view text);
   bool words(std::string_view key, const std::string& value, std::string_view text,
              Need need = Need::kOptional);

@@ -4,6 +4,7 @@
 #include "hg/config/describe_device_behaviour.h"
 #include "hg/config/describe_scenario.h"
 #include "hg/config/describe_script.h"
+#include "hg/config/describe_tool.h"
 #include "hg/config/describe_twin.h"
 #include "hg/config/describe_twin_joints.h"
 #include "hg/config/doc_writer.h"
@@ -15,7 +16,7 @@ constexpr const char* kIntroduction = R"(# Configuration files
 
 <!-- Generated from the descriptions in hg/config: edit those. -->
 
-Four kinds of YAML files set up a run. `models/` has complete examples.
+Five kinds of YAML files set up a run. `models/` has complete examples.
 
 - A key ends in its unit: `q_max_rad`, `stiffness_N_per_m`, `k_ppu_1_per_s`. Values are plain
   numbers in that unit; `15 deg` is refused. Where the unit depends on the joint, revolute joints
@@ -33,9 +34,17 @@ std::string device_table() {
   draft.joints.emplace_back();  // stands for every joint
   DocWriter writer;
   describe_chain(writer, draft);
+  describe_tool(writer, draft);
   describe_structure(writer, draft);
   describe_limits(writer, draft);
   describe_behaviour(writer, draft);
+  return writer.table();
+}
+
+std::string tool_table() {
+  ToolDraft draft;
+  DocWriter writer;
+  describe(writer, draft);
   return writer.table();
 }
 
@@ -83,6 +92,7 @@ std::string reference_page() {
     page += "\n" + title + "\n\n" + text;
   };
   section("## Device: device.yaml", device_table());
+  section("## Tool of a device: tool.yaml", tool_table());
   section("## Twin: twin.yaml", twin_table());
   section("## Script of a hand: script.yaml", script_table());
   section("### Channels of frame base", channel_table(pose_channels(user::ScriptFrame::kBase)));

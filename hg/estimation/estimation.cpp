@@ -34,6 +34,10 @@ Estimation::Estimation(const Config& config, const model::Chain& chain, int n_p,
       handle_(handle),
       dead_periods_(static_cast<int>(std::lround(config.drive.dead_time / config.dt))) {}
 
+bool Estimation::turns_without_end(int joint) const noexcept {
+  return chain_.joints()[static_cast<std::size_t>(joint)].type == model::JointType::kContinuous;
+}
+
 RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
                             State& state) noexcept {
   if (!state.is_started) {
@@ -46,8 +50,7 @@ RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
   robot.q_m = sensors.q_m;
   robot.dq_m = sensors.dq_m;
   for (int i = 0; i < n_m_; ++i) {
-    const auto joint = static_cast<std::size_t>(n_p_ + i);
-    if (chain_.joints()[joint].type == model::JointType::kContinuous) {
+    if (turns_without_end(n_p_ + i)) {
       robot.q_m[i] = model::haptic_giant::nearest_turn(sensors.q_m[i], state.q_m[i]);
     }
   }
@@ -58,7 +61,10 @@ RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
   robot.ddq_p.resize(n_p_);
   for (int i = 0; i < n_p_; ++i) {
     GantryObserver& axis = state.gantry[static_cast<std::size_t>(i)];
-    observe(config_, sensors.q_p[i], axis.delay.shift(dq_p_cmd[i], dead_periods_), axis);
+    const double q = turns_without_end(i)
+                         ? model::haptic_giant::nearest_turn(sensors.q_p[i], axis.q)
+                         : sensors.q_p[i];
+    observe(config_, q, axis.delay.shift(dq_p_cmd[i], dead_periods_), axis);
     robot.q_p[i] = axis.q;
     robot.dq_p[i] = axis.dq;
     robot.ddq_p[i] = axis.ddq;

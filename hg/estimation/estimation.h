@@ -44,6 +44,8 @@ class Estimation {
   RobotState step(const SensorFrame& sensors, const VectorP& dq_p_cmd, State& state) noexcept;
 
  private:
+  bool turns_without_end(int joint) const noexcept;
+
   Config config_;
   model::Chain chain_;
   int n_p_, n_m_, handle_;

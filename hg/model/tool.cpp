@@ -26,7 +26,7 @@ void attach(const Tool& tool, Urdf& urdf) {
   }
   if (find(urdf, tool.handle) >= 0) {
     throw SetupError(urdf.source + ": tool: the URDF has a link '" + tool.handle +
-                     "' already; give the frame of the tool another name");
+                     "' already: take that as the handle instead of a tool, or rename it");
   }
 
   // mass in the axes of the handle, which is a link of its own

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "hg/core/error.h"
-#include "hg/model/haptic_giant.h"
 
 namespace hg::prepositioning {
 
@@ -12,7 +11,7 @@ void check(const Config& config) {
   const auto require = [](bool ok, const char* rule) {
     if (!ok) throw SetupError(std::string("prepositioning: ") + rule);
   };
-  require(config.n_p == 2, "the closed-form target needs two gantry joints");
+  require(config.n_p >= 0 && config.n_p <= kMaxGantry, "at most two gantry joints are possible");
   require(std::isfinite(config.k_ppu) && config.k_ppu > 0.0, "k_ppu must be positive");
   require(config.dq_max > 0.0, "dq_max must be positive");
   for (int i = 0; i < config.n_p; ++i) {
@@ -21,11 +20,9 @@ void check(const Config& config) {
   limits::check(config.drive, "prepositioning");
 }
 
-Command step(const Config& config, const RobotState& robot, const VectorM& q_m,
+Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
              bool device_blocked) noexcept {
-  Command command;
-  command.q_target = model::haptic_giant::gantry_target(robot.q_p, q_m);
-  command.dq = VectorP::Zero(config.n_p);
+  Command command = {q_target, VectorP::Zero(config.n_p)};
   if (device_blocked) return command;
   for (int i = 0; i < config.n_p; ++i) {
     const Interval q_limits = config.q_limits[static_cast<std::size_t>(i)];

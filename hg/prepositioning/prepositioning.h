@@ -1,8 +1,7 @@
-/// Moves the gantry along with the hand: target (30), P controller (27), velocity bounds.
+/// Moves the gantry to its target: P controller (27), velocity bounds. The target: gantry_target.h.
 ///
-/// Differs from [HG]: the target is written in closed form (equal to (30) to rounding), and the
-/// bounds know the drive's braking distance instead of (28)-(29).
-/// No allocation, noexcept after set-up.
+/// Differs from [HG]: the bounds know the drive's braking distance instead of (28)-(29).
+/// Prismatic axes: m and m/s, revolute ones rad and rad/s. No allocation, noexcept after set-up.
 #pragma once
 
 #include <array>
@@ -17,8 +16,9 @@ namespace hg::prepositioning {
 /// Set-up data. Arrays are indexed by gantry joint.
 struct Config {
   int n_p = 0;
-  std::array<Interval, kMaxGantry> q_limits;  ///< m
-  double dq_max = 1.5;                        ///< m/s
+  bool has_closed_form = false;               ///< of the target: the device is a HapticGiant
+  std::array<Interval, kMaxGantry> q_limits;  ///< m or rad
+  double dq_max = 1.5;                        ///< m/s or rad/s
   double k_ppu = 4.0;  ///< gain of (27), 1/s; below 1 / (4 lag) there is no overshoot
   limits::DriveResponse drive;
 };
@@ -27,13 +27,13 @@ struct Config {
 void check(const Config& config);
 
 struct Command {
-  VectorP q_target;  ///< where the gantry should be, m
-  VectorP dq;        ///< velocity command, m/s
+  VectorP q_target;  ///< where the gantry should be, within its limits, m or rad
+  VectorP dq;        ///< velocity command, m/s or rad/s
 };
 
-/// `robot` gives the gantry, `q_m` the manipulator reference. `device_blocked` (a manipulator row
-/// could not be met) scales the command to zero: a gantry that drags a blocked arm is a fault.
-Command step(const Config& config, const RobotState& robot, const VectorM& q_m,
+/// `robot` gives the gantry. `device_blocked` (a manipulator row could not be met) scales the
+/// command to zero: a gantry that drags a blocked arm is a fault.
+Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
              bool device_blocked) noexcept;
 
 }  // namespace hg::prepositioning

@@ -69,8 +69,11 @@ Fault check_reference(const MonitorConfig& config, const CycleRecord& record) no
   for (int i = 0; i < reference.q_m.size(); ++i) {
     const auto joint = static_cast<std::size_t>(i);
     const Interval range = config.joint_range[joint];
+    const bool is_slide = !config.is_slide.empty() && config.is_slide[joint];
+    const double beyond = is_slide ? config.slide_tolerance : config.position_tolerance;
+    const double apart = is_slide ? config.slide_tracking_tolerance : config.tracking_tolerance;
     const double nearest = std::clamp(reference.q_m[i], range.lb, range.ub);
-    if (std::abs(reference.q_m[i] - nearest) > config.position_tolerance) {
+    if (std::abs(reference.q_m[i] - nearest) > beyond) {
       return make_fault(FaultCode::kLimitExceeded, i, reference.q_m[i], nearest);
     }
     const double fastest = config.speed_tolerance * config.joint_speed_max[joint];
@@ -78,9 +81,7 @@ Fault check_reference(const MonitorConfig& config, const CycleRecord& record) no
       return make_fault(FaultCode::kSpeedExceeded, i, reference.dq_m[i], fastest);
     }
     const double error = std::abs(reference.q_m[i] - record.robot.q_m[i]);
-    if (error > config.tracking_tolerance) {
-      return make_fault(FaultCode::kTrackingLost, i, error, config.tracking_tolerance);
-    }
+    if (error > apart) return make_fault(FaultCode::kTrackingLost, i, error, apart);
   }
   for (int i = config.first_cartesian; i < config.end_cartesian; ++i) {
     const double excess = record.limits[static_cast<std::size_t>(i)].excess;

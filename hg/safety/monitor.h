@@ -13,19 +13,28 @@ namespace hg::safety {
 
 /// Set-up data.
 struct MonitorConfig {
-  double force_max = 150.0;           ///< [HANDBOOK] 6.2, N
-  double torque_max = 14.0;           ///< Nm; the sensor ends at 15
-  double position_tolerance = 0.03;   ///< beyond a joint limit, rad
-  double cartesian_tolerance = 0.03;  ///< outside a Cartesian limit, m
-  double speed_tolerance = 1.1;       ///< times the rating
-  double tracking_tolerance = 0.08;   ///< reference minus measured joint, rad
-  double sync_tolerance = 0.02;       ///< between handle and twin, m
-  double gantry_speed_max = 1.5;      ///< m/s
-  std::vector<Interval> joint_range;  ///< of the manipulator joints
+  double force_max = 150.0;                ///< [HANDBOOK] 6.2, N
+  double torque_max = 14.0;                ///< Nm; the sensor ends at 15
+  bool has_dead_man = true;                ///< false: the handle counts as held all the time
+  double position_tolerance = 0.03;        ///< beyond the limit of a revolute joint, rad
+  double slide_tolerance = 0.03;           ///< beyond the limit of a prismatic joint, m
+  double cartesian_tolerance = 0.03;       ///< outside a Cartesian limit, m
+  double speed_tolerance = 1.1;            ///< times the rating
+  double tracking_tolerance = 0.08;        ///< reference minus measured joint, rad
+  double slide_tracking_tolerance = 0.02;  ///< the same of a prismatic joint, m
+  double sync_tolerance = 0.02;            ///< between handle and twin, m
+  double gantry_speed_max = 1.5;           ///< m/s or rad/s
+  std::vector<Interval> joint_range;       ///< of the manipulator joints
+  std::vector<bool> is_slide;              ///< manipulator joints that are prismatic; empty = none
   int first_cartesian = 0;  ///< Cartesian limits in the catalogue: first and one past the last
   int end_cartesian = 0;
-  std::vector<double> joint_speed_max;  ///< rad/s
+  std::vector<double> joint_speed_max;  ///< rad/s or m/s
 };
+
+/// Whether somebody holds the handle, as far as the device can tell.
+inline bool is_held(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
+  return sensors.dead_man || !config.has_dead_man;
+}
 
 /// Whether every measured value is a number: others must not reach the estimation.
 bool is_finite(const SensorFrame& sensors) noexcept;

@@ -11,8 +11,8 @@ namespace hg {
 struct DriveModel {
   double dead_time = 4e-3;  ///< s, >= 0
   double lag = 40e-3;       ///< first-order time constant, s, > 0
-  double dq_max = 1.5;      ///< speed, m/s
-  double ddq_max = 2.5;     ///< acceleration, m/s^2
+  double dq_max = 1.5;      ///< speed, m/s (rad/s for a revolute axis)
+  double ddq_max = 2.5;     ///< acceleration, m/s^2 (rad/s^2)
 };
 
 /// Acceleration of the drive at speed `dq` for the command that has passed the dead time.

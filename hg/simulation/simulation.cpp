@@ -7,11 +7,7 @@
 namespace hg::simulation {
 namespace {
 
-// what an absolute encoder of an unlimited joint shows: [-pi, pi)
-double wrapped(double angle) noexcept {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  return angle - kTurn * std::floor((angle + std::numbers::pi) / kTurn);
-}
+constexpr double kTurn = 2.0 * std::numbers::pi;
 
 }  // namespace
 
@@ -28,7 +24,7 @@ Simulation::Simulation(const Config& config, const model::Chain& chain, int hand
       dq_m_(VectorM::Zero(n_m_)) {
   for (int i = 0; i < n_p_; ++i) axes_[static_cast<std::size_t>(i)].q = config.q_p_start[i];
   sensors_.tau_m = VectorM::Zero(n_m_);
-  sensors_.dead_man = true;
+  sensors_.dead_man = config_.has_dead_man;
   measure({});
 }
 
@@ -53,6 +49,13 @@ void Simulation::step(const CommandFrame& command) noexcept {
   measure(command.hand_target);
 }
 
+// An absolute encoder; of a joint that turns without end: [-pi, pi).
+double Simulation::encoder(int joint, double q) const noexcept {
+  const model::Joint& described = chain_.joints()[static_cast<std::size_t>(joint)];
+  if (described.type != model::JointType::kContinuous) return q;
+  return q - kTurn * std::floor((q + std::numbers::pi) / kTurn);
+}
+
 void Simulation::measure(const HandTarget& target) noexcept {
   VectorUpTo<kMaxGantry + kMaxManipulator> q(n_p_ + n_m_), dq(n_p_ + n_m_);
   sensors_.q_p.resize(n_p_);
@@ -60,20 +63,15 @@ void Simulation::measure(const HandTarget& target) noexcept {
     const Axis& axis = axes_[static_cast<std::size_t>(i)];
     q[i] = axis.q;
     dq[i] = axis.dq;
-    sensors_.q_p[i] = axis.q;
+    sensors_.q_p[i] = encoder(i, axis.q);
   }
   q.tail(n_m_) = q_m_;
   dq.tail(n_m_) = dq_m_;
   chain_.update_kinematics(q, dq);
 
   sensors_.time_s = time_s_;
-  sensors_.q_m = q_m_;
-  for (int i = 0; i < n_m_; ++i) {
-    const auto joint = static_cast<std::size_t>(n_p_ + i);
-    if (chain_.joints()[joint].type == model::JointType::kContinuous) {
-      sensors_.q_m[i] = wrapped(q_m_[i]);
-    }
-  }
+  sensors_.q_m.resize(n_m_);
+  for (int i = 0; i < n_m_; ++i) sensors_.q_m[i] = encoder(n_p_ + i, q_m_[i]);
   sensors_.dq_m = dq_m_;
 
   const user::HandleMotion handle{chain_.pose(handle_), chain_.twist(handle_)};

@@ -19,6 +19,7 @@ struct Config {
   double dt = 1e-3;  ///< period, s
   DriveModel drive;  ///< of every gantry axis
   Pose T_H_S;        ///< force/torque sensor S in the handle frame H
+  bool has_dead_man = true;
   VectorM q_m_start;
   VectorP q_p_start;
 };
@@ -39,6 +40,7 @@ class Simulation {
     CommandDelay delay;
   };
   void measure(const HandTarget& target) noexcept;
+  double encoder(int joint, double q) const noexcept;
 
   Config config_;
   model::Chain chain_;

@@ -39,7 +39,7 @@ struct HeldHand {
       RobotState robot;
       robot.q_p = q;
       robot.dq_p = dq;
-      command = step(gantry, robot, q_m, false);
+      command = step(gantry, robot, model::haptic_giant::gantry_target(q, q_m), false);
       for (int i = 0; i < 2; ++i) {
         const double ddq = drive_acceleration(
             drive, dq[i], delay[static_cast<std::size_t>(i)].shift(command.dq[i], 4));
@@ -85,12 +85,11 @@ TEST(Prepositioning, StopsAtItsLimitsWhateverTheTarget) {
 }
 
 TEST(Prepositioning, StandsStillWhileTheDeviceIsBlocked) {
-  Vector6 q_m;
-  q_m << 0, 1, 0, 1.4, 0, 0;
   RobotState robot;
   robot.q_p = VectorP::Zero(2);
-  EXPECT_GT(step(config(), robot, q_m, false).dq.norm(), 0.01);
-  EXPECT_EQ(step(config(), robot, q_m, true).dq.norm(), 0.0);
+  const VectorP target = Eigen::Vector2d(0.3, -0.2);
+  EXPECT_GT(step(config(), robot, target, false).dq.norm(), 0.01);
+  EXPECT_EQ(step(config(), robot, target, true).dq.norm(), 0.0);
 }
 
 TEST(Prepositioning, RefusesImpossibleConfigurations) {

@@ -1,0 +1,19 @@
+/// Names of law and bounds, in device.yaml and on the command line.
+#pragma once
+
+#include <array>
+
+#include "hg/config/range.h"
+#include "hg/rendering/options.h"
+
+namespace hg::config {
+
+inline constexpr std::array<Choice<rendering::Law>, 2> kLaws = {
+    {{to_string(rendering::Law::kGauss), rendering::Law::kGauss},
+     {to_string(rendering::Law::kPaper), rendering::Law::kPaper}}};
+
+inline constexpr std::array<Choice<rendering::Bounds>, 2> kBounds = {
+    {{to_string(rendering::Bounds::kRecoverable), rendering::Bounds::kRecoverable},
+     {to_string(rendering::Bounds::kPaper), rendering::Bounds::kPaper}}};
+
+}  // namespace hg::config

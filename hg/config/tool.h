@@ -1,0 +1,23 @@
+/// A tool from its YAML file: what the user holds, described in docs/configuration.md.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "hg/config/sources.h"
+#include "hg/core/types.h"
+#include "hg/model/chain.h"
+
+namespace hg::config {
+
+struct Tool {
+  std::string name;
+  model::Tool body;  ///< without its link
+  Pose T_H_S;        ///< force/torque sensor S in the handle frame H
+  bool has_dead_man = true;
+};
+
+/// Throws SetupError with all faults of the file, one per line.
+Tool load_tool(const std::filesystem::path& file, SourceReader& reader);
+
+}  // namespace hg::config

@@ -1,0 +1,55 @@
+/// Where the gantry should be: the position that brings the posture joints of the manipulator to
+/// their goals at the same pose of the handle.
+///
+/// In closed form for the HapticGiant, [HG] (30); otherwise a few damped Gauss-Newton steps per
+/// cycle on the model, warm started with the posture that the last cycle ended with. m or rad, as
+/// the joints are. No allocation, noexcept after set-up.
+#pragma once
+
+#include <vector>
+
+#include "hg/core/interval.h"
+#include "hg/core/types.h"
+#include "hg/model/chain.h"
+#include "hg/signals/state.h"
+
+namespace hg::prepositioning {
+
+using VectorPM = VectorUpTo<kMaxGantry + kMaxManipulator>;  ///< gantry, then manipulator
+using MatrixPM = MatrixUpTo<kMaxGantry + kMaxManipulator, kMaxGantry + kMaxManipulator>;
+
+/// Set-up data.
+struct TargetConfig {
+  bool has_closed_form = false;  ///< the device is a HapticGiant
+  int n_p = 0, n_m = 0;
+  int handle = -1;              ///< frame H of the chain
+  VectorM goal;                 ///< of the manipulator joints; NaN or missing = no goal
+  std::vector<Interval> range;  ///< of gantry and manipulator joints
+};
+
+/// Part of the copyable state of a cycle.
+struct TargetState {
+  bool is_started = false;
+  VectorPM q;  ///< posture of the target: gantry, then manipulator
+};
+
+class GantryTarget {
+ public:
+  /// `chain` holds the gantry joints first. Throws SetupError when config and chain do not fit.
+  GantryTarget(const TargetConfig& config, const model::Chain& chain);
+
+  /// `robot` gives the gantry, `q_m` the manipulator reference.
+  VectorP step(const RobotState& robot, const VectorM& q_m, TargetState& state) noexcept;
+
+ private:
+  double improve(const Pose& T_B_H, VectorPM& q) noexcept;
+  VectorPM limited_step(MatrixPM H, VectorPM g, const VectorPM& q) const noexcept;
+
+  TargetConfig config_;
+  model::Chain chain_;
+  VectorPM goal_;              ///< NaN = no goal
+  std::vector<bool> is_free_;  ///< joints that turn without end
+  VectorPM at_rest_;
+};
+
+}  // namespace hg::prepositioning
