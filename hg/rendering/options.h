@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace hg::rendering {
 
@@ -16,6 +17,13 @@ enum class Bounds : std::uint8_t {
   kRecoverable,  ///< bounds R
   kPaper,        ///< [HG]: A for joints, C for virtual joints and frames, B as levels of their own
 };
+
+constexpr std::string_view to_string(Law law) noexcept {
+  return law == Law::kPaper ? "paper" : "gauss";
+}
+constexpr std::string_view to_string(Bounds bounds) noexcept {
+  return bounds == Bounds::kPaper ? "paper" : "recoverable";
+}
 
 struct Options {
   Law law = Law::kGauss;
