@@ -38,12 +38,16 @@ struct TwinDraft {
   Placement placement;
   bool gravity = false;
   bool floating_root = false;
+  std::string root_link, tip_link;
+  Eigen::Vector3d force_ref = Eigen::Vector3d::Zero(), torque_ref = Eigen::Vector3d::Zero();
+  double mass_scale = 1.0;
   std::vector<std::string> joint_names, frame_names;
   std::vector<TwinJoint> joints;
   std::vector<std::string> scalar_names;  ///< of the joints that are not floating
   std::vector<int> scalar_joints;         ///< their indices in joints
   int end_effector = -1;
   std::vector<rendering::Lock> locks;
+  std::vector<rendering::ConditionalLimit> conditional_limits;
 
   const TwinJoint& scalar_joint(int index) const {
     return joints[static_cast<std::size_t>(scalar_joints[static_cast<std::size_t>(index)])];
@@ -71,6 +75,22 @@ void describe_chain(V& v, TwinDraft& d) {
   v.flag("gravity", d.gravity, "whether the twin's links have weight");
   v.flag("floating_root", d.floating_root,
          "whether the root link of the URDF moves freely, by a joint 'root'");
+  v.words("root_link", d.root_link, "first link of the chain, for a URDF with more than the twin");
+  v.words("tip_link", d.tip_link,
+          "last link of the chain; joints beyond or beside it stand still at 0");
+}
+
+/// What may change while the twin runs and belongs to no joint.
+template <class V>
+void describe_reference_wrench(V& v, Eigen::Vector3d& force, Eigen::Vector3d& torque) {
+  v.group(
+      "reference_wrench",
+      [&](auto& child) {
+        child.vector("force_N", force, kAnyNumber, "at the end effector, along x, y, z of B");
+        child.vector("torque_Nm", torque, kAnyNumber, "about x, y, z of B");
+      },
+      "the wrench of the user at which the twin rests: what the user feels from it is the "
+      "opposite");
 }
 
 }  // namespace hg::config

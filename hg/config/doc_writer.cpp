@@ -35,6 +35,9 @@ bool DocWriter::joint_number(const JointKey& key, JointUnit unit, const double& 
 
 bool DocWriter::vector(std::string_view key, const Eigen::Vector3d& value, const Range& range,
                        std::string_view text) {
+  if (value.hasNaN()) {
+    return row(key, "", Need::kOptional, "three numbers " + with_unit(to_text(range), key), text);
+  }
   std::string standard = "[";
   for (int i = 0; i < 3; ++i) (standard += default_of(value[i])) += i < 2 ? ", " : "]";
   return row(key, standard, Need::kOptional, "three numbers " + with_unit(to_text(range), key),

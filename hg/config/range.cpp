@@ -14,7 +14,9 @@ struct Unit {
 };
 
 // longer suffixes first: "_m_per_s" also ends in "_s"
-constexpr std::array<Unit, 18> kUnits = {{
+constexpr std::array<Unit, 20> kUnits = {{
+    {"_Nms2_per_rad2", "Nms^2/rad^2"},
+    {"_Ns2_per_m2", "Ns^2/m^2"},
     {"_Nms_per_rad", "Nms/rad"},
     {"_rad_per_s2", "rad/s^2"},
     {"_Nm_per_rad", "Nm/rad"},

@@ -1,5 +1,6 @@
 #include "hg/config/reference_page.h"
 
+#include "hg/config/describe_changes.h"
 #include "hg/config/describe_device.h"
 #include "hg/config/describe_device_behaviour.h"
 #include "hg/config/describe_scenario.h"
@@ -81,6 +82,9 @@ std::string scenario_table() {
   DocWriter writer;
   describe_parts(writer, draft);
   describe_events(writer, draft);
+  ChangesDraft changes;
+  changes.joints.emplace_back();  // stands for every joint
+  describe_changes(writer, changes);
   return writer.table();
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "hg/config/describe_changes.h"
 #include "hg/config/describe_scenario.h"
 #include "hg/config/loader.h"
 #include "hg/core/error.h"
@@ -44,6 +45,19 @@ EventNames names_of(const Device& device, const Twin& twin, const LimitCatalogue
   return names;
 }
 
+ChangesDraft changes_of(const rendering::TwinModel& twin) {
+  ChangesDraft draft;
+  for (const model::Joint& joint : twin.chain.joints()) {
+    const limits::JointLimits& limits = twin.dofs[static_cast<std::size_t>(joint.v_index)].limits;
+    draft.joint_names.push_back(joint.name);
+    draft.joints.push_back({.unit = unit_of(joint.type),
+                            .is_floating = joint.type == model::JointType::kFloating,
+                            .dof = joint.v_index,
+                            .range = {limits.q_min, limits.q_max}});
+  }
+  return draft;
+}
+
 // Two limits of one name could not be told apart in events, figures and on the page.
 void check_names(Loader& loader, const LimitCatalogue& catalogue) {
   for (auto limit = catalogue.begin(); limit != catalogue.end(); ++limit) {
@@ -57,6 +71,7 @@ void check_names(Loader& loader, const LimitCatalogue& catalogue) {
 Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   ScenarioDraft draft;
+  ChangesDraft changes;
   std::optional<Device> device;
   std::optional<Twin> twin;
   std::optional<Script> script = Script{};
@@ -74,6 +89,8 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
     check_names(loader, catalogue);
     draft.names = names_of(*device, *twin, catalogue);
     describe_events(loader, draft);
+    changes = changes_of(twin->model);
+    describe_changes(loader, changes);
   });
 
   return {.title = draft.title,
@@ -85,7 +102,9 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
           .script = std::move(*script),
           .limits = std::move(catalogue),
           .events = std::move(draft.events),
-          .sources = reader.texts()};
+          .changes = std::move(changes.changes),
+          .sources = reader.texts(),
+          .places = std::move(file.places)};
 }
 
 }  // namespace

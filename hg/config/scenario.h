@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "hg/config/device.h"
+#include "hg/config/faults.h"
 #include "hg/config/script.h"
 #include "hg/config/sources.h"
 #include "hg/config/twin.h"
 #include "hg/evaluation/events.h"
 #include "hg/signals/limit.h"
+#include "hg/signals/timed_changes.h"
 #include "hg/user/person.h"
 
 namespace hg::config {
@@ -25,7 +27,9 @@ struct Scenario {
   Script script;  ///< empty unless person is kScript
   LimitCatalogue limits;
   std::vector<evaluation::EventRule> events;  ///< expected, in this order
+  std::vector<TimedChange> changes;           ///< of the twin, in the order of their times
   std::vector<SourceText> sources;            ///< of all files, the scenario first
+  Places places;                              ///< of the keys of the YAML file
 };
 
 /// Throws SetupError with the faults of the scenario, its device, twin and script, one per line.

@@ -19,7 +19,9 @@ namespace {
 model::Chain make_chain(LoaderFile& file, TwinDraft& draft) {
   const model::ChainOptions options = {.T_B_root = pose_of(draft.placement),
                                        .gravity = draft.gravity,
-                                       .floating_root = draft.floating_root};
+                                       .floating_root = draft.floating_root,
+                                       .root_link = draft.root_link,
+                                       .tip_link = draft.tip_link};
   if (!draft.is_free_body) return read_chain(file, draft.urdf, options);
   draft.body.inertia = draft.principal_inertia.asDiagonal();
   try {
@@ -144,6 +146,8 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
     check_types(loader, *chain);
   });
 
+  Vector6 w_ref;
+  w_ref << draft.force_ref, draft.torque_ref;
   Twin twin = {.name = draft.name,
                .urdf = draft.urdf,
                .T_B_root = pose_of(draft.placement),
@@ -151,8 +155,12 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
                          .end_effector = draft.end_effector,
                          .q_start = {},
                          .dofs = {},
-                         .locks = draft.locks},
-               .sources = reader.since(first_source)};
+                         .locks = draft.locks,
+                         .conditional_limits = draft.conditional_limits,
+                         .w_ref = w_ref,
+                         .mass_scale = draft.mass_scale},
+               .sources = reader.since(first_source),
+               .places = std::move(file.places)};
   for (const TwinJoint& joint : draft.joints) add_dofs(joint, twin.model.dofs);
   twin.model.q_start = start_of(twin.model, twin.T_B_root, draft);
   return twin;

@@ -56,7 +56,8 @@ Runtime::Runtime(const Options& options, cycle::Cycle& cycle, device::Device& de
       cycle_(cycle),
       device_(device),
       samples_(options.ring),
-      hand_targets_(256) {}
+      hand_targets_(256),
+      changes_(options.changes) {}
 
 Runtime::~Runtime() {
   request_stop();
@@ -78,6 +79,8 @@ void Runtime::run_cycle(Sample& sample) noexcept {
   device_.read(sample.sensors);
   while (hand_targets_.pop(sample.operator_input.hand_target)) {
   }
+  sample.operator_input.change =
+      changes_.due(static_cast<double>(report_.cycles) / options_.rate_Hz);
   cycle_.step(sample.sensors, sample.operator_input, sample.command, sample.record);
   const auto end = std::chrono::steady_clock::now();
   device_.write(sample.command);

@@ -7,20 +7,23 @@
 #include <atomic>
 #include <cstdint>
 #include <thread>
+#include <vector>
 
 #include "hg/core/spsc_ring.h"
 #include "hg/cycle/cycle.h"
 #include "hg/device/device.h"
 #include "hg/signals/state.h"
+#include "hg/signals/timed_changes.h"
 
 namespace hg::runtime {
 
 /// Set-up data.
 struct Options {
   double rate_Hz = 1000.0;
-  bool is_fast = false;     ///< as fast as it can instead of in real time
-  double duration_s = 0.0;  ///< then the device is stopped; 0 = until request_stop()
-  std::size_t ring = 4096;  ///< samples that an observer may fall behind
+  bool is_fast = false;              ///< as fast as it can instead of in real time
+  double duration_s = 0.0;           ///< then the device is stopped; 0 = until request_stop()
+  std::size_t ring = 4096;           ///< samples that an observer may fall behind
+  std::vector<TimedChange> changes;  ///< of the twin, in the order of their times
 };
 
 /// Throws SetupError naming the option that is out of range.
@@ -67,6 +70,7 @@ class Runtime {
   device::Device& device_;
   SpscRing<Sample> samples_;
   SpscRing<HandTarget> hand_targets_;
+  TimedChanges changes_;
   std::atomic<bool> stop_requested_{false};
   std::atomic<bool> finished_{false};
   Report report_;

@@ -61,6 +61,7 @@ class ScenarioRun {
         cycle_(assembly::make_cycle(scenario_)),
         device_(assembly::make_simulated_device(scenario_)),
         detector_(scenario_.events, scenario_.limits),
+        changes_(scenario_.changes),
         summary_(scenario_.limits) {}
 
   /// Plays until the script has played, or `seconds` of it; `look` sees every sample.
@@ -69,6 +70,8 @@ class ScenarioRun {
     const double end = std::min(seconds, assembly::planned_duration_s(scenario_));
     do {
       device_.read(sample->sensors);
+      sample->operator_input.change =
+          changes_.due(static_cast<double>(played_++) / scenario_.device.rate_Hz);
       {
         const AllocationCounter counter;
         cycle_.step(sample->sensors, sample->operator_input, sample->command, sample->record);
@@ -130,6 +133,8 @@ class ScenarioRun {
   cycle::Cycle cycle_;
   device::SimulatedDevice device_;
   evaluation::EventDetector detector_;
+  TimedChanges changes_;
+  std::uint64_t played_ = 0;  ///< cycles
   evaluation::Summary summary_;
   Quality quality_;
   std::array<bool, kMaxLimits> is_acting_{};

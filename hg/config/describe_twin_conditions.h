@@ -1,0 +1,77 @@
+/// Description of twin.yaml, third part: conditional limits and locks.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hg/config/describe_twin.h"
+
+namespace hg::config {
+
+inline constexpr JointKey kLockPosition = {"position_rad", "position_m"};
+
+/// Ranges of joints, all of which must hold.
+template <class V>
+void describe_conditions(V& v, const char* key, const TwinDraft& d,
+                         std::vector<rendering::JointCondition>& conditions, const char* text) {
+  v.groups_by_name(
+      key, d.scalar_names, "a joint of the twin",
+      [&](auto& child, int index) {
+        const TwinJoint& joint = d.scalar_joint(index);
+        Interval range;
+        child.joint_number({"above_rad", "above_m"}, joint.unit, range.lb, kAnyNumber, "lower end");
+        child.joint_number({"below_rad", "below_m"}, joint.unit, range.ub, kAnyNumber, "upper end");
+        child.rule(range.bounded() && !range.empty(), "",
+                   "the condition needs 'above' or 'below', and something between them");
+        conditions.push_back({.dof = joint.v_index, .range = range});
+      },
+      text);
+}
+
+template <class V>
+void describe(V& v, rendering::Lock& lock, const TwinDraft& d) {
+  v.words("name", lock.name, "shown while it holds", Need::kRequired);
+  int index = 0;
+  v.name("joint", index, d.scalar_names, "a joint of the twin", "the joint that is held",
+         Need::kRequired);
+  const TwinJoint& joint = d.scalar_joint(index);
+  lock.dof = joint.v_index;
+  v.joint_number(kLockPosition, joint.unit, lock.position, kAnyNumber, "where it is held");
+  v.rule(joint.dof.limits.q_min <= lock.position && lock.position <= joint.dof.limits.q_max,
+         kLockPosition.of(joint.unit), "must be within the limits of the joint",
+         model::to_text(lock.position));
+  describe_conditions(v, "engaged_while", d, lock.engaged_while,
+                      "the lock holds while each of these joints is in its range; without it, "
+                      "always");
+}
+
+inline constexpr std::array<Choice<rendering::Moving>, 3> kMoving = {
+    {{"either_way", rendering::Moving::kEitherWay},
+     {"lower", rendering::Moving::kLower},
+     {"upper", rendering::Moving::kUpper}}};
+
+template <class V>
+void describe(V& v, rendering::ConditionalLimit& limit, const TwinDraft& d) {
+  v.words("name", limit.name, "for people", Need::kRequired);
+  int index = 0;
+  v.name("joint", index, d.scalar_names, "a joint of the twin", "the joint that is limited",
+         Need::kRequired);
+  const TwinJoint& joint = d.scalar_joint(index);
+  limit.dof = joint.v_index;
+  describe_positions(v, limit.limits, joint.unit);
+  describe_ratings(v, limit.limits, joint.unit, Need::kOptional);
+  v.choice("moving", limit.moving, kMoving, "towards which end the largest speed holds");
+  describe_conditions(v, "while", d, limit.conditions,
+                      "it holds while each of these joints is in its range; without it, always");
+  const limits::JointLimits& l = limit.limits;
+  const bool has_speed = l.dq_max < kInfinity;
+  v.rule(has_speed || l.ddq_max < kInfinity || Interval{l.q_min, l.q_max}.bounded(), "",
+         "a conditional limit needs a position, a speed or an acceleration");
+  v.rule(limit.moving == rendering::Moving::kEitherWay || has_speed, "moving",
+         "is about the largest speed, which is not given");
+  const limits::JointLimits& own = joint.dof.limits;
+  v.rule(l.q_min <= own.q_max && own.q_min <= l.q_max, "",
+         "the positions must have something in common with the limits of the joint");
+}
+
+}  // namespace hg::config
