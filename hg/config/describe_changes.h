@@ -1,7 +1,6 @@
 /// Description of scenario.yaml, second part: changes of the twin while it runs.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -83,12 +82,13 @@ void describe(V& v, ChangesDraft& d) {
   double at_s = last_s, mass_scale = kNoDefault;
   v.number("at_s", at_s, kNotNegative, "when the change begins", Need::kRequired);
   v.rule(at_s >= last_s, "at_s", "changes must be in the order of their times");
-  int index = -1;
+  int index = 0;
   v.name("joint", index, d.joint_names, "a joint of the twin",
          "whose values change; the other keys are those of twin.yaml");
-  ChangeJoint& joint = d.joints[static_cast<std::size_t>(std::max(index, 0))];
-  if (v.covers(index >= 0 && !joint.is_floating)) describe_change(v, d, at_s, joint);
-  if (v.covers(index >= 0 && joint.is_floating)) describe_floating_change(v, d, at_s, joint.dof);
+  ChangeJoint& joint = d.joints[static_cast<std::size_t>(index)];
+  const bool has_joint = v.is_given("joint");
+  if (v.covers(has_joint && !joint.is_floating)) describe_change(v, d, at_s, joint);
+  if (v.covers(has_joint && joint.is_floating)) describe_floating_change(v, d, at_s, joint.dof);
 
   Eigen::Vector3d force = Eigen::Vector3d::Constant(kNoDefault), torque = force;
   describe_reference_wrench(v, force, torque);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/config/faults.h"
 #include "hg/config/sources.h"
 #include "hg/core/types.h"
 #include "hg/rendering/twin_model.h"
@@ -17,6 +18,7 @@ struct Twin {
   Pose T_B_root;               ///< placement of the root link
   rendering::TwinModel model;
   std::vector<SourceText> sources;  ///< the YAML file first
+  Places places;  ///< of the keys of the YAML file
 };
 
 /// Throws SetupError with all faults of the file, one per line.

@@ -189,6 +189,10 @@ class Builder {
       const Merged at = merged_[i];
       chain.add_frame(link(at.link).name, joint, at.T_joint_link);
       if (const auto& inertial = link(at.link).inertial; inertial && joint > 0) {
+        // a point mass needs a body with inertia to which it is fixed
+        const bool is_point = i > 0 && inertial->mass > 0.0 && inertial->inertia.isZero(0.0);
+        const std::string& fault = link(at.link).inertial_fault;
+        if (!fault.empty() && !is_point) throw SetupError(fault);
         chain.model.appendBodyToJoint(joint, to_inertia(*inertial), at.T_joint_link);
         mass_ += inertial->mass;
       }
@@ -238,6 +242,7 @@ class Builder {
                    .position = j.position,
                    .velocity_max = j.velocity_max,
                    .effort_max = j.effort_max,
+                   .axis = j.axis,
                    .planar = planar};
     if (j.type == UrdfJointType::kFloating) {
       joint.type = JointType::kFloating;

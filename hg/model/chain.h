@@ -38,6 +38,7 @@ struct Joint {
   Interval position;                ///< rad or m; unbounded where the URDF gives no limit
   double velocity_max = kInfinity;  ///< rad/s or m/s
   double effort_max = kInfinity;    ///< Nm or N
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< of a scalar joint, in its own frame
   std::string planar;  ///< planar joint of the URDF that this one is a part of; see urdf_parts.h
 };
 

@@ -128,7 +128,8 @@ class Reader {
   }
 
   // Empty if mass and inertia are zero, which exporters write for links that are mere frames.
-  std::optional<Inertial> inertial(const XMLElement& e, const std::string& item) const {
+  std::optional<Inertial> inertial(const XMLElement& e, const std::string& item,
+                                   std::string& fault) const {
     const Pose pose = origin(e, item);
     const XMLElement& i = child(e, "inertia", item);
     const double ixy = number(i, "ixy", item);
@@ -142,15 +143,21 @@ class Reader {
                              .p_com = pose.p,
                              .inertia = pose.R * inertia * pose.R.transpose()};
     if (result.mass == 0.0 && inertia.isZero(0.0)) return {};
-    check(result, place(urdf_, e.GetLineNum()) + item);
+    try {
+      check(result, place(urdf_, e.GetLineNum()) + item);
+    } catch (const SetupError& error) {
+      fault = error.what();
+    }
     return result;
   }
 
   UrdfLink link(const XMLElement& e) const {
-    UrdfLink result = {
-        .name = attribute(e, "name", "link"), .line = e.GetLineNum(), .inertial = {}};
+    UrdfLink result = {.name = attribute(e, "name", "link"),
+                       .line = e.GetLineNum(),
+                       .inertial = {},
+                       .inertial_fault = {}};
     if (const XMLElement* i = e.FirstChildElement("inertial")) {
-      result.inertial = inertial(*i, "link " + result.name);
+      result.inertial = inertial(*i, "link " + result.name, result.inertial_fault);
     }
     return result;
   }
@@ -225,7 +232,9 @@ class Reader {
     result.parent = link_index(child(e, "parent", item), item);
     result.child = link_index(child(e, "child", item), item);
     result.T_parent_joint = origin(e, item);
-    result.axis = axis(e, item);
+    const bool has_axis =
+        result.type != UrdfJointType::kFixed && result.type != UrdfJointType::kFloating;
+    if (has_axis) result.axis = axis(e, item);
     const bool is_scalar =
         result.type != UrdfJointType::kFloating && result.type != UrdfJointType::kPlanar;
     if (is_scalar) limits(e, item, result);

@@ -27,6 +27,7 @@ struct UrdfLink {
   std::string name;
   int line = 0;
   std::optional<Inertial> inertial;
+  std::string inertial_fault;  ///< what no body has; only matters for links that move
 };
 
 enum class UrdfJointType { kFixed, kRevolute, kContinuous, kPrismatic, kFloating, kPlanar };

@@ -58,7 +58,10 @@ std::string_view name(LimitKind kind) {
 Json encode(const SceneChain& chain, std::string_view address) {
   Json joints = Json::array();
   for (const SceneJoint& joint : chain.joints) {
-    joints.push_back({{"name", joint.name}, {"type", name(joint.type)}});
+    joints.push_back({{"name", joint.name},
+                      {"type", name(joint.type)},
+                      {"planar", joint.planar},
+                      {"axis", numbers(joint.axis)}});
   }
   const Eigen::Quaterniond quaternion(chain.T_B_root.R);
   return {{"urdf", chain.urdf.empty() ? "" : address},

@@ -18,6 +18,11 @@ enum class JointType : std::uint8_t { kRevolute, kPrismatic, kFloating };
 struct SceneJoint {
   std::string name;  ///< as in the URDF; a floating joint not in it moves the root link
   JointType type = JointType::kRevolute;
+  /// Planar joint of the URDF that this one is a part of: two prismatic joints and a revolute one
+  /// that follow each other; empty for other joints.
+  std::string planar;
+  Eigen::Vector3d axis =
+      Eigen::Vector3d::UnitX();  ///< of such a part, in the frame of the planar joint
 };
 
 struct SceneChain {

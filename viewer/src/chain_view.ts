@@ -13,7 +13,7 @@ import {
 } from "three";
 import URDFLoader, { type URDFRobot } from "urdf-loader";
 
-import type { SceneChain } from "./messages";
+import type { SceneChain, SceneJoint } from "./messages";
 import { add_skeleton, has_shapes } from "./skeleton";
 import { current_theme } from "./theme";
 
@@ -50,10 +50,14 @@ export class ChainView {
   // `q` holds the coordinates of all joints in the order of the scene.
   pose(q: number[]): void {
     let first = 0;
-    for (const joint of this.chain.joints) {
+    for (const [index, joint] of this.chain.joints.entries()) {
       if (joint.type === "floating") {
         this.pose_floating(joint.name, q.slice(first, first + 7));
         first += 7;
+      } else if (joint.planar !== "") {
+        const is_first = this.chain.joints[index - 1]?.planar !== joint.planar;
+        if (is_first) this.pose_planar(this.chain.joints.slice(index, index + 3), q.slice(first));
+        first += 1;
       } else {
         this.robot?.setJointValue(joint.name, q[first] ?? 0);
         first += 1;
@@ -65,9 +69,26 @@ export class ChainView {
   private pose_floating(name: string, q: number[]): void {
     const [x, y, z, qx, qy, qz, qw] = q as [number, number, number, number, number, number, number];
     const part = this.robot?.joints[name] ?? this.placement.children[0]!;
+    this.move(part, new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw).normalize());
+  }
+
+  // The urdf library slides planar joints along axes of the parent; here their axes come along.
+  private pose_planar(parts: SceneJoint[], q: number[]): void {
+    const part = this.robot?.joints[parts[0]!.planar];
+    if (!part) return;
+    const shift = new Vector3();
+    const turn = new Quaternion();
+    for (const [i, { type, axis }] of parts.entries()) {
+      if (type === "prismatic") shift.addScaledVector(new Vector3(...axis), q[i] ?? 0);
+      else turn.setFromAxisAngle(new Vector3(...axis), q[i] ?? 0);
+    }
+    this.move(part, shift, turn);
+  }
+
+  // Moves a part by `shift` and `turn` from where it is when its coordinates are zero.
+  private move(part: Object3D, shift: Vector3, turn: Quaternion): void {
     const rest = this.rest(part);
-    const turn = new Quaternion(qx, qy, qz, qw).normalize();
-    part.position.set(x, y, z).applyQuaternion(rest.quaternion).add(rest.position);
+    part.position.copy(shift).applyQuaternion(rest.quaternion).add(rest.position);
     part.quaternion.multiplyQuaternions(rest.quaternion, turn);
   }
 

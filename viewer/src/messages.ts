@@ -24,6 +24,8 @@ export interface SceneChain {
 export interface SceneJoint {
   name: string;
   type: "revolute" | "prismatic" | "floating"; // floating: x y z qx qy qz qw
+  planar: string; // joint of the URDF that this is one of three parts of: slide, slide, turn
+  axis: Vec3; // of such a part, in the frame of the planar joint
 }
 
 export interface SceneLimit {

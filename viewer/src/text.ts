@@ -8,7 +8,7 @@ export function time_text(time_s: number): string {
   return `${minutes}:${seconds}`;
 }
 
-export function joint_text(value: number, joint: SceneJoint): string {
+export function joint_text(value: number, joint: Pick<SceneJoint, "type">): string {
   if (!Number.isFinite(value)) return "-";
   return joint.type === "prismatic"
     ? `${(100 * value).toFixed(1)} cm`

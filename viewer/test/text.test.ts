@@ -37,9 +37,9 @@ describe("time_text", () => {
 
 describe("joint_text", () => {
   it("shows degrees for angles, centimetres for distances, a dash for nothing", () => {
-    expect(joint_text(Math.PI / 2, { name: "hinge", type: "revolute" })).toBe("90.0\u00b0");
-    expect(joint_text(0.123, { name: "slide", type: "prismatic" })).toBe("12.3 cm");
-    expect(joint_text(NaN, { name: "hinge", type: "revolute" })).toBe("-");
+    expect(joint_text(Math.PI / 2, { type: "revolute" })).toBe("90.0\u00b0");
+    expect(joint_text(0.123, { type: "prismatic" })).toBe("12.3 cm");
+    expect(joint_text(NaN, { type: "revolute" })).toBe("-");
   });
 });
 

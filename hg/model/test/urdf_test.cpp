@@ -119,6 +119,22 @@ TEST(Urdf, AZeroInertialMarksAMereFrame) {
   EXPECT_EQ(message_of(text.all()), "accepted");
 }
 
+TEST(Urdf, InertiaOfALinkThatDoesNotMoveDoesNotMatter) {
+  Text text;
+  text.base = text.arm;
+  text.base.replace(text.base.find("arm"), 3, "base");
+  text.base.replace(text.base.find("mass value='1'"), 14, "mass value='-1'");
+  EXPECT_EQ(message_of(text.all()), "accepted");
+}
+
+TEST(Urdf, APointMassMayBeFixedToABody) {
+  Text text;
+  text.tip =
+      "<link name='tip'><inertial><mass value='0.5'/>"
+      "<inertia ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'/></inertial></link>";
+  EXPECT_EQ(message_of(text.all()), "accepted");
+}
+
 TEST(Urdf, AFlatPlateRoundedToSixDigitsIsABody) {
   Text text;
   text.arm = arm_with("1", "ixx='0.333333' iyy='0.333333' izz='0.666667' ixy='0' ixz='0' iyz='0'");

@@ -159,6 +159,7 @@ TEST(Fields, NameEveryMemberOfEveryStruct) {
   expect_all_members_recorded<Pose>();
   expect_all_members_recorded<SensorFrame>();
   expect_all_members_recorded<HandTarget>();
+  expect_all_members_recorded<ParameterChange>();
   expect_all_members_recorded<OperatorFrame>();
   expect_all_members_recorded<CommandFrame>();
   expect_all_members_recorded<Fault>();

@@ -79,7 +79,8 @@ Scene make_scene() {
   scene.title = "Door";
   scene.device.urdf = "device.urdf";
   scene.device.joints = {{"ppu1", JointType::kPrismatic}, {"m1", JointType::kRevolute}};
-  scene.twin.joints = {{"free", JointType::kFloating}};
+  scene.twin.joints = {{"free", JointType::kFloating},
+                       {"glide x", JointType::kPrismatic, "glide", Eigen::Vector3d::UnitY()}};
   scene.limits = {{LimitKind::kManipulatorJoint, "m1", true, {-kInfinity, 1.0}},
                   {LimitKind::kVirtualJoint, "q4+q5", true, {0.0, 1.0}},
                   {LimitKind::kCartesian, "elbow x", false, {-1.0, 1.0}},
