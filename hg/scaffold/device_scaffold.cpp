@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -71,13 +72,14 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
   double most = -1.0;
   for (int k = 0; k < kPostures; ++k) {
     const Eigen::VectorXd q = sampler.draw();
-    double room = 1.0;  // 1 in the middle of all ranges, 0 at an end
+    double nearest = 1.0, sum = 0.0;  // 1 in the middle of a range, 0 at its ends
     for (int i = d.n_p; i < q.size(); ++i) {
       const Interval range = d.ranges[static_cast<std::size_t>(i)];
-      room =
-          std::min(room, 2.0 * std::min(q[i] - range.lb, range.ub - q[i]) / (range.ub - range.lb));
+      const double share = (2.0 * q[i] - range.lb - range.ub) / (range.ub - range.lb);
+      nearest = std::min(nearest, 1.0 - std::abs(share));
+      sum += 1.0 - share * share;
     }
-    const double value = dexterity(d.chain, d.handle, d.n_p, q) * std::sqrt(std::max(room, 0.0));
+    const double value = dexterity(d.chain, d.handle, d.n_p, q) * std::sqrt(nearest) * sum;
     if (value > most) {
       most = value;
       best = q;
@@ -133,7 +135,7 @@ struct Reach {
 Reach reach_of(DeviceDraft& d) {
   PostureSampler sampler(d.ranges);
   Reach reach;
-  std::vector<double> speeds, accelerations;
+  std::array<std::vector<double>, 3> speeds, accelerations;
   for (int k = 0; k < kPostures; ++k) {
     const Eigen::VectorXd q = sampler.draw();
     d.chain.update_kinematics(q, Eigen::VectorXd::Zero(q.size()));
@@ -147,8 +149,8 @@ Reach reach_of(DeviceDraft& d) {
         speed += 0.5 * std::abs(J(axis, i)) * speed_of(joint(d, i));
         acceleration += 0.5 * std::abs(J(axis, i)) * acceleration_of(joint(d, i));
       }
-      speeds.push_back(speed);
-      accelerations.push_back(acceleration);
+      speeds[static_cast<std::size_t>(axis)].push_back(speed);
+      accelerations[static_cast<std::size_t>(axis)].push_back(acceleration);
     }
   }
   const auto fifth_percentile = [](std::vector<double>& values) {
@@ -156,8 +158,12 @@ Reach reach_of(DeviceDraft& d) {
     std::ranges::nth_element(values, place);
     return *place;
   };
-  reach.speed = std::min(1.5, fifth_percentile(speeds));
-  reach.acceleration = std::min(5.0, fifth_percentile(accelerations));
+  reach.speed = 1.5;
+  reach.acceleration = 5.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    reach.speed = std::min(reach.speed, fifth_percentile(speeds[axis]));
+    reach.acceleration = std::min(reach.acceleration, fifth_percentile(accelerations[axis]));
+  }
   return reach;
 }
 

@@ -14,8 +14,8 @@ namespace hg::scaffold {
 namespace {
 
 constexpr int kPostures = 24;        // in which a placement is tried
-constexpr double kTipSpeed = 1.2;    // m/s at the end effector, below the 1.5 of the device
-constexpr double kTipBraking = 4.0;  // m/s^2, below the 5 of the device
+constexpr int kPlacements = 40;      // that are tried in all postures
+constexpr double kShare = 0.8;       // of the speed and acceleration of the device's handle
 constexpr double kTurnMost = 2.5;    // rad/s, wrists of the device are not much faster
 constexpr double kTurnBraking = 20;  // rad/s^2
 constexpr double kCoasting = 1.5;    // s, time constant of a joint that is let go
@@ -124,6 +124,16 @@ Pose nominal_handle(const config::Device& device) {
   return chain.pose(device.model.handle);
 }
 
+// offsets from the nominal handle, near ones first
+std::vector<Eigen::Vector3d> offsets() {
+  std::vector<Eigen::Vector3d> grid;
+  for (int k = 0; k < 27; ++k) {
+    grid.emplace_back(0.3 * (k % 3 - 1), 0.3 * (k / 3 % 3 - 1), 0.15 * (k / 9 - 1));
+  }
+  std::ranges::stable_sort(grid, {}, [](const Eigen::Vector3d& p) { return p.norm(); });
+  return grid;
+}
+
 // upright, turned and moved until the device reaches the start and most other postures
 Placement find_placement(TwinDraft& d, const config::Device& device) {
   Reach reach(device);
@@ -134,17 +144,18 @@ Placement find_placement(TwinDraft& d, const config::Device& device) {
   for (int k = 0; k < kPostures; ++k) others.push_back(tip(d, sampler.draw()));
 
   Placement best;
-  for (int turn = 0; turn < 24; ++turn) {
-    const double yaw = turn * M_PI / 12.0;
-    const Eigen::Matrix3d R(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
-    for (int k = 0; k < 27; ++k) {
-      const Eigen::Vector3d offset(0.3 * (k % 3 - 1), 0.3 * (k / 3 % 3 - 1), 0.15 * (k / 9 - 1));
+  int tried = 0;
+  for (const Eigen::Vector3d& offset : offsets()) {
+    for (int turn = 0; turn < 12 && tried < kPlacements && best.share < 1.0; ++turn) {
+      const double yaw = turn * M_PI / 6.0;
+      const Eigen::Matrix3d R(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
       const Pose T_B_root{nominal.p + offset - R * T_root_start.p, R};
       if (!reach.contains(T_B_root * T_root_start)) continue;
       const auto count = std::ranges::count_if(
           others, [&](const Pose& T_root_E) { return reach.contains(T_B_root * T_root_E); });
       const double share = static_cast<double>(count) / kPostures;
       if (share > best.share) best = {T_B_root, yaw, share, true};
+      ++tried;
     }
   }
   if (best.share >= 0.0) return best;
@@ -170,7 +181,25 @@ std::string placement_line(const Placement& placement) {
          "# give the URDF a frame turned like the handle of the device to place it upright\n";
 }
 
-std::string joint_lines(TwinDraft& d) {
+// how fast the end effector of the twin may be for the handle of the device to follow
+struct TipRatings {
+  double speed = 1.2;    // m/s
+  double braking = 4.0;  // m/s^2
+};
+
+TipRatings tip_ratings(const config::Device& device) {
+  limits::JointLimits hand{.dq_max = 1.5, .ddq_max = 5.0};
+  for (const rendering::CartesianLimit& limit : device.model.cartesian_limits) {
+    if (limit.frame != device.model.handle) continue;
+    for (const limits::JointLimits& axis : limit.axes) {
+      hand.dq_max = std::min(hand.dq_max, axis.dq_max);
+      hand.ddq_max = std::min(hand.ddq_max, axis.ddq_max);
+    }
+  }
+  return {kShare * hand.dq_max, kShare * hand.ddq_max};
+}
+
+std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
   const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(d.chain.nv());
   d.chain.update(d.start, at_rest);
   const Eigen::MatrixXd M = d.chain.M();
@@ -181,8 +210,9 @@ std::string joint_lines(TwinDraft& d) {
     const bool turns = j.type != model::JointType::kPrismatic;
     const std::string unit = turns ? "rad" : "m";
     const double lever = std::max(d.lever[i], 1e-6);
-    const double speed = turns ? std::min(kTurnMost, kTipSpeed / lever) : kTipSpeed;
-    const double braking = turns ? std::min(kTurnBraking, kTipBraking / lever) : kTipBraking;
+    const double speed = turns ? std::min(kTurnMost, ratings.speed / lever) : ratings.speed;
+    const double braking =
+        turns ? std::min(kTurnBraking, ratings.braking / lever) : ratings.braking;
     text += fmt::format("  {}:\n", j.name);
     text += fmt::format("    ddq_max_{}_per_s2: {}  # [V] {} at the end effector\n", unit,
                         rounded(braking),
@@ -214,7 +244,8 @@ std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder
              part_lines(part, folder),
              d.chain.frame_names()[static_cast<std::size_t>(d.end_effector)]) +
          placement_line(placement) +
-         "gravity: false  # true: the hand carries the weight of the twin\n" + joint_lines(d);
+         "gravity: false  # true: the hand carries the weight of the twin\n" +
+         joint_lines(d, tip_ratings(device));
 }
 
 }  // namespace hg::scaffold

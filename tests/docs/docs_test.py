@@ -1,0 +1,68 @@
+"""Runs what the documents show: the files in them are written, the commands in them are executed.
+
+In docs/*.md a block ```yaml NAME (or ```xml NAME) is a file; a block ```sh holds commands. Both are
+taken in the order of the document, in a folder of its own that starts as a copy of
+models/examples. Every command must end with exit code 0, or with N where its line ends with
+`# exit N`. Lines that a ```text block shows after a command are not compared.
+
+    docs_test.py PROGRAM
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BLOCK = re.compile(r"^```(sh|yaml|xml)(?: +(\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def commands(text):
+    """Logical lines of a shell block: (command, expected exit code)."""
+    for line in text.replace("\\\n", " ").splitlines():
+        command, _, comment = line.partition("#")
+        if command.strip():
+            expected = re.search(r"exit (\d+)", comment)
+            yield command.strip(), int(expected.group(1)) if expected else 0
+
+
+def run_document(document, program, folder):
+    """Returns how many commands ran and a list of faults."""
+    count, faults = 0, []
+    for kind, name, body in BLOCK.findall(document.read_text()):
+        if kind != "sh":
+            if name:
+                (folder / name).write_text(body)
+            continue
+        for command, expected in commands(body):
+            words = command.split()
+            if words[0] != "hapticgiant":
+                continue
+            done = subprocess.run([program, *words[1:]], cwd=folder, capture_output=True,
+                                  text=True, timeout=120)
+            count += 1
+            if done.returncode != expected:
+                faults.append(f"{document.name}: {command}\n  exit {done.returncode}, expected "
+                              f"{expected}\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
+    return count, faults
+
+
+def main():
+    program = str(pathlib.Path(sys.argv[1]).resolve())
+    total, faults = 0, []
+    for document in sorted((ROOT / "docs").glob("*.md")):
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copytree(ROOT / "models" / "examples", folder, dirs_exist_ok=True)
+            count, found = run_document(document, program, pathlib.Path(folder))
+        total += count
+        faults += found
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    print(f"{total} commands ran, {len(faults)} were wrong")
+    return 1 if faults or total == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
