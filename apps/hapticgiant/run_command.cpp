@@ -176,6 +176,7 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   runtime::Options options;
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = arguments.is_fast;
+  options.changes = scenario.changes;
   options.duration_s =
       arguments.duration_s.value_or(goes_on ? 0.0 : assembly::planned_duration_s(scenario));
   if (arguments.is_fast && options.duration_s == 0.0) {
@@ -236,8 +237,11 @@ int run(const RunArguments& arguments) {
   const runtime::Report report = runtime.join();
 
   const std::chrono::duration<double> wall_time = Clock::now() - begin;
+  const rendering::Options& law = scenario.device.rendering;
   const evaluation::RunFacts facts{.scenario = scenario.title,
                                    .version = kVersion,
+                                   .law = std::string(rendering::to_string(law.law)),
+                                   .bounds = std::string(rendering::to_string(law.bounds)),
                                    .rate_Hz = options.rate_Hz,
                                    .is_fast = options.is_fast,
                                    .overruns = report.overruns,

@@ -16,6 +16,8 @@ struct RunArguments {
   std::optional<double> duration_s;
   bool is_fast = false;           ///< as fast as it can, without page
   std::optional<double> rate_Hz;  ///< unset: the device's
+  std::string law;                ///< "gauss" or "paper"; empty = the device's
+  std::string bounds;             ///< "recoverable" or "paper"; empty = the device's
   std::string summary;            ///< JSON file; empty = none
   bool has_viewer = true;
   std::uint16_t port = 0;  ///< of the page; 0 = any free one

@@ -12,6 +12,7 @@
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/assembly/start_posture.h"
+#include "hg/config/law_names.h"
 #include "hg/core/error.h"
 #include "hg/rendering/catalogue.h"
 
@@ -64,6 +65,19 @@ void apply(const RunArguments& arguments, config::Scenario& scenario) {
 }
 
 std::vector<std::string> joint_names(const rendering::DeviceModel& device, int first, int count) {
+// `text` is one of the names of `choices`; empty leaves the value alone
+template <class T>
+void choose(const char* option, const std::string& text, config::Choices<T> choices, T& value) {
+  if (text.empty()) return;
+  for (const config::Choice<T>& choice : choices) {
+    if (choice.name == text) {
+      value = choice.value;
+      return;
+    }
+  }
+  throw SetupError(fmt::format("{}: expected one of the names of --help, got '{}'", option, text));
+}
+
   std::vector<std::string> names;
   for (int i = first; i < first + count; ++i) {
     names.push_back(device.chain.joints()[static_cast<std::size_t>(i)].name);
@@ -107,6 +121,8 @@ std::string changes(const RunArguments& arguments) {
   line("--user", arguments.user);
   if (arguments.rate_Hz) line("--rate-hz", fmt::format("{}", *arguments.rate_Hz));
   return text;
+  line("--law", arguments.law);
+  line("--bounds", arguments.bounds);
 }
 
 // where the handle may be; on axes without limits the page shows 4 m around its start
@@ -137,6 +153,10 @@ config::Scenario make_scenario(const RunArguments& arguments) {
   apply(arguments, scenario);
   if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
   return scenario;
+  choose("--law", arguments.law, config::Choices<rendering::Law>(config::kLaws),
+         scenario.device.rendering.law);
+  choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
+         scenario.device.rendering.bounds);
 }
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,

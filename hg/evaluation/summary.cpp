@@ -109,6 +109,8 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   nlohmann::ordered_json json;
   json["version"] = facts.version;
   json["scenario"] = facts.scenario;
+  json["law"] = facts.law;
+  json["bounds"] = facts.bounds;
   json["rate_Hz"] = facts.rate_Hz;
   json["fast"] = facts.is_fast;
   json["duration_s"] = duration_s_;
@@ -168,6 +170,7 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
 
   line("run", fmt::format("{}, {:.1f} s in {:.1f} s ({:.1f}x real time), {:.0f} Hz", facts.scenario,
                           duration_s_, facts.wall_time_s, duration_s_ / wall, facts.rate_Hz));
+  line("law", fmt::format("{}, {} bounds", facts.law, facts.bounds));
   line("events", missing.empty() ? fmt::format("{} of {} in order", events_.size(), events_.size())
                                  : fmt::format("{} happened; missing: {}", events_.size(),
                                                fmt::join(missing, ", ")));

@@ -41,6 +41,8 @@ class Histogram {
 struct RunFacts {
   std::string scenario;
   std::string version;
+  std::string law;     ///< of the rendering
+  std::string bounds;  ///< of its limits
   double rate_Hz = 0.0;
   bool is_fast = false;
   std::uint64_t overruns = 0;
