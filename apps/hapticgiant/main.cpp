@@ -7,6 +7,8 @@
 #include <exception>
 #include <string>
 
+#include "apps/hapticgiant/bench_command.h"
+#include "apps/hapticgiant/check_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/new_command.h"
 #include "apps/hapticgiant/run_command.h"
@@ -50,6 +52,10 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
   command->add_option("--rate-hz", run.rate_Hz, "control rate, 100..20000; default: the device's")
       ->check(finite_number)
       ->check(CLI::Range(100.0, 20000.0));
+  command->add_option("--law", run.law, "gauss or paper; default: the device's")
+      ->check(CLI::IsMember({"gauss", "paper"}));
+  command->add_option("--bounds", run.bounds, "recoverable or paper; default: the device's")
+      ->check(CLI::IsMember({"recoverable", "paper"}));
   command->add_option("--summary", run.summary, "write the closing summary as JSON to this file");
   command->add_flag("!--no-viewer", run.has_viewer, "without the page");
   command->add_option("--port", run.port, "port of the page; default: any free one");
@@ -83,6 +89,18 @@ void add_new(CLI::App& app, hg::apps::NewArguments& arguments, int& exit_code) {
   add("device", "the robot whose handle is held", hg::apps::new_device);
   add("twin", "the mechanism that is felt", hg::apps::new_twin)
       ->add_option("--device", arguments.device, "device.yaml that the twin is placed for");
+}
+
+void add_bench(CLI::App& app, hg::apps::BenchArguments& arguments, int& exit_code) {
+  CLI::App* command = app.add_subcommand("bench", "Both laws and both kinds of bounds, compared.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant bench                        the three scenarios, four variants each\n"
+      "  hapticgiant bench excavator --json laws.json");
+  command->add_option("scenarios", arguments.scenarios, "scenario files or names")
+      ->capture_default_str();
+  command->add_option("--json", arguments.json, "write the table as JSON to this file");
+  command->callback([&arguments, &exit_code] { exit_code = hg::apps::bench(arguments); });
 }
 
 void add_hqp(CLI::App& app, HqpArguments& arguments, int& exit_code) {
@@ -126,3 +144,5 @@ int main(int argc, char** argv) {
     return kInternalError;
   }
 }
+  hg::apps::BenchArguments compared;
+  add_bench(app, compared, exit_code);
