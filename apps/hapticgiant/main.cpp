@@ -9,6 +9,7 @@
 
 #include "apps/hapticgiant/bench_command.h"
 #include "apps/hapticgiant/check_command.h"
+#include "apps/hapticgiant/check_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/new_command.h"
 #include "apps/hapticgiant/run_command.h"
@@ -115,6 +116,25 @@ void add_hqp(CLI::App& app, HqpArguments& arguments, int& exit_code) {
   });
 }
 
+void add_check(CLI::App& app, hg::apps::CheckArguments& check, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "What is wrong with configuration files, and how to mend it; datasheet of a device.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant check models/scenarios/door.yaml\n"
+      "  hapticgiant check my_device.yaml my_twin.yaml   each, and whether they fit together\n"
+      "  hapticgiant check models/haptic_giant/device.yaml --map capability.svg");
+  command
+      ->add_option("files", check.files,
+                   "device, twin, scenario, tool or script files; the kind is told from their keys")
+      ->required();
+  command->add_option("--json", check.json, "write findings and datasheets as JSON to this file");
+  command->add_option("--map", check.map,
+                      "draw the force over the workspace of the first device to this SVG file");
+  command->callback([&check, &exit_code] { exit_code = hg::apps::run_check(check); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -125,9 +145,11 @@ int main(int argc, char** argv) {
   // a subcommand that has been parsed runs at once
   int exit_code = 0;
   hg::apps::RunArguments run;
+  hg::apps::CheckArguments check;
   hg::apps::NewArguments created;
   HqpArguments hqp;
   add_run(app, run, exit_code);
+  add_check(app, check, exit_code);
   add_new(app, created, exit_code);
   add_hqp(app, hqp, exit_code);
 

@@ -1,0 +1,166 @@
+#include "apps/hapticgiant/check_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <fstream>
+#include <functional>
+#include <list>
+#include <optional>
+
+#include "apps/hapticgiant/check_report.h"
+#include "hg/config/device.h"
+#include "hg/config/file_kind.h"
+#include "hg/config/scenario.h"
+#include "hg/config/script.h"
+#include "hg/config/tool.h"
+#include "hg/config/twin.h"
+#include "hg/core/error.h"
+#include "hg/inspection/capability_map.h"
+#include "hg/inspection/datasheet.h"
+#include "hg/inspection/device_inspection.h"
+#include "hg/inspection/scenario_inspection.h"
+#include "hg/inspection/twin_inspection.h"
+
+namespace hg::apps {
+namespace {
+
+using config::FileKind;
+using inspection::Findings;
+
+// Everything that could be loaded, and what was found on the way.
+struct Check {
+  CheckReport report;
+  std::list<config::Device> devices;
+  std::list<config::Twin> twins;
+  std::list<config::Scenario> scenarios;
+  std::vector<std::string> scripts;
+};
+
+void add(Findings findings, Check& check) {
+  Findings& all = check.report.findings;
+  all.insert(all.end(), findings.begin(), findings.end());
+}
+
+// Runs `load`; what it refuses becomes faults.
+bool try_to(const std::string& file, Check& check, const std::function<void()>& load) {
+  try {
+    load();
+    return true;
+  } catch (const SetupError& error) {
+    add(inspection::findings_of_message(error.what(), file), check);
+    return false;
+  }
+}
+
+void load(const std::string& file, Check& check) {
+  FileKind kind = FileKind::kDevice;
+  const bool is_known = try_to(file, check, [&] {
+    config::SourceReader reader;
+    kind = config::kind_of(file, reader);
+  });
+  check.report.files.push_back({file, is_known ? std::string(to_string(kind)) : "unknown"});
+  if (!is_known) return;
+  try_to(file, check, [&] {
+    switch (kind) {
+      case FileKind::kDevice:
+        check.devices.push_back(config::load_device(file));
+        break;
+      case FileKind::kTwin:
+        check.twins.push_back(config::load_twin(file));
+        break;
+      case FileKind::kScenario:
+        check.scenarios.push_back(config::load_scenario(file));
+        break;
+      case FileKind::kScript:
+        check.scripts.push_back(file);
+        break;
+      case FileKind::kTool: {
+        config::SourceReader reader;
+        config::load_tool(file, reader);
+        break;
+      }
+    }
+  });
+}
+
+// What is wrong with a script if it is made for this twin.
+Findings script_findings(const std::string& file, const rendering::TwinModel& twin) {
+  Check check;
+  try_to(file, check, [&] { config::load_script(file, twin); });
+  return check.report.findings;
+}
+
+// A script is made for one twin: for one of those at hand, or for a body that moves freely.
+void check_scripts(Check& check) {
+  for (const std::string& file : check.scripts) {
+    Findings fewest = script_findings(file, {.chain = model::Chain::free_body({}), .q_start = {}});
+    const auto try_twin = [&](const config::Twin& twin) {
+      const Findings findings = script_findings(file, twin.model);
+      if (findings.size() < fewest.size()) fewest = findings;
+    };
+    for (const config::Twin& twin : check.twins) try_twin(twin);
+    for (const config::Scenario& scenario : check.scenarios) try_twin(scenario.twin);
+    for (inspection::Finding& finding : fewest) {
+      if (finding.item == "frame") finding.mend = "check the script together with its twin";
+    }
+    add(fewest, check);
+  }
+}
+
+void check_devices(const CheckArguments& arguments, Check& check) {
+  const auto inspect = [&](const config::Device& device, bool has_datasheet) {
+    const inspection::Survey survey = inspection::survey(device);
+    add(inspection::inspect(device, survey), check);
+    if (has_datasheet) {
+      check.report.datasheets.push_back(inspection::make_datasheet(device, survey));
+    }
+  };
+  for (const config::Device& device : check.devices) inspect(device, true);
+  for (const config::Scenario& scenario : check.scenarios) inspect(scenario.device, false);
+  if (arguments.map.empty()) return;
+  if (check.devices.empty() && check.scenarios.empty()) {
+    throw SetupError("--map: needs a device that could be read");
+  }
+  const config::Device& device =
+      check.devices.empty() ? check.scenarios.front().device : check.devices.front();
+  std::ofstream stream(arguments.map);
+  stream << to_svg(inspection::capability_map(device));
+  if (!stream.flush()) throw SetupError(arguments.map + ": cannot be written");
+}
+
+void check_twins(Check& check) {
+  constexpr double kUsualPeriod = 1e-3;  // s, where no device is given
+  const double dt = check.devices.empty() ? kUsualPeriod : check.devices.front().rendering.dt;
+  for (const config::Twin& twin : check.twins) {
+    add(inspection::inspect(twin, dt), check);
+    for (const config::Device& device : check.devices) {
+      add(inspection::inspect(device, twin), check);
+    }
+  }
+  for (const config::Scenario& scenario : check.scenarios) {
+    add(inspection::inspect(scenario.twin, scenario.device.rendering.dt), check);
+    add(inspection::inspect(scenario.device, scenario.twin), check);
+  }
+}
+
+}  // namespace
+
+int run_check(const CheckArguments& arguments) {
+  Check check;
+  for (const std::string& file : arguments.files) load(file, check);
+  check_scripts(check);
+  check_devices(arguments, check);
+  check_twins(check);
+  sort_and_merge(check.report);
+  print(check.report);
+  if (!arguments.json.empty()) {
+    std::ofstream stream(arguments.json);
+    stream << to_json(check.report);
+    if (!stream.flush()) throw SetupError(arguments.json + ": cannot be written");
+  }
+  return count(check.report, inspection::Severity::kFault) > 0 ? 2 : 0;
+}
+
+}  // namespace hg::apps

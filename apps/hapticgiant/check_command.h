@@ -1,0 +1,19 @@
+/// `hapticgiant check FILE...`: what is wrong with devices, twins, scenarios, tools and scripts,
+/// and how to mend it; a datasheet for every device.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hg::apps {
+
+struct CheckArguments {
+  std::vector<std::string> files;
+  std::string json;  ///< result as JSON; empty = none
+  std::string map;   ///< capability map of the first device as SVG; empty = none
+};
+
+/// Prints to stdout. Returns the exit code: 0, warnings or not, or 2 when there is any fault.
+int run_check(const CheckArguments& arguments);
+
+}  // namespace hg::apps

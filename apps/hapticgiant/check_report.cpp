@@ -1,0 +1,83 @@
+#include "apps/hapticgiant/check_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "apps/hapticgiant/print_datasheet.h"
+
+namespace hg::apps {
+namespace {
+
+using inspection::Finding;
+using inspection::Severity;
+
+auto key(const Finding& finding) {
+  return std::tie(finding.file, finding.place.line, finding.place.column, finding.item,
+                  finding.what);
+}
+
+std::string counted(int count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+void sort_and_merge(CheckReport& report) {
+  std::ranges::stable_sort(report.findings,
+                           [](const Finding& a, const Finding& b) { return key(a) < key(b); });
+  const auto rest = std::ranges::unique(
+      report.findings, [](const Finding& a, const Finding& b) { return key(a) == key(b); });
+  report.findings.erase(rest.begin(), rest.end());
+}
+
+int count(const CheckReport& report, Severity severity) {
+  return static_cast<int>(std::ranges::count(report.findings, severity, &Finding::severity));
+}
+
+void print(const CheckReport& report) {
+  for (const CheckedFile& file : report.files) fmt::print("{}: {}\n", file.name, file.kind);
+  for (const inspection::Datasheet& sheet : report.datasheets) print_datasheet(sheet);
+  if (!report.findings.empty()) fmt::print("\n");
+  for (const Finding& finding : report.findings) {
+    fmt::print("{}:{}:{}: {}: {}{}{}\n", finding.file, finding.place.line, finding.place.column,
+               to_string(finding.severity), finding.item, finding.item.empty() ? "" : ": ",
+               finding.what);
+    if (!finding.mend.empty()) fmt::print("    to mend: {}\n", finding.mend);
+  }
+  const int faults = count(report, Severity::kFault);
+  fmt::print("\n{}: {}, {}, {}\n", counted(static_cast<int>(report.files.size()), "file"),
+             counted(faults, "fault"), counted(count(report, Severity::kWarning), "warning"),
+             counted(count(report, Severity::kNote), "note"));
+  if (faults > 0) fmt::print("Every key, its range and meaning: docs/configuration.md\n");
+}
+
+std::string to_json(const CheckReport& report) {
+  nlohmann::json json;
+  json["files"] = nlohmann::json::array();
+  for (const CheckedFile& file : report.files) {
+    json["files"].push_back({{"file", file.name}, {"kind", file.kind}});
+  }
+  json["findings"] = nlohmann::json::array();
+  for (const Finding& finding : report.findings) {
+    json["findings"].push_back({{"severity", to_string(finding.severity)},
+                                {"file", finding.file},
+                                {"line", finding.place.line},
+                                {"column", finding.place.column},
+                                {"item", finding.item},
+                                {"what", finding.what},
+                                {"mend", finding.mend}});
+  }
+  json["faults"] = count(report, Severity::kFault);
+  json["warnings"] = count(report, Severity::kWarning);
+  json["notes"] = count(report, Severity::kNote);
+  json["datasheets"] = nlohmann::json::array();
+  for (const inspection::Datasheet& sheet : report.datasheets) {
+    json["datasheets"].push_back(datasheet_json(sheet));
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace hg::apps

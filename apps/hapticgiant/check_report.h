@@ -1,0 +1,30 @@
+/// What `hapticgiant check` has found: for people on stdout, for programs as JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hg/inspection/datasheet.h"
+#include "hg/inspection/findings.h"
+
+namespace hg::apps {
+
+struct CheckedFile {
+  std::string name;
+  std::string kind;
+};
+
+struct CheckReport {
+  std::vector<CheckedFile> files;
+  inspection::Findings findings;
+  std::vector<inspection::Datasheet> datasheets;
+};
+
+/// Orders the findings by file and line; each is kept once, however many ways led to it.
+void sort_and_merge(CheckReport& report);
+int count(const CheckReport& report, inspection::Severity severity);
+
+void print(const CheckReport& report);
+std::string to_json(const CheckReport& report);
+
+}  // namespace hg::apps

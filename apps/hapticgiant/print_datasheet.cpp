@@ -1,0 +1,194 @@
+#include "apps/hapticgiant/print_datasheet.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace hg::apps {
+namespace {
+
+using inspection::Bottleneck;
+using inspection::Datasheet;
+using inspection::Distribution;
+using inspection::JointLine;
+
+std::string or_none(double value, const char* unit) {
+  return std::isfinite(value) ? fmt::format("{:.4g} {}", value, unit) : "-";
+}
+
+std::string range(const JointLine& joint) {
+  const char* unit = joint.is_angle ? "rad" : "m";
+  if (!joint.range.bounded()) return "unlimited";
+  return fmt::format("{:.2f} .. {:.2f} {}", joint.range.lb, joint.range.ub, unit);
+}
+
+void print_joints(const Datasheet& sheet) {
+  fmt::print(
+      "  joint        range                  speed        acceleration   rating     gravity\n");
+  for (const JointLine& joint : sheet.joints) {
+    const char* effort = joint.is_angle ? "Nm" : "N";
+    fmt::print("  {:<12} {:<22} {:<12} {:<14} {:<10} {}\n", joint.name, range(joint),
+               or_none(joint.dq_max, joint.is_angle ? "rad/s" : "m/s"),
+               or_none(joint.ddq_max, joint.is_angle ? "rad/s^2" : "m/s^2"),
+               or_none(joint.effort_max, effort),
+               fmt::format("{:.1f} {}", joint.gravity_max, effort));
+  }
+}
+
+void print_workspace(const Datasheet& sheet) {
+  const inspection::Workspace& space = sheet.workspace;
+  if (sheet.reach > 0.0) {
+    fmt::print("  reach               {:.2f} m, handle from the axis of the arm's first joint\n",
+               sheet.reach);
+  }
+  const Eigen::Vector3d low = space.bounds.min(), high = space.bounds.max();
+  fmt::print(
+      "  workspace           {:.1f} m^3 within all limits; x {:.2f} .. {:.2f}, y {:.2f} .. "
+      "{:.2f}, z {:.2f} .. {:.2f} m\n",
+      space.volume, low.x(), high.x(), low.y(), high.y(), low.z(), high.z());
+  if (!space.has_box) return;
+  fmt::print(
+      "  box of the handle   {:.2f} m^3: {:.0f} % reached in some orientation, {:.0f} % in "
+      "the nominal one (handle axis {:.2f} {:.2f} {:.2f})\n",
+      space.box_volume, 100.0 * space.share_any, 100.0 * space.share_nominal,
+      space.nominal_axis.x(), space.nominal_axis.y(), space.nominal_axis.z());
+}
+
+// three digits, never with an exponent
+std::string short_number(double value) {
+  return std::abs(value) < 100.0 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
+}
+
+std::string values(const Distribution& d, const char* unit) {
+  return fmt::format("{} {} in 95 % of the postures, median {}, least {}", short_number(d.low),
+                     unit, short_number(d.median), short_number(d.smallest));
+}
+
+std::string by(const Bottleneck& bottleneck) {
+  if (bottleneck.joint.empty()) return "";
+  return fmt::format("; limited by {} in {:.0f} %", bottleneck.joint, 100.0 * bottleneck.share);
+}
+
+void print_capability(const Datasheet& sheet) {
+  if (sheet.has_ratings) {
+    fmt::print("  force               {}{}\n", values(sheet.force, "N"),
+               by(sheet.force_bottleneck));
+    fmt::print("  torque              {}{}\n", values(sheet.torque, "Nm"),
+               by(sheet.torque_bottleneck));
+    fmt::print("  50 N and 10 Nm      at once, in any directions: {:.0f} % of the postures\n",
+               100.0 * sheet.share_paper_wrench);
+  } else {
+    fmt::print("  force, torque       unknown: the URDF gives no effort\n");
+  }
+  fmt::print("  acceleration        {}{}\n", values(sheet.acceleration, "m/s^2"),
+             by(sheet.acceleration_bottleneck));
+  if (sheet.has_ratings) {
+    fmt::print(
+        "  free body           {:.0f} kg: what the force above moves with that acceleration\n",
+        sheet.free_body_mass);
+  }
+}
+
+void print_conditioning(const Datasheet& sheet) {
+  fmt::print(
+      "  conditioning        condition number {:.1f}, 5 % above {:.0f}; lengths in {:.2f} m\n",
+      sheet.condition_median, sheet.condition_high, sheet.length);
+  fmt::print("  nearest singularity smallest singular value {:.2g} at",
+             sheet.most_singular.conditioning.smallest);
+  const Eigen::VectorXd& q = sheet.most_singular.q;
+  for (std::size_t i = 0; i < sheet.joints.size(); ++i) {
+    if (sheet.joints[i].is_gantry) continue;
+    fmt::print(" {} {:.2f}", sheet.joints[i].name, q[static_cast<Eigen::Index>(i)]);
+  }
+  fmt::print("\n");
+}
+
+void print_bandwidth(const inspection::Bandwidth& bandwidth) {
+  fmt::print("  bandwidth           control {:g} Hz, handle onto twin {:.1f} Hz", bandwidth.rate_Hz,
+             bandwidth.synchronisation_Hz);
+  if (bandwidth.gantry_Hz > 0.0) {
+    fmt::print(", gantry {:.1f} Hz (its drive {:.1f} Hz)", bandwidth.gantry_Hz, bandwidth.drive_Hz);
+  }
+  fmt::print("\n");
+}
+
+nlohmann::json finite(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+nlohmann::json distribution_json(const Distribution& d) {
+  return {{"least", finite(d.smallest)},
+          {"low_5_percent", finite(d.low)},
+          {"median", finite(d.median)}};
+}
+
+nlohmann::json vector_json(const Eigen::Ref<const Eigen::VectorXd>& v) {
+  return std::vector<double>(v.data(), v.data() + v.size());
+}
+
+nlohmann::json joint_json(const JointLine& joint) {
+  const std::string unit = joint.is_angle ? "rad" : "m";
+  const std::string effort = joint.is_angle ? "Nm" : "N";
+  return {{"name", joint.name},
+          {"gantry", joint.is_gantry},
+          {"q_min_" + unit, finite(joint.range.lb)},
+          {"q_max_" + unit, finite(joint.range.ub)},
+          {"dq_max_" + unit + "_per_s", finite(joint.dq_max)},
+          {"ddq_max_" + unit + "_per_s2", finite(joint.ddq_max)},
+          {"effort_max_" + effort, finite(joint.effort_max)},
+          {"gravity_max_" + effort, finite(joint.gravity_max)}};
+}
+
+}  // namespace
+
+void print_datasheet(const Datasheet& sheet) {
+  fmt::print("\n{}: datasheet\n", sheet.name);
+  if (sheet.postures == 0) {
+    fmt::print("  none: no posture was found within all limits\n");
+    return;
+  }
+  print_joints(sheet);
+  print_workspace(sheet);
+  print_capability(sheet);
+  print_conditioning(sheet);
+  print_bandwidth(sheet.bandwidth);
+  fmt::print(
+      "  Of {} postures drawn uniformly in the joint ranges (seed {}), handle in the worst "
+      "direction, at rest,\n  against the ratings less gravity. How to read it: docs/check.md\n",
+      sheet.postures, sheet.options.seed);
+}
+
+nlohmann::json datasheet_json(const Datasheet& sheet) {
+  nlohmann::json json = {{"name", sheet.name},
+                         {"seed", sheet.options.seed},
+                         {"postures", sheet.postures},
+                         {"share_in_boxes", sheet.share_in_boxes}};
+  json["joints"] = nlohmann::json::array();
+  if (sheet.postures == 0) return json;
+  for (const JointLine& joint : sheet.joints) json["joints"].push_back(joint_json(joint));
+  const inspection::Workspace& space = sheet.workspace;
+  json["reach_m"] = sheet.reach;
+  json["workspace"] = {{"volume_m3", space.volume},
+                       {"lower_m", vector_json(space.bounds.min())},
+                       {"upper_m", vector_json(space.bounds.max())}};
+  if (space.has_box) {
+    json["box"] = {{"volume_m3", space.box_volume},
+                   {"share_any_orientation", space.share_any},
+                   {"share_nominal_orientation", space.share_nominal}};
+  }
+  if (sheet.has_ratings) {
+    json["force_N"] = distribution_json(sheet.force);
+    json["torque_Nm"] = distribution_json(sheet.torque);
+    json["share_50_N_and_10_Nm"] = sheet.share_paper_wrench;
+    json["free_body_mass_kg"] = sheet.free_body_mass;
+  }
+  json["acceleration_m_per_s2"] = distribution_json(sheet.acceleration);
+  json["condition_median"] = finite(sheet.condition_median);
+  json["smallest_singular_value"] = sheet.most_singular.conditioning.smallest;
+  json["most_singular_posture"] = vector_json(sheet.most_singular.q);
+  return json;
+}
+
+}  // namespace hg::apps

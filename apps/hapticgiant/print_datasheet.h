@@ -1,0 +1,14 @@
+/// The datasheet of a device, for people and as JSON.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "hg/inspection/datasheet.h"
+
+namespace hg::apps {
+
+void print_datasheet(const inspection::Datasheet& sheet);
+/// SI units; the keys carry them.
+nlohmann::json datasheet_json(const inspection::Datasheet& sheet);
+
+}  // namespace hg::apps

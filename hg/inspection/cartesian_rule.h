@@ -1,0 +1,28 @@
+/// Whether the joints can give what the Cartesian limits promise, over the workspace.
+///
+/// Source: [DESIGN] 4. A Cartesian row brakes with A_c; that takes A_c <= 1/2 sum |J_xi| A_i of the
+/// manipulator joints i along axis x. The half is left to the other rows. A speed limit needs no
+/// such rule: where the joints are slower it does not act.
+#pragma once
+
+#include <vector>
+
+#include "hg/config/device.h"
+#include "hg/inspection/findings.h"
+#include "hg/inspection/survey.h"
+
+namespace hg::inspection {
+
+/// One axis of one Cartesian limit.
+struct CartesianRule {
+  int limit = 0, axis = 0;
+  int postures = 0;               ///< of the survey, within the braking distance of a face
+  double share_too_weak = 0.0;    ///< of these, cannot brake with A_c
+  double low_acceleration = 0.0;  ///< 5 % of these have less than this for braking
+};
+
+std::vector<CartesianRule> cartesian_rules(const config::Device& device, const Survey& survey);
+
+void inspect_cartesian_rule(const config::Device& device, const Survey& survey, Collector& out);
+
+}  // namespace hg::inspection

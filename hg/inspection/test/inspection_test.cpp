@@ -1,0 +1,429 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <ostream>
+#include <string>
+
+#include "hg/config/device.h"
+#include "hg/config/file_kind.h"
+#include "hg/config/twin.h"
+#include "hg/core/error.h"
+#include "hg/inspection/device_inspection.h"
+#include "hg/inspection/scenario_inspection.h"
+#include "hg/inspection/twin_inspection.h"
+
+namespace hg::inspection {
+namespace {
+
+constexpr SurveyOptions kFew = {.seed = 1, .postures = 1'000, .positions = 2'000};
+constexpr double kDt = 1e-3;
+
+std::string text_of(const std::string& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from << " is no longer in the shipped file";
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+// The shipped device or twin with one piece of its YAML file or URDF replaced.
+struct Changed {
+  std::string yaml_from, yaml_to, urdf_from, urdf_to;
+};
+
+config::SourceReader reader_of(const std::string& yaml, const std::string& urdf_file,
+                               const Changed& change) {
+  return config::SourceReader(
+      {{"f.yaml", replaced(text_of(yaml), change.yaml_from, change.yaml_to)},
+       {urdf_file.substr(urdf_file.find_last_of('/') + 1),
+        replaced(text_of(urdf_file), change.urdf_from, change.urdf_to)}});
+}
+
+Findings device_findings(const Changed& change) {
+  config::SourceReader reader =
+      reader_of("models/haptic_giant/device.yaml", "models/haptic_giant/haptic_giant.urdf", change);
+  const config::Device device = config::load_device("f.yaml", reader);
+  return inspect(device, survey(device, kFew));
+}
+
+config::Twin door(const Changed& change) {
+  config::SourceReader reader =
+      reader_of("models/twins/door/twin.yaml", "models/twins/door/door.urdf", change);
+  return config::load_twin("f.yaml", reader);
+}
+
+const Finding* find(const Findings& findings, const std::string& item, const std::string& what) {
+  const auto found = std::ranges::find_if(findings, [&](const Finding& finding) {
+    return finding.item == item && finding.what.find(what) != std::string::npos;
+  });
+  return found == findings.end() ? nullptr : &*found;
+}
+
+std::string all_of(const Findings& findings) {
+  std::string text;
+  for (const Finding& finding : findings) {
+    text +=
+        std::string(to_string(finding.severity)) + " " + finding.item + ": " + finding.what + "\n";
+  }
+  return text;
+}
+
+struct Case {
+  const char* name;
+  Changed change;
+  Severity severity;
+  const char* item;
+  const char* what;   ///< part of it
+  const char* place;  ///< what stands there in the changed file, first line that has it
+};
+
+void PrintTo(const Case& tried, std::ostream* out) { *out << tried.name; }
+
+std::string name_of(const testing::TestParamInfo<Case>& info) { return info.param.name; }
+
+class BadDevice : public testing::TestWithParam<Case> {};
+class BadTwin : public testing::TestWithParam<Case> {};
+
+void check_case(const Case& expected, const Findings& findings, const std::string& yaml,
+                const std::string& urdf) {
+  const Finding* finding = find(findings, expected.item, expected.what);
+  ASSERT_NE(finding, nullptr) << all_of(findings);
+  EXPECT_EQ(finding->severity, expected.severity);
+  EXPECT_FALSE(finding->mend.empty());
+  const bool is_urdf = finding->file.ends_with(".urdf");
+  const std::string text =
+      is_urdf ? replaced(text_of(urdf), expected.change.urdf_from, expected.change.urdf_to)
+              : replaced(text_of(yaml), expected.change.yaml_from, expected.change.yaml_to);
+  const std::size_t at = text.find(expected.place);
+  ASSERT_NE(at, std::string::npos);
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(at);
+  EXPECT_EQ(finding->place.line, 1 + std::count(text.begin(), end, '\n'));
+}
+
+TEST_P(BadDevice, IsFoundAtItsLineAndTheShippedOneIsNot) {
+  const Case& expected = GetParam();
+  check_case(expected, device_findings(expected.change), "models/haptic_giant/device.yaml",
+             "models/haptic_giant/haptic_giant.urdf");
+  static const Findings kShipped = device_findings({});
+  EXPECT_EQ(find(kShipped, expected.item, expected.what), nullptr);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Inspection, BadDevice,
+    testing::Values(
+        Case{"DampingBeyondTheRate",
+             {"kD_rot_1_per_s: 40", "kD_rot_1_per_s: 2500", "", ""},
+             Severity::kFault,
+             "synchronisation.kD_rot_1_per_s",
+             "2.5",
+             "kD_rot_1_per_s"},
+        Case{"PolesOutside",
+             {"kP_tran_1_per_s2: 400", "kP_tran_1_per_s2: 90000", "", ""},
+             Severity::kFault,
+             "synchronisation.kP_tran_1_per_s2",
+             "slowest pole",
+             "kP_tran"},
+        Case{"Swinging",
+             {"kD_tran_1_per_s: 40", "kD_tran_1_per_s: 10", "", ""},
+             Severity::kWarning,
+             "synchronisation.kD_tran_1_per_s",
+             "damping ratio",
+             "kD_tran"},
+        Case{"GantryTooFast",
+             {"k_ppu_1_per_s: 4", "k_ppu_1_per_s: 8", "", ""},
+             Severity::kWarning,
+             "prepositioning.k_ppu_1_per_s",
+             "overshoots",
+             "k_ppu_1_per_s"},
+        Case{"GantryOscillates",
+             {"k_ppu_1_per_s: 4", "k_ppu_1_per_s: 30", "", ""},
+             Severity::kFault,
+             "prepositioning.k_ppu_1_per_s",
+             "oscillates",
+             "k_ppu_1_per_s"},
+        Case{"ElbowHeightOutside",
+             {"    y: {q_min_m: -1.95, q_max_m: 1.95}  # [P]",
+              "    z: {q_min_m: -0.5, q_max_m: 0}\n    y: {q_min_m: -1.95, q_max_m: 1.95}  # [P]",
+              "", ""},
+             Severity::kFault,
+             "cartesian_limits[1].z",
+             "always is",
+             "    z: {q_min_m: -0.5"},
+        Case{"ElbowHeightInside",
+             {"    y: {q_min_m: -1.95, q_max_m: 1.95}  # [P]",
+              "    z: {q_min_m: -0.9, q_max_m: 0}\n    y: {q_min_m: -1.95, q_max_m: 1.95}  # [P]",
+              "", ""},
+             Severity::kNote,
+             "cartesian_limits[1].z",
+             "never acts",
+             "    z: {q_min_m: -0.9"},
+        Case{"BoxOutOfReach",
+             {"z: {q_min_m: -1.25, q_max_m: -0.30}", "z: {q_min_m: 0.3, q_max_m: 1}", "", ""},
+             Severity::kFault,
+             "cartesian_limits[0].z",
+             "no posture brings",
+             "    z: {q_min_m: 0.3"},
+        Case{"JointWithoutRange",
+             {"m3: {", "m3: {q_min_rad: 1, q_max_rad: 1, ", "", ""},
+             Severity::kFault,
+             "joints.m3.q_max_rad",
+             "no range",
+             "m3: {q_min_rad"},
+        Case{"SumOutOfReach",
+             {"q_min_rad: 0.26  # [V] 1.3: 15 degrees from the singularity, cond(J) = 9.7\n"
+              "    q_max_rad: 2.88",
+              "q_min_rad: 5\n    q_max_rad: 6", "", ""},
+             Severity::kFault,
+             "virtual_joints[0]",
+             "only reach",
+             "  - name: q4+q5"},
+        Case{"SumThatNeverActs",
+             {"q_min_rad: 0.26  # [V] 1.3: 15 degrees from the singularity, cond(J) = 9.7\n"
+              "    q_max_rad: 2.88",
+              "q_min_rad: -2\n    q_max_rad: 5", "", ""},
+             Severity::kNote,
+             "virtual_joints[0]",
+             "never acts",
+             "  - name: q4+q5"},
+        Case{"SumThatCannotBrake",
+             {"ddq_max_rad_per_s2: 40  # [A] m4", "ddq_max_rad_per_s2: 70  # [A] m4", "", ""},
+             Severity::kWarning,
+             "virtual_joints[0].ddq_max_rad_per_s2",
+             "cannot brake",
+             "ddq_max_rad_per_s2: 70"},
+        Case{"SingularPosture",
+             {"q_min_rad: 0.26", "q_min_rad: -0.3", "", ""},
+             Severity::kWarning,
+             "joints.m4",
+             "singular posture",
+             "  m4:"},
+        Case{"NoRating",
+             {"", "", "lower=\"0.20\" upper=\"2.45\" velocity=\"2.6\" effort=\"110\"",
+              "lower=\"0.20\" upper=\"2.45\" velocity=\"2.6\""},
+             Severity::kWarning,
+             "joint m4",
+             "no torque rating",
+             "<joint name=\"m4\""},
+        Case{"RatingBelowGravity",
+             {"", "", "lower=\"0.20\" upper=\"2.45\" velocity=\"2.6\" effort=\"110\"",
+              "lower=\"0.20\" upper=\"2.45\" velocity=\"2.6\" effort=\"11\""},
+             Severity::kFault,
+             "joint m4",
+             "to hold the device",
+             "<joint name=\"m4\""}),
+    name_of);
+
+TEST_P(BadTwin, IsFoundAtItsLineAndTheShippedOneIsNot) {
+  const Case& expected = GetParam();
+  check_case(expected, inspect(door(expected.change), kDt), "models/twins/door/twin.yaml",
+             "models/twins/door/door.urdf");
+  static const Findings kShipped = inspect(door({}), kDt);
+  EXPECT_EQ(find(kShipped, expected.item, expected.what), nullptr);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Inspection, BadTwin,
+    testing::Values(
+        Case{"DampingBeyondTheRate",
+             {"damping_Nms_per_rad: 2.0", "damping_Nms_per_rad: 9000", "", ""},
+             Severity::kWarning,
+             "joints.hinge.damping_Nms_per_rad",
+             "cannot show so much",
+             "    damping_Nms_per_rad: 9000"},
+        Case{"SpringFeedsEnergy",
+             {"damping_Nms_per_rad: 0.05  # [A] 10.3\n", "damping_Nms_per_rad: 0\n", "", ""},
+             Severity::kWarning,
+             "joints.lever.damping_Nms_per_rad",
+             "gains energy",
+             "    damping_Nms_per_rad: 0\n"},
+        Case{"SpringTooStiff",
+             {"stiffness_Nm_per_rad: 1.2", "stiffness_Nm_per_rad: 30000", "", ""},
+             Severity::kWarning,
+             "joints.lever.stiffness_Nm_per_rad",
+             "too stiff for the rate",
+             "    stiffness_Nm_per_rad: 30000"},
+        Case{"SpringFarTooStiff",
+             {"stiffness_Nm_per_rad: 1.2", "stiffness_Nm_per_rad: 300000", "", ""},
+             Severity::kFault,
+             "joints.lever.stiffness_Nm_per_rad",
+             "too stiff for the rate",
+             "    stiffness_Nm_per_rad: 300000"},
+        Case{"SpeedThatTheRangeCannotBrake",
+             {"dq_max_rad_per_s: 3", "dq_max_rad_per_s: 9", "", ""},
+             Severity::kWarning,
+             "joints.lever.dq_max_rad_per_s",
+             "more than the whole range",
+             "    dq_max_rad_per_s: 9"},
+        Case{"NoAccelerationRating",
+             {"    ddq_max_rad_per_s2: 35\n", "", "", ""},
+             Severity::kWarning,
+             "joints.lever.ddq_max_rad_per_s2",
+             "not given",
+             "  lever:\n"},
+        Case{"LightLever",
+             {"", "", "iyy=\"0.02\" izz=\"0.0125\"", "iyy=\"0.002\" izz=\"0.0125\""},
+             Severity::kWarning,
+             "end_effector",
+             "kg m^2",
+             "end_effector"},
+        Case{"CondemnedMassMatrix",
+             {"", "",
+              "<mass value=\"0.6\"/>\n      <inertia ixx=\"0.0125\" iyy=\"0.02\" izz=\"0.0125\"",
+              "<mass value=\"1e-9\"/>\n      <inertia ixx=\"1e-11\" iyy=\"1e-11\" izz=\"1e-11\""},
+             Severity::kFault,
+             "urdf",
+             "condition number",
+             "urdf: "},
+        Case{"PoorMassMatrix",
+             {"", "",
+              "<mass value=\"0.6\"/>\n      <inertia ixx=\"0.0125\" iyy=\"0.02\" izz=\"0.0125\"",
+              "<mass value=\"1e-5\"/>\n      <inertia ixx=\"1e-6\" iyy=\"1e-6\" izz=\"1e-6\""},
+             Severity::kWarning,
+             "urdf",
+             "condition number",
+             "urdf: "},
+        Case{"CentreOfMassInMillimetres",
+             {"", "", "<origin xyz=\"0.47 0 -0.05\"/>", "<origin xyz=\"470 0 -50\"/>"},
+             Severity::kWarning,
+             "link leaf",
+             "centre of mass",
+             "<link name=\"leaf\""},
+        Case{"InertiaInAnotherUnit",
+             {"", "", "ixx=\"2.335\" iyy=\"2.806\" izz=\"0.49744\"",
+              "ixx=\"2335\" iyy=\"2806\" izz=\"497.44\""},
+             Severity::kWarning,
+             "link leaf",
+             "body of about",
+             "<link name=\"leaf\""}),
+    name_of);
+
+config::Device shipped_device() { return config::load_device("models/haptic_giant/device.yaml"); }
+
+TEST(Pair, TwinOutOfReachIsAFaultAtItsPlacement) {
+  const Findings findings =
+      inspect(shipped_device(), door({"x_m: -0.30, y_m: -0.20", "x_m: 5, y_m: -0.20", "", ""}));
+  ASSERT_FALSE(findings.empty());
+  EXPECT_EQ(findings.front().severity, Severity::kFault);
+  EXPECT_EQ(findings.front().item, "placement");
+  EXPECT_EQ(findings.front().place.line, 7);
+}
+
+TEST(Pair, AccelerationThatTheHandCannotBrakeIsNamedWithTheOneItCan) {
+  const config::Device device = shipped_device();
+  const Findings bad =
+      inspect(device, door({"ddq_max_rad_per_s2: 6", "ddq_max_rad_per_s2: 25", "", ""}));
+  const Finding* finding = find(bad, "joints.hinge.ddq_max_rad_per_s2", "Cartesian limits");
+  ASSERT_NE(finding, nullptr) << all_of(bad);
+  // 5 m/s^2 at 0.75 m, more along one axis where the arc runs aslant
+  EXPECT_EQ(finding->mend.substr(0, 14), "lower it to 6.");
+  EXPECT_EQ(find(inspect(device, door({})), "joints.hinge.ddq_max_rad_per_s2", "Cartesian limits"),
+            nullptr);
+}
+
+TEST(Pair, SpeedThatTheHandCannotFollowIsFound) {
+  const Findings findings = inspect(
+      shipped_device(), door({"    ddq_max_rad_per_s2: 6",
+                              "    dq_max_rad_per_s: 4\n    ddq_max_rad_per_s2: 6", "", ""}));
+  EXPECT_NE(find(findings, "joints.hinge.dq_max_rad_per_s", "speed"), nullptr) << all_of(findings);
+}
+
+TEST(Pair, LeverThatTheWristCannotStopIsFound) {
+  const config::Device device = shipped_device();
+  const Findings findings =
+      inspect(device, door({"ddq_max_rad_per_s2: 35", "ddq_max_rad_per_s2: 44", "", ""}));
+  EXPECT_NE(find(findings, "joints.lever.ddq_max_rad_per_s2", "joint m"), nullptr)
+      << all_of(findings);
+}
+
+TEST(SynchronisationPole, DividesWhatComesTogetherFromWhatRunsAway) {
+  // double pole at 20 rad/s and 1 kHz
+  // in continuous time; holding the acceleration splits it by 2e-3
+  EXPECT_NEAR(synchronisation_pole(400.0, 40.0, 1e-3), std::exp(-0.02), 3e-3);
+  EXPECT_LT(synchronisation_pole(400.0, 1999.0, 1e-3), 1.0);
+  EXPECT_GT(synchronisation_pole(400.0, 2001.0, 1e-3), 1.0);
+  // the recursion itself: e+ = e + dt v + dt^2 a / 2, v+ = v + dt a
+  for (const double kP : {100.0, 5e4, 9e4, 3e5}) {
+    double e = 1.0, v = 0.0;
+    for (int i = 0; i < 20'000; ++i) {
+      const double a = -kP * e - 40.0 * v;
+      e += 1e-3 * v + 0.5e-6 * a;
+      v += 1e-3 * a;
+    }
+    EXPECT_EQ(synchronisation_pole(kP, 40.0, 1e-3) < 1.0, std::abs(e) < 1.0) << kP;
+  }
+}
+
+TEST(Shipped, DeviceAndTwinsHaveNoFaultsAndNoWarningsButTheExplainedOnes) {
+  const config::Device device = shipped_device();
+  Findings all = inspect(device, survey(device));
+  for (const char* name : {"door", "excavator", "free_space"}) {
+    const config::Twin twin = config::load_twin(std::string("models/twins/") + name + "/twin.yaml");
+    for (const Findings& findings : {inspect(twin, kDt), inspect(device, twin)}) {
+      all.insert(all.end(), findings.begin(), findings.end());
+    }
+  }
+  // docs/check.md explains them
+  std::vector<std::string> warnings;
+  for (const Finding& finding : all) {
+    EXPECT_NE(finding.severity, Severity::kFault) << finding.item << ": " << finding.what;
+    if (finding.severity == Severity::kWarning) {
+      warnings.push_back(finding.item + " " + finding.what.substr(0, 13));
+    }
+  }
+  EXPECT_EQ(warnings,
+            (std::vector<std::string>{"cartesian_limits[0].ddq_max_m_per_s2 braking hand ",
+                                      "cartesian_limits[1].ddq_max_m_per_s2 braking elbow",
+                                      "cartesian_limits[1].ddq_max_m_per_s2 braking elbow"}))
+      << all_of(all);
+}
+
+TEST(Findings, TakesMessagesApart) {
+  const Findings findings = findings_of_message(
+      "a/b.yaml:3:7: joints.m1: must be > 0, got 0\nr.urdf:12: link x: too heavy\nno place\nf: no "
+      "such file",
+      "f");
+  ASSERT_EQ(findings.size(), 4u);
+  EXPECT_EQ(findings[0].file, "a/b.yaml");
+  EXPECT_EQ(findings[0].place.line, 3);
+  EXPECT_EQ(findings[0].place.column, 7);
+  EXPECT_EQ(findings[0].item, "joints.m1");
+  EXPECT_EQ(findings[0].what, "must be > 0, got 0");
+  EXPECT_EQ(findings[1].place.line, 12);
+  EXPECT_EQ(findings[1].what, "link x: too heavy");
+  EXPECT_EQ(findings[2].file, "f");
+  EXPECT_EQ(findings[2].what, "no place");
+  EXPECT_EQ(findings[3].item + findings[3].what, "no such file");
+}
+
+TEST(FileKind, IsToldFromTheKeysOfTheFile) {
+  config::SourceReader disk;
+  using config::FileKind;
+  EXPECT_EQ(kind_of("models/haptic_giant/device.yaml", disk), FileKind::kDevice);
+  for (const char* name : {"door", "excavator", "free_space"}) {
+    const std::string models = "models/";
+    EXPECT_EQ(kind_of(models + "twins/" + name + "/twin.yaml", disk), FileKind::kTwin);
+    EXPECT_EQ(kind_of(models + "scenarios/" + name + ".yaml", disk), FileKind::kScenario);
+    EXPECT_EQ(kind_of(models + "scripts/" + name + ".yaml", disk), FileKind::kScript);
+  }
+  config::SourceReader texts(
+      {{"tool.yaml", "name: grip\nmass_kg: 1\n"}, {"x.yaml", "colour: red\n"}});
+  EXPECT_EQ(kind_of("tool.yaml", texts), FileKind::kTool);
+  try {
+    (void)kind_of("x.yaml", texts);
+    FAIL() << "must be refused";
+  } catch (const SetupError& error) {
+    const std::string message = error.what();
+    EXPECT_TRUE(message.starts_with("x.yaml:1:1: ")) << message;
+    EXPECT_NE(message.find("'manipulator'"), std::string::npos);
+    EXPECT_NE(message.find("'colour'"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace hg::inspection

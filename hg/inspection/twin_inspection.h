@@ -1,0 +1,28 @@
+/// What is wrong with a twin, or will surprise: mass matrix, inertia, limits, springs, dampers.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hg/config/twin.h"
+#include "hg/inspection/findings.h"
+
+namespace hg::inspection {
+
+/// Coordinates drawn within the limits of the twin; unlimited joints from -pi to pi (-1 to 1 m),
+/// floating joints stay where they start. The start comes first.
+std::vector<ConfigurationA> twin_postures(const config::Twin& twin, int count, std::uint64_t seed);
+
+/// Extremes over postures of a twin.
+struct TwinFigures {
+  double condition = 1.0;      ///< largest condition number of the mass matrix
+  double mass = kInfinity;     ///< kg, smallest that the hand feels in any direction
+  double inertia = kInfinity;  ///< kg m^2, smallest that the hand feels about any axis
+  VectorA smallest_inertia;    ///< 1 / (M^-1)_ii per degree of freedom, kg m^2 or kg
+};
+TwinFigures twin_figures(const config::Twin& twin, const std::vector<ConfigurationA>& postures);
+
+/// All findings; `dt` in s is the period of the device that will show the twin.
+Findings inspect(const config::Twin& twin, double dt);
+
+}  // namespace hg::inspection

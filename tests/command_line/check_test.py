@@ -1,0 +1,147 @@
+"""`hapticgiant check` as its user meets it: exit codes, places, datasheet, JSON, picture.
+
+Usage: check_test.py PROGRAM   (from the repository root)
+"""
+
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
+MODELS = pathlib.Path("models")
+DEVICE = MODELS / "haptic_giant" / "device.yaml"
+DOOR = MODELS / "twins" / "door" / "twin.yaml"
+
+
+def check(*arguments):
+    """(exit code, standard output, standard error) of `hapticgiant check`."""
+    done = subprocess.run([PROGRAM, "check", *map(str, arguments)], capture_output=True, text=True,
+                          timeout=120, stdin=subprocess.DEVNULL)
+    return done.returncode, done.stdout, done.stderr
+
+
+class Check(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def changed(self, folder, file, *changes):
+        """A copy of a shipped folder in which one file has other text."""
+        copy = self.folder / folder.name
+        shutil.copytree(folder, copy)
+        text = (copy / file).read_text()
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        (copy / file).write_text(text)
+        return copy / file
+
+    def test_shipped_files_are_fine(self):
+        files = [DEVICE, *sorted(MODELS.glob("twins/*/twin.yaml")),
+                 *sorted(MODELS.glob("scenarios/*.yaml")), *sorted(MODELS.glob("scripts/*.yaml"))]
+        code, out, err = check(*files)
+        self.assertEqual((code, err), (0, ""), out)
+        self.assertIn(f"{len(files)} files: 0 faults", out)
+
+    def test_datasheet_is_the_same_every_time(self):
+        first, second = check(DEVICE), check(DEVICE)
+        self.assertEqual(first, second)
+        self.assertEqual(first[0], 0)
+        self.assertIn("HapticGiant: datasheet", first[1])
+        volume = float(re.search(r"workspace +([\d.]+) m\^3", first[1])[1])
+        self.assertAlmostEqual(volume, 12.2, delta=0.1)
+        self.assertIn("12.23 m^3", first[1])
+
+    def test_json_says_the_same(self):
+        file = self.folder / "check.json"
+        self.assertEqual(check(DEVICE, "--json", file)[0], 0)
+        told = json.loads(file.read_text())
+        self.assertEqual(told["files"], [{"file": str(DEVICE), "kind": "device"}])
+        self.assertEqual(told["faults"], 0)
+        self.assertEqual(told["warnings"],
+                         sum(f["severity"] == "warning" for f in told["findings"]))
+        for finding in told["findings"]:
+            self.assertEqual(set(finding), {"severity", "file", "line", "column", "item", "what",
+                                            "mend"})
+        sheet = told["datasheets"][0]
+        self.assertEqual([joint["name"] for joint in sheet["joints"]][2:],
+                         ["m1", "m2", "m3", "m4", "m5", "m6"])
+        self.assertIsNone(sheet["joints"][2]["q_min_rad"])
+        # 110 Nm less 30.7 Nm of gravity by a lever of at most 0.54 m
+        self.assertGreater(sheet["force_N"]["least"], 50)
+        self.assertLess(sheet["force_N"]["median"], 110 / 0.42)
+
+    def test_all_faults_of_all_files_at_once_with_their_places(self):
+        device = self.changed(DEVICE.parent, "device.yaml", ("kD_rot_1_per_s: 40", "kD_rot: 40"),
+                              ("lag_s: 0.040", "lag_s: -1"))
+        twin = self.changed(DOOR.parent, "twin.yaml", ("preload_Nm: 3", "preload: 3"),
+                            ("joint: hinge", "joint: hing"))
+        code, out, _ = check(device, twin)
+        self.assertEqual(code, 2)
+        for line in (r"device\.yaml:\d+:\d+: fault: drive\.lag_s: must be > 0, got -1",
+                     r"device\.yaml:\d+:\d+: fault: synchronisation\.kD_rot: unknown key, did you "
+                     r"mean 'kD_rot_1_per_s'\?",
+                     r"twin\.yaml:\d+:\d+: fault: joints\.hinge\.preload: unknown key, did you mean "
+                     r"'preload_Nm'\?",
+                     r"twin\.yaml:\d+:\d+: fault: locks\[0\]\.joint: must be a joint of the twin, "
+                     r"got 'hing', did you mean 'hinge'\?"):
+            self.assertRegex(out, line)
+        self.assertIn("2 files: 4 faults", out)
+        self.assertIn("docs/configuration.md", out)
+
+    def test_physics_fault_ends_with_2_and_says_how_to_mend_it(self):
+        device = self.changed(DEVICE.parent, "device.yaml", ("kD_rot_1_per_s: 40",
+                                                             "kD_rot_1_per_s: 2500"))
+        line = 1 + device.read_text().split("kD_rot_1_per_s: 2500")[0].count("\n")
+        code, out, _ = check(device)
+        self.assertEqual(code, 2)
+        self.assertIn(f"device.yaml:{line}:19: fault: synchronisation.kD_rot_1_per_s: kD dt = 2.5", out)
+        self.assertIn("to mend: lower it below 2000", out)
+
+    def test_device_and_twin_are_checked_together(self):
+        twin = self.changed(DOOR.parent, "twin.yaml", ("x_m: -0.30", "x_m: 4"))
+        self.assertEqual(check(twin)[0], 0)
+        code, out, _ = check(DEVICE, twin)
+        self.assertEqual(code, 2)
+        self.assertRegex(out, r"twin\.yaml:7:\d+: fault: placement: ")
+
+    def test_files_that_are_no_kind_of_ours(self):
+        odd = self.folder / "odd.yaml"
+        odd.write_text("colour: red\n")
+        empty = self.folder / "empty.yaml"
+        empty.write_text("")
+        code, out, _ = check(odd, empty, self.folder / "none.yaml", DOOR)
+        self.assertEqual(code, 2)
+        self.assertRegex(out, r"odd\.yaml:1:1: fault: is no kind of file that is known")
+        self.assertRegex(out, r"empty\.yaml:\d+:\d+: fault: ")
+        self.assertRegex(out, r"none\.yaml:1:1: fault: .*no such file")
+        self.assertIn("twin.yaml: twin", out)
+
+    def test_map_is_a_picture_with_legend_and_units(self):
+        file = self.folder / "map.svg"
+        self.assertEqual(check(DEVICE, "--map", file)[0], 0)
+        root = xml.etree.ElementTree.parse(file).getroot()
+        texts = " ".join(element.text or "" for element in root.iter())
+        for word in ("HapticGiant", "force in N", "x in m", "z in m", "box of the handle"):
+            self.assertIn(word, texts)
+        cells = [e for e in root.iter() if e.tag.endswith("rect") and e.get("fill", "#fff") != "#fff"]
+        self.assertGreater(len(cells), 1000)
+
+    def test_bad_arguments(self):
+        self.assertEqual(check()[0], 2)
+        code, _, err = check(DOOR, "--map", self.folder / "map.svg")
+        self.assertEqual(code, 2)
+        self.assertIn("--map", err)
+        code, _, err = check(DEVICE, "--json", self.folder / "none" / "x.json")
+        self.assertEqual(code, 2)
+        self.assertIn("cannot be written", err)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
