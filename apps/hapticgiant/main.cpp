@@ -9,7 +9,6 @@
 
 #include "apps/hapticgiant/bench_command.h"
 #include "apps/hapticgiant/check_command.h"
-#include "apps/hapticgiant/check_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/new_command.h"
 #include "apps/hapticgiant/run_command.h"
@@ -80,8 +79,9 @@ void add_new(CLI::App& app, hg::apps::NewArguments& arguments, int& exit_code) {
     what->add_option("urdf", arguments.part.urdf, "URDF of the robot or mechanism")
         ->required()
         ->check(CLI::ExistingFile);
-    what->add_option("--root", arguments.part.root_link, "first link of the part that is taken");
-    what->add_option("--tip", arguments.part.tip_link, "last link of the part that is taken");
+    what->add_option("--root-link", arguments.part.root_link,
+                     "first link of the part that is taken");
+    what->add_option("--tip-link", arguments.part.tip_link, "last link of the part that is taken");
     what->add_option("-o,--output", arguments.output, "file to write; default: URDF_device.yaml");
     what->add_flag("--force", arguments.may_overwrite, "overwrite the file");
     what->callback([&arguments, &exit_code, run] { exit_code = run(arguments); });
@@ -148,10 +148,12 @@ int main(int argc, char** argv) {
   hg::apps::CheckArguments check;
   hg::apps::NewArguments created;
   HqpArguments hqp;
+  hg::apps::BenchArguments compared;
   add_run(app, run, exit_code);
   add_check(app, check, exit_code);
   add_new(app, created, exit_code);
   add_hqp(app, hqp, exit_code);
+  add_bench(app, compared, exit_code);
 
   try {
     app.parse(argc, argv);
@@ -166,5 +168,3 @@ int main(int argc, char** argv) {
     return kInternalError;
   }
 }
-  hg::apps::BenchArguments compared;
-  add_bench(app, compared, exit_code);

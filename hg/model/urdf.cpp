@@ -207,7 +207,9 @@ class Reader {
     return value;
   }
 
+  // those of a fixed joint mean nothing; some exporters write zeros
   void limits(const XMLElement& e, const std::string& item, UrdfJoint& joint) const {
+    if (joint.type == UrdfJointType::kFixed) return;
     const bool has_range =
         joint.type == UrdfJointType::kRevolute || joint.type == UrdfJointType::kPrismatic;
     const XMLElement* limit = has_range ? &child(e, "limit", item) : e.FirstChildElement("limit");

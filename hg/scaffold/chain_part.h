@@ -22,6 +22,9 @@ int held_frame(const model::Chain& chain);
 /// Two significant digits, the way people write them: 0.0023, 1.2, 120.
 std::string rounded(double value);
 
+/// A name as YAML reads it back: in quotes where it needs them.
+std::string quoted(const std::string& name);
+
 /// `urdf:` and, where given, the ends of the part, as lines of a YAML file that stands in `folder`.
 std::string part_lines(const ChainPart& part, const std::filesystem::path& folder);
 

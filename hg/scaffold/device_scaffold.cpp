@@ -47,7 +47,7 @@ int gantry_joints(const model::Chain& chain, const std::string& source) {
     throw SetupError(fmt::format(
         "{}: a device needs six or seven manipulator joints, and at most two gantry joints before "
         "them, got {} joints of which the first {} are prismatic; take a part of the URDF with "
-        "--root and --tip",
+        "--root-link and --tip-link",
         source, n, leading));
   }
   return n_p;
@@ -169,7 +169,7 @@ Reach reach_of(DeviceDraft& d) {
 
 std::string list_of(const DeviceDraft& d, int first, int end) {
   std::string text;
-  for (int i = first; i < end; ++i) text += (i > first ? ", " : "") + joint(d, i).name;
+  for (int i = first; i < end; ++i) text += (i > first ? ", " : "") + quoted(joint(d, i).name);
   return "[" + text + "]";
 }
 
@@ -188,7 +188,7 @@ std::string joint_lines(const DeviceDraft& d) {
     if (!keys.empty()) why += "; [V] stays on one side of its singular position";
     if (!std::isfinite(j.velocity_max))
       keys += fmt::format("dq_max_{}_per_s: {}, ", unit, rounded(kDefaultSpeed));
-    text += fmt::format("  {}: {{{}ddq_max_{}_per_s2: {}}}  # [A] {}\n", j.name, keys, unit,
+    text += fmt::format("  {}: {{{}ddq_max_{}_per_s2: {}}}  # [A] {}\n", quoted(j.name), keys, unit,
                         rounded(acceleration_of(j)), why);
   }
   return text;
@@ -200,7 +200,7 @@ std::string posture_lines(const DeviceDraft& d) {
                   d.n_p > 0 ? "the gantry moves so that the arm stays near it"
                             : "where runs begin, if they can");
   for (int i = d.n_p; i < d.chain.nv(); ++i) {
-    text += fmt::format("  {}: {}\n", joint(d, i).name, rounded(d.posture[i]));
+    text += fmt::format("  {}: {}\n", quoted(joint(d, i).name), rounded(d.posture[i]));
   }
   return text;
 }
@@ -213,7 +213,8 @@ std::string virtual_joint_lines(const DeviceDraft& d) {
   for (const auto& [sum, range] : found) {
     const model::Joint& a = joint(d, sum.joint);
     const model::Joint& b = joint(d, sum.other);
-    text += fmt::format("  - name: {0}+{1}\n    weights: {{{0}: 1, {1}: 1}}\n", a.name, b.name);
+    text += fmt::format("  - name: {}\n    weights: {{{}: 1, {}: 1}}\n",
+                        quoted(a.name + "+" + b.name), quoted(a.name), quoted(b.name));
     if (std::isfinite(range.lb)) text += fmt::format("    q_min_rad: {}\n", rounded(range.lb));
     if (std::isfinite(range.ub)) text += fmt::format("    q_max_rad: {}\n", rounded(range.ub));
     text += fmt::format("    dq_max_rad_per_s: {}  # [A]\n    ddq_max_rad_per_s2: {}  # [A]\n",
@@ -225,7 +226,7 @@ std::string virtual_joint_lines(const DeviceDraft& d) {
 
 std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   std::string text = fmt::format("\ncartesian_limits:\n  - name: hand\n    frame: {}\n",
-                                 d.chain.frame_names()[static_cast<std::size_t>(d.handle)]);
+                                 quoted(d.chain.frame_names()[static_cast<std::size_t>(d.handle)]));
   for (int axis = 0; axis < 3; ++axis) {
     text += fmt::format(
         "    {}: {{q_min_m: {}, q_max_m: {}}}{}\n", "xyz"[axis], rounded(reach.lower[axis]),
@@ -256,16 +257,17 @@ std::string device_yaml(const ChainPart& part, const std::filesystem::path& fold
   const Reach reach = reach_of(d);
 
   std::string text = fmt::format(
-      "# {0} as a device, from {1}.\n"
+      "# {} as a device, from {}.\n"
       "# [V] worked out from the URDF, [A] assumed: look at these first. All keys: "
       "docs/configuration.md\n\n"
-      "name: {0}\n{2}",
-      d.chain.name(), part.urdf.filename().generic_string(), part_lines(part, folder));
+      "name: {}\n{}",
+      d.chain.name(), part.urdf.filename().generic_string(), quoted(d.chain.name()),
+      part_lines(part, folder));
   if (d.n_p > 0)
     text += fmt::format("gantry: {}  # [V] the first prismatic joints\n", list_of(d, 0, d.n_p));
   text += fmt::format("manipulator: {}\n", list_of(d, d.n_p, d.chain.nv()));
   text += fmt::format("handle: {}  # [A] frame that is held, at the force/torque sensor\n",
-                      d.chain.frame_names()[static_cast<std::size_t>(d.handle)]);
+                      quoted(d.chain.frame_names()[static_cast<std::size_t>(d.handle)]));
   text += "rate_Hz: 1000\n";
   return text + joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach);
 }

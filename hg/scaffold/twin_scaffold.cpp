@@ -14,6 +14,7 @@ namespace hg::scaffold {
 namespace {
 
 constexpr int kPostures = 24;        // in which a placement is tried
+constexpr double kNear = 0.02;       // m, from here on a joint mostly turns the end effector
 constexpr int kPlacements = 40;      // that are tried in all postures
 constexpr double kShare = 0.8;       // of the speed and acceleration of the device's handle
 constexpr double kTurnMost = 2.5;    // rad/s, wrists of the device are not much faster
@@ -213,10 +214,11 @@ std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
     const double speed = turns ? std::min(kTurnMost, ratings.speed / lever) : ratings.speed;
     const double braking =
         turns ? std::min(kTurnBraking, ratings.braking / lever) : ratings.braking;
-    text += fmt::format("  {}:\n", j.name);
-    text += fmt::format("    ddq_max_{}_per_s2: {}  # [V] {} at the end effector\n", unit,
-                        rounded(braking),
-                        turns ? fmt::format("{} m away", rounded(lever)) : "as it moves");
+    text += fmt::format("  {}:\n", quoted(j.name));
+    const std::string where = !turns          ? "moves the end effector along"
+                              : lever > kNear ? rounded(lever) + " m from the end effector"
+                                              : "turns the end effector";
+    text += fmt::format("    ddq_max_{}_per_s2: {}  # [V] {}\n", unit, rounded(braking), where);
     if (j.velocity_max > speed) {
       text += fmt::format("    dq_max_{}_per_s: {}  # [V] the hand of the device is no faster\n",
                           unit, rounded(speed));
@@ -235,14 +237,14 @@ std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder
   TwinDraft d = make_draft(part);
   const Placement placement = find_placement(d, device);
   return fmt::format(
-             "# {0} as a twin, from {1}, placed for the device {2}.\n"
+             "# {} as a twin, from {}, placed for the device {}.\n"
              "# [V] worked out from the URDF, [A] assumed: look at these first. All keys: "
              "docs/configuration.md\n\n"
-             "name: {0}\n{3}"
-             "end_effector: {4}  # [A] frame that the hand holds\n",
+             "name: {}\n{}"
+             "end_effector: {}  # [A] frame that the hand holds\n",
              d.chain.name(), part.urdf.filename().generic_string(), device.name,
-             part_lines(part, folder),
-             d.chain.frame_names()[static_cast<std::size_t>(d.end_effector)]) +
+             quoted(d.chain.name()), part_lines(part, folder),
+             quoted(d.chain.frame_names()[static_cast<std::size_t>(d.end_effector)])) +
          placement_line(placement) +
          "gravity: false  # true: the hand carries the weight of the twin\n" +
          joint_lines(d, tip_ratings(device));

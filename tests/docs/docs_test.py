@@ -1,6 +1,6 @@
 """Runs what the documents show: the files in them are written, the commands in them are executed.
 
-In docs/*.md a block ```yaml NAME (or ```xml NAME) is a file; a block ```sh holds commands. Both are
+In docs/*.md a block ```yaml NAME is a file, ```yaml +NAME is more of it; a block ```sh holds commands. Both are
 taken in the order of the document, in a folder of its own that starts as a copy of
 models/examples. Every command must end with exit code 0, or with N where its line ends with
 `# exit N`. Lines that a ```text block shows after a command are not compared.
@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BLOCK = re.compile(r"^```(sh|yaml|xml)(?: +(\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^```(sh|yaml)(?: +(\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 def commands(text):
@@ -34,7 +34,8 @@ def run_document(document, program, folder):
     for kind, name, body in BLOCK.findall(document.read_text()):
         if kind != "sh":
             if name:
-                (folder / name).write_text(body)
+                with open(folder / name.lstrip("+"), "a" if name[0] == "+" else "w") as file:
+                    file.write(body)
             continue
         for command, expected in commands(body):
             words = command.split()
