@@ -50,6 +50,8 @@ done
 if [ "$purpose" = test ]; then
   need clang-format clang-format
   for package in libgtest-dev librapidcheck-dev libbenchmark-dev chromium; do need "$package"; done
+  "$(find_python)" -c 'import os, sysconfig
+os.stat(sysconfig.get_path("include") + "/Python.h")' >/dev/null 2>&1 || need python3-dev
 fi
 
 # Recordings are written by a small Rust library. Debian's plain cargo may be too old for it; CMake
@@ -106,7 +108,7 @@ install_list() {  # install_list LIST STAMP WHAT
 install_list tools/requirements.txt .venv/.hapticgiant-requirements \
   "Pinocchio, Coal, Eigen, Boost headers"
 if [ "$purpose" = test ]; then
-  install_list tools/requirements-test.txt .venv/.hapticgiant-requirements-test "robots for tests"
+  install_list tools/requirements-test.txt .venv/.hapticgiant-requirements-test "robots and nanobind for the tests"
 fi
 
 # --- viewer page -------------------------------------------------------------------------------

@@ -8,6 +8,10 @@
 
 namespace hg {
 
+static_assert(EIGEN_MAX_ALIGN_BYTES <= 16,
+              "types of Eigen travel between modules: compile without AVX, or the whole program "
+              "with -DEIGEN_MAX_ALIGN_BYTES=16");
+
 inline constexpr int kMaxGantry = 2;       ///< prepositioning joints
 inline constexpr int kMaxManipulator = 7;  ///< manipulator joints
 inline constexpr int kMaxTwin = 30;        ///< degrees of freedom of a twin

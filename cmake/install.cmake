@@ -1,0 +1,49 @@
+# The C++ package: `cmake --install BUILD --component cpp --prefix PREFIX`, then
+# find_package(hapticgiant COMPONENTS ...) gives hapticgiant::MODULE; docs/packages.md.
+#
+# Everything but what only the program needs.
+set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning control safety
+  cycle user simulation device runtime evaluation config assembly)
+# headers that only their own module includes; Eigen or YAML show in them
+set(HG_PRIVATE_HEADERS
+  "/hqp/(cone|dense_least_squares|elimination|primal|rows|sweep|workspace)[.]h$"
+  "/config/(describe_.*|doc_writer|loader|range|read_chain)[.]h$")
+
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hapticgiant)
+
+foreach(module IN LISTS HG_PACKAGE)
+  set_target_properties(hg_${module} PROPERTIES
+    EXPORT_NAME ${module}
+    INTERFACE_COMPILE_FEATURES cxx_std_20
+    INTERFACE_INCLUDE_DIRECTORIES
+      "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>;$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
+  install(TARGETS hg_${module} EXPORT hapticgiant COMPONENT cpp
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/hg/${module}/*.h)
+  foreach(pattern IN LISTS HG_PRIVATE_HEADERS)
+    list(FILTER headers EXCLUDE REGEX ${pattern})
+  endforeach()
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hg/${module} COMPONENT cpp)
+endforeach()
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/hapticgiant
+  COMPONENT cpp)
+install(EXPORT hapticgiant NAMESPACE hapticgiant:: DESTINATION ${package_dir} COMPONENT cpp
+  FILE hapticgiantTargets.cmake)
+configure_package_config_file(cmake/hapticgiantConfig.cmake.in generated/hapticgiantConfig.cmake
+  INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_DATADIR)
+write_basic_package_version_file(generated/hapticgiantConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/generated/hapticgiantConfig.cmake
+  ${PROJECT_BINARY_DIR}/generated/hapticgiantConfigVersion.cmake
+  DESTINATION ${package_dir} COMPONENT cpp)
+
+if(HG_TESTS)
+  add_test(NAME package_cpp
+    COMMAND ${PROJECT_SOURCE_DIR}/.venv/bin/python tests/packages/cpp_package_test.py
+      ${PROJECT_BINARY_DIR} ${Eigen3_DIR}
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(package_cpp PROPERTIES TIMEOUT 300)
+endif()

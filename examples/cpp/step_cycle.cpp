@@ -1,0 +1,20 @@
+// A scenario without clock and threads: the door, opened by its scripted hand. Argument: its file.
+#include <cstdio>
+
+#include "hg/assembly/assembly.h"
+#include "hg/runtime/requests.h"
+
+int main(int, char** arguments) {
+  const hg::config::Scenario door = hg::config::load_scenario(arguments[1]);
+  hg::cycle::Cycle cycle = hg::assembly::make_cycle(door);
+  hg::device::SimulatedDevice device = hg::assembly::make_simulated_device(door);
+  hg::Sample sample;
+  while (sample.record.time_s < 10.6) {
+    device.read(sample.sensors);
+    cycle.step(sample.sensors, sample.operator_input, sample.command, sample.record);
+    device.write(sample.command);
+    sample.operator_input.request =
+        hg::runtime::next_request(sample.record.mode, sample.sensors.dead_man, false);
+  }
+  std::printf("hinge at %.2f rad after %.1f s\n", sample.record.twin.q_a[0], sample.record.time_s);
+}

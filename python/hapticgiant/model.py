@@ -1,0 +1,3 @@
+"""Kinematics and dynamics of serial chains."""
+
+from hapticgiant._core.model import *  # noqa: F403

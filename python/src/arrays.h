@@ -1,0 +1,118 @@
+/// Numbers between numpy and C++: in as anything that numpy makes an array of, out as copies.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace hg::python {
+
+namespace nb = nanobind;
+
+/// An array of double, row after row, whatever it was before: list, number, other array.
+struct ArrayIn {
+  nb::ndarray<const double, nb::c_contig, nb::device::cpu> array;
+
+  std::size_t size() const { return array.size(); }
+  const double* data() const { return array.data(); }
+};
+
+/// A copy that Python owns and nobody can write to.
+struct ArrayOut {
+  nb::ndarray<nb::numpy, const double> array;
+};
+
+inline ArrayOut to_numpy(std::vector<double> values, const std::vector<std::size_t>& shape) {
+  auto* owned = new std::vector<double>(std::move(values));
+  const nb::capsule owner(owned,
+                          [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return {{owned->data(), shape.size(), shape.data(), owner}};
+}
+
+/// Vectors get one dimension, matrices two.
+template <typename Derived>
+ArrayOut to_numpy(const Eigen::MatrixBase<Derived>& matrix) {
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(matrix.size()));
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    for (Eigen::Index col = 0; col < matrix.cols(); ++col) values.push_back(matrix(row, col));
+  }
+  std::vector<std::size_t> shape = {static_cast<std::size_t>(matrix.rows())};
+  if (Derived::ColsAtCompileTime != 1) shape.push_back(static_cast<std::size_t>(matrix.cols()));
+  return to_numpy(std::move(values), shape);
+}
+
+[[noreturn]] inline void refuse_size(const char* name, std::size_t expected, std::size_t got) {
+  throw nb::value_error((std::string(name) + ": expected " + std::to_string(expected) +
+                         " numbers, got " + std::to_string(got))
+                            .c_str());
+}
+
+/// The `size` numbers of `in`. Throws ValueError, beginning with `name`, when there are not as
+/// many.
+inline Eigen::Map<const Eigen::VectorXd> vector_of(const ArrayIn& in, int size, const char* name) {
+  if (in.size() != static_cast<std::size_t>(size)) {
+    refuse_size(name, static_cast<std::size_t>(size), in.size());
+  }
+  return {in.data(), size};
+}
+
+/// Writes `in` into a vector or matrix (row after row) of fixed or limited size.
+template <int kRows, int kCols, int kOptions, int kMaxRows, int kMaxCols>
+void assign(const ArrayIn& in, const char* name,
+            Eigen::Matrix<double, kRows, kCols, kOptions, kMaxRows, kMaxCols>& out) {
+  static_assert(kRows != Eigen::Dynamic || kCols == 1);
+  if constexpr (kRows == Eigen::Dynamic) {
+    if (in.size() > static_cast<std::size_t>(kMaxRows)) {
+      throw nb::value_error((std::string(name) + ": expected at most " + std::to_string(kMaxRows) +
+                             " numbers, got " + std::to_string(in.size()))
+                                .c_str());
+    }
+    out.resize(static_cast<Eigen::Index>(in.size()));
+  } else if (in.size() != static_cast<std::size_t>(kRows * kCols)) {
+    refuse_size(name, static_cast<std::size_t>(kRows * kCols), in.size());
+  }
+  for (Eigen::Index row = 0; row < out.rows(); ++row) {
+    for (Eigen::Index col = 0; col < out.cols(); ++col) {
+      out(row, col) = in.data()[row * out.cols() + col];
+    }
+  }
+}
+
+}  // namespace hg::python
+
+namespace nanobind::detail {
+
+template <>
+struct type_caster<hg::python::ArrayIn> {
+  NB_TYPE_CASTER(hg::python::ArrayIn, const_name("numpy.typing.ArrayLike"))
+
+  bool from_python(handle source, std::uint8_t, cleanup_list*) noexcept {
+    try {
+      const object array = module_::import_("numpy").attr("asarray")(
+          source, arg("dtype") = "float64", arg("order") = "C");
+      value.array = nanobind::cast<decltype(value.array)>(array);
+      return true;
+    } catch (...) {
+      PyErr_Clear();
+      return false;
+    }
+  }
+};
+
+/// Owned by itself: properties would else make their object the owner.
+template <>
+struct type_caster<hg::python::ArrayOut> {
+  using Array = decltype(hg::python::ArrayOut::array);
+  NB_TYPE_CASTER(hg::python::ArrayOut, make_caster<Array>::Name)
+
+  static handle from_cpp(const hg::python::ArrayOut& out, rv_policy, cleanup_list* cleanup) {
+    return make_caster<Array>::from_cpp(out.array, rv_policy::automatic, cleanup);
+  }
+};
+
+}  // namespace nanobind::detail

@@ -1,0 +1,199 @@
+/// Scenarios, and the cycle of a scenario in a loop of one's own.
+#include "hg/cycle/cycle.h"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "hg/assembly/assembly.h"
+#include "hg/config/scenario.h"
+#include "hg/runtime/requests.h"
+#include "python/src/arrays.h"
+#include "python/src/bind.h"
+#include "python/src/session.h"
+
+namespace hg::python {
+namespace {
+
+using config::Scenario;
+
+void bind_options(nb::module_& module) {
+  using rendering::Bounds;
+  using rendering::Law;
+  nb::enum_<Law>(module, "Law", "How limits become forces; docs/law.md.")
+      .value("GAUSS", Law::kGauss, "Gauss' principle of least constraint")
+      .value("PAPER", Law::kPaper, "[HG] (20)-(26)");
+  nb::enum_<Bounds>(module, "Bounds", "How limits become bounds on accelerations.")
+      .value("RECOVERABLE", Bounds::kRecoverable)
+      .value("PAPER", Bounds::kPaper, "A, B and C of [HG]");
+}
+
+void bind_scenario(nb::module_& module) {
+  nb::class_<Scenario>(module, "Scenario", "Device, twin and person of a run.")
+      .def_ro("title", &Scenario::title)
+      .def_ro("description", &Scenario::description)
+      .def_prop_ro("duration_s", &assembly::planned_duration_s,
+                   "until everything planned has happened; 0: nothing is planned")
+      .def_prop_rw(
+          "rate_Hz", [](const Scenario& scenario) { return scenario.device.rate_Hz; },
+          [](Scenario& scenario, double rate_Hz) { config::set_rate(scenario.device, rate_Hz); },
+          "cycles per second")
+      .def_prop_rw(
+          "law", [](const Scenario& scenario) { return scenario.device.rendering.law; },
+          [](Scenario& scenario, rendering::Law law) { scenario.device.rendering.law = law; })
+      .def_prop_rw(
+          "bounds", [](const Scenario& scenario) { return scenario.device.rendering.bounds; },
+          [](Scenario& scenario, rendering::Bounds bounds) {
+            scenario.device.rendering.bounds = bounds;
+          })
+      .def_ro("limits", &Scenario::limits, "what CycleRecord.limits is about, in its order")
+      .def_prop_ro(
+          "device", [](const Scenario& scenario) { return scenario.device.model.chain; },
+          "copy of the device's chain, gantry first")
+      .def_prop_ro(
+          "twin", [](const Scenario& scenario) { return scenario.twin.model.chain; },
+          "copy of the twin's chain");
+  module.def(
+      "load_scenario_file", [](const std::string& file) { return config::load_scenario(file); },
+      nb::arg("file"), "A scenario from its YAML file; raises SetupError with all faults.");
+}
+
+// a Python caller may leave vectors empty or make them too long, C++ code does not
+void require_size(const char* name, Eigen::Index expected, Eigen::Index got) {
+  if (got != expected) {
+    refuse_size(name, static_cast<std::size_t>(expected), static_cast<std::size_t>(got));
+  }
+}
+
+struct Joints {
+  explicit Joints(const Scenario& scenario)
+      : gantry(scenario.device.model.n_p), manipulator(scenario.device.model.n_m) {}
+
+  void check(const SensorFrame& sensors) const {
+    require_size("sensors.q_m", manipulator, sensors.q_m.size());
+    require_size("sensors.dq_m", manipulator, sensors.dq_m.size());
+    require_size("sensors.q_p", gantry, sensors.q_p.size());
+  }
+  void check(const CommandFrame& command) const {
+    if (!command.enable) return;
+    require_size("command.q_m", manipulator, command.q_m.size());
+    require_size("command.dq_m", manipulator, command.dq_m.size());
+    require_size("command.dq_p", gantry, command.dq_p.size());
+  }
+
+  int gantry, manipulator;
+};
+
+struct OwnCycle {
+  explicit OwnCycle(const Scenario& scenario)
+      : joints(scenario), cycle(assembly::make_cycle(scenario)) {}
+
+  Joints joints;
+  cycle::Cycle cycle;
+};
+
+struct OwnDevice {
+  explicit OwnDevice(const Scenario& scenario)
+      : joints(scenario), device(assembly::make_simulated_device(scenario)) {}
+
+  Joints joints;
+  device::SimulatedDevice device;
+};
+
+void restore(cycle::Cycle& cycle, const cycle::State& state) {
+  const rendering::State &now = cycle.state().rendering, &then = state.rendering;
+  require_size("state: joints", now.reference.q_m.size(), then.reference.q_m.size());
+  require_size("state: coordinates of the twin", now.twin.q_a.size(), then.twin.q_a.size());
+  require_size("state: gantry", cycle.state().dq_p.size(), state.dq_p.size());
+  cycle.restore(state);
+}
+
+void bind_parts(nb::module_& module) {
+  nb::class_<cycle::State>(module, "State", "All that a cycle remembers; a snapshot.");
+  nb::class_<OwnCycle>(module, "Cycle",
+                       "One pass of the control loop per step(); no clock, no I/O.")
+      .def(nb::init<const Scenario&>(), nb::arg("scenario"))
+      .def(
+          "step",
+          [](OwnCycle& self, const SensorFrame& sensors, const OperatorFrame& operator_input) {
+            self.joints.check(sensors);
+            std::tuple<CommandFrame, CycleRecord> out;
+            self.cycle.step(sensors, operator_input, std::get<0>(out), std::get<1>(out));
+            return out;
+          },
+          nb::arg("sensors"), nb::arg("operator_input") = OperatorFrame{},
+          "(command, record). sensors.sequence must count up by one.")
+      .def(
+          "is_held",
+          [](const OwnCycle& self, const SensorFrame& sensors) {
+            return self.cycle.is_held(sensors);
+          },
+          nb::arg("sensors"), "Whether somebody holds the handle: without that nothing runs.")
+      .def_prop_rw(
+          "state", [](const OwnCycle& self) { return self.cycle.state(); },
+          [](OwnCycle& self, const cycle::State& state) { restore(self.cycle, state); },
+          "copy of what it remembers; assign it to go back");
+  nb::class_<OwnDevice>(module, "SimulatedDevice",
+                        "The device of a scenario and the person who holds it.")
+      .def(nb::init<const Scenario&>(), nb::arg("scenario"))
+      .def(
+          "read",
+          [](OwnDevice& self) {
+            SensorFrame sensors;
+            self.device.read(sensors);
+            return sensors;
+          },
+          "What the sensors say now.")
+      .def(
+          "write",
+          [](OwnDevice& self, const CommandFrame& command) {
+            self.joints.check(command);
+            self.device.write(command);
+          },
+          nb::arg("command"), "Lives one period.");
+  module.def("next_request", &runtime::next_request, nb::arg("mode"), nb::arg("is_held"),
+             nb::arg("is_stopping") = false,
+             "What an operator asks for who wants nothing but to run.");
+}
+
+void bind_session(nb::module_& module) {
+  nb::class_<Session>(module, "Session",
+                      "A cycle, its simulated device, and an operator who arms and runs it.")
+      .def(nb::init<const Scenario&>(), nb::arg("scenario"))
+      .def(
+          "step",
+          [](Session& self) {
+            self.step();
+            return self.sample().record;
+          },
+          "Lives one period; the record is a copy.")
+      .def("stop", &Session::stop, "From now on the operator asks for a stop.")
+      .def_prop_ro("is_over", &Session::is_over, "after a fault, or stopped as asked")
+      .def_prop_ro("sensors", [](Session& self) { return self.sample().sensors; })
+      .def_prop_ro("command", [](Session& self) { return self.sample().command; })
+      .def_prop_ro("record", [](Session& self) { return self.sample().record; })
+      .def_prop_ro(
+          "operator_input", [](Session& self) -> OperatorFrame& { return self.wishes(); },
+          nb::rv_policy::reference_internal,
+          "what the next step() gets: set hand_target or change in it")
+      .def_prop_rw(
+          "state", [](Session& self) { return self.cycle().state(); },
+          [](Session& self, const cycle::State& state) { restore(self.cycle(), state); },
+          "of the cycle, not of the simulated world");
+}
+
+}  // namespace
+
+void bind_cycle(nb::module_& module) {
+  bind_options(module);
+  bind_scenario(module);
+  bind_parts(module);
+  bind_session(module);
+}
+
+}  // namespace hg::python

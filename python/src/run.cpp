@@ -1,0 +1,92 @@
+/// A whole run as arrays.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "hg/core/error.h"
+#include "python/src/bind.h"
+#include "python/src/columns.h"
+#include "python/src/session.h"
+
+namespace hg::python {
+
+nb::object Columns::array_of(const Column& column) const {
+  const std::size_t bytes = column.type.bits / 8;
+  std::size_t width = 1;
+  for (const std::size_t count : column.counts) width = std::max(width, count);
+
+  auto* data = new std::vector<std::byte>(rows_ * width * bytes);
+  const nb::capsule owner(data,
+                          [](void* p) noexcept { delete static_cast<std::vector<std::byte>*>(p); });
+  if (column.type == nb::dtype<double>()) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < rows_ * width; ++i) {
+      std::memcpy(data->data() + i * bytes, &kNan, bytes);
+    }
+  }
+  const std::byte* from = column.data.data();
+  for (std::size_t row = 0; row < column.counts.size(); ++row) {
+    const std::size_t size = column.counts[row] * bytes;
+    std::copy_n(from, size, data->data() + row * width * bytes);
+    from += size;
+  }
+  const std::size_t shape[] = {rows_, width};
+  const std::size_t dimensions = column.is_wide ? 2 : 1;
+  return nb::cast(
+      nb::ndarray<nb::numpy>(data->data(), dimensions, shape, owner, nullptr, column.type));
+}
+
+namespace {
+
+constexpr double kLongestStop = 1.0;  // s, as in runtime
+constexpr int kCyclesPerLook = 1000;  // between two looks at Ctrl-C
+
+void run_until(Session& session, double duration_s, Columns& columns) {
+  double stop_since_s = -1.0;
+  for (int look = 1; !session.is_over(); ++look) {
+    session.step();
+    columns.append(session.sample());
+    const double time_s = session.sample().record.time_s;
+    if (time_s >= duration_s && stop_since_s < 0.0) {
+      session.stop();
+      stop_since_s = time_s;
+    }
+    if (stop_since_s >= 0.0 && time_s > stop_since_s + kLongestStop) return;
+    if (look % kCyclesPerLook == 0) {
+      const nb::gil_scoped_acquire gil;
+      if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    }
+  }
+}
+
+nb::dict run(const config::Scenario& scenario, std::optional<double> duration_s) {
+  const double end_s = duration_s.value_or(assembly::planned_duration_s(scenario));
+  if (!(std::isfinite(end_s) && end_s > 0.0)) {
+    throw SetupError("run: a scenario without a script needs duration_s > 0");
+  }
+  Columns columns;
+  {
+    const nb::gil_scoped_release no_gil;
+    Session session(scenario);
+    run_until(session, end_s, columns);
+  }
+  return columns.to_dict();
+}
+
+}  // namespace
+
+void bind_run(nb::module_& module) {
+  module.def("run_scenario", &run, nb::arg("scenario"), nb::arg("duration_s") = nb::none(),
+             "Runs a loaded scenario as fast as it can and returns every cycle as arrays.");
+  module.def(
+      "empty_columns", [] { return Columns().to_dict(); },
+      "What run_scenario() returns, without a cycle.");
+}
+
+}  // namespace hg::python

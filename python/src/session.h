@@ -1,0 +1,64 @@
+/// A cycle, the simulated device of its scenario, and the operator who wants it to run.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "hg/assembly/assembly.h"
+#include "hg/runtime/requests.h"
+#include "hg/signals/timed_changes.h"
+
+namespace hg::python {
+
+class Session {
+ public:
+  /// Throws SetupError.
+  explicit Session(const config::Scenario& scenario)
+      : cycle_(assembly::make_cycle(scenario)),
+        device_(assembly::make_simulated_device(scenario)),
+        changes_(scenario.changes),
+        rate_Hz_(scenario.device.rate_Hz) {}
+
+  /// One period: read, step, write. A change that the scenario plans overrules one given by hand.
+  void step() noexcept {
+    Sample& now = *sample_;
+    now.operator_input = wishes_;
+    wishes_.change = {};
+    if (cycles_ > 0) {
+      now.operator_input.request =
+          runtime::next_request(now.record.mode, cycle_.is_held(now.sensors), is_stopping_);
+    }
+    const ParameterChange due = changes_.due(static_cast<double>(cycles_++) / rate_Hz_);
+    if (due.parameter != Parameter::kNone) now.operator_input.change = due;
+    device_.read(now.sensors);
+    cycle_.step(now.sensors, now.operator_input, now.command, now.record);
+    device_.write(now.command);
+  }
+
+  /// From now on the operator asks for a stop.
+  void stop() noexcept { is_stopping_ = true; }
+
+  /// Whether there is nothing left to do: a fault, or stopped as asked.
+  bool is_over() const noexcept {
+    const Mode mode = sample_->record.mode;
+    return mode == Mode::kFault ||
+           (is_stopping_ && mode != Mode::kRunning && mode != Mode::kStopping);
+  }
+
+  cycle::Cycle& cycle() noexcept { return cycle_; }
+  const Sample& sample() const noexcept { return *sample_; }
+  /// What the next step() hands to the cycle; requests are the session's own.
+  OperatorFrame& wishes() noexcept { return wishes_; }
+
+ private:
+  cycle::Cycle cycle_;
+  device::SimulatedDevice device_;
+  OperatorFrame wishes_;
+  TimedChanges changes_;
+  double rate_Hz_;
+  std::uint64_t cycles_ = 0;
+  std::unique_ptr<Sample> sample_ = std::make_unique<Sample>();
+  bool is_stopping_ = false;
+};
+
+}  // namespace hg::python

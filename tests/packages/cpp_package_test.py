@@ -1,0 +1,87 @@
+"""The C++ package as a project outside sees it: installed, found, compiled with other vector flags.
+
+Arguments: the build folder, and the folder of Eigen's package file, the only one that hqp and
+limits may need.
+"""
+
+import pathlib
+import platform
+import re
+import shutil
+import subprocess
+import sys
+
+EXAMPLES = pathlib.Path("examples/cpp").resolve()
+DOOR_OPEN = re.compile(r"hinge at 1\.[0-9]+ rad after 10\.6 s")
+
+
+def run(*command, fails=False):
+    """Output of a command; exits with all of it where the command does not end as expected."""
+    result = subprocess.run([str(word) for word in command], text=True, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT)
+    if (result.returncode != 0) != fails:
+        sys.exit(f"{' '.join(map(str, command))}\n{result.stdout}")
+    return result.stdout
+
+
+def configure(build, *options, **keywords):
+    shutil.rmtree(build, ignore_errors=True)
+    return run("cmake", "-S", EXAMPLES, "-B", build, "-G", "Ninja", "-Wno-dev", *options, **keywords)
+
+
+def check(holds, what):
+    if not holds:
+        sys.exit(what)
+
+
+def main():
+    text = pathlib.Path("docs/packages.md").read_text()
+    for example in EXAMPLES.glob("*.cpp"):
+        check(example.read_text() in text, f"docs/packages.md shows another {example.name}")
+
+    tree = pathlib.Path(sys.argv[1])
+    eigen = sys.argv[2]
+    wheels = pathlib.Path(eigen).parents[2]
+    work = tree / "package_cpp"
+    prefix = work / "prefix"
+    shutil.rmtree(prefix, ignore_errors=True)
+    run("cmake", "--install", tree, "--prefix", prefix, "--component", "cpp")
+
+    # no header of Eigen or YAML is needed beyond those of core, and nothing of Eigen's can be
+    # mistaken for the consumer's
+    symbols = run("nm", "--demangle", prefix / "lib" / "libhg_hqp.a")
+    check(not re.search(r"\bEigen::", symbols), "libhg_hqp.a shares functions of Eigen")
+
+    # solver and bounds: nothing but Eigen and zlib is found, and the flags are the consumer's own
+    flags = "-mavx2 -mfma" if platform.machine() in ("x86_64", "AMD64") else ""
+    alone = work / "alone"
+    found = configure(alone, f"-DCMAKE_PREFIX_PATH={prefix}", f"-DEigen3_DIR={eigen}",
+                      "-DCMAKE_DISABLE_FIND_PACKAGE_pinocchio=ON", f"-DCMAKE_CXX_FLAGS={flags}")
+    run("cmake", "--build", alone)
+    check(not (alone / "step_cycle").exists(), "step_cycle was built without Pinocchio")
+    check("pinocchio" not in (alone / "CMakeCache.txt").read_text().replace(
+        "CMAKE_DISABLE_FIND_PACKAGE_pinocchio", ""), f"Pinocchio was looked for:\n{found}")
+    if "avx2" in pathlib.Path("/proc/cpuinfo").read_text():
+        check(run(alone / "solve_problem") == "solved: x = (1, 2)\n", "solve_problem")
+        check("rests at 1.000000 rad" in run(alone / "joint_bounds"), "joint_bounds")
+
+    # everything else, with the wheels
+    both = work / "both"
+    path = f"-DCMAKE_PREFIX_PATH={prefix};{wheels}"
+    configure(both, path)
+    run("cmake", "--build", both)
+    door = prefix / "share" / "hapticgiant" / "models" / "scenarios" / "door.yaml"
+    opened = run(both / "step_cycle", door)
+    check(DOOR_OPEN.fullmatch(opened.strip()), f"step_cycle: {opened}")
+
+    # what shows Eigen's types is refused where they would have another layout
+    if flags:
+        configure(both, path, "-DCMAKE_CXX_FLAGS=-mavx2")
+        refused = run("cmake", "--build", both, "--target", "step_cycle", fails=True)
+        check("without AVX" in refused, f"AVX was not refused:\n{refused}")
+
+    print("cpp package: installed, found, built with its own flags, run")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+"""The Python package as pip installs it: its tests, then the examples.
+
+Arguments: the build folder, and the program, to make a recording; the package is put beside the
+wheels first. Or --installed: the package that this Python has, without a recording.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+EXAMPLES = {
+    "joint_bounds.py": r"    2\.00 +-?[0-9. -]+",
+    "solve_problem.py": r"SOLVED \[1\. 2\.\]\nSOLVED \[1\. 3\.\] after 1 active set",
+    "open_door.py": r"opens at 8\.\d\d s, force .* N, felt: ",
+    "read_run.py": r"1\d{4} cycles, 14\.\d s.*\nhinge at most 1\.\d{3} rad, open from 8\.\d\d s on",
+}
+
+
+def run(*command, **options):
+    """Output of a command; exits with all of it where the command fails."""
+    result = subprocess.run([str(word) for word in command], text=True, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, **options)
+    if result.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\n{result.stdout}")
+    return result.stdout
+
+
+def install(tree, site):
+    """The package and, beside it, the wheels' libraries that it looks for there."""
+    shutil.rmtree(site, ignore_errors=True)
+    run("cmake", "--install", tree, "--prefix", site, "--component", "python")
+    (wheels,) = (path for path in map(pathlib.Path, sys.path) if (path / "cmeel.prefix").is_dir())
+    (site / "cmeel.prefix").symlink_to(wheels / "cmeel.prefix")
+
+
+def prepare(tree, program):
+    """Environment in which the package and a recording of the door are found."""
+    work = tree / "package_python"
+    install(tree, work / "site")
+    recordings = work / "recordings"
+    shutil.rmtree(recordings, ignore_errors=True)
+    run(program, "run", "door", "--fast", "--recordings", recordings)
+    environment = {**os.environ, "PYTHONPATH": str(work / "site"),
+                   "HG_RECORDING": str(recordings / "latest.mcap")}
+    environment.pop("LD_LIBRARY_PATH", None)
+    return environment
+
+
+def main():
+    is_installed = sys.argv[1:] == ["--installed"]
+    environment = dict(os.environ) if is_installed else prepare(*map(pathlib.Path, sys.argv[1:]))
+    print(run(sys.executable, "-m", "unittest", "discover", "-s", ROOT / "python" / "test",
+              "-p", "*_test.py", env=environment))
+    text = (ROOT / "docs" / "packages.md").read_text()
+    for name, expected in EXAMPLES.items():
+        example = ROOT / "examples" / "python" / name
+        if example.read_text() not in text:
+            sys.exit(f"docs/packages.md shows another {name}")
+        output = run(sys.executable, example, env=environment)
+        if not re.search(expected, output):
+            sys.exit(f"{name} printed\n{output}\nexpected {expected}")
+        print(f"{name}: fine")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Does what a user does: pip install from a clean copy of HEAD into a fresh virtual environment, with
+# the ordinary registries, then runs the Python tests and examples with what was installed.
+# Takes some minutes; `make test` runs the same tests on the extension of the normal build.
+#
+#   tools/check_pip_install.sh [WORK]    WORK: folder for all of it, default build/pip_install
+set -euo pipefail
+cd -P "$(dirname "$0")/.."
+work=${1:-build/pip_install}
+rm -rf "$work"
+mkdir -p "$work/source"
+git archive HEAD | tar -x -C "$work/source"
+
+python3 -m venv "$work/venv"
+"$work/venv/bin/pip" install --quiet --disable-pip-version-check "$work/source[recording]"
+
+# from another folder, so that nothing is imported from the sources
+python=$(realpath "$work/venv/bin/python")
+tests=$(realpath tests/packages/python_package_test.py)
+cd "$work"
+"$python" "$tests" --installed
