@@ -130,6 +130,20 @@ TEST(Damper, IsExactlyViscousWhereTheSampleIsShortEnough) {
   EXPECT_EQ(playing.record.budget.damping, VectorA(0.3 * dq));
 }
 
+TEST(Damper, OfOneJointGrowsUntilItStopsTheJointWithinASample) {
+  const TwinModel twin = door();
+  model::Chain chain = twin.chain;
+  chain.update(chain.neutral(), VectorA::Zero(2));
+  const double most = chain.M()(0, 0) / kDt;
+  const VectorA dq = Eigen::Vector2d(0.7, 0.0);
+  for (const double share : {0.5, 0.999, 1.0, 1.001, 3.0, 1e6}) {
+    TwinParameters parameters = initial_parameters(twin);
+    parameters.now.dofs[0].damping = share * most;
+    const double torque = damping_torque(chain.M(), dq, kDt, parameters.now)[0];
+    EXPECT_NEAR(torque, std::min(share, 1.0) * most * dq[0], 1e-9 * most) << share;
+  }
+}
+
 TEST(Damper, TakesEnergyHoweverStiffItIsAndHoweverJointsAreCoupled) {
   constexpr unsigned kSeed = 11;
   SCOPED_TRACE(kSeed);
