@@ -89,7 +89,7 @@ void check_gantry(Loader& loader, const model::Chain& chain, const DeviceDraft& 
                 "haptic_giant needs two prismatic gantry joints and six manipulator joints");
     loader.rule(!has_posture, "posture", "haptic_giant has the posture of eq. (30)");
   } else {
-    loader.rule(draft.gantry.empty() || has_posture, "gantry",
+    loader.rule(draft.gantry.empty() || loader.is_given("posture"), "gantry",
                 "a gantry needs 'posture': without goals of the joints it has nowhere to go");
   }
 }

@@ -11,12 +11,13 @@ Tool load_tool(const std::filesystem::path& path, SourceReader& reader) {
   ToolDraft draft;
   load_file(file, [&](Loader& loader) {
     describe(loader, draft);
+    if (file.faults.count() > 0) return;
     if (draft.mass == 0.0) {
       loader.rule(draft.inertia.isZero(), "inertia_kg_m2", "a tool without mass has no inertia");
       return;
     }
     try {
-      model::check({draft.mass, draft.centre_of_mass, draft.inertia}, "");
+      model::check({draft.mass, draft.centre_of_mass, draft.inertia}, "tool");
     } catch (const SetupError& error) {
       loader.rule(false, "inertia_kg_m2", error.what());
     }

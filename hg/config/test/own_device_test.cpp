@@ -1,0 +1,134 @@
+/// What is wrong with devices other than the HapticGiant: tools, gantries, postures.
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+#include "hg/config/device.h"
+#include "hg/core/error.h"
+
+namespace hg::config {
+namespace {
+
+// eight joints j0..j7; the first two of the given types
+std::string arm_urdf(const std::string& first, const std::string& second = "revolute") {
+  std::ostringstream text;
+  text << "<robot name='arm'><link name='base'/>";
+  for (int i = 0; i < 8; ++i) {
+    text << "<joint name='j" << i << "' type='"
+         << (i == 0   ? first
+             : i == 1 ? second
+                      : "revolute")
+         << "'><parent link='" << (i == 0 ? "base" : "l") << (i == 0 ? "" : std::to_string(i - 1))
+         << "'/><child link='l" << i << "'/><origin xyz='0 0 0.1'/><axis xyz='"
+         << (i % 2 == 0 ? "0 0 1" : "0 1 0")
+         << "'/><limit lower='-2' upper='2' velocity='2' effort='9'/></joint><link name='l" << i
+         << "'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' "
+            "iyz='0'/></inertial></link>";
+  }
+  text << "</robot>";
+  return text.str();
+}
+
+constexpr const char* kTool = "name: bar\nmass_kg: 0.5\ninertia_kg_m2: [0.002, 0.002, 0.001]\n";
+
+constexpr const char* kJoints =
+    "joints: {j2: {ddq_max_rad_per_s2: 9}, j3: {ddq_max_rad_per_s2: 9}, j4: {ddq_max_rad_per_s2: "
+    "9}, "
+    "j5: {ddq_max_rad_per_s2: 9}, j6: {ddq_max_rad_per_s2: 9}, j7: {ddq_max_rad_per_s2: 9}}\n";
+
+// A device with joints j0, j1 as gantry; `rest` starts in line 4.
+std::string text_of(const std::string& rest) {
+  return "name: test\nurdf: arm.urdf\nmanipulator: [j2, j3, j4, j5, j6, j7]\n" + rest + kJoints;
+}
+
+SourceReader reader_of(const std::string& rest, const std::string& urdf, const std::string& tool) {
+  return SourceReader({{"arm.urdf", urdf}, {"tool.yaml", tool}, {"device.yaml", text_of(rest)}});
+}
+
+std::string message(const std::string& rest, const std::string& urdf = arm_urdf("revolute"),
+                    const std::string& tool = kTool) {
+  SourceReader reader = reader_of(rest, urdf, tool);
+  try {
+    load_device("device.yaml", reader);
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+const std::string kGantry = "gantry: [j0, j1]\nposture: {j2: 0.5}\n";
+
+TEST(OwnDevice, AToolBringsHandleSensorMassAndItsSwitch) {
+  SourceReader reader =
+      reader_of(kGantry + "tool: tool.yaml\nflange: l7\n", arm_urdf("revolute"),
+                std::string(kTool) + "handle: {z_m: 0.2}\nsensor: {x_m: 0.01}\ndead_man: false\n");
+  const Device device = load_device("device.yaml", reader);
+  EXPECT_EQ(device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)],
+            "handle");
+  EXPECT_EQ(device.T_H_S.p.x(), 0.01);
+  EXPECT_EQ(device.estimation.T_H_S.p.x(), 0.01);
+  EXPECT_FALSE(device.monitor.has_dead_man);
+  EXPECT_EQ(device.sources.size(), 3u);  // a recording must hold the tool
+}
+
+TEST(OwnDevice, AToolIsCheckedInItsOwnFile) {
+  EXPECT_EQ(message(kGantry + "tool: tool.yaml\nflange: l7\n", arm_urdf("revolute"),
+                    "name: bar\nmas_kg: 1\n"),
+            "tool.yaml:2:1: mas_kg: unknown key, did you mean 'mass_kg'?");
+  EXPECT_EQ(message(kGantry + "tool: tool.yaml\nflange: l7\n", arm_urdf("revolute"),
+                    "name: bar\nmass_kg: 1\ninertia_kg_m2: [1, 2]\n"),
+            "tool.yaml:3:16: inertia_kg_m2: must be a list of numbers [xx, yy, zz] or [xx, yy, zz, "
+            "xy, xz, yz], got 2 of them");
+  EXPECT_EQ(message(kGantry + "tool: tool.yaml\nflange: l7\n", arm_urdf("revolute"),
+                    "name: bar\nmass_kg: 1\ninertia_kg_m2: [9, 1, 1]\n")
+                .find("tool.yaml:3:16: inertia_kg_m2: "),
+            0u);
+}
+
+TEST(OwnDevice, AHandleIsALinkOrATool) {
+  EXPECT_EQ(message(kGantry),
+            "device.yaml:1:1: a device needs 'handle' (a link of the URDF) or "
+            "'tool' with 'flange'");
+  EXPECT_EQ(message(kGantry + "tool: tool.yaml\nflange: l9\n"),
+            "device.yaml:7:9: flange: must be a link of the URDF, got 'l9', did you mean 'l0'?");
+  EXPECT_EQ(message(kGantry + "tool: tool.yaml\nflange: l7\nhandle: l7\n"),
+            "device.yaml:8:9: handle: the tool brings the handle: give either 'handle' or 'tool'");
+  EXPECT_EQ(message(kGantry + "tool: tool.yaml\n"),
+            "device.yaml:6:7: tool: a tool needs 'flange', and a flange needs 'tool'");
+}
+
+TEST(OwnDevice, TheGantryIsOfOneKindAndItsKeysFollow) {
+  const std::string handle = "handle: l7\n";
+  EXPECT_EQ(message(kGantry + handle + "drive: {dq_max_rad_per_s: 2}\n"), "no error");
+  EXPECT_EQ(message(kGantry + handle + "drive: {dq_max_m_per_s: 2}\n"),
+            "device.yaml:7:9: drive.dq_max_m_per_s: unknown key, did you mean 'dq_max_rad_per_s'?");
+  EXPECT_EQ(message(kGantry + handle + "drive: {dq_max_m_per_s: 2}\n",
+                    arm_urdf("prismatic", "prismatic")),
+            "no error");
+  EXPECT_EQ(message(kGantry + handle, arm_urdf("prismatic")),
+            "device.yaml:4:9: gantry: gantry joints must be all prismatic or all revolute, got "
+            "'j1'");
+}
+
+TEST(OwnDevice, AGantryNeedsSomewhereToGo) {
+  EXPECT_EQ(message("gantry: [j0, j1]\nhandle: l7\n"),
+            "device.yaml:4:9: gantry: a gantry needs 'posture': without goals of the joints it has "
+            "nowhere to go");
+  EXPECT_EQ(message("gantry: [j0, j1]\nhandle: l7\nposture: {j2: 2.5}\n"),
+            "device.yaml:6:10: posture: j2 must be within the limits of the joint, got 2.5");
+  EXPECT_EQ(message("gantry: [j0, j1]\nhandle: l7\nposture: {j1: 0}\n"),
+            "device.yaml:6:11: posture.j1: must be a manipulator joint, got 'j1', did you mean "
+            "'j2'?");
+}
+
+TEST(OwnDevice, WithoutAGantryNothingOfItIsGiven) {
+  const std::string text =
+      message("handle: l7\nroot_link: l1\nprepositioning: {k_ppu_1_per_s: 4}\n");
+  EXPECT_EQ(text, "device.yaml:6:17: prepositioning: concerns the gantry, and there is none");
+  EXPECT_EQ(message("handle: l7\nroot_link: l1\n"), "no error");
+}
+
+}  // namespace
+}  // namespace hg::config
