@@ -42,6 +42,7 @@ void apply(const RunArguments& arguments, config::Scenario& scenario) {
   if (!arguments.twin.empty()) {
     scenario.twin = config::load_twin(arguments.twin);
     scenario.title = scenario.twin.name;
+    scenario.changes.clear();
     add_sources(scenario.twin.sources);
   }
   if (!arguments.twin.empty() || !arguments.device.empty()) {
@@ -64,7 +65,6 @@ void apply(const RunArguments& arguments, config::Scenario& scenario) {
   }
 }
 
-std::vector<std::string> joint_names(const rendering::DeviceModel& device, int first, int count) {
 // `text` is one of the names of `choices`; empty leaves the value alone
 template <class T>
 void choose(const char* option, const std::string& text, config::Choices<T> choices, T& value) {
@@ -78,6 +78,7 @@ void choose(const char* option, const std::string& text, config::Choices<T> choi
   throw SetupError(fmt::format("{}: expected one of the names of --help, got '{}'", option, text));
 }
 
+std::vector<std::string> joint_names(const rendering::DeviceModel& device, int first, int count) {
   std::vector<std::string> names;
   for (int i = first; i < first + count; ++i) {
     names.push_back(device.chain.joints()[static_cast<std::size_t>(i)].name);
@@ -90,9 +91,9 @@ viewer_server::SceneJoint scene_joint(const model::Joint& joint) {
   switch (joint.type) {
     case model::JointType::kRevolute:
     case model::JointType::kContinuous:
-      return {joint.name, JointType::kRevolute};
+      return {joint.name, JointType::kRevolute, joint.planar, joint.axis};
     case model::JointType::kPrismatic:
-      return {joint.name, JointType::kPrismatic};
+      return {joint.name, JointType::kPrismatic, joint.planar, joint.axis};
     case model::JointType::kFloating:
       return {joint.name, JointType::kFloating};
   }
@@ -120,9 +121,9 @@ std::string changes(const RunArguments& arguments) {
   line("--twin", arguments.twin);
   line("--user", arguments.user);
   if (arguments.rate_Hz) line("--rate-hz", fmt::format("{}", *arguments.rate_Hz));
-  return text;
   line("--law", arguments.law);
   line("--bounds", arguments.bounds);
+  return text;
 }
 
 // where the handle may be; on axes without limits the page shows 4 m around its start
@@ -152,11 +153,11 @@ config::Scenario make_scenario(const RunArguments& arguments) {
   config::Scenario scenario = config::load_scenario(find_scenario(arguments.scenario));
   apply(arguments, scenario);
   if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
-  return scenario;
   choose("--law", arguments.law, config::Choices<rendering::Law>(config::kLaws),
          scenario.device.rendering.law);
   choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
          scenario.device.rendering.bounds);
+  return scenario;
 }
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
