@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -16,6 +17,7 @@ constexpr int kSteps = 2;              // per cycle; the hand moves 2 mm in betw
 constexpr double kPoseWeight = 1e6;    // square; 1 m or rad of the pose against 1 rad of posture
 constexpr double kDamping = 1e-3;      // square, 1 rad of posture is 1: halves no step
 constexpr double kLargestStep = 0.05;  // m and rad
+constexpr double kRounding = 1e-12;    // m and rad
 constexpr double kLost = 0.05;         // m and rad beside the hand: begin again
 
 }  // namespace
@@ -90,27 +92,38 @@ double GantryTarget::improve(const Pose& T_B_H, VectorPM& q) noexcept {
 // Solves H step = g; joints that would leave their range stop at its end, the others make up for
 // it.
 VectorPM GantryTarget::limited_step(MatrixPM H, VectorPM g, const VectorPM& q) const noexcept {
-  VectorPM step = H.ldlt().solve(g);
-  const auto limited = [&](int i) {
+  const auto limited = [&](int i, double step) {
     const Interval range = config_.range[static_cast<std::size_t>(i)];
-    return std::clamp(q[i] + step[i], range.lb, range.ub) - q[i];
+    return std::clamp(q[i] + step, range.lb, range.ub) - q[i];
   };
-  bool is_limited = false;
-  for (int i = 0; i < q.size(); ++i) {
-    if (config_.range[static_cast<std::size_t>(i)].contains(q[i] + step[i])) continue;
-    const double held = limited(i);
-    is_limited = true;
-    g -= held * H.col(i);
-    H.row(i).setZero();
-    H.col(i).setZero();
-    H(i, i) = 1.0;
-    g[i] = held;
-  }
-  if (is_limited) step = H.ldlt().solve(g);
-
+  VectorPM step = H.ldlt().solve(g);
   const double largest = step.lpNorm<Eigen::Infinity>();
-  if (largest > kLargestStep) step *= kLargestStep / largest;
-  for (int i = 0; i < q.size(); ++i) step[i] = limited(i);
+  if (largest > kLargestStep) {
+    g *= kLargestStep / largest;
+    step *= kLargestStep / largest;
+  }
+
+  std::array<bool, kMaxGantry + kMaxManipulator> is_held{};
+  for (int pass = 0; pass < q.size(); ++pass) {
+    bool is_new = false;
+    for (int i = 0; i < q.size(); ++i) {
+      bool& held = is_held[static_cast<std::size_t>(i)];
+      const double end = limited(i, step[i]);
+      if (held || std::abs(end - step[i]) < kRounding) continue;
+      held = is_new = true;
+      g -= end * H.col(i);
+      H.row(i).setZero();
+      H.col(i).setZero();
+      H(i, i) = 1.0;
+      g[i] = end;
+    }
+    if (!is_new) break;
+    step = H.ldlt().solve(g);
+  }
+
+  for (int i = 0; i < q.size(); ++i) {
+    step[i] = limited(i, std::clamp(step[i], -kLargestStep, kLargestStep));
+  }
   return step;
 }
 
