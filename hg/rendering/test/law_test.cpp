@@ -387,6 +387,25 @@ TEST(PaperBounds, ShowTheRatingThatActs) {
   EXPECT_NEAR(record.reference.ddq_m[5], 0.0, 1e-9);
 }
 
+// tests/reference/README.md: rows of levels 6 and 8 of a lock get clip(-dq / dt, +-ddq_max)
+TEST(PaperBounds, ALockBrakesWithTheRatingOfItsJoint) {
+  TwinModel twin = unlimited_twin(
+      model::Chain::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}), "handle");
+  twin.dofs[0].limits = {0.0, 1.0, 1.2, 6.0};
+  twin.locks = {{.name = "bolt", .dof = 0, .position = 0.0, .engaged_while = {}}};
+  Rendering rendering(unlimited_device(), twin, with(Law::kPaper, Bounds::kPaper));
+  State state = rendering.start(kPosture);
+  state.twin.dq_a[0] = -0.5;
+  CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
+  ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+  EXPECT_NEAR(record.twin.ddq_a[0], 6.0, 1e-9);
+  const int level_6 = 6 + 6, level_8 = level_6 + 2 + 6;  // rows before: coupling, joints, ...
+  for (const int row : {level_6, level_8}) {
+    EXPECT_EQ(rendering.problem().bounds(row).lb, 6.0) << row;
+    EXPECT_EQ(rendering.problem().bounds(row).ub, 6.0) << row;
+  }
+}
+
 TEST(Laws, RefuseWhatTheyCannotRender) {
   const TwinModel twin = unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
   Options options;
