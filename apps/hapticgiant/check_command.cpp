@@ -109,7 +109,7 @@ void check_scripts(Check& check) {
   }
 }
 
-void check_devices(const CheckArguments& arguments, Check& check) {
+void check_devices(Check& check) {
   const auto inspect = [&](const config::Device& device, bool has_datasheet) {
     const inspection::Survey survey = inspection::survey(device);
     add(inspection::inspect(device, survey), check);
@@ -119,15 +119,17 @@ void check_devices(const CheckArguments& arguments, Check& check) {
   };
   for (const config::Device& device : check.devices) inspect(device, true);
   for (const config::Scenario& scenario : check.scenarios) inspect(scenario.device, false);
-  if (arguments.map.empty()) return;
+}
+
+void draw_map(const std::string& file, const Check& check) {
   if (check.devices.empty() && check.scenarios.empty()) {
     throw SetupError("--map: needs a device that could be read");
   }
   const config::Device& device =
       check.devices.empty() ? check.scenarios.front().device : check.devices.front();
-  std::ofstream stream(arguments.map);
+  std::ofstream stream(file);
   stream << to_svg(inspection::capability_map(device));
-  if (!stream.flush()) throw SetupError(arguments.map + ": cannot be written");
+  if (!stream.flush()) throw SetupError(file + ": cannot be written");
 }
 
 void check_twins(Check& check) {
@@ -151,7 +153,7 @@ int run_check(const CheckArguments& arguments) {
   Check check;
   for (const std::string& file : arguments.files) load(file, check);
   check_scripts(check);
-  check_devices(arguments, check);
+  check_devices(check);
   check_twins(check);
   sort_and_merge(check.report);
   print(check.report);
@@ -160,6 +162,7 @@ int run_check(const CheckArguments& arguments) {
     stream << to_json(check.report);
     if (!stream.flush()) throw SetupError(arguments.json + ": cannot be written");
   }
+  if (!arguments.map.empty()) draw_map(arguments.map, check);
   return count(check.report, inspection::Severity::kFault) > 0 ? 2 : 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -25,15 +26,20 @@ std::string range(const JointLine& joint) {
 }
 
 void print_joints(const Datasheet& sheet) {
-  fmt::print(
-      "  joint        range                  speed        acceleration   rating     gravity\n");
+  std::size_t width = 5;
+  for (const JointLine& joint : sheet.joints) width = std::max(width, joint.name.size());
+  const auto line = [&](const std::string& name, const std::string& positions,
+                        const std::string& speed, const std::string& acceleration,
+                        const std::string& rating, const std::string& gravity) {
+    fmt::print("  {:<{}}  {:<20}  {:<11}  {:<12}  {:<8}  {}\n", name, width, positions, speed,
+               acceleration, rating, gravity);
+  };
+  line("joint", "range", "speed", "acceleration", "rating", "gravity");
   for (const JointLine& joint : sheet.joints) {
     const char* effort = joint.is_angle ? "Nm" : "N";
-    fmt::print("  {:<12} {:<22} {:<12} {:<14} {:<10} {}\n", joint.name, range(joint),
-               or_none(joint.dq_max, joint.is_angle ? "rad/s" : "m/s"),
-               or_none(joint.ddq_max, joint.is_angle ? "rad/s^2" : "m/s^2"),
-               or_none(joint.effort_max, effort),
-               fmt::format("{:.1f} {}", joint.gravity_max, effort));
+    line(joint.name, range(joint), or_none(joint.dq_max, joint.is_angle ? "rad/s" : "m/s"),
+         or_none(joint.ddq_max, joint.is_angle ? "rad/s^2" : "m/s^2"),
+         or_none(joint.effort_max, effort), fmt::format("{:.1f} {}", joint.gravity_max, effort));
   }
 }
 

@@ -138,6 +138,10 @@ class Check(unittest.TestCase):
         code, _, err = check(DOOR, "--map", self.folder / "map.svg")
         self.assertEqual(code, 2)
         self.assertIn("--map", err)
+        odd = self.changed(DEVICE.parent, "device.yaml", ("lag_s: 0.040", "lag_s: -1"))
+        code, out, _ = check(odd, "--map", self.folder / "map.svg")
+        self.assertEqual(code, 2)
+        self.assertIn("drive.lag_s: must be > 0", out)  # told although there is no map
         code, _, err = check(DEVICE, "--json", self.folder / "none" / "x.json")
         self.assertEqual(code, 2)
         self.assertIn("cannot be written", err)

@@ -341,6 +341,25 @@ TEST(Pair, LeverThatTheWristCannotStopIsFound) {
       << all_of(findings);
 }
 
+TEST(Pair, PosturesOutOfReachAreCountedAndOneIsExplained) {
+  const config::Device device = shipped_device();
+  const config::Twin excavator = config::load_twin("models/twins/excavator/twin.yaml");
+  const Findings findings = inspect(device, excavator);
+  const Finding* finding = find(findings, "placement", "% of the twin's postures");
+  ASSERT_NE(finding, nullptr) << all_of(findings);
+  EXPECT_EQ(finding->severity, Severity::kNote);
+  EXPECT_NE(finding->what.find("out of reach"), std::string::npos) << finding->what;
+  EXPECT_NE(finding->what.find("boom"), std::string::npos) << finding->what;
+}
+
+TEST(TwinFigures, AreThoseOfTheWorstPosture) {
+  const config::Twin excavator = config::load_twin("models/twins/excavator/twin.yaml");
+  const TwinFigures start = twin_figures(excavator, {excavator.model.q_start});
+  const TwinFigures all = twin_figures(excavator, twin_postures(excavator, 300, 1));
+  EXPECT_GT(all.condition, 1.1 * start.condition);
+  EXPECT_LT(all.mass, start.mass);
+}
+
 TEST(SynchronisationPole, DividesWhatComesTogetherFromWhatRunsAway) {
   // double pole at 20 rad/s and 1 kHz
   // in continuous time; holding the acceleration splits it by 2e-3

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "hg/inspection/datasheet.h"
 #include "hg/inspection/test/cartesian_device.h"
 
@@ -36,6 +38,17 @@ TEST(Workspace, SharesOfABoxThatIsHalfOutOfReach) {
   // the wrist turns about the handle: every position is reached in the nominal orientation
   EXPECT_NEAR(space.share_nominal, 0.5, 0.05);
   EXPECT_NEAR(space.volume, 2.0, 0.1);
+}
+
+// At a fixed tilt the height follows from q4 alone: 0.42 m (cos 0.2 - cos 2.45) of the 0.95 m, and
+// near one side of the box the forearm keeps the elbow from following the hand.
+TEST(Workspace, OfTheHapticGiantInOneOrientationIsAPartOfItsBox) {
+  const config::Device device = config::load_device("models/haptic_giant/device.yaml");
+  const Workspace space = workspace(device, survey(device));
+  const double height = 0.42 * (std::cos(0.2) - std::cos(2.45)) / 0.95;
+  EXPECT_GT(space.share_any, 0.97);
+  EXPECT_LT(space.share_nominal, height);
+  EXPECT_GT(space.share_nominal, height * (1.0 - 0.54 / 3.9) - 0.05);
 }
 
 TEST(Workspace, VoxelsAtTheEdgeOfABallCountHalf) {
