@@ -1,7 +1,7 @@
 /// Counts heap allocations of one thread: the control loop must make none.
 ///
-/// Linking this file replaces malloc and its relatives by versions that count and call the C
-/// library. Sanitizer builds, which bring their own, count nothing.
+/// Counts in programs that link hg/core/counting_malloc; in others, and in sanitizer builds, which
+/// bring their own malloc, the count stays 0.
 #pragma once
 
 #include <cstdint>
@@ -19,5 +19,8 @@ class AllocationCounter {
   /// Allocations since construction.
   std::uint64_t count() const noexcept;
 };
+
+/// For malloc: one allocation of the calling thread.
+void count_allocation() noexcept;
 
 }  // namespace hg

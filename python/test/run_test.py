@@ -19,6 +19,18 @@ RECORDING = os.environ.get("HG_RECORDING")
 needs_recording = unittest.skipUnless(RECORDING, "HG_RECORDING is not set")
 
 
+class Package(unittest.TestCase):
+    def test_type_checkers_find_stubs(self):
+        package = pathlib.Path(hg.__file__).parent
+        self.assertTrue((package / "py.typed").is_file())
+        stub = (package / "_core" / "limits.pyi").read_text()
+        self.assertIn("def recoverable_bounds(limits: JointLimits", stub)
+
+    def test_memory_is_allocated_by_whoever_did_before(self):
+        extension = pathlib.Path(hg._core.__file__).read_bytes()
+        self.assertNotIn(b"__libc_malloc", extension)
+
+
 class Scenario(unittest.TestCase):
     def test_a_shipped_one_is_found_by_name_and_others_by_file(self):
         door = hg.load_scenario("door")

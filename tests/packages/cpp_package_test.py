@@ -39,7 +39,7 @@ def main():
     for example in EXAMPLES.glob("*.cpp"):
         check(example.read_text() in text, f"docs/packages.md shows another {example.name}")
 
-    tree = pathlib.Path(sys.argv[1])
+    tree = pathlib.Path(sys.argv[1]).resolve()
     eigen = sys.argv[2]
     wheels = pathlib.Path(eigen).parents[2]
     work = tree / "package_cpp"
@@ -47,10 +47,15 @@ def main():
     shutil.rmtree(prefix, ignore_errors=True)
     run("cmake", "--install", tree, "--prefix", prefix, "--component", "cpp")
 
-    # no header of Eigen or YAML is needed beyond those of core, and nothing of Eigen's can be
-    # mistaken for the consumer's
+    # nothing of Eigen's can be mistaken for the consumer's
     symbols = run("nm", "--demangle", prefix / "lib" / "libhg_hqp.a")
     check(not re.search(r"\bEigen::", symbols), "libhg_hqp.a shares functions of Eigen")
+
+    # only our own program counts allocations; others keep their malloc
+    malloc = re.compile(r" T malloc$", re.MULTILINE)
+    check(malloc.search(run("nm", tree / "hapticgiant")), "the program does not count allocations")
+    for library in sorted((prefix / "lib").glob("*.a")):
+        check(not malloc.search(run("nm", library)), f"{library.name} replaces malloc")
 
     # solver and bounds: nothing but Eigen and zlib is found, and the flags are the consumer's own
     flags = "-mavx2 -mfma" if platform.machine() in ("x86_64", "AMD64") else ""
