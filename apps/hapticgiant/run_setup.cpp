@@ -42,6 +42,8 @@ void apply(const RunArguments& arguments, config::Scenario& scenario) {
   if (!arguments.twin.empty()) {
     scenario.twin = config::load_twin(arguments.twin);
     scenario.title = scenario.twin.name;
+    scenario.description = "You hold the " + scenario.twin.name + " by the handle of the " +
+                           scenario.device.name + ".";
     scenario.changes.clear();
     add_sources(scenario.twin.sources);
   }
@@ -198,6 +200,7 @@ viewer_server::Scene viewer_scene(const config::Scenario& scenario) {
   scene.limits = scenario.limits;
   scene.rate_hz = scenario.device.rate_Hz;
   scene.box = box_of(scenario);
+  scene.floor_z = scenario.device.floor_z;
   return scene;
 }
 

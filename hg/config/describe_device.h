@@ -35,6 +35,7 @@ struct DeviceDraft {
   int handle = -1, elbow = -1;
   Placement sensor;
   double rate_Hz = 1000.0;
+  double floor_z = 0.0;
   Kinematics kinematics = Kinematics::kGeneric;
   VectorM posture;
   std::vector<rendering::VirtualJoint> virtual_joints;
@@ -89,6 +90,7 @@ void describe_structure(V& v, DeviceDraft& d) {
   v.name("handle", d.handle, d.frame_names, "a link of the URDF",
          "frame H, held by the user; with a tool it has the name 'handle'");
   v.name("elbow", d.elbow, d.frame_names, "a link of the URDF", "frame to be recorded and shown");
+  v.number("floor_z_m", d.floor_z, kAnyNumber, "height of the floor in B, drawn on the page");
   v.group(
       "sensor", [&](auto& child) { describe(child, d.sensor); },
       "force/torque sensor S in the handle frame H");

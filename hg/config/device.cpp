@@ -228,6 +228,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
   Device device = {.name = draft.name,
                    .urdf = draft.urdf,
                    .rate_Hz = draft.rate_Hz,
+                   .floor_z = draft.floor_z,
                    .kinematics = draft.kinematics,
                    .drive = draft.drive,
                    .T_H_S = pose_of(draft.sensor),

@@ -27,6 +27,7 @@ struct Device {
   std::string name;
   std::filesystem::path urdf;
   double rate_Hz = 1000.0;
+  double floor_z = 0.0;  ///< height of the floor in B, m; for the page only
   Kinematics kinematics = Kinematics::kGeneric;
   DriveModel drive;
   Pose T_H_S;  ///< force/torque sensor S in the handle frame H

@@ -15,6 +15,7 @@ namespace hg::scaffold {
 namespace {
 
 constexpr int kPostures = 2000;
+constexpr double kTable = 0.05;          // m, handles stay above the plane of the root link by it
 constexpr double kSingularMargin = 0.2;  // rad, kept from a singular value
 constexpr double kRampTime = 0.2;        // s, from rest to full speed where no rating is known
 constexpr double kDefaultSpeed = 1.5;    // rad/s or m/s where the URDF has none
@@ -23,6 +24,7 @@ struct DeviceDraft {
   model::Chain chain;
   int n_p = 0;
   int handle = 0;
+  bool stands = false;
   std::vector<Interval> ranges;  ///< sampled and written: the URDF's without singular values
   std::vector<SingularValue> singular;
   Eigen::VectorXd posture;
@@ -65,6 +67,20 @@ std::string unit_of(const model::Joint& joint) {
   return joint.type == model::JointType::kPrismatic ? "m" : "rad";
 }
 
+// the handle of a standing arm is above the plane that it stands on
+bool is_usable(const DeviceDraft& d) { return !d.stands || d.chain.pose(d.handle).p.z() >= kTable; }
+
+// a gantry hangs; an arm stands unless it reaches little above its root
+bool stands(DeviceDraft& d) {
+  PostureSampler sampler(d.ranges);
+  int above = 0;
+  for (int k = 0; k < kPostures; ++k) {
+    d.chain.update_kinematics(sampler.draw(), Eigen::VectorXd::Zero(d.chain.nv()));
+    if (d.chain.pose(d.handle).p.z() >= kTable) ++above;
+  }
+  return d.n_p == 0 && above > kPostures / 4;
+}
+
 // the most dexterous of many postures, not too near to the ends of the joints
 Eigen::VectorXd best_posture(DeviceDraft& d) {
   PostureSampler sampler(d.ranges);
@@ -80,7 +96,7 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
       sum += 1.0 - share * share;
     }
     const double value = dexterity(d.chain, d.handle, d.n_p, q) * std::sqrt(nearest) * sum;
-    if (value > most) {
+    if (value > most && is_usable(d)) {
       most = value;
       best = q;
     }
@@ -139,6 +155,7 @@ Reach reach_of(DeviceDraft& d) {
   for (int k = 0; k < kPostures; ++k) {
     const Eigen::VectorXd q = sampler.draw();
     d.chain.update_kinematics(q, Eigen::VectorXd::Zero(q.size()));
+    if (!is_usable(d)) continue;
     const Eigen::Vector3d p = d.chain.pose(d.handle).p;
     reach.lower = reach.lower.cwiseMin(p);
     reach.upper = reach.upper.cwiseMax(p);
@@ -228,10 +245,12 @@ std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   std::string text = fmt::format("\ncartesian_limits:\n  - name: hand\n    frame: {}\n",
                                  quoted(d.chain.frame_names()[static_cast<std::size_t>(d.handle)]));
   for (int axis = 0; axis < 3; ++axis) {
-    text += fmt::format(
-        "    {}: {{q_min_m: {}, q_max_m: {}}}{}\n", "xyz"[axis], rounded(reach.lower[axis]),
-        rounded(reach.upper[axis]),
-        axis == 0 ? "  # [V] all that the arm reaches; make it smaller than your room" : "");
+    text +=
+        fmt::format("    {}: {{q_min_m: {}, q_max_m: {}}}{}\n", "xyz"[axis],
+                    rounded(reach.lower[axis]), rounded(reach.upper[axis]),
+                    axis == 0 ? "  # [V] all that the arm reaches; make it smaller than your room"
+                    : axis == 2 && d.stands ? "  # [A] above the plane that the arm stands on"
+                                            : "");
   }
   text += fmt::format(
       "    dq_max_m_per_s: {}  # [V] half of what the joints give in 95 % of the postures\n",
@@ -251,6 +270,7 @@ std::string device_yaml(const ChainPart& part, const std::filesystem::path& fold
     // more than a turn says that the joint has no stops, only cables
     if (unit_of(d.chain.joints()[i]) == "rad") d.ranges[i] = intersect(d.ranges[i], {-M_PI, M_PI});
   }
+  d.stands = stands(d);
   d.singular = singular_values(d.chain, d.handle, d.n_p, d.ranges);
   d.posture = best_posture(d);
   leave_singularities(d);

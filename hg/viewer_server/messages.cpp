@@ -111,6 +111,7 @@ std::string encode_scene(const Scene& scene, double update_rate_hz) {
        {"device", encode(scene.device, kDeviceAddress)},
        {"twin", encode(scene.twin, kTwinAddress)},
        {"limits", limits},
+       {"floor_z_m", number(scene.floor_z)},
        {"box", {{"min_m", numbers(scene.box.min())}, {"max_m", numbers(scene.box.max())}}}});
 }
 

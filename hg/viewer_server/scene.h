@@ -37,6 +37,7 @@ struct Scene {
   SceneChain twin;    ///< coordinates q_a
   LimitCatalogue limits;
   Eigen::AlignedBox3d box;  ///< Cartesian limits of the handle in B; dragging ends 0.5 m outside
+  double floor_z = 0.0;     ///< height of the floor in B, m
   double rate_hz = 1000.0;  ///< of the cycle
 };
 

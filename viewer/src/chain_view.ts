@@ -32,7 +32,7 @@ export class ChainView {
     urdf: string,
     opacity: number,
   ) {
-    this.robot = urdf === "" ? null : new URDFLoader().parse(urdf);
+    this.robot = urdf === "" ? null : parse(urdf);
     const [x, y, z, w] = chain.quaternion_B_root as [number, number, number, number];
     this.placement.position.set(...chain.p_B_root_m);
     this.placement.quaternion.set(x, y, z, w);
@@ -108,6 +108,13 @@ export async function load_chain(chain: SceneChain, opacity: number): Promise<Ch
   const response = await fetch(chain.urdf);
   if (!response.ok) throw new Error(`${chain.urdf}: ${response.statusText}`);
   return new ChainView(chain, await response.text(), opacity);
+}
+
+// Shapes of the URDF itself; mesh files stay away.
+function parse(urdf: string): URDFRobot {
+  const loader = new URDFLoader();
+  loader.loadMeshCb = () => {};
+  return loader.parse(urdf);
 }
 
 function plain_body(): Group {

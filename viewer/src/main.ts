@@ -41,7 +41,7 @@ async function start(): Promise<void> {
   const stage = new Stage(element("stage"));
   const panel = new Panel(scene);
   const handle_view = new HandleView();
-  stage.frame(scene.box);
+  stage.frame(scene.box, scene.floor_z_m);
   stage.scene.add(device.placement, twin.placement, handle_view.group);
 
   let newest: Frame | null = null;

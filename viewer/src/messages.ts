@@ -11,6 +11,7 @@ export interface Scene {
   device: SceneChain;
   twin: SceneChain;
   limits: SceneLimit[];
+  floor_z_m: number;
   box: SceneBox;
 }
 

@@ -1,4 +1,5 @@
-// A plain body for chains whose URDF has no shapes: bars from joint to joint.
+// A plain body for chains whose URDF has no shapes, or only mesh files, which the program does not
+// hand out: bars from joint to joint.
 
 import {
   type Object3D,
@@ -15,7 +16,7 @@ const JOINT_RADIUS = 0.045; // m
 
 export function has_shapes(robot: URDFRobot): boolean {
   let found = false;
-  robot.traverse((part) => (found ||= "isURDFVisual" in part));
+  robot.traverse((part) => (found ||= part instanceof Mesh));
   return found;
 }
 

@@ -25,10 +25,8 @@ import type { SceneBox, Vec3 } from "./messages";
 import { Quality } from "./quality";
 import { current_theme, on_theme_change } from "./theme";
 
-const FLOOR_Z = -2.15; // the root joint of the arm hangs 2.15 m above the floor
 const NARROW_PX = 760; // as in style.css
-const EYE_Z = 0.5; // m; just under the rails of the gantry
-const EYE_TARGET_Z = -0.75; // m
+const EYE_ABOVE = 1.25; // m, above what is looked at
 
 // Pixels that the panel takes away at the right or, on a narrow screen, at the bottom.
 function hidden_by_panel(width: number, height: number): { x: number; y: number } {
@@ -50,6 +48,7 @@ export class Stage {
   private readonly box_lines = new LineBasicMaterial({ transparent: true, opacity: 0.5 });
   private readonly quality = new Quality();
   private grid = new GridHelper();
+  private floor_z_m = 0;
 
   constructor(private readonly parent: HTMLElement) {
     this.renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
@@ -67,7 +66,6 @@ export class Stage {
     this.controls.minDistance = 0.6;
     this.controls.maxDistance = 14;
 
-    this.floor.position.z = FLOOR_Z;
     this.floor.receiveShadow = true;
     this.add_sun();
     this.scene.add(this.sky, this.floor);
@@ -90,7 +88,9 @@ export class Stage {
   }
 
   // Looks into the cell through its open side, beside a corner, like a tall person.
-  frame(box: SceneBox): void {
+  frame(box: SceneBox, floor_z_m: number): void {
+    this.floor_z_m = floor_z_m;
+    this.paint();
     const low = new Vector3(...box.min_m);
     const high = new Vector3(...box.max_m);
     const lines = new Box3Helper(new Box3(low, high));
@@ -100,15 +100,14 @@ export class Stage {
     const size = new Vector3().subVectors(high, low);
     const center = new Vector3().addVectors(low, high).multiplyScalar(0.5);
     const away = Math.max(2, 0.7 * size.y);
-    this.controls.target.set(center.x, center.y, EYE_TARGET_Z);
-    this.camera.position.set(center.x + 0.36 * size.x, low.y - away, EYE_Z);
+    this.controls.target.copy(center);
+    this.camera.position.set(center.x + 0.36 * size.x, low.y - away, center.z + EYE_ABOVE);
     this.controls.update();
   }
 
   // Turns the camera half way to what matters at first.
   look_at(p_B: Vec3): void {
-    const middle = new Vector3(...p_B).lerp(this.controls.target, 0.5);
-    this.controls.target.set(middle.x, middle.y, EYE_TARGET_Z);
+    this.controls.target.lerp(new Vector3(...p_B), 0.5);
   }
 
   on_screen(p_B: Vec3): { x: number; y: number } {
@@ -148,7 +147,8 @@ export class Stage {
     this.grid.dispose();
     this.grid = new GridHelper(40, 80, theme.grid_strong, theme.grid);
     this.grid.rotation.x = Math.PI / 2;
-    this.grid.position.z = FLOOR_Z + 0.002;
+    this.floor.position.z = this.floor_z_m;
+    this.grid.position.z = this.floor_z_m + 0.002;
     this.scene.add(this.grid);
   }
 
