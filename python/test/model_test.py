@@ -71,6 +71,17 @@ class ChainTest(unittest.TestCase):
         np.testing.assert_allclose(body.c, [0, 0, 2.0 * 9.81, 0, 0, 0], atol=1e-2)
 
 
+class PoseTest(unittest.TestCase):
+    def test_matrices_come_out_as_they_went_in(self):
+        turn = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+        pose = hg.Pose([1, 2, 3], turn)
+        np.testing.assert_array_equal(pose.r, turn)
+        np.testing.assert_allclose((pose @ pose).p, pose.p + pose.r @ pose.p)
+        np.testing.assert_allclose((pose @ pose.inverse()).r, np.eye(3))
+        with self.assertRaisesRegex(ValueError, "r: expected 9 numbers, got 3"):
+            hg.Pose([1, 2, 3], [1, 2, 3])
+
+
 class HapticGiant(unittest.TestCase):
     def test_inverse_finds_the_joints_again(self):
         q_p, q_m = [0.1, -0.2], [0.2, 1.4, -0.6, 1.0, 0.9, 0.3]
