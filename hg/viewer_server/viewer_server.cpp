@@ -19,6 +19,7 @@
 #include "hg/core/error.h"
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/hub.h"
+#include "hg/viewer_server/meshes.h"
 #include "hg/viewer_server/messages.h"
 #include "hg/viewer_server/page.h"
 #include "hg/viewer_server/visitor.h"
@@ -102,10 +103,12 @@ struct ViewerServer::Impl {
     hub.assets = load_page(options.page);
     hub.assets["/scene.json"] = {"application/json", encode_scene(scene, options.update_rate_hz)};
     if (!scene.device.urdf.empty()) {
-      hub.assets[std::string(kDeviceAddress)] = {"application/xml", read_file(scene.device.urdf)};
+      hub.assets[std::string(kDeviceAddress)] = {
+          "application/xml", with_meshes(scene.device.urdf, "/models/device/", hub.assets)};
     }
     if (!scene.twin.urdf.empty()) {
-      hub.assets[std::string(kTwinAddress)] = {"application/xml", read_file(scene.twin.urdf)};
+      hub.assets[std::string(kTwinAddress)] = {
+          "application/xml", with_meshes(scene.twin.urdf, "/models/twin/", hub.assets)};
     }
     accept();
     thread = std::thread([this] { context.run(); });

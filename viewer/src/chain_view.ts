@@ -17,6 +17,8 @@ import type { SceneChain, SceneJoint } from "./messages";
 import { add_skeleton, has_shapes } from "./skeleton";
 import { current_theme } from "./theme";
 
+const MESHES = "/models/"; // where the program puts mesh files
+
 interface Rest {
   position: Vector3;
   quaternion: Quaternion;
@@ -32,18 +34,14 @@ export class ChainView {
     urdf: string,
     opacity: number,
   ) {
-    this.robot = urdf === "" ? null : parse(urdf);
+    this.robot = urdf === "" ? null : parse(urdf, opacity);
     const [x, y, z, w] = chain.quaternion_B_root as [number, number, number, number];
     this.placement.position.set(...chain.p_B_root_m);
     this.placement.quaternion.set(x, y, z, w);
     this.placement.add(this.robot ?? plain_body());
-    if (this.robot && !has_shapes(this.robot)) add_skeleton(this.robot, current_theme().link);
-    this.placement.traverse((part) => {
-      if (!(part instanceof Mesh)) return;
-      part.castShadow = true;
-      part.receiveShadow = true;
-      part.material = matt(part.material as Material, opacity);
-    });
+    const is_shown = has_shapes(this.robot) || urdf.includes(`filename="${MESHES}`);
+    if (this.robot && !is_shown) add_skeleton(this.robot, current_theme().link);
+    paint(this.placement, opacity);
     for (const joint of Object.values(this.robot?.joints ?? {})) joint.ignoreLimits = true;
   }
 
@@ -110,11 +108,28 @@ export async function load_chain(chain: SceneChain, opacity: number): Promise<Ch
   return new ChainView(chain, await response.text(), opacity);
 }
 
-// Shapes of the URDF itself; mesh files stay away.
-function parse(urdf: string): URDFRobot {
+// Mesh files arrive later; those that the program has not found stay away.
+function parse(urdf: string, opacity: number): URDFRobot {
   const loader = new URDFLoader();
-  loader.loadMeshCb = () => {};
+  loader.loadMeshCb = (address, manager, material, done) => {
+    if (!address.startsWith(MESHES)) return;
+    loader.defaultMeshLoader(address, manager, material, (mesh, error) => {
+      if (mesh) paint(mesh, opacity);
+      done(mesh, error);
+    });
+  };
   return loader.parse(urdf);
+}
+
+function paint(shapes: Object3D, opacity: number): void {
+  shapes.traverse((part) => {
+    if (!(part instanceof Mesh)) return;
+    part.castShadow = true;
+    part.receiveShadow = true;
+    const materials = [part.material].flat() as Material[];
+    const painted = materials.map((material) => matt(material, opacity));
+    part.material = Array.isArray(part.material) ? painted : painted[0]!;
+  });
 }
 
 function plain_body(): Group {

@@ -1,5 +1,5 @@
-// A plain body for chains whose URDF has no shapes, or only mesh files, which the program does not
-// hand out: bars from joint to joint.
+// A plain body for chains whose URDF has no shapes, or only mesh files that were not found:
+// bars from joint to joint.
 
 import {
   type Object3D,
@@ -14,9 +14,9 @@ import type { URDFRobot } from "urdf-loader";
 const BAR_RADIUS = 0.03; // m
 const JOINT_RADIUS = 0.045; // m
 
-export function has_shapes(robot: URDFRobot): boolean {
+export function has_shapes(robot: URDFRobot | null): boolean {
   let found = false;
-  robot.traverse((part) => (found ||= part instanceof Mesh));
+  robot?.traverse((part) => (found ||= part instanceof Mesh));
   return found;
 }
 

@@ -1,0 +1,85 @@
+#include "hg/viewer_server/meshes.h"
+
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <system_error>
+#include <vector>
+
+namespace hg::viewer_server {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPackage = "package://";
+constexpr std::string_view kFile = "file://";
+constexpr std::string_view kMesh = "<mesh";
+constexpr std::string_view kAttribute = "filename=";
+
+// folders in which a package may lie
+std::vector<fs::path> package_folders(const fs::path& urdf) {
+  std::vector<fs::path> folders;
+  std::error_code error;
+  const fs::path start = fs::absolute(urdf, error).parent_path();
+  for (fs::path folder = start; folder.has_relative_path(); folder = folder.parent_path()) {
+    folders.push_back(folder.parent_path());
+  }
+  const char* listed = std::getenv("ROS_PACKAGE_PATH");
+  std::istringstream list(listed == nullptr ? "" : listed);
+  for (std::string folder; std::getline(list, folder, ':');) folders.emplace_back(folder);
+  return folders;
+}
+
+// the file that a URDF means by `name`; empty when there is none that a page can draw
+fs::path find_mesh(const fs::path& urdf, std::string_view name) {
+  std::vector<fs::path> candidates;
+  if (name.starts_with(kPackage)) {
+    for (const fs::path& folder : package_folders(urdf)) {
+      candidates.push_back(folder / name.substr(kPackage.size()));
+    }
+  } else if (name.starts_with(kFile)) {
+    candidates.emplace_back(name.substr(kFile.size()));
+  } else {
+    candidates.push_back(urdf.parent_path() / name);
+  }
+  for (const fs::path& file : candidates) {
+    std::error_code error;
+    const std::string extension = file.extension().string();
+    const bool is_drawable = extension == ".stl" || extension == ".STL" || extension == ".dae";
+    if (is_drawable && fs::is_regular_file(file, error)) return file;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string with_meshes(const fs::path& urdf, std::string_view folder, AssetTable& assets) {
+  const std::string text = read_file(urdf);
+  std::map<std::string, std::string, std::less<>> addresses;  // by name in the URDF
+  std::string served;
+  std::size_t copied = 0;
+  for (std::size_t mesh = text.find(kMesh); mesh != std::string::npos;
+       mesh = text.find(kMesh, mesh + 1)) {
+    const std::size_t attribute = text.find(kAttribute, mesh);
+    if (attribute == std::string::npos || attribute > text.find('>', mesh)) continue;
+    const std::size_t quote = attribute + kAttribute.size();
+    const std::size_t begin = quote + 1;
+    if (begin >= text.size()) break;
+    const std::size_t end = text.find(text[quote], begin);
+    if (end == std::string::npos) break;
+
+    const std::string name = text.substr(begin, end - begin);
+    const auto [known, is_new] = addresses.try_emplace(name, name);
+    const fs::path file = is_new ? find_mesh(urdf, name) : fs::path();
+    if (!file.empty()) {
+      const std::string extension = file.extension() == ".dae" ? ".dae" : ".stl";
+      known->second = std::string(folder) + std::to_string(addresses.size()) + extension;
+      assets[known->second] = {"application/octet-stream", read_file(file)};
+    }
+    served.append(text, copied, begin - copied).append(known->second);
+    copied = end;
+  }
+  return served.append(text, copied);
+}
+
+}  // namespace hg::viewer_server
