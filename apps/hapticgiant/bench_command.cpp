@@ -6,11 +6,11 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/assembly/assembly.h"
@@ -60,12 +60,16 @@ class Player {
       : scenario_(scenario),
         cycle_(assembly::make_cycle(scenario)),
         device_(assembly::make_simulated_device(scenario)),
-        detector_(scenario.events, scenario.limits) {}
+        detector_(scenario.events, scenario.limits),
+        changes_(scenario.changes) {}
 
   Measured play() {
     const double end = assembly::planned_duration_s(scenario_);
+    std::uint64_t played = 0;
     do {
       device_.read(sample_->sensors);
+      sample_->operator_input.change =
+          changes_.due(static_cast<double>(played++) / scenario_.device.rate_Hz);
       const hqp::ActiveSet before = cycle_.state().rendering.active_set;
       const auto begin = Clock::now();
       cycle_.step(sample_->sensors, sample_->operator_input, sample_->command, sample_->record);
@@ -73,7 +77,7 @@ class Player {
       device_.write(sample_->command);
       const CycleRecord& record = sample_->record;
       sample_->operator_input.request =
-          runtime::next_request(record.mode, sample_->sensors.dead_man, false);
+          runtime::next_request(record.mode, cycle_.is_held(sample_->sensors), false);
       if (detector_.observe(record)) ++measured_.events;
       if (record.mode == Mode::kRunning) {
         measured_.cycle_us.add(cycle_us);
@@ -128,6 +132,7 @@ class Player {
   cycle::Cycle cycle_;
   device::SimulatedDevice device_;
   evaluation::EventDetector detector_;
+  TimedChanges changes_;
   std::unique_ptr<Sample> sample_ = std::make_unique<Sample>();
   std::unique_ptr<hqp::Solver> solver_;
   std::unique_ptr<hqp::Solution> solution_;
@@ -136,19 +141,26 @@ class Player {
   Measured measured_;
 };
 
-Measured measure(const std::string& name, Law law, Bounds bounds) {
-  const config::Scenario scenario =
-      make_scenario({.scenario = name,
-                     .law = std::string(rendering::to_string(law)),
-                     .bounds = std::string(rendering::to_string(bounds))});
+config::Scenario load(const std::string& name) {
+  config::Scenario scenario = make_scenario({.scenario = name});
   if (assembly::planned_duration_s(scenario) == 0.0) {
     throw SetupError(name + ": bench needs a scenario with a script");
   }
+  return scenario;
+}
+
+Measured measure(const std::string& name, config::Scenario scenario, Law law, Bounds bounds) {
+  scenario.device.rendering.law = law;
+  scenario.device.rendering.bounds = bounds;
   Measured measured = Player(scenario).play();
   measured.scenario = name;
   measured.law = rendering::to_string(law);
   measured.bounds = rendering::to_string(bounds);
   return measured;
+}
+
+bool is_well(const Measured& m) {
+  return m.missing.empty() && m.fault == FaultCode::kNone && m.unsolved == 0 && m.cycles > 0;
 }
 
 double per_cycle(double sum, const Measured& measured) {
@@ -219,27 +231,28 @@ nlohmann::ordered_json to_json(const Measured& m) {
 }  // namespace
 
 int bench(const BenchArguments& arguments) {
-  std::ofstream file;
-  if (!arguments.json.empty()) {
-    file.open(arguments.json);
-    if (!file) throw SetupError(arguments.json + ": the result cannot be written there");
-  }
+  check_writable(arguments.json);
+  std::vector<config::Scenario> scenarios;
+  for (const std::string& name : arguments.scenarios) scenarios.push_back(load(name));
+
   nlohmann::ordered_json json{{"version", kVersion}, {"runs", nlohmann::ordered_json::array()}};
+  bool all_well = true;
   fmt::print("{}", header());
-  for (const std::string& scenario : arguments.scenarios) {
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
     for (const auto& [law, bounds] : kVariants) {
-      const Measured measured = measure(scenario, law, bounds);
+      if (law == Law::kPaper && scenarios[i].device.model.n_m != 6) {
+        fmt::print("{:<11} paper  needs six manipulator joints\n", arguments.scenarios[i]);
+        continue;
+      }
+      const Measured measured = measure(arguments.scenarios[i], scenarios[i], law, bounds);
+      all_well = all_well && is_well(measured);
       fmt::print("{}", to_text(measured));
       std::fflush(stdout);
       json["runs"].push_back(to_json(measured));
     }
   }
-  if (!arguments.json.empty()) {
-    file << json.dump(2) << "\n";
-    file.close();
-    if (!file) throw SetupError(arguments.json + ": the result could not be written");
-  }
-  return 0;
+  if (!arguments.json.empty()) write_output(arguments.json, json.dump(2) + "\n");
+  return all_well ? 0 : 1;
 }
 
 }  // namespace hg::apps

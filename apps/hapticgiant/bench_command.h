@@ -13,7 +13,8 @@ struct BenchArguments {
 
 /// Plays every scenario with each law and each kind of bounds, without page and recording. The
 /// solver is timed on the problem of every cycle that renders, from the active set of the cycle
-/// before. Exit code 0. Throws SetupError for bad input.
+/// before. Exit code 0, or 1 when an expected event is missing, a device was stopped by a fault or
+/// a cycle was not solved. Throws SetupError for bad input.
 int bench(const BenchArguments& arguments);
 
 }  // namespace hg::apps

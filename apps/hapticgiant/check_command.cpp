@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <exception>
-#include <fstream>
 #include <functional>
 #include <list>
 #include <optional>
 
 #include "apps/hapticgiant/check_report.h"
+#include "apps/hapticgiant/output_file.h"
 #include "hg/config/device.h"
 #include "hg/config/file_kind.h"
 #include "hg/config/scenario.h"
@@ -127,9 +127,7 @@ void draw_map(const std::string& file, const Check& check) {
   }
   const config::Device& device =
       check.devices.empty() ? check.scenarios.front().device : check.devices.front();
-  std::ofstream stream(file);
-  stream << to_svg(inspection::capability_map(device));
-  if (!stream.flush()) throw SetupError(file + ": cannot be written");
+  write_output(file, to_svg(inspection::capability_map(device)));
 }
 
 void check_twins(Check& check) {
@@ -150,6 +148,8 @@ void check_twins(Check& check) {
 }  // namespace
 
 int run_check(const CheckArguments& arguments) {
+  check_writable(arguments.json);
+  check_writable(arguments.map);
   Check check;
   for (const std::string& file : arguments.files) load(file, check);
   check_scripts(check);
@@ -157,11 +157,7 @@ int run_check(const CheckArguments& arguments) {
   check_twins(check);
   sort_and_merge(check.report);
   print(check.report);
-  if (!arguments.json.empty()) {
-    std::ofstream stream(arguments.json);
-    stream << to_json(check.report);
-    if (!stream.flush()) throw SetupError(arguments.json + ": cannot be written");
-  }
+  if (!arguments.json.empty()) write_output(arguments.json, to_json(check.report));
   if (!arguments.map.empty()) draw_map(arguments.map, check);
   return count(check.report, inspection::Severity::kFault) > 0 ? 2 : 0;
 }

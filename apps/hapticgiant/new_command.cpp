@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
+#include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
 #include "hg/core/error.h"
 #include "hg/scaffold/scaffold.h"
@@ -27,18 +27,12 @@ fs::path output_of(const NewArguments& arguments, const char* kind) {
   return output;
 }
 
-void write(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file);
-  stream << text;
-  stream.close();
-  if (!stream) throw SetupError(file.string() + ": cannot be written");
-}
-
 }  // namespace
 
 int new_device(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "device");
-  write(output, scaffold::device_yaml(arguments.part, output.parent_path()));
+  check_writable(output.string());
+  write_output(output.string(), scaffold::device_yaml(arguments.part, output.parent_path()));
   fmt::print(
       "{0} written. Next:\n"
       "  hapticgiant check {0}\n"
@@ -52,7 +46,8 @@ int new_twin(const NewArguments& arguments) {
   const bool is_own = !arguments.device.empty();
   const config::Device device = config::load_device(
       is_own ? fs::path(arguments.device) : data_root() / "models/haptic_giant/device.yaml");
-  write(output, scaffold::twin_yaml(arguments.part, output.parent_path(), device));
+  check_writable(output.string());
+  write_output(output.string(), scaffold::twin_yaml(arguments.part, output.parent_path(), device));
   const std::string with = is_own ? " --device " + arguments.device : "";
   fmt::print(
       "{0} written. Next:\n"

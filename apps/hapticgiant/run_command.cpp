@@ -8,13 +8,13 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
 
+#include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
@@ -45,40 +45,6 @@ void handle_signals() {
   std::signal(SIGTERM, interrupt);
   if (std::signal(SIGHUP, interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   std::signal(SIGPIPE, SIG_IGN);
-}
-
-// only what is, or becomes, a regular file is replaced; others (/dev/stdout) are written to
-bool is_replaced(const std::string& file) {
-  std::error_code error;
-  const auto type = fs::symlink_status(file, error).type();
-  return type == fs::file_type::regular || type == fs::file_type::not_found;
-}
-
-// --summary is written at the end, but a place that cannot be written is refused at the start
-void check_writable(const std::string& file) {
-  if (file.empty()) return;
-  const std::string partial = file + ".partial";
-  std::error_code error;
-  bool is_writable = false;
-  if (is_replaced(file)) {
-    const bool existed = fs::exists(partial, error);
-    is_writable = std::ofstream(partial, std::ios::app).good();
-    if (!existed) fs::remove(partial, error);
-  } else {
-    is_writable = !fs::is_directory(file, error) && access(file.c_str(), W_OK) == 0;
-  }
-  if (!is_writable) throw SetupError(file + ": the summary cannot be written there");
-}
-
-void write_summary(const std::string& file, const std::string& json) {
-  const bool replaces = is_replaced(file);
-  const std::string written = replaces ? file + ".partial" : file;
-  std::ofstream stream(written);
-  stream << json;
-  stream.close();
-  std::error_code error;
-  if (stream && replaces) fs::rename(written, file, error);
-  if (!stream || error) throw SetupError(file + ": the summary could not be written");
 }
 
 /// Everything that watches a run from outside the control thread.
@@ -255,7 +221,7 @@ int run(const RunArguments& arguments) {
   const std::vector<std::string> missing = observers.detector.missing();
   print_out(fmt::format("\n{}", observers.summary.to_text(facts, missing)));
   if (!arguments.summary.empty()) {
-    write_summary(arguments.summary, observers.summary.to_json(facts, missing));
+    write_output(arguments.summary, observers.summary.to_json(facts, missing));
   }
   return exit_code(observers.summary, missing);
 }
