@@ -215,6 +215,65 @@ class MainJob(TemporaryFolder):
             self.assertTrue(out)
 
 
+class Drafts(TemporaryFolder):
+    def setUp(self):
+        super().setUp()
+        for name in ("arm.urdf", "gate.urdf"):
+            shutil.copy(MODELS / "examples" / name, self.folder)
+        self.device, self.twin = self.folder / "device.yaml", self.folder / "twin.yaml"
+
+    def test_a_drafted_device_holds_a_drafted_twin(self):
+        code, out, _ = run("new", "device", self.folder / "arm.urdf", "-o", self.device)
+        self.assertEqual(code, 0)
+        self.assertIn("hapticgiant check", out)
+        self.assertEqual(run("new", "twin", self.folder / "gate.urdf", "-o", self.twin,
+                             "--device", self.device)[0], 0)
+        code, out, err = run("run", "--device", self.device, "--twin", self.twin, "--user", "none",
+                             "--fast", "--duration", "1", "--no-recording")
+        self.assertEqual(code, 0, out + err)
+
+    def test_a_file_that_exists_is_overwritten_only_when_asked(self):
+        self.device.write_text("mine")
+        code, _, err = run("new", "device", self.folder / "arm.urdf", "-o", self.device)
+        self.assertEqual(code, 2)
+        self.assertIn("--force", err)
+        self.assertEqual(self.device.read_text(), "mine")
+        self.assertEqual(run("new", "device", self.folder / "arm.urdf", "-o", self.device,
+                             "--force")[0], 0)
+        self.assertIn("manipulator:", self.device.read_text())
+
+    def test_a_urdf_that_cannot_be_a_device_leaves_no_file(self):
+        code, _, err = run("new", "device", self.folder / "gate.urdf", "-o", self.device)
+        self.assertEqual(code, 2)
+        self.assertIn("six or seven manipulator joints", err)
+        self.assertFalse(self.device.exists())
+
+
+class Bench(TemporaryFolder):
+    def test_both_laws_and_bounds_play_the_door(self):
+        result = self.folder / "bench.json"
+        code, out, err = run("bench", "door", "--json", result)
+        self.assertEqual((code, err), (0, ""), out)
+        runs = json.loads(result.read_text())["runs"]
+        self.assertEqual([(r["law"], r["bounds"]) for r in runs],
+                         [("gauss", "recoverable"), ("paper", "recoverable"),
+                          ("gauss", "paper"), ("paper", "paper")])
+        for played in runs:
+            self.assertEqual(played["missing_events"], [])
+            self.assertGreater(played["cycles"], 10000)
+
+    def test_a_missing_event_is_1_and_an_unknown_scenario_2(self):
+        text = (MODELS / "scenarios" / "door.yaml").read_text().replace("../", f"{MODELS}/")
+        impossible = self.folder / "impossible.yaml"
+        impossible.write_text(text.replace("force_above_N: 10", "force_above_N: 1000"))
+        code, out, _ = run("bench", impossible)
+        self.assertEqual(code, 1)
+        self.assertIn("missing: locked", out)
+        code, out, err = run("bench", "doors")
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("did you mean 'door'", err)
+
+
 class BadInput(TemporaryFolder):
     """Every case: exit code 2, one clear message on standard error, nothing written."""
 
