@@ -22,4 +22,12 @@ constexpr Interval intersect(Interval a, Interval b) noexcept {
   return {std::max(a.lb, b.lb), std::min(a.ub, b.ub)};
 }
 
+/// The intersection; where there is none, the point of `stronger` nearest to `weaker`. An empty
+/// `stronger` has nothing to say.
+constexpr Interval moved_into(Interval weaker, Interval stronger) noexcept {
+  if (stronger.empty()) return weaker;
+  return {std::clamp(weaker.lb, stronger.lb, stronger.ub),
+          std::clamp(weaker.ub, stronger.lb, stronger.ub)};
+}
+
 }  // namespace hg

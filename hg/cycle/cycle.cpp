@@ -1,32 +1,13 @@
 #include "hg/cycle/cycle.h"
 
 #include "hg/control/tracking.h"
+#include "hg/cycle/state_hash.h"
 
 namespace hg::cycle {
 namespace {
 
 constexpr double kBrakingRate = 20.0;  // 1/s: stopping takes about 0.2 s
 constexpr double kStandstill = 1e-3;   // rad/s and m/s
-
-// FNV-1a over the bytes of the doubles
-template <typename Vector>
-void mix(std::uint64_t& hash, const Vector& v) noexcept {
-  const auto* bytes = reinterpret_cast<const unsigned char*>(v.data());
-  for (std::size_t i = 0; i < static_cast<std::size_t>(v.size()) * sizeof(double); ++i) {
-    hash = (hash ^ bytes[i]) * 0x100000001b3ULL;
-  }
-}
-
-std::uint64_t hash_of(const rendering::State& state, const RobotState& robot) noexcept {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  mix(hash, state.reference.q_m);
-  mix(hash, state.reference.dq_m);
-  mix(hash, state.twin.q_a);
-  mix(hash, state.twin.dq_a);
-  mix(hash, robot.q_p);
-  mix(hash, robot.dq_p);
-  return hash;
-}
 
 bool stands_still(const CycleRecord& record) noexcept {
   return record.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
@@ -94,7 +75,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   ++state_.cycle;
   record.mode = state_.supervisor.mode;
   record.fault = state_.supervisor.fault;
-  record.state_hash = hash_of(state_.rendering, record.robot);
+  record.state_hash = hash_of(state_, record.robot, rendering_.problem().rows());
 }
 
 // Nothing moves. Before it is armed the device may be moved by others: the twin goes along.

@@ -22,7 +22,8 @@ struct Config {
   safety::MonitorConfig monitor;
 };
 
-/// All that a cycle remembers. Copy it to take a snapshot, assign it to go back.
+/// All that a cycle remembers. Copy it to take a snapshot, assign it to go back. What is added here
+/// or below belongs into state_hash.cpp, too.
 struct State {
   std::uint64_t cycle = 0;
   std::uint64_t next_sequence = 0;

@@ -105,14 +105,6 @@ Interval viability_bounds(const ViableState& s, double ddq_max, double dt) noexc
           max_from_viability(s.d_upper, s.dq, ddq_max, dt)};
 }
 
-// The intersection; where there is none, the point of `stronger` nearest to `weaker`. An empty
-// `stronger` has nothing to say.
-Interval moved_into(Interval weaker, Interval stronger) noexcept {
-  if (stronger.empty()) return weaker;
-  return {std::clamp(weaker.lb, stronger.lb, stronger.ub),
-          std::clamp(weaker.ub, stronger.lb, stronger.ub)};
-}
-
 }  // namespace
 
 void check(const JointLimits& limits, std::string_view item) {

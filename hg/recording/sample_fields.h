@@ -44,7 +44,8 @@ template <typename Archive, Is<LimitReport> T>
 void fields(Archive& a, T& report) {
   a("state", report.state, "0 inactive, 1 lower, 2 upper, 3 violated");
   a("cause", report.cause,
-    "0 none, 1 position, 2 velocity, 3 acceleration, 4 lock, 5 latch, 6 friction");
+    "0 none, 1 position, 2 velocity, 3 acceleration, 4 lock, 5 latch, 6 friction, "
+    "7 contradiction");
   a("position", report.position, "of the limited quantity, rad or m");
   a("to_lower", report.to_lower, "distance left to the limit as rendered");
   a("to_upper", report.to_upper);

@@ -15,8 +15,10 @@ namespace {
 // slower than this a joint with Coulomb friction stands still, rad/s or m/s
 constexpr double kStandstill = 1e-9;
 
-// the active sets that one solve may try; a warm start needs one or two, a new contact some dozens
-constexpr int kMaxActiveSets = 200;
+// the active sets that one solve may try: the larger of the two. A warm start needs one or two, a
+// new contact some dozens, a twin of 30 joints that meets many limits at once more than 200
+constexpr int kActiveSets = 200;
+constexpr int kActiveSetsPerRow = 4;
 
 constexpr int kAlignIterations = 10;
 constexpr double kAligned = 1e-12;  // m and rad
@@ -113,7 +115,8 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options)
       reactions_(device_, twin_),
       solver_(tasks_.problem().capacity()),
       solution_(tasks_.problem().capacity()) {
-  solver_options_.max_iterations = kMaxActiveSets;
+  solver_options_.max_iterations =
+      std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
 }
 
 State Rendering::start(const VectorM& q_m) const {
@@ -146,7 +149,9 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
 
   const int n_a = twin_.chain.nv();
   Budget& budget = record.budget;
-  if (braking_rate > 0.0) {
+  const bool is_braking = braking_rate > 0.0;
+  if (is_braking) {
+    state.inner.sticks.fill(false);
     const VectorA braking = braking_rate * state.twin.dq_a;
     record.tau_a = VectorA::Zero(n_a);
     budget.spring = -twin_.chain.gravity();
@@ -157,7 +162,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   } else {
     const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
     record.tau_a = J_a.transpose() * record.robot.w_H;
-    budget.spring = spring_torque(twin_, state.twin.q_a, values);
+    budget.spring = spring_torque(twin_, state.twin.q_a, state.inner.parameters);
     budget.damping = damping_torque(twin_.chain.M(), state.twin.dq_a, options_.dt, values);
     budget.friction = slip_torque(state.twin.dq_a, state.inner);
     budget.surface = J_a.transpose() * values.w_ref;
@@ -167,7 +172,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   solve(state, record);
   record.active_set_changes =
       changed_rows(previous, state.active_set, tasks_.first_limit_row(), tasks_.limit_row_count());
-  catch_reversals(state.twin, options_.dt, state.inner);
+  if (!is_braking) catch_reversals(state.twin, options_.dt, state.inner);
   report_kinematics(state, record);
   return record.solver_status;
 }

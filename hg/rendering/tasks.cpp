@@ -98,6 +98,7 @@ double Tasks::weight_of(const LimitRow& row) const noexcept {
 
 void Tasks::add_limit(const limits::JointLimits& limits, int variable, double margin) {
   limit_rows_.push_back(make_row(limits, margin, options_.dt));
+  limit_rows_.back().is_recoverable = options_.bounds == Bounds::kRecoverable;
   const double weight = weight_of(limit_rows_.back());
   if (variable >= 0) {
     problem_.add_bound(variable, {}, weight);
@@ -162,8 +163,9 @@ void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, do
   row.limits = limits;
   row.q = q;
   row.dq = dq;
-  if (options_.bounds == Bounds::kRecoverable) {
+  if (row.is_recoverable) {
     row.ddq = limits::recoverable_bounds(limits, row.options, q, dq, options_.dt);
+    if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, {});
   } else if (row.rating_row >= 0) {
     row.ddq = limits::bounds_A(limits, q, dq, options_.dt);
     problem_.set_bounds(row.rating_row, limits::bounds_B(limits, q, dq, options_.dt));
@@ -228,6 +230,10 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
     row.held_by = effective.held_by;
     row.range = input.inner.parameters.moving[static_cast<std::size_t>(i)].q;
     row.options = limits::recoverable_options(effective.limits, options_.dt, options_.dt);
+    const bool is_held =
+        row.held_by.lower != LimitCause::kNone || row.held_by.upper != LimitCause::kNone;
+    row.is_recoverable = options_.bounds == Bounds::kRecoverable || is_held ||
+                         input.inner.parameters.may_be_overrun[static_cast<std::size_t>(i)];
     set_limit(first + i, effective.limits, q, dq, 0.0);
 
     // [HG] (31): a lock of bounds paper stops the joint where it is, as far as its rating allows
@@ -237,6 +243,9 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
       const double ddq_max = effective.limits.ddq_max;
       ddq_stop = std::clamp(ddq_stop, -ddq_max, ddq_max);
       if (is_locked) hold(first + i, ddq_stop);
+    } else if (is_locked) {
+      // one value: between two that differ by rounding the lock would seem to let go
+      hold(first + i, 0.5 * (row.ddq.lb + row.ddq.ub));
     }
 
     // stick: the joint stands still at the end of the sample, as far as its limits allow

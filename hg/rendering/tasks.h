@@ -37,8 +37,11 @@ struct LimitRow {
   Interval range;              ///< configured positions; of the twin as changed, this cycle
   limits::JointLimits limits;  ///< as rendered: with margins, and this cycle's locks
   limits::RecoverableOptions options;
-  double rating = 1.0;       ///< largest acceleration, 1 where there is none
-  int rating_row = -1;       ///< row of bounds B, -1: none
+  double rating = 1.0;  ///< largest acceleration, 1 where there is none
+  int rating_row = -1;  ///< row of bounds B, -1: none
+  /// Bounds R, this cycle. With bounds paper only of a twin joint that may be found beyond limits
+  /// which were not there before: seen from outside, A lets it coast away.
+  bool is_recoverable = true;
   Holds held_by;             ///< locks, latches and friction, this cycle
   double q = 0.0, dq = 0.0;  ///< this cycle
   Interval ddq;              ///< bounds of the first row, this cycle, without known accelerations

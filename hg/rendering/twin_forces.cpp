@@ -64,6 +64,10 @@ limits::JointLimits free_limits(const TwinModel& twin, int dof, double dq,
 EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
                                  const TwinInnerState& inner) noexcept {
   EffectiveLimits result{free_limits(twin, dof, dq, inner.parameters), {}};
+  constexpr Holds kContradiction = {LimitCause::kContradiction, LimitCause::kContradiction};
+  if (inner.parameters.moving[static_cast<std::size_t>(dof)].is_crossed) {
+    result.held_by = kContradiction;
+  }
   for (std::size_t i = 0; i < twin.locks.size(); ++i) {
     const Lock& lock = twin.locks[i];
     const LockState& state = inner.locks[i];
@@ -74,30 +78,32 @@ EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
       return result;
     }
     // between the latch, which follows, and the lock, where the joint comes to rest
-    if (state.edge >= lock.position) {
-      result.limits.q_min = std::max(result.limits.q_min, lock.position);
-      result.limits.q_max = std::min(result.limits.q_max, state.edge);
-      result.held_by.upper = LimitCause::kLatch;
-    } else {
-      result.limits.q_min = std::max(result.limits.q_min, state.edge);
-      result.limits.q_max = std::min(result.limits.q_max, lock.position);
-      result.held_by.lower = LimitCause::kLatch;
-    }
+    const bool is_above = state.edge >= lock.position;
+    const Interval way =
+        is_above ? Interval{lock.position, state.edge} : Interval{state.edge, lock.position};
+    const Interval range = {result.limits.q_min, result.limits.q_max};
+    const Interval merged = moved_into(range, way);
+    result.limits.q_min = merged.lb;
+    result.limits.q_max = merged.ub;
+    (is_above ? result.held_by.upper : result.held_by.lower) = LimitCause::kLatch;
+    if (intersect(range, way).empty()) result.held_by = kContradiction;
   }
   return result;
 }
 
 VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
-                      const TwinValues& values) noexcept {
+                      const TwinParameters& parameters) noexcept {
   VectorA torque = VectorA::Zero(twin.chain.nv());
   for (int i = 0; i < twin.chain.nv(); ++i) {
     const auto index = static_cast<std::size_t>(i);
     const TwinDof& dof = twin.dofs[index];
     if (dof.q_index < 0) continue;
-    const DofValues& spring = values.dofs[index];
+    const DofValues& spring = parameters.now.dofs[index];
     const double q = q_a[dof.q_index];
     torque[i] = spring.preload + spring.stiffness * (q - spring.rest) + dof.closer.torque;
-    if (dof.closer.stiffness > 0.0) torque[i] += dof.closer.stiffness * (q - dof.limits.q_min);
+    if (dof.closer.stiffness > 0.0) {
+      torque[i] += dof.closer.stiffness * (q - parameters.moving[index].q.lb);
+    }
   }
   return torque;
 }

@@ -46,7 +46,9 @@ struct Holds {
 };
 
 /// The limits of a degree of freedom with its closer, conditional limits and locks. A speed limit
-/// that holds towards one end only counts while the joint moves there.
+/// that holds towards one end only counts while the joint moves there. Never empty: where a lock is
+/// outside the other limits the lock wins; where those contradict each other see limits::advanced.
+/// Both are told as LimitCause::kContradiction, a joint that is locked already as kLock.
 struct EffectiveLimits {
   limits::JointLimits limits;
   Holds held_by;
@@ -54,9 +56,10 @@ struct EffectiveLimits {
 EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
                                  const TwinInnerState& inner) noexcept;
 
-/// Torques of springs and closers (n_a); sign as in the budget.
+/// Torques of springs and closers (n_a), of closers from the lower limit that holds now; sign as in
+/// the budget.
 VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
-                      const TwinValues& values) noexcept;
+                      const TwinParameters& parameters) noexcept;
 /// Torques of linear and quadratic dampers (n_a); sign as in the budget. `M` is the mass matrix.
 VectorA damping_torque(const Eigen::MatrixXd& M, const VectorA& dq_a, double dt,
                        const TwinValues& values) noexcept;

@@ -13,8 +13,8 @@
 
 namespace hg::rendering {
 
-/// Pulls a joint towards its lower limit q_min with torque + stiffness (q - q_min), and lets it
-/// close no faster than `speed`.
+/// Pulls a joint towards its lower limit q_min, where that is now, with torque + stiffness (q -
+/// q_min), and lets it close no faster than `speed`.
 struct Closer {
   double torque = 0.0;       ///< Nm or N
   double stiffness = 0.0;    ///< Nm/rad or N/m; > 0 needs a lower limit

@@ -141,6 +141,18 @@ Interval target_range(const TwinModel& twin, int dof, const TwinParameters& para
   return range;
 }
 
+// the smallest speed limit that holds now, in whichever direction
+double slowest(const TwinModel& twin, int dof, const TwinParameters& parameters) noexcept {
+  const auto index = static_cast<std::size_t>(dof);
+  double speed = std::min(parameters.now.dofs[index].dq_max, twin.dofs[index].closer.speed);
+  for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
+    const ConditionalLimit& limit = twin.conditional_limits[i];
+    if (limit.dof != dof || !parameters.holds[i]) continue;
+    speed = std::min(speed, limit.limits.dq_max);
+  }
+  return speed;
+}
+
 }  // namespace
 
 TwinParameters initial_parameters(const TwinModel& twin) {
@@ -150,6 +162,9 @@ TwinParameters initial_parameters(const TwinModel& twin) {
     parameters.target.dofs[i] = values_of(dof);
     parameters.range[i] = {dof.limits.q_min, dof.limits.q_max};
     parameters.moving[i].q = parameters.range[i];
+  }
+  for (const ConditionalLimit& limit : twin.conditional_limits) {
+    parameters.may_be_overrun[static_cast<std::size_t>(limit.dof)] = true;
   }
   parameters.target.w_ref = twin.w_ref;
   parameters.target.loads = {.mass = twin.mass_scale,
@@ -167,12 +182,15 @@ ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
   const auto index = static_cast<std::size_t>(std::max<int>(change.index, 0));
   if (double* place = place_of(change.parameter, index, parameters.target)) {
     *place = change.value;
+    if (change.parameter == Parameter::kSpeedLimit) parameters.may_be_overrun[index] = true;
     return ChangeStatus::kTaken;
   }
   Interval range = parameters.range[index];
   (change.parameter == Parameter::kLowerLimit ? range.lb : range.ub) = change.value;
-  if (range.empty()) return ChangeStatus::kRefused;
+  const bool is_rest_of_closer = twin.dofs[index].closer.stiffness > 0.0;
+  if (range.empty() || (is_rest_of_closer && std::isinf(range.lb))) return ChangeStatus::kRefused;
   parameters.range[index] = range;
+  parameters.may_be_overrun[index] = true;
   return ChangeStatus::kTaken;
 }
 
@@ -198,7 +216,7 @@ void advance_parameters(const TwinModel& twin, const TwinState& state, double dt
 
     if (twin.dofs[i].q_index < 0) continue;
     limits::JointLimits rated = twin.dofs[i].limits;
-    rated.dq_max = values.dq_max;
+    rated.dq_max = slowest(twin, dof, parameters);
     const double v_rec = limits::recoverable_options(rated, dt, dt).v_rec;
     parameters.moving[i] =
         limits::advanced(parameters.moving[i], target_range(twin, dof, parameters),

@@ -2,7 +2,8 @@
 ///
 /// A change sets a target. Every cycle the values in use approach their targets with a time
 /// constant of 0.1 s and are exactly there when they differ by a billionth. Position limits travel
-/// (limits::advanced) instead. A speed limit that appears begins at the speed of the joint; one
+/// (limits::advanced) instead, no faster than bounds R bring the joint back under all speed limits
+/// that hold. A speed limit that appears begins at the speed of the joint; one
 /// that disappears goes at once.
 ///
 /// Part of the copyable state of a cycle; no allocation, noexcept. SI units.
@@ -37,13 +38,16 @@ struct TwinParameters {
   /// Position limits in use: `range` and the conditional limits that hold, travelling.
   std::array<limits::MovingLimits, kMaxTwin> moving{};
   std::array<bool, kMaxConditionalLimits> holds{};  ///< conditional limits, this cycle
+  /// Limits that were changed or have conditions: a joint may be found beyond them.
+  std::array<bool, kMaxTwin> may_be_overrun{};
 };
 
 /// As the twin was set up, nothing changing.
 TwinParameters initial_parameters(const TwinModel& twin);
 
 /// Takes `change` as a target, or refuses it and leaves everything as it is: unknown parameter or
-/// index, a value outside the range of its Parameter or beyond 1e9, limits that would cross.
+/// index, a value outside the range of its Parameter or beyond 1e9, limits that would cross, no
+/// lower limit where a closer measures from it.
 [[nodiscard]] ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
                                  TwinParameters& parameters) noexcept;
 

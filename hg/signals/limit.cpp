@@ -2,6 +2,20 @@
 
 namespace hg {
 
+std::string_view to_string(LimitKind kind) noexcept {
+  switch (kind) {
+    case LimitKind::kManipulatorJoint:
+      return "manipulator";
+    case LimitKind::kVirtualJoint:
+      return "virtual";
+    case LimitKind::kCartesian:
+      return "cartesian";
+    case LimitKind::kTwinJoint:
+      return "twin";
+  }
+  return "unknown";
+}
+
 std::string_view to_string(LimitState state) noexcept {
   switch (state) {
     case LimitState::kInactive:
@@ -32,6 +46,8 @@ std::string_view to_string(LimitCause cause) noexcept {
       return "latch";
     case LimitCause::kFriction:
       return "friction";
+    case LimitCause::kContradiction:
+      return "contradiction";
   }
   return "unknown";
 }

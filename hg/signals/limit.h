@@ -40,11 +40,13 @@ enum class LimitCause : std::uint8_t {
   kPosition = 1,
   kVelocity = 2,
   kAcceleration = 3,
-  kLock = 4,      ///< a lock holds the joint
-  kLatch = 5,     ///< a latch lets the joint close but not open
-  kFriction = 6,  ///< Coulomb friction holds the joint
+  kLock = 4,           ///< a lock holds the joint
+  kLatch = 5,          ///< a latch lets the joint close but not open
+  kFriction = 6,       ///< Coulomb friction holds the joint
+  kContradiction = 7,  ///< no position meets all limits of the joint: held between or at the lock
 };
 
+std::string_view to_string(LimitKind kind) noexcept;
 std::string_view to_string(LimitState state) noexcept;
 std::string_view to_string(LimitCause cause) noexcept;
 

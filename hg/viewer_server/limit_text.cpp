@@ -39,6 +39,8 @@ std::string reason(const LimitReport& report) {
       return "latched";
     case LimitCause::kFriction:
       return "held by friction";
+    case LimitCause::kContradiction:
+      return "limits contradict each other";
     case LimitCause::kNone:
     case LimitCause::kPosition:
       break;

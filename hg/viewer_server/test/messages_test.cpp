@@ -223,7 +223,8 @@ TEST(LimitText, NamesSideCauseAndReaction) {
       {LimitCause::kAcceleration, "hinge: acceleration limit, 4.1 Nm"},
       {LimitCause::kLock, "hinge: locked, 4.1 Nm"},
       {LimitCause::kLatch, "hinge: latched, 4.1 Nm"},
-      {LimitCause::kFriction, "hinge: held by friction, 4.1 Nm"}};
+      {LimitCause::kFriction, "hinge: held by friction, 4.1 Nm"},
+      {LimitCause::kContradiction, "hinge: limits contradict each other, 4.1 Nm"}};
   for (const auto& [cause, text] : cases) {
     report.cause = cause;
     EXPECT_EQ(limit_text(hinge, report), text);

@@ -1,0 +1,105 @@
+#include "hg/cycle/state_hash.h"
+
+#include <bit>
+#include <cstring>
+
+namespace hg::cycle {
+namespace {
+
+class Hash {
+ public:
+  std::uint64_t value() const noexcept { return value_; }
+
+  void mix(std::uint64_t word) noexcept {
+    value_ = (std::rotl(value_, 5) ^ word) * 0x517cc1b727220a95ULL;
+  }
+  void mix(double number) noexcept { mix(std::bit_cast<std::uint64_t>(number)); }
+  template <typename Derived>
+  void mix(const Eigen::PlainObjectBase<Derived>& v) noexcept {
+    for (Eigen::Index i = 0; i < v.size(); ++i) mix(v.data()[i]);
+  }
+  void mix(const Interval& interval) noexcept {
+    mix(interval.lb);
+    mix(interval.ub);
+  }
+  // the first `count` of values of one byte, eight in a word
+  template <typename T>
+  void mix_bytes(const T* values, std::size_t count) noexcept {
+    static_assert(sizeof(T) == 1);
+    for (std::size_t i = 0; i < count; i += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, values + i, std::min<std::size_t>(8, count - i));
+      mix(word);
+    }
+  }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+void mix(const rendering::TwinValues& values, std::size_t dofs, Hash& hash) noexcept {
+  for (std::size_t i = 0; i < dofs; ++i) {
+    const rendering::DofValues& dof = values.dofs[i];
+    for (const double value : {dof.stiffness, dof.rest, dof.preload, dof.damping,
+                               dof.quadratic_damping, dof.friction, dof.dq_max}) {
+      hash.mix(value);
+    }
+  }
+  hash.mix(values.w_ref);
+  hash.mix(values.loads.mass);
+  hash.mix(values.loads.gravity);
+}
+
+void mix(const rendering::TwinInnerState& inner, std::size_t dofs, Hash& hash) noexcept {
+  for (const rendering::LockState& lock : inner.locks) {
+    hash.mix(std::uint64_t{lock.is_engaged} | std::uint64_t{lock.is_locked} << 1U);
+    hash.mix(lock.edge);
+  }
+  hash.mix_bytes(inner.sticks.data(), dofs);
+  const rendering::TwinParameters& parameters = inner.parameters;
+  mix(parameters.now, dofs, hash);
+  mix(parameters.target, dofs, hash);
+  for (std::size_t i = 0; i < dofs; ++i) {
+    hash.mix(parameters.range[i]);
+    hash.mix(parameters.moving[i].q);
+    hash.mix(std::uint64_t{parameters.moving[i].is_crossed});
+  }
+  hash.mix_bytes(parameters.holds.data(), parameters.holds.size());
+  hash.mix_bytes(parameters.may_be_overrun.data(), dofs);
+}
+
+void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
+  for (const VectorM* v : {&state.reference.q_m, &state.reference.dq_m, &state.reference.ddq_m}) {
+    hash.mix(*v);
+  }
+  hash.mix(state.twin.q_a);
+  hash.mix(state.twin.dq_a);
+  hash.mix(state.twin.ddq_a);
+  mix(state.inner, static_cast<std::size_t>(state.twin.dq_a.size()), hash);
+  hash.mix_bytes(state.active_set.state.data(), static_cast<std::size_t>(rows));
+  hash.mix_bytes(state.touched.lower.data(), state.touched.lower.size());
+  hash.mix_bytes(state.touched.upper.data(), state.touched.upper.size());
+}
+
+}  // namespace
+
+std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noexcept {
+  Hash hash;
+  mix(state.rendering, rows, hash);
+  hash.mix(std::uint64_t{state.gantry_target.is_started});
+  hash.mix(state.gantry_target.q);
+  hash.mix(state.dq_p);
+  hash.mix(std::uint64_t{state.is_blocked});
+  hash.mix(state.next_sequence);
+  hash.mix(static_cast<std::uint64_t>(state.supervisor.mode));
+  hash.mix(static_cast<std::uint64_t>(state.supervisor.last_request));
+  hash.mix(static_cast<std::uint64_t>(state.supervisor.fault.code));
+  for (const estimation::GantryObserver& axis : state.estimation.gantry) {
+    for (const double value : {axis.q, axis.dq, axis.ddq, axis.disturbance}) hash.mix(value);
+  }
+  hash.mix(state.estimation.q_m);
+  hash.mix(robot.w_H);
+  return hash.value();
+}
+
+}  // namespace hg::cycle

@@ -1,0 +1,72 @@
+#include "hg/cycle/state_hash.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+namespace hg::cycle {
+namespace {
+
+constexpr int kRows = 20;
+
+State example() {
+  State state;
+  rendering::State& r = state.rendering;
+  r.reference = {VectorM::Ones(6), VectorM::Ones(6), VectorM::Ones(6)};
+  r.twin = {ConfigurationA::Ones(3), VectorA::Ones(2), VectorA::Ones(2)};
+  state.gantry_target.q = prepositioning::VectorPM::Ones(8);
+  state.dq_p = VectorP::Ones(2);
+  state.estimation.q_m = VectorM::Ones(6);
+  return state;
+}
+
+TEST(StateHash, SeesEveryValueOfTheState) {
+  const std::vector<std::function<void(State&)>> changes = {
+      [](State& s) { s.rendering.reference.q_m[5] += 1e-15; },
+      [](State& s) { s.rendering.reference.dq_m[0] = 0.0; },
+      [](State& s) { s.rendering.reference.ddq_m[2] = -1.0; },
+      [](State& s) { s.rendering.twin.q_a[2] = 0.0; },
+      [](State& s) { s.rendering.twin.dq_a[1] = 0.0; },
+      [](State& s) { s.rendering.twin.ddq_a[1] = 0.0; },
+      [](State& s) { s.rendering.inner.locks[3].is_engaged = true; },
+      [](State& s) { s.rendering.inner.locks[0].is_locked = true; },
+      [](State& s) { s.rendering.inner.locks[1].edge = 0.5; },
+      [](State& s) { s.rendering.inner.sticks[1] = true; },
+      [](State& s) { s.rendering.inner.parameters.now.dofs[1].friction = 1.0; },
+      [](State& s) { s.rendering.inner.parameters.now.dofs[0].dq_max = 1.0; },
+      [](State& s) { s.rendering.inner.parameters.now.w_ref[5] = 1.0; },
+      [](State& s) { s.rendering.inner.parameters.now.loads.gravity = 0.5; },
+      [](State& s) { s.rendering.inner.parameters.target.dofs[0].stiffness = 1.0; },
+      [](State& s) { s.rendering.inner.parameters.target.loads.mass = 2.0; },
+      [](State& s) { s.rendering.inner.parameters.range[1].lb = 0.0; },
+      [](State& s) { s.rendering.inner.parameters.moving[0].q.ub = 0.0; },
+      [](State& s) { s.rendering.inner.parameters.moving[1].is_crossed = true; },
+      [](State& s) { s.rendering.inner.parameters.holds[3] = true; },
+      [](State& s) { s.rendering.inner.parameters.may_be_overrun[1] = true; },
+      [](State& s) { s.rendering.active_set.state[kRows - 1] = hqp::RowState::kUpper; },
+      [](State& s) { s.rendering.touched.lower[kMaxLimits - 1] = true; },
+      [](State& s) { s.rendering.touched.upper[0] = true; },
+      [](State& s) { s.gantry_target.is_started = true; },
+      [](State& s) { s.gantry_target.q[7] = 0.0; }, [](State& s) { s.dq_p[1] = 0.0; },
+      [](State& s) { s.is_blocked = true; }, [](State& s) { s.next_sequence = 7; },
+      [](State& s) { s.supervisor.mode = Mode::kRunning; },
+      [](State& s) { s.supervisor.last_request = ModeRequest::kStop; },
+      [](State& s) { s.supervisor.fault.code = FaultCode::kSyncLost; },
+      [](State& s) { s.estimation.gantry[1].disturbance = 1.0; },
+      [](State& s) { s.estimation.q_m[3] = 0.0; },
+      // two signs at once, which a hash of words without rotation does not see
+      [](State& s) { s.rendering.reference.q_m[0] = s.rendering.reference.q_m[1] = -1.0; }};
+  const RobotState robot;
+  std::vector<std::uint64_t> hashes = {hash_of(example(), robot, kRows)};
+  EXPECT_EQ(hashes[0], hash_of(example(), robot, kRows));
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    State state = example();
+    changes[i](state);
+    hashes.push_back(hash_of(state, robot, kRows));
+    for (std::size_t j = 0; j < i + 1; ++j) ASSERT_NE(hashes.back(), hashes[j]) << i << " " << j;
+  }
+}
+
+}  // namespace
+}  // namespace hg::cycle
