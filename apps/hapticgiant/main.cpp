@@ -82,7 +82,8 @@ void add_new(CLI::App& app, hg::apps::NewArguments& arguments, int& exit_code) {
     what->add_option("--root-link", arguments.part.root_link,
                      "first link of the part that is taken");
     what->add_option("--tip-link", arguments.part.tip_link, "last link of the part that is taken");
-    what->add_option("-o,--output", arguments.output, "file to write; default: URDF_device.yaml");
+    what->add_option("-o,--output", arguments.output,
+                     "file to write; default: URDF name + _device.yaml or _twin.yaml");
     what->add_flag("--force", arguments.may_overwrite, "overwrite the file");
     what->callback([&arguments, &exit_code, run] { exit_code = run(arguments); });
     return what;

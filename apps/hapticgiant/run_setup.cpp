@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,17 +17,6 @@
 
 namespace hg::apps {
 namespace {
-
-// two limits of one name could not be told apart
-void check_names(const LimitCatalogue& catalogue) {
-  std::set<std::string> names;
-  for (const LimitInfo& limit : catalogue) {
-    if (!names.insert(limit.name).second) {
-      throw SetupError("device and twin together must not use a name twice, got '" + limit.name +
-                       "'");
-    }
-  }
-}
 
 // what --device, --twin and --user change; expected events belong to the scenario as it stands
 void apply(const RunArguments& arguments, config::Scenario& scenario) {
@@ -49,7 +37,10 @@ void apply(const RunArguments& arguments, config::Scenario& scenario) {
   }
   if (!arguments.twin.empty() || !arguments.device.empty()) {
     scenario.limits = rendering::make_catalogue(scenario.device.model, scenario.twin.model);
-    check_names(scenario.limits);
+    if (const auto repeated = rendering::repeated_names(scenario.limits); !repeated.empty()) {
+      throw SetupError("device and twin together must not use a name twice, got '" +
+                       repeated.front() + "'");
+    }
     scenario.events.clear();
   }
   if (!arguments.user.empty()) scenario.events.clear();
@@ -61,6 +52,7 @@ void apply(const RunArguments& arguments, config::Scenario& scenario) {
   } else if (!arguments.user.empty()) {
     scenario.person = user::PersonKind::kScript;
     scenario.script = config::load_script(arguments.user, scenario.twin.model);
+    scenario.duration_s = 0.0;  // as long as this script
     add_sources(scenario.script.sources);
   } else if (!arguments.twin.empty()) {
     scenario.person = user::PersonKind::kMouse;  // a script is made for one twin

@@ -4,7 +4,8 @@
 #include "hg/assembly/assembly.h"
 #include "hg/runtime/requests.h"
 
-int main(int, char** arguments) {
+int main(int count, char** arguments) {
+  if (count != 2) return 2;
   const hg::config::Scenario door = hg::config::load_scenario(arguments[1]);
   hg::cycle::Cycle cycle = hg::assembly::make_cycle(door);
   hg::device::SimulatedDevice device = hg::assembly::make_simulated_device(door);

@@ -65,7 +65,7 @@ device::SimulatedDevice make_simulated_device(const config::Scenario& scenario) 
 
 double planned_duration_s(const config::Scenario& scenario) {
   if (scenario.person != user::PersonKind::kScript) return 0.0;
-  return std::max(scenario.duration_s, scenario.script.script.duration_s);
+  return scenario.duration_s > 0.0 ? scenario.duration_s : scenario.script.script.duration_s;
 }
 
 }  // namespace hg::assembly

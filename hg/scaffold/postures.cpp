@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hg/model/joint_range.h"
+
 namespace hg::scaffold {
 namespace {
 
@@ -44,11 +46,8 @@ Eigen::VectorXd PostureSampler::draw() {
 std::vector<Interval> joint_ranges(const model::Chain& chain) {
   std::vector<Interval> ranges;
   for (const model::Joint& joint : chain.joints()) {
-    const double half = joint.type == model::JointType::kPrismatic ? 1.0 : M_PI;
-    Interval range = joint.position;
-    if (!std::isfinite(range.lb)) range.lb = std::isfinite(range.ub) ? range.ub - 2 * half : -half;
-    if (!std::isfinite(range.ub)) range.ub = range.lb + 2 * half;
-    ranges.push_back(range);
+    ranges.push_back(
+        model::finite_range(joint.position, joint.type != model::JointType::kPrismatic));
   }
   return ranges;
 }

@@ -13,13 +13,12 @@
 namespace hg::scaffold {
 namespace {
 
-constexpr int kPostures = 24;        // in which a placement is tried
-constexpr double kNear = 0.02;       // m, from here on a joint mostly turns the end effector
-constexpr int kPlacements = 40;      // that are tried in all postures
-constexpr double kShare = 0.8;       // of the speed and acceleration of the device's handle
-constexpr double kTurnMost = 2.5;    // rad/s, wrists of the device are not much faster
-constexpr double kTurnBraking = 20;  // rad/s^2
-constexpr double kCoasting = 1.5;    // s, time constant of a joint that is let go
+constexpr int kPostures = 24;       // in which a placement is tried
+constexpr double kNear = 0.02;      // m, from here on a joint mostly turns the end effector
+constexpr int kPlacements = 40;     // that are tried in all postures
+constexpr double kShare = 0.8;      // of the speed and acceleration of the device's handle
+constexpr double kTurnShare = 0.5;  // of what the slowest of the last three joints can do
+constexpr double kCoasting = 1.5;   // s, time constant of a joint that is let go
 
 struct TwinDraft {
   model::Chain chain;
@@ -184,8 +183,10 @@ std::string placement_line(const Placement& placement) {
 
 // how fast the end effector of the twin may be for the handle of the device to follow
 struct TipRatings {
-  double speed = 1.2;    // m/s
-  double braking = 4.0;  // m/s^2
+  double speed = 1.2;          // m/s
+  double braking = 4.0;        // m/s^2
+  double turn_speed = 2.5;     // rad/s
+  double turn_braking = 20.0;  // rad/s^2
 };
 
 TipRatings tip_ratings(const config::Device& device) {
@@ -197,7 +198,14 @@ TipRatings tip_ratings(const config::Device& device) {
       hand.ddq_max = std::min(hand.ddq_max, axis.ddq_max);
     }
   }
-  return {kShare * hand.dq_max, kShare * hand.ddq_max};
+  TipRatings ratings{.speed = kShare * hand.dq_max, .braking = kShare * hand.ddq_max};
+  for (std::size_t i = device.model.joint_limits.size() - 3; i < device.model.joint_limits.size();
+       ++i) {
+    const limits::JointLimits& wrist = device.model.joint_limits[i];
+    ratings.turn_speed = std::min(ratings.turn_speed, kTurnShare * wrist.dq_max);
+    ratings.turn_braking = std::min(ratings.turn_braking, kTurnShare * wrist.ddq_max);
+  }
+  return ratings;
 }
 
 std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
@@ -211,9 +219,10 @@ std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
     const bool turns = j.type != model::JointType::kPrismatic;
     const std::string unit = turns ? "rad" : "m";
     const double lever = std::max(d.lever[i], 1e-6);
-    const double speed = turns ? std::min(kTurnMost, ratings.speed / lever) : ratings.speed;
+    const double speed =
+        turns ? std::min(ratings.turn_speed, ratings.speed / lever) : ratings.speed;
     const double braking =
-        turns ? std::min(kTurnBraking, ratings.braking / lever) : ratings.braking;
+        turns ? std::min(ratings.turn_braking, ratings.braking / lever) : ratings.braking;
     text += fmt::format("  {}:\n", quoted(j.name));
     const std::string where = !turns          ? "moves the end effector along"
                               : lever > kNear ? rounded(lever) + " m from the end effector"

@@ -2,6 +2,8 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/pair.h>
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,8 +27,11 @@ struct ArrayLike : nb::object {
   NB_OBJECT(ArrayLike, nb::object, "numpy.typing.ArrayLike", is_anything)
 };
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
 constexpr const char* kArrays =
-    " q, dq: numbers or arrays that broadcast. Returns (lb, ub) of their common shape.";
+    " q, dq: numbers or arrays that broadcast. Returns (lb, ub) of their common shape; NaN gives "
+    "NaN.";
 
 std::vector<std::size_t> shape_of(const ArrayIn& in) {
   std::vector<std::size_t> shape(in.array.ndim());
@@ -42,7 +47,9 @@ Bounds for_each_state(const ArrayLike& q, const ArrayLike& dq, const Function& b
   const auto speeds = nb::cast<ArrayIn>(both[1]);
   std::vector<double> lower(positions.size()), upper(positions.size());
   for (std::size_t i = 0; i < lower.size(); ++i) {
-    const Interval interval = bounds(positions.data()[i], speeds.data()[i]);
+    const double position = positions.data()[i], speed = speeds.data()[i];
+    const bool is_known = !std::isnan(position) && !std::isnan(speed);
+    const Interval interval = is_known ? bounds(position, speed) : Interval{kNaN, kNaN};
     lower[i] = interval.lb;
     upper[i] = interval.ub;
   }

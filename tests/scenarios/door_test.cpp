@@ -102,6 +102,20 @@ TEST_F(Door, ReleasedItFallsShutNoFasterThanItsCloserAllows) {
   EXPECT_LT(std::abs(hinge(last)), kHeld);
 }
 
+// without a closer nothing presses the hinge onto its bolt: rounding must not seem to open it
+TEST(DoorAtRest, ALockHoldsInEveryCycle) {
+  config::Scenario scenario = shipped("door");
+  scenario.twin.model.dofs[0].preload = scenario.twin.model.dofs[0].stiffness = 0.0;
+  scenario.script.script.segments.clear();
+  const Trace trace(scenario);
+  int released = 0;
+  for (const CycleRecord& record : trace.records()) {
+    if (record.time_s < 2.0 || record.mode != Mode::kRunning) continue;
+    if (trace.limit(record, "hinge").cause != LimitCause::kLock) ++released;
+  }
+  EXPECT_EQ(released, 0);
+}
+
 // the hand leans from 7.5 s on, with 35 N as it ships
 config::Scenario leaning(double force_N) {
   constexpr int kPush = user::kWrenchChannel + 2;  // along z of the handle, out of the leaf
