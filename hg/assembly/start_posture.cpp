@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "hg/core/error.h"
@@ -13,37 +14,58 @@
 namespace hg::assembly {
 namespace {
 
-// throws SetupError when the device may not be at `start`
-void check_limits(const config::Scenario& scenario, const Start& start) {
-  const rendering::DeviceModel& device = scenario.device.model;
-  const auto require = [&](const std::string& item, double value,
-                           const limits::JointLimits& limits) {
-    if (value >= limits.q_min && value <= limits.q_max) return;
-    throw SetupError(fmt::format(
-        "twin {}: at its start {} of the device would be at {:.3f}, outside {:.3f} .. {:.3f}; move "
-        "or turn the twin's placement, or change its start{}",
-        scenario.twin.name, item, value, limits.q_min, limits.q_max,
-        scenario.device.kinematics == config::Kinematics::kGeneric ? " or the device's posture"
-                                                                   : ""));
+// One limited quantity of the device that is outside its range.
+struct Violation {
+  std::string item;
+  double value;
+  limits::JointLimits limits;
+};
+
+// The first limit, in the order of the catalogue, that forbids `q` (gantry first); `chain` is the
+// device's.
+std::optional<Violation> find_violation(const rendering::DeviceModel& device, model::Chain& chain,
+                                        const Eigen::VectorXd& q) {
+  const auto is_outside = [](double value, const limits::JointLimits& limits) {
+    return value < limits.q_min || value > limits.q_max;
   };
+  const auto q_m = q.tail(device.n_m);
   for (int i = 0; i < device.n_m; ++i) {
-    require("joint " + device.manipulator_joint(i), start.q_m[i],
-            device.joint_limits[static_cast<std::size_t>(i)]);
+    const limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
+    if (is_outside(q_m[i], limits)) {
+      return Violation{"joint " + device.manipulator_joint(i), q_m[i], limits};
+    }
   }
   for (const rendering::VirtualJoint& joint : device.virtual_joints) {
-    require(joint.name, joint.weights.dot(start.q_m), joint.limits);
+    const double sum = joint.weights.dot(q_m);
+    if (is_outside(sum, joint.limits)) return Violation{joint.name, sum, joint.limits};
   }
-
-  model::Chain chain = device.chain;
-  Eigen::VectorXd q(chain.nq());
-  q << start.q_p, start.q_m;
   chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.nv()));
   for (const rendering::CartesianLimit& limit : device.cartesian_limits) {
     const Eigen::Vector3d p = chain.pose(limit.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
-      require(limit.name + " " + "xyz"[axis], p[axis], limit.axes[static_cast<std::size_t>(axis)]);
+      const limits::JointLimits& limits = limit.axes[static_cast<std::size_t>(axis)];
+      if (is_outside(p[axis], limits)) {
+        return Violation{limit.name + " " + "xyz"[axis], p[axis], limits};
+      }
     }
   }
+  return {};
+}
+
+// throws SetupError when the device may not be at `start`
+void check_limits(const config::Scenario& scenario, const Start& start) {
+  model::Chain chain = scenario.device.model.chain;
+  Eigen::VectorXd q(chain.nq());
+  q << start.q_p, start.q_m;
+  const std::optional<Violation> violation = find_violation(scenario.device.model, chain, q);
+  if (!violation) return;
+  throw SetupError(fmt::format(
+      "twin {}: at its start {} of the device would be at {:.3f}, outside {:.3f} .. {:.3f}; move "
+      "or turn the twin's placement, or change its start{}",
+      scenario.twin.name, violation->item, violation->value, violation->limits.q_min,
+      violation->limits.q_max,
+      scenario.device.kinematics == config::Kinematics::kGeneric ? " or the device's posture"
+                                                                 : ""));
 }
 
 Start closed_form_start(const config::Scenario& scenario) {
@@ -106,6 +128,8 @@ Start numeric_start(const config::Scenario& scenario) {
   }
   if (device.posture.size() > 0) problem.goal.tail(device.n_m) = device.posture;
 
+  model::Chain chain = device.chain;
+  problem.permits = [&](const Eigen::VectorXd& q) { return !find_violation(device, chain, q); };
   const model::InverseResult found = model::inverse_kinematics(device.chain, problem);
   if (!found.is_solved) {
     const Eigen::Vector3d& p = start.T_B_H.p;
@@ -116,6 +140,7 @@ Start numeric_start(const config::Scenario& scenario) {
         scenario.twin.name, p.x(), p.y(), p.z(), found.position_error, found.angle_error,
         joints_at_limits(device.chain, problem, found.q)));
   }
+  // where no solution was permitted, the limits of the nearest one tell why
   start.q_p = found.q.head(n_p);
   start.q_m = found.q.tail(device.n_m);
   return start;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "hg/model/joint_range.h"
+
 namespace hg::inspection {
 namespace {
 
@@ -202,9 +204,9 @@ JointRanges joint_ranges(const config::Device& device) {
       const auto& limits = model.joint_limits[static_cast<std::size_t>(i - model.n_p)];
       range = {limits.q_min, limits.q_max};
     }
-    const double unlimited = joint.type == model::JointType::kPrismatic ? 1.0 : M_PI;
-    ranges.lower[i] = std::isfinite(range.lb) ? range.lb : -unlimited;
-    ranges.upper[i] = std::isfinite(range.ub) ? range.ub : unlimited;
+    range = model::finite_range(range, joint.type != model::JointType::kPrismatic);
+    ranges.lower[i] = range.lb;
+    ranges.upper[i] = range.ub;
   }
   return ranges;
 }

@@ -21,7 +21,7 @@ struct SurveyOptions {
   int positions = 60'000;  ///< of the arm, for the workspace; each with several of the gantry
 };
 
-/// Where the device's joints may be, gantry first; unlimited ones count from -pi to pi (-1 to 1 m).
+/// Where the device's joints may be, gantry first; what is unlimited as model::finite_range says.
 struct JointRanges {
   Eigen::VectorXd lower, upper;
 };

@@ -10,6 +10,7 @@
 
 #include "hg/inspection/survey.h"
 #include "hg/inspection/twin_bodies.h"
+#include "hg/model/joint_range.h"
 
 namespace hg::inspection {
 namespace {
@@ -124,10 +125,9 @@ std::vector<ConfigurationA> twin_postures(const config::Twin& twin, int count, s
     ConfigurationA q = twin.model.q_start;
     for (const rendering::TwinDof& dof : twin.model.dofs) {
       if (dof.q_index < 0) continue;
-      const double unlimited = dof.is_angle ? M_PI : 1.0;
-      const double lower = std::isfinite(dof.limits.q_min) ? dof.limits.q_min : -unlimited;
-      const double upper = std::isfinite(dof.limits.q_max) ? dof.limits.q_max : unlimited;
-      q[dof.q_index] = lower + random.next() * (upper - lower);
+      const Interval range =
+          model::finite_range({dof.limits.q_min, dof.limits.q_max}, dof.is_angle);
+      q[dof.q_index] = range.lb + random.next() * (range.ub - range.lb);
     }
     postures.push_back(q);
   }

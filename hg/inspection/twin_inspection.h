@@ -9,7 +9,7 @@
 
 namespace hg::inspection {
 
-/// Coordinates drawn within the limits of the twin; unlimited joints from -pi to pi (-1 to 1 m),
+/// Coordinates drawn within the limits of the twin, unlimited joints in model::finite_range;
 /// floating joints stay where they start. The start comes first.
 std::vector<ConfigurationA> twin_postures(const config::Twin& twin, int count, std::uint64_t seed);
 

@@ -9,6 +9,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/rotation.h"
+#include "hg/model/joint_range.h"
 
 namespace hg::model {
 namespace {
@@ -30,17 +31,31 @@ class Search {
     }
   }
 
+  // From `q` to the pose, then along it towards the goals. What the goals lead to counts, unless it
+  // has lost the pose or is not permitted and what was reached before is.
   InverseResult from(Eigen::VectorXd q) {
     reach(q);
-    Vector6 error = error_at(q);
-    if (is_solved(error)) {
-      settle(q);
-      unwind(q);
-      error = error_at(q);
+    const InverseResult reached = result_at(q);
+    if (!reached.is_solved) return reached;
+    settle(q);
+    InverseResult best = reached;
+    for (const Eigen::VectorXd& candidate : {unwound(q), q, unwound(reached.q)}) {
+      const InverseResult result = result_at(candidate);
+      if (result.is_permitted) return result;
+      if (result.is_solved && !best.is_permitted) best = result;
     }
-    return {is_solved(error), q, error.head<3>().norm(), error.tail<3>().norm()};
+    return best;
   }
 
+  bool is_better(const InverseResult& a, const InverseResult& b) const {
+    if (a.is_permitted != b.is_permitted) return a.is_permitted;
+    if (a.is_solved != b.is_solved) return a.is_solved;
+    if (a.is_solved) return miss(a.q) < miss(b.q) - 1e-6;
+    return std::hypot(a.position_error, a.angle_error) <
+           std::hypot(b.position_error, b.angle_error) - 1e-9;
+  }
+
+ private:
   // How far the goals are missed; what is not wished for does not count.
   double miss(const Eigen::VectorXd& q) const {
     double sum = 0.0;
@@ -50,7 +65,6 @@ class Search {
     return std::sqrt(sum);
   }
 
- private:
   static double square(double x) { return x * x; }
 
   static bool is_solved(const Vector6& error) {
@@ -64,6 +78,12 @@ class Search {
     Vector6 error;
     error << problem_.T_B_frame.p - pose.p, rotation_between(pose.R, problem_.T_B_frame.R);
     return error;
+  }
+
+  InverseResult result_at(const Eigen::VectorXd& q) {
+    const Vector6 error = error_at(q);
+    const bool is_permitted = is_solved(error) && (!problem_.permits || problem_.permits(q));
+    return {is_solved(error), is_permitted, q, error.head<3>().norm(), error.tail<3>().norm()};
   }
 
   Eigen::VectorXd clamped(const Eigen::VectorXd& q) const {
@@ -147,7 +167,7 @@ class Search {
   }
 
   // Whole turns are taken off where that brings a joint nearer to its goal, or to 0.
-  void unwind(Eigen::VectorXd& q) const {
+  Eigen::VectorXd unwound(Eigen::VectorXd q) const {
     for (std::size_t i = 0; i < chain_.joints().size(); ++i) {
       if (chain_.joints()[i].type == JointType::kPrismatic) continue;
       const auto k = static_cast<Eigen::Index>(i);
@@ -155,22 +175,13 @@ class Search {
       const double nearer = q[k] - kTurn * std::round((q[k] - goal) / kTurn);
       if (nearer >= problem_.q_min[k] && nearer <= problem_.q_max[k]) q[k] = nearer;
     }
+    return q;
   }
 
   Chain chain_;
   const InverseProblem& problem_;
   Eigen::VectorXd at_rest_;
 };
-
-// Where joints may begin: half a turn or half a metre around 0 where there is no limit.
-Interval start_range(const InverseProblem& problem, int joint) {
-  const double lb = problem.q_min[joint], ub = problem.q_max[joint];
-  const double reach = std::numbers::pi;
-  if (std::isfinite(lb) && std::isfinite(ub)) return {lb, ub};
-  if (std::isfinite(lb)) return {lb, lb + 2.0 * reach};
-  if (std::isfinite(ub)) return {ub - 2.0 * reach, ub};
-  return {-reach, reach};
-}
 
 // Numbers in [0, 1) that look random and are the same everywhere.
 class Sequence {
@@ -184,10 +195,12 @@ class Sequence {
   std::uint64_t state_ = 1;
 };
 
-Eigen::VectorXd start(const InverseProblem& problem, int number, Sequence& sequence) {
+Eigen::VectorXd start(const Chain& chain, const InverseProblem& problem, int number,
+                      Sequence& sequence) {
   Eigen::VectorXd q(problem.goal.size());
   for (int i = 0; i < q.size(); ++i) {
-    const Interval range = start_range(problem, i);
+    const bool is_angle = chain.joints()[static_cast<std::size_t>(i)].type != JointType::kPrismatic;
+    const Interval range = finite_range({problem.q_min[i], problem.q_max[i]}, is_angle);
     const double share = number < 2 ? 0.5 : sequence.next();
     q[i] = range.lb + share * (range.ub - range.lb);
     if (number == 0 && std::isfinite(problem.goal[i])) q[i] = problem.goal[i];
@@ -203,13 +216,8 @@ InverseResult inverse_kinematics(const Chain& chain, const InverseProblem& probl
   Sequence sequence;
   InverseResult best;
   for (int number = 0; number < kStarts; ++number) {
-    const InverseResult found = search.from(start(problem, number, sequence));
-    const bool is_nearer = found.is_solved
-                               ? search.miss(found.q) < search.miss(best.q) - 1e-6
-                               : std::hypot(found.position_error, found.angle_error) <
-                                     std::hypot(best.position_error, best.angle_error) - 1e-9;
-    const bool is_first = number == 0 || (found.is_solved && !best.is_solved);
-    if (is_first || (found.is_solved == best.is_solved && is_nearer)) best = found;
+    const InverseResult found = search.from(start(chain, problem, number, sequence));
+    if (number == 0 || search.is_better(found, best)) best = found;
   }
   return best;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 
 #include "hg/core/types.h"
 #include "hg/model/chain.h"
@@ -15,11 +16,17 @@ struct InverseProblem {
   Pose T_B_frame;
   Eigen::VectorXd q_min, q_max;  ///< (nv), infinite = no limit
   Eigen::VectorXd goal;          ///< (nv), wanted as far as the pose permits; NaN = no wish
+  /// Further conditions, for example on sums of joints; empty = none. They choose among the
+  /// solutions found and do not lead to one.
+  std::function<bool(const Eigen::VectorXd& q)> permits = {};
 };
 
 struct InverseResult {
-  bool is_solved = false;  ///< both errors below 1e-9
-  Eigen::VectorXd q;       ///< the solution nearest to the goals, or the posture that comes nearest
+  bool is_solved = false;     ///< both errors below 1e-9
+  bool is_permitted = false;  ///< solved, and the problem permits q
+  /// Of the permitted solutions, otherwise of all solutions, the one nearest to the goals; without
+  /// a solution the posture that comes nearest to the pose.
+  Eigen::VectorXd q;
   double position_error = 0.0;  ///< m
   double angle_error = 0.0;     ///< rad
 };

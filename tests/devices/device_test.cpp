@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/assembly/start_posture.h"
 #include "hg/config/scenario.h"
 #include "hg/core/error.h"
 #include "hg/model/test/models.h"
@@ -143,11 +144,25 @@ std::string start_message(const config::Scenario& scenario) {
 TEST(Start, OutOfReachSaysHowFarAndWhatToDo) {
   const std::string message =
       start_message(scenario_of("ur5", {{"{x_m: 0.56, y_m: 0.30", "{x_m: 2.0, y_m: 0.30"}}));
-  EXPECT_NE(message.find("cannot hold its handle at (1.94, "), std::string::npos)
-      << message;
+  EXPECT_NE(message.find("cannot hold its handle at (1.94, "), std::string::npos) << message;
   EXPECT_NE(message.find("move or turn the twin's placement, or change its start"),
             std::string::npos)
       << message;
+}
+
+TEST(Start, ChoosesAPostureThatTheSumsOfJointsPermit) {
+  const config::Scenario scenario = scenario_of(
+      "ur5", {{"posture: {shoulder_pan_joint: 0,", "#"},
+              {"{q_min_rad: -3.1, q_max_rad: 0, ddq", "{ddq"},
+              {"{q_min_rad: 0.2, q_max_rad: 2.9, ddq", "{ddq"},
+              {"{q_min_rad: -2.9, q_max_rad: -0.25, ddq", "{ddq"},
+              {"cartesian_limits:",
+               "virtual_joints:\n  - {name: bend, weights: {elbow_joint: 1}, q_min_rad: -2.9, "
+               "q_max_rad: -0.2, dq_max_rad_per_s: 3, ddq_max_rad_per_s2: 20}\n"
+               "cartesian_limits:"}});
+  const assembly::Start start = assembly::find_start(scenario);
+  EXPECT_GE(start.q_m[2], -2.9);
+  EXPECT_LE(start.q_m[2], -0.2);
 }
 
 TEST(Start, OutsideABoxSaysWhichAndHowFar) {

@@ -175,6 +175,42 @@ TEST(InverseKinematics, StaysWithinLimitsThatForbidTheWay) {
   EXPECT_TRUE((result.q.array() <= problem.q_max.array()).all());
 }
 
+TEST(InverseKinematics, ChoosesAmongTheSolutionsThatThePermissionLeaves) {
+  Chain chain = example_robot("ur_description/urdf/ur5_robot.urdf");
+  InverseProblem problem = problem_of(chain, "tool0");
+  Eigen::VectorXd q(6);
+  q << 0.3, -1.2, 1.5, -1.0, -1.5, 0.2;
+  problem.T_B_frame = pose_at(chain, problem.frame, q);
+  problem.goal = q;
+  EXPECT_GT(inverse_kinematics(chain, problem).q[2], 0.0);
+  problem.permits = [](const Eigen::VectorXd& tried) { return tried[2] < -0.2; };
+  const InverseResult other = inverse_kinematics(chain, problem);
+  EXPECT_TRUE(other.is_permitted);
+  EXPECT_LT(other.q[2], -0.2);
+  expect_there(chain, problem, other);
+
+  problem.permits = [](const Eigen::VectorXd&) { return false; };
+  const InverseResult none = inverse_kinematics(chain, problem);
+  EXPECT_FALSE(none.is_permitted);
+  expect_there(chain, problem, none);
+  EXPECT_LT((none.q - q).norm(), 1e-6);  // the nearest one
+}
+
+TEST(InverseKinematics, KeepsWhatWasReachedWhereTheGoalsLeadToNothingPermitted) {
+  Chain chain = example_robot("panda_description/urdf/panda.urdf", "panda_link8");
+  InverseProblem problem = problem_of(chain, "panda_link8");
+  Eigen::VectorXd q(7);
+  q << 0.3, -0.4, 0.2, -2.0, 0.3, 1.8, 0.5;
+  problem.T_B_frame = pose_at(chain, problem.frame, q);
+  problem.goal[2] = 1.5;
+  ASSERT_NEAR(inverse_kinematics(chain, problem).q[2], 1.5, kGoal);
+  problem.permits = [](const Eigen::VectorXd& tried) { return tried[2] < 1.4; };
+  const InverseResult result = inverse_kinematics(chain, problem);
+  EXPECT_TRUE(result.is_permitted);
+  EXPECT_LT(result.q[2], 1.4);
+  expect_there(chain, problem, result);
+}
+
 TEST(InverseKinematics, GivesTheSameEveryTime) {
   Chain chain = example_robot("ur_description/urdf/ur5_robot.urdf");
   InverseProblem problem = problem_of(chain, "tool0");
