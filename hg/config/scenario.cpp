@@ -1,6 +1,5 @@
 #include "hg/config/scenario.h"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -58,16 +57,6 @@ ChangesDraft changes_of(const rendering::TwinModel& twin) {
   return draft;
 }
 
-// Two limits of one name could not be told apart in events, figures and on the page.
-void check_names(Loader& loader, const LimitCatalogue& catalogue) {
-  for (auto limit = catalogue.begin(); limit != catalogue.end(); ++limit) {
-    const bool is_first =
-        std::ranges::find(catalogue.begin(), limit, limit->name, &LimitInfo::name) == limit;
-    loader.rule(is_first, "twin", "device and twin together must not use a name twice",
-                "'" + limit->name + "'");
-  }
-}
-
 Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   ScenarioDraft draft;
@@ -86,7 +75,10 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
     }
     if (!device || !twin || !script) file.faults.throw_if_any();
     catalogue = rendering::make_catalogue(device->model, twin->model);
-    check_names(loader, catalogue);
+    for (const std::string& name : rendering::repeated_names(catalogue)) {
+      loader.rule(false, "twin", "device and twin together must not use a name twice",
+                  "'" + name + "'");
+    }
     draft.names = names_of(*device, *twin, catalogue);
     describe_events(loader, draft);
     changes = changes_of(twin->model);

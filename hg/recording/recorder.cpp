@@ -45,20 +45,6 @@ std::string join(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string_view to_string(LimitKind kind) noexcept {
-  switch (kind) {
-    case LimitKind::kManipulatorJoint:
-      return "manipulator joint";
-    case LimitKind::kVirtualJoint:
-      return "virtual joint";
-    case LimitKind::kCartesian:
-      return "Cartesian";
-    case LimitKind::kTwinJoint:
-      return "twin joint";
-  }
-  return "";
-}
-
 void check(const RecordingInfo& info) {
   const auto require_positive = [](const char* item, double value) {
     if (!(value > 0.0 && std::isfinite(value))) {

@@ -1,5 +1,7 @@
 #include "hg/rendering/catalogue.h"
 
+#include <algorithm>
+
 namespace hg::rendering {
 namespace {
 
@@ -29,6 +31,15 @@ LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin) 
     catalogue.push_back({LimitKind::kTwinJoint, dof.name, dof.is_angle, range_of(dof.limits)});
   }
   return catalogue;
+}
+
+std::vector<std::string> repeated_names(const LimitCatalogue& catalogue) {
+  std::vector<std::string> repeated;
+  for (auto limit = catalogue.begin(); limit != catalogue.end(); ++limit) {
+    const auto first = std::ranges::find(catalogue, limit->name, &LimitInfo::name);
+    if (first != limit) repeated.push_back(limit->name);
+  }
+  return repeated;
 }
 
 }  // namespace hg::rendering

@@ -1,6 +1,9 @@
 /// The catalogue of all limits of a device and a twin: the order of the rows of tasks 2 to 6.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "hg/rendering/device_model.h"
 #include "hg/rendering/twin_model.h"
 #include "hg/signals/limit.h"
@@ -10,5 +13,9 @@ namespace hg::rendering {
 /// Manipulator joints, virtual joints, x y z of each Cartesian frame, then one entry per degree of
 /// freedom of the twin. Quantities without limits are listed, too: their range is unbounded.
 LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin);
+
+/// Names that an earlier limit of the catalogue has already: two limits of one name could not be
+/// told apart in events, figures and on the page.
+std::vector<std::string> repeated_names(const LimitCatalogue& catalogue);
 
 }  // namespace hg::rendering

@@ -41,20 +41,6 @@ std::string_view name(JointType type) {
   return "unknown";
 }
 
-std::string_view name(LimitKind kind) {
-  switch (kind) {
-    case LimitKind::kManipulatorJoint:
-      return "manipulator";
-    case LimitKind::kVirtualJoint:
-      return "virtual";
-    case LimitKind::kCartesian:
-      return "cartesian";
-    case LimitKind::kTwinJoint:
-      return "twin";
-  }
-  return "unknown";
-}
-
 Json encode(const SceneChain& chain, std::string_view address) {
   Json joints = Json::array();
   for (const SceneJoint& joint : chain.joints) {
@@ -72,7 +58,7 @@ Json encode(const SceneChain& chain, std::string_view address) {
 
 Json encode(const LimitInfo& limit) {
   return {{"name", limit.name},
-          {"kind", name(limit.kind)},
+          {"kind", to_string(limit.kind)},
           {"unit", limit.is_angle ? "rad" : "m"},
           {"min", number(limit.range.lb)},
           {"max", number(limit.range.ub)}};

@@ -117,7 +117,7 @@ def check_complete(path):
     assert metadata["run"]["manipulator_joints"] == "m1,m2,m3,m4,m5,m6"
     limits = metadata["limits"]
     assert len(limits) == 5 * LIMIT_COUNT
-    assert (limits["10.name"], limits["10.kind"]) == ("hinge", "twin joint")
+    assert (limits["10.name"], limits["10.kind"]) == ("hinge", "twin")
     assert (limits["10.unit"], limits["07.unit"]) == ("rad", "m")
     assert float(limits["10.upper"]) == 1.57 and float(limits["07.lower"]) == float("-inf")
     return len(samples)
