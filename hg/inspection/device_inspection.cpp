@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstddef>
 #include <string>
 
 #include "hg/inspection/cartesian_rule.h"
@@ -130,6 +131,7 @@ void inspect_boxes(const config::Device& device, const Survey& survey, Collector
   constexpr double kFixed = 1e-6;  // m; a coordinate that varies less is constant
   const rendering::DeviceModel& model = device.model;
   for (std::size_t k = 0; k < survey.cloud.frames.size(); ++k) {
+    if (survey.cloud.frames[k].isEmpty()) continue;  // no posture was found at all
     const rendering::CartesianLimit& limit = model.cartesian_limits[k];
     for (int axis = 0; axis < 3; ++axis) {
       const limits::JointLimits& range = limit.axes[static_cast<std::size_t>(axis)];
@@ -155,7 +157,23 @@ void inspect_boxes(const config::Device& device, const Survey& survey, Collector
       }
     }
   }
-  if (survey.postures.empty() && out.findings.empty()) {
+}
+
+std::ptrdiff_t faults_of(const Collector& out) {
+  return std::ranges::count(out.findings, Severity::kFault, &Finding::severity);
+}
+
+// Sums of joints and boxes that are possible one by one may leave no room together.
+void inspect_room(const config::Device& device, const Survey& survey, Collector& out) {
+  const std::ptrdiff_t faults_before = faults_of(out);
+  inspect_virtual_joints(device, out);
+  inspect_boxes(device, survey, out);
+  if (!survey.postures.empty() || faults_of(out) > faults_before) return;
+  if (survey.drawn == 0) {
+    out.add(Severity::kFault, "virtual_joints",
+            "no posture within the joint limits was found that satisfies all of them",
+            "together they leave no room: widen their ranges, or check the signs of the weights");
+  } else {
     out.add(Severity::kFault, "cartesian_limits",
             fmt::format("none of {} postures within the joint limits satisfies all limits",
                         survey.drawn),
@@ -224,8 +242,7 @@ Findings inspect(const config::Device& device, const Survey& survey) {
   inspect_synchronisation(device, out);
   inspect_gantry(device, out);
   inspect_joints(device, survey, out);
-  inspect_virtual_joints(device, out);
-  inspect_boxes(device, survey, out);
+  inspect_room(device, survey, out);
   inspect_cartesian_rule(device, survey, out);
   inspect_singularities(device, survey, out);
   return std::move(out.findings);

@@ -130,6 +130,22 @@ void inspect_demand(const rendering::TwinDof& dof, const Demand& demand, Collect
           " in 5 % of the postures or more");
 }
 
+// The work of a cycle grows with the cube of the twin's degrees of freedom. Measured, 99 % of the
+// cycles: gauss 0.5 ms with 20 and 2 ms with 30, paper 1 ms with 12.
+void inspect_work(const config::Device& device, const config::Twin& twin, Collector& out) {
+  const bool is_paper = device.rendering.law == rendering::Law::kPaper;
+  const double most = std::floor((is_paper ? 8.0 : 15.0) * std::cbrt(1000.0 / device.rate_Hz));
+  const int dofs = twin.model.chain.nv();
+  if (dofs <= most) return;
+  out.add(
+      Severity::kWarning, "urdf",
+      fmt::format("the twin has {} degrees of freedom, expected at most {:g} with the law {} at "
+                  "{:g} Hz: the cycle may take longer than its period",
+                  dofs, most, is_paper ? "paper" : "gauss", device.rate_Hz),
+      fmt::format("fix joints that nobody needs to move{}, or lower the device's rate_Hz",
+                  is_paper ? ", take the law gauss" : ""));
+}
+
 }  // namespace
 
 Match match(const config::Device& device, const config::Twin& twin) {
@@ -181,6 +197,7 @@ Findings inspect(const config::Device& device, const config::Twin& twin) {
   } catch (const SetupError& error) {
     out.add(Severity::kFault, "placement", error.what(), "");
   }
+  inspect_work(device, twin, out);
   const bool is_bounded = std::ranges::all_of(
       twin.model.dofs, [](const rendering::TwinDof& dof) { return dof.q_index >= 0; });
   if (!is_bounded) return std::move(out.findings);  // a floating twin goes where the device goes

@@ -13,6 +13,7 @@
 #include "hg/core/error.h"
 #include "hg/inspection/device_inspection.h"
 #include "hg/inspection/scenario_inspection.h"
+#include "hg/inspection/survey.h"
 #include "hg/inspection/twin_inspection.h"
 
 namespace hg::inspection {
@@ -169,6 +170,23 @@ INSTANTIATE_TEST_SUITE_P(
              "cartesian_limits[0].z",
              "no posture brings",
              "    z: {q_min_m: 0.3"},
+        Case{"BoxesThatLeaveNoRoomBesideAWarning",
+             {"x: {q_min_m: -1.65, q_max_m: 1.65}  # [A]", "x: {q_min_m: 2.4, q_max_m: 3}  # [A]",
+              "lower=\"0.20\" upper=\"2.45\" velocity=\"2.6\" effort=\"110\"",
+              "lower=\"0.20\" upper=\"2.45\" velocity=\"2.6\""},
+             Severity::kFault,
+             "cartesian_limits",
+             "satisfies all limits",
+             "cartesian_limits:"},
+        Case{"SumsThatLeaveNoRoom",
+             {"virtual_joints:\n",
+              "virtual_joints:\n  - {name: other, weights: {m4: 1, m5: 1}, q_min_rad: 2.9, "
+              "q_max_rad: 4, dq_max_rad_per_s: 2, ddq_max_rad_per_s2: 9}\n",
+              "", ""},
+             Severity::kFault,
+             "virtual_joints",
+             "no posture within the joint limits",
+             "virtual_joints:"},
         Case{"JointWithoutRange",
              {"m3: {", "m3: {q_min_rad: 1, q_max_rad: 1, ", "", ""},
              Severity::kFault,
@@ -350,6 +368,51 @@ TEST(Pair, PosturesOutOfReachAreCountedAndOneIsExplained) {
   EXPECT_EQ(finding->severity, Severity::kNote);
   EXPECT_NE(finding->what.find("out of reach"), std::string::npos) << finding->what;
   EXPECT_NE(finding->what.find("boom"), std::string::npos) << finding->what;
+}
+
+TEST(Pair, TwinThatIsTooMuchWorkForTheRateIsFound) {
+  const auto finding_of = [](int dofs, rendering::Law law, double rate_Hz) {
+    std::string urdf = "<robot name='snake'><link name='l0'/>";
+    for (int i = 1; i <= dofs; ++i) {
+      const std::string n = std::to_string(i);
+      urdf += "<joint name='j" + n + "' type='continuous'><parent link='l" + std::to_string(i - 1) +
+              "'/><child link='l" + n + "'/><axis xyz='0 0 1'/></joint><link name='l" + n +
+              "'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' "
+              "iyz='0'/></inertial></link>";
+    }
+    config::SourceReader reader({{"snake.urdf", urdf + "</robot>"},
+                                 {"f.yaml", "name: snake\nurdf: snake.urdf\nend_effector: l" +
+                                                std::to_string(dofs) + "\n"}});
+    config::Device device = shipped_device();
+    device.rendering.law = law;
+    config::set_rate(device, rate_Hz);
+    const Findings findings = inspect(device, config::load_twin("f.yaml", reader));
+    const Finding* finding = find(findings, "urdf", "degrees of freedom");
+    return finding == nullptr ? "" : finding->what;
+  };
+  using rendering::Law;
+  EXPECT_EQ(finding_of(15, Law::kGauss, 1000.0), "");
+  EXPECT_EQ(
+      finding_of(16, Law::kGauss, 1000.0),
+      "the twin has 16 degrees of freedom, expected at most 15 with the law gauss at 1000 Hz: "
+      "the cycle may take longer than its period");
+  EXPECT_EQ(finding_of(8, Law::kPaper, 1000.0), "");
+  EXPECT_NE(finding_of(9, Law::kPaper, 1000.0), "");
+  EXPECT_EQ(finding_of(16, Law::kGauss, 500.0), "");
+  EXPECT_NE(finding_of(12, Law::kGauss, 2000.0), "");
+}
+
+TEST(TwinFigures, DrawTheHalfLimitedJointWithinItsLimit) {
+  config::Twin twin = door({});
+  twin.model.dofs[0].limits = {.q_min = 4.0, .q_max = kInfinity};
+  const int index = twin.model.dofs[0].q_index;
+  twin.model.q_start[index] = 4.0;
+  for (const ConfigurationA& q : twin_postures(twin, 100, 1)) EXPECT_GE(q[index], 4.0);
+  config::Device device = shipped_device();
+  device.model.joint_limits[5] = {.q_min = 4.0, .q_max = kInfinity};
+  const JointRanges ranges = joint_ranges(device);
+  EXPECT_EQ(ranges.lower[7], 4.0);
+  EXPECT_GT(ranges.upper[7], 4.0);
 }
 
 TEST(TwinFigures, AreThoseOfTheWorstPosture) {
