@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <vector>
 
 #include "hg/config/range.h"
 #include "hg/core/types.h"
@@ -36,6 +37,24 @@ void describe_ratings(V& v, limits::JointLimits& limits, JointUnit unit, Need ne
   v.joint_number(kSpeed, unit, limits.dq_max, kPositiveOrNone, "largest speed", need);
   v.joint_number(kAcceleration, unit, limits.ddq_max, kPositiveOrNone, "largest acceleration",
                  need);
+}
+
+/// The part of a URDF with branches: indices of links, -1 = not given.
+struct ChainPart {
+  int root_link = -1, tip_link = -1;
+  bool is_usable = false;  ///< the links that are given exist
+};
+
+template <class V>
+void describe(V& v, ChainPart& part, const std::vector<std::string>& links) {
+  const bool has_root = v.name("root_link", part.root_link, links, "a link of the URDF",
+                               "first link of the chain, in a URDF with branches") ||
+                        !v.is_given("root_link");
+  const bool has_tip =
+      v.name("tip_link", part.tip_link, links, "a link of the URDF",
+             "last link of the chain; joints beyond or beside it stand still at 0") ||
+      !v.is_given("tip_link");
+  part.is_usable = has_root && has_tip;
 }
 
 /// Position and roll, pitch, yaw as in a URDF: R = Rz(yaw) Ry(pitch) Rx(roll).

@@ -23,7 +23,7 @@ struct DeviceJoint {
 struct DeviceDraft {
   std::string name;
   std::filesystem::path urdf, tool;
-  std::string root_link, tip_link;
+  ChainPart part;
   std::vector<std::string> link_names;  ///< of the URDF
   int flange = -1;
   std::vector<std::string> joint_names, frame_names;  ///< of the chain
@@ -57,9 +57,6 @@ void describe_chain(V& v, DeviceDraft& d) {
   v.words("name", d.name, "name of the device", Need::kRequired);
   v.path("urdf", d.urdf, "kinematics and inertia; its limits are the defaults of joints",
          Need::kRequired);
-  v.words("root_link", d.root_link, "first link of the chain in a URDF with branches");
-  v.words("tip_link", d.tip_link,
-          "last link of the chain; joints beyond or beside it stand still at 0");
 }
 
 /// The end effector: what the user holds, either a link of the URDF or a tool.
@@ -114,7 +111,8 @@ void describe(V& v, rendering::VirtualJoint& joint, const std::vector<std::strin
       "weights", names, "a manipulator joint", kAnyNumber,
       [&](int index, double weight) { joint.weights[index] = weight; },
       "factor of each revolute joint in the sum");
-  v.rule(joint.weights.norm() > 0.0, "weights", "at least one joint must have a weight");
+  v.rule(names.empty() || joint.weights.norm() > 0.0, "weights",
+         "at least one joint must have a weight");
   describe_positions(v, joint.limits, JointUnit::kAngle);
   describe_ratings(v, joint.limits, JointUnit::kAngle, Need::kRequired);
 }

@@ -1,6 +1,7 @@
 /// Description of device.yaml, second part: drive, gains, estimation, monitor.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "hg/config/describe_device.h"
@@ -40,9 +41,35 @@ void describe(V& v, rendering::Options& options, std::size_t manipulator_joints)
 }
 
 template <class V>
+void describe_prepositioning(V& v, DeviceDraft& d) {
+  // what is not given keeps within what the drive can do
+  d.prepositioning.dq_max = std::min(d.prepositioning.dq_max, d.drive.dq_max);
+  d.prepositioning.drive.ddq_max = std::min(d.prepositioning.drive.ddq_max, d.drive.ddq_max);
+  v.group(
+      "prepositioning",
+      [&](auto& child) {
+        child.number("k_ppu_1_per_s", d.prepositioning.k_ppu, kPositive, "gain, eq. (27)");
+        child.joint_number(kSpeed, d.gantry_unit, d.prepositioning.dq_max, kPositive,
+                           "largest speed used, never above that of the drive");
+        child.joint_number(
+            kBrake, d.gantry_unit, d.prepositioning.drive.ddq_max, kPositive,
+            "deceleration that can be relied on, never above the drive's acceleration");
+        child.rule(d.prepositioning.dq_max <= d.drive.dq_max, kSpeed.of(d.gantry_unit),
+                   "must not exceed the speed of the drive, " + model::to_text(d.drive.dq_max),
+                   model::to_text(d.prepositioning.dq_max));
+        child.rule(
+            d.prepositioning.drive.ddq_max <= d.drive.ddq_max, kBrake.of(d.gantry_unit),
+            "must not exceed the acceleration of the drive, " + model::to_text(d.drive.ddq_max),
+            model::to_text(d.prepositioning.drive.ddq_max));
+      },
+      "how the gantry moves along with the hand");
+}
+
+template <class V>
 void describe_behaviour(V& v, DeviceDraft& d) {
   for (const char* key : {"drive", "prepositioning", "estimation"}) {
-    v.rule(!d.gantry.empty() || !v.is_given(key), key, "concerns the gantry, and there is none");
+    v.rule(!d.has_joints || !d.gantry.empty() || !v.is_given(key), key,
+           "concerns the gantry, and there is none");
   }
   v.group(
       "drive",
@@ -69,23 +96,7 @@ void describe_behaviour(V& v, DeviceDraft& d) {
   v.group(
       "rendering", [&](auto& child) { describe(child, d.rendering, d.manipulator.size()); },
       "the law, see docs/law.md");
-  v.group(
-      "prepositioning",
-      [&](auto& child) {
-        child.number("k_ppu_1_per_s", d.prepositioning.k_ppu, kPositive, "gain, eq. (27)");
-        child.joint_number(kSpeed, d.gantry_unit, d.prepositioning.dq_max, kPositive,
-                           "largest speed used");
-        child.joint_number(kBrake, d.gantry_unit, d.prepositioning.drive.ddq_max, kPositive,
-                           "deceleration that can be relied on");
-        child.rule(d.prepositioning.dq_max <= d.drive.dq_max, kSpeed.of(d.gantry_unit),
-                   "must not exceed the speed of the drive, " + model::to_text(d.drive.dq_max),
-                   model::to_text(d.prepositioning.dq_max));
-        child.rule(
-            d.prepositioning.drive.ddq_max <= d.drive.ddq_max, kBrake.of(d.gantry_unit),
-            "must not exceed the acceleration of the drive, " + model::to_text(d.drive.ddq_max),
-            model::to_text(d.prepositioning.drive.ddq_max));
-      },
-      "how the gantry moves along with the hand");
+  describe_prepositioning(v, d);
   v.group(
       "estimation",
       [&](auto& child) {

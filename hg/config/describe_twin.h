@@ -38,7 +38,7 @@ struct TwinDraft {
   Placement placement;
   bool gravity = false;
   bool floating_root = false;
-  std::string root_link, tip_link;
+  ChainPart part;
   Eigen::Vector3d force_ref = Eigen::Vector3d::Zero(), torque_ref = Eigen::Vector3d::Zero();
   double mass_scale = 1.0;
   std::vector<std::string> joint_names, frame_names;
@@ -75,9 +75,6 @@ void describe_chain(V& v, TwinDraft& d) {
   v.flag("gravity", d.gravity, "whether the twin's links have weight");
   v.flag("floating_root", d.floating_root,
          "whether the root link of the URDF moves freely, by a joint 'root'");
-  v.words("root_link", d.root_link, "first link of the chain, for a URDF with more than the twin");
-  v.words("tip_link", d.tip_link,
-          "last link of the chain; joints beyond or beside it stand still at 0");
 }
 
 /// What may change while the twin runs and belongs to no joint.

@@ -10,33 +10,25 @@
 #include "hg/config/read_chain.h"
 #include "hg/config/tool.h"
 #include "hg/core/error.h"
-#include "hg/model/urdf.h"
 
 namespace hg::config {
 namespace {
 
-// Of a URDF that is wrong the chain tells what.
-std::vector<std::string> link_names(const std::string& urdf) {
-  std::vector<std::string> names;
-  try {
-    for (const model::UrdfLink& link : model::read_urdf_text(urdf, "").links) {
-      names.push_back(link.name);
-    }
-  } catch (const SetupError&) {
+std::optional<model::Chain> make_chain(LoaderFile& file, const DeviceDraft& draft,
+                                       const std::optional<UrdfText>& urdf,
+                                       const std::optional<Tool>& tool) {
+  if (!urdf || !draft.part.is_usable) return no_chain(file);
+  model::ChainOptions options = {.root_link = name_of(draft.link_names, draft.part.root_link),
+                                 .tip_link = name_of(draft.link_names, draft.part.tip_link)};
+  if (tool && draft.flange >= 0) {
+    options.tool = tool->body;
+    options.tool->link = name_of(draft.link_names, draft.flange);
   }
-  return names;
-}
-
-model::ChainOptions chain_options(const DeviceDraft& draft, const std::optional<Tool>& tool) {
-  model::ChainOptions options = {.root_link = draft.root_link, .tip_link = draft.tip_link};
-  if (!tool) return options;
-  options.tool = tool->body;
-  options.tool->link = draft.link_names[static_cast<std::size_t>(draft.flange)];
-  return options;
+  return read_chain(file, *urdf, options);
 }
 
 std::optional<Tool> read_tool(LoaderFile& file, const DeviceDraft& draft) {
-  if (draft.tool.empty() || draft.flange < 0) return {};
+  if (draft.tool.empty()) return {};
   try {
     return load_tool(draft.tool, file.sources);
   } catch (const SetupError& error) {
@@ -99,9 +91,6 @@ void check_joints(Loader& loader, const model::Chain& chain, const DeviceDraft& 
     const DeviceJoint& joint = draft.joints[static_cast<std::size_t>(i)];
     loader.rule(chain.joints()[static_cast<std::size_t>(i)].nv == 1, "manipulator",
                 "a device has no floating joints", "'" + joint.name + "'");
-    loader.rule(std::isfinite(joint.limits.dq_max) && std::isfinite(joint.limits.ddq_max), "joints",
-                joint.name + " needs " + std::string(kSpeed.of(joint.unit)) + " and " +
-                    std::string(kAcceleration.of(joint.unit)));
   }
   for (const rendering::VirtualJoint& sum : draft.virtual_joints) {
     for (int i = 0; i < sum.weights.size(); ++i) {
@@ -122,6 +111,24 @@ void check_joints(Loader& loader, const model::Chain& chain, const DeviceDraft& 
                 draft.manipulator_names[named] + " must be within the limits of the joint",
                 model::to_text(draft.posture[i]));
   }
+}
+
+void check_ratings(LoaderFile& file, const DeviceDraft& draft) {
+  for (int i : draft.manipulator) {
+    const DeviceJoint& joint = draft.joints[static_cast<std::size_t>(i)];
+    if (std::isfinite(joint.limits.dq_max) && std::isfinite(joint.limits.ddq_max)) continue;
+    const std::string item = "joints." + joint.name;
+    file.faults.add(file.places.nearest(item), item,
+                    "needs " + std::string(kSpeed.of(joint.unit)) + " and " +
+                        std::string(kAcceleration.of(joint.unit)));
+  }
+}
+
+// Of a list of joints that is not usable either spelling of a key counts.
+JointUnit gantry_unit(const DeviceDraft& draft) {
+  if (!draft.has_joints) return JointUnit::kEither;
+  if (draft.gantry.empty()) return JointUnit::kLength;
+  return draft.joints[static_cast<std::size_t>(draft.gantry[0])].unit;
 }
 
 // Without a usable list of joints every name counts: one fault is enough.
@@ -205,24 +212,24 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
   std::optional<Tool> tool;
   load_file(file, [&](Loader& loader) {
     describe_chain(loader, draft);
-    const std::string urdf = read_urdf(file, draft.urdf);
-    draft.link_names = link_names(urdf);
+    const std::optional<UrdfText> urdf = read_urdf(file, draft.urdf);
+    if (urdf) draft.link_names = urdf->link_names;
+    describe(loader, draft.part, draft.link_names);
     describe_tool(loader, draft);
     tool = read_tool(file, draft);
-    chain = parse_chain(file, draft.urdf, urdf, chain_options(draft, tool));
-    take_joints(*chain, draft);
+    chain = make_chain(file, draft, urdf, tool);
+    if (chain) take_joints(*chain, draft);
     describe_structure(loader, draft);
-    if (tool) draft.handle = chain->frame(tool->body.handle);
-    draft.gantry_unit = draft.gantry.empty()
-                            ? JointUnit::kLength
-                            : draft.joints[static_cast<std::size_t>(draft.gantry[0])].unit;
+    if (chain && tool && draft.flange >= 0) draft.handle = chain->frame(tool->body.handle);
+    draft.gantry_unit = gantry_unit(draft);
     draft.manipulator_names = manipulator_names(draft);
     describe_limits(loader, draft);
     describe_behaviour(loader, draft);
-    if (!draft.has_joints) return;
+    if (!chain || !draft.has_joints) return;
     check_order(loader, *chain, draft);
     check_gantry(loader, *chain, draft);
     check_joints(loader, *chain, draft);
+    check_ratings(file, draft);
   });
 
   Device device = {.name = draft.name,

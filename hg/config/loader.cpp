@@ -125,6 +125,7 @@ bool Loader::number(std::string_view key, double& value, const Range& range, std
 
 bool Loader::joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,
                           std::string_view text, Need need) {
+  if (unit == JointUnit::kEither && is_given(key.length)) unit = JointUnit::kLength;
   return number(key.of(unit), value, range, text, need);
 }
 
@@ -372,6 +373,7 @@ bool Loader::read_name(const YAML::Node& node, const std::string& item, Names na
   }
   const auto found = std::ranges::find(names, node.Scalar());
   if (found == names.end()) {
+    if (is_unknown(names)) return false;
     fault(node, item,
           "must be " + std::string(kind) + ", got " + shown(node) +
               did_you_mean(node.Scalar(), names));
@@ -391,6 +393,7 @@ bool Loader::each_by_name(std::string_view key, Names names, std::string_view ki
     return false;
   }
   const Loader child(entry->value, item_of(key), file_);
+  if (is_unknown(names)) return false;
   for (const Entry& named : child.entries_) {
     const auto found = std::ranges::find(names, named.key);
     const std::string item = child.item_of(named.key);
@@ -404,6 +407,8 @@ bool Loader::each_by_name(std::string_view key, Names names, std::string_view ki
   }
   return true;
 }
+
+bool Loader::is_unknown(Names names) const { return names.empty() && !file_.knows_names; }
 
 std::string Loader::item_of(std::string_view key) const {
   std::string item = item_;

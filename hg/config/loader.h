@@ -28,6 +28,8 @@ struct LoaderFile {
   SourceReader& sources;
   Faults faults;
   Places places = {};
+  /// False: without a chain no joint or link has a name, and any name is taken as right.
+  bool knows_names = true;
 };
 
 class Loader {
@@ -39,7 +41,7 @@ class Loader {
 
   bool number(std::string_view key, double& value, const Range& range, std::string_view text,
               Need need = Need::kOptional);
-  /// A number whose key depends on the joint: rad family or m family.
+  /// A number whose key depends on the joint: rad family or m family; of an unknown joint either.
   bool joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,
                     std::string_view text, Need need = Need::kOptional);
   /// [x, y, z].
@@ -133,6 +135,8 @@ class Loader {
                  std::string_view kind, int& index);
   bool each_by_name(std::string_view key, Names names, std::string_view kind,
                     const std::function<void(const Entry&, const std::string&, int)>& read);
+  /// Whether these are names of a chain that could not be read.
+  bool is_unknown(Names names) const;
   std::string item_of(std::string_view key) const;
   void fault(const YAML::Node& node, const std::string& item, const std::string& what);
 

@@ -1,23 +1,37 @@
 /// Chains from the URDFs that configuration files name.
+///
+/// Where there is no chain the fault is told, and the rest of the file is read without the names of
+/// joints and links: LoaderFile::knows_names.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "hg/config/loader.h"
 #include "hg/model/chain.h"
 
 namespace hg::config {
 
-/// The text of `urdf`. Throws SetupError with all faults of `file` so far if there is none.
-std::string read_urdf(LoaderFile& file, const std::filesystem::path& urdf);
+/// A URDF that could be read link by link and joint by joint.
+struct UrdfText {
+  std::filesystem::path file;
+  std::string text;
+  std::vector<std::string> link_names;
+};
 
-/// The chain in a text of `urdf`. Throws SetupError with all faults of `file` so far if there is
-/// none: without a chain no name in the rest of the file means anything.
-model::Chain parse_chain(LoaderFile& file, const std::filesystem::path& urdf,
-                         const std::string& text, const model::ChainOptions& options);
-/// Both at once.
-model::Chain read_chain(LoaderFile& file, const std::filesystem::path& urdf,
-                        const model::ChainOptions& options);
+/// Empty, and told, where `urdf` cannot be read; an empty path has been told before.
+std::optional<UrdfText> read_urdf(LoaderFile& file, const std::filesystem::path& urdf);
+
+/// Notes that there is no chain, for a reason that has been told.
+std::optional<model::Chain> no_chain(LoaderFile& file);
+
+/// The name with this index; empty for -1.
+std::string name_of(const std::vector<std::string>& names, int index);
+
+/// Empty, and told, where the URDF holds no such chain.
+std::optional<model::Chain> read_chain(LoaderFile& file, const UrdfText& urdf,
+                                       const model::ChainOptions& options);
 
 }  // namespace hg::config

@@ -35,6 +35,7 @@ std::string device_table() {
   draft.joints.emplace_back();  // stands for every joint
   DocWriter writer;
   describe_chain(writer, draft);
+  describe(writer, draft.part, {});
   describe_tool(writer, draft);
   describe_structure(writer, draft);
   describe_limits(writer, draft);
@@ -55,6 +56,7 @@ std::string twin_table() {
   draft.scalar_joints.push_back(0);
   DocWriter writer;
   describe_chain(writer, draft);
+  describe(writer, draft.part, {});
   describe_joints(writer, draft);
   return writer.table();
 }

@@ -16,21 +16,36 @@
 namespace hg::config {
 namespace {
 
-model::Chain make_chain(LoaderFile& file, TwinDraft& draft) {
-  const model::ChainOptions options = {.T_B_root = pose_of(draft.placement),
-                                       .gravity = draft.gravity,
-                                       .floating_root = draft.floating_root,
-                                       .root_link = draft.root_link,
-                                       .tip_link = draft.tip_link};
-  if (!draft.is_free_body) return read_chain(file, draft.urdf, options);
+std::optional<model::Chain> make_free_body(LoaderFile& file, TwinDraft& draft,
+                                           const model::ChainOptions& options) {
   draft.body.inertia = draft.principal_inertia.asDiagonal();
   try {
     return model::Chain::free_body(draft.body, options);
   } catch (const SetupError& error) {
     file.faults.add_complete(file.path.generic_string() + ": free_body: " + error.what());
-    file.faults.throw_if_any();
-    throw;
+    return no_chain(file);
   }
+}
+
+std::optional<model::Chain> make_chain(LoaderFile& file, Loader& loader, TwinDraft& draft) {
+  std::optional<UrdfText> urdf;
+  if (!draft.is_free_body) urdf = read_urdf(file, draft.urdf);
+  const std::vector<std::string> links = urdf ? urdf->link_names : std::vector<std::string>();
+  describe(loader, draft.part, links);
+  model::ChainOptions options = {.T_B_root = pose_of(draft.placement),
+                                 .gravity = draft.gravity,
+                                 .floating_root = draft.floating_root};
+  if (draft.is_free_body) return make_free_body(file, draft, options);
+  if (!urdf || !draft.part.is_usable) return no_chain(file);
+  options.root_link = name_of(links, draft.part.root_link);
+  options.tip_link = name_of(links, draft.part.tip_link);
+  return read_chain(file, *urdf, options);
+}
+
+// Stands for all joints where there is no chain, of either unit and without limits.
+void take_unknown_joint(TwinDraft& draft) {
+  draft.joints.emplace_back();
+  draft.scalar_joints.push_back(0);
 }
 
 void take_joints(const model::Chain& chain, TwinDraft& draft) {
@@ -140,10 +155,14 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
   std::optional<model::Chain> chain;
   load_file(file, [&](Loader& loader) {
     describe_chain(loader, draft);
-    chain = make_chain(file, draft);
-    take_joints(*chain, draft);
+    chain = make_chain(file, loader, draft);
+    if (chain) {
+      take_joints(*chain, draft);
+      check_types(loader, *chain);
+    } else {
+      take_unknown_joint(draft);
+    }
     describe_joints(loader, draft);
-    check_types(loader, *chain);
   });
 
   Vector6 w_ref;

@@ -18,7 +18,7 @@ struct Twin {
   Pose T_B_root;               ///< placement of the root link
   rendering::TwinModel model;
   std::vector<SourceText> sources;  ///< the YAML file first
-  Places places;  ///< of the keys of the YAML file
+  Places places;                    ///< of the keys of the YAML file
 };
 
 /// Throws SetupError with all faults of the file, one per line.

@@ -74,8 +74,10 @@ TEST(BadDevice, UnknownJointsAndFramesAreNamed) {
             "'handle'?");
   EXPECT_EQ(
       device_message(7, "  n1: {ddq_max_rad_per_s2: 12}"),
-      "device.yaml:7:3: joints.n1: must be a joint of the URDF, got 'n1', did you mean 'm1'?\n"
-      "device.yaml:7:3: joints: m1 needs dq_max_rad_per_s and ddq_max_rad_per_s2");
+      "device.yaml:6:1: joints.m1: needs dq_max_rad_per_s and ddq_max_rad_per_s2\n"
+      "device.yaml:7:3: joints.n1: must be a joint of the URDF, got 'n1', did you mean 'm1'?");
+  EXPECT_EQ(device_message(9, "  m3: {dq_max_rad_per_s: 1}"),
+            "device.yaml:9:3: joints.m3: needs dq_max_rad_per_s and ddq_max_rad_per_s2");
 }
 
 TEST(BadDevice, JointsMustBeThoseOfTheUrdfInItsOrder) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 #include <string>
 
@@ -128,6 +129,65 @@ TEST(OwnDevice, WithoutAGantryNothingOfItIsGiven) {
       message("handle: l7\nroot_link: l1\nprepositioning: {k_ppu_1_per_s: 4}\n");
   EXPECT_EQ(text, "device.yaml:6:17: prepositioning: concerns the gantry, and there is none");
   EXPECT_EQ(message("handle: l7\nroot_link: l1\n"), "no error");
+}
+
+TEST(OwnDevice, WithoutPrepositioningTheGantryKeepsWithinItsDrive) {
+  const auto load = [](const std::string& rest) {
+    SourceReader reader = reader_of(kGantry + "handle: l7\n" + rest, arm_urdf("revolute"), kTool);
+    return load_device("device.yaml", reader);
+  };
+  const Device slow = load("drive: {dq_max_rad_per_s: 0.3, ddq_max_rad_per_s2: 0.5}\n");
+  EXPECT_EQ(slow.prepositioning.dq_max, 0.3);
+  EXPECT_EQ(slow.prepositioning.drive.ddq_max, 0.5);
+  EXPECT_EQ(slow.monitor.gantry_speed_max, 0.3);
+  EXPECT_EQ(load("drive: {dq_max_rad_per_s: 9}\n").prepositioning.dq_max,
+            prepositioning::Config().dq_max);
+  EXPECT_EQ(message(kGantry + "handle: l7\ndrive: {dq_max_rad_per_s: 0.3}\nprepositioning: "
+                              "{dq_max_rad_per_s: 0.4}\n"),
+            "device.yaml:8:36: prepositioning.dq_max_rad_per_s: must not exceed the speed of the "
+            "drive, 0.3, got 0.4");
+}
+
+TEST(OwnDevice, WithoutAChainTheRestOfTheFileIsReadAllTheSame) {
+  const std::string faults = "rate_Hz: -5\nsynchronisation: {kD_tran_1_per_s: -10}\n";
+  const std::string told =
+      "device.yaml:9:10: rate_Hz: must be 100 .. 20000, got -5\n"
+      "device.yaml:10:36: synchronisation.kD_tran_1_per_s: must be > 0, got -10";
+  const auto names = [&](const std::string& gantry) {
+    return gantry + "tool: tool.yaml\nflange: l7\ndrive: {dq_max_rad_per_s: 1}\n" + faults +
+           "virtual_joints:\n  - {name: sum, weights: {j2: 1}, dq_max_rad_per_s: 1, "
+           "ddq_max_rad_per_s2: 1}\n";
+  };
+  const std::string broken = message(names(kGantry), "<robot name='arm'><link");
+  EXPECT_EQ(broken.substr(0, told.size()), told) << broken;
+  const std::string rest = broken.substr(told.size());
+  EXPECT_EQ(rest.find("\narm.urdf:1: "), 0u) << broken;
+  EXPECT_EQ(rest.find('\n', 1), std::string::npos) << broken;
+
+  // the link can still be checked where it is the shape that is wrong
+  std::string branched = arm_urdf("revolute");
+  const std::string parent = "<parent link='l6'/>";
+  branched.replace(branched.find(parent), parent.size(), "<parent link='l5'/>");
+  const std::string shape = message(names(kGantry), branched);
+  EXPECT_EQ(shape.substr(0, told.size()), told) << shape;
+  EXPECT_NE(shape.find("branches into"), std::string::npos) << shape;
+  EXPECT_EQ(std::count(shape.begin(), shape.end(), '\n'), 2) << shape;
+}
+
+TEST(OwnDevice, WithoutAChainTheToolIsReadAllTheSame) {
+  const std::string faults =
+      message(kGantry + "tool: tool.yaml\nflange: l7\n", "<robot", "name: bar\nmas_kg: 1\n");
+  EXPECT_NE(faults.find("tool.yaml:2:1: mas_kg: unknown key"), std::string::npos) << faults;
+  EXPECT_NE(faults.find("arm.urdf:1: "), std::string::npos) << faults;
+}
+
+TEST(OwnDevice, TheEndsOfTheChainAreNamedAtTheirKeys) {
+  EXPECT_EQ(message("handle: l7\nroot_link: m1\n"),
+            "device.yaml:5:12: root_link: must be a link of the URDF, got 'm1', did you mean "
+            "'l1'?");
+  EXPECT_EQ(message("handle: l7\ntip_link: m7\nrate_Hz: 1\n"),
+            "device.yaml:5:11: tip_link: must be a link of the URDF, got 'm7', did you mean 'l7'?\n"
+            "device.yaml:6:10: rate_Hz: must be 100 .. 20000, got 1");
 }
 
 }  // namespace

@@ -65,6 +65,21 @@ TEST(Chains, OfBranchedUrdfsAreChosenByTheirLastLink) {
             "knock");
 }
 
+TEST(Chains, ThatCannotBeReadLeaveTheRestOfTheFileToBeRead) {
+  EXPECT_EQ(message_of([] {
+              load(
+                  "name: door\nurdf: door.urdf\ntip_link: handl\nend_effector: handle\n"
+                  "mass_scale: -1\njoints: {hinge: {q_min_rad: 0}}\n"
+                  "locks: [{name: bolt, joint: bolt, position_m: left}]\n"
+                  "conditional_limits: [{name: c, joint: hinge, dq_max_rad_per_s: 1, "
+                  "while: {bolt: {above_m: 0}}}]\n");
+            }),
+            "door.yaml:3:11: tip_link: must be a link of the URDF, got 'handl', did you mean "
+            "'handle'?\n"
+            "door.yaml:5:13: mass_scale: must be 0.1 .. 10, got -1\n"
+            "door.yaml:7:47: locks[0].position_m: must be a number in m, got 'left'");
+}
+
 TEST(Closer, IsReadWithTheUnitsOfItsJoint) {
   const Twin twin = load(head(
       "joints:\n  hinge: {closer: {torque_Nm: 3, stiffness_Nm_per_rad: 4, speed_rad_per_s: 1.2}}\n"
