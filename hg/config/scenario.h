@@ -20,7 +20,7 @@ namespace hg::config {
 struct Scenario {
   std::string title;
   std::string description;  ///< one sentence
-  double duration_s = 0.0;
+  double duration_s = 0.0;  ///< of the run, also where the script is longer; 0 = as the script
   Device device;
   Twin twin;
   user::PersonKind person = user::PersonKind::kNone;
