@@ -13,6 +13,7 @@ namespace hg::viewer_server {
 /// those meshes in `assets`. Looked for: relative names beside the URDF; package://NAME/PATH in the
 /// folders above it, and in those of ROS_PACKAGE_PATH. What is not found keeps its name: the page
 /// draws bars in its place. Throws SetupError when the URDF cannot be read.
-std::string with_meshes(const std::filesystem::path& urdf, std::string_view folder, AssetTable& assets);
+std::string with_meshes(const std::filesystem::path& urdf, std::string_view folder,
+                        AssetTable& assets);
 
 }  // namespace hg::viewer_server
