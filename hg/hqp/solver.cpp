@@ -40,6 +40,7 @@ Status solve_levels(const Problem& problem, const Options& options, int& levels,
                     Workspace& work) noexcept {
   const int all_levels = levels;
   make_consistent(problem, levels, work);
+  work.direct_levels = 0;
   const int guesses = std::min(kGuesses, options.max_iterations);
   if (solve_by_guesses(problem, options, levels, guesses, iterations, work)) {
     return Status::kSolved;
@@ -52,6 +53,7 @@ Status solve_levels(const Problem& problem, const Options& options, int& levels,
 
   // the same active set always gives the same bits, whichever way it was found
   work.saved = work.point;
+  work.direct_levels = 0;
   const int proofs = std::min(iterations + kProofs, options.max_iterations);
   if (!solve_by_guesses(problem, options, levels, proofs, iterations, work))
     work.point = work.saved;

@@ -17,12 +17,13 @@ Point::Point(const Capacity& c)
 
 Workspace::Workspace(const Capacity& c)
     : elimination(c.variables, c.rows),
+      direct(c.variables, c.rows),
       cone(c.variables, 2 * c.rows),
       point(c),
       saved(c),
       value(at(c.rows)),
-      is_held(at(c.variables)),
       is_frozen(at(c.variables)),
+      direct_rank_at_level(at(c.levels) + 1),
       mu(c.variables),
       slope(at(c.rows)),
       is_fixed(at(c.rows)),
@@ -32,6 +33,7 @@ Workspace::Workspace(const Capacity& c)
   targets.reserve(at(c.rows));
   touched.reserve(2 * at(c.rows));
   held.reserve(at(c.variables));
+  released.reserve(at(c.variables));
 }
 
 double tolerance(const Problem& problem, const Options& options, const Workspace& work, int row,

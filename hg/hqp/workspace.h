@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hg/hqp/cone.h"
+#include "hg/hqp/direct_elimination.h"
 #include "hg/hqp/elimination.h"
 #include "hg/hqp/problem.h"
 #include "hg/hqp/rows.h"
@@ -30,19 +31,23 @@ struct Workspace {
   explicit Workspace(const Capacity& capacity);
 
   Elimination elimination;
+  DirectElimination direct;
   Cone cone;
 
   Point point;
   Point saved;                ///< the same, put aside
   double x_norm = 0.0;        ///< largest |x| met in this solve: rounding errors scale with it
   std::vector<double> value;  ///< c x by row
-  std::vector<std::uint8_t> is_held;    ///< by pivot: a row at a bound, not a least-squares row
   std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
+  std::vector<int> released;            ///< held rows that pull
+  bool is_direct = false;               ///< the pivots of `point` are those of `direct`
+  int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state
+  std::vector<int> direct_rank_at_level;
 
   std::vector<TargetRow> targets;
   std::vector<TouchedRow> touched;
   std::vector<TouchedRow> held;  ///< pivots of the level-by-level method, after the fixed ones
-  Eigen::VectorXd mu;            ///< their multipliers
+  Eigen::VectorXd mu;            ///< multipliers, by pivot
   std::vector<double> slope;     ///< c d by row, d the search direction
   std::vector<std::uint8_t> is_fixed;       ///< by row: eliminated for good
   std::vector<std::uint8_t> skipped_sides;  ///< by row: sides that are no obstacle to a step
