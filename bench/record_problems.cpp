@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   }
   try {
     for (int i = 2; i < argc; ++i) {
-      for (const char* law : {"gauss", "paper"}) hg::record(argv[i], law, argv[1]);
+      for (const char* law : {"gauss"}) hg::record(argv[i], law, argv[1]);
     }
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
