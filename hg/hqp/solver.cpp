@@ -11,8 +11,8 @@
 namespace hg::hqp {
 namespace {
 
-constexpr int kGuesses = 4;  // tries to repair a guess; from far away the other method is faster
-constexpr int kProofs = 3;   // repairs of that method's active set, which is almost always right
+constexpr int kGuesses = 32;  // tries to repair a guess; hardly ever more than 16 in control loops
+constexpr int kProofs = 3;    // repairs of that method's active set, which is almost always right
 
 int find_bad_row(const Problem& problem) noexcept {
   for (int row = 0; row < problem.rows(); ++row) {

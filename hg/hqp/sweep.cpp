@@ -146,10 +146,12 @@ bool find_multipliers(const Problem& problem, const LevelGradient& size, int lev
   return true;
 }
 
-// Freezes those held rows that push against the level, and adds those that pull to work.released.
-void judge_multipliers(const Problem& problem, const LevelGradient& size, int level, int first_held,
-                       Workspace& work) noexcept {
+// Freezes those held rows that push against the level; returns the one that pulls most, -1: none.
+int judge_multipliers(const Problem& problem, const LevelGradient& size, int level, int first_held,
+                      Workspace& work) noexcept {
+  int pulling_row = -1;
   double largest_push = 0.0;
+  double largest_pull = size.surely_pulling();
   for (int t = work.point.rank_at_level[at(level)] - 1; t >= first_held; --t) {
     if (!is_held_pivot(work, t)) continue;
     const int row = pivot_row(work, t);
@@ -162,32 +164,30 @@ void judge_multipliers(const Problem& problem, const LevelGradient& size, int le
     if (work.is_frozen[at(t)]) continue;
     if (push > size.surely_pushing()) {
       work.is_frozen[at(t)] = true;
-    } else if (push < -size.surely_pulling()) {
-      work.is_frozen[at(t)] = true;  // once is enough
-      work.released.push_back(row);
+    } else if (-push > largest_pull) {
+      largest_pull = -push;
+      pulling_row = row;
     }
   }
+  return pulling_row;
 }
 
-// Finds the held rows that pull; false when multipliers are in doubt.
-bool check_multipliers(const Problem& problem, const Options& options, int levels,
-                       Workspace& work) noexcept {
-  const int rank = work.point.rank_at_level[at(levels)];
-  int first_held = 0;
-  while (first_held < rank && !is_held_pivot(work, first_held)) ++first_held;
-  std::fill_n(work.is_frozen.begin(), rank, false);
-  work.released.clear();
-
-  const int end = levels == problem.levels() && options.minimum_norm ? levels + 1 : levels;
-  for (int level = 0; level < end; ++level) {
-    work.point.blocking_row[at(level)] = -1;
-    if (work.point.rank_at_level[at(level)] <= first_held) continue;
-    const LevelGradient size = level_gradient(problem, options, level, work);
-    if (size.is_zero) continue;
-    if (!find_multipliers(problem, size, level, first_held, work)) return false;
-    judge_multipliers(problem, size, level, first_held, work);
+// Gradient of the level as guessed: of the quadratic piece that the states stand for.
+LevelGradient guess_gradient(const Problem& problem, const Options& options, int level,
+                             Workspace& work) noexcept {
+  if (level == problem.levels()) return level_gradient(problem, options, level, work);
+  LevelGradient result = {.is_zero = true, .scale = 0.0, .rounding = 0.0};
+  work.gradient.head(problem.variables()).setZero();
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    const RowState state = work.point.state[at(row)];
+    if (problem.norm(row) == 0.0 || state == RowState::kInactive || is_held_state(state)) continue;
+    const double bound = bound_of(problem.bounds(row), state);
+    if (add_pull(problem, row, bound, work, result) >
+        tolerance(problem, options, work, row, bound)) {
+      result.is_zero = false;
+    }
   }
-  return true;
+  return result;
 }
 
 // A guess that differs from the last one in this row.
@@ -220,31 +220,79 @@ RowState next_state(const Problem& problem, const Options& options, int row,
   return is_lower ? RowState::kLower : RowState::kUpper;
 }
 
-// Corrects the state of the row that is farthest off, of the highest level where one is off: rows
-// of lower levels may only follow from it. False when no state contradicts its value.
-bool correct_worst_row(const Problem& problem, const Options& options, int levels,
-                       Workspace& work) noexcept {
-  for (int level = 0; level < levels; ++level) {
-    int worst_row = -1;
-    double worst = -1.0;
-    for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-      const RowState next = next_state(problem, options, row, work);
-      RowState& state = work.point.state[at(row)];
-      const double norm = problem.norm(row);
-      if (is_equality(problem.bounds(row)) || norm == 0.0) {
-        state = next;  // no guess, only a finding
-      } else if (next != state) {
-        const double distance = std::abs(excess(problem.bounds(row), work.value[at(row)])) / norm;
-        if (distance <= worst) continue;
-        worst = distance;
-        worst_row = row;
-      }
+// Corrects the state of the level's row that is farthest off, of those that are not inactive. False
+// when none contradicts its value.
+bool correct_row(const Problem& problem, const Options& options, int level,
+                 Workspace& work) noexcept {
+  int worst_row = -1;
+  double worst = -1.0;
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    RowState& state = work.point.state[at(row)];
+    const double norm = problem.norm(row);
+    const bool is_finding = is_equality(problem.bounds(row)) || norm == 0.0;  // no guess
+    if (state == RowState::kInactive && !is_finding) continue;
+    const RowState next = next_state(problem, options, row, work);
+    if (is_finding) {
+      state = next;
+    } else if (next != state) {
+      const double distance = std::abs(excess(problem.bounds(row), work.value[at(row)])) / norm;
+      if (distance <= worst) continue;
+      worst = distance;
+      worst_row = row;
     }
-    if (worst_row < 0) continue;
-    set_guess(problem, worst_row, next_state(problem, options, worst_row, work), work);
-    return true;
   }
-  return false;
+  if (worst_row < 0) return false;
+  set_guess(problem, worst_row, next_state(problem, options, worst_row, work), work);
+  return true;
+}
+
+// Holds the inactive row that is violated most, relative to its size: a limit that is far off
+// beside a small one that acts is mostly a consequence. False when none is violated.
+bool hold_row(const Problem& problem, const Options& options, int levels,
+              Workspace& work) noexcept {
+  int worst_row = -1;
+  double worst = 0.0;
+  const int end = levels > 0 ? problem.end_row(levels - 1) : 0;
+  for (int row = 0; row < end; ++row) {
+    if (work.point.state[at(row)] != RowState::kInactive || problem.norm(row) == 0.0) continue;
+    const double distance = violation(problem, options, work, row);
+    if (distance == 0.0) continue;
+    const double value = work.value[at(row)];
+    const double share = std::abs(distance) / (std::abs(value) + std::abs(value - distance));
+    if (share <= worst) continue;
+    worst = share;
+    worst_row = row;
+  }
+  if (worst_row < 0) return false;
+  set_guess(problem, worst_row, next_state(problem, options, worst_row, work), work);
+  return true;
+}
+
+enum class Judgement { kProven, kCorrected, kInDoubt };
+
+// Level after level: first rows that are not where the guess has them, then held rows that pull;
+// at last violated ones. One row is corrected at a time.
+Judgement judge_guess(const Problem& problem, const Options& options, int levels,
+                      Workspace& work) noexcept {
+  const int rank = work.point.rank_at_level[at(levels)];
+  int first_held = 0;
+  while (first_held < rank && !is_held_pivot(work, first_held)) ++first_held;
+  std::fill_n(work.is_frozen.begin(), rank, false);
+
+  const int end = levels == problem.levels() && options.minimum_norm ? levels + 1 : levels;
+  for (int level = 0; level < end; ++level) {
+    if (level < levels && correct_row(problem, options, level, work)) return Judgement::kCorrected;
+    work.point.blocking_row[at(level)] = -1;
+    if (work.point.rank_at_level[at(level)] <= first_held) continue;
+    const LevelGradient size = guess_gradient(problem, options, level, work);
+    if (size.is_zero) continue;
+    if (!find_multipliers(problem, size, level, first_held, work)) return Judgement::kInDoubt;
+    const int pulling_row = judge_multipliers(problem, size, level, first_held, work);
+    if (pulling_row < 0) continue;
+    set_guess(problem, pulling_row, RowState::kInactive, work);
+    return Judgement::kCorrected;
+  }
+  return hold_row(problem, options, levels, work) ? Judgement::kCorrected : Judgement::kProven;
 }
 
 }  // namespace
@@ -266,15 +314,15 @@ void make_consistent(const Problem& problem, int levels, Workspace& work) noexce
 bool solve_guess(const Problem& problem, const Options& options, int levels,
                  Workspace& work) noexcept {
   work.is_direct = eliminate_directly(problem, options, levels, work);
-  while (true) {
-    if (!work.is_direct && !eliminate_orthogonally(problem, options, levels, work)) return false;
+  if (work.is_direct) {
     update_values(problem, levels, work);
-    if (correct_worst_row(problem, options, levels, work)) return false;
-    if (check_multipliers(problem, options, levels, work)) break;
+    const Judgement judgement = judge_guess(problem, options, levels, work);
+    if (judgement != Judgement::kInDoubt) return judgement == Judgement::kProven;
     work.is_direct = false;
   }
-  for (const int row : work.released) set_guess(problem, row, RowState::kInactive, work);
-  return work.released.empty();
+  if (!eliminate_orthogonally(problem, options, levels, work)) return false;
+  update_values(problem, levels, work);
+  return judge_guess(problem, options, levels, work) == Judgement::kProven;
 }
 
 }  // namespace hg::hqp

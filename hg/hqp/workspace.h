@@ -39,7 +39,6 @@ struct Workspace {
   double x_norm = 0.0;        ///< largest |x| met in this solve: rounding errors scale with it
   std::vector<double> value;  ///< c x by row
   std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
-  std::vector<int> released;            ///< held rows that pull
   bool is_direct = false;               ///< the pivots of `point` are those of `direct`
   int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state
   std::vector<int> direct_rank_at_level;
@@ -97,6 +96,10 @@ void collect_targets(const Problem& problem, const Options& options, int level,
 /// Appends the level's inequality rows that x is at a bound of to work.touched. Needs work.value.
 void collect_touched(const Problem& problem, const Options& options, int level,
                      Workspace& work) noexcept;
+
+/// Adds the pull of the row towards `bound` to work.gradient; returns its distance from there.
+double add_pull(const Problem& problem, int row, double bound, Workspace& work,
+                LevelGradient& result) noexcept;
 
 /// Gradient of `level`, of 1/2 |x|^2 for level == problem.levels(); needs work.value.
 LevelGradient level_gradient(const Problem& problem, const Options& options, int level,
