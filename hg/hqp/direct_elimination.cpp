@@ -13,8 +13,8 @@ namespace {
 // and at most the norm of the free directions away from it. Within this factor of the tolerance,
 // the decision is left to the orthogonal elimination.
 constexpr double kDoubt = 1e3;
-// Share of a row's largest number from which a variable is preferred to one that is taken last.
-constexpr double kPreferred = 1e-2;
+// Weight of the numbers of a row in the choice of its variable, for variables that are taken last.
+constexpr double kTakenLast = 1e-2;
 constexpr double kRoundOff = 1e-14;  // a value below this share of its terms is none
 
 }  // namespace
@@ -22,7 +22,7 @@ constexpr double kRoundOff = 1e-14;  // a value below this share of its terms is
 DirectElimination::DirectElimination(int max_variables, int max_rows)
     : pivots_(index(max_variables)),
       pivot_of_variable_(index(max_variables)),
-      is_taken_last_(index(max_variables)),
+      preference_(max_variables),
       R_(max_variables * max_variables),
       L_(max_variables * max_variables),
       y_(max_variables),
@@ -38,10 +38,10 @@ void DirectElimination::reset(const Problem& problem) noexcept {
   n_ = problem.variables();
   rank_ = 0;
   std::fill_n(pivot_of_variable_.begin(), n_, -1);
-  std::fill_n(is_taken_last_.begin(), n_, false);
+  preference_.head(n_).setOnes();
   for (int row = 0; row < problem.rows(); ++row) {
     const int variable = problem.variable(row);
-    if (variable >= 0 && is_equality(problem.bounds(row))) is_taken_last_[index(variable)] = true;
+    if (variable >= 0 && is_equality(problem.bounds(row))) preference_[variable] = kTakenLast;
   }
 }
 
@@ -65,72 +65,68 @@ void DirectElimination::reduce(int first, int rank, double* y_data,
 
 // Judges what is left of a row, and chooses the variable that it would take.
 DirectElimination::Outcome DirectElimination::judge(double norm, double tolerance) noexcept {
-  double largest = 0.0;
-  double largest_preferred = 0.0;
-  int preferred = -1;
-  for (int v = 0; v < n_; ++v) {
-    const double size = std::abs(y_[v]);
-    if (size > largest) {
-      largest = size;
-      variable_ = v;
-    }
-    if (size > largest_preferred && !is_taken_last_[index(v)]) {
-      largest_preferred = size;
-      preferred = v;
-    }
-  }
-  if (largest_preferred > kPreferred * largest) variable_ = preferred;
-  if (largest > kDoubt * tolerance * norm) return Outcome::kIndependent;
-  return largest * kDoubt <= tolerance * norm ? Outcome::kDependent : Outcome::kUnsure;
+  const double largest = y_.head(n_).cwiseAbs().maxCoeff();
+  if (largest * kDoubt <= tolerance * norm) return Outcome::kDependent;
+  if (!(largest > kDoubt * tolerance * norm)) return Outcome::kUnsure;
+  y_.head(n_).cwiseAbs().cwiseProduct(preference_.head(n_)).maxCoeff(&variable_);
+  return Outcome::kIndependent;
 }
 
 // A row of a single variable is left alone when the variable is free, and vanishes when another
 // such row has taken it.
-DirectElimination::Outcome DirectElimination::reduce_unit(const Problem& problem, TargetRow row,
+DirectElimination::Outcome DirectElimination::reduce_unit(TargetRow row, int variable,
                                                           double tolerance) noexcept {
-  const int variable = problem.variable(row.row);
+  factors_.head(rank_).setZero();
+  value_ = row.target;
+  value_scale_ = std::abs(row.target);
   const int t = pivot_of_variable_[index(variable)];
-  std::fill_n(factors_.data(), rank_, 0.0);
   is_unit_ = t < 0;
   variable_ = variable;
   if (t < 0) return Outcome::kIndependent;
-
+  if (pivots_[index(t)].is_unit) {
+    factors_[t] = 1.0;
+    subtract_pivots(t, t + 1);
+    return Outcome::kDependent;
+  }
   y_.head(n_).setZero();
   y_[variable] = 1.0;
-  reduce(t, pivots_[index(t)].is_unit ? t + 1 : rank_, y_.data(), factors_.data());
+  reduce(t, rank_, y_.data(), factors_.data());
+  subtract_pivots(t, rank_);
   return judge(1.0, tolerance);
 }
 
 DirectElimination::Outcome DirectElimination::reduce(const Problem& problem, TargetRow row,
                                                      double tolerance) noexcept {
-  Outcome outcome;
-  if (problem.variable(row.row) >= 0) {
-    outcome = reduce_unit(problem, row, tolerance);
-  } else {
-    y_.head(n_) = VectorView(problem.coefficients(row.row).data(), n_);
-    reduce(0, rank_, y_.data(), factors_.data());
-    is_unit_ = false;
-    outcome = judge(problem.norm(row.row), tolerance);
-  }
+  const int variable = problem.variable(row.row);
+  if (variable >= 0) return reduce_unit(row, variable, tolerance);
+  y_.head(n_) = VectorView(problem.coefficients(row.row).data(), n_);
+  reduce(0, rank_, y_.data(), factors_.data());
+  is_unit_ = false;
   value_ = row.target;
   value_scale_ = std::abs(row.target);
-  for (int s = 0; s < rank_; ++s) {
+  subtract_pivots(0, rank_);
+  return judge(problem.norm(row.row), tolerance);
+}
+
+// What the pivots first..end-1 leave of the target.
+void DirectElimination::subtract_pivots(int first, int end) noexcept {
+  for (int s = first; s < end; ++s) {
     const double term = factors_[s] * pivots_[index(s)].value;
     value_ -= term;
     value_scale_ += std::abs(term);
   }
-  return outcome;
 }
 
 void DirectElimination::append(int row) noexcept {
-  Pivot& pivot = pivots_[index(rank_)];
-  pivot = {.row = row,
-           .variable = variable_,
-           .is_unit = is_unit_,
-           .inverse = is_unit_ ? 1.0 : 1.0 / y_[variable_],
-           .value = value_};
-  if (!is_unit_) reduced_row(rank_) = y_.head(n_);
-  std::copy_n(factors_.data(), rank_, L_.data() + rank_ * n_);
+  pivots_[index(rank_)] = {.row = row,
+                           .variable = variable_,
+                           .is_unit = is_unit_,
+                           .inverse = is_unit_ ? 1.0 : 1.0 / y_[variable_],
+                           .value = value_};
+  if (!is_unit_) {
+    reduced_row(rank_) = y_.head(n_);
+    Eigen::Map<Eigen::VectorXd>(L_.data() + rank_ * n_, rank_) = factors_.head(rank_);
+  }
   pivot_of_variable_[index(variable_)] = rank_;
   ++rank_;
 }
@@ -151,8 +147,9 @@ bool DirectElimination::add_least_squares(const Problem& problem, std::span<cons
     const Outcome outcome = reduce(problem, row, tolerance);
     if (outcome == Outcome::kUnsure) return false;
 
-    double* factors = level_factors_.data() + i * n_;
-    std::fill_n(std::copy_n(factors_.data() + first, rank_ - first, factors), n_ - rank_, 0.0);
+    Eigen::Map<Eigen::VectorXd> factors(level_factors_.data() + i * n_, n_ - first);
+    factors.setZero();
+    factors.head(rank_ - first) = factors_.segment(first, rank_ - first);
     targets_[i] = value_;
     for (int s = first; s < rank_; ++s) targets_[i] += factors_[s] * pivots_[index(s)].value;
     if (outcome == Outcome::kIndependent) {
@@ -202,7 +199,7 @@ double DirectElimination::find_multipliers(const double* g, int rank, int first,
   reduce(0, rank, y_.data(), factors_.data());
   for (int t = rank - 1; t >= first; --t) {
     mu[t] = -factors_[t];
-    factors_.head(t) += mu[t] * VectorView(L_.data() + t * n_, t);
+    if (!pivots_[index(t)].is_unit) factors_.head(t) += mu[t] * VectorView(L_.data() + t * n_, t);
   }
   return y_.head(n_).cwiseAbs().maxCoeff();
 }

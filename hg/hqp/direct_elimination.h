@@ -53,7 +53,7 @@ class DirectElimination {
   struct Pivot {
     int row;
     int variable;
-    bool is_unit;    ///< R_t is a multiple of one variable
+    bool is_unit;    ///< c_t = R_t is a single variable
     double inverse;  ///< 1 / R_t[variable]
     double value;    ///< of R_t x
   };
@@ -62,7 +62,8 @@ class DirectElimination {
   Eigen::Map<Eigen::VectorXd> reduced_row(int t) noexcept { return {R_.data() + t * n_, n_}; }
   void reduce(int first, int rank, double* y, double* factors) const noexcept;
   Outcome reduce(const Problem& problem, TargetRow row, double tolerance) noexcept;
-  Outcome reduce_unit(const Problem& problem, TargetRow row, double tolerance) noexcept;
+  Outcome reduce_unit(TargetRow row, int variable, double tolerance) noexcept;
+  void subtract_pivots(int first, int end) noexcept;
   Outcome judge(double norm, double tolerance) noexcept;
   void append(int row) noexcept;
   void solve_level(const Problem& problem, std::span<const TargetRow> rows, int first) noexcept;
@@ -70,10 +71,10 @@ class DirectElimination {
   int n_ = 0;
   int rank_ = 0;
   std::vector<Pivot> pivots_;
-  std::vector<int> pivot_of_variable_;       ///< -1: free
-  std::vector<std::uint8_t> is_taken_last_;  ///< by variable
-  Eigen::VectorXd R_;                        ///< n x n, row after row
-  Eigen::VectorXd L_;                        ///< same, L_ts for s < t
+  std::vector<int> pivot_of_variable_;  ///< -1: free
+  Eigen::VectorXd preference_;          ///< by variable, 1: may be taken at once
+  Eigen::VectorXd R_;                   ///< n x n, row after row
+  Eigen::VectorXd L_;                   ///< same, L_ts for s < t
 
   // the row under work: y = c - factors R, and the value that is left for y x
   Eigen::VectorXd y_;

@@ -55,13 +55,16 @@ Status solve_levels(const Problem& problem, const Options& options, int& levels,
   work.saved = work.point;
   work.direct_levels = 0;
   const int proofs = std::min(iterations + kProofs, options.max_iterations);
-  if (!solve_by_guesses(problem, options, levels, proofs, iterations, work))
+  if (!solve_by_guesses(problem, options, levels, proofs, iterations, work)) {
     work.point = work.saved;
+    update_values(problem, levels, work);
+  }
   return Status::kSolved;
 }
 
-void read_levels(const Problem& problem, int levels, Workspace& work, Solution& solution) noexcept {
-  update_values(problem, levels, work);
+// Needs work.value.
+void read_levels(const Problem& problem, int levels, const Workspace& work,
+                 Solution& solution) noexcept {
   for (int level = 0; level < levels; ++level) {
     double slack_squared = 0.0;
     for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
