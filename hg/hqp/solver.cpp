@@ -49,7 +49,10 @@ Status solve_levels(const Problem& problem, const Options& options, int& levels,
   const PrimalOutcome outcome =
       solve_level_by_level(problem, options, all_levels, iterations, levels, work);
   if (outcome == PrimalOutcome::kIterationLimit) return Status::kIterationLimit;
-  if (outcome == PrimalOutcome::kNotFinite) return Status::kNumericalFailure;
+  if (outcome == PrimalOutcome::kNotFinite) {
+    update_values(problem, levels, work);
+    return Status::kNumericalFailure;
+  }
 
   // the same active set always gives the same bits, whichever way it was found
   work.saved = work.point;

@@ -220,8 +220,8 @@ RowState next_state(const Problem& problem, const Options& options, int row,
   return is_lower ? RowState::kLower : RowState::kUpper;
 }
 
-// Corrects the state of the level's row that is farthest off, of those that are not inactive. False
-// when none contradicts its value.
+// Corrects the state of the level's row that is farthest from the bound where the guess has it.
+// False when none contradicts its value.
 bool correct_row(const Problem& problem, const Options& options, int level,
                  Workspace& work) noexcept {
   int worst_row = -1;
@@ -235,7 +235,8 @@ bool correct_row(const Problem& problem, const Options& options, int level,
     if (is_finding) {
       state = next;
     } else if (next != state) {
-      const double distance = std::abs(excess(problem.bounds(row), work.value[at(row)])) / norm;
+      const double bound = bound_of(problem.bounds(row), state);
+      const double distance = std::abs(work.value[at(row)] - bound) / norm;
       if (distance <= worst) continue;
       worst = distance;
       worst_row = row;
