@@ -2,8 +2,8 @@
 ///
 ///   record_problems FOLDER SCENARIO...
 ///
-/// makes FOLDER/<law>_<scenario>.hqp from models/scenarios/SCENARIO.yaml for both laws, with
-/// recoverable bounds: an ideal run of the whole cycle on the simulated device.
+/// makes FOLDER/gauss_SCENARIO.hqp for the law `gauss` with recoverable bounds, from a run on the
+/// simulated device.
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -19,13 +19,13 @@
 namespace hg {
 namespace {
 
-void record(const std::string& name, const std::string& law, const std::filesystem::path& folder) {
+void record(const std::string& name, const std::filesystem::path& folder) {
   const config::Scenario scenario =
-      apps::make_scenario({.scenario = name, .law = law, .bounds = "recoverable"});
+      apps::make_scenario({.scenario = name, .law = "gauss", .bounds = "recoverable"});
   cycle::Cycle cycle = assembly::make_cycle(scenario);
   device::SimulatedDevice device = assembly::make_simulated_device(scenario);
   const double end = assembly::planned_duration_s(scenario);
-  std::ofstream file(folder / (law + "_" + name + ".hqp"));
+  std::ofstream file(folder / ("gauss_" + name + ".hqp"));
   const auto sample = std::make_unique<Sample>();
   do {
     device.read(sample->sensors);
@@ -47,9 +47,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   try {
-    for (int i = 2; i < argc; ++i) {
-      for (const char* law : {"gauss"}) hg::record(argv[i], law, argv[1]);
-    }
+    for (int i = 2; i < argc; ++i) hg::record(argv[i], argv[1]);
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;
