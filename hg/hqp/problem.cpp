@@ -96,9 +96,4 @@ int Problem::level_of(int row) const noexcept {
   return static_cast<int>(next - first_row_.begin()) - 1;
 }
 
-std::span<const double> Problem::coefficients(int row) const noexcept {
-  if (variable(row) >= 0) return {};
-  return {coefficients_.data() + index(row) * index(capacity_.variables), index(variables_)};
-}
-
 }  // namespace hg::hqp

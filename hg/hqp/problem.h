@@ -68,7 +68,10 @@ class Problem {
   /// Index of the only variable of a row made by add_bound(), -1 for a dense row.
   int variable(int row) const noexcept { return rows_[index(row)].variable; }
   /// Coefficients of a dense row, one per variable; valid until the problem is destroyed.
-  std::span<const double> coefficients(int row) const noexcept;
+  std::span<const double> coefficients(int row) const noexcept {
+    if (variable(row) >= 0) return {};
+    return {coefficients_.data() + index(row) * index(capacity_.variables), index(variables_)};
+  }
   /// Euclidean norm of the row's coefficients; not finite when one of them is not.
   double norm(int row) const noexcept { return rows_[index(row)].norm; }
 

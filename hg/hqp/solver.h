@@ -1,4 +1,4 @@
-/// Strictly lexicographic least squares with bounds, by orthogonal elimination and active sets.
+/// Strictly lexicographic least squares with bounds, by elimination and active sets.
 ///
 /// Source: [HG] (1)-(6): for p = 1..P minimise 1/2 |w_p|^2 + 1/2 |v_p|^2, keeping all earlier
 /// optimal slacks; then, as an option, |x|.

@@ -17,12 +17,13 @@ Point::Point(const Capacity& c)
 
 Workspace::Workspace(const Capacity& c)
     : elimination(c.variables, c.rows),
+      direct(c.variables, c.rows),
       cone(c.variables, 2 * c.rows),
       point(c),
       saved(c),
       value(at(c.rows)),
-      is_held(at(c.variables)),
       is_frozen(at(c.variables)),
+      direct_rank_at_level(at(c.levels) + 1),
       mu(c.variables),
       slope(at(c.rows)),
       is_fixed(at(c.rows)),
@@ -91,6 +92,17 @@ void collect_touched(const Problem& problem, const Options& options, int level,
   }
 }
 
+double add_pull(const Problem& problem, int row, double bound, Workspace& work,
+                LevelGradient& result) noexcept {
+  const double norm = problem.norm(row);
+  const double distance = work.value[at(row)] - bound;
+  const double factor = problem.weight(row) * problem.weight(row);
+  add_multiple(problem, row, factor * distance, work.gradient.data());
+  result.scale += factor * norm * std::abs(distance);
+  result.rounding += factor * norm * kRoundOff * magnitude(norm, bound, work.x_norm);
+  return std::abs(distance);
+}
+
 LevelGradient level_gradient(const Problem& problem, const Options& options, int level,
                              Workspace& work) noexcept {
   const int n = problem.variables();
@@ -107,11 +119,7 @@ LevelGradient level_gradient(const Problem& problem, const Options& options, int
     const double distance = excess(problem.bounds(row), work.value[at(row)]);
     if (distance == 0.0 || norm == 0.0) continue;
     if (violation(problem, options, work, row) != 0.0) result.is_zero = false;
-    const double factor = problem.weight(row) * problem.weight(row);
-    add_multiple(problem, row, factor * distance, work.gradient.data());
-    result.scale += factor * norm * std::abs(distance);
-    const double bound = work.value[at(row)] - distance;
-    result.rounding += factor * norm * kRoundOff * magnitude(norm, bound, work.x_norm);
+    add_pull(problem, row, work.value[at(row)] - distance, work, result);
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hg/hqp/cone.h"
+#include "hg/hqp/direct_elimination.h"
 #include "hg/hqp/elimination.h"
 #include "hg/hqp/problem.h"
 #include "hg/hqp/rows.h"
@@ -30,19 +31,22 @@ struct Workspace {
   explicit Workspace(const Capacity& capacity);
 
   Elimination elimination;
+  DirectElimination direct;
   Cone cone;
 
   Point point;
   Point saved;                ///< the same, put aside
   double x_norm = 0.0;        ///< largest |x| met in this solve: rounding errors scale with it
   std::vector<double> value;  ///< c x by row
-  std::vector<std::uint8_t> is_held;    ///< by pivot: a row at a bound, not a least-squares row
   std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
+  bool is_direct = false;               ///< the pivots of `point` are those of `direct`
+  int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state
+  std::vector<int> direct_rank_at_level;
 
   std::vector<TargetRow> targets;
   std::vector<TouchedRow> touched;
   std::vector<TouchedRow> held;  ///< pivots of the level-by-level method, after the fixed ones
-  Eigen::VectorXd mu;            ///< their multipliers
+  Eigen::VectorXd mu;            ///< multipliers, by pivot
   std::vector<double> slope;     ///< c d by row, d the search direction
   std::vector<std::uint8_t> is_fixed;       ///< by row: eliminated for good
   std::vector<std::uint8_t> skipped_sides;  ///< by row: sides that are no obstacle to a step
@@ -92,6 +96,10 @@ void collect_targets(const Problem& problem, const Options& options, int level,
 /// Appends the level's inequality rows that x is at a bound of to work.touched. Needs work.value.
 void collect_touched(const Problem& problem, const Options& options, int level,
                      Workspace& work) noexcept;
+
+/// Adds the pull of the row towards `bound` to work.gradient; returns its distance from there.
+double add_pull(const Problem& problem, int row, double bound, Workspace& work,
+                LevelGradient& result) noexcept;
 
 /// Gradient of `level`, of 1/2 |x|^2 for level == problem.levels(); needs work.value.
 LevelGradient level_gradient(const Problem& problem, const Options& options, int level,
