@@ -17,13 +17,13 @@ void require_in_range(const char* item, int value, int min, int max) {
   }
 }
 
+}  // namespace
+
 double norm_of(std::span<const double> v) noexcept {
   double sum = 0.0;
   for (const double value : v) sum += value * value;
   return std::sqrt(sum);
 }
-
-}  // namespace
 
 void check(const Capacity& capacity) {
   require_in_range("hqp capacity: variables", capacity.variables, 1, kMaxVariables);

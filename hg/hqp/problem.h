@@ -93,4 +93,19 @@ class Problem {
   std::vector<double> coefficients_;  ///< row after row, capacity.variables apart
 };
 
+/// Euclidean norm; not finite when one of the numbers is not.
+double norm_of(std::span<const double> v) noexcept;
+
+/// The rule that a row with this content breaks, nullptr: none.
+inline const char* broken_rule(Interval bounds, double weight, double norm) noexcept {
+  if (!(norm < kInfinity)) return "coefficients and their norm must be finite";
+  if (!(bounds.lb <= bounds.ub)) return "lb must not be above ub";
+  if (bounds.lb == kInfinity || bounds.ub == -kInfinity) return "bounds must be met by some number";
+  if (!(weight > 0.0 && weight < kInfinity)) return "the weight must be positive and finite";
+  return nullptr;
+}
+inline const char* broken_rule(const Problem& problem, int row) noexcept {
+  return broken_rule(problem.bounds(row), problem.weight(row), problem.norm(row));
+}
+
 }  // namespace hg::hqp

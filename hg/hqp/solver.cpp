@@ -19,11 +19,7 @@ constexpr int kProofEffort = 12;      // on the result of that method, which is 
 
 int find_bad_row(const Problem& problem) noexcept {
   for (int row = 0; row < problem.rows(); ++row) {
-    const auto [lb, ub] = problem.bounds(row);
-    const double weight = problem.weight(row);
-    const bool is_good = lb <= ub && lb < kInfinity && ub > -kInfinity &&
-                         std::isfinite(problem.norm(row)) && std::isfinite(weight) && weight > 0.0;
-    if (!is_good) return row;
+    if (broken_rule(problem, row) != nullptr) return row;
   }
   return -1;
 }

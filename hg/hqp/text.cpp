@@ -3,14 +3,34 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <ostream>
+#include <utility>
 
 #include "hg/core/error.h"
+#include "hg/core/nearest_name.h"
 
 namespace hg::hqp {
 namespace {
+
+constexpr std::string_view kStateLetters = ".lu=<>";  // in the order of RowState
+
+// options by the name of their member
+constexpr std::array kTolerances = {
+    std::pair{"rank_tolerance", &Options::rank_tolerance},
+    std::pair{"feasibility_tolerance", &Options::feasibility_tolerance}};
+constexpr int kMostIterations = 1'000'000'000;
+
+std::string in_quotes(std::string_view word) { return std::string("'").append(word).append("'"); }
+
+std::string to_text(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof(text), value).ptr};
+}
 
 // Splits a text into lines and the current line into words.
 class Reader {
@@ -35,31 +55,45 @@ class Reader {
     if (!next_line()) fail(expected, "the end of the file");
   }
 
-  void need_word(std::string_view expected) {
-    const std::string_view word = next_word();
-    if (word != expected) fail(describe(expected), describe(word));
+  /// The next word of the line; empty at its end.
+  std::string_view next_word() {
+    const std::size_t begin = line_.find_first_not_of(kBlanks);
+    if (begin == std::string_view::npos) return line_ = {};
+    line_.remove_prefix(begin);
+    const std::string_view word = line_.substr(0, line_.find_first_of(kBlanks));
+    line_.remove_prefix(word.size());
+    return word;
   }
 
-  int need_integer(const char* meaning, int min, int max) {
+  /// Everything up to the end of the line, without blanks around it.
+  std::string_view rest_of_line() {
+    const std::size_t begin = std::min(line_.find_first_not_of(kBlanks), line_.size());
+    const std::string_view rest = line_.substr(begin, line_.find_last_not_of(kBlanks) + 1 - begin);
+    line_ = {};
+    return rest;
+  }
+
+  /// The next word, which must be one of `words`.
+  std::string need_one_of(const std::vector<std::string>& words) {
+    const std::string word(next_word());
+    if (std::find(words.begin(), words.end(), word) == words.end()) fail_word(words, word);
+    return word;
+  }
+
+  int need_integer(const std::string& meaning, int min, int max) {
     const std::string_view word = next_word();
     int value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool is_number = error == std::errc() && end == word.data() + word.size();
-    if (word.empty() || !is_number || value < min || value > max) {
-      fail(std::string(meaning) + " of " + std::to_string(min) + ".." + std::to_string(max),
-           describe(word));
+    if (!reads_as(word, value) || value < min || value > max) {
+      fail(meaning + " of " + std::to_string(min) + ".." + std::to_string(max), describe(word));
     }
     return value;
   }
 
-  double need_number(int position, int count) {
+  /// May be infinite, or not a number.
+  double need_number(const std::string& meaning) {
     const std::string_view word = next_word();
     double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool is_number = error == std::errc() && end == word.data() + word.size();
-    if (word.empty() || !is_number || std::isnan(value)) {
-      fail("number " + std::to_string(position) + " of " + std::to_string(count), describe(word));
-    }
+    if (!reads_as(word, value)) fail(meaning, describe(word));
     return value;
   }
 
@@ -68,25 +102,41 @@ class Reader {
     if (!word.empty()) fail("the end of the line", describe(word));
   }
 
+  [[noreturn]] void fail_word(const std::vector<std::string>& words, const std::string& got) const {
+    std::string expected;
+    for (const std::string& word : words) {
+      if (!expected.empty()) expected += &word == &words.back() ? " or " : ", ";
+      expected += word.empty() ? "the end of the line" : in_quotes(word);
+    }
+    std::vector<std::string> candidates = words;
+    std::erase(candidates, std::string());
+    const bool is_word = got.find_first_not_of("0123456789.-") == 0;
+    const bool has_choice = is_word && candidates.size() > 1;
+    fail(expected,
+         describe(got) + (has_choice ? ", nearest is " + in_quotes(nearest_name(got, candidates))
+                                     : std::string()));
+  }
+
   [[noreturn]] void fail(const std::string& expected, const std::string& got) const {
-    throw SetupError(name_ + ":" + std::to_string(line_number_) + ": expected " + expected +
-                     ", got " + got);
+    fail("expected " + expected + ", got " + got);
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw SetupError(name_ + ":" + std::to_string(line_number_) + ": " + what);
   }
 
  private:
   static constexpr std::string_view kBlanks = " \t\r";
 
-  std::string_view next_word() {
-    const std::size_t begin = line_.find_first_not_of(kBlanks);
-    if (begin == std::string_view::npos) return {};
-    line_.remove_prefix(begin);
-    const std::string_view word = line_.substr(0, line_.find_first_of(kBlanks));
-    line_.remove_prefix(word.size());
-    return word;
+  template <typename Number>
+  static bool reads_as(std::string_view word, Number& value) {
+    const char* const last = word.data() + word.size();
+    const auto [end, error] = std::from_chars(word.data(), last, value);
+    return !word.empty() && error == std::errc() && end == last;
   }
 
   static std::string describe(std::string_view word) {
-    return word.empty() ? "the end of the line" : std::string("'").append(word).append("'");
+    return word.empty() ? "the end of the line" : in_quotes(word);
   }
 
   std::string_view text_;
@@ -100,6 +150,9 @@ struct ParsedRow {
   int level;
   std::vector<double> coefficients;
   Interval bounds;
+  double weight = 1.0;
+  bool is_dense = false;  ///< even where it has only one coefficient, of value 1
+  bool is_bad = false;    ///< on purpose
 };
 
 ParsedRow parse_row(Reader& reader, int level, int n, bool is_equality) {
@@ -107,24 +160,30 @@ ParsedRow parse_row(Reader& reader, int level, int n, bool is_equality) {
   const int count = n + (is_equality ? 1 : 2);
   ParsedRow row = {level, std::vector<double>(static_cast<std::size_t>(n)), {}};
   int position = 0;
-  for (double& coefficient : row.coefficients) {
-    coefficient = reader.need_number(++position, count);
-    if (!std::isfinite(coefficient)) reader.fail("a finite coefficient", "an infinite one");
+  const auto need_number = [&] {
+    ++position;
+    return reader.need_number("number " + std::to_string(position) + " of " +
+                              std::to_string(count));
+  };
+  for (double& coefficient : row.coefficients) coefficient = need_number();
+  row.bounds.lb = need_number();
+  row.bounds.ub = is_equality ? row.bounds.lb : need_number();
+  while (true) {
+    const std::string word = reader.need_one_of({"weight", "dense", "bad", ""});
+    if (word.empty()) break;
+    if (word == "weight") row.weight = reader.need_number("a weight");
+    row.is_dense |= word == "dense";
+    row.is_bad |= word == "bad";
   }
-  row.bounds.lb = reader.need_number(++position, count);
-  row.bounds.ub = is_equality ? row.bounds.lb : reader.need_number(++position, count);
-  reader.need_end_of_line();
-  if (row.bounds.empty()) {
-    reader.fail("lb <= ub", std::to_string(row.bounds.lb) + " > " + std::to_string(row.bounds.ub));
-  }
-  if (row.bounds.lb == kInfinity || row.bounds.ub == -kInfinity) {
-    reader.fail("a bound that can be met", "one at infinity");
+  const char* const rule = broken_rule(row.bounds, row.weight, norm_of(row.coefficients));
+  if (rule != nullptr && !row.is_bad) {
+    reader.fail(std::string(rule) + "; a row that is wrong on purpose ends in 'bad'");
   }
   return row;
 }
 
 // Index of the only coefficient if that is 1, else -1.
-int single_variable(const std::vector<double>& coefficients) {
+int single_variable(std::span<const double> coefficients) {
   int variable = -1;
   for (std::size_t i = 0; i < coefficients.size(); ++i) {
     if (coefficients[i] == 0.0) continue;
@@ -134,17 +193,51 @@ int single_variable(const std::vector<double>& coefficients) {
   return variable;
 }
 
-// The line with `hqp` has been reached.
-Problem parse_problem(Reader& reader) {
-  reader.need_word("hqp");
-  const int n = reader.need_integer("a number of variables", 1, kMaxVariables);
-  const int levels = reader.need_integer("a number of levels", 1, kMaxLevels);
-  reader.need_end_of_line();
+Options parse_options(Reader& reader) {
+  Options options;
+  std::vector<std::string> names = {"max_iterations", "minimum_norm"};
+  for (const auto& [name, member] : kTolerances) names.emplace_back(name);
+  names.emplace_back();
+  while (true) {
+    const std::string name = reader.need_one_of(names);
+    if (name.empty()) return options;
+    if (name == "max_iterations")
+      options.max_iterations = reader.need_integer(name, 1, kMostIterations);
+    if (name == "minimum_norm") options.minimum_norm = reader.need_integer(name, 0, 1) == 1;
+    for (const auto& [tolerance, member] : kTolerances) {
+      if (name != tolerance) continue;
+      const double value = reader.need_number("a tolerance");
+      if (!(value > 0.0 && value < 1.0)) {
+        reader.fail("a " + name + " between 0 and 1", in_quotes(to_text(value)));
+      }
+      options.*member = value;
+    }
+  }
+}
 
+ActiveSet parse_guess(Reader& reader, int rows) {
+  const std::string_view letters = reader.next_word();
+  if (letters.size() != static_cast<std::size_t>(rows) ||
+      letters.find_first_not_of(kStateLetters) != std::string_view::npos) {
+    reader.fail("a letter of " + std::string(kStateLetters) + " for each of the " +
+                    std::to_string(rows) + " rows",
+                in_quotes(letters));
+  }
+  reader.need_end_of_line();
+  ActiveSet guess;
+  std::transform(letters.begin(), letters.end(), guess.state.begin(),
+                 [](char letter) { return static_cast<RowState>(kStateLetters.find(letter)); });
+  return guess;
+}
+
+// The line with the first `level` has been reached.
+std::vector<ParsedRow> parse_levels(Reader& reader, int n, int levels) {
   std::vector<ParsedRow> rows;
   for (int level = 0; level < levels; ++level) {
-    reader.need_line("'level'");
-    reader.need_word("level");
+    if (level > 0) {
+      reader.need_line("'level'");
+      reader.need_one_of({"level"});
+    }
     const int free = kMaxRows - static_cast<int>(rows.size());
     const int equalities = reader.need_integer("a number of equalities", 0, free);
     const int inequalities = reader.need_integer("a number of inequalities", 0, free - equalities);
@@ -152,25 +245,55 @@ Problem parse_problem(Reader& reader) {
     for (int i = 0; i < equalities; ++i) rows.push_back(parse_row(reader, level, n, true));
     for (int i = 0; i < inequalities; ++i) rows.push_back(parse_row(reader, level, n, false));
   }
-  reader.need_line("'end'");
-  reader.need_word("end");
-  reader.need_end_of_line();
+  return rows;
+}
 
+Problem make_problem(int n, int levels, const std::vector<ParsedRow>& rows) {
   Problem problem({n, levels, std::max(1, static_cast<int>(rows.size()))});
   std::size_t next = 0;
   for (int level = 0; level < levels; ++level) {
     problem.add_level();
     for (; next < rows.size() && rows[next].level == level; ++next) {
       const ParsedRow& row = rows[next];
-      const int variable = single_variable(row.coefficients);
+      const int variable = row.is_dense ? -1 : single_variable(row.coefficients);
       if (variable >= 0) {
-        problem.add_bound(variable, row.bounds);
+        problem.add_bound(variable, row.bounds, row.weight);
       } else {
-        problem.add_row(row.coefficients, row.bounds);
+        problem.add_row(row.coefficients, row.bounds, row.weight);
       }
     }
   }
   return problem;
+}
+
+// The line with `hqp` has been reached.
+RecordedProblem parse_recorded(Reader& reader) {
+  reader.need_one_of({"hqp"});
+  const int n = reader.need_integer("a number of variables", 1, kMaxVariables);
+  const int levels = reader.need_integer("a number of levels", 1, kMaxLevels);
+  reader.need_end_of_line();
+
+  std::string name;
+  Options options;
+  const std::vector<std::string> keywords = {"name", "options", "level"};
+  while (true) {
+    reader.need_line("'level'");
+    const std::string word = reader.need_one_of(keywords);
+    if (word == "level") break;
+    if (word == "name") name = reader.rest_of_line();
+    if (word == "options") options = parse_options(reader);
+  }
+  const std::vector<ParsedRow> rows = parse_levels(reader, n, levels);
+  RecordedProblem recorded = {make_problem(n, levels, rows), options, {}, name};
+
+  reader.need_line("'end'");
+  if (reader.need_one_of({"guess", "end"}) == "guess") {
+    recorded.guess = parse_guess(reader, recorded.problem.rows());
+    reader.need_line("'end'");
+    reader.need_one_of({"end"});
+  }
+  reader.need_end_of_line();
+  return recorded;
 }
 
 void write_number(std::ostream& out, double value) {
@@ -179,30 +302,76 @@ void write_number(std::ostream& out, double value) {
   out.write(text, end - text);
 }
 
+bool has_one_bound(const Problem& problem, int row) {
+  const auto [lb, ub] = problem.bounds(row);
+  return std::bit_cast<std::uint64_t>(lb) == std::bit_cast<std::uint64_t>(ub);
+}
+
 void write_row(std::ostream& out, const Problem& problem, int row, bool is_equality) {
-  const double weight = problem.weight(row);
+  const std::span<const double> coefficients = problem.coefficients(row);
   for (int i = 0; i < problem.variables(); ++i) {
-    const double coefficient = problem.variable(row) < 0
-                                   ? problem.coefficients(row)[static_cast<std::size_t>(i)]
-                                   : (problem.variable(row) == i ? 1.0 : 0.0);
-    write_number(out, weight * coefficient);
+    const double coefficient = problem.variable(row) < 0 ? coefficients[static_cast<std::size_t>(i)]
+                                                         : (problem.variable(row) == i ? 1.0 : 0.0);
+    write_number(out, coefficient);
     out << ' ';
   }
-  write_number(out, weight * problem.bounds(row).lb);
+  write_number(out, problem.bounds(row).lb);
   if (!is_equality) {
     out << ' ';
-    write_number(out, weight * problem.bounds(row).ub);
+    write_number(out, problem.bounds(row).ub);
   }
+  if (problem.weight(row) != 1.0) {
+    out << " weight ";
+    write_number(out, problem.weight(row));
+  }
+  if (problem.variable(row) < 0 && single_variable(coefficients) >= 0) out << " dense";
+  if (broken_rule(problem, row) != nullptr) out << " bad";
   out << '\n';
+}
+
+void write_options(std::ostream& out, const Options& options) {
+  const Options standard;
+  std::string text;
+  if (options.max_iterations != standard.max_iterations) {
+    text += " max_iterations " + std::to_string(options.max_iterations);
+  }
+  if (options.minimum_norm != standard.minimum_norm) {
+    text += std::string(" minimum_norm ") + (options.minimum_norm ? "1" : "0");
+  }
+  for (const auto& [name, member] : kTolerances) {
+    if (options.*member == standard.*member) continue;
+    text.append(" ").append(name).append(" ").append(to_text(options.*member));
+  }
+  if (!text.empty()) out << "options" << text << '\n';
+}
+
+void write_level(std::ostream& out, const Problem& problem, int level) {
+  const int first = problem.first_row(level);
+  const int end = problem.end_row(level);
+  int first_inequality = first;
+  while (first_inequality < end && has_one_bound(problem, first_inequality)) ++first_inequality;
+  out << "level " << first_inequality - first << ' ' << end - first_inequality << '\n';
+  for (int row = first; row < end; ++row) {
+    write_row(out, problem, row, row < first_inequality);
+  }
 }
 
 }  // namespace
 
-std::vector<Problem> parse_problems(std::string_view text, const std::string& name) {
+std::vector<RecordedProblem> parse_recorded_problems(std::string_view text,
+                                                     const std::string& name) {
   Reader reader(text, name);
-  std::vector<Problem> problems;
-  while (reader.next_line()) problems.push_back(parse_problem(reader));
+  std::vector<RecordedProblem> problems;
+  while (reader.next_line()) problems.push_back(parse_recorded(reader));
   if (problems.empty()) reader.fail("'hqp'", "an empty file");
+  return problems;
+}
+
+std::vector<Problem> parse_problems(std::string_view text, const std::string& name) {
+  std::vector<Problem> problems;
+  for (RecordedProblem& recorded : parse_recorded_problems(text, name)) {
+    problems.push_back(std::move(recorded.problem));
+  }
   return problems;
 }
 
@@ -220,26 +389,33 @@ std::string read_text(const std::string& file) {
   return text;
 }
 
+std::vector<RecordedProblem> read_recorded_problems(const std::string& file) {
+  return parse_recorded_problems(read_text(file), file);
+}
+
 std::vector<Problem> read_problems(const std::string& file) {
   return parse_problems(read_text(file), file);
 }
 
-void write_problem(std::ostream& out, const Problem& problem) {
-  const auto is_equality = [&](int row) {
-    return problem.bounds(row).lb == problem.bounds(row).ub;
-  };
+void write_problem(std::ostream& out, const RecordedProblem& recorded) {
+  const Problem& problem = recorded.problem;
   out << "hqp " << problem.variables() << ' ' << problem.levels() << '\n';
-  for (int level = 0; level < problem.levels(); ++level) {
-    const int first = problem.first_row(level);
-    const int end = problem.end_row(level);
-    int first_inequality = first;
-    while (first_inequality < end && is_equality(first_inequality)) ++first_inequality;
-    out << "level " << first_inequality - first << ' ' << end - first_inequality << '\n';
-    for (int row = first; row < end; ++row) {
-      write_row(out, problem, row, row < first_inequality);
+  if (!recorded.name.empty()) out << "name " << recorded.name << '\n';
+  write_options(out, recorded.options);
+  for (int level = 0; level < problem.levels(); ++level) write_level(out, problem, level);
+  if (recorded.guess) {
+    out << "guess ";
+    for (int row = 0; row < problem.rows(); ++row) {
+      out << kStateLetters[static_cast<std::size_t>(
+          recorded.guess->state[static_cast<std::size_t>(row)])];
     }
+    out << '\n';
   }
   out << "end\n";
+}
+
+void write_problem(std::ostream& out, const Problem& problem) {
+  write_problem(out, RecordedProblem{.problem = problem});
 }
 
 }  // namespace hg::hqp

@@ -2,33 +2,55 @@
 ///
 /// One problem after another, in a plain or gzipped file; numbers in full precision, `inf` allowed:
 ///   hqp <n> <levels>
+///   name <text>                                     where it comes from     (optional)
+///   options <member of Options> <value> ...         those not at default    (optional)
 ///   level <m_eq> <m_iq>
 ///   <m_eq lines: n coefficients, then b>
 ///   <m_iq lines: n coefficients, then lb, then ub>
 ///   ... next level
+///   guess <a letter of .lu=<> per row>              RowState in its order   (optional)
 ///   end
+/// A row is what it says: with one coefficient, of value 1, it is a bound on that variable. After
+/// its numbers there may be
+///   weight <w>   of its slack, 1 where nothing is said
+///   dense        a row of add_row() all the same, although it has only one coefficient, of value 1
+///   bad          content that the solver refuses, on purpose: such rows are errors otherwise
 /// Set-up code: allocates, and throws SetupError with "file:line: what was expected".
 #pragma once
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "hg/hqp/problem.h"
+#include "hg/hqp/solution.h"
 
 namespace hg::hqp {
 
-/// All problems in `text`; `name` stands for the file in messages. Rows with one coefficient, of
-/// value 1, become bounds on that variable; ids are given in the order of the text.
+/// A problem and how it is to be solved: gives the same bits again.
+struct RecordedProblem {
+  Problem problem;
+  Options options = {};
+  std::optional<ActiveSet> guess = {};  ///< that the solve begins with; none: nothing is known
+  std::string name = {};                ///< where it comes from, one line
+};
+
+/// All problems in `text`; `name` stands for the file in messages. Ids are given in the order of
+/// the text.
+std::vector<RecordedProblem> parse_recorded_problems(std::string_view text,
+                                                     const std::string& name);
+/// The same without options, guesses and names.
 std::vector<Problem> parse_problems(std::string_view text, const std::string& name);
 
 /// All problems of a file, which may be gzipped.
+std::vector<RecordedProblem> read_recorded_problems(const std::string& file);
 std::vector<Problem> read_problems(const std::string& file);
 
-/// Writes one problem so that parse_problems() reads the same one, up to weights: these are
-/// multiplied into rows and bounds. Ids stay the same, so equalities that do not come first in
-/// their level are written as lb = ub.
+/// Writes one problem so that the same one is read back, bit for bit. Ids stay the same, so
+/// equalities that do not come first in their level are written as lb = ub.
+void write_problem(std::ostream& out, const RecordedProblem& recorded);
 void write_problem(std::ostream& out, const Problem& problem);
 
 /// Content of a plain or gzipped file. Throws SetupError when it cannot be read.
