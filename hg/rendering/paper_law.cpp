@@ -58,9 +58,8 @@ void PaperLaw::add_levels(hqp::Problem& problem) {
 }
 
 // [HG] (20): ddq_a - M_a^-1 sum of direction times alpha = M_a^-1 tau
-void PaperLaw::fill(const DeviceModel& device, const TwinModel& twin,
-                    const MatrixUpTo<kMaxTwin, kMaxTwin>& L, const VectorA& tau,
-                    int first_limit_row, hqp::Problem& problem) noexcept {
+void PaperLaw::fill(const DeviceModel& device, const TwinModel& twin, const MatrixA& L,
+                    const VectorA& tau, int first_limit_row, hqp::Problem& problem) noexcept {
   const int count = n_a_ + device_limits_;
   directions_.update(device, twin);
   response_.leftCols(n_a_).setIdentity();

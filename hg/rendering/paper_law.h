@@ -36,9 +36,8 @@ class PaperLaw {
 
   /// `L` is the Cholesky factor of M_a, `tau` (n_a) all torques on the twin that are not
   /// constraints, including -c_a. Row `first_limit_row` + i of `problem` is limit i.
-  void fill(const DeviceModel& device, const TwinModel& twin,
-            const MatrixUpTo<kMaxTwin, kMaxTwin>& L, const VectorA& tau, int first_limit_row,
-            hqp::Problem& problem) noexcept;
+  void fill(const DeviceModel& device, const TwinModel& twin, const MatrixA& L, const VectorA& tau,
+            int first_limit_row, hqp::Problem& problem) noexcept;
 
   /// (26) and (31): the torques that limit `limit` may have.
   void set_range(int limit, bool lower_touched, bool upper_touched, bool is_locked,

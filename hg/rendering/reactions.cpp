@@ -184,7 +184,7 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
 }
 
 void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Solution& solution,
-                       double dt, CycleRecord& record) const noexcept {
+                       const MatrixA& L, double dt, CycleRecord& record) const noexcept {
   const auto& rows = tasks.limit_rows();
   record.limit_count = device_limits_ + n_a_;
   for (int limit = 0; limit < record.limit_count; ++limit) {
@@ -203,7 +203,7 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
     report.slack = solution.slack[row];
     report.reaction = value_[i];
   }
-  report_felt(tasks, record);
+  report_felt(L, record);
 
   // part of the wrench that moves no joint of the twin
   const model::Jacobian J_a = twin.chain.jacobian(twin.end_effector);
@@ -215,15 +215,15 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
 
 // what is felt most: the limit that takes most of the acceleration, in the metric of M_a, which
 // the user's wrench asks for; a stop that only carries a spring is not felt
-void Reactions::report_felt(const Tasks& tasks, CycleRecord& record) const noexcept {
+void Reactions::report_felt(const MatrixA& L, CycleRecord& record) const noexcept {
   Budget& budget = record.budget;
   budget.limits = VectorA::Zero(n_a_);
   budget.conflict = -rest_;
   record.felt_limit = -1;
   record.w_felt.setZero();
-  const auto L = tasks.L().triangularView<Eigen::Lower>();
+  const auto factor = L.triangularView<Eigen::Lower>();
   VectorA pushed = record.tau_a;
-  L.solveInPlace(pushed);
+  factor.solveInPlace(pushed);
   double most = kFeltMin * kFeltMin;
   for (int j = 0; j < active_count_; ++j) {
     const int limit = active_[static_cast<std::size_t>(j)];
@@ -234,7 +234,7 @@ void Reactions::report_felt(const Tasks& tasks, CycleRecord& record) const noexc
     } else {
       budget.limits -= tau;
     }
-    L.solveInPlace(tau);
+    factor.solveInPlace(tau);
     const double opposed = -tau.dot(pushed);
     if (opposed > most) {
       most = opposed;

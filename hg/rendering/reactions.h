@@ -33,8 +33,9 @@ class Reactions {
   double of(int limit) const noexcept { return value_[static_cast<std::size_t>(limit)]; }
 
   /// Fills limits, felt_limit, w_felt and the constraint parts and structure of the budget.
-  void report(const TwinModel& twin, const Tasks& tasks, const hqp::Solution& solution, double dt,
-              CycleRecord& record) const noexcept;
+  /// `L` is the Cholesky factor of M_a.
+  void report(const TwinModel& twin, const Tasks& tasks, const hqp::Solution& solution,
+              const MatrixA& L, double dt, CycleRecord& record) const noexcept;
 
  private:
   void find_active(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
@@ -44,7 +45,7 @@ class Reactions {
   void add_signs(const Tasks& tasks, const hqp::Solution& solution) noexcept;
   void add_sum(const VectorA& tau_constraint) noexcept;
   VectorA torque(int limit) const noexcept;
-  void report_felt(const Tasks& tasks, CycleRecord& record) const noexcept;
+  void report_felt(const MatrixA& L, CycleRecord& record) const noexcept;
 
   int n_m_, n_a_, device_limits_;
   std::array<double, kMaxLimits> value_{};

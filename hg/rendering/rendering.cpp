@@ -113,6 +113,7 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options)
       options_(options),
       tasks_(device_, twin_, options_),
       reactions_(device_, twin_),
+      L_(twin_.chain.nv(), twin_.chain.nv()),
       solver_(tasks_.problem().capacity()),
       solution_(tasks_.problem().capacity()) {
   solver_options_.max_iterations =
@@ -145,6 +146,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
   twin_.chain.update(state.twin.q_a, state.twin.dq_a, values.loads);
+  factor_mass(twin_.chain.M(), L_);
   advance_locks(twin_, state.twin.q_a, state.inner);
 
   const int n_a = twin_.chain.nv();
@@ -163,7 +165,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
     const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
     record.tau_a = J_a.transpose() * record.robot.w_H;
     budget.spring = spring_torque(twin_, state.twin.q_a, state.inner.parameters);
-    budget.damping = damping_torque(twin_.chain.M(), state.twin.dq_a, options_.dt, values);
+    budget.damping = damping_torque(L_, state.twin.dq_a, options_.dt, values);
     budget.friction = slip_torque(state.twin.dq_a, state.inner);
     budget.surface = J_a.transpose() * values.w_ref;
   }
@@ -214,6 +216,7 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
                  .twin = state.twin,
                  .inner = state.inner,
                  .touched = state.touched,
+                 .L = L_,
                  .tau = tau});
     record.solver_status = to_solver_status(
         solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_));
@@ -242,7 +245,7 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
     if (!released) break;
   }
   if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
-  reactions_.report(twin_, tasks_, solution_, options_.dt, record);
+  reactions_.report(twin_, tasks_, solution_, L_, options_.dt, record);
 }
 
 bool Rendering::is_blocked() const noexcept {

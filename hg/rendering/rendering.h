@@ -72,6 +72,7 @@ class Rendering {
   Options options_;
   Tasks tasks_;
   Reactions reactions_;
+  MatrixA L_;  ///< M_a = L L^T, this cycle
   hqp::Options solver_options_;
   hqp::Solver solver_;
   hqp::Solution solution_;

@@ -1,6 +1,5 @@
 #include "hg/rendering/tasks.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -48,8 +47,7 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
       n_m_(device.n_m),
       n_a_(twin.chain.nv()),
       problem_(capacity_of(device, twin, options)),
-      coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0),
-      L_(n_a_, n_a_) {
+      coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0) {
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
   problem_.clear(problem_.capacity().variables);
   add_levels(device, twin);
@@ -118,14 +116,12 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   fill_device_limits(device, input);
   fill_twin_limits(twin, input);
 
-  L_ = twin.chain.M();
-  const Eigen::LLT<Eigen::Ref<MatrixUpTo<kMaxTwin, kMaxTwin>>> cholesky(L_);
   const VectorA tau = input.tau - twin.chain.c();
   if (paper_) {
-    paper_->fill(device, twin, L_, tau, first_limit_row(), problem_);
+    paper_->fill(device, twin, input.L, tau, first_limit_row(), problem_);
     fill_ranges(input);
   } else {
-    fill_dynamics(tau);
+    fill_dynamics(input.L, tau);
     if (n_m_ > 6) fill_posture(device, input.reference);
   }
 }
@@ -257,14 +253,14 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
 }
 
 // Gauss: minimise |L^T ddq_a - L^-1 (tau - c)|^2 = (ddq_a - ddq_free)^T M (ddq_a - ddq_free)
-void Tasks::fill_dynamics(const VectorA& tau) noexcept {
+void Tasks::fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept {
   VectorA b = tau;
-  L_.triangularView<Eigen::Lower>().solveInPlace(b);
+  L.triangularView<Eigen::Lower>().solveInPlace(b);
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), n_m_ + n_a_);
   row.setZero();
   for (int i = 0; i < n_a_; ++i) {
     row.segment(n_m_, i).setZero();
-    row.segment(n_m_ + i, n_a_ - i) = L_.col(i).tail(n_a_ - i);
+    row.segment(n_m_ + i, n_a_ - i) = L.col(i).tail(n_a_ - i);
     problem_.set_row(dynamics_row_ + i, coefficients_);
     problem_.set_bounds(dynamics_row_ + i, {b[i], b[i]});
   }

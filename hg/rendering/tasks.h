@@ -54,6 +54,7 @@ struct TaskInput {
   const TwinState& twin;
   const TwinInnerState& inner;
   const TouchedEnds& touched;  ///< by the last result; law paper only
+  const MatrixA& L;            ///< M_a = L L^T
   VectorA tau;                 ///< all torques on the twin that are not constraints, without c_a
 };
 
@@ -78,8 +79,6 @@ class Tasks {
   int alpha(int limit) const noexcept { return paper_ ? paper_->alpha(limit) : -1; }
   /// Level 0's right-hand side (11): how H has to accelerate relative to E.
   const Vector6& synchronisation() const noexcept { return s_; }
-  /// M_a = L L^T of this cycle.
-  const MatrixUpTo<kMaxTwin, kMaxTwin>& L() const noexcept { return L_; }
 
  private:
   void add_levels(const DeviceModel& device, const TwinModel& twin);
@@ -91,7 +90,7 @@ class Tasks {
                      const TaskInput& input) noexcept;
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
-  void fill_dynamics(const VectorA& tau) noexcept;
+  void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;
   void fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept;
   void fill_ranges(const TaskInput& input) noexcept;
   void set_limit(int limit, const limits::JointLimits& limits, double q, double dq,
@@ -106,7 +105,6 @@ class Tasks {
   std::vector<LimitRow> limit_rows_;
   std::vector<double> coefficients_;  ///< scratch, one row
   Vector6 s_ = Vector6::Zero();
-  MatrixUpTo<kMaxTwin, kMaxTwin> L_;
   std::optional<PaperLaw> paper_;  ///< law paper only
 };
 

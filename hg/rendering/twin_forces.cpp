@@ -108,9 +108,13 @@ VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
   return torque;
 }
 
-VectorA damping_torque(const Eigen::MatrixXd& M, const VectorA& dq_a, double dt,
+void factor_mass(const Eigen::MatrixXd& M, MatrixA& L) noexcept {
+  L = M;
+  const Eigen::LLT<Eigen::Ref<MatrixA>> cholesky(L);
+}
+
+VectorA damping_torque(const MatrixA& L, const VectorA& dq_a, double dt,
                        const TwinValues& values) noexcept {
-  using Matrix = MatrixUpTo<kMaxTwin, kMaxTwin>;
   const Eigen::Index n = dq_a.size();
   VectorA D(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -121,18 +125,16 @@ VectorA damping_torque(const Eigen::MatrixXd& M, const VectorA& dq_a, double dt,
   if (D.isZero(0.0)) return torque;
 
   // B^T B = dt D^1/2 M^-1 D^1/2
-  Matrix L = M;
-  Eigen::LLT<Eigen::Ref<Matrix>> cholesky(L);
   const VectorA root = D.cwiseSqrt();
-  Matrix B = (std::sqrt(dt) * root).asDiagonal();
+  MatrixA B = (std::sqrt(dt) * root).asDiagonal();
   L.triangularView<Eigen::Lower>().solveInPlace(B);
   const double trace = B.squaredNorm();
   if (trace <= 1.0) return torque;
 
   // D' = D^1/2 (1 + s B^T B)^-1 D^1/2
-  Matrix series = Matrix::Identity(n, n);
+  MatrixA series = MatrixA::Identity(n, n);
   series.noalias() += (1.0 - 1.0 / trace) * B.transpose() * B;
-  Eigen::LLT<Eigen::Ref<Matrix>> series_cholesky(series);
+  Eigen::LLT<Eigen::Ref<MatrixA>> series_cholesky(series);
   torque = root.cwiseProduct(dq_a);
   series_cholesky.solveInPlace(torque);
   return root.cwiseProduct(torque);

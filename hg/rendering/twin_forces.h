@@ -60,8 +60,11 @@ EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
 /// the budget.
 VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
                       const TwinParameters& parameters) noexcept;
-/// Torques of linear and quadratic dampers (n_a); sign as in the budget. `M` is the mass matrix.
-VectorA damping_torque(const Eigen::MatrixXd& M, const VectorA& dq_a, double dt,
+/// The lower triangle of `L` (n_a x n_a) becomes the Cholesky factor of M, the mass matrix: M = L
+/// L^T.
+void factor_mass(const Eigen::MatrixXd& M, MatrixA& L) noexcept;
+/// Torques of linear and quadratic dampers (n_a); sign as in the budget. `L` is the factor of M.
+VectorA damping_torque(const MatrixA& L, const VectorA& dq_a, double dt,
                        const TwinValues& values) noexcept;
 
 }  // namespace hg::rendering

@@ -37,6 +37,9 @@ struct TwinDof {
   Closer closer;
 };
 
+/// Of chain a (n_a x n_a), for example its mass matrix or the factor of it.
+using MatrixA = MatrixUpTo<kMaxTwin, kMaxTwin>;
+
 struct JointCondition {
   int dof = 0;
   Interval range;  ///< true while the position is inside
