@@ -7,38 +7,6 @@
 namespace hg::rendering {
 namespace {
 
-double coordinate(const TwinModel& twin, int dof, const ConfigurationA& q_a) noexcept {
-  return q_a[twin.dofs[static_cast<std::size_t>(dof)].q_index];
-}
-
-bool holds(const TwinModel& twin, const Lock& lock, const ConfigurationA& q_a) noexcept {
-  return std::all_of(lock.engaged_while.begin(), lock.engaged_while.end(),
-                     [&](const auto& c) { return c.range.contains(coordinate(twin, c.dof, q_a)); });
-}
-
-}  // namespace
-
-void advance_locks(const TwinModel& twin, const ConfigurationA& q_a,
-                   TwinInnerState& inner) noexcept {
-  for (std::size_t i = 0; i < twin.locks.size(); ++i) {
-    const Lock& lock = twin.locks[i];
-    LockState& state = inner.locks[i];
-    if (!holds(twin, lock, q_a)) {
-      state = {};
-      continue;
-    }
-    const double q = coordinate(twin, lock.dof, q_a);
-    if (!state.is_engaged) state = {.is_engaged = true, .is_locked = false, .edge = q};
-
-    // the latch follows the joint towards the lock and never back
-    const double side = q >= lock.position ? 1.0 : -1.0;
-    if (side * (q - state.edge) < 0.0) state.edge = q;
-    if (std::abs(q - lock.position) <= kLockReached) state.is_locked = true;
-  }
-}
-
-namespace {
-
 // without locks
 limits::JointLimits free_limits(const TwinModel& twin, int dof, double dq,
                                 const TwinParameters& parameters) noexcept {
@@ -60,6 +28,25 @@ limits::JointLimits free_limits(const TwinModel& twin, int dof, double dq,
 }
 
 }  // namespace
+
+void advance_locks(const TwinModel& twin, const ConfigurationA& q_a,
+                   TwinInnerState& inner) noexcept {
+  for (std::size_t i = 0; i < twin.locks.size(); ++i) {
+    const Lock& lock = twin.locks[i];
+    LockState& state = inner.locks[i];
+    if (!are_true(twin, lock.engaged_while, q_a)) {
+      state = {};
+      continue;
+    }
+    const double q = position_of(twin, lock.dof, q_a);
+    if (!state.is_engaged) state = {.is_engaged = true, .is_locked = false, .edge = q};
+
+    // the latch follows the joint towards the lock and never back
+    const double side = q >= lock.position ? 1.0 : -1.0;
+    if (side * (q - state.edge) < 0.0) state.edge = q;
+    if (std::abs(q - lock.position) <= kLockReached) state.is_locked = true;
+  }
+}
 
 EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
                                  const TwinInnerState& inner) noexcept {

@@ -1,5 +1,6 @@
 #include "hg/rendering/twin_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -27,6 +28,17 @@ void check(const TwinModel& twin) {
   require(twin.conditional_limits.size() <= static_cast<std::size_t>(kMaxConditionalLimits),
           ": at most " + std::to_string(kMaxConditionalLimits) + " conditional limits");
   require(kMassScale.contains(twin.mass_scale), ": mass_scale must be 0.1..10");
+}
+
+double position_of(const TwinModel& twin, int dof, const ConfigurationA& q_a) noexcept {
+  return q_a[twin.dofs[static_cast<std::size_t>(dof)].q_index];
+}
+
+bool are_true(const TwinModel& twin, const std::vector<JointCondition>& conditions,
+              const ConfigurationA& q_a) noexcept {
+  return std::all_of(conditions.begin(), conditions.end(), [&](const JointCondition& c) {
+    return c.range.contains(position_of(twin, c.dof, q_a));
+  });
 }
 
 }  // namespace hg::rendering

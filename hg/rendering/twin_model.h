@@ -84,4 +84,11 @@ struct TwinModel {
 /// Throws SetupError naming the first thing that does not fit together.
 void check(const TwinModel& twin);
 
+/// Position of degree of freedom `dof`, which is not one of a floating joint; rad or m.
+double position_of(const TwinModel& twin, int dof, const ConfigurationA& q_a) noexcept;
+
+/// Whether all conditions are true.
+bool are_true(const TwinModel& twin, const std::vector<JointCondition>& conditions,
+              const ConfigurationA& q_a) noexcept;
+
 }  // namespace hg::rendering

@@ -10,17 +10,6 @@ constexpr double kApproach = 0.1;  // s; a person feels a change, not a blow
 constexpr double kArrived = 1e-9;  // of the larger of 1 and the target
 constexpr double kLargest = 1e9;   // of any value; keeps products finite
 
-double coordinate(const TwinModel& twin, int dof, const TwinState& state) noexcept {
-  return state.q_a[twin.dofs[static_cast<std::size_t>(dof)].q_index];
-}
-
-bool are_true(const TwinModel& twin, const std::vector<JointCondition>& conditions,
-              const TwinState& state) noexcept {
-  return std::all_of(conditions.begin(), conditions.end(), [&](const JointCondition& c) {
-    return c.range.contains(coordinate(twin, c.dof, state));
-  });
-}
-
 void approach(double& now, double target, double share) noexcept {
   now += share * (target - now);
   if (std::abs(target - now) <= kArrived * std::max(1.0, std::abs(target))) now = target;
@@ -200,7 +189,7 @@ void advance_parameters(const TwinModel& twin, const TwinState& state, double dt
   TwinValues& now = parameters.now;
   const TwinValues& target = parameters.target;
   for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
-    parameters.holds[i] = are_true(twin, twin.conditional_limits[i].conditions, state);
+    parameters.holds[i] = are_true(twin, twin.conditional_limits[i].conditions, state.q_a);
   }
   for (std::size_t i = 0; i < twin.dofs.size(); ++i) {
     const int dof = static_cast<int>(i);
@@ -220,7 +209,7 @@ void advance_parameters(const TwinModel& twin, const TwinState& state, double dt
     const double v_rec = limits::recoverable_options(rated, dt, dt).v_rec;
     parameters.moving[i] =
         limits::advanced(parameters.moving[i], target_range(twin, dof, parameters),
-                         coordinate(twin, dof, state), v_rec, dt);
+                         position_of(twin, dof, state.q_a), v_rec, dt);
   }
   for (int i = 0; i < 6; ++i) approach(now.w_ref[i], target.w_ref[i], share);
   approach(now.loads.mass, target.loads.mass, share);
