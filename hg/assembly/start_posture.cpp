@@ -8,6 +8,7 @@
 #include <string>
 
 #include "hg/core/error.h"
+#include "hg/core/stacked.h"
 #include "hg/model/haptic_giant.h"
 #include "hg/model/inverse_kinematics.h"
 
@@ -55,9 +56,8 @@ std::optional<Violation> find_violation(const rendering::DeviceModel& device, mo
 // throws SetupError when the device may not be at `start`
 void check_limits(const config::Scenario& scenario, const Start& start) {
   model::Chain chain = scenario.device.model.chain;
-  Eigen::VectorXd q(chain.nq());
-  q << start.q_p, start.q_m;
-  const std::optional<Violation> violation = find_violation(scenario.device.model, chain, q);
+  const std::optional<Violation> violation =
+      find_violation(scenario.device.model, chain, stacked(start.q_p, start.q_m));
   if (!violation) return;
   throw SetupError(fmt::format(
       "twin {}: at its start {} of the device would be at {:.3f}, outside {:.3f} .. {:.3f}; move "

@@ -10,6 +10,7 @@
 
 #include "hg/assembly/start_posture.h"
 #include "hg/core/error.h"
+#include "hg/core/stacked.h"
 #include "hg/inspection/survey.h"
 #include "hg/inspection/twin_inspection.h"
 
@@ -166,9 +167,7 @@ Match match(const config::Device& device, const config::Twin& twin) {
     try {
       const assembly::Start start = assembly::find_start(pair);
       ++result.reached;
-      Eigen::VectorXd q_device(device_chain.nq());
-      q_device << start.q_p, start.q_m;
-      device_chain.update_kinematics(q_device, zero);
+      device_chain.update_kinematics(stacked(start.q_p, start.q_m), zero);
       const MatrixJ J_m = manipulator_jacobian(device.model, device_chain, device.model.handle);
       meeting.manipulator_of_twin =
           Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(J_m).solve(

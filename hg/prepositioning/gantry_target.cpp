@@ -47,8 +47,7 @@ VectorP GantryTarget::step(const RobotState& robot, const VectorM& q_m,
   if (config_.n_p == 0) return VectorP(0);
   if (config_.has_closed_form) return model::haptic_giant::gantry_target(robot.q_p, q_m);
 
-  VectorPM q_now(config_.n_p + config_.n_m);
-  q_now << robot.q_p, q_m;
+  const VectorPM q_now = stacked(robot.q_p, q_m);
   chain_.update_kinematics(q_now, at_rest_);
   const Pose T_B_H = chain_.pose(config_.handle);
   if (!state.is_started) {

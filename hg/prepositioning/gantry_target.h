@@ -9,13 +9,12 @@
 #include <vector>
 
 #include "hg/core/interval.h"
-#include "hg/core/types.h"
+#include "hg/core/stacked.h"
 #include "hg/model/chain.h"
 #include "hg/signals/state.h"
 
 namespace hg::prepositioning {
 
-using VectorPM = VectorUpTo<kMaxGantry + kMaxManipulator>;  ///< gantry, then manipulator
 using MatrixPM = MatrixUpTo<kMaxGantry + kMaxManipulator, kMaxGantry + kMaxManipulator>;
 
 /// Set-up data.
@@ -30,7 +29,7 @@ struct TargetConfig {
 /// Part of the copyable state of a cycle.
 struct TargetState {
   bool is_started = false;
-  VectorPM q;  ///< posture of the target: gantry, then manipulator
+  VectorPM q;  ///< posture of the target
 };
 
 class GantryTarget {

@@ -7,6 +7,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/rotation.h"
+#include "hg/core/stacked.h"
 #include "hg/rendering/integration.h"
 
 namespace hg::rendering {
@@ -134,11 +135,8 @@ ChangeStatus Rendering::change(const ParameterChange& change, State& state) cons
 }
 
 void Rendering::update_device(const RobotState& robot, const ReferenceState& reference) noexcept {
-  const int n_p = device_.n_p, n_m = device_.n_m;
-  VectorUpTo<kMaxGantry + kMaxManipulator> q(n_p + n_m), dq(n_p + n_m);
-  q << robot.q_p, reference.q_m;
-  dq << robot.dq_p, reference.dq_m;
-  device_.chain.update_kinematics(q, dq);
+  device_.chain.update_kinematics(stacked(robot.q_p, reference.q_m),
+                                  stacked(robot.dq_p, reference.dq_m));
 }
 
 SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record) noexcept {

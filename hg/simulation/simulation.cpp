@@ -4,6 +4,8 @@
 #include <numbers>
 #include <utility>
 
+#include "hg/core/stacked.h"
+
 namespace hg::simulation {
 namespace {
 
@@ -57,17 +59,15 @@ double Simulation::encoder(int joint, double q) const noexcept {
 }
 
 void Simulation::measure(const HandTarget& target) noexcept {
-  VectorUpTo<kMaxGantry + kMaxManipulator> q(n_p_ + n_m_), dq(n_p_ + n_m_);
+  VectorP q_p(n_p_), dq_p(n_p_);
   sensors_.q_p.resize(n_p_);
   for (int i = 0; i < n_p_; ++i) {
     const Axis& axis = axes_[static_cast<std::size_t>(i)];
-    q[i] = axis.q;
-    dq[i] = axis.dq;
+    q_p[i] = axis.q;
+    dq_p[i] = axis.dq;
     sensors_.q_p[i] = encoder(i, axis.q);
   }
-  q.tail(n_m_) = q_m_;
-  dq.tail(n_m_) = dq_m_;
-  chain_.update_kinematics(q, dq);
+  chain_.update_kinematics(stacked(q_p, q_m_), stacked(dq_p, dq_m_));
 
   sensors_.time_s = time_s_;
   sensors_.q_m.resize(n_m_);

@@ -15,7 +15,7 @@ State example() {
   rendering::State& r = state.rendering;
   r.reference = {VectorM::Ones(6), VectorM::Ones(6), VectorM::Ones(6)};
   r.twin = {ConfigurationA::Ones(3), VectorA::Ones(2), VectorA::Ones(2)};
-  state.gantry_target.q = prepositioning::VectorPM::Ones(8);
+  state.gantry_target.q = VectorPM::Ones(8);
   state.dq_p = VectorP::Ones(2);
   state.estimation.q_m = VectorM::Ones(6);
   return state;
