@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
+#include <string_view>
 
 namespace hg::hqp {
 namespace {
@@ -20,6 +22,12 @@ std::string padded(const std::string& text, std::size_t width) {
   return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
 }
 
+std::string joined(std::initializer_list<std::string_view> parts) {
+  std::string text;
+  for (const std::string_view part : parts) text += part;
+  return text;
+}
+
 std::string count_of(int count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
@@ -29,7 +37,7 @@ void append_term(double coefficient, int variable, std::string& text) {
   if (!is_first) text += std::signbit(coefficient) ? " - " : " + ";
   if (is_first && std::signbit(coefficient)) text += "-";
   if (std::abs(coefficient) != 1.0) text += number(std::abs(coefficient)) + " ";
-  text += "x" + std::to_string(variable);
+  text += joined({"x", std::to_string(variable)});
 }
 
 std::string sum_text(const Problem& problem, int row) {
@@ -48,8 +56,9 @@ std::string sum_text(const Problem& problem, int row) {
 std::string content_of(const Problem& problem, int row) {
   const auto [lb, ub] = problem.bounds(row);
   std::string text = sum_text(problem, row);
-  text += lb == ub ? " = " + number(lb) : " in [" + number(lb) + ", " + number(ub) + "]";
-  if (problem.weight(row) != 1.0) text += ", weight " + number(problem.weight(row));
+  text +=
+      lb == ub ? joined({" = ", number(lb)}) : joined({" in [", number(lb), ", ", number(ub), "]"});
+  if (problem.weight(row) != 1.0) text += joined({", weight ", number(problem.weight(row))});
   return text;
 }
 
@@ -81,15 +90,17 @@ std::string level_line(const Problem& problem, const Solution& solution, int lev
   text += padded(std::to_string(result.freedom), 9) +
           padded(number(std::sqrt(result.slack_squared)), 13);
   text += level < solution.completed_levels ? "  optimal" : "  not optimal";
-  if (result.blocking_row >= 0) text += ", blocked by row " + std::to_string(result.blocking_row);
+  if (result.blocking_row >= 0) {
+    text += joined({", blocked by row ", std::to_string(result.blocking_row)});
+  }
   return text + "\n";
 }
 
 std::string row_line(const Problem& problem, const Solution& solution, int row) {
   const double slack = solution.slack[at(row)];
-  std::string text = to_string(problem, row) + ": " + to_string(solution.state[at(row)]);
-  if (slack != 0.0) text += " by " + number(std::abs(slack));
-  return text + ", value " + number(value_of(problem, row, solution.x)) + "\n";
+  std::string text = joined({to_string(problem, row), ": ", to_string(solution.state[at(row)])});
+  if (slack != 0.0) text += joined({" by ", number(std::abs(slack))});
+  return text + joined({", value ", number(value_of(problem, row, solution.x)), "\n"});
 }
 
 }  // namespace
@@ -113,16 +124,16 @@ const char* to_string(RowState state) noexcept {
 }
 
 std::string to_string(const Problem& problem, int row) {
-  return "row " + std::to_string(row) + " (level " + std::to_string(problem.level_of(row)) +
-         "): " + content_of(problem, row);
+  return joined({"row ", std::to_string(row), " (level ", std::to_string(problem.level_of(row)),
+                 "): ", content_of(problem, row)});
 }
 
 std::string to_string(const Options& options) {
-  return "rank_tolerance " + number(options.rank_tolerance) + ", feasibility_tolerance " +
-         number(options.feasibility_tolerance) + ", max_iterations " +
-         std::to_string(options.max_iterations) +
-         (options.minimum_norm ? ", freedom left goes to the smallest |x|"
-                               : ", freedom left is left");
+  return joined({"rank_tolerance ", number(options.rank_tolerance), ", feasibility_tolerance ",
+                 number(options.feasibility_tolerance), ", max_iterations ",
+                 std::to_string(options.max_iterations),
+                 options.minimum_norm ? ", freedom left goes to the smallest |x|"
+                                      : ", freedom left is left"});
 }
 
 std::string to_string(const Problem& problem, const Solution& solution) {
@@ -139,11 +150,11 @@ std::string to_string(const Problem& problem, const Solution& solution) {
 
 std::string to_string(const Problem& problem, int level, std::span<const double> multipliers,
                       double remainder) {
-  std::string text = "multipliers of level " + std::to_string(level) +
-                     "; of the gradient they leave " + number(remainder) + "\n";
+  std::string text = joined({"multipliers of level ", std::to_string(level),
+                             "; of the gradient they leave ", number(remainder), "\n"});
   for (int row = 0; row < problem.rows(); ++row) {
     const double mu = multipliers[at(row)];
-    if (mu != 0.0) text += padded(number(mu), 13) + "  " + to_string(problem, row) + "\n";
+    if (mu != 0.0) text += joined({padded(number(mu), 13), "  ", to_string(problem, row), "\n"});
   }
   return text;
 }
