@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "hg/core/error.h"
+#include "hg/hqp/explanation.h"
 #include "hg/hqp/solver.h"
 #include "hg/hqp/text.h"
 
@@ -16,69 +18,113 @@ namespace {
 
 constexpr int kRuns = 5;  // of each problem when timing; the fastest counts
 
+using Problems = std::vector<hqp::RecordedProblem>;
+
 // The smallest capacity that takes all problems.
-hqp::Capacity capacity_of(const std::vector<hqp::Problem>& problems) {
+hqp::Capacity capacity_of(const Problems& problems) {
   hqp::Capacity capacity = {.variables = 1, .levels = 1, .rows = 1};
-  for (const hqp::Problem& problem : problems) {
-    capacity.variables = std::max(capacity.variables, problem.variables());
-    capacity.levels = std::max(capacity.levels, problem.levels());
-    capacity.rows = std::max(capacity.rows, problem.rows());
+  for (const hqp::RecordedProblem& recorded : problems) {
+    capacity.variables = std::max(capacity.variables, recorded.problem.variables());
+    capacity.levels = std::max(capacity.levels, recorded.problem.levels());
+    capacity.rows = std::max(capacity.rows, recorded.problem.rows());
   }
   return capacity;
 }
 
-bool report(std::size_t index, hqp::Status status) {
-  if (status == hqp::Status::kSolved) return true;
-  fmt::print(stderr, "problem {}: {}\n", index, hqp::to_string(status));
+// Solver and what it needs, for all problems of a file in turn.
+struct Player {
+  explicit Player(const Problems& problems)
+      : solver(capacity_of(problems)), solution(capacity_of(problems)) {}
+
+  hqp::Solver solver;
+  hqp::Solution solution;
+  hqp::ActiveSet active = {};
+};
+
+bool report(std::size_t index, const hqp::Problem& problem, const hqp::Solution& solution) {
+  if (solution.status == hqp::Status::kSolved) return true;
+  std::string text = fmt::format("problem {}: {}", index, hqp::to_string(solution.status));
+  if (solution.status == hqp::Status::kBadRow) {
+    text += fmt::format(", {}: {}", hqp::to_string(problem, solution.bad_row),
+                        hqp::broken_rule(problem, solution.bad_row));
+  }
+  fmt::print(stderr, "{}\n", text);
   return false;
 }
 
-bool print_solutions(const std::vector<hqp::Problem>& problems) {
-  hqp::Solver solver(capacity_of(problems));
-  hqp::Solution solution(capacity_of(problems));
-  hqp::ActiveSet active;
+void print_numbers(const hqp::Solution& solution) {
+  std::string line;
+  for (const double x : solution.x) line += fmt::format("{} ", x);
+  for (const hqp::LevelResult& level : solution.levels) {
+    line += fmt::format("{} ", level.slack_squared);
+  }
+  line.back() = '\n';
+  std::fputs(line.c_str(), stdout);
+}
+
+void explain(std::size_t index, const hqp::RecordedProblem& recorded,
+             const std::optional<int>& level, Player& player) {
+  const auto& [problem, options, guess, name] = recorded;
+  fmt::print("problem {}{}{}\noptions: {}\n", index, name.empty() ? "" : ", ", name,
+             hqp::to_string(options));
+  fmt::print("{}", hqp::to_string(problem, player.solution));
+  std::string x;
+  for (const double value : player.solution.x) x += fmt::format(" {}", value);
+  fmt::print("x ={}\n", x);
+  if (!level) return;
+  if (*level >= problem.levels()) {
+    throw SetupError(fmt::format("--level: problem {} has the levels 0..{}, got {}", index,
+                                 problem.levels() - 1, *level));
+  }
+  std::vector<double> mu(static_cast<std::size_t>(problem.rows()));
+  const double remainder = player.solver.multipliers(problem, options, player.solution, *level, mu);
+  fmt::print("{}", hqp::to_string(problem, *level, mu, remainder));
+}
+
+bool print_solutions(const Problems& problems, std::size_t first,
+                     const HqpSolveArguments& arguments) {
+  Player player(problems);
   bool are_settled = true;
   for (std::size_t i = 0; i < problems.size(); ++i) {
-    are_settled &= report(i, solver.solve(problems[i], hqp::Options{}, active, solution));
-    std::string line;
-    for (const double x : solution.x) line += fmt::format("{} ", x);
-    for (const hqp::LevelResult& level : solution.levels) {
-      line += fmt::format("{} ", level.slack_squared);
+    const auto& [problem, options, guess, name] = problems[i];
+    if (guess) player.active = *guess;
+    player.solver.solve(problem, options, player.active, player.solution);
+    are_settled &= report(first + i, problem, player.solution);
+    if (arguments.explains || arguments.level) {
+      explain(first + i, problems[i], arguments.level, player);
+    } else {
+      print_numbers(player.solution);
     }
-    line.back() = '\n';
-    std::fputs(line.c_str(), stdout);
   }
   return are_settled;
 }
 
-// Fastest of kRuns, in microseconds; `active` receives the final active set.
-double time_of(hqp::Solver& solver, const hqp::Problem& problem, hqp::ActiveSet& active,
-               hqp::Solution& solution) {
+// Fastest of kRuns, in microseconds; player.active receives the final active set.
+double time_of(const hqp::RecordedProblem& recorded, Player& player) {
   using Clock = std::chrono::steady_clock;
-  const hqp::ActiveSet guess = active;
+  const hqp::ActiveSet guess = player.active;
   double fastest = INFINITY;
   for (int run = 0; run < kRuns; ++run) {
-    active = guess;
+    player.active = guess;
     const Clock::time_point begin = Clock::now();
-    solver.solve(problem, hqp::Options{}, active, solution);
+    player.solver.solve(recorded.problem, recorded.options, player.active, player.solution);
     const std::chrono::duration<double, std::micro> time = Clock::now() - begin;
     fastest = std::min(fastest, time.count());
   }
   return fastest;
 }
 
-bool print_times(const std::vector<hqp::Problem>& problems, bool is_warm) {
-  hqp::Solver solver(capacity_of(problems));
-  hqp::Solution solution(capacity_of(problems));
-  hqp::ActiveSet active;
+bool print_times(const Problems& problems, std::size_t first, bool is_warm) {
+  Player player(problems);
   std::vector<double> times;
   double sum = 0.0;
   bool are_settled = true;
   for (std::size_t i = 0; i < problems.size(); ++i) {
-    if (!is_warm) active = hqp::ActiveSet{};
-    times.push_back(time_of(solver, problems[i], active, solution));
+    if (!is_warm) player.active = hqp::ActiveSet{};
+    if (is_warm && problems[i].guess) player.active = *problems[i].guess;
+    times.push_back(time_of(problems[i], player));
     sum += times.back();
-    are_settled &= report(i, solution.status);
+    are_settled &= report(first + i, problems[i].problem, player.solution);
   }
 
   std::sort(times.begin(), times.end());
@@ -92,16 +138,31 @@ bool print_times(const std::vector<hqp::Problem>& problems, bool is_warm) {
   return are_settled;
 }
 
+// The problems that are asked for; `first` becomes the index of the first one.
+Problems read(const HqpSolveArguments& arguments, std::size_t& first) {
+  Problems problems = hqp::read_recorded_problems(arguments.file);
+  first = 0;
+  if (!arguments.problem) return problems;
+  first = static_cast<std::size_t>(*arguments.problem);
+  if (first >= problems.size()) {
+    throw SetupError(fmt::format("--problem: {} has the problems 0..{}, got {}", arguments.file,
+                                 problems.size() - 1, first));
+  }
+  return {problems[first]};
+}
+
 }  // namespace
 
-int run_hqp_solve(const std::string& file, bool timing) {
-  const std::vector<hqp::Problem> problems = hqp::read_problems(file);
-  if (!timing) return print_solutions(problems) ? 0 : 1;
+int run_hqp_solve(const HqpSolveArguments& arguments) {
+  std::size_t first = 0;
+  const Problems problems = read(arguments, first);
+  if (!arguments.has_timing) return print_solutions(problems, first, arguments) ? 0 : 1;
 
-  fmt::print("{} problems, microseconds per problem\n", problems.size());
+  fmt::print("{} problem{}, microseconds per problem\n", problems.size(),
+             problems.size() == 1 ? "" : "s");
   fmt::print("{:5} {:>9} {:>9} {:>9} {:>9}\n", "start", "median", "mean", "99.9 %", "max");
-  const bool is_cold_settled = print_times(problems, false);
-  const bool is_warm_settled = print_times(problems, true);
+  const bool is_cold_settled = print_times(problems, first, false);
+  const bool is_warm_settled = print_times(problems, first, true);
   return is_cold_settled && is_warm_settled ? 0 : 1;
 }
 

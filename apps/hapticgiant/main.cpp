@@ -20,11 +20,6 @@ namespace {
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
 
-struct HqpArguments {
-  std::string file;
-  bool has_timing = false;
-};
-
 // ranges let "nan" through
 std::string finite_number(const std::string& text) {
   double value = 0.0;
@@ -105,16 +100,22 @@ void add_bench(CLI::App& app, hg::apps::BenchArguments& arguments, int& exit_cod
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::bench(arguments); });
 }
 
-void add_hqp(CLI::App& app, HqpArguments& arguments, int& exit_code) {
+void add_hqp(CLI::App& app, hg::apps::HqpSolveArguments& arguments, int& exit_code) {
   CLI::App* hqp = app.add_subcommand("hqp", "The lexicographic QP solver on its own.");
   hqp->require_subcommand(1);
   CLI::App* solve = hqp->add_subcommand("solve", "Solve the problems of a file (plain or .gz).");
-  solve->footer("Example:\n  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --timing");
+  solve->footer(
+      "Examples:\n"
+      "  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --timing\n"
+      "  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --problem 7 --explain");
   solve->add_option("file", arguments.file, "problem file, format in docs/hqp.md")->required();
+  solve->add_option("--problem", arguments.problem, "only this problem, counted from 0")
+      ->check(CLI::NonNegativeNumber);
+  solve->add_flag("--explain", arguments.explains, "levels, rows that act and why, in words");
+  solve->add_option("--level", arguments.level, "as --explain, with the multipliers of this level")
+      ->check(CLI::NonNegativeNumber);
   solve->add_flag("--timing", arguments.has_timing, "microseconds, cold and warm");
-  solve->callback([&arguments, &exit_code] {
-    exit_code = hg::apps::run_hqp_solve(arguments.file, arguments.has_timing);
-  });
+  solve->callback([&arguments, &exit_code] { exit_code = hg::apps::run_hqp_solve(arguments); });
 }
 
 void add_check(CLI::App& app, hg::apps::CheckArguments& check, int& exit_code) {
@@ -148,7 +149,7 @@ int main(int argc, char** argv) {
   hg::apps::RunArguments run;
   hg::apps::CheckArguments check;
   hg::apps::NewArguments created;
-  HqpArguments hqp;
+  hg::apps::HqpSolveArguments hqp;
   hg::apps::BenchArguments compared;
   add_run(app, run, exit_code);
   add_check(app, check, exit_code);

@@ -82,12 +82,22 @@ std::string head_text(const Problem& problem, const Solution& solution) {
   return text;
 }
 
+bool is_held(RowState state) { return state == RowState::kLower || state == RowState::kUpper; }
+
 std::string level_line(const Problem& problem, const Solution& solution, int level) {
   const LevelResult& result = solution.levels[at(level)];
-  const int rows = problem.end_row(level) - problem.first_row(level);
+  int rows = 0, met = 0, held = 0, violated = 0;
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    const RowState state = solution.state[at(row)];
+    ++rows;
+    met += state == RowState::kEqual;
+    held += is_held(state);
+    violated += is_violated(state);
+  }
   std::string text = padded(std::to_string(level), 5) + padded(std::to_string(rows), 6);
   if (solution.bad_level >= 0 && level >= solution.bad_level) return text + "  ignored\n";
-  text += padded(std::to_string(result.freedom), 9) +
+  text += padded(std::to_string(met), 6) + padded(std::to_string(held), 6) +
+          padded(std::to_string(violated), 10) + padded(std::to_string(result.freedom), 9) +
           padded(number(std::sqrt(result.slack_squared)), 13);
   text += level < solution.completed_levels ? "  optimal" : "  not optimal";
   if (result.blocking_row >= 0) {
@@ -99,7 +109,7 @@ std::string level_line(const Problem& problem, const Solution& solution, int lev
 std::string row_line(const Problem& problem, const Solution& solution, int row) {
   const double slack = solution.slack[at(row)];
   std::string text = joined({to_string(problem, row), ": ", to_string(solution.state[at(row)])});
-  if (slack != 0.0) text += joined({" by ", number(std::abs(slack))});
+  if (is_violated(solution.state[at(row)])) text += joined({" by ", number(std::abs(slack))});
   return text + joined({", value ", number(value_of(problem, row, solution.x)), "\n"});
 }
 
@@ -138,12 +148,13 @@ std::string to_string(const Options& options) {
 
 std::string to_string(const Problem& problem, const Solution& solution) {
   std::string text = head_text(problem, solution);
-  text += "level  rows  freedom        slack\n";
+  text += "level  rows equal  held  violated  freedom        slack\n";
   for (int level = 0; level < problem.levels(); ++level) {
     text += level_line(problem, solution, level);
   }
   for (int row = 0; row < problem.rows(); ++row) {
-    if (solution.state[at(row)] != RowState::kInactive) text += row_line(problem, solution, row);
+    const RowState state = solution.state[at(row)];
+    if (is_held(state) || is_violated(state)) text += row_line(problem, solution, row);
   }
   return text;
 }

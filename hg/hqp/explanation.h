@@ -21,8 +21,9 @@ std::string to_string(const Problem& problem, int row);
 /// Tolerances and limits, one line.
 std::string to_string(const Options& options);
 
-/// What became of `problem`, some lines: how the solve ended, a line per level with its freedom,
-/// slack (square root of slack_squared) and the row that blocks it, a line per row that acts or is
+/// What became of `problem`, some lines: how the solve ended; a line per level with the number of
+/// its rows, equalities that are met, rows held at a bound and violated ones, its freedom, its
+/// slack (square root of slack_squared) and the row that blocks it; a line per row that is held or
 /// violated. `solution` must be one of `problem`.
 std::string to_string(const Problem& problem, const Solution& solution);
 

@@ -441,5 +441,54 @@ class BadInput(TemporaryFolder):
         self.assertIn("none.hqp", err)
 
 
+class HqpSolve(unittest.TestCase):
+    """Two problems: x0 <= 1 at any rate, then x0 + x1 = 3, then x0 = 5; and one with a bad row."""
+
+    TEXT = ("hqp 2 3\nname example\noptions max_iterations 50\nlevel 0 1\n1 0 -inf 1\n"
+            "level 1 0\n1 1 3\nlevel 1 0\n1 0 5 weight 0.5\nguess u=<\nend\n"
+            "hqp 1 2\nlevel 1 0\n1 4\nlevel 0 1\n2 4 3 bad\nend\n")
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.file = pathlib.Path(folder.name, "two.hqp")
+        self.file.write_text(self.TEXT)
+
+    def test_numbers(self):
+        code, out, err = run("hqp", "solve", self.file)
+        self.assertEqual((code, out), (1, "1 2 0 0 4\n4 0 0\n"))
+        self.assertEqual(err, "problem 1: bad row, row 1 (level 1): 2 x0 in [4, 3]: lb must not be "
+                              "above ub\n")
+
+    def test_one_problem_in_words(self):
+        code, out, err = run("hqp", "solve", self.file, "--problem", 0, "--level", 2)
+        self.assertEqual((code, err), (0, ""))
+        for words in ("problem 0, example\n", "max_iterations 50", "solved: 1 active set tried",
+                      "  optimal, blocked by row 0\n",
+                      "row 0 (level 0): x0 in [-inf, 1]: held at its upper bound, value 1\n",
+                      "row 2 (level 2): x0 = 5, weight 0.5: violated, too small by 4, value 1\n",
+                      "x = 1 2\n", "multipliers of level 2", "\n            1  row 0 (level 0)"):
+            self.assertIn(words, out)
+
+    def test_a_bad_row_in_words(self):
+        code, out, _ = run("hqp", "solve", self.file, "--problem", 1, "--explain")
+        self.assertEqual(code, 1)
+        self.assertIn("row 1 (level 1): 2 x0 in [4, 3]: lb must not be above ub\n", out)
+        self.assertIn("    1     1  ignored\n", out)
+
+    def test_times(self):
+        code, out, _ = run("hqp", "solve", self.file, "--problem", 0, "--timing")
+        self.assertEqual(code, 0)
+        self.assertRegex(out, r"1 problem, .*\nstart .*\ncold .*\nwarm ")
+
+    def test_no_such_problem_or_level(self):
+        for arguments, words in ((["--problem", 2], "has the problems 0..1, got 2"),
+                                 (["--level", 2, "--problem", 1], "has the levels 0..1, got 2"),
+                                 (["--problem", -1], "--problem"), (["--level", "x"], "--level")):
+            code, _, err = run("hqp", "solve", self.file, *arguments)
+            self.assertEqual(code, 2, err)
+            self.assertIn(words, err)
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=1)
