@@ -1,4 +1,4 @@
-/// Both laws with both kinds of bounds on the same scenarios, as one table.
+/// `hapticgiant bench`: solver, control cycle and laws, measured in one run; docs/benchmarks.md.
 #pragma once
 
 #include <string>
@@ -8,13 +8,15 @@ namespace hg::apps {
 
 struct BenchArguments {
   std::vector<std::string> scenarios = {"door", "free_space", "excavator"};
-  std::string json;  ///< file; empty = none
+  bool is_quick = false;  ///< fewer problems and passes: for a first look
+  std::string json;       ///< file; empty = none
+  std::string out;        ///< folder of tables and figures; empty = none
 };
 
-/// Plays every scenario with each law and each kind of bounds, without page and recording. The
-/// solver is timed on the problem of every cycle that renders, from the active set of the cycle
-/// before. Exit code 0, or 1 when an expected event is missing, a device was stopped by a fault or
-/// a cycle was not solved. Throws SetupError for bad input.
+/// Four tables: our solver and the paper's cascade on the problems of the scenarios and of the
+/// reference data; Cycle::step by stages; growth with the size of a problem; both laws with both
+/// kinds of bounds. Exit code 0, or 1 when an expected event is missing, a device was stopped by a
+/// fault, or our solver has failed or was wrong. Throws SetupError for bad input.
 int bench(const BenchArguments& arguments);
 
 }  // namespace hg::apps

@@ -54,10 +54,12 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   safety::advance(state_.supervisor, operator_input.request, is_held(sensors), fault);
 
   record.change = rendering_.change(operator_input.change, state_.rendering);
+  ended_(Stage::kSupervision);
 
   // estimation -> rendering -> prepositioning
   if (safety::is_finite(sensors)) {
     record.robot = estimation_.step(sensors, state_.dq_p, state_.estimation);
+    ended_(Stage::kEstimation);
     const Mode mode = state_.supervisor.mode;
     if (mode == Mode::kRunning || mode == Mode::kStopping) {
       render(record);
@@ -68,7 +70,9 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
 
   // control -> sanitiser
   write_command(sensors, operator_input, command);
+  ended_(Stage::kControl);
   safety::sanitise(config_.monitor, command);
+  ended_(Stage::kSafety);
 
   state_.dq_p = command.dq_p;
   state_.next_sequence = sensors.sequence + 1;
@@ -76,6 +80,12 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   record.mode = state_.supervisor.mode;
   record.fault = state_.supervisor.fault;
   record.state_hash = hash_of(state_, record.robot, rendering_.problem().rows());
+  ended_(Stage::kStateHash);
+}
+
+void Cycle::watch(const StageProbe& probe) noexcept {
+  ended_ = probe;
+  rendering_.watch(probe);
 }
 
 // Nothing moves. Before it is armed the device may be moved by others: the twin goes along.
@@ -112,8 +122,10 @@ void Cycle::render(CycleRecord& record) noexcept {
   record.q_p_target = gantry.q_target;
   state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
   state_.is_blocked = rendering_.is_blocked();
+  ended_(Stage::kPrepositioning);
   rendering_.integrate(state_.rendering);
   if (is_stopping && stands_still(record)) safety::has_stopped(state_.supervisor);
+  ended_(Stage::kIntegration);
 }
 
 void Cycle::stop_with(const Fault& fault) noexcept {

@@ -4,6 +4,7 @@
 /// construction.
 #pragma once
 
+#include "hg/core/stage_probe.h"
 #include "hg/estimation/estimation.h"
 #include "hg/prepositioning/gantry_target.h"
 #include "hg/prepositioning/prepositioning.h"
@@ -49,6 +50,9 @@ class Cycle {
     return safety::is_held(config_.monitor, sensors);
   }
 
+  /// Who is told from now on how far a step has come; the default probe tells nobody.
+  void watch(const StageProbe& probe) noexcept;
+
   const State& state() const noexcept { return state_; }
   void restore(const State& state) noexcept { state_ = state; }
   /// What the solver was given in the last step.
@@ -66,6 +70,7 @@ class Cycle {
   rendering::Rendering rendering_;
   prepositioning::GantryTarget gantry_target_;
   State state_;
+  StageProbe ended_;
 };
 
 }  // namespace hg::cycle

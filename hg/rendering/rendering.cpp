@@ -174,6 +174,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
       changed_rows(previous, state.active_set, tasks_.first_limit_row(), tasks_.limit_row_count());
   if (!is_braking) catch_reversals(state.twin, options_.dt, state.inner);
   report_kinematics(state, record);
+  ended_(Stage::kReactions);
   return record.solver_status;
 }
 
@@ -216,9 +217,11 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
                  .touched = state.touched,
                  .L = L_,
                  .tau = tau});
+    ended_(Stage::kRenderingSetUp);
     record.solver_status = to_solver_status(
         solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_));
     record.solver_iterations += solution_.iterations;
+    ended_(Stage::kSolver);
 
     const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);
     state.reference.ddq_m = x.head(n_m);
@@ -227,6 +230,7 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
     budget.inertia.noalias() += twin_.chain.M() * state.twin.ddq_a;
     const VectorA tau_constraint = budget.inertia - tau;
     reactions_.split(device_, twin_, tasks_, solution_, tau_constraint);
+    ended_(Stage::kReactions);
 
     bool released = false;
     for (int i = 0; i < n_a; ++i) {

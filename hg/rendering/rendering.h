@@ -5,6 +5,7 @@
 /// No allocation, noexcept after construction.
 #pragma once
 
+#include "hg/core/stage_probe.h"
 #include "hg/hqp/solver.h"
 #include "hg/rendering/device_model.h"
 #include "hg/rendering/options.h"
@@ -54,6 +55,9 @@ class Rendering {
   /// what the gantry does to a held twin stands above them.
   bool is_blocked() const noexcept;
 
+  /// Who is told about kRenderingSetUp, kSolver and kReactions from now on.
+  void watch(const StageProbe& probe) noexcept { ended_ = probe; }
+
   /// The problem of the last step: rows, bounds and weights.
   const hqp::Problem& problem() const noexcept { return tasks_.problem(); }
   /// s of the last step (11): how H had to accelerate relative to E.
@@ -76,6 +80,7 @@ class Rendering {
   hqp::Options solver_options_;
   hqp::Solver solver_;
   hqp::Solution solution_;
+  StageProbe ended_;
 };
 
 }  // namespace hg::rendering

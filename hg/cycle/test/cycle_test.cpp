@@ -226,6 +226,44 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
   }
 }
 
+// Stages in the order in which they ended.
+void note(void* listener, Stage stage) noexcept {
+  static_cast<std::vector<Stage>*>(listener)->push_back(stage);
+}
+
+TEST(Cycle, ARunningStepEndsEveryStageInOrder) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[0] = 3.0;
+  std::vector<Stage> stages;
+  loop.cycle->watch({.ended = note, .listener = &stages});
+  loop.step();
+  const std::vector<Stage> all = {
+      Stage::kSupervision, Stage::kEstimation, Stage::kRenderingSetUp, Stage::kSolver,
+      Stage::kReactions,   Stage::kReactions,  Stage::kPrepositioning, Stage::kIntegration,
+      Stage::kControl,     Stage::kSafety,     Stage::kStateHash};
+  EXPECT_EQ(stages, all);
+
+  loop.cycle->watch({});
+  loop.step();
+  EXPECT_EQ(stages.size(), all.size());
+}
+
+TEST(Cycle, BeingWatchedChangesNothing) {
+  Loop watched, alone;
+  std::vector<Stage> stages;
+  watched.cycle->watch({.ended = note, .listener = &stages});
+  for (Loop* loop : {&watched, &alone}) {
+    loop->start_running();
+    loop->sensors.w_S << 2, 1, -3, 0.1, 0.2, 0.1;
+  }
+  for (int k = 0; k < 100; ++k) {
+    watched.step();
+    alone.step();
+    ASSERT_EQ(watched.record.state_hash, alone.record.state_hash) << k;
+  }
+}
+
 TEST(Cycle, AStepMakesNoAllocation) {
   Loop loop;
   loop.start_running();

@@ -1,0 +1,37 @@
+/// What `hapticgiant bench` leaves behind: JSON, CSV tables, figures.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/cycle_table.h"
+#include "bench/growth.h"
+#include "bench/law_table.h"
+#include "bench/solver_table.h"
+
+namespace hg::apps {
+
+struct BenchResults {
+  nlohmann::ordered_json machine;
+  std::vector<std::filesystem::path> reference_files;
+  std::vector<bench::SolverSet> solver;
+  std::vector<bench::CycleTimes> cycles;
+  std::vector<bench::GrowthRow> growth;
+  std::vector<bench::GrowthExponent> exponents;
+  std::vector<bench::LawRun> laws;
+};
+
+nlohmann::ordered_json to_json(const BenchResults& results);
+
+/// Rows are flat objects with the same keys; the first line has the keys. Null is empty.
+std::string to_csv(const nlohmann::ordered_json& rows);
+
+/// Makes the folder where it is missing. Throws SetupError; "" means "no folder".
+void make_folder(const std::string& folder);
+
+/// machine.txt, and per table a CSV file and a figure. Throws SetupError.
+void write_files(const std::string& folder, const BenchResults& results);
+
+}  // namespace hg::apps

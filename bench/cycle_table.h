@@ -1,0 +1,29 @@
+/// Time of Cycle::step and of its stages, in scenarios.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "bench/times.h"
+#include "hg/config/scenario.h"
+#include "hg/core/stage_probe.h"
+
+namespace hg::bench {
+
+/// Cycles that render; the fastest of several plays counts for each cycle and stage.
+struct CycleTimes {
+  std::string scenario;
+  Times total;  ///< in plays of its own, that nobody watches
+  std::array<Times, kStageCount> stages;
+};
+
+/// Plays the scenario 2 x `passes` times, up to `most` cycles that render.
+CycleTimes measure_cycle(const std::string& name, const config::Scenario& scenario, int passes,
+                         std::size_t most);
+
+std::string cycle_header();
+std::string to_text(const CycleTimes& times);
+/// A flat row for the whole and for each stage.
+nlohmann::ordered_json to_json(const CycleTimes& times);
+
+}  // namespace hg::bench

@@ -1,0 +1,42 @@
+/// Both laws with both kinds of bounds on the same scenario.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "hg/config/scenario.h"
+#include "hg/evaluation/summary.h"
+
+namespace hg::bench {
+
+/// What a scenario was like under one law; accelerations of the hand in m/s^2.
+struct LawRun {
+  std::string scenario, law, bounds;
+  std::size_t events = 0, expected_events = 0;
+  std::vector<std::string> missing;
+  FaultCode fault = FaultCode::kNone;
+  int cycles = 0;  ///< that render
+  int unsolved = 0;
+  double duration_s = 0.0;
+  int changes = 0;         ///< limits that begin or cease to act
+  int changed_cycles = 0;  ///< cycles in which one does
+  double sum_acceleration_change = 0.0, max_acceleration_change = 0.0;
+  double worst_violation = 0.0;  ///< rad or m
+  bool worst_is_angle = false;
+  std::string worst_limit = "none";
+  evaluation::Histogram solver_us, cycle_us;
+
+  /// Nothing missing, no fault, every cycle solved.
+  bool is_well() const;
+};
+
+/// Plays the scenario once. The solver is timed on the problem of every cycle that renders, from
+/// the active set of the cycle before.
+LawRun play_law(const std::string& name, const config::Scenario& scenario);
+
+std::string law_header();
+std::string to_text(const LawRun& run);
+nlohmann::ordered_json to_json(const LawRun& run);
+
+}  // namespace hg::bench

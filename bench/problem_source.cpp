@@ -1,0 +1,131 @@
+#include "bench/problem_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "hg/core/error.h"
+#include "hg/hqp/text.h"
+
+namespace hg::bench {
+namespace fs = std::filesystem;
+namespace {
+
+std::vector<std::vector<double>> read_numbers(const std::string& file) {
+  std::vector<std::vector<double>> lines;
+  std::istringstream text(hqp::read_text(file));
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream words(line);
+    lines.emplace_back();
+    for (std::string word; words >> word;)
+      lines.back().push_back(std::strtod(word.c_str(), nullptr));
+  }
+  return lines;
+}
+
+bool is_problem_file(const std::string& name) {
+  return name.ends_with(".hqp") || name.ends_with(".hqp.gz");
+}
+
+std::size_t bytes_of(const hqp::Problem& problem) {
+  const hqp::Capacity& capacity = problem.capacity();
+  return sizeof(double) * static_cast<std::size_t>((capacity.variables + 6) * capacity.rows);
+}
+
+}  // namespace
+
+ProblemSource::ProblemSource(std::string name, const config::Scenario& scenario, std::size_t most)
+    : name_(std::move(name)), remaining_(most), player_(std::make_unique<Player>(scenario)) {}
+
+ProblemSource::ProblemSource(const fs::path& file, std::size_t most)
+    : remaining_(most), block_(hqp::read_problems(file.string())) {
+  name_ = file.filename().string();
+  name_.resize(name_.find(".hqp"));
+  is_sequence_ = !name_.starts_with("random");
+  read_reference((file.parent_path() / name_).string());
+}
+
+void ProblemSource::read_reference(const std::string& stem) {
+  if (!fs::exists(stem + ".sol.gz")) return;
+  norms_ = read_numbers(stem + ".sol.gz");
+  if (norms_.size() != block_.size()) {
+    throw SetupError(stem + ".sol.gz: expected one line per problem, " +
+                     std::to_string(block_.size()) + ", got " + std::to_string(norms_.size()));
+  }
+  for (std::size_t i = 0; i < norms_.size(); ++i) {
+    const int variables = block_[i].variables(), levels = block_[i].levels();
+    if (norms_[i].size() != static_cast<std::size_t>(variables + levels)) {
+      throw SetupError(stem + ".sol.gz:" + std::to_string(i + 1) + ": expected " +
+                       std::to_string(variables) + " variables and " + std::to_string(levels) +
+                       " slacks, got " + std::to_string(norms_[i].size()) + " numbers");
+    }
+    norms_[i].erase(norms_[i].begin(), norms_[i].begin() + variables);
+    for (double& norm : norms_[i]) norm = std::sqrt(norm);
+  }
+  if (!fs::exists(stem + ".skip")) return;
+  for (const std::vector<double>& line : read_numbers(stem + ".skip")) {
+    for (const double index : line) {
+      if (index >= 0.0 && index < static_cast<double>(norms_.size())) {
+        norms_[static_cast<std::size_t>(index)].clear();
+      }
+    }
+  }
+}
+
+std::span<const double> ProblemSource::reference(std::size_t index) const {
+  return has_reference() ? std::span<const double>(norms_[index]) : std::span<const double>();
+}
+
+std::span<const hqp::Problem> ProblemSource::next() {
+  if (player_ != nullptr) return next_of_scenario();
+  const std::size_t count = std::min(remaining_, block_.size());
+  remaining_ = 0;
+  return {block_.data(), count};
+}
+
+std::span<const hqp::Problem> ProblemSource::next_of_scenario() {
+  const hqp::Problem& problem = player_->cycle().problem();
+  const std::size_t most = std::min(
+      {remaining_, kBlockProblems,
+       std::max<std::size_t>(1, kBlockBytes / std::max<std::size_t>(1, bytes_of(problem)))});
+  std::size_t count = 0;
+  bool goes_on = most > 0;
+  while (goes_on) {
+    player_->begin();
+    player_->run();
+    if (player_->is_running()) {
+      if (count < block_.size()) {
+        block_[count] = problem;
+      } else {
+        block_.push_back(problem);
+      }
+      ++count;
+    }
+    const bool has_more = player_->end();
+    if (!has_more) remaining_ = count;
+    goes_on = has_more && count < most;
+  }
+  remaining_ -= count;
+  return {block_.data(), count};
+}
+
+std::vector<fs::path> reference_files(const fs::path& root) {
+  const char* variable = std::getenv("HG_REFERENCE_DATA");
+  const fs::path folder = variable != nullptr ? fs::path(variable) : root / "tests" / "reference";
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (is_problem_file(entry.path().filename().string())) files.push_back(entry.path());
+  }
+  if (variable != nullptr && files.empty()) {
+    throw SetupError("HG_REFERENCE_DATA: expected a folder with *.hqp or *.hqp.gz, got '" +
+                     folder.string() + "'");
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace hg::bench

@@ -1,0 +1,211 @@
+#include "bench/solver_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "bench/comparison.h"
+#include "hg/hqp/solver.h"
+
+namespace hg::bench {
+namespace {
+
+using hqp::Problem;
+using Points = std::vector<std::vector<double>>;
+
+hqp::Capacity capacity_of(std::span<const Problem> problems) {
+  hqp::Capacity capacity = {.variables = 1, .levels = 1, .rows = 1};
+  for (const Problem& problem : problems) {
+    capacity.variables = std::max(capacity.variables, problem.variables());
+    capacity.levels = std::max(capacity.levels, problem.levels());
+    capacity.rows = std::max(capacity.rows, problem.rows());
+  }
+  return capacity;
+}
+
+// Measures one set, block by block.
+class SetTimer {
+ public:
+  SetTimer(ProblemSource& source, BaselineSolve baseline, int passes)
+      : source_(source), baseline_(baseline), passes_(passes) {
+    set_.name = source.name();
+    if (source.is_sequence()) warm_.solver = "warm";
+    cold_.solver = "cold";
+    cascade_.solver = "cascade";
+  }
+
+  SolverSet measure() {
+    for (auto block = source_.next(); !block.empty(); block = source_.next()) {
+      if (!solver_) prepare(block);
+      const Points cold = solve(block, cold_, false);
+      const Points warm = source_.is_sequence() ? solve(block, warm_, true) : cold;
+      const Points theirs = baseline_ != nullptr ? solve_with_baseline(block) : Points();
+      compare_block(block, cold, warm, theirs);
+      first_ += block.size();
+    }
+    set_.problems = first_;
+    if (source_.is_sequence()) set_.runs.push_back(std::move(warm_));
+    set_.runs.push_back(std::move(cold_));
+    if (baseline_ != nullptr) set_.runs.push_back(std::move(cascade_));
+    return std::move(set_);
+  }
+
+ private:
+  void prepare(std::span<const Problem> block) {
+    const hqp::Capacity capacity = capacity_of(block);
+    set_.variables = capacity.variables;
+    set_.levels = capacity.levels;
+    solver_ = std::make_unique<hqp::Solver>(capacity);
+    solution_ = std::make_unique<hqp::Solution>(capacity);
+    placed_ = std::make_unique<Problem>(capacity);
+  }
+
+  Points solve(std::span<const Problem> block, SolverRun& run, bool is_warm) {
+    Points points;
+    const hqp::ActiveSet before = active_;
+    for (int pass = 0; pass < passes_; ++pass) {
+      active_ = before;
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        *placed_ = block[i];
+        if (!is_warm) active_ = {};
+        const Clock::time_point begin = Clock::now();
+        const hqp::Status status = solver_->solve(*placed_, {}, active_, *solution_);
+        const double us = microseconds_since(begin);
+
+        // the first of all has nothing to start from
+        const std::size_t skipped = is_warm ? 1 : 0;
+        if (first_ + i >= skipped) run.times.add(first_ + i - skipped, us);
+        if (pass > 0) continue;
+        run.failures += status != hqp::Status::kSolved;
+        run.iterations += solution_->iterations;
+        points.push_back(solution_->x);
+      }
+    }
+    if (!is_warm) active_ = before;
+    return points;
+  }
+
+  Points solve_with_baseline(std::span<const Problem> block) {
+    Points points;
+    std::vector<double> x;
+    for (int pass = 0; pass < passes_; ++pass) {
+      for (std::size_t i = 0; i < block.size(); ++i) {
+        *placed_ = block[i];
+        x.resize(static_cast<std::size_t>(placed_->variables()));
+        const Clock::time_point begin = Clock::now();
+        const bool is_solved = baseline_(*placed_, x.data());
+        cascade_.times.add(first_ + i, microseconds_since(begin));
+        if (pass > 0) continue;
+        cascade_.failures += !is_solved;
+        points.push_back(x);
+      }
+    }
+    return points;
+  }
+
+  void compare_block(std::span<const Problem> block, const Points& cold, const Points& warm,
+                     const Points& theirs) {
+    const auto count = [&](SolverRun& run, bool is_wrong) {
+      run.wrong = run.wrong.value_or(0) + (is_wrong ? 1 : 0);
+    };
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      const std::span<const double> reference = source_.reference(first_ + i);
+      const auto differs = [&](const std::vector<double>& x) {
+        return compare(slack_norms(block[i], x), reference) != Verdict::kSame;
+      };
+      if (source_.has_reference()) {
+        const bool is_comparable = !reference.empty();
+        count(warm_, is_comparable && differs(warm[i]));
+        count(cold_, is_comparable && differs(cold[i]));
+        if (!theirs.empty()) count(cascade_, is_comparable && differs(theirs[i]));
+      } else if (!theirs.empty()) {
+        const std::vector<double> norms = slack_norms(block[i], theirs[i]);
+        const Verdict verdict = compare(norms, slack_norms(block[i], warm[i]));
+        count(cascade_, verdict == Verdict::kWorse);
+        count(warm_, verdict == Verdict::kBetter);
+        count(cold_, compare(norms, slack_norms(block[i], cold[i])) == Verdict::kBetter);
+      }
+    }
+  }
+
+  ProblemSource& source_;
+  BaselineSolve baseline_;
+  int passes_;
+  std::size_t first_ = 0;  ///< problems before the block
+  hqp::ActiveSet active_;  ///< of the last warm solve
+  std::unique_ptr<hqp::Solver> solver_;
+  std::unique_ptr<hqp::Solution> solution_;
+  std::unique_ptr<Problem> placed_;
+  SolverSet set_;
+  SolverRun warm_, cold_, cascade_;
+};
+
+constexpr const char* kLine =
+    "{:<34} {:>4} {:>6} {:>8}  {:<7} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>8}\n";
+
+// How many times as long the cascade takes, by the medians.
+std::optional<double> advantage(const SolverSet& set, const SolverRun& run) {
+  const SolverRun& last = set.runs.back();
+  const double median = run.times.distribution().median;
+  if (last.solver != "cascade" || &run == &last || median <= 0.0) return {};
+  return last.times.distribution().median / median;
+}
+
+double mean_iterations(const SolverSet& set, const SolverRun& run) {
+  return run.iterations / static_cast<double>(std::max<std::size_t>(1, set.problems));
+}
+
+}  // namespace
+
+SolverSet measure_solvers(ProblemSource& source, BaselineSolve baseline, int passes) {
+  return SetTimer(source, baseline, passes).measure();
+}
+
+std::string solver_header() {
+  return fmt::format(kLine, "set", "n", "levels", "problems", "solver", "median", "99.9 %", "max",
+                     "tried", "failed", "wrong", "cascade");
+}
+
+std::string to_text(const SolverSet& set) {
+  std::string text;
+  for (const SolverRun& run : set.runs) {
+    const bool is_first = &run == &set.runs.front();
+    const bool is_ours = run.solver != "cascade";
+    const evaluation::Distribution d = run.times.distribution();
+    const std::optional<double> factor = advantage(set, run);
+    const auto once = [&](const auto& value) { return is_first ? fmt::to_string(value) : ""; };
+    text += fmt::format(kLine, is_first ? set.name : "", once(set.variables), once(set.levels),
+                        once(set.problems), run.solver, fmt::format("{:.2f}", d.median),
+                        fmt::format("{:.2f}", d.p99_9), fmt::format("{:.2f}", d.max),
+                        is_ours ? fmt::format("{:.2f}", mean_iterations(set, run)) : "",
+                        run.failures, run.wrong ? fmt::to_string(*run.wrong) : "-",
+                        factor ? fmt::format("{:.{}f} x", *factor, *factor < 10.0 ? 1 : 0) : "");
+  }
+  return text;
+}
+
+nlohmann::ordered_json to_json(const SolverSet& set) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const SolverRun& run : set.runs) {
+    nlohmann::ordered_json row = {{"set", set.name},
+                                  {"variables", set.variables},
+                                  {"levels", set.levels},
+                                  {"problems", set.problems},
+                                  {"solver", std::string(run.solver)}};
+    add_to(row, run.times.distribution());
+    row["mean_us"] = run.times.mean();
+    row["active_sets_tried"] = nullptr;
+    if (run.solver != "cascade") row["active_sets_tried"] = mean_iterations(set, run);
+    row["failed"] = run.failures;
+    row["wrong"] = nullptr;
+    if (run.wrong) row["wrong"] = *run.wrong;
+    const std::optional<double> factor = advantage(set, run);
+    row["cascade_takes_times"] = nullptr;
+    if (factor) row["cascade_takes_times"] = *factor;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace hg::bench

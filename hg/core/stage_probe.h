@@ -1,0 +1,46 @@
+/// Lets somebody outside follow a control cycle stage by stage, for example with a stop watch.
+///
+/// The cycle itself has no clock: it only says which stage has just ended. Without a listener that
+/// is one comparison per stage. A probe is not part of any state and changes no result.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace hg {
+
+/// Parts of Cycle::step in the order of the data; every nanosecond of a step belongs to one of
+/// them.
+enum class Stage : std::uint8_t {
+  kSupervision,     ///< sensor check, operating state, changes of parameters
+  kEstimation,      ///< sensors to states
+  kRenderingSetUp,  ///< device and twin models, torques, rows of the problem
+  kSolver,          ///< the lexicographic solver
+  kReactions,       ///< split of the constraint torque, report of the rendering
+  kPrepositioning,  ///< check of the reference, target and command of the gantry
+  kIntegration,     ///< reference and twin advance by one period
+  kControl,         ///< commands of the drives
+  kSafety,          ///< sanitiser
+  kStateHash,       ///< hash of the state for the record
+};
+inline constexpr int kStageCount = 10;
+
+constexpr const char* to_string(Stage stage) noexcept {
+  constexpr std::array<const char*, kStageCount> kNames = {
+      "supervision",    "estimation",  "rendering set-up", "solver", "reactions",
+      "prepositioning", "integration", "control",          "safety", "hash"};
+  return kNames[static_cast<std::size_t>(stage)];
+}
+
+struct StageProbe {
+  /// Called at the end of each stage, several times per step for stages that are repeated; null:
+  /// nobody listens.
+  void (*ended)(void* listener, Stage stage) noexcept = nullptr;
+  void* listener = nullptr;  ///< handed on; must outlive the probe
+
+  void operator()(Stage stage) const noexcept {
+    if (ended != nullptr) ended(listener, stage);
+  }
+};
+
+}  // namespace hg
