@@ -72,7 +72,7 @@ RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
   }
 
   // the sensor measures in S; the law needs the same wrench about H, resolved in B
-  chain_.update_kinematics(stacked(robot.q_p, robot.q_m), stacked(robot.dq_p, robot.dq_m));
+  chain_.update_poses(stacked(robot.q_p, robot.q_m));
   const Eigen::Matrix3d R_B_H = chain_.pose(handle_).R;
   const Eigen::Vector3d f_H = config_.T_H_S.R * sensors.w_S.head<3>();
   const Eigen::Vector3d n_H = config_.T_H_S.R * sensors.w_S.tail<3>() + config_.T_H_S.p.cross(f_H);

@@ -388,6 +388,11 @@ ConfigurationA Chain::integrate(const VectorIn& q, const VectorIn& step) const n
   return q_next;
 }
 
+void Chain::update_poses(const VectorIn& q) noexcept {
+  assert(q.size() == nq());
+  pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q);
+}
+
 void Chain::update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept {
   assert(q.size() == nq() && dq.size() == nv());
   const VectorIn ddq(impl_->zero);
@@ -397,10 +402,6 @@ void Chain::update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept {
 
 Loads Chain::default_loads() const noexcept {
   return {.mass = 1.0, .gravity = impl_->parts.model.gravity.linear().isZero(0.0) ? 0.0 : 1.0};
-}
-
-void Chain::update(const VectorIn& q, const VectorIn& dq) noexcept {
-  update(q, dq, default_loads());
 }
 
 void Chain::update(const VectorIn& q, const VectorIn& dq, const Loads& loads) noexcept {

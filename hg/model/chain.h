@@ -7,8 +7,7 @@
 /// wrenches and twists linear part first. Units SI.
 ///
 /// Set-up throws SetupError, `file:line: item: rule, got value`. After it nothing allocates or
-/// throws. Accessors return the results of the last update. One chain serves one thread; copy it
-/// for another.
+/// throws. Accessors return the results of the last update. One chain serves one thread.
 #pragma once
 
 #include <filesystem>
@@ -113,10 +112,11 @@ class Chain {
   /// q moved by `step` (nv, = dq * dt) for one unit of time; quaternions stay normalised.
   ConfigurationA integrate(const VectorIn& q, const VectorIn& step) const noexcept;
 
+  void update_poses(const VectorIn& q) noexcept;  ///< poses only, for half the cost
   /// Poses, twists, Jacobians, bias accelerations.
   void update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept;
   /// The same and M, c, gravity.
-  void update(const VectorIn& q, const VectorIn& dq) noexcept;
+  void update(const VectorIn& q, const VectorIn& dq) noexcept { update(q, dq, default_loads()); }
   void update(const VectorIn& q, const VectorIn& dq, const Loads& loads) noexcept;
   /// As built: mass 1, gravity as ChainOptions says.
   Loads default_loads() const noexcept;
