@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -13,6 +12,7 @@
 #include "hg/assembly/start_posture.h"
 #include "hg/config/law_names.h"
 #include "hg/core/error.h"
+#include "hg/inspection/workspace.h"
 #include "hg/rendering/catalogue.h"
 
 namespace hg::apps {
@@ -124,21 +124,12 @@ std::string changes(const RunArguments& arguments) {
 Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
   constexpr double kHalf = 2.0;  // m
   const Eigen::Vector3d p = assembly::handle_start(scenario.twin.model).p;
-  Eigen::Vector3d lower = Eigen::Vector3d::Constant(-kInfinity);
-  Eigen::Vector3d upper = Eigen::Vector3d::Constant(kInfinity);
-  for (const rendering::CartesianLimit& limit : scenario.device.model.cartesian_limits) {
-    if (limit.frame != scenario.device.model.handle) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const limits::JointLimits& range = limit.axes[static_cast<std::size_t>(axis)];
-      lower[axis] = std::max(lower[axis], range.q_min);
-      upper[axis] = std::min(upper[axis], range.q_max);
-    }
-  }
+  Eigen::AlignedBox3d box = inspection::handle_box(scenario.device.model);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(lower[axis])) lower[axis] = p[axis] - kHalf;
-    if (!std::isfinite(upper[axis])) upper[axis] = p[axis] + kHalf;
+    if (!std::isfinite(box.min()[axis])) box.min()[axis] = p[axis] - kHalf;
+    if (!std::isfinite(box.max()[axis])) box.max()[axis] = p[axis] + kHalf;
   }
-  return {lower, upper};
+  return box;
 }
 
 }  // namespace

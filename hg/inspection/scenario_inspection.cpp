@@ -4,6 +4,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -21,25 +22,6 @@ constexpr int kPostures = 150;  // of the twin; a generic device needs milliseco
 constexpr std::uint64_t kSeed = 1;
 constexpr double kHigh = 0.95;
 
-struct Ratings {
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Constant(kInfinity);  // m/s^2, axes of B
-  Eigen::Vector3d speed = Eigen::Vector3d::Constant(kInfinity);         // m/s
-};
-
-Ratings handle_ratings(const rendering::DeviceModel& model) {
-  Ratings ratings;
-  for (const rendering::CartesianLimit& limit : model.cartesian_limits) {
-    if (limit.frame != model.handle) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const limits::JointLimits& range = limit.axes[static_cast<std::size_t>(axis)];
-      if (!std::isfinite(range.q_min) && !std::isfinite(range.q_max)) continue;
-      ratings.acceleration[axis] = std::min(ratings.acceleration[axis], range.ddq_max);
-      ratings.speed[axis] = std::min(ratings.speed[axis], range.dq_max);
-    }
-  }
-  return ratings;
-}
-
 // One posture of the twin as the device meets it.
 struct Meeting {
   MatrixJ J_a;
@@ -53,17 +35,17 @@ struct Collected {
   std::vector<int> device_joint;
 };
 
-void collect(const rendering::DeviceModel& model, const Ratings& ratings,
+// `hand` limits the handle along x, y, z of B
+void collect(const rendering::DeviceModel& model, const std::array<limits::JointLimits, 3>& hand,
              const limits::JointLimits& limits, int dof, const Meeting& meeting, Collected& out) {
   const auto column = meeting.J_a.col(dof);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double lever = std::abs(column[axis]);
+  for (std::size_t axis = 0; axis < hand.size(); ++axis) {
+    const double lever = std::abs(column[static_cast<Eigen::Index>(axis)]);
     if (std::isfinite(limits.ddq_max)) {
-      out.acceleration =
-          std::max(out.acceleration, lever * limits.ddq_max / ratings.acceleration[axis]);
+      out.acceleration = std::max(out.acceleration, lever * limits.ddq_max / hand[axis].ddq_max);
     }
     if (std::isfinite(limits.dq_max)) {
-      out.speed = std::max(out.speed, lever * limits.dq_max / ratings.speed[axis]);
+      out.speed = std::max(out.speed, lever * limits.dq_max / hand[axis].dq_max);
     }
   }
   if (!meeting.manipulator_of_twin || !std::isfinite(limits.ddq_max)) return;
@@ -152,7 +134,7 @@ void inspect_work(const config::Device& device, const config::Twin& twin, Collec
 Match match(const config::Device& device, const config::Twin& twin) {
   config::Scenario pair = {.device = device, .twin = twin};
   const std::vector<ConfigurationA> postures = twin_postures(twin, kPostures, kSeed);
-  const Ratings ratings = handle_ratings(device.model);
+  const std::array<limits::JointLimits, 3> hand = rendering::handle_limits(device.model);
   model::Chain twin_chain = twin.model.chain, device_chain = device.model.chain;
   const Eigen::VectorXd zero_a = Eigen::VectorXd::Zero(twin_chain.nv());
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(device_chain.nv());
@@ -179,7 +161,7 @@ Match match(const config::Device& device, const config::Twin& twin) {
       }
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
-      collect(device.model, ratings, twin.model.dofs[i].limits, static_cast<int>(i), meeting,
+      collect(device.model, hand, twin.model.dofs[i].limits, static_cast<int>(i), meeting,
               values[i]);
     }
   }

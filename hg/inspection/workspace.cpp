@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hg::inspection {
@@ -131,17 +132,9 @@ std::size_t VoxelGrid::index(const Eigen::Vector3i& cell) const {
 }
 
 Eigen::AlignedBox3d handle_box(const rendering::DeviceModel& model) {
-  Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-kInfinity),
-                          Eigen::Vector3d::Constant(kInfinity));
-  for (const rendering::CartesianLimit& limit : model.cartesian_limits) {
-    if (limit.frame != model.handle) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const limits::JointLimits& range = limit.axes[static_cast<std::size_t>(axis)];
-      box.min()[axis] = std::max(box.min()[axis], range.q_min);
-      box.max()[axis] = std::min(box.max()[axis], range.q_max);
-    }
-  }
-  return box;
+  const std::array<limits::JointLimits, 3> limits = rendering::handle_limits(model);
+  return {Eigen::Vector3d(limits[0].q_min, limits[1].q_min, limits[2].q_min),
+          Eigen::Vector3d(limits[0].q_max, limits[1].q_max, limits[2].q_max)};
 }
 
 Workspace workspace(const config::Device& device, const Survey& survey) {

@@ -51,4 +51,7 @@ struct DeviceModel {
   }
 };
 
+/// All Cartesian limits of the handle combined, along x, y, z of B; infinite where there are none.
+std::array<limits::JointLimits, 3> handle_limits(const DeviceModel& device);
+
 }  // namespace hg::rendering

@@ -191,12 +191,9 @@ struct TipRatings {
 
 TipRatings tip_ratings(const config::Device& device) {
   limits::JointLimits hand{.dq_max = 1.5, .ddq_max = 5.0};
-  for (const rendering::CartesianLimit& limit : device.model.cartesian_limits) {
-    if (limit.frame != device.model.handle) continue;
-    for (const limits::JointLimits& axis : limit.axes) {
-      hand.dq_max = std::min(hand.dq_max, axis.dq_max);
-      hand.ddq_max = std::min(hand.ddq_max, axis.ddq_max);
-    }
+  for (const limits::JointLimits& axis : rendering::handle_limits(device.model)) {
+    hand.dq_max = std::min(hand.dq_max, axis.dq_max);
+    hand.ddq_max = std::min(hand.ddq_max, axis.ddq_max);
   }
   TipRatings ratings{.speed = kShare * hand.dq_max, .braking = kShare * hand.ddq_max};
   for (std::size_t i = device.model.joint_limits.size() - 3; i < device.model.joint_limits.size();
