@@ -28,14 +28,22 @@ void describe_conditions(V& v, const char* key, const TwinDraft& d,
       text);
 }
 
+/// Name and joint of a lock or conditional limit; returns the joint.
+template <class V, class Item>
+const TwinJoint& describe_head(V& v, Item& item, const TwinDraft& d, const char* name_text,
+                               const char* joint_text) {
+  v.words("name", item.name, name_text, Need::kRequired);
+  int index = 0;
+  v.name("joint", index, d.scalar_names, "a joint of the twin", joint_text, Need::kRequired);
+  const TwinJoint& joint = d.scalar_joint(index);
+  item.dof = joint.v_index;
+  return joint;
+}
+
 template <class V>
 void describe(V& v, rendering::Lock& lock, const TwinDraft& d) {
-  v.words("name", lock.name, "shown while it holds", Need::kRequired);
-  int index = 0;
-  v.name("joint", index, d.scalar_names, "a joint of the twin", "the joint that is held",
-         Need::kRequired);
-  const TwinJoint& joint = d.scalar_joint(index);
-  lock.dof = joint.v_index;
+  const TwinJoint& joint =
+      describe_head(v, lock, d, "shown while it holds", "the joint that is held");
   v.joint_number(kLockPosition, joint.unit, lock.position, kAnyNumber, "where it is held");
   v.rule(joint.dof.limits.q_min <= lock.position && lock.position <= joint.dof.limits.q_max,
          kLockPosition.of(joint.unit), "must be within the limits of the joint",
@@ -52,12 +60,7 @@ inline constexpr std::array<Choice<rendering::Moving>, 3> kMoving = {
 
 template <class V>
 void describe(V& v, rendering::ConditionalLimit& limit, const TwinDraft& d) {
-  v.words("name", limit.name, "for people", Need::kRequired);
-  int index = 0;
-  v.name("joint", index, d.scalar_names, "a joint of the twin", "the joint that is limited",
-         Need::kRequired);
-  const TwinJoint& joint = d.scalar_joint(index);
-  limit.dof = joint.v_index;
+  const TwinJoint& joint = describe_head(v, limit, d, "for people", "the joint that is limited");
   describe_positions(v, limit.limits, joint.unit);
   describe_ratings(v, limit.limits, joint.unit, Need::kOptional);
   v.choice("moving", limit.moving, kMoving, "towards which end the largest speed holds");
