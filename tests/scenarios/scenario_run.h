@@ -15,6 +15,7 @@
 #include "hg/core/allocation_counter.h"
 #include "hg/evaluation/events.h"
 #include "hg/evaluation/summary.h"
+#include "hg/runtime/requests.h"
 
 namespace hg {
 
@@ -78,9 +79,8 @@ class ScenarioRun {
         quality_.allocations += counter.count();
       }
       device_.write(sample->command);
-      sample->operator_input.request = sample->record.mode == Mode::kReady   ? ModeRequest::kArm
-                                       : sample->record.mode == Mode::kArmed ? ModeRequest::kRun
-                                                                             : ModeRequest::kNone;
+      sample->operator_input.request =
+          runtime::next_request(sample->record.mode, cycle_.is_held(sample->sensors), false);
       summary_.add(*sample);
       if (const auto event = detector_.observe(sample->record)) summary_.add(*event);
       if (sample->record.mode == Mode::kRunning) add_quality(sample->record);

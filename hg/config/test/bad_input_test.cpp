@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,7 +7,7 @@
 #include "hg/config/scenario.h"
 #include "hg/config/script.h"
 #include "hg/config/twin.h"
-#include "hg/core/error.h"
+#include "hg/core/test/message_of.h"
 
 namespace hg::config {
 namespace {
@@ -25,15 +24,6 @@ constexpr const char* kDoorUrdf = R"(<robot name="door">
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 </robot>
 )";
-
-std::string message_of(const std::function<void()>& load) {
-  try {
-    load();
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 // What is wrong with door.yaml when it has this text.
 std::string twin_message(const std::string& yaml) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -12,7 +11,7 @@
 #include "hg/config/scenario.h"
 #include "hg/config/script.h"
 #include "hg/config/twin.h"
-#include "hg/core/error.h"
+#include "hg/core/test/message_of.h"
 
 namespace hg::config {
 namespace {
@@ -20,15 +19,6 @@ namespace {
 std::string text_of(const std::string& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-std::string message_of(const std::function<void()>& load) {
-  try {
-    load();
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 // A good device in 12 lines; the posture stands behind all of them.

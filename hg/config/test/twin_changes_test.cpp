@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "hg/config/scenario.h"
 #include "hg/config/twin.h"
-#include "hg/core/error.h"
+#include "hg/core/test/message_of.h"
 
 namespace hg::config {
 namespace {
@@ -29,15 +28,6 @@ constexpr const char* kDoorUrdf = R"(<robot name="door">
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 </robot>
 )";
-
-std::string message_of(const std::function<void()>& load) {
-  try {
-    load();
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 Twin load(const std::string& yaml) {
   SourceReader reader({{"door.urdf", kDoorUrdf}, {"door.yaml", yaml}});

@@ -9,8 +9,8 @@
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
+#include "hg/core/test/temporary_folder.h"
 #include "hg/recording/test/example_run.h"
-#include "hg/recording/test/temporary_folder.h"
 
 namespace hg::recording {
 namespace {

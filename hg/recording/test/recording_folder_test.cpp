@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "hg/core/error.h"
-#include "hg/recording/test/temporary_folder.h"
+#include "hg/core/test/message_of.h"
+#include "hg/core/test/temporary_folder.h"
 
 namespace hg::recording {
 namespace {
@@ -11,15 +12,6 @@ namespace {
 using Names = std::vector<std::string>;
 
 const std::chrono::system_clock::time_point kStart{std::chrono::seconds(1'800'000'000)};
-
-std::string message_of(const auto& action) {
-  try {
-    action();
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(RecordingFolder, NamesFilesByUtcTime) {
   const TemporaryFolder temporary;

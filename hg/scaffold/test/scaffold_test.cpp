@@ -1,13 +1,11 @@
 #include "hg/scaffold/scaffold.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
 
 #include "hg/assembly/start_posture.h"
 #include "hg/config/scenario.h"
-#include "hg/core/error.h"
+#include "hg/core/test/message_of.h"
+#include "hg/core/test/temporary_folder.h"
 #include "hg/scaffold/postures.h"
 
 namespace hg::scaffold {
@@ -19,35 +17,8 @@ const ChainPart kGiant = {"models/haptic_giant/haptic_giant.urdf", "", ""};
 const ChainPart kArm = {"models/examples/arm.urdf", "", ""};
 const ChainPart kGate = {"models/examples/gate.urdf", "", ""};
 
-// A folder that goes with the test.
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("hg_scaffold_" + std::to_string(getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-
-  const fs::path& path() const { return path_; }
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return path_ / name;
-  }
-
- private:
-  fs::path path_;
-};
-
-std::string message_of(const ChainPart& part) {
-  try {
-    device_yaml(part, ".");
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto file = folder.write("arm.yaml", device_yaml(kArm, folder.path()));
   const config::Device device = config::load_device(file);
   EXPECT_EQ(device.model.n_p, 0);
@@ -62,7 +33,7 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
 }
 
 TEST(Scaffold, LeadingPrismaticJointsAreTheGantry) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto file = folder.write("giant.yaml", device_yaml(kGiant, folder.path()));
   const config::Device device = config::load_device(file);
   EXPECT_EQ(device.model.n_p, 2);
@@ -95,7 +66,7 @@ TEST(Scaffold, SingularValuesOfTheGiantAreThoseOfItsDeterminant) {
 }
 
 TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto device_file = folder.write("arm.yaml", device_yaml(kArm, folder.path()));
   for (const fs::path& device : {device_file, fs::path("models/haptic_giant/device.yaml")}) {
     config::Scenario scenario{
@@ -121,7 +92,7 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
 }
 
 TEST(Scaffold, TooFewJointsAreRefusedWithAdvice) {
-  const std::string message = message_of(kGate);
+  const std::string message = message_of([] { device_yaml(kGate, "."); });
   EXPECT_NE(message.find("six or seven manipulator joints"), std::string::npos) << message;
   EXPECT_NE(message.find("--tip-link"), std::string::npos) << message;
 }

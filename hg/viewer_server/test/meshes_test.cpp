@@ -1,37 +1,27 @@
 #include "hg/viewer_server/meshes.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
 
 #include "hg/core/error.h"
+#include "hg/core/test/temporary_folder.h"
 
 namespace hg::viewer_server {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Meshes are found where the URDFs of robots mean them; nothing else gets into the table.
 class Meshes : public ::testing::Test {
  protected:
-  Meshes() : root_(fs::temp_directory_path() / ("hg_meshes_" + std::to_string(getpid()))) {
-    write("robots/arm/meshes/base.stl", "base");
-    write("robots/arm/meshes/link.dae", "link");
-    write("robots/arm/meshes/secret.txt", "secret");
+  Meshes() {
+    folder_.write("robots/arm/meshes/base.stl", "base");
+    folder_.write("robots/arm/meshes/link.dae", "link");
+    folder_.write("robots/arm/meshes/secret.txt", "secret");
   }
-  ~Meshes() override { fs::remove_all(root_); }
 
-  void write(const std::string& name, const std::string& text) const {
-    fs::create_directories((root_ / name).parent_path());
-    std::ofstream(root_ / name) << text;
-  }
   std::string serve(const std::string& urdf) {
-    write("robots/arm/urdf/arm.urdf", urdf);
-    return with_meshes(root_ / "robots/arm/urdf/arm.urdf", "/models/device/", assets_);
+    return with_meshes(folder_.write("robots/arm/urdf/arm.urdf", urdf), "/models/device/", assets_);
   }
 
-  fs::path root_;
+  const TemporaryFolder folder_;
   AssetTable assets_;
 };
 
@@ -63,7 +53,7 @@ TEST_F(Meshes, ThatAreMissingOrNoMeshesKeepTheirNames) {
 }
 
 TEST_F(Meshes, OfAUrdfThatIsNotThereAreRefused) {
-  EXPECT_THROW(with_meshes(root_ / "none.urdf", "/models/device/", assets_), SetupError);
+  EXPECT_THROW(with_meshes(folder_.path() / "none.urdf", "/models/device/", assets_), SetupError);
 }
 
 }  // namespace

@@ -4,12 +4,12 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "hg/core/error.h"
+#include "hg/core/test/temporary_folder.h"
 #include "hg/viewer_server/test/raw_client.h"
 
 namespace hg::viewer_server {
@@ -30,7 +30,7 @@ bool eventually(const std::function<bool()>& is_true) {
 
 class ViewerServerTest : public ::testing::Test {
  protected:
-  ViewerServerTest() : folder_(make_folder()), server_(make_options(), make_scene()) {
+  ViewerServerTest() : server_((write_page(), make_options()), make_scene()) {
     const std::string url = server_.url();
     const std::size_t colon = url.rfind(':');
     port_ = static_cast<std::uint16_t>(std::stoi(url.substr(colon + 1)));
@@ -38,24 +38,18 @@ class ViewerServerTest : public ::testing::Test {
     host_ = "Host: 127.0.0.1:" + std::to_string(port_) + "\r\n";
     origin_ = "Origin: http://127.0.0.1:" + std::to_string(port_) + "\r\n";
   }
-  ~ViewerServerTest() override { std::filesystem::remove_all(folder_); }
 
   // A page, and beside it a file that must stay secret.
-  static std::filesystem::path make_folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "viewer_test_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    const std::filesystem::path folder = name;
-    std::filesystem::create_directories(folder / "page" / "assets");
-    std::ofstream(folder / "page" / "index.html") << "the page";
-    std::ofstream(folder / "page" / "assets" / "main.js") << "the script";
-    std::ofstream(folder / "secret.txt") << "the secret";
-    std::filesystem::create_symlink(folder / "secret.txt", folder / "page" / "link.txt");
-    return folder;
+  void write_page() const {
+    folder_.write("page/index.html", "the page");
+    folder_.write("page/assets/main.js", "the script");
+    std::filesystem::create_symlink(folder_.write("secret.txt", "the secret"),
+                                    folder_.path() / "page" / "link.txt");
   }
 
   Options make_options() const {
     Options options;
-    options.page = folder_ / "page";
+    options.page = folder_.path() / "page";
     options.update_rate_hz = 1e6;  // tests publish faster than pages are shown
     return options;
   }
@@ -101,7 +95,7 @@ class ViewerServerTest : public ::testing::Test {
     server_.publish(sample, "fine");
   }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
   ViewerServer server_;
   std::uint16_t port_ = 0;
   std::string token_, host_, origin_;
@@ -292,7 +286,7 @@ TEST_F(ViewerServerTest, SetUpErrorsNameTheItem) {
     return "no error";
   };
   Options options = make_options();
-  options.page = folder_ / "nowhere";
+  options.page = folder_.path() / "nowhere";
   EXPECT_NE(message(options, make_scene()).find("index.html"), std::string::npos);
   Scene scene = make_scene();
   scene.twin.urdf = "nowhere.urdf";

@@ -9,12 +9,12 @@
 #include <set>
 #include <string>
 
-namespace hg::recording {
+namespace hg {
 
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "recording_XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "hg_test_XXXXXX").string();
     path_ = mkdtemp(name.data());
   }
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
@@ -23,8 +23,13 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name) << text;
+    return path_ / name;
+  }
   void write(const std::string& name, std::size_t bytes) const {
-    std::ofstream(path_ / name) << std::string(bytes, 'x');
+    write(name, std::string(bytes, 'x'));
   }
 
   std::set<std::string> names() const {
@@ -39,4 +44,4 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace hg::recording
+}  // namespace hg
