@@ -190,6 +190,18 @@ TEST(Chain, UpdateContainsTheKinematics) {
   });
 }
 
+TEST(Chain, PosesAloneAreThoseOfTheKinematicsToTheBit) {
+  for_all_chains([](Chain& chain, const auto& q, const Eigen::VectorXd& dq, RandomState&) {
+    Chain other = chain;
+    chain.update_poses(q);
+    other.update_kinematics(q, dq);
+    for (int frame = 0; frame < static_cast<int>(chain.frame_names().size()); ++frame) {
+      ASSERT_EQ(chain.pose(frame).p, other.pose(frame).p);
+      ASSERT_EQ(chain.pose(frame).R, other.pose(frame).R);
+    }
+  });
+}
+
 TEST(Chain, InverseDynamicsIsMassMatrixTimesAccelerationPlusBias) {
   for_all_chains([](Chain& chain, const auto& q, const Eigen::VectorXd& dq, RandomState& random) {
     const Eigen::VectorXd ddq = random.vector(chain.nv());
@@ -351,6 +363,7 @@ TEST(Chain, NothingAllocatesAfterConstruction) {
     chain.update(q, dq);
     chain.update(q_fixed, dq_fixed);
     chain.update_kinematics(q, dq);
+    chain.update_poses(q);
     sum += chain.pose(handle).p.norm() + chain.twist(handle).norm() +
            chain.jacobian(handle).norm() + chain.bias_acceleration(handle).norm();
     sum += chain.M().norm() + chain.c().norm() + chain.gravity().norm();
