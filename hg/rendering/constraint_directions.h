@@ -21,8 +21,9 @@ class ConstraintDirections {
  public:
   ConstraintDirections(const DeviceModel& device, const TwinModel& twin);
 
-  /// Takes J_m and J_a of this cycle; before any find().
-  void update(const DeviceModel& device, const TwinModel& twin) noexcept;
+  /// Takes the Jacobians of the handle (gantry first) and of the twin's end effector of this cycle;
+  /// before any find(), of which the first one factors J_m.
+  void update(const model::Jacobian& J_H, const model::Jacobian& J_a) noexcept;
 
   /// Fills the columns of device limit `limit`, whose row of `problem` is `row`.
   void find(const hqp::Problem& problem, int row, int limit) noexcept;
@@ -39,6 +40,8 @@ class ConstraintDirections {
       Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxManipulator, 6>>;
 
   int n_p_, n_m_;
+  model::Jacobian J_m_;
+  bool is_factored_ = false;
   Factor J_m_T_;
   model::Jacobian J_a_;
   MatrixUpTo<6, kMaxLimits> wrench_;

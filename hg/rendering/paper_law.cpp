@@ -35,7 +35,6 @@ PaperLaw::PaperLaw(const DeviceModel& device, const TwinModel& twin)
     : n_m_(device.n_m),
       n_a_(twin.chain.nv()),
       device_limits_(device.limit_count()),
-      directions_(device, twin),
       response_(n_a_, n_a_ + device_limits_ + 1),
       coefficients_(static_cast<std::size_t>(n_m_ + 2 * n_a_ + device_limits_), 0.0) {}
 
@@ -58,14 +57,13 @@ void PaperLaw::add_levels(hqp::Problem& problem) {
 }
 
 // [HG] (20): ddq_a - M_a^-1 sum of direction times alpha = M_a^-1 tau
-void PaperLaw::fill(const DeviceModel& device, const TwinModel& twin, const MatrixA& L,
-                    const VectorA& tau, int first_limit_row, hqp::Problem& problem) noexcept {
+void PaperLaw::fill(const MatrixA& L, const VectorA& tau, int first_limit_row,
+                    ConstraintDirections& directions, hqp::Problem& problem) noexcept {
   const int count = n_a_ + device_limits_;
-  directions_.update(device, twin);
   response_.leftCols(n_a_).setIdentity();
   for (int limit = 0; limit < device_limits_; ++limit) {
-    directions_.find(problem, first_limit_row + limit, limit);
-    response_.col(n_a_ + limit) = directions_.torque(limit);
+    directions.find(problem, first_limit_row + limit, limit);
+    response_.col(n_a_ + limit) = directions.torque(limit);
   }
   response_.col(count) = tau;
   L.triangularView<Eigen::Lower>().solveInPlace(response_);

@@ -35,9 +35,10 @@ class PaperLaw {
   void add_levels(hqp::Problem& problem);
 
   /// `L` is the Cholesky factor of M_a, `tau` (n_a) all torques on the twin that are not
-  /// constraints, including -c_a. Row `first_limit_row` + i of `problem` is limit i.
-  void fill(const DeviceModel& device, const TwinModel& twin, const MatrixA& L, const VectorA& tau,
-            int first_limit_row, hqp::Problem& problem) noexcept;
+  /// constraints, including -c_a. Row `first_limit_row` + i of `problem` is limit i. Finds the
+  /// `directions` of all limits of the device.
+  void fill(const MatrixA& L, const VectorA& tau, int first_limit_row,
+            ConstraintDirections& directions, hqp::Problem& problem) noexcept;
 
   /// (26) and (31): the torques that limit `limit` may have.
   void set_range(int limit, bool lower_touched, bool upper_touched, bool is_locked,
@@ -49,7 +50,6 @@ class PaperLaw {
  private:
   int n_m_, n_a_, device_limits_;
   int dynamics_row_ = 0, range_row_ = 0;
-  ConstraintDirections directions_;
   /// M_a^-1 (directions of all alpha, tau).
   MatrixUpTo<kMaxTwin, kMaxTwin + kMaxLimits + 1> response_;
   std::vector<double> coefficients_;  ///< scratch, one row

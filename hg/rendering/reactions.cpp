@@ -83,8 +83,7 @@ VectorA Reactions::torque(int limit) const noexcept {
   return VectorA::Unit(n_a_, limit - device_limits_);
 }
 
-void Reactions::find_active(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
-                            const hqp::Solution& solution) noexcept {
+void Reactions::find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept {
   active_count_ = 0;
   for (int limit = 0; limit < device_limits_ + n_a_; ++limit) {
     const auto row = static_cast<std::size_t>(tasks.acting_row(limit, solution));
@@ -92,8 +91,6 @@ void Reactions::find_active(const DeviceModel& device, const TwinModel& twin, co
     if (!acts && value_[static_cast<std::size_t>(limit)] == 0.0) continue;
     active_[static_cast<std::size_t>(active_count_++)] = limit;
   }
-  if (active_count_ == 0) return;
-  directions_.update(device, twin);
   for (int j = 0; j < active_count_; ++j) {
     const int limit = active_[static_cast<std::size_t>(j)];
     if (limit >= device_limits_) break;
@@ -101,8 +98,8 @@ void Reactions::find_active(const DeviceModel& device, const TwinModel& twin, co
   }
 }
 
-void Reactions::split(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
-                      const hqp::Solution& solution, const VectorA& tau_constraint) noexcept {
+void Reactions::split(const Tasks& tasks, const hqp::Solution& solution,
+                      const VectorA& tau_constraint) noexcept {
   value_.fill(0.0);
   rest_.setZero();
   const bool is_paper = tasks.alpha(0) >= 0;
@@ -110,7 +107,7 @@ void Reactions::split(const DeviceModel& device, const TwinModel& twin, const Ta
     value_[static_cast<std::size_t>(limit)] =
         solution.x[static_cast<std::size_t>(tasks.alpha(limit))];
   }
-  find_active(device, twin, tasks, solution);
+  find_active(tasks, solution);
   if (!is_paper) {
     if (active_count_ > 0) split_active(tasks, solution, tau_constraint);
     return;
@@ -183,8 +180,8 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
   }
 }
 
-void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Solution& solution,
-                       const MatrixA& L, double dt, CycleRecord& record) const noexcept {
+void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const MatrixA& L,
+                       const model::Jacobian& J_a, double dt, CycleRecord& record) const noexcept {
   const auto& rows = tasks.limit_rows();
   record.limit_count = device_limits_ + n_a_;
   for (int limit = 0; limit < record.limit_count; ++limit) {
@@ -206,7 +203,6 @@ void Reactions::report(const TwinModel& twin, const Tasks& tasks, const hqp::Sol
   report_felt(L, record);
 
   // part of the wrench that moves no joint of the twin
-  const model::Jacobian J_a = twin.chain.jacobian(twin.end_effector);
   const Eigen::ColPivHouseholderQR<model::Jacobian> J_a_qr(J_a);
   Vector6 moving = J_a_qr.householderQ().adjoint() * record.robot.w_H;
   moving.tail(6 - J_a_qr.rank()).setZero();

@@ -24,22 +24,27 @@ class Reactions {
  public:
   Reactions(const DeviceModel& device, const TwinModel& twin);
 
+  /// Takes the Jacobians of this cycle, see ConstraintDirections; before split() and report().
+  void update(const model::Jacobian& J_H, const model::Jacobian& J_a) noexcept {
+    directions_.update(J_H, J_a);
+  }
+  ConstraintDirections& directions() noexcept { return directions_; }
+
   /// Splits the constraint torque of `solution`, which solves tasks.problem(), or reads it from x.
   /// `tau_constraint` (n_a) = M_a ddq_a + c_a - tau.
-  void split(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
-             const hqp::Solution& solution, const VectorA& tau_constraint) noexcept;
+  void split(const Tasks& tasks, const hqp::Solution& solution,
+             const VectorA& tau_constraint) noexcept;
 
   /// Constraint force or torque of a limit in its own coordinate.
   double of(int limit) const noexcept { return value_[static_cast<std::size_t>(limit)]; }
 
   /// Fills limits, felt_limit, w_felt and the constraint parts and structure of the budget.
-  /// `L` is the Cholesky factor of M_a.
-  void report(const TwinModel& twin, const Tasks& tasks, const hqp::Solution& solution,
-              const MatrixA& L, double dt, CycleRecord& record) const noexcept;
+  /// `L` is the Cholesky factor of M_a, `J_a` the Jacobian of the twin's end effector.
+  void report(const Tasks& tasks, const hqp::Solution& solution, const MatrixA& L,
+              const model::Jacobian& J_a, double dt, CycleRecord& record) const noexcept;
 
  private:
-  void find_active(const DeviceModel& device, const TwinModel& twin, const Tasks& tasks,
-                   const hqp::Solution& solution) noexcept;
+  void find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept;
   void split_active(const Tasks& tasks, const hqp::Solution& solution,
                     const VectorA& tau_constraint) noexcept;
   void add_signs(const Tasks& tasks, const hqp::Solution& solution) noexcept;

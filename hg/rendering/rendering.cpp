@@ -115,6 +115,8 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options)
       tasks_(device_, twin_, options_),
       reactions_(device_, twin_),
       L_(twin_.chain.nv(), twin_.chain.nv()),
+      J_H_(6, device_.chain.nv()),
+      J_a_(6, twin_.chain.nv()),
       solver_(tasks_.problem().capacity()),
       solution_(tasks_.problem().capacity()) {
   solver_options_.max_iterations =
@@ -145,6 +147,9 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   const TwinValues& values = state.inner.parameters.now;
   twin_.chain.update(state.twin.q_a, state.twin.dq_a, values.loads);
   factor_mass(twin_.chain.M(), L_);
+  J_H_ = device_.chain.jacobian(device_.handle);
+  J_a_ = twin_.chain.jacobian(twin_.end_effector);
+  reactions_.update(J_H_, J_a_);
   advance_locks(twin_, state.twin.q_a, state.inner);
 
   const int n_a = twin_.chain.nv();
@@ -160,12 +165,11 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
     budget.friction = VectorA::Zero(n_a);
     budget.surface = VectorA::Zero(n_a);
   } else {
-    const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
-    record.tau_a = J_a.transpose() * record.robot.w_H;
+    record.tau_a = J_a_.transpose() * record.robot.w_H;
     budget.spring = spring_torque(twin_, state.twin.q_a, state.inner.parameters);
     budget.damping = damping_torque(L_, state.twin.dq_a, options_.dt, values);
     budget.friction = slip_torque(state.twin.dq_a, state.inner);
-    budget.surface = J_a.transpose() * values.w_ref;
+    budget.surface = J_a_.transpose() * values.w_ref;
   }
 
   const hqp::ActiveSet previous = state.active_set;
@@ -216,6 +220,9 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
                  .inner = state.inner,
                  .touched = state.touched,
                  .L = L_,
+                 .J_H = J_H_,
+                 .J_a = J_a_,
+                 .directions = reactions_.directions(),
                  .tau = tau});
     ended_(Stage::kRenderingSetUp);
     record.solver_status = to_solver_status(
@@ -229,7 +236,7 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
     budget.inertia = twin_.chain.c();
     budget.inertia.noalias() += twin_.chain.M() * state.twin.ddq_a;
     const VectorA tau_constraint = budget.inertia - tau;
-    reactions_.split(device_, twin_, tasks_, solution_, tau_constraint);
+    reactions_.split(tasks_, solution_, tau_constraint);
     ended_(Stage::kReactions);
 
     bool released = false;
@@ -247,7 +254,7 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
     if (!released) break;
   }
   if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
-  reactions_.report(twin_, tasks_, solution_, L_, options_.dt, record);
+  reactions_.report(tasks_, solution_, L_, J_a_, options_.dt, record);
 }
 
 bool Rendering::is_blocked() const noexcept {
@@ -264,9 +271,8 @@ void Rendering::report_kinematics(const State& state, CycleRecord& record) const
   record.twin = state.twin;
   record.T_B_H = device_.chain.pose(device_.handle);
   record.v_H = device_.chain.twist(device_.handle).head<3>();
-  const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
   record.a_H =
-      (J_a * state.twin.ddq_a + twin_.chain.bias_acceleration(twin_.end_effector)).head<3>();
+      (J_a_ * state.twin.ddq_a + twin_.chain.bias_acceleration(twin_.end_effector)).head<3>();
   if (device_.elbow >= 0) record.p_B_elbow = device_.chain.pose(device_.elbow).p;
   record.T_B_E = twin_.chain.pose(twin_.end_effector);
   record.sync_error = (record.T_B_E.p - record.T_B_H.p).norm();

@@ -76,7 +76,9 @@ class Rendering {
   Options options_;
   Tasks tasks_;
   Reactions reactions_;
-  MatrixA L_;  ///< M_a = L L^T, this cycle
+  // of this cycle: M_a = L L^T, the Jacobians of handle (gantry first) and end effector
+  MatrixA L_;
+  model::Jacobian J_H_, J_a_;
   hqp::Options solver_options_;
   hqp::Solver solver_;
   hqp::Solution solution_;

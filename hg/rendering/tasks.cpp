@@ -118,7 +118,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
 
   const VectorA tau = input.tau - twin.chain.c();
   if (paper_) {
-    paper_->fill(device, twin, input.L, tau, first_limit_row(), problem_);
+    paper_->fill(input.L, tau, first_limit_row(), input.directions, problem_);
     fill_ranges(input);
   } else {
     fill_dynamics(input.L, tau);
@@ -138,8 +138,7 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
   s_.tail<3>() = options_.kP_rot * rotation_between(T_B_H.R, T_B_E.R) +
                  options_.kD_rot * velocity_error.tail<3>();
 
-  const model::Jacobian J = device.chain.jacobian(device.handle);
-  const model::Jacobian J_a = twin.chain.jacobian(twin.end_effector);
+  const model::Jacobian& J = input.J_H;
   const Vector6 known = s_ - J.leftCols(device.n_p) * input.robot.ddq_p -
                         device.chain.bias_acceleration(device.handle) +
                         twin.chain.bias_acceleration(twin.end_effector);
@@ -147,7 +146,7 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
   row.setZero();
   for (int i = 0; i < 6; ++i) {
     row.head(n_m_) = J.row(i).segment(device.n_p, n_m_);
-    row.segment(n_m_, n_a_) = -J_a.row(i);
+    row.segment(n_m_, n_a_) = -input.J_a.row(i);
     problem_.set_row(i, coefficients_);
     problem_.set_bounds(i, {known[i], known[i]});
   }
@@ -200,7 +199,8 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
 
   // [HG] (15)-(16)
   for (const CartesianLimit& frame : device.cartesian_limits) {
-    const model::Jacobian J = device.chain.jacobian(frame.frame);
+    const model::Jacobian J =
+        frame.frame == device.handle ? input.J_H : device.chain.jacobian(frame.frame);
     const Vector6 known =
         J.leftCols(device.n_p) * input.robot.ddq_p + device.chain.bias_acceleration(frame.frame);
     const Eigen::Vector3d position = device.chain.pose(frame.frame).p;

@@ -53,9 +53,12 @@ struct TaskInput {
   const ReferenceState& reference;
   const TwinState& twin;
   const TwinInnerState& inner;
-  const TouchedEnds& touched;  ///< by the last result; law paper only
-  const MatrixA& L;            ///< M_a = L L^T
-  VectorA tau;                 ///< all torques on the twin that are not constraints, without c_a
+  const TouchedEnds& touched;        ///< by the last result; law paper only
+  const MatrixA& L;                  ///< M_a = L L^T
+  const model::Jacobian& J_H;        ///< of the handle, gantry first
+  const model::Jacobian& J_a;        ///< of the twin's end effector
+  ConstraintDirections& directions;  ///< of J_H and J_a; found by law paper
+  VectorA tau;  ///< all torques on the twin that are not constraints, without c_a
 };
 
 class Tasks {
