@@ -9,13 +9,15 @@
 namespace hg::hqp {
 namespace {
 
-// What is left of a row is, relative to its norm, an upper bound of its distance from the others,
-// and at most the norm of the free directions away from it. Within this factor of the tolerance,
-// the decision is left to the orthogonal elimination.
-constexpr double kDoubt = 1e3;
+// What is left of a row, relative to its norm, beside the tolerance: a decision is clear when it
+// is that many times larger or smaller, else it takes a closer look.
+constexpr double kClear = 1e3;
+// Rows of a level of which less than this share is left give way to the others of the level.
+constexpr double kWeak = 1e-2;
 // Weight of the numbers of a row in the choice of its variable, for variables that are taken last.
 constexpr double kTakenLast = 1e-2;
-constexpr double kRoundOff = 1e-14;  // a value below this share of its terms is none
+constexpr double kSurelyMissed = 1e-6;  // share of its terms from which a value is no rounding
+constexpr double kRoundOff = 1e-14;     // a value below this share of its terms is none
 
 }  // namespace
 
@@ -23,25 +25,27 @@ DirectElimination::DirectElimination(int max_variables, int max_rows)
     : pivots_(index(max_variables)),
       pivot_of_variable_(index(max_variables)),
       preference_(max_variables),
-      R_(max_variables * max_variables),
-      L_(max_variables * max_variables),
-      y_(max_variables),
-      factors_(max_variables),
-      level_factors_(max_variables * max_rows),
-      matrix_(max_variables * max_rows),
-      targets_(max_rows),
-      rhs_(max_rows),
+      R_((max_variables + 1) * max_variables),
+      L_((max_variables + 1) * max_variables),
+      dependent_rows_(max_variables * std::max(max_variables, max_rows)),
+      dependent_rhs_(std::max(max_variables, max_rows)),
+      matrix_(max_variables * (max_variables + max_rows)),
+      rhs_(max_variables + max_rows),
       values_(max_variables),
-      order_(max_rows) {}
+      order_(max_variables + max_rows),
+      scratch_(max_variables) {}
 
 void DirectElimination::reset(const Problem& problem) noexcept {
   n_ = problem.variables();
   rank_ = 0;
   std::fill_n(pivot_of_variable_.begin(), n_, -1);
-  preference_.head(n_).setOnes();
+  has_preference_ = false;
   for (int row = 0; row < problem.rows(); ++row) {
     const int variable = problem.variable(row);
-    if (variable >= 0 && is_equality(problem.bounds(row))) preference_[variable] = kTakenLast;
+    if (variable < 0 || !is_equality(problem.bounds(row))) continue;
+    if (!has_preference_) preference_.head(n_).setOnes();
+    has_preference_ = true;
+    preference_[variable] = kTakenLast;
   }
 }
 
@@ -49,135 +53,246 @@ void DirectElimination::truncate(int rank) noexcept {
   while (rank_ > rank) pivot_of_variable_[index(pivots_[index(--rank_)].variable)] = -1;
 }
 
-// y -= factors R for the pivots first..rank-1
-void DirectElimination::reduce(int first, int rank, double* y_data,
-                               double* factors) const noexcept {
+// y -= factors R for the pivots from `first` up to `end`.
+void DirectElimination::subtract_pivots(int first, int end, double* y_data,
+                                        double* factors) const noexcept {
   Eigen::Map<Eigen::VectorXd> y(y_data, n_);
-  for (int s = first; s < rank; ++s) {
+  for (int s = first; s < end; ++s) {
     const Pivot& pivot = pivots_[index(s)];
-    const double factor = y[pivot.variable] * pivot.inverse;
+    const double factor = y_data[pivot.variable] * pivot.inverse;
     factors[s] = factor;
     if (factor == 0.0) continue;
-    if (!pivot.is_unit) y -= factor * VectorView(R_.data() + s * n_, n_);
-    y[pivot.variable] = 0.0;
+    if (!pivot.is_unit) y -= factor * VectorView(reduced_row(s), n_);
+    y_data[pivot.variable] = 0.0;
   }
 }
 
-// Judges what is left of a row, and chooses the variable that it would take.
-DirectElimination::Outcome DirectElimination::judge(double norm, double tolerance) noexcept {
-  const double largest = y_.head(n_).cwiseAbs().maxCoeff();
-  if (largest * kDoubt <= tolerance * norm) return Outcome::kDependent;
-  if (!(largest > kDoubt * tolerance * norm)) return Outcome::kUnsure;
-  y_.head(n_).cwiseAbs().cwiseProduct(preference_.head(n_)).maxCoeff(&variable_);
-  return Outcome::kIndependent;
-}
-
-// A row of a single variable is left alone when the variable is free, and vanishes when another
-// such row has taken it.
-DirectElimination::Outcome DirectElimination::reduce_unit(TargetRow row, int variable,
-                                                          double tolerance) noexcept {
-  factors_.head(rank_).setZero();
-  value_ = row.target;
-  value_scale_ = std::abs(row.target);
-  const int t = pivot_of_variable_[index(variable)];
-  is_unit_ = t < 0;
-  variable_ = variable;
-  if (t < 0) return Outcome::kIndependent;
-  if (pivots_[index(t)].is_unit) {
-    factors_[t] = 1.0;
-    subtract_pivots(t, t + 1);
-    return Outcome::kDependent;
-  }
-  y_.head(n_).setZero();
-  y_[variable] = 1.0;
-  reduce(t, rank_, y_.data(), factors_.data());
-  subtract_pivots(t, rank_);
-  return judge(1.0, tolerance);
-}
-
-DirectElimination::Outcome DirectElimination::reduce(const Problem& problem, TargetRow row,
-                                                     double tolerance) noexcept {
-  const int variable = problem.variable(row.row);
-  if (variable >= 0) return reduce_unit(row, variable, tolerance);
-  y_.head(n_) = VectorView(problem.coefficients(row.row).data(), n_);
-  reduce(0, rank_, y_.data(), factors_.data());
-  is_unit_ = false;
-  value_ = row.target;
-  value_scale_ = std::abs(row.target);
-  subtract_pivots(0, rank_);
-  return judge(problem.norm(row.row), tolerance);
-}
-
-// What the pivots first..end-1 leave of the target.
-void DirectElimination::subtract_pivots(int first, int end) noexcept {
-  for (int s = first; s < end; ++s) {
-    const double term = factors_[s] * pivots_[index(s)].value;
+// What the pivots from `first` on leave of the target.
+void DirectElimination::subtract_values(int first) noexcept {
+  const double* factor = factors(rank_);
+  for (int s = first; s < rank_; ++s) {
+    const double term = factor[s] * pivots_[index(s)].value;
     value_ -= term;
     value_scale_ += std::abs(term);
   }
 }
 
-void DirectElimination::append(int row) noexcept {
-  pivots_[index(rank_)] = {.row = row,
-                           .variable = variable_,
-                           .is_unit = is_unit_,
-                           .inverse = is_unit_ ? 1.0 : 1.0 / y_[variable_],
-                           .value = value_};
-  if (!is_unit_) {
-    reduced_row(rank_) = y_.head(n_);
-    Eigen::Map<Eigen::VectorXd>(L_.data() + rank_ * n_, rank_) = factors_.head(rank_);
+// A row of a single variable is left alone when the variable is free, and vanishes when another
+// such row has taken it.
+void DirectElimination::reduce_unit(int variable, double target) noexcept {
+  value_ = target;
+  value_scale_ = std::abs(target);
+  variable_ = variable;
+  const int t = pivot_of_variable_[index(variable)];
+  is_unit_ = t < 0;
+  if (is_unit_) {
+    largest_ = 1.0;
+    return;
   }
+  double* factor = factors(rank_);
+  std::fill_n(factor, rank_, 0.0);
+  if (pivots_[index(t)].is_unit) {
+    factor[t] = 1.0;
+    largest_ = 0.0;
+  } else {
+    double* y = reduced_row(rank_);
+    std::fill_n(y, n_, 0.0);
+    y[variable] = 1.0;
+    subtract_pivots(t, rank_, y, factor);
+    choose_variable();
+  }
+  subtract_values(t);
+}
+
+void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
+  const int variable = problem.variable(row.row);
+  if (variable >= 0) {
+    reduce_unit(variable, row.target);
+    return;
+  }
+  double* y = reduced_row(rank_);
+  std::copy_n(problem.coefficients(row.row).data(), n_, y);
+  subtract_pivots(0, rank_, y, factors(rank_));
+  is_unit_ = false;
+  value_ = row.target;
+  value_scale_ = std::abs(row.target);
+  subtract_values(0);
+  choose_variable();
+}
+
+// The variable that y would take, and the size of y.
+void DirectElimination::choose_variable() noexcept {
+  const double* y = reduced_row(rank_);
+  largest_ = 0.0;
+  double best = 0.0;
+  variable_ = 0;
+  for (int v = 0; v < n_; ++v) {
+    const double size = std::abs(y[v]);
+    largest_ = std::max(largest_, size);
+    const double preferred = has_preference_ ? size * preference_[v] : size;
+    if (preferred > best) {
+      best = preferred;
+      variable_ = v;
+    }
+  }
+}
+
+DirectElimination::Outcome DirectElimination::judge(double norm, double tolerance) noexcept {
+  if (largest_ * kClear <= tolerance * norm) return Outcome::kDependent;
+  if (largest_ > kClear * tolerance * norm) return Outcome::kIndependent;
+  return judge_closely(norm, tolerance);
+}
+
+// The distance of the row from the pivots is at most |y|; and at least |y z| / |z|, where z is the
+// free direction that moves variable_ and, of the others, only taken ones.
+DirectElimination::Outcome DirectElimination::judge_closely(double norm,
+                                                            double tolerance) noexcept {
+  const VectorView y(reduced_row(rank_), n_);
+  const double* factor = factors(rank_);
+  double rounding = norm;
+  for (int s = 0; s < rank_; ++s) {
+    const double size = pivots_[index(s)].is_unit ? 1.0 : VectorView(reduced_row(s), n_).norm();
+    rounding += std::abs(factor[s]) * size;
+  }
+  rounding *= kRoundOff;
+  if (y.norm() + rounding < tolerance * norm) return Outcome::kDependent;
+
+  Eigen::Map<Eigen::VectorXd> z(scratch_.data(), n_);
+  z.setZero();
+  z[variable_] = 1.0;
+  for (int s = rank_ - 1; s >= 0; --s) {
+    const Pivot& pivot = pivots_[index(s)];
+    if (pivot.is_unit) continue;
+    z[pivot.variable] = -VectorView(reduced_row(s), n_).dot(z) * pivot.inverse;
+  }
+  const double distance = (std::abs(y[variable_]) - rounding) / z.norm();
+  return distance > tolerance * norm ? Outcome::kIndependent : Outcome::kUnsure;
+}
+
+void DirectElimination::append(int row) noexcept {
+  const double inverse = is_unit_ ? 1.0 : 1.0 / reduced_row(rank_)[variable_];
+  pivots_[index(rank_)] = {
+      .row = row, .variable = variable_, .is_unit = is_unit_, .inverse = inverse, .value = value_};
   pivot_of_variable_[index(variable_)] = rank_;
   ++rank_;
 }
 
 DirectElimination::Outcome DirectElimination::add_row(const Problem& problem, TargetRow row,
                                                       double tolerance) noexcept {
-  const Outcome outcome = reduce(problem, row, tolerance);
+  reduce(problem, row);
+  const Outcome outcome = judge(problem.norm(row.row), tolerance);
   if (outcome == Outcome::kIndependent) append(row.row);
   return outcome;
+}
+
+double DirectElimination::missed_by() const noexcept {
+  return std::abs(value_) > kSurelyMissed * value_scale_ ? value_ : 0.0;
+}
+
+// The row under work depends on the pivots, of which those from `first` on are of its level.
+void DirectElimination::keep_dependent(double weight, int first) noexcept {
+  const VectorView factor(factors(rank_) + first, rank_ - first);
+  if (std::abs(value_) > kRoundOff * value_scale_) is_met_ = false;
+  if (factor.isZero(0.0)) return;
+  double* kept = dependent_rows_.data() + dependents_ * n_;
+  double target = value_;
+  for (int s = first; s < rank_; ++s) {
+    kept[s - first] = weight * factor[s - first];
+    target += factor[s - first] * pivots_[index(s)].value;
+  }
+  std::fill(kept + rank_ - first, kept + n_ - first, 0.0);
+  dependent_rhs_[dependents_++] = weight * target;
 }
 
 bool DirectElimination::add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
                                           double tolerance) noexcept {
   const int first = rank_;
-  bool is_met = true;
+  int weak = 0;
+  dependents_ = 0;
+  is_met_ = true;
   for (int i = 0; i < static_cast<int>(rows.size()); ++i) {
-    const TargetRow row = rows[index(i)];
-    const Outcome outcome = reduce(problem, row, tolerance);
-    if (outcome == Outcome::kUnsure) return false;
-
-    Eigen::Map<Eigen::VectorXd> factors(level_factors_.data() + i * n_, n_ - first);
-    factors.setZero();
-    factors.head(rank_ - first) = factors_.segment(first, rank_ - first);
-    targets_[i] = value_;
-    for (int s = first; s < rank_; ++s) targets_[i] += factors_[s] * pivots_[index(s)].value;
-    if (outcome == Outcome::kIndependent) {
-      factors[rank_ - first] = 1.0;
-      append(row.row);
-    } else if (std::abs(value_) > kRoundOff * value_scale_) {
-      is_met = false;
+    const int row = rows[index(i)].row;
+    const double norm = problem.norm(row);
+    reduce(problem, rows[index(i)]);
+    if (largest_ >= kWeak * norm) {
+      append(row);
+    } else if (judge(norm, tolerance) == Outcome::kDependent) {
+      keep_dependent(problem.weight(row), first);
+    } else {
+      order_[weak++] = i;
     }
   }
-  if (!is_met && rank_ > first) solve_level(problem, rows, first);
+  if (weak > 0 && !add_weak_rows(problem, rows, weak, first, tolerance)) return false;
+  if (!is_met_ && rank_ > first) solve_level(problem, first);
   return true;
 }
 
-// Values of the pivots from `first` on, in the sense of least squares over all rows of the level.
-void DirectElimination::solve_level(const Problem& problem, std::span<const TargetRow> rows,
-                                    int first) noexcept {
-  const int r = rank_ - first;
-  int m = 0;
-  for (int i = 0; i < static_cast<int>(rows.size()); ++i) {
-    const VectorView factors(level_factors_.data() + i * n_, r);
-    if (!factors.isZero(0.0)) order_[m++] = i;
+// Takes those rows of which little is left, rows[order_[0..weak-1]]: always the one with most.
+bool DirectElimination::add_weak_rows(const Problem& problem, std::span<const TargetRow> rows,
+                                      int weak, int first, double tolerance) noexcept {
+  while (weak > 0) {
+    int best = 0;
+    double largest_share = -1.0;
+    for (int k = 0; k < weak; ++k) {
+      const TargetRow row = rows[index(order_[k])];
+      reduce(problem, row);
+      const double share = largest_ / problem.norm(row.row);
+      if (share <= largest_share) continue;
+      largest_share = share;
+      best = k;
+    }
+    const TargetRow row = rows[index(order_[best])];
+    order_[best] = order_[--weak];
+    switch (add_row(problem, row, tolerance)) {
+      case Outcome::kIndependent:
+        break;
+      case Outcome::kDependent:
+        keep_dependent(problem.weight(row.row), first);
+        break;
+      case Outcome::kUnsure:
+        return false;
+    }
   }
+  return true;
+}
+
+void DirectElimination::add_smallest_norm(const Problem& problem) noexcept {
+  const int first = rank_;
+  dependents_ = 0;
+  for (int v = 0; v < n_; ++v) {
+    if (pivot_of_variable_[index(v)] >= 0) continue;
+    reduce_unit(v, 0.0);
+    append(-1);
+  }
+  for (int s = 0; s < first; ++s) {
+    reduce_unit(pivots_[index(s)].variable, 0.0);
+    keep_dependent(1.0, first);
+  }
+  solve_level(problem, first);
+}
+
+// Values of the pivots from `first` on, in the sense of least squares over all rows of the level.
+void DirectElimination::solve_level(const Problem& problem, int first) noexcept {
+  const int r = rank_ - first;
+  const int m = r + dependents_;
   Eigen::Map<Eigen::MatrixXd> A(matrix_.data(), m, r);
-  for (int k = 0; k < m; ++k) {
-    const int i = order_[k];
-    const double weight = problem.weight(rows[index(i)].row);
-    A.row(k) = weight * VectorView(level_factors_.data() + i * n_, r).transpose();
-    rhs_[k] = weight * targets_[i];
+  for (int i = 0; i < r; ++i) {
+    const int t = first + i;
+    const Pivot& pivot = pivots_[index(t)];
+    const double weight = pivot.row < 0 ? 1.0 : problem.weight(pivot.row);
+    const double* factor = factors(t) + first;
+    A.row(i).setZero();
+    A(i, i) = weight;
+    rhs_[i] = weight * pivot.value;
+    if (pivot.is_unit) continue;
+    for (int s = 0; s < i; ++s) {
+      A(i, s) = weight * factor[s];
+      rhs_[i] += A(i, s) * pivots_[index(first + s)].value;
+    }
+  }
+  for (int i = 0; i < dependents_; ++i) {
+    A.row(r + i) = VectorView(dependent_rows_.data() + i * n_, r).transpose();
+    rhs_[r + i] = dependent_rhs_[i];
   }
   solve_least_squares(m, r, A.data(), rhs_.data(), order_.data(), values_.data());
   for (int j = 0; j < r; ++j) pivots_[index(first + j)].value = values_[j];
@@ -188,20 +303,22 @@ void DirectElimination::find_point(double* x_data) const noexcept {
   x.setZero();
   for (int t = rank_ - 1; t >= 0; --t) {
     const Pivot& pivot = pivots_[index(t)];
-    const double others = pivot.is_unit ? 0.0 : VectorView(R_.data() + t * n_, n_).dot(x);
+    const double others = pivot.is_unit ? 0.0 : VectorView(reduced_row(t), n_).dot(x);
     x[pivot.variable] = (pivot.value - others) * pivot.inverse;
   }
 }
 
 double DirectElimination::find_multipliers(const double* g, int rank, int first,
                                            double* mu) noexcept {
-  y_.head(n_) = VectorView(g, n_);
-  reduce(0, rank, y_.data(), factors_.data());
+  double* y = reduced_row(n_);
+  Eigen::Map<Eigen::VectorXd> factor(factors(n_), n_);
+  std::copy_n(g, n_, y);
+  subtract_pivots(0, rank, y, factor.data());
   for (int t = rank - 1; t >= first; --t) {
-    mu[t] = -factors_[t];
-    if (!pivots_[index(t)].is_unit) factors_.head(t) += mu[t] * VectorView(L_.data() + t * n_, t);
+    mu[t] = -factor[t];
+    if (!pivots_[index(t)].is_unit) factor.head(t) += mu[t] * VectorView(factors(t), t);
   }
-  return y_.head(n_).cwiseAbs().maxCoeff();
+  return VectorView(y, n_).cwiseAbs().maxCoeff();
 }
 
 }  // namespace hg::hqp

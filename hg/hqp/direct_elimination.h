@@ -31,16 +31,22 @@ class DirectElimination {
 
   int rank() const noexcept { return rank_; }
   int freedom() const noexcept { return n_ - rank_; }
-  /// Row id of pivot t.
+  /// Row id of pivot t; -1: a variable that add_smallest_norm() took.
   int pivot_row(int t) const noexcept { return pivots_[index(t)].row; }
 
   /// Takes the row as next pivot, with c x = target, unless it depends on the others.
   Outcome add_row(const Problem& problem, TargetRow row, double tolerance) noexcept;
 
+  /// target - c x of the row given to add_row() when it depends on the pivots; 0 when rounding.
+  double missed_by() const noexcept;
+
   /// Takes the rows as pivots as far as they are independent. They get the values that minimise
   /// sum weight^2 (c x - target)^2. False: in doubt; the pivots are then to be truncated.
   [[nodiscard]] bool add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
                                        double tolerance) noexcept;
+
+  /// Takes all free variables, with the values that minimise |x|.
+  void add_smallest_norm(const Problem& problem) noexcept;
 
   /// The point where every pivot row has its value, n numbers; needs freedom() == 0.
   void find_point(double* x) const noexcept;
@@ -59,38 +65,49 @@ class DirectElimination {
   };
 
   static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
-  Eigen::Map<Eigen::VectorXd> reduced_row(int t) noexcept { return {R_.data() + t * n_, n_}; }
-  void reduce(int first, int rank, double* y, double* factors) const noexcept;
-  Outcome reduce(const Problem& problem, TargetRow row, double tolerance) noexcept;
-  Outcome reduce_unit(TargetRow row, int variable, double tolerance) noexcept;
-  void subtract_pivots(int first, int end) noexcept;
+  double* reduced_row(int t) noexcept { return R_.data() + t * n_; }
+  const double* reduced_row(int t) const noexcept { return R_.data() + t * n_; }
+  double* factors(int t) noexcept { return L_.data() + t * n_; }
+  void subtract_pivots(int first, int end, double* y, double* factors) const noexcept;
+  void reduce(const Problem& problem, TargetRow row) noexcept;
+  void reduce_unit(int variable, double target) noexcept;
+  void subtract_values(int first) noexcept;
+  void choose_variable() noexcept;
   Outcome judge(double norm, double tolerance) noexcept;
+  Outcome judge_closely(double norm, double tolerance) noexcept;
   void append(int row) noexcept;
-  void solve_level(const Problem& problem, std::span<const TargetRow> rows, int first) noexcept;
+  void keep_dependent(double weight, int first) noexcept;
+  bool add_weak_rows(const Problem& problem, std::span<const TargetRow> rows, int weak, int first,
+                     double tolerance) noexcept;
+  void solve_level(const Problem& problem, int first) noexcept;
 
   int n_ = 0;
   int rank_ = 0;
   std::vector<Pivot> pivots_;
   std::vector<int> pivot_of_variable_;  ///< -1: free
-  Eigen::VectorXd preference_;          ///< by variable, 1: may be taken at once
-  Eigen::VectorXd R_;                   ///< n x n, row after row
-  Eigen::VectorXd L_;                   ///< same, L_ts for s < t
+  bool has_preference_ = false;
+  Eigen::VectorXd preference_;  ///< by variable, 1: may be taken at once
 
-  // the row under work: y = c - factors R, and the value that is left for y x
-  Eigen::VectorXd y_;
-  Eigen::VectorXd factors_;
-  int variable_ = -1;  ///< the one that it would take
-  bool is_unit_ = false;
-  double value_ = 0.0;
+  // Row t of R and of L (L_ts for s < t), n apart. Row rank_ is the row under work: y and its
+  // factors, y = c - factors R.
+  Eigen::VectorXd R_;
+  Eigen::VectorXd L_;
+  int variable_ = -1;         ///< the one that y would take
+  bool is_unit_ = false;      ///< y is a single free variable, as it came
+  double largest_ = 0.0;      ///< of |y|
+  double value_ = 0.0;        ///< what is left of the target for y x
   double value_scale_ = 0.0;  ///< size of the terms of value_
 
-  // least squares of a level: factors of its rows by its pivots, and what is left of targets
-  Eigen::VectorXd level_factors_;
+  // least squares of a level: its dependent rows, as combinations of its pivots
+  int dependents_ = 0;
+  bool is_met_ = true;              ///< so do they all have their targets
+  Eigen::VectorXd dependent_rows_;  ///< weighted factors by the level's pivots, n apart
+  Eigen::VectorXd dependent_rhs_;
   Eigen::VectorXd matrix_;
-  Eigen::VectorXd targets_;
   Eigen::VectorXd rhs_;
   Eigen::VectorXd values_;
   Eigen::VectorXi order_;
+  Eigen::VectorXd scratch_;
 };
 
 }  // namespace hg::hqp

@@ -46,7 +46,7 @@ TEST(DirectElimination, FindsThePointWhereAllRowsHaveTheirValues) {
 
 TEST(DirectElimination, SeparatesDependentRowsFromDoubtfulOnes) {
   Eigen::MatrixXd C(4, 3);
-  C << 1, 2, 3, -2, -4, -6, 1, 2, 3 + 1e-8, 1, 2, 3 + 1e-4;
+  C << 1, 2, 3, -2, -4, -6, 1, 2, 3 + 5.2e-9, 1, 2, 3 + 1e-4;
   const Problem problem = problem_of(C);
   DirectElimination elimination(3, 7);
   elimination.reset(problem);
