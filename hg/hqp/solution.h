@@ -30,10 +30,13 @@ constexpr bool is_violated(RowState s) noexcept {
   return s == RowState::kBelow || s == RowState::kAbove;
 }
 
-/// Guess of the row states, by row id. A plain value: copy, store and pass it on. The default is a
-/// cold start; a wrong or outdated guess costs time, never correctness.
+/// Two guesses of the row states, by row id. A plain value: copy, store and pass it on. The default
+/// is a cold start; a wrong or outdated guess costs time, never correctness.
 struct ActiveSet {
   std::array<RowState, kMaxRows> state{};
+  /// The last states that differ from `state`, tried when that is wrong: limits that come and go
+  /// every other cycle cost one try.
+  std::array<RowState, kMaxRows> before{};
 };
 
 struct Options {

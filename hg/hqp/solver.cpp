@@ -14,6 +14,7 @@ namespace {
 // Guesses are repaired up to an effort, counted in direct eliminations. Control loops hardly ever
 // need more than 24; the level-by-level method costs as much as 20 to 40.
 constexpr int kEffort = 32;
+constexpr int kEffortPerGuess = 2;    // itself and one correction; after that, from zero is faster
 constexpr int kOrthogonalEffort = 4;  // of one orthogonal elimination
 constexpr int kProofEffort = 12;      // on the result of that method, which is almost always right
 
@@ -24,9 +25,10 @@ int find_bad_row(const Problem& problem) noexcept {
   return -1;
 }
 
-// Repairs the guess in work.point.state until it is proven, or `max_effort` is spent.
-bool solve_by_guesses(const Problem& problem, const Options& options, int levels, int max_effort,
-                      int& iterations, Workspace& work) noexcept {
+// Tries the guess in work.point.state and its corrections until one is proven, or `max_effort` is
+// spent.
+bool try_guesses(const Problem& problem, const Options& options, int levels, int max_effort,
+                 int& iterations, Workspace& work) noexcept {
   int effort = 0;
   while (effort < max_effort && iterations < options.max_iterations) {
     ++iterations;
@@ -36,15 +38,34 @@ bool solve_by_guesses(const Problem& problem, const Options& options, int levels
   return false;
 }
 
-// Leaves the result in work; `levels` becomes the number of levels that are optimal.
-Status solve_levels(const Problem& problem, const Options& options, int& levels, int& iterations,
-                    Workspace& work) noexcept {
-  const int all_levels = levels;
-  make_consistent(problem, levels, work);
-  work.direct_levels = 0;
-  if (solve_by_guesses(problem, options, levels, kEffort, iterations, work)) {
-    return Status::kSolved;
+// The guesses of `active`, then the method from zero.
+bool solve_by_guesses(const Problem& problem, const Options& options, const ActiveSet& active,
+                      int levels, int& iterations, Workspace& work) noexcept {
+  std::vector<RowState>& state = work.point.state;
+  std::vector<RowState>& second = work.saved.state;
+  const int rows = rows_of(problem, levels);
+  load_guess(problem, levels, active.state, state);
+  const bool has_second = load_guess(problem, levels, active.before, second) &&
+                          !std::equal(state.begin(), state.begin() + rows, second.begin());
+  if (has_second || !is_guess_from_zero(problem, levels, state)) {
+    start_from_zero(problem, work);
+    if (try_guesses(problem, options, levels, kEffortPerGuess, iterations, work)) return true;
   }
+  if (has_second) {
+    state.swap(second);
+    start_from_zero(problem, work);
+    if (try_guesses(problem, options, levels, kEffortPerGuess, iterations, work)) return true;
+  }
+  guess_from_zero(problem, levels, state);
+  start_from_zero(problem, work);
+  return try_guesses(problem, options, levels, kEffort, iterations, work);
+}
+
+// Leaves the result in work; `levels` becomes the number of levels that are optimal.
+Status solve_levels(const Problem& problem, const Options& options, const ActiveSet& active,
+                    int& levels, int& iterations, Workspace& work) noexcept {
+  const int all_levels = levels;
+  if (solve_by_guesses(problem, options, active, levels, iterations, work)) return Status::kSolved;
 
   const PrimalOutcome outcome =
       solve_level_by_level(problem, options, all_levels, iterations, levels, work);
@@ -56,12 +77,26 @@ Status solve_levels(const Problem& problem, const Options& options, int& levels,
 
   // the same active set always gives the same bits, whichever way it was found
   work.saved = work.point;
-  work.direct_levels = 0;
-  if (!solve_by_guesses(problem, options, levels, kProofEffort, iterations, work)) {
+  load_guess(problem, levels, work.saved.state, work.point.state);
+  start_from_zero(problem, work);
+  std::copy_n(work.value.begin(), problem.rows(), work.last_value.begin());
+  if (!try_guesses(problem, options, levels, kProofEffort, iterations, work)) {
     work.point = work.saved;
     update_values(problem, levels, work);
   }
   return Status::kSolved;
+}
+
+// Receives the states of a solution; what was there before is kept when it is another guess.
+void update(const Problem& problem, const std::vector<RowState>& state,
+            ActiveSet& active) noexcept {
+  bool is_same = true;
+  for (int row = 0; row < problem.rows() && is_same; ++row) {
+    is_same = is_equality(problem.bounds(row)) ||
+              as_guess(state[at(row)]) == as_guess(active.state[at(row)]);
+  }
+  if (!is_same) std::copy_n(active.state.begin(), problem.rows(), active.before.begin());
+  std::copy_n(state.begin(), problem.rows(), active.state.begin());
 }
 
 // Needs work.value.
@@ -112,13 +147,12 @@ Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& 
   solution.iterations = 0;
   solution.completed_levels = levels;
 
-  std::copy_n(active.state.begin(), problem.rows(), work.point.state.begin());
   solution.status =
-      solve_levels(problem, options, solution.completed_levels, solution.iterations, work);
+      solve_levels(problem, options, active, solution.completed_levels, solution.iterations, work);
   if (bad_row >= 0 && solution.status == Status::kSolved) solution.status = Status::kBadRow;
 
   read_levels(problem, levels, work, solution);
-  std::copy_n(solution.state.begin(), problem.rows(), active.state.begin());
+  update(problem, solution.state, active);
   return solution.status;
 }
 

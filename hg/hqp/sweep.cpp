@@ -13,44 +13,21 @@ bool is_held_state(RowState state) noexcept {
 }
 
 double bound_of(Interval bounds, RowState state) noexcept {
-  return state == RowState::kLower || state == RowState::kBelow ? bounds.lb : bounds.ub;
+  return as_guess(state) == RowState::kLower ? bounds.lb : bounds.ub;
 }
 
-// Equality and violated rows of the level, by their state, into work.targets.
-void collect_guessed_targets(const Problem& problem, int level, Workspace& work) noexcept {
+// Rows of the level that the guess has at a bound, into work.targets.
+void collect_active(const Problem& problem, int level, Workspace& work) noexcept {
   work.targets.clear();
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-    if (problem.norm(row) == 0.0) continue;
     const RowState state = work.point.state[at(row)];
-    if (state == RowState::kEqual || is_violated(state)) {
-      work.targets.push_back({row, bound_of(problem.bounds(row), state)});
-    }
+    if (problem.norm(row) == 0.0 || state == RowState::kInactive) continue;
+    work.targets.push_back({row, bound_of(problem.bounds(row), state)});
   }
-}
-
-// Pivots of the level in work.direct; false when in doubt.
-bool add_directly(const Problem& problem, const Options& options, int level,
-                  Workspace& work) noexcept {
-  DirectElimination& direct = work.direct;
-  if (direct.freedom() == 0) return true;
-  collect_guessed_targets(problem, level, work);
-  if (!direct.add_least_squares(problem, work.targets, options.rank_tolerance)) return false;
-
-  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-    const RowState state = work.point.state[at(row)];
-    if (direct.freedom() == 0) return true;
-    if (!is_held_state(state)) continue;
-    const TargetRow target = {row, bound_of(problem.bounds(row), state)};
-    if (direct.add_row(problem, target, options.rank_tolerance) ==
-        DirectElimination::Outcome::kUnsure) {
-      return false;
-    }
-  }
-  return true;
 }
 
 // The point of the guess by direct elimination, from the first level on whose guess has changed;
-// false when in doubt, or when the rows leave freedom.
+// false when in doubt, or when rows leave freedom that is nobody's.
 bool eliminate_directly(const Problem& problem, const Options& options, int levels,
                         Workspace& work) noexcept {
   DirectElimination& direct = work.direct;
@@ -62,33 +39,20 @@ bool eliminate_directly(const Problem& problem, const Options& options, int leve
   }
   for (int& level = work.direct_levels; level < levels; ++level) {
     ranks[at(level)] = direct.rank();
-    if (!add_directly(problem, options, level, work)) return false;
+    if (direct.freedom() == 0) continue;
+    collect_active(problem, level, work);
+    if (!direct.add_least_squares(problem, work.targets, options.rank_tolerance)) return false;
   }
   ranks[at(levels)] = direct.rank();
-  if (direct.freedom() > 0) return false;
+  if (direct.freedom() > 0) {
+    if (!options.minimum_norm) return false;
+    direct.add_smallest_norm(problem);
+  }
 
   direct.find_point(work.point.x.data());
   work.x_norm = work.point.x.head(problem.variables()).norm();
   std::copy_n(ranks.begin(), levels + 1, work.point.rank_at_level.begin());
   return std::isfinite(work.x_norm);
-}
-
-bool add_held_rows(const Problem& problem, const Options& options, int level,
-                   Workspace& work) noexcept {
-  Elimination& elimination = work.elimination;
-  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-    const RowState state = work.point.state[at(row)];
-    if (elimination.freedom() == 0) return true;
-    if (!is_held_state(state)) continue;
-    if (!elimination.add_row(problem, row, options.rank_tolerance)) continue;
-    const int t = elimination.rank() - 1;
-    const double distance =
-        bound_of(problem.bounds(row), state) - dot(problem, row, work.point.x.data());
-    work.direction.head(problem.variables()) =
-        VectorView(elimination.column(t), problem.variables());
-    if (!move(problem, work.direction, distance / elimination.pivot(t), work)) return false;
-  }
-  return true;
 }
 
 // The point of the guess by orthogonal elimination; false when it is not finite.
@@ -103,13 +67,11 @@ bool eliminate_orthogonally(const Problem& problem, const Options& options, int 
   for (int level = 0; level < levels; ++level) {
     work.point.rank_at_level[at(level)] = elimination.rank();
     if (elimination.freedom() == 0) continue;
-    collect_guessed_targets(problem, level, work);
-    if (!work.targets.empty()) {
-      elimination.add_least_squares(problem, work.targets, work.point.x.data(),
-                                    options.rank_tolerance);
-      if (!move(problem, elimination.step(), 1.0, work)) return false;
-    }
-    if (!add_held_rows(problem, options, level, work)) return false;
+    collect_active(problem, level, work);
+    if (work.targets.empty()) continue;
+    elimination.add_least_squares(problem, work.targets, work.point.x.data(),
+                                  options.rank_tolerance);
+    if (!move(problem, elimination.step(), 1.0, work)) return false;
   }
   work.point.rank_at_level[at(levels)] = elimination.rank();
   if (options.minimum_norm && elimination.freedom() > 0) {
@@ -196,85 +158,74 @@ void set_guess(const Problem& problem, int row, RowState state, Workspace& work)
   work.direct_levels = std::min(work.direct_levels, problem.level_of(row));
 }
 
-// State of a row as its value tells, given the state it was solved with.
-RowState next_state(const Problem& problem, const Options& options, int row,
-                    const Workspace& work) noexcept {
-  const Interval bounds = problem.bounds(row);
-  const RowState state = work.point.state[at(row)];
-  const double distance = violation(problem, options, work, row);
-  const RowState outside = distance > 0.0 ? RowState::kAbove : RowState::kBelow;
-  const RowState held = distance > 0.0 ? RowState::kUpper : RowState::kLower;
-
-  if (is_equality(bounds) || problem.norm(row) == 0.0) {
-    if (distance != 0.0) return outside;
-    return is_equality(bounds) ? RowState::kEqual : RowState::kInactive;
+// Goes from the last point towards the new one. The first inactive row in the way gets held; true
+// when there is one.
+bool hold_obstacle(const Problem& problem, const Options& options, int rows,
+                   Workspace& work) noexcept {
+  int obstacle = -1;
+  double way = kInfinity;
+  double distance_there = 0.0;
+  for (int row = 0; row < rows; ++row) {
+    if (work.point.state[at(row)] != RowState::kInactive) continue;
+    const double distance = violation(problem, options, work, row);
+    if (distance == 0.0 || problem.norm(row) == 0.0) continue;
+    const double step = work.value[at(row)] - work.last_value[at(row)];
+    const bool was_inside = distance * step > 0.0;
+    const double way_of_row = was_inside ? std::max(0.0, 1.0 - distance / step) : 0.0;
+    if (way_of_row >= way) continue;
+    way = way_of_row;
+    obstacle = row;
+    distance_there = distance;
   }
-  if (state == RowState::kInactive) return distance != 0.0 ? held : state;
-  const double bound = bound_of(bounds, state);
-  if (distance != 0.0) {
-    if (is_held_state(state)) return outside;
-    return state == outside ? state : held;
+  if (obstacle < 0) return false;
+  const RowState held = distance_there > 0.0 ? RowState::kUpper : RowState::kLower;
+  set_guess(problem, obstacle, held, work);
+  for (int row = 0; row < rows; ++row) {
+    work.last_value[at(row)] += way * (work.value[at(row)] - work.last_value[at(row)]);
   }
-  const bool is_lower = bound == bounds.lb;
-  if (!touches(problem, options, work, row, bound)) return RowState::kInactive;
-  return is_lower ? RowState::kLower : RowState::kUpper;
+  return true;
 }
 
-// Corrects the state of the level's row that is farthest from the bound where the guess has it.
-// False when none contradicts its value.
-bool correct_row(const Problem& problem, const Options& options, int level,
-                 Workspace& work) noexcept {
-  int worst_row = -1;
-  double worst = -1.0;
-  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+// State of an active row as its value tells; kInactive: it is inside.
+RowState found_state(const Problem& problem, const Options& options, int row,
+                     const Workspace& work) noexcept {
+  const double distance = violation(problem, options, work, row);
+  if (distance != 0.0) return distance > 0.0 ? RowState::kAbove : RowState::kBelow;
+  const Interval bounds = problem.bounds(row);
+  if (is_equality(bounds)) return RowState::kEqual;
+  const double bound = bound_of(bounds, work.point.state[at(row)]);
+  if (problem.norm(row) == 0.0 || !touches(problem, options, work, row, bound)) {
+    return RowState::kInactive;
+  }
+  return bound == bounds.lb ? RowState::kLower : RowState::kUpper;
+}
+
+// Reads the states of active rows from their values, and lets go of those that x is inside of.
+// True when the guess has changed.
+bool drop_rows(const Problem& problem, const Options& options, int rows, Workspace& work) noexcept {
+  bool is_changed = false;
+  for (int row = 0; row < rows; ++row) {
     RowState& state = work.point.state[at(row)];
-    const double norm = problem.norm(row);
-    const bool is_finding = is_equality(problem.bounds(row)) || norm == 0.0;  // no guess
-    if (state == RowState::kInactive && !is_finding) continue;
-    const RowState next = next_state(problem, options, row, work);
-    if (is_finding) {
-      state = next;
-    } else if (next != state) {
-      const double bound = bound_of(problem.bounds(row), state);
-      const double distance = std::abs(work.value[at(row)] - bound) / norm;
-      if (distance <= worst) continue;
-      worst = distance;
-      worst_row = row;
+    const bool is_zero = problem.norm(row) == 0.0;
+    if (state == RowState::kInactive && !is_zero) continue;
+    const RowState found = found_state(problem, options, row, work);
+    const bool is_as_guessed =
+        is_zero || is_equality(problem.bounds(row)) || as_guess(found) == as_guess(state);
+    if (is_as_guessed) {
+      state = found;
+    } else {
+      set_guess(problem, row, found, work);
+      is_changed = true;
     }
   }
-  if (worst_row < 0) return false;
-  set_guess(problem, worst_row, next_state(problem, options, worst_row, work), work);
-  return true;
-}
-
-// Holds the inactive row that is violated most, relative to its size: a limit that is far off
-// beside a small one that acts is mostly a consequence. False when none is violated.
-bool hold_row(const Problem& problem, const Options& options, int levels,
-              Workspace& work) noexcept {
-  int worst_row = -1;
-  double worst = 0.0;
-  const int end = levels > 0 ? problem.end_row(levels - 1) : 0;
-  for (int row = 0; row < end; ++row) {
-    if (work.point.state[at(row)] != RowState::kInactive || problem.norm(row) == 0.0) continue;
-    const double distance = violation(problem, options, work, row);
-    if (distance == 0.0) continue;
-    const double value = work.value[at(row)];
-    const double share = std::abs(distance) / (std::abs(value) + std::abs(value - distance));
-    if (share <= worst) continue;
-    worst = share;
-    worst_row = row;
-  }
-  if (worst_row < 0) return false;
-  set_guess(problem, worst_row, next_state(problem, options, worst_row, work), work);
-  return true;
+  return is_changed;
 }
 
 enum class Judgement { kProven, kCorrected, kInDoubt };
 
-// Level after level: first rows that are not where the guess has them, then held rows that pull;
-// at last violated ones. One row is corrected at a time.
-Judgement judge_guess(const Problem& problem, const Options& options, int levels,
-                      Workspace& work) noexcept {
+// Level after level: whether held rows push against it. Lets go of the one that pulls most.
+Judgement judge_levels(const Problem& problem, const Options& options, int levels,
+                       Workspace& work) noexcept {
   const int rank = work.point.rank_at_level[at(levels)];
   int first_held = 0;
   while (first_held < rank && !is_held_pivot(work, first_held)) ++first_held;
@@ -282,7 +233,6 @@ Judgement judge_guess(const Problem& problem, const Options& options, int levels
 
   const int end = levels == problem.levels() && options.minimum_norm ? levels + 1 : levels;
   for (int level = 0; level < end; ++level) {
-    if (level < levels && correct_row(problem, options, level, work)) return Judgement::kCorrected;
     work.point.blocking_row[at(level)] = -1;
     if (work.point.rank_at_level[at(level)] <= first_held) continue;
     const LevelGradient size = guess_gradient(problem, options, level, work);
@@ -293,23 +243,69 @@ Judgement judge_guess(const Problem& problem, const Options& options, int levels
     set_guess(problem, pulling_row, RowState::kInactive, work);
     return Judgement::kCorrected;
   }
-  return hold_row(problem, options, levels, work) ? Judgement::kCorrected : Judgement::kProven;
+  return Judgement::kProven;
+}
+
+// One step of an active-set method, from the last point to the point of the guess.
+Judgement judge_guess(const Problem& problem, const Options& options, int levels,
+                      Workspace& work) noexcept {
+  const int rows = rows_of(problem, levels);
+  if (hold_obstacle(problem, options, rows, work)) return Judgement::kCorrected;
+  std::copy_n(work.value.begin(), rows, work.last_value.begin());
+  if (drop_rows(problem, options, rows, work)) return Judgement::kCorrected;
+  return judge_levels(problem, options, levels, work);
+}
+
+RowState state_at_zero(const Problem& problem, int row) noexcept {
+  const Interval bounds = problem.bounds(row);
+  if (is_equality(bounds)) return RowState::kEqual;
+  const double distance = problem.norm(row) > 0.0 ? excess(bounds, 0.0) : 0.0;
+  if (distance == 0.0) return RowState::kInactive;
+  return distance > 0.0 ? RowState::kUpper : RowState::kLower;
 }
 
 }  // namespace
 
-void make_consistent(const Problem& problem, int levels, Workspace& work) noexcept {
-  const int end = levels > 0 ? problem.end_row(levels - 1) : 0;
-  for (int row = 0; row < end; ++row) {
+bool load_guess(const Problem& problem, int levels, std::span<const RowState> guess,
+                std::vector<RowState>& states) noexcept {
+  bool is_empty = true;
+  const int rows = rows_of(problem, levels);
+  for (int row = 0; row < rows; ++row) {
     const Interval bounds = problem.bounds(row);
-    RowState& state = work.point.state[at(row)];
+    RowState& state = states[at(row)];
     if (is_equality(bounds)) {
       state = RowState::kEqual;
-    } else if (problem.norm(row) == 0.0 || state == RowState::kEqual ||
-               !std::isfinite(bound_of(bounds, state))) {
-      state = RowState::kInactive;
+      continue;
     }
+    state = as_guess(guess[at(row)]);
+    // an equality that has become an interval: where |c x| is smaller
+    if (state == RowState::kEqual) {
+      state = std::abs(bounds.lb) < std::abs(bounds.ub) ? RowState::kLower : RowState::kUpper;
+    }
+    const bool can_be_held = problem.norm(row) > 0.0 && std::isfinite(bound_of(bounds, state));
+    if (!can_be_held) state = RowState::kInactive;
+    is_empty &= state == RowState::kInactive;
   }
+  return !is_empty;
+}
+
+void guess_from_zero(const Problem& problem, int levels, std::vector<RowState>& states) noexcept {
+  const int rows = rows_of(problem, levels);
+  for (int row = 0; row < rows; ++row) states[at(row)] = state_at_zero(problem, row);
+}
+
+bool is_guess_from_zero(const Problem& problem, int levels,
+                        const std::vector<RowState>& states) noexcept {
+  const int rows = rows_of(problem, levels);
+  for (int row = 0; row < rows; ++row) {
+    if (states[at(row)] != state_at_zero(problem, row)) return false;
+  }
+  return true;
+}
+
+void start_from_zero(const Problem& problem, Workspace& work) noexcept {
+  std::fill_n(work.last_value.begin(), problem.rows(), 0.0);
+  work.direct_levels = 0;
 }
 
 bool solve_guess(const Problem& problem, const Options& options, int levels,

@@ -1,21 +1,40 @@
 /// One elimination for a guessed active set: the point it stands for, and whether it is the
-/// optimum.
+/// optimum. As a sequence: an active-set method for all levels at once.
+///
+/// Every active row of a level, guessed to be held or violated, is a target of the level's least
+/// squares. The last point and the new one make a step: the first inactive row in its way becomes
+/// active, and the method stays there; without one, rows that the new point is inside of are let go
+/// of, else the one whose multiplier pulls most. From x = 0 with the rows violated there, the
+/// slacks fall lexicographically with every step of some length. D. Dimitrov, A. Sherikov, P.-B.
+/// Wieber, Efficient resolution of potentially conflicting linear constraints in robotics, 2015.
 #pragma once
+
+#include <span>
+#include <vector>
 
 #include "hg/hqp/workspace.h"
 
 namespace hg::hqp {
 
-/// Makes work.point.state fit the bounds: no row held at an infinite bound, equalities as such.
-void make_consistent(const Problem& problem, int levels, Workspace& work) noexcept;
+/// `guess` into `states`, made to fit the bounds: no row held at an infinite bound, equalities as
+/// such. Returns whether it has active rows besides equalities.
+bool load_guess(const Problem& problem, int levels, std::span<const RowState> guess,
+                std::vector<RowState>& states) noexcept;
 
-/// Solves the first `levels` levels with equality, violated and held rows as work.point.state says,
-/// by direct elimination where that leaves no doubt, else by the orthogonal one (work.is_direct).
-/// Returns true when the result, work.point, is proven optimal for each of them: no other row is
-/// violated, violated rows are, and multipliers have the right sign. Otherwise one state is
-/// corrected for the next guess: the first, level after level, of a row that is not where the guess
-/// has it, or of one that pulls; when there is none, the row that is violated most gets held.
-/// Leaves work.value of the point. The first work.direct_levels levels are taken from the last guess.
+/// The guess whose active rows are the equalities and the rows that x = 0 violates.
+void guess_from_zero(const Problem& problem, int levels, std::vector<RowState>& states) noexcept;
+bool is_guess_from_zero(const Problem& problem, int levels,
+                        const std::vector<RowState>& states) noexcept;
+
+/// The last point is x = 0; nothing is known of work.point.state.
+void start_from_zero(const Problem& problem, Workspace& work) noexcept;
+
+/// Solves the first `levels` levels with the active rows of work.point.state, by direct elimination
+/// where that leaves no doubt, else by the orthogonal one (work.is_direct). Returns true when the
+/// result, work.point, is proven optimal for each of them: no inactive row is violated, active ones
+/// are at their bound or outside, and multipliers have the right sign. Otherwise work.point.state
+/// is corrected for the next guess. Leaves work.value of the point. The first work.direct_levels
+/// levels are taken from the last guess.
 bool solve_guess(const Problem& problem, const Options& options, int levels,
                  Workspace& work) noexcept;
 

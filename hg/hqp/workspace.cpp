@@ -22,6 +22,7 @@ Workspace::Workspace(const Capacity& c)
       point(c),
       saved(c),
       value(at(c.rows)),
+      last_value(at(c.rows)),
       is_frozen(at(c.variables)),
       direct_rank_at_level(at(c.levels) + 1),
       mu(c.variables),
@@ -63,10 +64,11 @@ void update_values(const Problem& problem, int levels, Workspace& work) noexcept
 bool move(const Problem& problem, const Eigen::VectorXd& step, double length,
           Workspace& work) noexcept {
   const int n = problem.variables();
+  const double norm = (work.point.x.head(n) + length * step.head(n)).norm();
+  if (!std::isfinite(norm)) return false;
   work.point.x.head(n) += length * step.head(n);
-  const double norm = work.point.x.head(n).norm();
   work.x_norm = std::max(work.x_norm, norm);
-  return std::isfinite(norm);
+  return true;
 }
 
 void collect_targets(const Problem& problem, const Options& options, int level,

@@ -35,9 +35,10 @@ struct Workspace {
   Cone cone;
 
   Point point;
-  Point saved;                ///< the same, put aside
-  double x_norm = 0.0;        ///< largest |x| met in this solve: rounding errors scale with it
-  std::vector<double> value;  ///< c x by row
+  Point saved;                     ///< the same, put aside
+  double x_norm = 0.0;             ///< largest |x| met in this solve: rounding errors scale with it
+  std::vector<double> value;       ///< c x by row
+  std::vector<double> last_value;  ///< same, of the point that the next step starts from
   std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
   bool is_direct = false;               ///< the pivots of `point` are those of `direct`
   int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state
@@ -69,6 +70,17 @@ struct LevelGradient {
 
 inline std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
+/// Rows of the first `levels` levels.
+inline int rows_of(const Problem& problem, int levels) noexcept {
+  return levels > 0 ? problem.end_row(levels - 1) : 0;
+}
+
+/// A violated row is one that is held at a bound but does not get there.
+inline RowState as_guess(RowState state) noexcept {
+  if (state == RowState::kBelow) return RowState::kLower;
+  return state == RowState::kAbove ? RowState::kUpper : state;
+}
+
 /// Distance from the bound below which the row counts as being at it.
 double tolerance(const Problem& problem, const Options& options, const Workspace& work, int row,
                  double bound) noexcept;
@@ -84,7 +96,7 @@ bool touches(const Problem& problem, const Options& options, const Workspace& wo
 /// Sets work.value of the rows of the first `levels` levels.
 void update_values(const Problem& problem, int levels, Workspace& work) noexcept;
 
-/// x += length * step; false when x is no longer finite.
+/// x += length * step; false, and x is left alone, when it would not be finite.
 [[nodiscard]] bool move(const Problem& problem, const Eigen::VectorXd& step, double length,
                         Workspace& work) noexcept;
 

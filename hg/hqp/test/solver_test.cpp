@@ -232,6 +232,18 @@ TEST(Solve, StopsAtTheIterationCapWithWhatIsSettled) {
   EXPECT_GT(stopped, 100);
 }
 
+TEST(Solve, KeepsAFinitePointWhereNumbersOverflow) {
+  Problem problem({.variables = 2, .levels = 2, .rows = 3});
+  problem.add_level();
+  problem.add_row(std::vector{-0.48, 0.74}, {-2.96, kInfinity});
+  problem.add_level();
+  problem.add_row(std::vector{-0.52, 0.17}, {3.74, 3.74}, 1e-154);  // its square is denormal
+  problem.add_row(std::vector{4.6, -2.3}, {3.0, 3.0});
+  Bench bench;
+  bench.solve(problem);
+  for (const double x : bench.solution.x) EXPECT_TRUE(std::isfinite(x));
+}
+
 TEST(Solve, ConfirmsItsOwnActiveSetInOneIteration) {
   for (std::uint32_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
