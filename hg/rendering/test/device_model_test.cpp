@@ -13,9 +13,9 @@ TEST(HandleLimits, AreTheTighterOnesOfTheHandleAndOfNothingElse) {
   const limits::JointLimits low = {.q_min = -3.0, .q_max = 0.5, .dq_max = 1.5, .ddq_max = 4.0};
   const limits::JointLimits narrow = {.q_min = -0.1, .q_max = 0.1, .dq_max = 0.1, .ddq_max = 0.1};
   device.cartesian_limits = {
-      {.name = "hand", .frame = device.handle, .axes = {wide, wide, {}}},
-      {.name = "elbow", .frame = device.elbow, .axes = {narrow, narrow, narrow}},
-      {.name = "table", .frame = device.handle, .axes = {{}, low, {}}},
+      {.name = "hand", .frame = device.handle, .axes = {{wide, wide, {}}}},
+      {.name = "elbow", .frame = device.elbow, .axes = {{narrow, narrow, narrow}}},
+      {.name = "table", .frame = device.handle, .axes = {{{}, low, {}}}},
   };
   const auto limits = handle_limits(device);
   EXPECT_EQ(limits[0].q_min, -2.0);
