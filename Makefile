@@ -3,6 +3,10 @@
 #   make demo    sets up, builds, and runs the main job; ARGS="..." are handed on
 #   make test    sets up, builds and runs every test
 #   make build   sets up and builds the program: build/release/hapticgiant
+#   make bench   measures solver, cycle and laws beside the paper's solver into $(RESULTS); minutes;
+#                ARGS="door --quick" for a first look
+#   make bench-instructions
+#                counts their instructions (callgrind), into the same folder
 #   make sanitize
 #                builds and runs the tests that pay off under sanitizers: address and undefined
 #                behaviour for the control cycle and what it calls, threads for what has threads
@@ -10,6 +14,8 @@
 ARGS ?=
 PRESET ?= release
 BUILD := build/$(PRESET)
+RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
+  head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering prepositioning safety cycle \
   user simulation evaluation)
 TSAN_TESTS := $(addsuffix _test, core runtime viewer_server)
@@ -23,7 +29,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build test sanitize format check clean
+.PHONY: demo build test bench bench-instructions sanitize format check clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -38,6 +44,20 @@ test:
 	@tools/configure.sh $(PRESET) test
 	@cmake --build $(BUILD)
 	@PATH="$(CURDIR)/.venv/bin:$$PATH" ctest --test-dir $(BUILD) --output-on-failure --no-tests=error
+
+bench:
+	@tools/setup.sh bench
+	@tools/configure.sh $(PRESET) build
+	@cmake $(BUILD) >/dev/null 2>&1  # finds what set-up has just fetched
+	@cmake --build $(BUILD) --target hapticgiant
+	@$(BUILD)/hapticgiant bench --out $(RESULTS) $(ARGS)
+
+bench-instructions:
+	@tools/setup.sh bench
+	@tools/configure.sh $(PRESET) build
+	@cmake --build $(BUILD) --target bench_instructions
+	@mkdir -p $(RESULTS)
+	@.venv/bin/python tools/count_instructions.py $(BUILD)/bench_instructions $(RESULTS)/instructions.csv
 
 sanitize:
 	@tools/setup.sh test

@@ -28,7 +28,7 @@ hqp::Capacity capacity_of(std::span<const Problem> problems) {
 class SetTimer {
  public:
   SetTimer(ProblemSource& source, BaselineSolve baseline, int passes)
-      : source_(source), baseline_(baseline), passes_(passes) {
+      : source_(source), baseline_(source.is_sequence() ? baseline : nullptr), passes_(passes) {
     set_.name = source.name();
     if (source.is_sequence()) warm_.solver = "warm";
     cold_.solver = "cold";

@@ -4,6 +4,7 @@
 #
 #   tools/setup.sh build    what the program needs; goes on without recording or page
 #   tools/setup.sh test     that, and what the tests need; fails where anything is missing
+#   tools/setup.sh bench    as build, and what `hapticgiant bench` is compared with and counted by
 #
 # Works without root when the system packages are there, and names them otherwise.
 set -euo pipefail
@@ -11,9 +12,9 @@ cd -P "$(dirname "$0")/.."
 
 purpose=${1:-build}
 case "$purpose" in
-  build | test) ;;
+  build | test | bench) ;;
   *)
-    echo "setup: expected 'build' or 'test', got '$purpose'" >&2
+    echo "setup: expected 'build', 'test' or 'bench', got '$purpose'" >&2
     exit 2
     ;;
 esac
@@ -49,10 +50,12 @@ for package in ca-certificates libyaml-cpp-dev libcli11-dev libfmt-dev \
 done
 if [ "$purpose" = test ]; then
   need clang-format clang-format
-  for package in libgtest-dev librapidcheck-dev libbenchmark-dev chromium; do need "$package"; done
+  for package in libgtest-dev librapidcheck-dev chromium; do need "$package"; done
   "$(find_python)" -c 'import os, sysconfig
 os.stat(sysconfig.get_path("include") + "/Python.h")' >/dev/null 2>&1 || need python3-dev
 fi
+
+[ "$purpose" != bench ] || need valgrind valgrind
 
 # Recordings are written by a small Rust library. Debian's plain cargo may be too old for it; CMake
 # tries the same places.
@@ -87,7 +90,7 @@ if [ ${#missing[@]} -gt 0 ]; then
 fi
 if ! rust_works; then
   say "recording will be off: no cargo with rustc $least_rust or newer (Debian: cargo-web rustc-web)"
-  [ "$purpose" = build ] || exit 1
+  [ "$purpose" != test ] || exit 1
 fi
 
 # --- wheels ------------------------------------------------------------------------------------
@@ -109,6 +112,10 @@ install_list tools/requirements.txt .venv/.hapticgiant-requirements \
   "Pinocchio, Coal, Eigen, Boost headers"
 if [ "$purpose" = test ]; then
   install_list tools/requirements-test.txt .venv/.hapticgiant-requirements-test "robots and nanobind for the tests"
+fi
+if [ "$purpose" = bench ]; then
+  install_list tools/requirements-bench.txt .venv/.hapticgiant-requirements-bench \
+    "eiquadprog, below the paper's solver"
 fi
 
 # --- viewer page -------------------------------------------------------------------------------

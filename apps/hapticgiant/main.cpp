@@ -57,6 +57,11 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
   command->add_option("--recordings", run.recordings, "folder of the recordings")
       ->capture_default_str();
   command->add_flag("!--no-recording", run.has_recording, "without a recording");
+  command
+      ->add_option("--slow-solve", run.slow_solve,
+                   "keep problems of the solver that take this many active sets, beside the recording")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->callback([&run, &exit_code] { exit_code = hg::apps::run(run); });
 }
 
@@ -89,14 +94,19 @@ void add_new(CLI::App& app, hg::apps::NewArguments& arguments, int& exit_code) {
 }
 
 void add_bench(CLI::App& app, hg::apps::BenchArguments& arguments, int& exit_code) {
-  CLI::App* command = app.add_subcommand("bench", "Both laws and both kinds of bounds, compared.");
+  CLI::App* command = app.add_subcommand(
+      "bench", "How fast and how right solver, cycle and laws are; minutes (docs/benchmarks.md).");
   command->footer(
       "Examples:\n"
-      "  hapticgiant bench                        the three scenarios, four variants each\n"
-      "  hapticgiant bench excavator --json laws.json");
+      "  hapticgiant bench                        everything, on the three scenarios\n"
+      "  hapticgiant bench door --quick           a first look, in seconds\n"
+      "  hapticgiant bench --out results --json results/bench.json");
   command->add_option("scenarios", arguments.scenarios, "scenario files or names")
       ->capture_default_str();
-  command->add_option("--json", arguments.json, "write the table as JSON to this file");
+  command->add_flag("--quick", arguments.is_quick, "fewer problems and passes");
+  command->add_option("--json", arguments.json, "write all tables as JSON to this file");
+  command->add_option("--out", arguments.out,
+                      "write tables (CSV) and figures (SVG) to this folder");
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::bench(arguments); });
 }
 

@@ -19,7 +19,7 @@ namespace hg::bench {
 
 /// Chosen so that fewest of the recorded problems come out wrong (docs/benchmarks.md).
 struct CascadeOptions {
-  double hessian_epsilon = 1e-9;
+  double hessian_epsilon = 1e-11;
   double bound_epsilon = 1e-9;
   double rank_threshold = 1e-9;
 };

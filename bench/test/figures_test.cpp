@@ -1,0 +1,73 @@
+#include "bench/figures.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "apps/hapticgiant/bench_files.h"
+
+namespace hg::bench {
+namespace {
+
+Times times_of(const std::vector<double>& us) {
+  Times times;
+  for (std::size_t i = 0; i < us.size(); ++i) times.add(i, us[i]);
+  return times;
+}
+
+TEST(Times, TheFastestOfEachCounts) {
+  Times times = times_of({3.0, 5.0});
+  times.add(0, 4.0);
+  times.add(1, 2.0);
+  EXPECT_EQ(times.us(), (std::vector{3.0, 2.0}));
+  EXPECT_EQ(times.mean(), 2.5);
+}
+
+TEST(Times, PercentilesAreExact) {
+  std::vector<double> us(2000);
+  std::iota(us.rbegin(), us.rend(), 1.0);
+  const evaluation::Distribution d = times_of(us).distribution();
+  EXPECT_EQ(d.median, 1000.0);
+  EXPECT_EQ(d.p99_9, 1998.0);
+  EXPECT_EQ(d.max, 2000.0);
+  EXPECT_EQ(Times().distribution().max, 0.0);
+}
+
+TEST(Histogram, EveryTimeIsInTheBinThatHoldsIt) {
+  const std::vector<Bin> bins = histogram(times_of({1.0, 1.01, 3.0, 0.2}));
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    count += bins[i].count;
+    EXPECT_NEAR(bins[i].high / bins[i].low, std::pow(10.0, 0.05), 1e-9);
+    if (i > 0) EXPECT_EQ(bins[i].low, bins[i - 1].high);
+  }
+  EXPECT_EQ(count, 4u);
+  EXPECT_LE(bins.front().low, 0.2);
+  EXPECT_EQ(bins.front().count, 1u);
+  EXPECT_GT(bins.back().high, 3.0);
+  EXPECT_EQ(bins.back().count, 1u);
+  EXPECT_TRUE(histogram({}).empty());
+}
+
+TEST(Figure, EmptyPanelsAreLeftOutAndTextIsEscaped) {
+  Figure figure = {"a < b & c", "x", "y", {}};
+  figure.panels.push_back({"empty", {{"nothing", {}}}});
+  EXPECT_EQ(to_svg(figure).find("polyline stroke"), std::string::npos);
+  figure.panels.push_back({"full", {{"line", {{1.0, 10.0}, {100.0, 1000.0}}}}});
+  const std::string svg = to_svg(figure);
+  EXPECT_NE(svg.find("a &lt; b &amp; c"), std::string::npos);
+  EXPECT_EQ(svg.find(">empty<"), std::string::npos);
+  EXPECT_NE(svg.find(">full<"), std::string::npos);
+  // two decades of x over the panel: from its left edge to its right one
+  EXPECT_NE(svg.find("points=\"62.0,234.0 414.0,70.0 \""), std::string::npos) << svg;
+}
+
+TEST(Csv, HasOneLineOfKeysAndQuotesWhatNeedsIt) {
+  const nlohmann::ordered_json rows = {{{"set", "a, b"}, {"us", 1.5}, {"wrong", nullptr}},
+                                       {{"set", "say \"c\""}, {"us", 2}, {"wrong", 3}}};
+  EXPECT_EQ(apps::to_csv(rows), "set,us,wrong\n\"a, b\",1.5,\n\"say \"\"c\"\"\",2,3\n");
+  EXPECT_EQ(apps::to_csv(nlohmann::ordered_json::array()), "");
+}
+
+}  // namespace
+}  // namespace hg::bench
