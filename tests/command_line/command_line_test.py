@@ -4,6 +4,7 @@ Usage: command_line_test.py PROGRAM   (from the repository root)
 """
 
 import contextlib
+import csv
 import fcntl
 import json
 import os
@@ -21,6 +22,7 @@ import termios
 import threading
 import time
 import unittest
+import xml.etree.ElementTree
 
 from mcap.reader import make_reader
 
@@ -250,28 +252,90 @@ class Drafts(TemporaryFolder):
 
 
 class Bench(TemporaryFolder):
-    def test_both_laws_and_bounds_play_the_door(self):
-        result = self.folder / "bench.json"
-        code, out, err = run("bench", "door", "--json", result)
+    SETS = ["door, gauss, recoverable", "door, paper, paper"]
+
+    def rows(self, name):
+        with open(self.out / f"{name}.csv", newline="") as file:
+            return list(csv.DictReader(file, strict=True))
+
+    def test_a_quick_run_of_the_door_fills_every_table_and_figure(self):
+        self.out = self.folder / "new" / "results"
+        told = self.folder / "bench.json"
+        code, out, err = run("bench", "door", "--quick", "--json", told, "--out", self.out)
         self.assertEqual((code, err), (0, ""), out)
-        runs = json.loads(result.read_text())["runs"]
-        self.assertEqual([(r["law"], r["bounds"]) for r in runs],
+        told = json.loads(told.read_text())
+
+        # both laws play the scenario to its end
+        self.assertEqual([(r["law"], r["bounds"]) for r in told["runs"]],
                          [("gauss", "recoverable"), ("paper", "recoverable"),
                           ("gauss", "paper"), ("paper", "paper")])
-        for played in runs:
+        for played in told["runs"]:
             self.assertEqual(played["missing_events"], [])
             self.assertGreater(played["cycles"], 10000)
+        self.assertEqual([r["law"] for r in self.rows("laws")],
+                         [r["law"] for r in told["runs"]])
 
-    def test_a_missing_event_is_1_and_an_unknown_scenario_2(self):
+        # the solver: recorded problems and reference data, ours without a mistake
+        solver = self.rows("solver")
+        self.assertEqual(len(solver), len(told["solver"]))
+        names = {row["set"] for row in solver}
+        self.assertLess({*self.SETS, "exc_two", "random_public_1"}, names)
+        for row in solver:
+            self.assertLessEqual(float(row["median_us"]), float(row["p99_9_us"]))
+            self.assertLessEqual(float(row["p99_9_us"]), float(row["max_us"]))
+            if row["solver"] != "cascade":
+                self.assertEqual(row["failed"], "0", row)
+                self.assertIn(row["wrong"], ("", "0"), row)
+        if not any(row["solver"] == "cascade" for row in solver):
+            self.assertIn("the paper's cascade was not built", out)
+
+        # histograms count every problem and cycle
+        counted = {}
+        for row in self.rows("solver_histogram"):
+            key = row["set"], row["solver"]
+            counted[key] = counted.get(key, 0) + int(row["count"])
+        for row in solver:
+            first = 1 if row["solver"] == "warm" else 0  # has nothing to start from
+            self.assertEqual(counted[row["set"], row["solver"]], int(row["problems"]) - first, row)
+
+        # the stages make up the cycle; they are measured in other plays, so about
+        stages = {row["stage"]: row for row in self.rows("cycle")}
+        self.assertEqual(len(stages), 11)
+        self.assertEqual({row["cycles"] for row in stages.values()}, {"2000"})
+        total = float(stages.pop("total")["mean_us"])
+        together = sum(float(row["mean_us"]) for row in stages.values())
+        self.assertTrue(total / 3 < together < 3 * total, (total, together))
+
+        self.assertEqual({row["failed"] for row in self.rows("growth")}, {"0"})
+        self.assertEqual([r["with"] for r in self.rows("growth_exponents")][-1], "levels")
+        for name in ("solver_histogram", "cycle_histogram", "growth"):
+            figure = xml.etree.ElementTree.parse(self.out / f"{name}.svg").getroot()
+            lines = figure.findall("{http://www.w3.org/2000/svg}polyline")
+            self.assertGreaterEqual(len(lines), 4, name)
+        machine = (self.out / "machine.txt").read_text()
+        for key in ("date: 20", "cpu: ", "compiler: ", "flags: ", "commit: "):
+            self.assertIn(key, machine)
+
+    def test_a_missing_event_is_1(self):
         text = (MODELS / "scenarios" / "door.yaml").read_text().replace("../", f"{MODELS}/")
         impossible = self.folder / "impossible.yaml"
         impossible.write_text(text.replace("force_above_N: 10", "force_above_N: 1000"))
-        code, out, _ = run("bench", impossible)
+        code, out, _ = run("bench", impossible, "--quick")
         self.assertEqual(code, 1)
         self.assertIn("missing: locked", out)
-        code, out, err = run("bench", "doors")
-        self.assertEqual((code, out), (2, ""))
-        self.assertIn("did you mean 'door'", err)
+
+    def test_bad_input_is_one_message_and_leaves_nothing(self):
+        a_file = self.folder / "file"
+        a_file.touch()
+        for words, message in (
+                (["doors", "--out", self.folder / "new"], "did you mean 'door'"),
+                (["door", "--out", a_file], "expected a folder"),
+                (["door", "--json", self.folder / "none" / "b.json"], "cannot be written")):
+            code, out, err = run("bench", "--quick", *words)
+            self.assertEqual((code, out), (2, ""))
+            self.assertEqual(err.count("\n"), 1, err)
+            self.assertIn(message, err)
+        self.assertEqual([p.name for p in self.folder.iterdir()], ["file"])
 
 
 class BadInput(TemporaryFolder):
@@ -439,6 +503,54 @@ class BadInput(TemporaryFolder):
         code, _, err = run("hqp", "solve", self.folder / "none.hqp")
         self.assertEqual(code, 2)
         self.assertIn("none.hqp", err)
+
+
+class KeptProblems(unittest.TestCase):
+    """Problems of the solver that took long; here all, as one active set is long."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name, "made", "here")
+
+    def play(self, *arguments):
+        code, out, err = run("run", "door", "--fast", "--duration", 1, "--recordings", self.folder,
+                             *arguments)
+        self.assertEqual(err, "")
+        return out
+
+    def test_are_written_told_and_reproduced(self):
+        out = self.play("--slow-solve", 1)
+        self.assertEqual(out.count("to look at it:"), 1)
+        command = re.search(r"\n  hapticgiant (hqp solve (\S+) --explain)\n", out)
+        self.assertTrue(pathlib.Path(command[2]).is_file())
+        self.assertRegex(out, r"\n  problems     in 1\d{3} cycles .*, 10 written: \S+_hqp_\*\.hqp\n")
+        files = sorted(self.folder.glob("door_hqp_*.hqp"))
+        self.assertEqual(len(files), 10)
+        for file in files:
+            code, out, err = run("hqp", "solve", file, "--explain")
+            self.assertEqual((code, err), (0, ""))
+            cycle, tried = re.search(r"problem 0, Door, law gauss, .*, cycle (\d+), solved after "
+                                     r"(\d+) active set", out).groups()
+            self.assertEqual(file.name, f"door_hqp_{cycle}.hqp")
+            self.assertIn(f"\nsolved: {tried} active set", out)
+
+    def test_an_ordinary_run_has_none(self):
+        out = self.play()
+        self.assertNotIn("problems", out)
+        self.assertEqual(list(self.folder.glob("*.hqp")), [])
+
+    def test_are_only_counted_without_a_recording(self):
+        out = self.play("--slow-solve", 1, "--no-recording")
+        self.assertRegex(out, r"\n  problems     in 1\d{3} cycles .*, none was written\n")
+        self.assertFalse(self.folder.exists())
+
+    def test_a_file_that_cannot_be_written_stops_nothing(self):
+        for cycle in range(2000):  # whichever comes first
+            (self.folder / f"door_hqp_{cycle}.hqp").mkdir(parents=True)
+        out = self.play("--slow-solve", 1)
+        self.assertEqual(out.count("cannot be written"), 1)
+        self.assertIn("none was written", out)
 
 
 class HqpSolve(unittest.TestCase):
