@@ -27,6 +27,17 @@ limits::JointLimits free_limits(const TwinModel& twin, int dof, double dq,
   return limits;
 }
 
+// Not less than |B|^2 (Frobenius) with L B = diag(d): forward substitution for the sums of |B_ij|
+// over each row, with all signs alike
+double norm_bound(const MatrixA& L, const VectorA& d) noexcept {
+  VectorA sum = d;
+  for (Eigen::Index i = 0; i < d.size(); ++i) {
+    for (Eigen::Index k = 0; k < i; ++k) sum[i] += std::abs(L(i, k)) * sum[k];
+    sum[i] /= L(i, i);
+  }
+  return sum.squaredNorm();
+}
+
 }  // namespace
 
 void advance_locks(const TwinModel& twin, const ConfigurationA& q_a,
@@ -111,9 +122,11 @@ VectorA damping_torque(const MatrixA& L, const VectorA& dq_a, double dt,
   VectorA torque = D.cwiseProduct(dq_a);
   if (D.isZero(0.0)) return torque;
 
-  // B^T B = dt D^1/2 M^-1 D^1/2
+  // B^T B = dt D^1/2 M^-1 D^1/2; most dampers are so far from stiff that no B is needed to see it
   const VectorA root = D.cwiseSqrt();
-  MatrixA B = (std::sqrt(dt) * root).asDiagonal();
+  const VectorA diagonal = std::sqrt(dt) * root;
+  if (norm_bound(L, diagonal) < 0.5) return torque;
+  MatrixA B = diagonal.asDiagonal();
   L.triangularView<Eigen::Lower>().solveInPlace(B);
   const double trace = B.squaredNorm();
   if (trace <= 1.0) return torque;
