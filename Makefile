@@ -10,6 +10,8 @@
 #   make sanitize
 #                builds and runs the tests that pay off under sanitizers: address and undefined
 #                behaviour for the control cycle and what it calls, threads for what has threads
+#   make fuzz    feeds problem reader and solver with FUZZ_SECONDS=600 of random bytes each, under
+#                sanitizers; needs clang. What it finds is in build/fuzz/
 
 ARGS ?=
 PRESET ?= release
@@ -17,8 +19,10 @@ BUILD := build/$(PRESET)
 RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
   head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering prepositioning safety cycle \
-  user simulation evaluation)
+  user simulation evaluation fuzz_replay)
 TSAN_TESTS := $(addsuffix _test, core runtime viewer_server)
+FUZZ_SECONDS ?= 600
+FUZZ_CXX ?= $(firstword $(foreach name,clang++ clang++-19 clang++-16 clang++-14,$(shell command -v $(name))) clang++)
 empty :=
 space := $(empty) $(empty)
 # run_tests,PRESET,NAMES: builds these tests and runs them
@@ -29,7 +33,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build test bench bench-instructions sanitize format check clean
+.PHONY: demo build test bench bench-instructions sanitize fuzz format check clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -63,6 +67,16 @@ sanitize:
 	@tools/setup.sh test
 	$(call run_tests,asan,$(ASAN_TESTS))
 	$(call run_tests,tsan,$(TSAN_TESTS))
+
+fuzz:
+	@cmake -S tests/fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=$(FUZZ_CXX)
+	@cmake --build build/fuzz
+	@set -e; for name in reader solver; do \
+	  mkdir -p build/fuzz/inputs/$$name; \
+	  build/fuzz/fuzz_hqp_$$name -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=2048 \
+	    -print_final_stats=1 -artifact_prefix=build/fuzz/$$name- \
+	    build/fuzz/inputs/$$name tests/fuzz/corpus/$$name; \
+	done
 
 format:
 	@git ls-files '*.h' '*.cpp' | xargs clang-format -i
