@@ -32,7 +32,7 @@ struct Work {
 
 }  // namespace
 
-extern "C" [[gnu::noinline]] void counted(const Work& work) {
+extern "C" [[gnu::noipa]] void counted(const Work& work) {
   if (work.player != nullptr) {
     work.player->run();
   } else {
