@@ -18,6 +18,18 @@ constexpr double kWeak = 1e-2;
 constexpr double kTakenLast = 1e-2;
 constexpr double kSurelyMissed = 1e-6;  // share of its terms from which a value is no rounding
 constexpr double kRoundOff = 1e-14;     // a value below this share of its terms is none
+// Largest number of [E -I] in the residual form of least squares: its condition is not much larger.
+constexpr double kLargestResidualFactor = 1e3;
+
+constexpr int kBlock = 4;
+int padded(int n) noexcept { return (n + kBlock - 1) / kBlock * kBlock; }
+
+// y -= factor * r, `size` being a multiple of kBlock.
+void subtract(int size, double factor, const double* __restrict r, double* __restrict y) noexcept {
+  for (int v = 0; v < size; v += kBlock) {
+    for (int k = 0; k < kBlock; ++k) y[v + k] -= factor * r[v + k];
+  }
+}
 
 }  // namespace
 
@@ -25,18 +37,20 @@ DirectElimination::DirectElimination(int max_variables, int max_rows)
     : pivots_(index(max_variables)),
       pivot_of_variable_(index(max_variables)),
       preference_(max_variables),
-      R_((max_variables + 1) * max_variables),
-      L_((max_variables + 1) * max_variables),
+      R_((max_variables + 1) * padded(max_variables)),
+      L_((max_variables + 1) * padded(max_variables)),
       dependent_rows_(max_variables * std::max(max_variables, max_rows)),
-      dependent_rhs_(std::max(max_variables, max_rows)),
+      dependent_rest_(std::max(max_variables, max_rows)),
+      dependent_weight_(std::max(max_variables, max_rows)),
       matrix_(max_variables * (max_variables + max_rows)),
       rhs_(max_variables + max_rows),
-      values_(max_variables),
+      change_(max_variables),
       order_(max_variables + max_rows),
       scratch_(max_variables) {}
 
 void DirectElimination::reset(const Problem& problem) noexcept {
   n_ = problem.variables();
+  stride_ = padded(n_);
   rank_ = 0;
   std::fill_n(pivot_of_variable_.begin(), n_, -1);
   has_preference_ = false;
@@ -53,17 +67,21 @@ void DirectElimination::truncate(int rank) noexcept {
   while (rank_ > rank) pivot_of_variable_[index(pivots_[index(--rank_)].variable)] = -1;
 }
 
+void DirectElimination::load(const double* c, double* y) const noexcept {
+  std::copy_n(c, n_, y);
+  std::fill(y + n_, y + stride_, 0.0);
+}
+
 // y -= factors R for the pivots from `first` up to `end`.
-void DirectElimination::subtract_pivots(int first, int end, double* y_data,
+void DirectElimination::subtract_pivots(int first, int end, double* y,
                                         double* factors) const noexcept {
-  Eigen::Map<Eigen::VectorXd> y(y_data, n_);
   for (int s = first; s < end; ++s) {
     const Pivot& pivot = pivots_[index(s)];
-    const double factor = y_data[pivot.variable] * pivot.inverse;
+    const double factor = y[pivot.variable] * pivot.inverse;
     factors[s] = factor;
     if (factor == 0.0) continue;
-    if (!pivot.is_unit) y -= factor * VectorView(reduced_row(s), n_);
-    y_data[pivot.variable] = 0.0;
+    if (!pivot.is_unit) subtract(stride_, factor, reduced_row(s), y);
+    y[pivot.variable] = 0.0;
   }
 }
 
@@ -96,7 +114,7 @@ void DirectElimination::reduce_unit(int variable, double target) noexcept {
     largest_ = 0.0;
   } else {
     double* y = reduced_row(rank_);
-    std::fill_n(y, n_, 0.0);
+    std::fill_n(y, stride_, 0.0);
     y[variable] = 1.0;
     subtract_pivots(t, rank_, y, factor);
     choose_variable();
@@ -111,7 +129,7 @@ void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
     return;
   }
   double* y = reduced_row(rank_);
-  std::copy_n(problem.coefficients(row.row).data(), n_, y);
+  load(problem.coefficients(row.row).data(), y);
   subtract_pivots(0, rank_, y, factors(rank_));
   is_unit_ = false;
   value_ = row.target;
@@ -122,18 +140,13 @@ void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
 
 // The variable that y would take, and the size of y.
 void DirectElimination::choose_variable() noexcept {
-  const double* y = reduced_row(rank_);
-  largest_ = 0.0;
-  double best = 0.0;
-  variable_ = 0;
-  for (int v = 0; v < n_; ++v) {
-    const double size = std::abs(y[v]);
-    largest_ = std::max(largest_, size);
-    const double preferred = has_preference_ ? size * preference_[v] : size;
-    if (preferred > best) {
-      best = preferred;
-      variable_ = v;
-    }
+  Eigen::Map<Eigen::VectorXd> y(reduced_row(rank_), n_);
+  largest_ = y.cwiseAbs().maxCoeff();
+  if (has_preference_) {
+    y.cwiseAbs().cwiseProduct(preference_.head(n_)).maxCoeff(&variable_);
+  } else {
+    variable_ = 0;
+    while (variable_ + 1 < n_ && std::abs(y[variable_]) < largest_) ++variable_;
   }
 }
 
@@ -191,17 +204,14 @@ double DirectElimination::missed_by() const noexcept {
 
 // The row under work depends on the pivots, of which those from `first` on are of its level.
 void DirectElimination::keep_dependent(double weight, int first) noexcept {
-  const VectorView factor(factors(rank_) + first, rank_ - first);
   if (std::abs(value_) > kRoundOff * value_scale_) is_met_ = false;
-  if (factor.isZero(0.0)) return;
+  const double* factor = factors(rank_);
+  if (std::all_of(factor + first, factor + rank_, [](double f) { return f == 0.0; })) return;
   double* kept = dependent_rows_.data() + dependents_ * n_;
-  double target = value_;
-  for (int s = first; s < rank_; ++s) {
-    kept[s - first] = weight * factor[s - first];
-    target += factor[s - first] * pivots_[index(s)].value;
-  }
+  std::copy(factor + first, factor + rank_, kept);
   std::fill(kept + rank_ - first, kept + n_ - first, 0.0);
-  dependent_rhs_[dependents_++] = weight * target;
+  dependent_rest_[dependents_] = value_;
+  dependent_weight_[dependents_++] = weight;
 }
 
 bool DirectElimination::add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
@@ -271,31 +281,82 @@ void DirectElimination::add_smallest_norm(const Problem& problem) noexcept {
   solve_level(problem, first);
 }
 
-// Values of the pivots from `first` on, in the sense of least squares over all rows of the level.
+double DirectElimination::weight_of_pivot(const Problem& problem, int t) const noexcept {
+  const int row = pivots_[index(t)].row;
+  return row < 0 ? 1.0 : problem.weight(row);
+}
+
+// Values of the pivots from `first` on, in the sense of least squares over all rows of the level:
+// the change u minimises |W L u|^2 + |V (D u - rest)|^2, with the weights W of pivots and V of
+// dependent rows.
 void DirectElimination::solve_level(const Problem& problem, int first) noexcept {
+  if (!solve_for_residuals(problem, first)) solve_by_reflections(problem, first);
+  for (int t = first; t < rank_; ++t) pivots_[index(t)].value += change_[t - first];
+}
+
+// Few dependent rows: the residuals z = (W L u, V (D u - rest)) are the smallest with
+// [E -I] z = V rest, E = V D L^-1 W^-1. The rows of [E -I], made orthogonal one after the other,
+// span z. False when it is not the way to go.
+bool DirectElimination::solve_for_residuals(const Problem& problem, int first) noexcept {
+  const int r = rank_ - first;
+  const int d = dependents_;
+  if (d >= r) return false;
+  change_.head(r).setZero();
+  for (int k = 0; k < d; ++k) {
+    const double weight = dependent_weight_[k];
+    Eigen::Map<Eigen::VectorXd> row(matrix_.data() + k * (r + d), r + d);
+    row.head(r) = weight * VectorView(dependent_rows_.data() + k * n_, r);
+    row.tail(d).setZero();
+    row[r + k] = -1.0;
+    for (int i = r - 1; i >= 0; --i) {
+      const int t = first + i;
+      if (!pivots_[index(t)].is_unit) row.head(i) -= row[i] * VectorView(factors(t) + first, i);
+    }
+    for (int i = 0; i < r; ++i) row[i] /= weight_of_pivot(problem, first + i);
+    if (!(row.cwiseAbs().maxCoeff() < kLargestResidualFactor)) return false;
+
+    double rest = weight * dependent_rest_[k];
+    for (int j = 0; j < k; ++j) {
+      const VectorView other(matrix_.data() + j * (r + d), r + d);
+      const double share = other.dot(row);
+      row -= share * other;
+      rest -= share * rhs_[j];
+    }
+    const double length = row.norm();
+    row /= length;
+    rhs_[k] = rest / length;
+    change_.head(r) += rhs_[k] * row.head(r);
+  }
+  // from W L u to u
+  for (int i = 0; i < r; ++i) {
+    const int t = first + i;
+    change_[i] /= weight_of_pivot(problem, t);
+    if (!pivots_[index(t)].is_unit) {
+      change_[i] -= VectorView(factors(t) + first, i).dot(change_.head(i));
+    }
+  }
+  return true;
+}
+
+void DirectElimination::solve_by_reflections(const Problem& problem, int first) noexcept {
   const int r = rank_ - first;
   const int m = r + dependents_;
   Eigen::Map<Eigen::MatrixXd> A(matrix_.data(), m, r);
   for (int i = 0; i < r; ++i) {
     const int t = first + i;
-    const Pivot& pivot = pivots_[index(t)];
-    const double weight = pivot.row < 0 ? 1.0 : problem.weight(pivot.row);
-    const double* factor = factors(t) + first;
+    const double weight = weight_of_pivot(problem, t);
     A.row(i).setZero();
     A(i, i) = weight;
-    rhs_[i] = weight * pivot.value;
-    if (pivot.is_unit) continue;
-    for (int s = 0; s < i; ++s) {
-      A(i, s) = weight * factor[s];
-      rhs_[i] += A(i, s) * pivots_[index(first + s)].value;
-    }
+    if (pivots_[index(t)].is_unit) continue;
+    A.row(i).head(i) = weight * VectorView(factors(t) + first, i).transpose();
   }
+  rhs_.head(r).setZero();
   for (int i = 0; i < dependents_; ++i) {
-    A.row(r + i) = VectorView(dependent_rows_.data() + i * n_, r).transpose();
-    rhs_[r + i] = dependent_rhs_[i];
+    const double weight = dependent_weight_[i];
+    A.row(r + i) = weight * VectorView(dependent_rows_.data() + i * n_, r).transpose();
+    rhs_[r + i] = weight * dependent_rest_[i];
   }
-  solve_least_squares(m, r, A.data(), rhs_.data(), order_.data(), values_.data());
-  for (int j = 0; j < r; ++j) pivots_[index(first + j)].value = values_[j];
+  solve_least_squares(m, r, A.data(), rhs_.data(), order_.data(), change_.data());
 }
 
 void DirectElimination::find_point(double* x_data) const noexcept {
@@ -312,7 +373,7 @@ double DirectElimination::find_multipliers(const double* g, int rank, int first,
                                            double* mu) noexcept {
   double* y = reduced_row(n_);
   Eigen::Map<Eigen::VectorXd> factor(factors(n_), n_);
-  std::copy_n(g, n_, y);
+  load(g, y);
   subtract_pivots(0, rank, y, factor.data());
   for (int t = rank - 1; t >= first; --t) {
     mu[t] = -factor[t];

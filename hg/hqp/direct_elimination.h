@@ -65,9 +65,11 @@ class DirectElimination {
   };
 
   static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
-  double* reduced_row(int t) noexcept { return R_.data() + t * n_; }
-  const double* reduced_row(int t) const noexcept { return R_.data() + t * n_; }
-  double* factors(int t) noexcept { return L_.data() + t * n_; }
+  double* reduced_row(int t) noexcept { return R_.data() + t * stride_; }
+  const double* reduced_row(int t) const noexcept { return R_.data() + t * stride_; }
+  double* factors(int t) noexcept { return L_.data() + t * stride_; }
+  const double* factors(int t) const noexcept { return L_.data() + t * stride_; }
+  void load(const double* c, double* y) const noexcept;
   void subtract_pivots(int first, int end, double* y, double* factors) const noexcept;
   void reduce(const Problem& problem, TargetRow row) noexcept;
   void reduce_unit(int variable, double target) noexcept;
@@ -77,18 +79,22 @@ class DirectElimination {
   Outcome judge_closely(double norm, double tolerance) noexcept;
   void append(int row) noexcept;
   void keep_dependent(double weight, int first) noexcept;
+  double weight_of_pivot(const Problem& problem, int t) const noexcept;
   bool add_weak_rows(const Problem& problem, std::span<const TargetRow> rows, int weak, int first,
                      double tolerance) noexcept;
   void solve_level(const Problem& problem, int first) noexcept;
+  bool solve_for_residuals(const Problem& problem, int first) noexcept;
+  void solve_by_reflections(const Problem& problem, int first) noexcept;
 
   int n_ = 0;
+  int stride_ = 0;  ///< from row to row: n, and zeros up to the next multiple of 4
   int rank_ = 0;
   std::vector<Pivot> pivots_;
   std::vector<int> pivot_of_variable_;  ///< -1: free
   bool has_preference_ = false;
   Eigen::VectorXd preference_;  ///< by variable, 1: may be taken at once
 
-  // Row t of R and of L (L_ts for s < t), n apart. Row rank_ is the row under work: y and its
+  // Row t of R and of L (L_ts for s < t), stride_ apart. Row rank_ is the row under work: y and its
   // factors, y = c - factors R.
   Eigen::VectorXd R_;
   Eigen::VectorXd L_;
@@ -98,14 +104,16 @@ class DirectElimination {
   double value_ = 0.0;        ///< what is left of the target for y x
   double value_scale_ = 0.0;  ///< size of the terms of value_
 
-  // least squares of a level: its dependent rows, as combinations of its pivots
+  // least squares of a level: its dependent rows D, as combinations of its pivots, what these leave
+  // of their targets, and the change of the pivots' values
   int dependents_ = 0;
-  bool is_met_ = true;              ///< so do they all have their targets
-  Eigen::VectorXd dependent_rows_;  ///< weighted factors by the level's pivots, n apart
-  Eigen::VectorXd dependent_rhs_;
+  bool is_met_ = true;              ///< D leaves nothing
+  Eigen::VectorXd dependent_rows_;  ///< n apart
+  Eigen::VectorXd dependent_rest_;
+  Eigen::VectorXd dependent_weight_;
   Eigen::VectorXd matrix_;
   Eigen::VectorXd rhs_;
-  Eigen::VectorXd values_;
+  Eigen::VectorXd change_;
   Eigen::VectorXi order_;
   Eigen::VectorXd scratch_;
 };
