@@ -11,12 +11,13 @@
 namespace hg::hqp {
 namespace {
 
-// Guesses are repaired up to an effort, counted in direct eliminations. Control loops hardly ever
-// need more than 24; the level-by-level method costs as much as 20 to 40.
-constexpr int kEffort = 32;
-constexpr int kEffortPerGuess = 2;    // itself and one correction; after that, from zero is faster
-constexpr int kOrthogonalEffort = 4;  // of one orthogonal elimination
-constexpr int kProofEffort = 12;      // on the result of that method, which is almost always right
+// Efforts are counted in direct eliminations.
+constexpr int kEffortOfGuess = 3;        // itself, and one row in exchange for another;
+constexpr int kEffortOfSecondGuess = 1;  // what differs more is found faster from zero,
+constexpr int kEffort = 32;              // with this and so much per variable. More is
+constexpr int kEffortPerVariable = 2;    // taken for a cycle
+constexpr int kOrthogonalEffort = 4;     // of one orthogonal elimination
+constexpr int kProofEffort = 12;  // on the result of that method, which is almost always right
 
 int find_bad_row(const Problem& problem) noexcept {
   for (int row = 0; row < problem.rows(); ++row) {
@@ -41,24 +42,31 @@ bool try_guesses(const Problem& problem, const Options& options, int levels, int
 // The guesses of `active`, then the method from zero.
 bool solve_by_guesses(const Problem& problem, const Options& options, const ActiveSet& active,
                       int levels, int& iterations, Workspace& work) noexcept {
-  std::vector<RowState>& state = work.point.state;
-  std::vector<RowState>& second = work.saved.state;
-  const int rows = rows_of(problem, levels);
-  load_guess(problem, levels, active.state, state);
-  const bool has_second = load_guess(problem, levels, active.before, second) &&
-                          !std::equal(state.begin(), state.begin() + rows, second.begin());
-  if (has_second || !is_guess_from_zero(problem, levels, state)) {
-    start_from_zero(problem, work);
-    if (try_guesses(problem, options, levels, kEffortPerGuess, iterations, work)) return true;
-  }
-  if (has_second) {
-    state.swap(second);
-    start_from_zero(problem, work);
-    if (try_guesses(problem, options, levels, kEffortPerGuess, iterations, work)) return true;
-  }
-  guess_from_zero(problem, levels, state);
+  std::vector<RowState>& guess = work.point.state;
+  const int effort_from_zero = kEffort + kEffortPerVariable * problem.variables();
+  const auto try_for = [&](int effort) {
+    return try_guesses(problem, options, levels, effort, iterations, work);
+  };
+  load_guess(problem, levels, active.state, guess);
   start_from_zero(problem, work);
-  return try_guesses(problem, options, levels, kEffort, iterations, work);
+  if (try_for(kEffortOfGuess)) return true;
+
+  const int rows = rows_of(problem, levels);
+  std::vector<RowState>& first = work.saved.state;
+  std::vector<RowState>& second = work.second_guess;
+  load_guess(problem, levels, active.state, first);
+  const bool has_second = load_guess(problem, levels, active.before, second) &&
+                          !std::equal(first.begin(), first.begin() + rows, second.begin());
+  if (has_second) {
+    guess.swap(second);
+    start_from_zero(problem, work);
+    if (try_for(kEffortOfSecondGuess)) return true;
+  } else if (is_guess_from_zero(problem, levels, first)) {
+    return try_for(effort_from_zero);
+  }
+  guess_from_zero(problem, levels, guess);
+  start_from_zero(problem, work);
+  return try_for(effort_from_zero);
 }
 
 // Leaves the result in work; `levels` becomes the number of levels that are optimal.
@@ -117,6 +125,11 @@ void read_levels(const Problem& problem, int levels, const Workspace& work,
         .blocking_row = work.point.blocking_row[at(level)]};
   }
   std::copy_n(work.point.x.data(), problem.variables(), solution.x.begin());
+
+  const int rows = rows_of(problem, levels);
+  std::fill(solution.state.begin() + rows, solution.state.end(), RowState::kInactive);
+  std::fill(solution.slack.begin() + rows, solution.slack.end(), 0.0);
+  std::fill(solution.levels.begin() + levels, solution.levels.end(), LevelResult{});
 }
 
 }  // namespace
@@ -139,9 +152,9 @@ Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& 
   const int levels = bad_row < 0 ? problem.levels() : problem.level_of(bad_row);
 
   solution.x.resize(at(problem.variables()));
-  solution.state.assign(at(problem.rows()), RowState::kInactive);
-  solution.slack.assign(at(problem.rows()), 0.0);
-  solution.levels.assign(at(problem.levels()), LevelResult{});
+  solution.state.resize(at(problem.rows()));
+  solution.slack.resize(at(problem.rows()));
+  solution.levels.resize(at(problem.levels()));
   solution.bad_row = bad_row;
   solution.bad_level = bad_row < 0 ? -1 : levels;
   solution.iterations = 0;

@@ -21,6 +21,7 @@ Workspace::Workspace(const Capacity& c)
       cone(c.variables, 2 * c.rows),
       point(c),
       saved(c),
+      second_guess(at(c.rows)),
       value(at(c.rows)),
       last_value(at(c.rows)),
       is_frozen(at(c.variables)),
@@ -39,15 +40,6 @@ Workspace::Workspace(const Capacity& c)
 double tolerance(const Problem& problem, const Options& options, const Workspace& work, int row,
                  double bound) noexcept {
   return options.feasibility_tolerance * magnitude(problem.norm(row), bound, work.x_norm);
-}
-
-double violation(const Problem& problem, const Options& options, const Workspace& work,
-                 int row) noexcept {
-  const Interval bounds = problem.bounds(row);
-  const double distance = excess(bounds, work.value[at(row)]);
-  if (distance == 0.0) return 0.0;
-  const double bound = distance > 0.0 ? bounds.ub : bounds.lb;
-  return std::abs(distance) > tolerance(problem, options, work, row, bound) ? distance : 0.0;
 }
 
 bool touches(const Problem& problem, const Options& options, const Workspace& work, int row,

@@ -35,7 +35,8 @@ struct Workspace {
   Cone cone;
 
   Point point;
-  Point saved;                     ///< the same, put aside
+  Point saved;  ///< the same, put aside
+  std::vector<RowState> second_guess;
   double x_norm = 0.0;             ///< largest |x| met in this solve: rounding errors scale with it
   std::vector<double> value;       ///< c x by row
   std::vector<double> last_value;  ///< same, of the point that the next step starts from
@@ -86,8 +87,14 @@ double tolerance(const Problem& problem, const Options& options, const Workspace
                  double bound) noexcept;
 
 /// How far c x = work.value[row] is outside its bounds, as excess(); 0 within the tolerance.
-double violation(const Problem& problem, const Options& options, const Workspace& work,
-                 int row) noexcept;
+inline double violation(const Problem& problem, const Options& options, const Workspace& work,
+                        int row) noexcept {
+  const Interval bounds = problem.bounds(row);
+  const double distance = excess(bounds, work.value[at(row)]);
+  if (distance == 0.0) return 0.0;
+  const double bound = distance > 0.0 ? bounds.ub : bounds.lb;
+  return std::abs(distance) > tolerance(problem, options, work, row, bound) ? distance : 0.0;
+}
 
 /// Whether work.value[row] is at `bound`, within the tolerance.
 bool touches(const Problem& problem, const Options& options, const Workspace& work, int row,
