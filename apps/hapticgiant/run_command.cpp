@@ -16,6 +16,7 @@
 
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/problem_dumps.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
@@ -32,6 +33,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kIdle(2);
 constexpr std::chrono::milliseconds kStatusPeriod(100);
+constexpr double kSlowCycle = 0.5;  // of the period
 
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
@@ -55,6 +57,7 @@ struct Observers {
   StatusLine status_line;
   std::unique_ptr<viewer_server::ViewerServer> viewer;
   std::unique_ptr<recording::Recorder> recorder;  ///< last: a refused run leaves no file
+  ProblemDumps dumps;
   bool is_fast = false;
   Clock::time_point last_status = {};
   double script_end_s = 0.0;  ///< > 0: the run goes on after the script, tell so
@@ -89,6 +92,13 @@ void show(Observers& observers, const Sample& sample) {
       status_text(sample, observers.scenario.limits, observers.scenario.twin.model));
 }
 
+void look_at_problems(Observers& observers, const hqp::KeptProblems& problems) {
+  for (std::size_t i = 0; i < hqp::KeptProblems::kMost; ++i) {
+    const std::string text = observers.dumps.look_at(problems);
+    if (!text.empty()) observers.status_line.print(text);
+  }
+}
+
 // drains the runtime until it has finished and everything has been seen
 void watch(runtime::Runtime& runtime, Observers& observers) {
   auto sample = std::make_unique<Sample>();
@@ -100,6 +110,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
       any = true;
     }
     if (any && !observers.is_fast) show(observers, *sample);
+    look_at_problems(observers, runtime.kept_problems());
     if (is_finished) break;
     if (interrupted.load()) runtime.request_stop();
     HandTarget target;
@@ -143,6 +154,7 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = arguments.is_fast;
   options.changes = scenario.changes;
+  if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / options.rate_Hz;
   options.duration_s =
       arguments.duration_s.value_or(goes_on ? 0.0 : assembly::planned_duration_s(scenario));
   if (arguments.is_fast && options.duration_s == 0.0) {
@@ -189,6 +201,7 @@ int run(const RunArguments& arguments) {
       .status_line = StatusLine(is_terminal),
       .viewer = std::move(viewer),
       .recorder = make_recorder(scenario, arguments),
+      .dumps = problem_dumps(scenario, arguments),
       .is_fast = arguments.is_fast,
       .script_end_s = options.duration_s == 0.0 ? assembly::planned_duration_s(scenario) : 0.0};
 
@@ -219,7 +232,8 @@ int run(const RunArguments& arguments) {
                                    .recording = close_recording(observers.recorder.get()),
                                    .wall_time_s = wall_time.count()};
   const std::vector<std::string> missing = observers.detector.missing();
-  print_out(fmt::format("\n{}", observers.summary.to_text(facts, missing)));
+  print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
+                        observers.dumps.summary(runtime.kept_problems())));
   if (!arguments.summary.empty()) {
     write_output(arguments.summary, observers.summary.to_json(facts, missing));
   }

@@ -22,7 +22,8 @@ struct RunArguments {
   bool has_viewer = true;
   std::uint16_t port = 0;  ///< of the page; 0 = any free one
   std::string recordings = "recordings";
-  bool has_recording = true;
+  bool has_recording = true;  ///< and problems of the solver that failed or were slow
+  int slow_solve = 100;       ///< active sets from which on a problem is slow
 };
 
 /// Exit code: 0 fine, 1 an expected event is missing or a limit was exceeded, 3 a fault stopped the

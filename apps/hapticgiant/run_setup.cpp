@@ -142,7 +142,15 @@ config::Scenario make_scenario(const RunArguments& arguments) {
          scenario.device.rendering.law);
   choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
          scenario.device.rendering.bounds);
+  scenario.device.rendering.slow_solve = arguments.slow_solve;
   return scenario;
+}
+
+ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments) {
+  const rendering::Options& law = scenario.device.rendering;
+  return {arguments.has_recording ? arguments.recordings : "", recording_name(arguments.scenario),
+          fmt::format("{}, law {}, bounds {}", scenario.title, rendering::to_string(law.law),
+                      rendering::to_string(law.bounds))};
 }
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/hapticgiant/problem_dumps.h"
 #include "apps/hapticgiant/run_command.h"
 #include "hg/config/scenario.h"
 #include "hg/recording/recorder.h"
@@ -13,6 +14,9 @@ namespace hg::apps {
 
 /// The scenario with everything that the command line changes. Throws SetupError.
 config::Scenario make_scenario(const RunArguments& arguments);
+
+/// Beside the recording, if there is one.
+ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments);
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
                                         const RunArguments& arguments);

@@ -57,6 +57,10 @@ class Cycle {
   void restore(const State& state) noexcept { state_ = state; }
   /// What the solver was given in the last step.
   const hqp::Problem& problem() const noexcept { return rendering_.problem(); }
+  /// Solves that failed or were slow, see Rendering::kept_problems(). For one other thread.
+  const hqp::KeptProblems& kept_problems() const noexcept { return rendering_.kept_problems(); }
+  /// Keeps the last solve of the last step, too: the step took too long.
+  void keep_problem() noexcept { rendering_.keep_problem(state_.cycle - 1); }
 
  private:
   void hold(CycleRecord& record) noexcept;

@@ -215,18 +215,25 @@ Options parse_options(Reader& reader) {
   }
 }
 
-ActiveSet parse_guess(Reader& reader, int rows) {
-  const std::string_view letters = reader.next_word();
+using States = std::array<RowState, kMaxRows>;
+
+void parse_states(Reader& reader, std::string_view letters, int rows, States& states) {
   if (letters.size() != static_cast<std::size_t>(rows) ||
       letters.find_first_not_of(kStateLetters) != std::string_view::npos) {
     reader.fail("a letter of " + std::string(kStateLetters) + " for each of the " +
                     std::to_string(rows) + " rows",
                 in_quotes(letters));
   }
-  reader.need_end_of_line();
-  ActiveSet guess;
-  std::transform(letters.begin(), letters.end(), guess.state.begin(),
+  std::transform(letters.begin(), letters.end(), states.begin(),
                  [](char letter) { return static_cast<RowState>(kStateLetters.find(letter)); });
+}
+
+ActiveSet parse_guess(Reader& reader, int rows) {
+  ActiveSet guess;
+  parse_states(reader, reader.next_word(), rows, guess.state);
+  const std::string_view before = reader.next_word();
+  if (!before.empty()) parse_states(reader, before, rows, guess.before);
+  reader.need_end_of_line();
   return guess;
 }
 
@@ -345,6 +352,21 @@ void write_options(std::ostream& out, const Options& options) {
   if (!text.empty()) out << "options" << text << '\n';
 }
 
+std::string letters_of(const States& states, int rows) {
+  std::string letters;
+  for (int row = 0; row < rows; ++row) {
+    letters += kStateLetters[static_cast<std::size_t>(states[static_cast<std::size_t>(row)])];
+  }
+  return letters;
+}
+
+void write_guess(std::ostream& out, const ActiveSet& guess, int rows) {
+  const std::string before = letters_of(guess.before, rows);
+  out << "guess " << letters_of(guess.state, rows);
+  if (before.find_first_not_of(kStateLetters[0]) != std::string::npos) out << ' ' << before;
+  out << '\n';
+}
+
 void write_level(std::ostream& out, const Problem& problem, int level) {
   const int first = problem.first_row(level);
   const int end = problem.end_row(level);
@@ -403,14 +425,7 @@ void write_problem(std::ostream& out, const RecordedProblem& recorded) {
   if (!recorded.name.empty()) out << "name " << recorded.name << '\n';
   write_options(out, recorded.options);
   for (int level = 0; level < problem.levels(); ++level) write_level(out, problem, level);
-  if (recorded.guess) {
-    out << "guess ";
-    for (int row = 0; row < problem.rows(); ++row) {
-      out << kStateLetters[static_cast<std::size_t>(
-          recorded.guess->state[static_cast<std::size_t>(row)])];
-    }
-    out << '\n';
-  }
+  if (recorded.guess) write_guess(out, *recorded.guess, problem.rows());
   out << "end\n";
 }
 

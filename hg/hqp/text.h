@@ -8,13 +8,14 @@
 ///   <m_eq lines: n coefficients, then b>
 ///   <m_iq lines: n coefficients, then lb, then ub>
 ///   ... next level
-///   guess <a letter of .lu=<> per row>              RowState in its order   (optional)
+///   guess <state> <before>                          of an ActiveSet         (optional)
 ///   end
 /// A row is what it says: with one coefficient, of value 1, it is a bound on that variable. After
 /// its numbers there may be
 ///   weight <w>   of its slack, 1 where nothing is said
 ///   dense        a row of add_row() all the same, although it has only one coefficient, of value 1
 ///   bad          content that the solver refuses, on purpose: such rows are errors otherwise
+/// Guesses have a letter per row: .lu=<> in the order of RowState; `before` may be left out.
 /// Set-up code: allocates, and throws SetupError with "file:line: what was expected".
 #pragma once
 

@@ -36,6 +36,7 @@ struct Options {
   double kD_rot = 40;      ///< 1/s
   double kP_posture = 25;  ///< of joints that the task leaves free, 1/s^2; double pole at 5 rad/s
   double kD_posture = 10;  ///< 1/s
+  int slow_solve = 100;    ///< active sets from which on a solve is kept; a warm start needs 1 or 2
 };
 
 }  // namespace hg::rendering

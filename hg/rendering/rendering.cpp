@@ -78,6 +78,7 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
     if (!ok) throw SetupError(text);
   };
   require(options.dt > 0.0, "rendering: the period must be positive");
+  require(options.slow_solve > 0, "rendering: slow_solve must be positive");
   const bool is_paper = options.law == Law::kPaper;
   require(!is_paper || device.n_m == 6, "device: law paper needs six manipulator joints, got " +
                                             std::to_string(device.n_m) +
@@ -118,7 +119,8 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options)
       J_H_(6, device_.chain.nv()),
       J_a_(6, twin_.chain.nv()),
       solver_(tasks_.problem().capacity()),
-      solution_(tasks_.problem().capacity()) {
+      solution_(tasks_.problem().capacity()),
+      kept_problems_(std::make_unique<hqp::KeptProblems>(tasks_.problem().capacity())) {
   solver_options_.max_iterations =
       std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
 }
@@ -225,9 +227,12 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
                  .directions = reactions_.directions(),
                  .tau = tau});
     ended_(Stage::kRenderingSetUp);
+    guess_ = state.active_set;
     record.solver_status = to_solver_status(
         solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_));
     record.solver_iterations += solution_.iterations;
+    const bool is_fine = solution_.status == hqp::Status::kSolved;
+    if (!is_fine || solution_.iterations >= options_.slow_solve) keep_problem(record.cycle);
     ended_(Stage::kSolver);
 
     const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);
@@ -255,6 +260,10 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
   }
   if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
   reactions_.report(tasks_, solution_, L_, J_a_, options_.dt, record);
+}
+
+void Rendering::keep_problem(std::uint64_t cycle) noexcept {
+  kept_problems_->put(tasks_.problem(), solver_options_, guess_, solution_, cycle);
 }
 
 bool Rendering::is_blocked() const noexcept {

@@ -5,7 +5,11 @@
 /// No allocation, noexcept after construction.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+
 #include "hg/core/stage_probe.h"
+#include "hg/hqp/kept_problems.h"
 #include "hg/hqp/solver.h"
 #include "hg/rendering/device_model.h"
 #include "hg/rendering/options.h"
@@ -60,6 +64,11 @@ class Rendering {
 
   /// The problem of the last step: rows, bounds and weights.
   const hqp::Problem& problem() const noexcept { return tasks_.problem(); }
+  /// Solves that failed, that took options.slow_solve active sets or more, or that keep_problem()
+  /// was called for. One other thread may read them.
+  const hqp::KeptProblems& kept_problems() const noexcept { return *kept_problems_; }
+  /// Keeps the last solve, which belonged to cycle `cycle`.
+  void keep_problem(std::uint64_t cycle) noexcept;
   /// s of the last step (11): how H had to accelerate relative to E.
   const Vector6& synchronisation() const noexcept { return tasks_.synchronisation(); }
 
@@ -82,6 +91,8 @@ class Rendering {
   hqp::Options solver_options_;
   hqp::Solver solver_;
   hqp::Solution solution_;
+  hqp::ActiveSet guess_;  ///< that the last solve began with
+  std::unique_ptr<hqp::KeptProblems> kept_problems_;
   StageProbe ended_;
 };
 

@@ -24,6 +24,9 @@ struct Options {
   double duration_s = 0.0;           ///< then the device is stopped; 0 = until request_stop()
   std::size_t ring = 4096;           ///< samples that an observer may fall behind
   std::vector<TimedChange> changes;  ///< of the twin, in the order of their times
+  /// A cycle that takes longer is slow: its problem is kept. In real time only with a priority for
+  /// it; otherwise the time says more about other programs.
+  double slow_cycle_us = kInfinity;
 };
 
 /// Throws SetupError naming the option that is out of range.
@@ -56,6 +59,8 @@ class Runtime {
 
   /// One observer thread: the next sample, false if there is none yet.
   bool pop(Sample& sample) noexcept { return samples_.pop(sample); }
+  /// One observer thread: problems of the solver that failed or were slow.
+  const hqp::KeptProblems& kept_problems() const noexcept { return cycle_.kept_problems(); }
   /// One operator thread: where a simulated hand should go; from the next cycle on.
   void set_hand_target(const HandTarget& target) noexcept { hand_targets_.push(target); }
 

@@ -105,7 +105,9 @@ TEST(ParseProblems, NamesTheNearestKeyword) {
             "x.hqp:5: expected a letter of .lu=<> for each of the 2 rows, got '='");
   EXPECT_EQ(message_of("hqp 1 1\nlevel 1 0\n1 2\nguess x\nend\n"),
             "x.hqp:4: expected a letter of .lu=<> for each of the 1 rows, got 'x'");
-  EXPECT_EQ(message_of("hqp 1 1\nlevel 1 0\n1 2\nguess . .\nend\n"),
+  EXPECT_EQ(message_of("hqp 1 1\nlevel 1 0\n1 2\nguess . ..\nend\n"),
+            "x.hqp:4: expected a letter of .lu=<> for each of the 1 rows, got '..'");
+  EXPECT_EQ(message_of("hqp 1 1\nlevel 1 0\n1 2\nguess . . .\nend\n"),
             "x.hqp:4: expected the end of the line, got '.'");
 }
 
@@ -175,6 +177,8 @@ TEST(WriteProblem, EverythingIsReadBackBitForBit) {
     for (int row = 0; row < problem.rows(); ++row) {
       original.guess->state[static_cast<std::size_t>(row)] =
           static_cast<RowState>((static_cast<std::uint32_t>(row) + seed) % 6);
+      original.guess->before[static_cast<std::size_t>(row)] =
+          static_cast<RowState>((static_cast<std::uint32_t>(row) + seed / 2) % 6);
     }
     if (problem.rows() > 3) problem.set_bounds(2, {-0.0, 0.0});
     if (problem.rows() > 3 && seed % 2 == 0) problem.set_bounds(3, {std::nan(""), 1.0});
@@ -186,6 +190,7 @@ TEST(WriteProblem, EverythingIsReadBackBitForBit) {
     EXPECT_EQ(copy.options.max_iterations, original.options.max_iterations);
     EXPECT_EQ(copy.options.rank_tolerance, original.options.rank_tolerance);
     EXPECT_EQ(copy.guess->state, original.guess->state);
+    EXPECT_EQ(copy.guess->before, original.guess->before);
     ASSERT_EQ(copy.problem.rows(), problem.rows());
     ASSERT_EQ(copy.problem.levels(), problem.levels());
     for (int row = 0; row < problem.rows(); ++row) {
@@ -226,8 +231,9 @@ TEST(WriteProblem, ASolveIsReproducedBitForBit) {
     Problem& problem = original.problem;
     if (seed % 3 == 0) original.options.max_iterations = 1;
     if (seed % 5 == 0 && problem.rows() > 3) problem.set_weight(3, -1.0);
-    // another problem's solution as the guess
+    // two other problems' solutions as guesses
     solver.solve(random_problem(seed + 1, {}), {}, *original.guess, solution);
+    solver.solve(random_problem(seed + 2, {}), {}, *original.guess, solution);
 
     const auto read = parse_recorded_problems(to_text(original), "x.hqp");
     ASSERT_EQ(read.size(), 1U);

@@ -60,6 +60,46 @@ TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonSays) {
   EXPECT_EQ(record.felt_limit, -1);
 }
 
+TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
+  DeviceModel device = unlimited_device();
+  device.joint_limits[5].q_max = 2.1;
+  Options options = without_synchronisation();
+  options.slow_solve = 1;
+  Rendering rendering(device, golden_twin(), options);
+  State state = rendering.start(kPosture);
+  Vector6 w;
+  w << 3, -2, 1, 0.2, 0.1, 1.5;
+  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
+  record.cycle = 77;
+  rendering.step(state, 0.0, record);
+
+  ASSERT_EQ(rendering.kept_problems().size(), 1U);
+  const hqp::KeptProblem& kept = rendering.kept_problems()[0];
+  EXPECT_EQ(kept.cycle, 77U);
+  EXPECT_EQ(kept.iterations, record.solver_iterations);
+  EXPECT_GT(kept.iterations, 1);  // the guess was not yet right
+  hqp::Solver solver(kept.problem.capacity());
+  hqp::Solution solution(kept.problem.capacity());
+  hqp::ActiveSet active = kept.guess;
+  EXPECT_EQ(solver.solve(kept.problem, kept.options, active, solution), hqp::Status::kSolved);
+  EXPECT_EQ(solution.iterations, kept.iterations);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(solution.x[static_cast<std::size_t>(i)], record.reference.ddq_m[i]) << i;
+    EXPECT_EQ(solution.x[static_cast<std::size_t>(6 + i)], record.twin.ddq_a[i]) << i;
+  }
+}
+
+TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessAskedFor) {
+  Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
+  State state = rendering.start(kPosture);
+  CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
+  rendering.step(state, 0.0, record);
+  EXPECT_EQ(rendering.kept_problems().size(), 0U);
+  rendering.keep_problem(5);
+  ASSERT_EQ(rendering.kept_problems().size(), 1U);
+  EXPECT_EQ(rendering.kept_problems()[0].cycle, 5U);
+}
+
 // Independent oracle, [HANDBOOK] 12.2: minimise 1/2 (a - a_free)^T M (a - a_free) under
 // lb <= G a + g <= ub, by coordinate ascent on the dual.
 VectorA box_qp_oracle(const Eigen::MatrixXd& M, const VectorA& a_free, const Eigen::MatrixXd& G,

@@ -85,6 +85,22 @@ TEST(Runtime, FastModePlaysTheWholeDurationAndLosesNoSample) {
   EXPECT_EQ(report.allocations, 0u);
 }
 
+TEST(Runtime, KeepsProblemsOfSlowCyclesOnly) {
+  for (const bool all_are_slow : {false, true}) {
+    Parts parts;
+    Options options = {.is_fast = true, .duration_s = 0.05};
+    if (all_are_slow) options.slow_cycle_us = 0.0;
+    Runtime runtime(options, *parts.cycle, parts.device);
+    runtime.start();
+    const Report report = runtime.join();
+    EXPECT_EQ(report.allocations, 0u);
+    EXPECT_EQ(runtime.kept_problems().count(), all_are_slow ? report.cycles : 0u);
+    const std::size_t kept = all_are_slow ? hqp::KeptProblems::kMost : 0u;
+    ASSERT_EQ(runtime.kept_problems().size(), kept);
+    for (std::size_t i = 0; i < kept; ++i) EXPECT_EQ(runtime.kept_problems()[i].cycle, i);
+  }
+}
+
 TEST(Runtime, RealTimeModePlaysTheWholeDuration) {
   Parts parts;
   std::uint64_t seen = 0;

@@ -1,0 +1,32 @@
+#include "hg/hqp/kept_problems.h"
+
+#include <cassert>
+
+namespace hg::hqp {
+
+KeptProblems::KeptProblems(const Capacity& capacity) {
+  problems_.reserve(kMost);  // a copied problem would have no room for rows
+  for (std::size_t i = 0; i < kMost; ++i) problems_.push_back({.problem = Problem(capacity)});
+}
+
+void KeptProblems::put(const Problem& problem, const Options& options, const ActiveSet& guess,
+                       const Solution& solution, std::uint64_t cycle) noexcept {
+  if (last_cycle_ == cycle) return;
+  last_cycle_ = cycle;
+  count_.fetch_add(1, std::memory_order_relaxed);
+  const std::size_t size = size_.load(std::memory_order_relaxed);
+  if (size == kMost) return;
+  KeptProblem& kept = problems_[size];
+  assert(problem.capacity().variables == kept.problem.capacity().variables);
+  assert(problem.capacity().levels == kept.problem.capacity().levels);
+  assert(problem.capacity().rows == kept.problem.capacity().rows);
+  kept.problem = problem;  // equal capacities: the vectors have room
+  kept.options = options;
+  kept.guess = guess;
+  kept.status = solution.status;
+  kept.iterations = solution.iterations;
+  kept.cycle = cycle;
+  size_.store(size + 1, std::memory_order_release);
+}
+
+}  // namespace hg::hqp
