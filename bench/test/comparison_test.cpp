@@ -71,5 +71,21 @@ TEST(Baseline, TheCascadeSolvesACornerWithAnActiveBoundAndAConflict) {
   EXPECT_NEAR(x[1], -3.0, 1e-6);
 }
 
+TEST(Baseline, TheCascadeKeepsTheSlackOfLimitsThatContradictEachOther) {
+  const BaselineSolve solve = find_baseline();
+  if (solve == nullptr) GTEST_SKIP() << kHowToGetBaseline;
+  hqp::Problem problem({.variables = 2, .levels = 2, .rows = 4});
+  problem.add_level();
+  problem.add_bound(0, {-kInfinity, 0.5}, 2.0);
+  problem.add_bound(0, {1.5, kInfinity});
+  problem.add_level();
+  problem.add_bound(0, {9.0, 9.0});
+  problem.add_bound(1, {3.0, 3.0});
+  std::array<double, 2> x{};
+  ASSERT_TRUE(solve(problem, x.data()));
+  EXPECT_NEAR(x[0], 0.7, 1e-6);  // 4 (x0 - 0.5) + (x0 - 1.5) = 0
+  EXPECT_NEAR(x[1], 3.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace hg::bench

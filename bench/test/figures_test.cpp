@@ -39,7 +39,7 @@ TEST(Histogram, EveryTimeIsInTheBinThatHoldsIt) {
   for (std::size_t i = 0; i < bins.size(); ++i) {
     count += bins[i].count;
     EXPECT_NEAR(bins[i].high / bins[i].low, std::pow(10.0, 0.05), 1e-9);
-    if (i > 0) EXPECT_EQ(bins[i].low, bins[i - 1].high);
+    EXPECT_EQ(bins[i].low, i > 0 ? bins[i - 1].high : bins[i].low);
   }
   EXPECT_EQ(count, 4u);
   EXPECT_LE(bins.front().low, 0.2);

@@ -45,7 +45,8 @@ TEST(GrowingProblem, ItsPointFulfilsEverythingButTheWishesInEveryStep) {
 }
 
 TEST(GrowingProblem, HasTheStatedSizeAndRowsOfLengthOne) {
-  const GrowingProblem growing(24, 7, 1);
+  GrowingProblem growing(24, 7, 1);
+  growing.step();
   EXPECT_EQ(growing.problem().variables(), 24);
   EXPECT_EQ(growing.problem().levels(), 7);
   EXPECT_EQ(growing.problem().rows(), 60);
