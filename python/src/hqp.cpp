@@ -1,12 +1,18 @@
 /// hapticgiant.hqp: problems from numpy, solutions as numpy.
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "hg/core/error.h"
+#include "hg/hqp/explanation.h"
 #include "hg/hqp/solver.h"
 #include "hg/hqp/text.h"
 #include "python/src/arrays.h"
@@ -22,11 +28,31 @@ using hqp::Problem;
 using hqp::RowState;
 using hqp::Solution;
 
-// a solution and the active set that it ended with
+// a solution, what it solves, and the active set that it ended with
 struct SolutionOut {
+  Problem problem;
+  hqp::Options options;
   Solution solution;
   ActiveSet active_set;
 };
+
+using IntegersOut = nb::ndarray<nb::numpy, const std::int32_t>;
+
+// get(i) for i < size, as a copy that Python owns
+template <typename Get>
+nb::object integers(std::size_t size, Get get) {
+  auto* owned = new std::vector<std::int32_t>(size);
+  const nb::capsule owner(
+      owned, [](void* p) noexcept { delete static_cast<std::vector<std::int32_t>*>(p); });
+  for (std::size_t i = 0; i < size; ++i) (*owned)[i] = static_cast<std::int32_t>(get(i));
+  return nb::cast(IntegersOut(owned->data(), {size}, owner), nb::rv_policy::automatic);
+}
+
+// number i of an array that has one number for all, or `size`
+double number_of(const ArrayIn& in, std::size_t i, std::size_t size, const char* name) {
+  if (in.size() != 1 && in.size() != size) refuse_size(name, size, in.size());
+  return in.data()[in.size() == 1 ? 0 : i];
+}
 
 void require(bool holds, const std::string& message) {
   if (!holds) throw nb::value_error(message.c_str());
@@ -42,12 +68,77 @@ std::span<const double> row_of(const Problem& problem, const ArrayIn& coefficien
   return {row.data(), coefficients.size()};
 }
 
+// `A` (rows x variables), or one row
+std::vector<int> add_rows(Problem& problem, const ArrayIn& A, const ArrayIn& lb, const ArrayIn& ub,
+                          const ArrayIn& weights) {
+  const auto n = static_cast<std::size_t>(problem.variables());
+  const std::size_t columns = A.array.ndim() == 0 ? 1 : A.array.shape(A.array.ndim() - 1);
+  if (columns != n) refuse_size("A: columns", n, columns);
+  const std::size_t rows = A.size() / n;
+  std::vector<int> ids;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const Interval bounds = {number_of(lb, i, rows, "lb"), number_of(ub, i, rows, "ub")};
+    ids.push_back(
+        problem.add_row({A.data() + i * n, n}, bounds, number_of(weights, i, rows, "weights")));
+  }
+  return ids;
+}
+
+std::vector<int> add_bounds(Problem& problem, const ArrayIn& lb, const ArrayIn& ub,
+                            const ArrayIn& weights) {
+  const auto n = static_cast<std::size_t>(problem.variables());
+  std::vector<int> ids;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Interval bounds = {number_of(lb, i, n, "lb"), number_of(ub, i, n, "ub")};
+    ids.push_back(
+        problem.add_bound(static_cast<int>(i), bounds, number_of(weights, i, n, "weights")));
+  }
+  return ids;
+}
+
+SolutionOut solve(const Problem& problem, const ActiveSet* active, const hqp::Options& options) {
+  hqp::Solver solver(problem.capacity());
+  SolutionOut out{problem, options, Solution(problem.capacity()), active ? *active : ActiveSet{}};
+  const hqp::Status status = solver.solve(problem, options, out.active_set, out.solution);
+  const int bad_row = out.solution.bad_row;
+  require(status != hqp::Status::kBadRow, bad_row < 0 ? ""
+                                                      : hqp::to_string(problem, bad_row) + ": " +
+                                                            hqp::broken_rule(problem, bad_row));
+  return out;
+}
+
+std::vector<double> multipliers_of(const SolutionOut& out, int level, double& remainder) {
+  require(level >= 0 && level < out.problem.levels(), "there is no level " + std::to_string(level));
+  hqp::Solver solver(out.problem.capacity());
+  std::vector<double> mu(static_cast<std::size_t>(out.problem.rows()));
+  remainder = solver.multipliers(out.problem, out.options, out.solution, level, mu);
+  return mu;
+}
+
+std::string explain(const SolutionOut& out, std::optional<int> level) {
+  std::string text = hqp::to_string(out.problem, out.solution);
+  if (!level) return text;
+  double remainder = 0.0;
+  const std::vector<double> mu = multipliers_of(out, *level, remainder);
+  return text + hqp::to_string(out.problem, *level, mu, remainder);
+}
+
+void write_problem(const std::string& file, const Problem& problem, const ActiveSet* active,
+                   const hqp::Options& options, const std::string& name) {
+  require(name.find('\n') == std::string::npos, "name: must be one line");
+  std::optional<ActiveSet> guess;
+  if (active != nullptr) guess = *active;
+  std::ofstream out(file);
+  hqp::write_problem(out, {.problem = problem, .options = options, .guess = guess, .name = name});
+  out.close();
+  if (!out) throw SetupError(file + ": cannot be written");
+}
+
 void bind_enums(nb::module_& module) {
   nb::enum_<hqp::Status>(module, "Status", "How a solve ended.")
       .value("SOLVED", hqp::Status::kSolved, "every level is optimal")
       .value("ITERATION_LIMIT", hqp::Status::kIterationLimit,
              "levels from completed_levels on are feasible but not optimal")
-      .value("BAD_ROW", hqp::Status::kBadRow, "bad_row is not finite, lb > ub or weight <= 0")
       .value("NUMERICAL_FAILURE", hqp::Status::kNumericalFailure, "x is the last finite point");
   nb::enum_<RowState>(module, "RowState", nb::is_arithmetic(), "Place of a row in its interval.")
       .value("INACTIVE", RowState::kInactive, "inside")
@@ -84,6 +175,12 @@ void bind_problem(nb::module_& module) {
           },
           nb::arg("variable"), nb::arg("lb") = -kInfinity, nb::arg("ub") = kInfinity,
           nb::arg("weight") = 1.0, "Appends the row x[variable]; returns its id.")
+      .def("add_rows", &add_rows, nb::arg("A"), nb::arg("lb"), nb::arg("ub"),
+           nb::arg("weights") = 1.0,
+           "Appends the rows of A (m x variables) to the last level; lb, ub and weights have m "
+           "numbers or one for all. Returns the ids.")
+      .def("add_bounds", &add_bounds, nb::arg("lb"), nb::arg("ub"), nb::arg("weights") = 1.0,
+           "Appends a row per variable to the last level, as add_rows(). Returns the ids.")
       .def(
           "set_row",
           [](Problem& self, int row, const ArrayIn& coefficients) {
@@ -131,13 +228,12 @@ void bind_solution(nb::module_& module) {
       .def_rw("minimum_norm", &hqp::Options::minimum_norm,
               "freedom left by the last level goes to the smallest |x|");
 
-  const auto by_level = [](auto member) {
-    return [member](const SolutionOut& out) {
-      std::vector<std::remove_cvref_t<decltype(out.solution.levels[0].*member)>> values;
-      for (const LevelResult& level : out.solution.levels) values.push_back(level.*member);
-      return values;
-    };
-  };
+  nb::class_<hqp::RecordedProblem>(module, "RecordedProblem",
+                                   "A problem and how it is to be solved.")
+      .def_ro("problem", &hqp::RecordedProblem::problem)
+      .def_ro("options", &hqp::RecordedProblem::options)
+      .def_ro("active_set", &hqp::RecordedProblem::guess, "None: nothing is known")
+      .def_ro("name", &hqp::RecordedProblem::name, "where it comes from");
   nb::class_<SolutionOut>(module, "Solution", "Result of one solve.")
       .def_prop_ro("status", [](const SolutionOut& out) { return out.solution.status; })
       .def_prop_ro(
@@ -146,9 +242,6 @@ void bind_solution(nb::module_& module) {
       .def_prop_ro(
           "completed_levels", [](const SolutionOut& out) { return out.solution.completed_levels; },
           "levels known to be optimal, from the top")
-      .def_prop_ro(
-          "bad_row", [](const SolutionOut& out) { return out.solution.bad_row; },
-          "row that caused BAD_ROW, else -1")
       .def_prop_ro(
           "x",
           [](const SolutionOut& out) { return to_numpy(out.solution.x, {out.solution.x.size()}); },
@@ -160,14 +253,51 @@ void bind_solution(nb::module_& module) {
           },
           "(rows) nearest bound minus c x, 0 inside")
       .def_prop_ro(
-          "state", [](const SolutionOut& out) { return out.solution.state; },
-          "RowState of every row")
-      .def_prop_ro("slack_squared", by_level(&LevelResult::slack_squared),
-                   "by level: sum of (weight * slack)^2")
-      .def_prop_ro("freedom", by_level(&LevelResult::freedom),
-                   "by level: dimensions that it found left to it")
-      .def_prop_ro("blocking_row", by_level(&LevelResult::blocking_row),
-                   "by level: row above that costs it most, -1: none")
+          "state",
+          [](const SolutionOut& out) {
+            const auto& state = out.solution.state;
+            return integers(state.size(), [&](std::size_t i) { return state[i]; });
+          },
+          "(rows) RowState of every row")
+      .def_prop_ro(
+          "slack_squared",
+          [](const SolutionOut& out) {
+            std::vector<double> values;
+            for (const LevelResult& level : out.solution.levels) {
+              values.push_back(level.slack_squared);
+            }
+            const std::size_t levels = values.size();
+            return to_numpy(std::move(values), {levels});
+          },
+          "(levels) sum of (weight * slack)^2")
+      .def_prop_ro(
+          "freedom",
+          [](const SolutionOut& out) {
+            const auto& levels = out.solution.levels;
+            return integers(levels.size(), [&](std::size_t i) { return levels[i].freedom; });
+          },
+          "(levels) dimensions that each level found left to it")
+      .def_prop_ro(
+          "blocking_row",
+          [](const SolutionOut& out) {
+            const auto& levels = out.solution.levels;
+            return integers(levels.size(), [&](std::size_t i) { return levels[i].blocking_row; });
+          },
+          "(levels) row above that costs each level most, -1: none")
+      .def(
+          "multipliers",
+          [](const SolutionOut& out, int level) {
+            double remainder = 0.0;
+            std::vector<double> mu = multipliers_of(out, level, remainder);
+            const std::size_t rows = mu.size();
+            return to_numpy(std::move(mu), {rows});
+          },
+          nb::arg("level"),
+          "(rows) what the rows above `level` do against it: >= 0 at an upper bound, <= 0 at a "
+          "lower one.")
+      .def("explain", &explain, nb::arg("level") = nb::none(),
+           "Levels and rows that act, in words; with the multipliers of `level`.")
+      .def("__str__", [](const SolutionOut& out) { return explain(out, {}); })
       .def_ro("active_set", &SolutionOut::active_set, "start the next, similar problem with it");
 }
 
@@ -177,36 +307,17 @@ void bind_hqp(nb::module_& module) {
   bind_enums(module);
   bind_problem(module);
   bind_solution(module);
-  module.def(
-      "solve",
-      [](const Problem& problem, const ActiveSet* active, const hqp::Options& options) {
-        hqp::Solver solver(problem.capacity());
-        SolutionOut out{Solution(problem.capacity()), active ? *active : ActiveSet{}};
-        solver.solve(problem, options, out.active_set, out.solution);
-        return out;
-      },
-      nb::arg("problem"), nb::arg("active_set") = nb::none(), nb::arg("options") = hqp::Options{},
-      "Minimises the violations of every level, in the order of the levels.");
-  module.def(
-      "multipliers",
-      [](const Problem& problem, const SolutionOut& out, int level, const hqp::Options& options) {
-        require(
-            level >= 0 && level < problem.levels() &&
-                out.solution.x.size() == static_cast<std::size_t>(problem.variables()) &&
-                out.solution.state.size() == static_cast<std::size_t>(problem.rows()),
-            "the solution is not of this problem, or there is no level " + std::to_string(level));
-        hqp::Solver solver(problem.capacity());
-        std::vector<double> mu(static_cast<std::size_t>(problem.rows()));
-        solver.multipliers(problem, options, out.solution, level, mu);
-        const std::size_t rows = mu.size();
-        return to_numpy(std::move(mu), {rows});
-      },
-      nb::arg("problem"), nb::arg("solution"), nb::arg("level"),
-      nb::arg("options") = hqp::Options{},
-      "(rows) what the rows above `level` do against it: >= 0 at an upper bound, <= 0 at a lower "
-      "one.");
+  module.def("solve", &solve, nb::arg("problem"), nb::arg("active_set") = nb::none(),
+             nb::arg("options") = hqp::Options{},
+             "Minimises the violations of every level, in the order of the levels. Raises "
+             "ValueError with the first row that is not right: not finite, lb > ub, weight <= 0.");
   module.def("read_problems", &hqp::read_problems, nb::arg("file"),
              "All problems of a file in the format of docs/hqp.md, plain or gzipped.");
+  module.def("read_recorded_problems", &hqp::read_recorded_problems, nb::arg("file"),
+             "The same with how each is to be solved.");
+  module.def("write_problem", &write_problem, nb::arg("file"), nb::arg("problem"),
+             nb::arg("active_set") = nb::none(), nb::arg("options") = hqp::Options{},
+             nb::arg("name") = "", "Writes a file that reads back to the same bits.");
 }
 
 }  // namespace hg::python

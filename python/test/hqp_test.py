@@ -38,7 +38,7 @@ class Solve(unittest.TestCase):
         np.testing.assert_allclose(solution.x, [1.0, 2.0])
         self.assertEqual(solution.state[0], hqp.RowState.UPPER)
         self.assertEqual(solution.blocking_row[2], 0)
-        mu = hqp.multipliers(problem, solution, level=2)
+        mu = solution.multipliers(level=2)
         np.testing.assert_allclose(mu, [4.0, 0.0, -4.0], atol=1e-12)
 
     def test_the_last_active_set_solves_the_same_problem_at_once(self):
@@ -60,10 +60,41 @@ class Solve(unittest.TestCase):
         np.testing.assert_allclose(hqp.solve(problem).x, [0.0, 2.0])
 
     def test_bad_rows_are_named(self):
-        problem = problem_of([[([1.0, 0.0], 1.0, 1.0)], [([np.nan, 0.0], 1.0, 1.0)]], 2)
+        problem = problem_of([[([1.0, 0.0], 1.0, 1.0)], [([np.nan, 2.0], 1.0, 1.0)]], 2)
+        with self.assertRaisesRegex(ValueError, r"row 1 \(level 1\): nan x0 \+ 2 x1 = 1: .*finite"):
+            hqp.solve(problem)
+        problem.set_row(1, [0.0, 1.0])
+        problem.set_weight(1, -1.0)
+        with self.assertRaisesRegex(ValueError, "the weight must be positive"):
+            hqp.solve(problem)
+
+    def test_rows_and_bounds_come_from_arrays(self):
+        random = np.random.default_rng(3)
+        A, b, w = random.normal(size=(4, 3)), random.normal(size=4), np.array([1, 2, 0.5, 3.0])
+        problem = hqp.Problem(3)
+        problem.add_level()
+        self.assertEqual(problem.add_bounds(-10, [10, 20, np.inf]), [0, 1, 2])
+        problem.add_level()
+        self.assertEqual(problem.add_rows(A, b, b, w), [3, 4, 5, 6])
         solution = hqp.solve(problem)
-        self.assertEqual((solution.status, solution.bad_row), (hqp.Status.BAD_ROW, 1))
-        np.testing.assert_allclose(solution.x, [1.0, 0.0])
+        x = np.linalg.lstsq(w[:, None] * A, w * b, rcond=None)[0]
+        np.testing.assert_allclose(solution.x, x, atol=1e-10)
+        self.assertEqual(solution.state.dtype.kind, "i")
+        np.testing.assert_array_equal(solution.state[:3], hqp.RowState.INACTIVE)
+        np.testing.assert_array_equal(solution.freedom, [3, 3])
+        np.testing.assert_array_equal(solution.blocking_row, [-1, -1])
+        self.assertEqual(solution.slack_squared.shape, (2,))
+        for A_, lb, words in ((A[:, :2], b, "A: columns: expected 3"), (A, b[:2], "lb: expected 4")):
+            with self.assertRaisesRegex(ValueError, words):
+                problem.add_rows(A_, lb, b)
+
+    def test_a_solution_explains_itself(self):
+        levels = [[([1, 0], -np.inf, 1.0)], [([1, 0], 5.0, 5.0)]]
+        solution = hqp.solve(problem_of(levels, 2))
+        self.assertIn("optimal, blocked by row 0\nrow 0 (level 0): x0 in [-inf, 1]: held at its "
+                      "upper bound", str(solution))
+        self.assertNotIn("multipliers", str(solution))
+        self.assertIn("multipliers of level 1", solution.explain(level=1))
 
     def test_wrong_shapes_raise(self):
         problem = problem_of([[([1.0, 0.0], 1.0, 1.0)]], 2)
@@ -77,7 +108,7 @@ class Solve(unittest.TestCase):
         with self.assertRaises(SetupError):
             problem.add_bound(2)
         with self.assertRaises(ValueError):
-            hqp.multipliers(problem, hqp.solve(problem), level=1)
+            hqp.solve(problem).multipliers(level=1)
         with self.assertRaises(SetupError):
             hqp.Problem(0)
         with self.assertRaises(TypeError):
@@ -92,6 +123,31 @@ class Solve(unittest.TestCase):
             file.write_text("hqp 2 1\nlevel 1 0\n1 1\nend\n")
             with self.assertRaisesRegex(SetupError, "one.txt:3"):
                 hqp.read_problems(str(file))
+
+    def test_a_written_problem_is_solved_the_same_way(self):
+        random = np.random.default_rng(5)
+        problem = hqp.Problem(6)
+        problem.add_level()
+        problem.add_rows(random.normal(size=(12, 6)), -1.0, 1.0, 0.1)
+        problem.add_level()
+        problem.add_bounds(*2 * [3 * random.normal(size=6)])
+        options = hqp.Options()
+        options.max_iterations = 2
+        solution = hqp.solve(problem, options=options)
+        self.assertEqual(solution.status, hqp.Status.ITERATION_LIMIT)
+        with tempfile.TemporaryDirectory() as folder:
+            file = str(pathlib.Path(folder, "written.hqp"))
+            hqp.write_problem(file, problem, solution.active_set, options, "a test")
+            (read,) = hqp.read_recorded_problems(file)
+            self.assertEqual((read.name, read.options.max_iterations), ("a test", 2))
+            again = hqp.solve(read.problem, read.active_set, read.options)
+            expected = hqp.solve(problem, solution.active_set, options)
+            self.assertEqual(again.x.tobytes(), expected.x.tobytes())
+            hqp.write_problem(file, problem)
+            (read,) = hqp.read_recorded_problems(file)
+            self.assertIsNone(read.active_set)
+            with self.assertRaisesRegex(SetupError, "cannot be written"):
+                hqp.write_problem(folder, problem)
 
 
 if __name__ == "__main__":

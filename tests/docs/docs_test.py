@@ -1,8 +1,8 @@
 """Runs what the documents show: the files in them are written, the commands in them are executed.
 
-In docs/*.md a block ```yaml NAME is a file, ```yaml +NAME is more of it; a block ```sh holds commands. Both are
-taken in the order of the document, in a folder of its own that starts as a copy of
-models/examples. Every command must end with exit code 0, or with N where its line ends with
+In docs/*.md a block ```yaml NAME or ```hqp NAME is a file, ```yaml +NAME is more of it; a block
+```sh holds commands. Both are taken in the order of the document, in a folder of its own that
+starts as a copy of models/examples. Every command must end with exit code 0, or with N where its line ends with
 `# exit N`. Lines that a ```text block shows after a command are not compared.
 
     docs_test.py PROGRAM
@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BLOCK = re.compile(r"^```(sh|yaml)(?: +(\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^```(sh|yaml|hqp)(?: +(\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 def commands(text):
