@@ -59,6 +59,33 @@ TEST(DirectElimination, SeparatesDependentRowsFromDoubtfulOnes) {
   EXPECT_EQ(elimination.rank(), 3);
 }
 
+// The row is a pivot plus a little of the last variable. Along the free direction, in which all
+// other variables move with it a million times as far, the row hardly changes: it depends.
+TEST(DirectElimination, IsNotSureOfARowThatOnlyGrowthKeepsApart) {
+  constexpr int n = 24;
+  Eigen::MatrixXd C = Eigen::MatrixXd::Constant(n, n, -0.95);
+  C.triangularView<Eigen::StrictlyLower>().setZero();
+  C.diagonal().setOnes();
+  C.row(n - 1) = C.row(0) + 5e-7 * Eigen::RowVectorXd::Unit(n, n - 1);
+  const Problem problem = problem_of(C);
+  DirectElimination elimination(n, 2 * n);
+  elimination.reset(problem);
+  for (int row = 0; row < n - 1; ++row) {
+    ASSERT_EQ(elimination.add_row(problem, {row, 0.0}, kRank), Outcome::kIndependent);
+  }
+  EXPECT_EQ(elimination.add_row(problem, {n - 1, 0.0}, kRank), Outcome::kUnsure);
+}
+
+TEST(DirectElimination, IsSureOfARowThatIsNearerThanTheTolerance) {
+  Eigen::MatrixXd C(2, 3);
+  C << 1, 2, 3, 1, 2, 3 + 1e-10;
+  const Problem problem = problem_of(C);
+  DirectElimination elimination(3, 5);
+  elimination.reset(problem);
+  ASSERT_EQ(elimination.add_row(problem, {0, 0.0}, kRank), Outcome::kIndependent);
+  EXPECT_EQ(elimination.add_row(problem, {1, 0.0}, kRank), Outcome::kDependent);
+}
+
 TEST(DirectElimination, MeetsContradictoryRowsInTheSenseOfWeightedLeastSquares) {
   srand(2);
   Eigen::MatrixXd C = Eigen::MatrixXd::Random(7, 4);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hg/core/error.h"
+#include "hg/hqp/test/certificate.h"
 #include "hg/hqp/test/random_problem.h"
 
 namespace hg::hqp {
@@ -24,7 +25,11 @@ struct Bench {
   Options options;
   ActiveSet active;
 
-  Status solve(const Problem& problem) { return solver.solve(problem, options, active, solution); }
+  Status solve(const Problem& problem, double gap = 1e-6) {
+    solver.solve(problem, options, active, solution);
+    EXPECT_EQ(fault_of(problem, options, solution, gap), "");
+    return solution.status;
+  }
   std::vector<double> multipliers(const Problem& problem, int level, double* rest = nullptr) {
     std::vector<double> mu(static_cast<std::size_t>(problem.rows()));
     const double residual = solver.multipliers(problem, options, solution, level, mu);
@@ -240,7 +245,7 @@ TEST(Solve, KeepsAFinitePointWhereNumbersOverflow) {
   problem.add_row(std::vector{-0.52, 0.17}, {3.74, 3.74}, 1e-154);  // its square is denormal
   problem.add_row(std::vector{4.6, -2.3}, {3.0, 3.0});
   Bench bench;
-  bench.solve(problem);
+  bench.solve(problem, kInfinity);
   for (const double x : bench.solution.x) EXPECT_TRUE(std::isfinite(x));
 }
 
@@ -283,7 +288,7 @@ TEST(Solve, SurvivesNumbersBeyondRange) {
       }
     }
     Bench bench;
-    bench.solve(problem);
+    bench.solve(problem, kInfinity);
     for (const double x : bench.solution.x) ASSERT_TRUE(std::isfinite(x));
   }
 }

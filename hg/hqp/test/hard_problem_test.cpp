@@ -1,0 +1,111 @@
+// Problems that have caught a solver, ours or a mutation of it: each small, with the reason why.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "hg/hqp/solver.h"
+#include "hg/hqp/test/certificate.h"
+#include "hg/hqp/test/random_problem.h"
+#include "hg/hqp/text.h"
+
+namespace hg::hqp {
+namespace {
+
+Problem problem_of(const char* text) { return parse_problems(text, "test").front(); }
+
+Solution solve(const Problem& problem) {
+  Solver solver(problem.capacity());
+  Solution solution(problem.capacity());
+  ActiveSet active;
+  solver.solve(problem, {}, active, solution);
+  EXPECT_EQ(fault_of(problem, {}, solution), "");
+  return solution;
+}
+
+// Wilkinson's example of growth: elimination by rows loses a digit every three rows, although the
+// condition number is about n.
+// TODO(issue 5): direct elimination does not notice; enable when it does.
+TEST(HardProblem, DISABLED_EliminationThatLosesAllDigitsIsNoticed) {
+  constexpr int n = 60;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> number(0.9, 1.0);
+  Problem problem({.variables = n, .levels = 1, .rows = n});
+  problem.add_level();
+  std::vector<double> expected(n);
+  for (double& x : expected) x = number(random);
+  for (int row = 0; row < n; ++row) {
+    std::vector<double> c(n, 0.0);
+    double value = 0.0;
+    for (int i = row < n - 1 ? row : 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      c[k] = row == n - 1 ? number(random) : (i == row ? 1.0 : -number(random));
+      value += c[k] * expected[k];
+    }
+    problem.add_row(c, {value, value});
+  }
+  const Solution solution = solve(problem);
+  EXPECT_EQ(solution.status, Status::kSolved);
+  for (std::size_t i = 0; i < n; ++i) ASSERT_NEAR(solution.x[i], expected[i], 1e-9) << i;
+}
+
+// The last row of level 1 is that of level 0 up to noise, and contradicts it. Its noise must not
+// pull the second row, of small weight, off its bound: level 2 would lose a freedom.
+// TODO(issue 5): it does by 1.3e-10; enable when dependent rows take no part in least squares.
+TEST(HardProblem, DISABLED_NoiseOfAContradictoryRowDoesNotPull) {
+  const Solution solution = solve(problem_of(R"(hqp 3 3
+level 1 0
+-1 1.5303539187327417 1.3010656908001557 2
+level 1 2
+1 0 0 -2
+0 1 0 -inf -0.23999316588306338 weight 0.12511847266687945
+-1 1.5303539187313069 1.301065690801242 0 0
+level 0 1
+0 0 1 1 inf
+end
+)"));
+  EXPECT_NEAR(solution.levels[2].slack_squared, 0.0, 1e-9);
+}
+
+// Two rows of level 1 nearly cancel; what is left, a millionth, pushes against level 0 and fixes x.
+TEST(HardProblem, AWeakPushHoldsAgainstLowerLevels) {
+  const Solution solution = solve(problem_of(R"(hqp 1 3
+level 0 1
+1 -inf 0
+level 2 0
+1 1
+1 -0.999996
+level 1 0
+1 -1
+end
+)"));
+  EXPECT_EQ(solution.x[0], 0.0);
+}
+
+// A contradiction of a few units of the tolerance is shared like any other.
+TEST(HardProblem, ASmallContradictionIsShared) {
+  const Solution solution = solve(problem_of(R"(hqp 1 1
+level 2 0
+1 1
+1 1.000000004
+end
+)"));
+  EXPECT_NEAR(solution.x[0], 1.000000002, 1e-15);
+}
+
+// Which active sets are tried must not become a matter of chance: it does not change results.
+TEST(HardProblem, ActiveSetsAreTriedInASensibleOrder) {
+  int iterations = 0;
+  int most = 0;
+  for (std::uint32_t seed = 0; seed < 500; ++seed) {
+    const Solution solution = solve(random_problem(seed, {}));
+    iterations += solution.iterations;
+    most = std::max(most, solution.iterations);
+  }
+  EXPECT_LT(iterations, 2800);  // 2639
+  EXPECT_LT(most, 40);          // 25
+}
+
+}  // namespace
+}  // namespace hg::hqp
