@@ -14,8 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string ended(const hqp::KeptProblem& kept) {
-  return fmt::format("{} after {} active set{}", hqp::to_string(kept.status), kept.iterations,
-                     kept.iterations == 1 ? "" : "s");
+  const std::string time =
+      kept.cycle_time_us > 0.0 ? fmt::format(", cycle took {:.0f} us", kept.cycle_time_us) : "";
+  return fmt::format("{} after {} active set{}{}", hqp::to_string(kept.status), kept.iterations,
+                     kept.iterations == 1 ? "" : "s", time);
 }
 
 bool write(const fs::path& file, const hqp::KeptProblem& kept, const std::string& name) {
@@ -41,8 +43,8 @@ std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
       !write(file, kept, fmt::format("{}, cycle {}, {}", origin_, kept.cycle, ended(kept)));
   if (has_failed_) return fmt::format("solver: {} cannot be written", file.string());
   if (++files_ > 1) return {};
-  return fmt::format("solver: {} in cycle {}; to look at it:\n  hapticgiant hqp solve {} --explain",
-                     ended(kept), kept.cycle, file.string());
+  return fmt::format("solver: cycle {}, {}; to look at it:\n  hapticgiant hqp solve {} --explain",
+                     kept.cycle, ended(kept), file.string());
 }
 
 std::string ProblemDumps::summary(const hqp::KeptProblems& problems) const {

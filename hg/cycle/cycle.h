@@ -59,8 +59,10 @@ class Cycle {
   const hqp::Problem& problem() const noexcept { return rendering_.problem(); }
   /// Solves that failed or were slow, see Rendering::kept_problems(). For one other thread.
   const hqp::KeptProblems& kept_problems() const noexcept { return rendering_.kept_problems(); }
-  /// Keeps the last solve of the last step, too: the step took too long.
-  void keep_problem() noexcept { rendering_.keep_problem(state_.cycle - 1); }
+  /// Keeps the last solve of the last step, too, which took that long.
+  void keep_problem(double cycle_time_us) noexcept {
+    rendering_.keep_problem(state_.cycle - 1, cycle_time_us);
+  }
 
  private:
   void hold(CycleRecord& record) noexcept;

@@ -10,7 +10,8 @@ KeptProblems::KeptProblems(const Capacity& capacity) {
 }
 
 void KeptProblems::put(const Problem& problem, const Options& options, const ActiveSet& guess,
-                       const Solution& solution, std::uint64_t cycle) noexcept {
+                       const Solution& solution, std::uint64_t cycle,
+                       double cycle_time_us) noexcept {
   if (last_cycle_ == cycle) return;
   last_cycle_ = cycle;
   count_.fetch_add(1, std::memory_order_relaxed);
@@ -26,6 +27,7 @@ void KeptProblems::put(const Problem& problem, const Options& options, const Act
   kept.status = solution.status;
   kept.iterations = solution.iterations;
   kept.cycle = cycle;
+  kept.cycle_time_us = cycle_time_us;
   size_.store(size + 1, std::memory_order_release);
 }
 

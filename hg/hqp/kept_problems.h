@@ -22,7 +22,8 @@ struct KeptProblem {
   ActiveSet guess = {};  ///< that the solve began with
   Status status = Status::kSolved;
   int iterations = 0;
-  std::uint64_t cycle = 0;  ///< of the loop
+  std::uint64_t cycle = 0;     ///< of the loop
+  double cycle_time_us = 0.0;  ///< 0: it is not the time of the cycle that it is kept for
 };
 
 class KeptProblems {
@@ -34,7 +35,7 @@ class KeptProblems {
 
   /// Loop only. Copies, unless kMost are kept; of each cycle only the first problem.
   void put(const Problem& problem, const Options& options, const ActiveSet& guess,
-           const Solution& solution, std::uint64_t cycle) noexcept;
+           const Solution& solution, std::uint64_t cycle, double cycle_time_us = 0.0) noexcept;
 
   /// How many are kept. They never change again.
   std::size_t size() const noexcept { return size_.load(std::memory_order_acquire); }

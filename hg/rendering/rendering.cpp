@@ -262,8 +262,8 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
   reactions_.report(tasks_, solution_, L_, J_a_, options_.dt, record);
 }
 
-void Rendering::keep_problem(std::uint64_t cycle) noexcept {
-  kept_problems_->put(tasks_.problem(), solver_options_, guess_, solution_, cycle);
+void Rendering::keep_problem(std::uint64_t cycle, double cycle_time_us) noexcept {
+  kept_problems_->put(tasks_.problem(), solver_options_, guess_, solution_, cycle, cycle_time_us);
 }
 
 bool Rendering::is_blocked() const noexcept {

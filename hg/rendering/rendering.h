@@ -67,8 +67,8 @@ class Rendering {
   /// Solves that failed, that took options.slow_solve active sets or more, or that keep_problem()
   /// was called for. One other thread may read them.
   const hqp::KeptProblems& kept_problems() const noexcept { return *kept_problems_; }
-  /// Keeps the last solve, which belonged to cycle `cycle`.
-  void keep_problem(std::uint64_t cycle) noexcept;
+  /// Keeps the last solve, which belonged to cycle `cycle`; 0 us: not for the time that this took.
+  void keep_problem(std::uint64_t cycle, double cycle_time_us = 0.0) noexcept;
   /// s of the last step (11): how H had to accelerate relative to E.
   const Vector6& synchronisation() const noexcept { return tasks_.synchronisation(); }
 

@@ -97,7 +97,10 @@ TEST(Runtime, KeepsProblemsOfSlowCyclesOnly) {
     EXPECT_EQ(runtime.kept_problems().count(), all_are_slow ? report.cycles : 0u);
     const std::size_t kept = all_are_slow ? hqp::KeptProblems::kMost : 0u;
     ASSERT_EQ(runtime.kept_problems().size(), kept);
-    for (std::size_t i = 0; i < kept; ++i) EXPECT_EQ(runtime.kept_problems()[i].cycle, i);
+    for (std::size_t i = 0; i < kept; ++i) {
+      EXPECT_EQ(runtime.kept_problems()[i].cycle, i);
+      EXPECT_GT(runtime.kept_problems()[i].cycle_time_us, 0.0);
+    }
   }
 }
 
