@@ -1,6 +1,7 @@
 #include "apps/hapticgiant/bench_command.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -60,6 +61,11 @@ void show(const std::string& text) {
   std::fflush(stdout);
 }
 
+// Until the rows of what is being measured take its place.
+void announce(const std::string& what) {
+  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "measuring {} ...\r", what);
+}
+
 bool are_ours_right(const bench::SolverSet& set) {
   for (const bench::SolverRun& run : set.runs) {
     if (run.solver != "cascade" && run.failures + run.wrong.value_or(0) > 0) return false;
@@ -67,13 +73,15 @@ bool are_ours_right(const bench::SolverSet& set) {
   return true;
 }
 
-bool measure_solvers(const std::vector<NamedScenario>& scenarios, const Effort& effort,
+bool measure_solvers(const std::vector<NamedScenario>& scenarios,
+                     std::vector<bench::ProblemSource>& reference, const Effort& effort,
                      BenchResults& results) {
   const bench::BaselineSolve baseline = bench::find_baseline();
   show(fmt::format("\nSolver, us per problem: the fastest of {} passes for each problem\n\n{}",
                    effort.passes, bench::solver_header()));
   bool all_right = true;
-  const auto measure = [&](bench::ProblemSource source) {
+  const auto measure = [&](bench::ProblemSource& source) {
+    announce(source.name());
     results.solver.push_back(bench::measure_solvers(source, baseline, effort.passes));
     all_right = all_right && are_ours_right(results.solver.back());
     show(to_text(results.solver.back()));
@@ -84,15 +92,13 @@ bool measure_solvers(const std::vector<NamedScenario>& scenarios, const Effort& 
       const config::Scenario scenario = bench::with_law(named.scenario, law, bounds);
       const std::string name = fmt::format("{}, {}, {}", named.name, rendering::to_string(law),
                                            rendering::to_string(bounds));
-      measure(bench::ProblemSource(name, scenario, effort.problems));
+      bench::ProblemSource source(name, scenario, effort.problems);
+      measure(source);
     }
   }
-  for (const auto& file : results.reference_files) {
-    measure(bench::ProblemSource(file, effort.problems));
-  }
+  for (bench::ProblemSource& source : reference) measure(source);
   if (baseline == nullptr) show(fmt::format("cascade: {}\n", bench::kHowToGetBaseline));
-  if (results.reference_files.empty())
-    show("no reference problems: tests/reference is not there\n");
+  if (reference.empty()) show("no reference problems: tests/reference is not there\n");
   return all_right;
 }
 
@@ -103,6 +109,7 @@ void measure_cycles(const std::vector<NamedScenario>& scenarios, const Effort& e
       "are measured\nin {} plays of their own and contain a look at the clock each\n\n{}",
       effort.passes, effort.passes, bench::cycle_header()));
   for (const NamedScenario& named : scenarios) {
+    announce(named.name);
     results.cycles.push_back(bench::measure_cycle(
         named.name, bench::with_law(named.scenario, Law::kGauss, Bounds::kRecoverable),
         effort.passes, effort.cycles));
@@ -119,6 +126,7 @@ bool measure_growth(const Effort& effort, BenchResults& results) {
   for (const int variables : kVariables) {
     for (const int levels : kLevels) {
       if (variables > effort.variables || levels > 2 * variables) continue;
+      announce(fmt::format("n = {}", variables));
       results.growth.push_back(bench::measure_growth(variables, levels, effort.passes));
       is_solved = is_solved && results.growth.back().failures == 0;
       show(to_text(results.growth.back()));
@@ -141,6 +149,7 @@ bool play_laws(const std::vector<NamedScenario>& scenarios, BenchResults& result
         show(fmt::format("{:<11} paper  needs six manipulator joints\n", named.name));
         continue;
       }
+      announce(named.name);
       results.laws.push_back(
           bench::play_law(named.name, bench::with_law(named.scenario, law, bounds)));
       all_well = all_well && results.laws.back().is_well();
@@ -156,18 +165,21 @@ int bench(const BenchArguments& arguments) {
   BenchResults results;
   std::vector<NamedScenario> scenarios;
   for (const std::string& name : arguments.scenarios) scenarios.push_back(load(name));
-  results.reference_files = bench::reference_files(data_root());
+  const Effort& effort = arguments.is_quick ? kQuick : kFull;
+  std::vector<bench::ProblemSource> reference;
+  for (const auto& file : bench::reference_files(data_root())) {
+    reference.emplace_back(file, effort.problems);
+  }
   make_folder(arguments.out);
   check_writable(arguments.json);
 
-  const Effort& effort = arguments.is_quick ? kQuick : kFull;
   results.machine = bench::describe_machine();
   results.machine["version"] = kVersion;
   for (const auto& [key, value] : results.machine.items()) {
     show(fmt::format("{:<9} {}\n", key,
                      value.is_string() ? value.get<std::string>() : value.dump()));
   }
-  const bool is_right = measure_solvers(scenarios, effort, results);
+  const bool is_right = measure_solvers(scenarios, reference, effort, results);
   measure_cycles(scenarios, effort, results);
   const bool is_solved = measure_growth(effort, results);
   const bool is_well = play_laws(scenarios, results);

@@ -1,7 +1,6 @@
 /// What `hapticgiant bench` leaves behind: JSON, CSV tables, figures.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -15,7 +14,6 @@ namespace hg::apps {
 
 struct BenchResults {
   nlohmann::ordered_json machine;
-  std::vector<std::filesystem::path> reference_files;
   std::vector<bench::SolverSet> solver;
   std::vector<bench::CycleTimes> cycles;
   std::vector<bench::GrowthRow> growth;

@@ -22,6 +22,7 @@ import termios
 import threading
 import time
 import unittest
+import unittest.mock
 import xml.etree.ElementTree
 
 from mcap.reader import make_reader
@@ -336,6 +337,15 @@ class Bench(TemporaryFolder):
             self.assertEqual(err.count("\n"), 1, err)
             self.assertIn(message, err)
         self.assertEqual([p.name for p in self.folder.iterdir()], ["file"])
+
+        bad = self.folder / "bad.hqp"
+        bad.write_text("hqp 2\n")
+        for reference, message in ((self.folder, f"{bad}:1: expected a number of levels"),
+                                   (self.folder / "none", "HG_REFERENCE_DATA: expected a folder")):
+            with unittest.mock.patch.dict(os.environ, HG_REFERENCE_DATA=str(reference)):
+                code, out, err = run("bench", "door", "--quick")
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn(message, err)
 
 
 class BadInput(TemporaryFolder):
