@@ -54,6 +54,13 @@ TEST(Cone, ProvesACornerWithMoreRowsThanVariables) {
   EXPECT_NEAR(sum_0, 2.0, 1e-14);
 }
 
+TEST(Cone, HoldsARowThatIsHardlyInTheWay) {
+  Corner corner;
+  corner.solve({{0, 1.0}}, {-1e-5, 1.0});  // wants to go down, and right a little
+  ASSERT_EQ(corner.cone.pushing(), 1);
+  EXPECT_EQ(corner.cone.descent()[0], 0.0);
+}
+
 TEST(Cone, MeetsTheConditionsOfItsMinimum) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
