@@ -10,6 +10,8 @@ namespace {
 // below this acceleration-energy norm a limit is not said to be felt, sqrt(J/s^2 kg) ~ 0.1 N on 1
 // kg
 constexpr double kFeltMin = 0.1;
+// share of the largest torque that limits have on a joint, up to which they do not reach another
+constexpr double kReach = 1e-6;
 
 hqp::Capacity capacity_for(int limits, int n_a) {
   return {.variables = limits, .levels = 4, .rows = 2 * limits + 1 + n_a};
@@ -173,9 +175,19 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
     problem_.add_row(coefficients, {0.0, 0.0});
   }
   problem_.add_level();
+  double largest = 0.0;
+  for (std::size_t j = 0; j < coefficients.size(); ++j) {
+    const VectorA column = torque(active_[j]) * scale_[j];
+    largest = std::max(largest, column.cwiseAbs().maxCoeff());
+  }
   for (int i = 0; i < n_a_; ++i) {
-    for (std::size_t j = 0; j < coefficients.size(); ++j)
+    double largest_in_row = 0.0;
+    for (std::size_t j = 0; j < coefficients.size(); ++j) {
       row[j] = torque(active_[j])[i] * scale_[j];
+      largest_in_row = std::max(largest_in_row, std::abs(row[j]));
+    }
+    // near singular postures, what is left of a joint that no limit reaches must not decide
+    if (largest_in_row < kReach * largest) row.fill(0.0);
     problem_.add_row(coefficients, {tau_constraint[i], tau_constraint[i]});
   }
 }
