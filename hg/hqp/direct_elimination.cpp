@@ -12,12 +12,13 @@ namespace {
 // What is left of a row, relative to its norm, beside the tolerance: a decision is clear when it
 // is that many times larger or smaller, else it takes a closer look.
 constexpr double kClear = 1e3;
+// Where y is made of terms so much larger than its row, rounding shows.
+constexpr double kLargestGrowth = 1e6;
 // Rows of a level of which less than this share is left give way to the others of the level.
 constexpr double kWeak = 1e-2;
 // Weight of the numbers of a row in the choice of its variable, for variables that are taken last.
 constexpr double kTakenLast = 1e-2;
-constexpr double kSurelyMissed = 1e-6;  // share of its terms from which a value is no rounding
-constexpr double kRoundOff = 1e-14;     // a value below this share of its terms is none
+constexpr double kRoundOff = 1e-14;  // a value below this share of its terms is none
 // Largest number of [E -I] in the residual form of least squares: its condition is not much larger.
 constexpr double kLargestResidualFactor = 1e3;
 
@@ -39,6 +40,8 @@ DirectElimination::DirectElimination(int max_variables, int max_rows)
       preference_(max_variables),
       R_((max_variables + 1) * padded(max_variables)),
       L_((max_variables + 1) * padded(max_variables)),
+      weak_rows_(max_rows * padded(max_variables)),
+      weak_factors_(max_rows * padded(max_variables)),
       dependent_rows_(max_variables * std::max(max_variables, max_rows)),
       dependent_rest_(std::max(max_variables, max_rows)),
       dependent_weight_(std::max(max_variables, max_rows)),
@@ -46,7 +49,9 @@ DirectElimination::DirectElimination(int max_variables, int max_rows)
       rhs_(max_variables + max_rows),
       change_(max_variables),
       order_(max_variables + max_rows),
-      scratch_(max_variables) {}
+      scratch_(max_variables) {
+  weak_.reserve(index(max_rows));
+}
 
 void DirectElimination::reset(const Problem& problem) noexcept {
   n_ = problem.variables();
@@ -85,21 +90,22 @@ void DirectElimination::subtract_pivots(int first, int end, double* y,
   }
 }
 
-// What the pivots from `first` on leave of the target.
-void DirectElimination::subtract_values(int first) noexcept {
-  const double* factor = factors(rank_);
+// Adds what the pivots from `first` on do to a row.
+void DirectElimination::subtract_values(int first, const double* factors,
+                                        Rest& rest) const noexcept {
   for (int s = first; s < rank_; ++s) {
-    const double term = factor[s] * pivots_[index(s)].value;
-    value_ -= term;
-    value_scale_ += std::abs(term);
+    const Pivot& pivot = pivots_[index(s)];
+    const double term = factors[s] * pivot.value;
+    rest.value -= term;
+    rest.value_scale += std::abs(term);
+    rest.growth += std::abs(factors[s]) * pivot.size;
   }
 }
 
 // A row of a single variable is left alone when the variable is free, and vanishes when another
 // such row has taken it.
 void DirectElimination::reduce_unit(int variable, double target) noexcept {
-  value_ = target;
-  value_scale_ = std::abs(target);
+  rest_ = {.value = target, .value_scale = std::abs(target)};
   variable_ = variable;
   const int t = pivot_of_variable_[index(variable)];
   is_unit_ = t < 0;
@@ -119,7 +125,7 @@ void DirectElimination::reduce_unit(int variable, double target) noexcept {
     subtract_pivots(t, rank_, y, factor);
     choose_variable();
   }
-  subtract_values(t);
+  subtract_values(t, factor, rest_);
 }
 
 void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
@@ -132,9 +138,8 @@ void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
   load(problem.coefficients(row.row).data(), y);
   subtract_pivots(0, rank_, y, factors(rank_));
   is_unit_ = false;
-  value_ = row.target;
-  value_scale_ = std::abs(row.target);
-  subtract_values(0);
+  rest_ = {.value = row.target, .value_scale = std::abs(row.target)};
+  subtract_values(0, factors(rank_), rest_);
   choose_variable();
 }
 
@@ -151,6 +156,7 @@ void DirectElimination::choose_variable() noexcept {
 }
 
 DirectElimination::Outcome DirectElimination::judge(double norm, double tolerance) noexcept {
+  if (rest_.growth > kLargestGrowth * norm) return Outcome::kUnsure;
   if (largest_ * kClear <= tolerance * norm) return Outcome::kDependent;
   if (largest_ > kClear * tolerance * norm) return Outcome::kIndependent;
   return judge_closely(norm, tolerance);
@@ -161,13 +167,7 @@ DirectElimination::Outcome DirectElimination::judge(double norm, double toleranc
 DirectElimination::Outcome DirectElimination::judge_closely(double norm,
                                                             double tolerance) noexcept {
   const VectorView y(reduced_row(rank_), n_);
-  const double* factor = factors(rank_);
-  double rounding = norm;
-  for (int s = 0; s < rank_; ++s) {
-    const double size = pivots_[index(s)].is_unit ? 1.0 : VectorView(reduced_row(s), n_).norm();
-    rounding += std::abs(factor[s]) * size;
-  }
-  rounding *= kRoundOff;
+  const double rounding = kRoundOff * (norm + rest_.growth);
   if (y.norm() + rounding < tolerance * norm) return Outcome::kDependent;
 
   Eigen::Map<Eigen::VectorXd> z(scratch_.data(), n_);
@@ -184,8 +184,12 @@ DirectElimination::Outcome DirectElimination::judge_closely(double norm,
 
 void DirectElimination::append(int row) noexcept {
   const double inverse = is_unit_ ? 1.0 : 1.0 / reduced_row(rank_)[variable_];
-  pivots_[index(rank_)] = {
-      .row = row, .variable = variable_, .is_unit = is_unit_, .inverse = inverse, .value = value_};
+  pivots_[index(rank_)] = {.row = row,
+                           .variable = variable_,
+                           .is_unit = is_unit_,
+                           .inverse = inverse,
+                           .size = is_unit_ ? 1.0 : largest_,
+                           .value = rest_.value};
   pivot_of_variable_[index(variable_)] = rank_;
   ++rank_;
 }
@@ -198,69 +202,85 @@ DirectElimination::Outcome DirectElimination::add_row(const Problem& problem, Ta
   return outcome;
 }
 
-double DirectElimination::missed_by() const noexcept {
-  return std::abs(value_) > kSurelyMissed * value_scale_ ? value_ : 0.0;
-}
-
-// The row under work depends on the pivots, of which those from `first` on are of its level.
-void DirectElimination::keep_dependent(double weight, int first) noexcept {
-  if (std::abs(value_) > kRoundOff * value_scale_) is_met_ = false;
+// The row under work depends on the pivots, of which those from `first` on are of its level. It
+// takes part in the level unless its share of these is smaller than `smallest`.
+void DirectElimination::keep_dependent(double weight, double smallest, int first) noexcept {
+  if (std::abs(rest_.value) > kRoundOff * rest_.value_scale) is_met_ = false;
   const double* factor = factors(rank_);
-  if (std::all_of(factor + first, factor + rank_, [](double f) { return f == 0.0; })) return;
+  double share = 0.0;
+  for (int s = first; s < rank_; ++s) share += std::abs(factor[s]) * pivots_[index(s)].size;
+  if (share <= smallest) return;
   double* kept = dependent_rows_.data() + dependents_ * n_;
   std::copy(factor + first, factor + rank_, kept);
   std::fill(kept + rank_ - first, kept + n_ - first, 0.0);
-  dependent_rest_[dependents_] = value_;
+  dependent_rest_[dependents_] = rest_.value;
   dependent_weight_[dependents_++] = weight;
 }
 
 bool DirectElimination::add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
                                           double tolerance) noexcept {
   const int first = rank_;
-  int weak = 0;
+  weak_.clear();
   dependents_ = 0;
   is_met_ = true;
-  for (int i = 0; i < static_cast<int>(rows.size()); ++i) {
-    const int row = rows[index(i)].row;
-    const double norm = problem.norm(row);
-    reduce(problem, rows[index(i)]);
+  for (const TargetRow& row : rows) {
+    const double norm = problem.norm(row.row);
+    reduce(problem, row);
+    if (rest_.growth > kLargestGrowth * norm) return false;
     if (largest_ >= kWeak * norm) {
-      append(row);
+      append(row.row);
     } else if (judge(norm, tolerance) == Outcome::kDependent) {
-      keep_dependent(problem.weight(row), first);
+      keep_dependent(problem.weight(row.row), tolerance * norm, first);
     } else {
-      order_[weak++] = i;
+      put_aside(row.row, norm);
     }
   }
-  if (weak > 0 && !add_weak_rows(problem, rows, weak, first, tolerance)) return false;
+  if (!weak_.empty() && !add_weak_rows(problem, first, tolerance)) return false;
   if (!is_met_ && rank_ > first) solve_level(problem, first);
   return true;
 }
 
-// Takes those rows of which little is left, rows[order_[0..weak-1]]: always the one with most.
-bool DirectElimination::add_weak_rows(const Problem& problem, std::span<const TargetRow> rows,
-                                      int weak, int first, double tolerance) noexcept {
-  while (weak > 0) {
-    int best = 0;
+// The row under work, until more is known.
+void DirectElimination::put_aside(int row, double norm) noexcept {
+  const int slot = static_cast<int>(weak_.size());
+  std::copy_n(reduced_row(rank_), stride_, weak_rows_.data() + slot * stride_);
+  std::copy_n(factors(rank_), rank_, weak_factors_.data() + slot * stride_);
+  weak_.push_back({.row = row, .norm = norm, .slot = slot, .depth = rank_, .rest = rest_});
+}
+
+// Takes up the rows put aside: always the one of which most is left.
+bool DirectElimination::add_weak_rows(const Problem& problem, int first,
+                                      double tolerance) noexcept {
+  while (!weak_.empty()) {
+    std::size_t best = 0;
     double largest_share = -1.0;
-    for (int k = 0; k < weak; ++k) {
-      const TargetRow row = rows[index(order_[k])];
-      reduce(problem, row);
-      const double share = largest_ / problem.norm(row.row);
+    for (std::size_t k = 0; k < weak_.size(); ++k) {
+      WeakRow& row = weak_[k];
+      double* y = weak_rows_.data() + row.slot * stride_;
+      double* factor = weak_factors_.data() + row.slot * stride_;
+      subtract_pivots(row.depth, rank_, y, factor);
+      subtract_values(row.depth, factor, row.rest);
+      row.depth = rank_;
+      const double share = VectorView(y, n_).cwiseAbs().maxCoeff() / row.norm;
       if (share <= largest_share) continue;
       largest_share = share;
       best = k;
     }
-    const TargetRow row = rows[index(order_[best])];
-    order_[best] = order_[--weak];
-    switch (add_row(problem, row, tolerance)) {
-      case Outcome::kIndependent:
-        break;
-      case Outcome::kDependent:
-        keep_dependent(problem.weight(row.row), first);
-        break;
-      case Outcome::kUnsure:
-        return false;
+    const WeakRow row = weak_[best];
+    weak_[best] = weak_.back();
+    weak_.pop_back();
+
+    std::copy_n(weak_rows_.data() + row.slot * stride_, stride_, reduced_row(rank_));
+    std::copy_n(weak_factors_.data() + row.slot * stride_, rank_, factors(rank_));
+    is_unit_ = false;
+    rest_ = row.rest;
+    choose_variable();
+    const Outcome outcome = judge(row.norm, tolerance);
+    if (outcome == Outcome::kUnsure) return false;
+    if (outcome == Outcome::kIndependent) {
+      append(row.row);
+    } else {
+      keep_dependent(problem.weight(row.row), tolerance * row.norm, first);
     }
   }
   return true;
@@ -276,7 +296,7 @@ void DirectElimination::add_smallest_norm(const Problem& problem) noexcept {
   }
   for (int s = 0; s < first; ++s) {
     reduce_unit(pivots_[index(s)].variable, 0.0);
-    keep_dependent(1.0, first);
+    keep_dependent(1.0, 0.0, first);
   }
   solve_level(problem, first);
 }

@@ -37,13 +37,13 @@ class DirectElimination {
   /// Takes the row as next pivot, with c x = target, unless it depends on the others.
   Outcome add_row(const Problem& problem, TargetRow row, double tolerance) noexcept;
 
-  /// target - c x of the row given to add_row() when it depends on the pivots; 0 when rounding.
-  double missed_by() const noexcept;
-
   /// Takes the rows as pivots as far as they are independent. They get the values that minimise
   /// sum weight^2 (c x - target)^2. False: in doubt; the pivots are then to be truncated.
   [[nodiscard]] bool add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
                                        double tolerance) noexcept;
+
+  /// Whether the last add_least_squares() gives every row its target.
+  bool is_met() const noexcept { return is_met_; }
 
   /// Takes all free variables, with the values that minimise |x|.
   void add_smallest_norm(const Problem& problem) noexcept;
@@ -61,7 +61,23 @@ class DirectElimination {
     int variable;
     bool is_unit;    ///< c_t = R_t is a single variable
     double inverse;  ///< 1 / R_t[variable]
+    double size;     ///< largest |R_t|
     double value;    ///< of R_t x
+  };
+
+  /// What is left of a row besides y.
+  struct Rest {
+    double value = 0.0;        ///< of its target, for y x
+    double value_scale = 0.0;  ///< size of the terms of that
+    double growth = 0.0;       ///< same of y
+  };
+  /// A row put aside, reduced by the first `depth` pivots.
+  struct WeakRow {
+    int row;
+    double norm;
+    int slot;  ///< of y and its factors, stride_ apart
+    int depth;
+    Rest rest;
   };
 
   static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -73,15 +89,15 @@ class DirectElimination {
   void subtract_pivots(int first, int end, double* y, double* factors) const noexcept;
   void reduce(const Problem& problem, TargetRow row) noexcept;
   void reduce_unit(int variable, double target) noexcept;
-  void subtract_values(int first) noexcept;
+  void subtract_values(int first, const double* factors, Rest& rest) const noexcept;
   void choose_variable() noexcept;
   Outcome judge(double norm, double tolerance) noexcept;
   Outcome judge_closely(double norm, double tolerance) noexcept;
   void append(int row) noexcept;
-  void keep_dependent(double weight, int first) noexcept;
+  void keep_dependent(double weight, double smallest, int first) noexcept;
   double weight_of_pivot(const Problem& problem, int t) const noexcept;
-  bool add_weak_rows(const Problem& problem, std::span<const TargetRow> rows, int weak, int first,
-                     double tolerance) noexcept;
+  void put_aside(int row, double norm) noexcept;
+  bool add_weak_rows(const Problem& problem, int first, double tolerance) noexcept;
   void solve_level(const Problem& problem, int first) noexcept;
   bool solve_for_residuals(const Problem& problem, int first) noexcept;
   void solve_by_reflections(const Problem& problem, int first) noexcept;
@@ -98,11 +114,14 @@ class DirectElimination {
   // factors, y = c - factors R.
   Eigen::VectorXd R_;
   Eigen::VectorXd L_;
-  int variable_ = -1;         ///< the one that y would take
-  bool is_unit_ = false;      ///< y is a single free variable, as it came
-  double largest_ = 0.0;      ///< of |y|
-  double value_ = 0.0;        ///< what is left of the target for y x
-  double value_scale_ = 0.0;  ///< size of the terms of value_
+  int variable_ = -1;     ///< the one that y would take
+  bool is_unit_ = false;  ///< y is a single free variable, as it came
+  double largest_ = 0.0;  ///< of |y|
+  Rest rest_;
+
+  std::vector<WeakRow> weak_;
+  Eigen::VectorXd weak_rows_;
+  Eigen::VectorXd weak_factors_;
 
   // least squares of a level: its dependent rows D, as combinations of its pivots, what these leave
   // of their targets, and the change of the pivots' values

@@ -121,8 +121,11 @@ void Elimination::add_least_squares(const Problem& problem, std::span<const Targ
   const int first = rank_;
   for (int i = 0; i < m; ++i) {
     const auto [row, target] = rows[static_cast<std::size_t>(i)];
-    reduce(problem, row, problem.weight(row), reduced_.data() + i * size);
-    rhs_[i] = problem.weight(row) * (target - dot(problem, row, x));
+    const double weight = problem.weight(row);
+    Eigen::Map<Eigen::VectorXd> y(reduced_.data() + i * size, size);
+    reduce(problem, row, weight, y.data());
+    if (y.norm() <= tolerance * weight * problem.norm(row)) y.setZero();  // not for this level
+    rhs_[i] = weight * (target - dot(problem, row, x));
   }
   const int r = choose_pivots(rows, tolerance, problem);
 

@@ -7,6 +7,7 @@ namespace {
 
 // Rest of a gradient, relative to its terms, up to which direct elimination has cancelled it.
 constexpr double kSmallRest = 1e-10;
+constexpr int kVariablesPerEarlyStep = 6;
 
 bool is_held_state(RowState state) noexcept {
   return state == RowState::kLower || state == RowState::kUpper;
@@ -39,11 +40,14 @@ bool eliminate_directly(const Problem& problem, const Options& options, int leve
   }
   for (int& level = work.direct_levels; level < levels; ++level) {
     ranks[at(level)] = direct.rank();
+    work.fit[at(level)] = Fit::kFrozen;
     if (direct.freedom() == 0) continue;
     collect_active(problem, level, work);
     if (!direct.add_least_squares(problem, work.targets, options.rank_tolerance)) return false;
+    work.fit[at(level)] = direct.is_met() ? Fit::kMet : Fit::kLeastSquares;
   }
   ranks[at(levels)] = direct.rank();
+  work.fit[at(levels)] = direct.freedom() > 0 ? Fit::kLeastSquares : Fit::kFrozen;
   if (direct.freedom() > 0) {
     if (!options.minimum_norm) return false;
     direct.add_smallest_norm(problem);
@@ -158,13 +162,13 @@ void set_guess(const Problem& problem, int row, RowState state, Workspace& work)
   work.direct_levels = std::min(work.direct_levels, problem.level_of(row));
 }
 
-// Goes from the last point towards the new one. The first inactive row in the way gets held; true
-// when there is one.
-bool hold_obstacle(const Problem& problem, const Options& options, int rows,
+// Holds the inactive row that is first in the way from the last point to the new one; false when
+// there is none. `way` receives the share of it that can be gone.
+bool hold_obstacle(const Problem& problem, const Options& options, int rows, double& way,
                    Workspace& work) noexcept {
   int obstacle = -1;
-  double way = kInfinity;
   double distance_there = 0.0;
+  way = kInfinity;
   for (int row = 0; row < rows; ++row) {
     if (work.point.state[at(row)] != RowState::kInactive) continue;
     const double distance = violation(problem, options, work, row);
@@ -178,11 +182,7 @@ bool hold_obstacle(const Problem& problem, const Options& options, int rows,
     distance_there = distance;
   }
   if (obstacle < 0) return false;
-  const RowState held = distance_there > 0.0 ? RowState::kUpper : RowState::kLower;
-  set_guess(problem, obstacle, held, work);
-  for (int row = 0; row < rows; ++row) {
-    work.last_value[at(row)] += way * (work.value[at(row)] - work.last_value[at(row)]);
-  }
+  set_guess(problem, obstacle, distance_there > 0.0 ? RowState::kUpper : RowState::kLower, work);
   return true;
 }
 
@@ -221,6 +221,15 @@ bool drop_rows(const Problem& problem, const Options& options, int rows, Workspa
   return is_changed;
 }
 
+// Whether a level that should be met is not: direct elimination has lost digits.
+bool is_missed(const Problem& problem, int level, const Workspace& work) noexcept {
+  if (level == problem.levels() || work.fit[at(level)] != Fit::kMet) return false;
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    if (is_violated(work.point.state[at(row)]) && problem.norm(row) > 0.0) return true;
+  }
+  return false;
+}
+
 enum class Judgement { kProven, kCorrected, kInDoubt };
 
 // Level after level: whether held rows push against it. Lets go of the one that pulls most.
@@ -234,7 +243,10 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
   const int end = levels == problem.levels() && options.minimum_norm ? levels + 1 : levels;
   for (int level = 0; level < end; ++level) {
     work.point.blocking_row[at(level)] = -1;
-    if (work.point.rank_at_level[at(level)] <= first_held) continue;
+    if (work.is_direct && is_missed(problem, level, work)) return Judgement::kInDoubt;
+    const bool is_least_squares = work.is_direct && work.fit[at(level)] == Fit::kLeastSquares;
+    const bool can_push = work.point.rank_at_level[at(level)] > first_held;
+    if (!can_push && !is_least_squares) continue;
     const LevelGradient size = guess_gradient(problem, options, level, work);
     if (size.is_zero) continue;
     if (!find_multipliers(problem, size, level, first_held, work)) return Judgement::kInDoubt;
@@ -246,14 +258,28 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
   return Judgement::kProven;
 }
 
-// One step of an active-set method, from the last point to the point of the guess.
+// One step of an active-set method. The first ones all start at the same point, and let go of rows
+// before they hold others: where few rows act, that is one step for each. It could cycle, so after
+// that the last point moves, and the slacks fall.
 Judgement judge_guess(const Problem& problem, const Options& options, int levels,
                       Workspace& work) noexcept {
   const int rows = rows_of(problem, levels);
-  if (hold_obstacle(problem, options, rows, work)) return Judgement::kCorrected;
-  std::copy_n(work.value.begin(), rows, work.last_value.begin());
+  const bool is_early = work.steps++ < problem.variables() / kVariablesPerEarlyStep;
+  double way = 1.0;
+  if (!is_early) {
+    if (hold_obstacle(problem, options, rows, way, work)) {
+      for (int row = 0; row < rows; ++row) {
+        work.last_value[at(row)] += way * (work.value[at(row)] - work.last_value[at(row)]);
+      }
+      return Judgement::kCorrected;
+    }
+    std::copy_n(work.value.begin(), rows, work.last_value.begin());
+  }
   if (drop_rows(problem, options, rows, work)) return Judgement::kCorrected;
-  return judge_levels(problem, options, levels, work);
+  const Judgement judgement = judge_levels(problem, options, levels, work);
+  const bool is_blocked = judgement == Judgement::kProven && is_early &&
+                          hold_obstacle(problem, options, rows, way, work);
+  return is_blocked ? Judgement::kCorrected : judgement;
 }
 
 RowState state_at_zero(const Problem& problem, int row) noexcept {
@@ -306,6 +332,7 @@ bool is_guess_from_zero(const Problem& problem, int levels,
 void start_from_zero(const Problem& problem, Workspace& work) noexcept {
   std::fill_n(work.last_value.begin(), problem.rows(), 0.0);
   work.direct_levels = 0;
+  work.steps = 0;
 }
 
 bool solve_guess(const Problem& problem, const Options& options, int levels,

@@ -25,6 +25,13 @@ struct Point {
   std::vector<int> blocking_row;   ///< by level, -1: none
 };
 
+/// What a level's active rows get from direct elimination.
+enum class Fit : std::uint8_t {
+  kFrozen,        ///< nothing: levels above fix x
+  kMet,           ///< their targets
+  kLeastSquares,  ///< targets contradict
+};
+
 /// The point under test and everything needed to judge it. Vectors have their largest size from the
 /// start, except the lists, which are reserved.
 struct Workspace {
@@ -40,10 +47,12 @@ struct Workspace {
   double x_norm = 0.0;             ///< largest |x| met in this solve: rounding errors scale with it
   std::vector<double> value;       ///< c x by row
   std::vector<double> last_value;  ///< same, of the point that the next step starts from
+  int steps = 0;                   ///< since that point was x = 0
   std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
   bool is_direct = false;               ///< the pivots of `point` are those of `direct`
   int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state
   std::vector<int> direct_rank_at_level;
+  std::vector<Fit> fit;  ///< of the levels in `direct`, and of the smallest norm
 
   std::vector<TargetRow> targets;
   std::vector<TouchedRow> touched;

@@ -54,8 +54,7 @@ Problem problem_with_growth(int n, bool is_equality, std::vector<double>& expect
   return problem;
 }
 
-// TODO(issue 5): direct elimination does not notice; enable when it does.
-TEST(HardProblem, DISABLED_EliminationThatLosesDigitsIsNoticed) {
+TEST(HardProblem, EliminationThatLosesDigitsIsNoticed) {
   for (const auto& [n, is_equality] : {std::pair{60, true}, std::pair{30, false}}) {
     std::vector<double> expected;
     const Solution solution = solve(problem_with_growth(n, is_equality, expected));
@@ -67,8 +66,7 @@ TEST(HardProblem, DISABLED_EliminationThatLosesDigitsIsNoticed) {
 
 // The last row of level 1 is that of level 0 up to noise, and contradicts it. Its noise must not
 // pull the second row, of small weight, off its bound: level 2 would lose a freedom.
-// TODO(issue 5): it does by 1.3e-10; enable when dependent rows take no part in least squares.
-TEST(HardProblem, DISABLED_NoiseOfAContradictoryRowDoesNotPull) {
+TEST(HardProblem, NoiseOfAContradictoryRowDoesNotPull) {
   const Solution solution = solve(problem_of(R"(hqp 3 3
 level 1 0
 -1 1.5303539187327417 1.3010656908001557 2
