@@ -77,6 +77,7 @@ void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
   hash.mix(state.twin.ddq_a);
   mix(state.inner, static_cast<std::size_t>(state.twin.dq_a.size()), hash);
   hash.mix_bytes(state.active_set.state.data(), static_cast<std::size_t>(rows));
+  hash.mix_bytes(state.active_set.before.data(), static_cast<std::size_t>(rows));
   hash.mix_bytes(state.touched.lower.data(), state.touched.lower.size());
   hash.mix_bytes(state.touched.upper.data(), state.touched.upper.size());
 }

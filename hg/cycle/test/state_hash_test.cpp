@@ -45,6 +45,7 @@ TEST(StateHash, SeesEveryValueOfTheState) {
       [](State& s) { s.rendering.inner.parameters.holds[3] = true; },
       [](State& s) { s.rendering.inner.parameters.may_be_overrun[1] = true; },
       [](State& s) { s.rendering.active_set.state[kRows - 1] = hqp::RowState::kUpper; },
+      [](State& s) { s.rendering.active_set.before[kRows - 1] = hqp::RowState::kUpper; },
       [](State& s) { s.rendering.touched.lower[kMaxLimits - 1] = true; },
       [](State& s) { s.rendering.touched.upper[0] = true; },
       [](State& s) { s.gantry_target.is_started = true; },
