@@ -280,7 +280,7 @@ class Bench(TemporaryFolder):
         solver = self.rows("solver")
         self.assertEqual(len(solver), len(told["solver"]))
         names = {row["set"] for row in solver}
-        self.assertLess({*self.SETS, "exc_two", "random_public_1"}, names)
+        self.assertLess({*self.SETS, "exc_two"}, names)
         for row in solver:
             self.assertLessEqual(float(row["median_us"]), float(row["p99_9_us"]))
             self.assertLessEqual(float(row["p99_9_us"]), float(row["max_us"]))
