@@ -336,6 +336,13 @@ void write_row(std::ostream& out, const Problem& problem, int row, bool is_equal
   out << '\n';
 }
 
+// A name of several lines, or with other control characters, would not be read back.
+void write_name(std::ostream& out, std::string name) {
+  const auto is_control = [](unsigned char c) { return c < ' ' || c == '\x7f'; };
+  std::replace_if(name.begin(), name.end(), is_control, ' ');
+  if (!name.empty()) out << "name " << name << '\n';
+}
+
 void write_options(std::ostream& out, const Options& options) {
   const Options standard;
   std::string text;
@@ -422,7 +429,7 @@ std::vector<Problem> read_problems(const std::string& file) {
 void write_problem(std::ostream& out, const RecordedProblem& recorded) {
   const Problem& problem = recorded.problem;
   out << "hqp " << problem.variables() << ' ' << problem.levels() << '\n';
-  if (!recorded.name.empty()) out << "name " << recorded.name << '\n';
+  write_name(out, recorded.name);
   write_options(out, recorded.options);
   for (int level = 0; level < problem.levels(); ++level) write_level(out, problem, level);
   if (recorded.guess) write_guess(out, *recorded.guess, problem.rows());

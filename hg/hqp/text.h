@@ -50,7 +50,8 @@ std::vector<RecordedProblem> read_recorded_problems(const std::string& file);
 std::vector<Problem> read_problems(const std::string& file);
 
 /// Writes one problem so that the same one is read back, bit for bit. Ids stay the same, so
-/// equalities that do not come first in their level are written as lb = ub.
+/// equalities that do not come first in their level are written as lb = ub. Line breaks and other
+/// control characters of a name become blanks.
 void write_problem(std::ostream& out, const RecordedProblem& recorded);
 void write_problem(std::ostream& out, const Problem& problem);
 

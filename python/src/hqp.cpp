@@ -125,7 +125,6 @@ std::string explain(const SolutionOut& out, std::optional<int> level) {
 
 void write_problem(const std::string& file, const Problem& problem, const ActiveSet* active,
                    const hqp::Options& options, const std::string& name) {
-  require(name.find('\n') == std::string::npos, "name: must be one line");
   std::optional<ActiveSet> guess;
   if (active != nullptr) guess = *active;
   std::ofstream out(file);

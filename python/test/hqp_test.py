@@ -143,9 +143,10 @@ class Solve(unittest.TestCase):
             again = hqp.solve(read.problem, read.active_set, read.options)
             expected = hqp.solve(problem, solution.active_set, options)
             self.assertEqual(again.x.tobytes(), expected.x.tobytes())
-            hqp.write_problem(file, problem)
+            hqp.write_problem(file, problem, name="two\nlines")
             (read,) = hqp.read_recorded_problems(file)
             self.assertIsNone(read.active_set)
+            self.assertEqual(read.name, "two lines")
             with self.assertRaisesRegex(SetupError, "cannot be written"):
                 hqp.write_problem(folder, problem)
 

@@ -206,6 +206,18 @@ TEST(WriteProblem, EverythingIsReadBackBitForBit) {
   }
 }
 
+TEST(WriteProblem, ANameStaysOnItsLine) {
+  Problem problem({.variables = 1, .levels = 1, .rows = 1});
+  problem.add_level();
+  const std::string name = "caf\xc3\xa9\nlevel 0 1\r\n\tx\v\f" + std::string(1, '\0') + "\x7fy";
+  const auto read = parse_recorded_problems(to_text({.problem = problem, .name = name}), "x.hqp");
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].name, "caf\xc3\xa9 level 0 1   x    y");
+  EXPECT_EQ(read[0].problem.rows(), 0);
+  const std::string blank = to_text({.problem = problem, .name = "\n"});
+  EXPECT_EQ(parse_recorded_problems(blank, "x.hqp")[0].name, "");
+}
+
 // Status, effort and every number of a solve.
 void expect_same_solve(Solver& solver, const RecordedProblem& a, const RecordedProblem& b) {
   const Capacity capacity = {.variables = 60, .levels = 20, .rows = 600};
