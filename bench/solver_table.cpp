@@ -7,22 +7,13 @@
 
 #include "bench/comparison.h"
 #include "hg/hqp/solver.h"
+#include "hg/hqp/text.h"
 
 namespace hg::bench {
 namespace {
 
 using hqp::Problem;
 using Points = std::vector<std::vector<double>>;
-
-hqp::Capacity capacity_of(std::span<const Problem> problems) {
-  hqp::Capacity capacity = {.variables = 1, .levels = 1, .rows = 1};
-  for (const Problem& problem : problems) {
-    capacity.variables = std::max(capacity.variables, problem.variables());
-    capacity.levels = std::max(capacity.levels, problem.levels());
-    capacity.rows = std::max(capacity.rows, problem.rows());
-  }
-  return capacity;
-}
 
 // Measures one set, block by block.
 class SetTimer {
@@ -53,7 +44,7 @@ class SetTimer {
 
  private:
   void prepare(std::span<const Problem> block) {
-    const hqp::Capacity capacity = capacity_of(block);
+    const hqp::Capacity capacity = hqp::capacity_for(block);
     set_.variables = capacity.variables;
     set_.levels = capacity.levels;
     solver_ = std::make_unique<hqp::Solver>(capacity);

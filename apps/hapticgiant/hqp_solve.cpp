@@ -20,21 +20,10 @@ constexpr int kRuns = 5;  // of each problem when timing; the fastest counts
 
 using Problems = std::vector<hqp::RecordedProblem>;
 
-// The smallest capacity that takes all problems.
-hqp::Capacity capacity_of(const Problems& problems) {
-  hqp::Capacity capacity = {.variables = 1, .levels = 1, .rows = 1};
-  for (const hqp::RecordedProblem& recorded : problems) {
-    capacity.variables = std::max(capacity.variables, recorded.problem.variables());
-    capacity.levels = std::max(capacity.levels, recorded.problem.levels());
-    capacity.rows = std::max(capacity.rows, recorded.problem.rows());
-  }
-  return capacity;
-}
-
 // Solver and what it needs, for all problems of a file in turn.
 struct Player {
   explicit Player(const Problems& problems)
-      : solver(capacity_of(problems)), solution(capacity_of(problems)) {}
+      : solver(hqp::capacity_for(problems)), solution(hqp::capacity_for(problems)) {}
 
   hqp::Solver solver;
   hqp::Solution solution;

@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "hg/hqp/rows.h"
+
 namespace hg::hqp {
 namespace {
 
@@ -62,14 +64,6 @@ std::string content_of(const Problem& problem, int row) {
   return text;
 }
 
-double value_of(const Problem& problem, int row, std::span<const double> x) {
-  if (problem.variable(row) >= 0) return x[at(problem.variable(row))];
-  double value = 0.0;
-  const auto coefficients = problem.coefficients(row);
-  for (std::size_t i = 0; i < coefficients.size(); ++i) value += coefficients[i] * x[i];
-  return value;
-}
-
 std::string head_text(const Problem& problem, const Solution& solution) {
   std::string text = to_string(solution.status);
   text += ": " + count_of(solution.iterations, "active set") + " tried; " +
@@ -110,7 +104,7 @@ std::string row_line(const Problem& problem, const Solution& solution, int row) 
   const double slack = solution.slack[at(row)];
   std::string text = joined({to_string(problem, row), ": ", to_string(solution.state[at(row)])});
   if (is_violated(solution.state[at(row)])) text += joined({" by ", number(std::abs(slack))});
-  return text + joined({", value ", number(value_of(problem, row, solution.x)), "\n"});
+  return text + joined({", value ", number(dot(problem, row, solution.x.data())), "\n"});
 }
 
 }  // namespace

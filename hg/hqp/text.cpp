@@ -303,6 +303,12 @@ RecordedProblem parse_recorded(Reader& reader) {
   return recorded;
 }
 
+void enlarge(Capacity& capacity, const Problem& problem) {
+  capacity.variables = std::max(capacity.variables, problem.variables());
+  capacity.levels = std::max(capacity.levels, problem.levels());
+  capacity.rows = std::max(capacity.rows, problem.rows());
+}
+
 void write_number(std::ostream& out, double value) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof(text), value).ptr;
@@ -424,6 +430,18 @@ std::vector<RecordedProblem> read_recorded_problems(const std::string& file) {
 
 std::vector<Problem> read_problems(const std::string& file) {
   return parse_problems(read_text(file), file);
+}
+
+Capacity capacity_for(std::span<const Problem> problems) {
+  Capacity capacity = {.variables = 1, .levels = 1, .rows = 1};
+  for (const Problem& problem : problems) enlarge(capacity, problem);
+  return capacity;
+}
+
+Capacity capacity_for(std::span<const RecordedProblem> problems) {
+  Capacity capacity = {.variables = 1, .levels = 1, .rows = 1};
+  for (const RecordedProblem& recorded : problems) enlarge(capacity, recorded.problem);
+  return capacity;
 }
 
 void write_problem(std::ostream& out, const RecordedProblem& recorded) {

@@ -21,6 +21,7 @@
 
 #include <iosfwd>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,10 @@ std::vector<Problem> parse_problems(std::string_view text, const std::string& na
 /// All problems of a file, which may be gzipped.
 std::vector<RecordedProblem> read_recorded_problems(const std::string& file);
 std::vector<Problem> read_problems(const std::string& file);
+
+/// The smallest capacity that takes each of the problems; 1 of each for none.
+Capacity capacity_for(std::span<const Problem> problems);
+Capacity capacity_for(std::span<const RecordedProblem> problems);
 
 /// Writes one problem so that the same one is read back, bit for bit. Ids stay the same, so
 /// equalities that do not come first in their level are written as lb = ub. Line breaks and other
