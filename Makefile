@@ -52,12 +52,12 @@ test:
 bench:
 	@tools/setup.sh bench
 	@tools/configure.sh $(PRESET) build
-	@cmake $(BUILD) >/dev/null 2>&1  # finds what set-up has just fetched
+	@cmake --log-level=ERROR $(BUILD) >/dev/null  # finds what set-up has just fetched
 	@cmake --build $(BUILD) --target hapticgiant
 	@$(BUILD)/hapticgiant bench --out $(RESULTS) $(ARGS)
 
 bench-instructions:
-	@tools/setup.sh bench
+	@tools/setup.sh count
 	@tools/configure.sh $(PRESET) build
 	@cmake --build $(BUILD) --target bench_instructions
 	@mkdir -p $(RESULTS)

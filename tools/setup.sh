@@ -4,7 +4,8 @@
 #
 #   tools/setup.sh build    what the program needs; goes on without recording or page
 #   tools/setup.sh test     that, and what the tests need; fails where anything is missing
-#   tools/setup.sh bench    as build, and what `hapticgiant bench` is compared with and counted by
+#   tools/setup.sh bench    as build, and what `hapticgiant bench` is compared with
+#   tools/setup.sh count    as build, and what counts instructions
 #
 # Works without root when the system packages are there, and names them otherwise.
 set -euo pipefail
@@ -12,9 +13,9 @@ cd -P "$(dirname "$0")/.."
 
 purpose=${1:-build}
 case "$purpose" in
-  build | test | bench) ;;
+  build | test | bench | count) ;;
   *)
-    echo "setup: expected 'build', 'test' or 'bench', got '$purpose'" >&2
+    echo "setup: expected 'build', 'test', 'bench' or 'count', got '$purpose'" >&2
     exit 2
     ;;
 esac
@@ -55,7 +56,7 @@ if [ "$purpose" = test ]; then
 os.stat(sysconfig.get_path("include") + "/Python.h")' >/dev/null 2>&1 || need python3-dev
 fi
 
-[ "$purpose" != bench ] || need valgrind valgrind
+[ "$purpose" != count ] || need valgrind valgrind
 
 # Recordings are written by a small Rust library. Debian's plain cargo may be too old for it; CMake
 # tries the same places.

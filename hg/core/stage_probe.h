@@ -9,8 +9,8 @@
 
 namespace hg {
 
-/// Parts of Cycle::step in the order of the data; every nanosecond of a step belongs to one of
-/// them.
+/// Parts of Cycle::step in the order of the data; every nanosecond of a step that renders belongs
+/// to one of them.
 enum class Stage : std::uint8_t {
   kSupervision,     ///< sensor check, operating state, changes of parameters
   kEstimation,      ///< sensors to states

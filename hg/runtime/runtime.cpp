@@ -86,8 +86,9 @@ void Runtime::run_cycle(Sample& sample) noexcept {
   device_.write(sample.command);
   sample.cycle_time_us = std::chrono::duration<double, std::micro>(end - begin).count();
   const bool is_slow = sample.cycle_time_us > options_.slow_cycle_us;
-  if (is_slow && (report_.is_real_time || options_.is_fast))
+  if (is_slow && (report_.is_real_time || options_.is_fast)) {
     cycle_.keep_problem(sample.cycle_time_us);
+  }
 }
 
 void Runtime::hand_out(const Sample& sample) noexcept {
