@@ -1,5 +1,7 @@
 #include "hg/hqp/solution.h"
 
+#include "hg/core/error.h"
+
 namespace hg::hqp {
 
 const char* to_string(Status status) noexcept {
@@ -14,6 +16,17 @@ const char* to_string(Status status) noexcept {
       return "numerical failure";
   }
   return "unknown";
+}
+
+void check(const Options& options) {
+  const auto require = [](bool ok, const char* text) {
+    if (!ok) throw SetupError(text);
+  };
+  const auto is_small = [](double tolerance) { return tolerance > 0.0 && tolerance <= 1e-3; };
+  require(is_small(options.rank_tolerance), "rank_tolerance must be in 0 .. 1e-3, above 0");
+  require(is_small(options.feasibility_tolerance),
+          "feasibility_tolerance must be in 0 .. 1e-3, above 0");
+  require(options.max_iterations > 0, "max_iterations must be above 0");
 }
 
 Solution::Solution(const Capacity& capacity) {

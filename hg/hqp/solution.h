@@ -11,7 +11,7 @@ namespace hg::hqp {
 
 enum class Status : std::uint8_t {
   kSolved,          ///< every level is optimal
-  kIterationLimit,  ///< levels below `completed_levels` are feasible but not optimal
+  kIterationLimit,  ///< the first `completed_levels` are optimal; when all are, |x| is not smallest
   kBadRow,          ///< `bad_row` is not finite, has lb > ub or a weight <= 0; levels above it hold
   kNumericalFailure,  ///< overflow: x is the last finite point
 };
@@ -49,6 +49,9 @@ struct Options {
   /// Freedom left by the last level goes to the smallest |x|; otherwise x is any optimal point.
   bool minimum_norm = true;
 };
+
+/// Throws SetupError, naming the field, unless 0 < tolerances <= 1e-3 and max_iterations > 0.
+void check(const Options& options);
 
 struct LevelResult {
   double slack_squared;  ///< sum of (weight * slack)^2 over the level's rows
