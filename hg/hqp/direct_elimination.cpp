@@ -227,7 +227,7 @@ bool DirectElimination::add_least_squares(const Problem& problem, std::span<cons
     const double norm = problem.norm(row.row);
     reduce(problem, row);
     if (rest_.growth > kLargestGrowth * norm) return false;
-    if (largest_ >= kWeak * norm) {
+    if (largest_ >= std::max(kWeak, kClear * tolerance) * norm) {
       append(row.row);
     } else if (judge(norm, tolerance) == Outcome::kDependent) {
       keep_dependent(problem.weight(row.row), tolerance * norm, first);
@@ -379,14 +379,17 @@ void DirectElimination::solve_by_reflections(const Problem& problem, int first) 
   solve_least_squares(m, r, A.data(), rhs_.data(), order_.data(), change_.data());
 }
 
-void DirectElimination::find_point(double* x_data) const noexcept {
+bool DirectElimination::find_point(double* x_data) const noexcept {
   Eigen::Map<Eigen::VectorXd> x(x_data, n_);
   x.setZero();
+  double largest_term = 0.0;
   for (int t = rank_ - 1; t >= 0; --t) {
     const Pivot& pivot = pivots_[index(t)];
     const double others = pivot.is_unit ? 0.0 : VectorView(reduced_row(t), n_).dot(x);
     x[pivot.variable] = (pivot.value - others) * pivot.inverse;
+    largest_term = std::max(largest_term, std::abs(pivot.value * pivot.inverse));
   }
+  return x.cwiseAbs().maxCoeff() <= kLargestGrowth * largest_term;  // false for NaN
 }
 
 double DirectElimination::find_multipliers(const double* g, int rank, int first,

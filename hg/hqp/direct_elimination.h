@@ -48,8 +48,9 @@ class DirectElimination {
   /// Takes all free variables, with the values that minimise |x|.
   void add_smallest_norm(const Problem& problem) noexcept;
 
-  /// The point where every pivot row has its value, n numbers; needs freedom() == 0.
-  void find_point(double* x) const noexcept;
+  /// The point where every pivot row has its value, n numbers; needs freedom() == 0. False: in
+  /// doubt, because it is so much larger than what the rows ask for that a rank may be wrong.
+  [[nodiscard]] bool find_point(double* x) const noexcept;
 
   /// mu with g + sum over t < rank of mu_t c_t = 0, of which only those from `first` on are
   /// written. Returns the largest component of the sum.

@@ -66,7 +66,7 @@ class LevelByLevel {
 };
 
 PrimalOutcome LevelByLevel::run(int& completed) noexcept {
-  const int end = levels_ > 0 ? problem_.end_row(levels_ - 1) : 0;
+  const int end = rows_of(problem_, levels_);
   std::fill_n(work_.point.state.begin(), end, RowState::kInactive);
   std::fill_n(work_.is_fixed.begin(), end, false);
   work_.point.x.head(n_).setZero();
@@ -360,7 +360,7 @@ void LevelByLevel::fix(int level) noexcept {
 
 // Rows that held one level back may have been left by a later one.
 void LevelByLevel::release_untouched() noexcept {
-  const int end = levels_ > 0 ? problem_.end_row(levels_ - 1) : 0;
+  const int end = rows_of(problem_, levels_);
   for (int row = 0; row < end; ++row) {
     RowState& state = work_.point.state[at(row)];
     const auto [lb, ub] = problem_.bounds(row);

@@ -1,8 +1,9 @@
 #include "hg/hqp/solver.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "hg/hqp/primal.h"
 #include "hg/hqp/sweep.h"
@@ -19,6 +20,13 @@ constexpr int kEffortPerVariable = 2;    // taken for a cycle
 constexpr int kOrthogonalEffort = 4;     // of one orthogonal elimination
 constexpr int kProofEffort = 12;  // on the result of that method, which is almost always right
 
+// A mistake of the program around the solver, which would overwrite memory.
+void require(bool is_right, const char* what) noexcept {
+  if (is_right) return;
+  std::fprintf(stderr, "hqp: %s\n", what);
+  std::abort();
+}
+
 int find_bad_row(const Problem& problem) noexcept {
   for (int row = 0; row < problem.rows(); ++row) {
     if (broken_rule(problem, row) != nullptr) return row;
@@ -27,13 +35,15 @@ int find_bad_row(const Problem& problem) noexcept {
 }
 
 // Tries the guess in work.point.state and its corrections until one is proven, or `max_effort` is
-// spent.
+// spent, or `iterations` reaches `max_iterations`.
 bool try_guesses(const Problem& problem, const Options& options, int levels, int max_effort,
-                 int& iterations, Workspace& work) noexcept {
+                 int max_iterations, int& iterations, Workspace& work) noexcept {
   int effort = 0;
-  while (effort < max_effort && iterations < options.max_iterations) {
+  while (effort < max_effort && iterations < max_iterations) {
     ++iterations;
-    if (solve_guess(problem, options, levels, work)) return true;
+    const Judgement judgement = solve_guess(problem, options, levels, work);
+    if (judgement == Judgement::kProven) return true;
+    if (judgement == Judgement::kInDoubt) return false;
     effort += work.is_direct ? 1 : kOrthogonalEffort;
   }
   return false;
@@ -44,8 +54,10 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
                       int levels, int& iterations, Workspace& work) noexcept {
   std::vector<RowState>& guess = work.point.state;
   const int effort_from_zero = kEffort + kEffortPerVariable * problem.variables();
+  // the other half is for the method that completes level by level
+  const int max_iterations = (options.max_iterations + 1) / 2;
   const auto try_for = [&](int effort) {
-    return try_guesses(problem, options, levels, effort, iterations, work);
+    return try_guesses(problem, options, levels, effort, max_iterations, iterations, work);
   };
   load_guess(problem, levels, active.state, guess);
   start_from_zero(problem, work);
@@ -78,17 +90,15 @@ Status solve_levels(const Problem& problem, const Options& options, const Active
   const PrimalOutcome outcome =
       solve_level_by_level(problem, options, all_levels, iterations, levels, work);
   if (outcome == PrimalOutcome::kIterationLimit) return Status::kIterationLimit;
-  if (outcome == PrimalOutcome::kNotFinite) {
-    update_values(problem, levels, work);
-    return Status::kNumericalFailure;
-  }
+  if (outcome == PrimalOutcome::kNotFinite) return Status::kNumericalFailure;
 
   // the same active set always gives the same bits, whichever way it was found
   work.saved = work.point;
   load_guess(problem, levels, work.saved.state, work.point.state);
   start_from_zero(problem, work);
   std::copy_n(work.value.begin(), problem.rows(), work.last_value.begin());
-  if (!try_guesses(problem, options, levels, kProofEffort, iterations, work)) {
+  if (!try_guesses(problem, options, levels, kProofEffort, options.max_iterations, iterations,
+                   work)) {
     work.point = work.saved;
     update_values(problem, levels, work);
   }
@@ -145,9 +155,14 @@ Solver& Solver::operator=(Solver&&) noexcept = default;
 Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& active,
                      Solution& solution) noexcept {
   Workspace& work = *workspace_;
-  assert(problem.variables() <= work.point.x.size());
-  assert(problem.levels() < static_cast<int>(work.point.rank_at_level.size()));
-  assert(problem.rows() <= static_cast<int>(work.point.state.size()));
+  require(problem.variables() <= work.point.x.size() &&
+              problem.levels() < static_cast<int>(work.point.rank_at_level.size()) &&
+              problem.rows() <= static_cast<int>(work.point.state.size()),
+          "the problem is larger than the capacity of the solver");
+  require(at(problem.variables()) <= solution.x.capacity() &&
+              at(problem.rows()) <= solution.slack.capacity() &&
+              at(problem.levels()) <= solution.levels.capacity(),
+          "the problem is larger than the capacity of the solution");
   const int bad_row = find_bad_row(problem);
   const int levels = bad_row < 0 ? problem.levels() : problem.level_of(bad_row);
 
@@ -165,14 +180,19 @@ Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& 
   if (bad_row >= 0 && solution.status == Status::kSolved) solution.status = Status::kBadRow;
 
   read_levels(problem, levels, work, solution);
+  for (int level = 0; level < solution.completed_levels; ++level) {
+    if (std::isfinite(solution.levels[at(level)].slack_squared)) continue;
+    solution.status = Status::kNumericalFailure;
+    solution.completed_levels = level;
+  }
   update(problem, solution.state, active);
   return solution.status;
 }
 
 double Solver::multipliers(const Problem& problem, const Options& options, const Solution& solution,
                            int level, std::span<double> mu) noexcept {
-  assert(level >= 0 && level < problem.levels());
-  assert(static_cast<int>(mu.size()) == problem.rows());
+  require(level >= 0 && level < problem.levels(), "no such level to have multipliers");
+  require(static_cast<int>(mu.size()) == problem.rows(), "multipliers need a number per row");
   Workspace& work = *workspace_;
   const int n = problem.variables();
   std::fill(mu.begin(), mu.end(), 0.0);

@@ -29,8 +29,8 @@ class Solver {
   Solver& operator=(Solver&&) noexcept;
 
   /// Solves `problem`, starting from the guess `active`, which receives the final active set.
-  /// `solution` is filled and usable whatever is returned; problem and solution must fit the
-  /// capacity.
+  /// `solution` is filled and usable whatever is returned; aborts when solver or solution have
+  /// less capacity than the problem needs.
   Status solve(const Problem& problem, const Options& options, ActiveSet& active,
                Solution& solution) noexcept;
 

@@ -9,6 +9,11 @@ namespace {
 constexpr double kSmallRest = 1e-10;
 constexpr int kVariablesPerEarlyStep = 6;
 
+// The smallest |x| is a level below all others.
+bool wants_smallest_norm(const Problem& problem, const Options& options, int levels) noexcept {
+  return options.minimum_norm && levels == problem.levels();
+}
+
 bool is_held_state(RowState state) noexcept {
   return state == RowState::kLower || state == RowState::kUpper;
 }
@@ -49,11 +54,11 @@ bool eliminate_directly(const Problem& problem, const Options& options, int leve
   ranks[at(levels)] = direct.rank();
   work.fit[at(levels)] = direct.freedom() > 0 ? Fit::kLeastSquares : Fit::kFrozen;
   if (direct.freedom() > 0) {
-    if (!options.minimum_norm) return false;
+    if (!wants_smallest_norm(problem, options, levels)) return false;
     direct.add_smallest_norm(problem);
   }
 
-  direct.find_point(work.point.x.data());
+  if (!direct.find_point(work.point.x.data())) return false;
   work.x_norm = work.point.x.head(problem.variables()).norm();
   std::copy_n(ranks.begin(), levels + 1, work.point.rank_at_level.begin());
   return std::isfinite(work.x_norm);
@@ -78,7 +83,7 @@ bool eliminate_orthogonally(const Problem& problem, const Options& options, int 
     if (!move(problem, elimination.step(), 1.0, work)) return false;
   }
   work.point.rank_at_level[at(levels)] = elimination.rank();
-  if (options.minimum_norm && elimination.freedom() > 0) {
+  if (wants_smallest_norm(problem, options, levels) && elimination.freedom() > 0) {
     elimination.project_to_free(work.point.x.data(), work.direction.data());
     if (!move(problem, work.direction, -1.0, work)) return false;
   }
@@ -95,21 +100,24 @@ bool is_held_pivot(const Workspace& work, int t) noexcept {
 
 // Multipliers of the pivots above `level` that cancel its gradient, from `first_held` on, into
 // work.mu; false when they do not cancel it.
-bool find_multipliers(const Problem& problem, const LevelGradient& size, int level, int first_held,
-                      Workspace& work) noexcept {
-  const int rank = work.point.rank_at_level[at(level)];
-  if (work.is_direct) {
-    const double rest =
-        work.direct.find_multipliers(work.gradient.data(), rank, first_held, work.mu.data());
-    return rest <= kSmallRest * size.scale + size.rounding;
-  }
+bool find_multipliers(const Problem& problem, const Options& options, const LevelGradient& size,
+                      int level, int first_held, Workspace& work) noexcept {
   const int n = problem.variables();
-  for (int t = rank - 1; t >= first_held; --t) {
-    work.mu[t] = -VectorView(work.elimination.column(t), n).dot(work.gradient.head(n)) /
-                 work.elimination.pivot(t);
-    add_multiple(problem, pivot_row(work, t), work.mu[t], work.gradient.data());
+  const int rank = work.point.rank_at_level[at(level)];
+  double rest = 0.0;
+  double small_rest = kSmallRest;
+  if (work.is_direct) {
+    rest = work.direct.find_multipliers(work.gradient.data(), rank, first_held, work.mu.data());
+  } else {
+    for (int t = rank - 1; t >= 0; --t) {
+      const VectorView column(work.elimination.column(t), n);
+      work.mu[t] = -column.dot(work.gradient.head(n)) / work.elimination.pivot(t);
+      add_multiple(problem, pivot_row(work, t), work.mu[t], work.gradient.data());
+    }
+    rest = work.gradient.head(n).cwiseAbs().maxCoeff();
+    small_rest = std::max(kSmallRest, options.rank_tolerance);  // which dependent rows may leave
   }
-  return true;
+  return rest <= small_rest * size.scale + size.rounding;
 }
 
 // Freezes those held rows that push against the level; returns the one that pulls most, -1: none.
@@ -230,8 +238,6 @@ bool is_missed(const Problem& problem, int level, const Workspace& work) noexcep
   return false;
 }
 
-enum class Judgement { kProven, kCorrected, kInDoubt };
-
 // Level after level: whether held rows push against it. Lets go of the one that pulls most.
 Judgement judge_levels(const Problem& problem, const Options& options, int levels,
                        Workspace& work) noexcept {
@@ -240,16 +246,17 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
   while (first_held < rank && !is_held_pivot(work, first_held)) ++first_held;
   std::fill_n(work.is_frozen.begin(), rank, false);
 
-  const int end = levels == problem.levels() && options.minimum_norm ? levels + 1 : levels;
+  const int end = wants_smallest_norm(problem, options, levels) ? levels + 1 : levels;
   for (int level = 0; level < end; ++level) {
     work.point.blocking_row[at(level)] = -1;
     if (work.is_direct && is_missed(problem, level, work)) return Judgement::kInDoubt;
-    const bool is_least_squares = work.is_direct && work.fit[at(level)] == Fit::kLeastSquares;
+    const bool is_least_squares = !work.is_direct || work.fit[at(level)] == Fit::kLeastSquares;
     const bool can_push = work.point.rank_at_level[at(level)] > first_held;
     if (!can_push && !is_least_squares) continue;
     const LevelGradient size = guess_gradient(problem, options, level, work);
     if (size.is_zero) continue;
-    if (!find_multipliers(problem, size, level, first_held, work)) return Judgement::kInDoubt;
+    if (!find_multipliers(problem, options, size, level, first_held, work))
+      return Judgement::kInDoubt;
     const int pulling_row = judge_multipliers(problem, size, level, first_held, work);
     if (pulling_row < 0) continue;
     set_guess(problem, pulling_row, RowState::kInactive, work);
@@ -264,7 +271,7 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
 Judgement judge_guess(const Problem& problem, const Options& options, int levels,
                       Workspace& work) noexcept {
   const int rows = rows_of(problem, levels);
-  const bool is_early = work.steps++ < problem.variables() / kVariablesPerEarlyStep;
+  const bool is_early = work.steps <= problem.variables() / kVariablesPerEarlyStep;
   double way = 1.0;
   if (!is_early) {
     if (hold_obstacle(problem, options, rows, way, work)) {
@@ -335,18 +342,20 @@ void start_from_zero(const Problem& problem, Workspace& work) noexcept {
   work.steps = 0;
 }
 
-bool solve_guess(const Problem& problem, const Options& options, int levels,
-                 Workspace& work) noexcept {
+Judgement solve_guess(const Problem& problem, const Options& options, int levels,
+                      Workspace& work) noexcept {
+  ++work.steps;
   work.is_direct = eliminate_directly(problem, options, levels, work);
   if (work.is_direct) {
     update_values(problem, levels, work);
     const Judgement judgement = judge_guess(problem, options, levels, work);
-    if (judgement != Judgement::kInDoubt) return judgement == Judgement::kProven;
+    if (judgement != Judgement::kInDoubt) return judgement;
     work.is_direct = false;
   }
-  if (!eliminate_orthogonally(problem, options, levels, work)) return false;
+  work.direct_levels = 0;
+  if (!eliminate_orthogonally(problem, options, levels, work)) return Judgement::kInDoubt;
   update_values(problem, levels, work);
-  return judge_guess(problem, options, levels, work) == Judgement::kProven;
+  return judge_guess(problem, options, levels, work);
 }
 
 }  // namespace hg::hqp

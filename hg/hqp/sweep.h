@@ -29,13 +29,18 @@ bool is_guess_from_zero(const Problem& problem, int levels,
 /// The last point is x = 0; nothing is known of work.point.state.
 void start_from_zero(const Problem& problem, Workspace& work) noexcept;
 
+enum class Judgement {
+  kProven,     ///< work.point is optimal for each level
+  kCorrected,  ///< it is not; work.point.state is the next guess
+  kInDoubt,    ///< not finite, or rounding hides whether it is; another try would be the same
+};
+
 /// Solves the first `levels` levels with the active rows of work.point.state, by direct elimination
-/// where that leaves no doubt, else by the orthogonal one (work.is_direct). Returns true when the
-/// result, work.point, is proven optimal for each of them: no inactive row is violated, active ones
-/// are at their bound or outside, and multipliers have the right sign. Otherwise work.point.state
-/// is corrected for the next guess. Leaves work.value of the point. The first work.direct_levels
-/// levels are taken from the last guess.
-bool solve_guess(const Problem& problem, const Options& options, int levels,
-                 Workspace& work) noexcept;
+/// where that leaves no doubt, else by the orthogonal one (work.is_direct). Proven means that no
+/// inactive row is violated, active ones are at their bound or outside, multipliers have the right
+/// sign and cancel the gradient of each level. Leaves work.value of the point. The first
+/// work.direct_levels levels are taken from the last guess.
+Judgement solve_guess(const Problem& problem, const Options& options, int levels,
+                      Workspace& work) noexcept;
 
 }  // namespace hg::hqp

@@ -50,8 +50,8 @@ bool touches(const Problem& problem, const Options& options, const Workspace& wo
 }
 
 void update_values(const Problem& problem, int levels, Workspace& work) noexcept {
-  const int end = levels > 0 ? problem.end_row(levels - 1) : 0;
-  for (int row = 0; row < end; ++row) work.value[at(row)] = dot(problem, row, work.point.x.data());
+  const int rows = rows_of(problem, levels);
+  for (int row = 0; row < rows; ++row) work.value[at(row)] = dot(problem, row, work.point.x.data());
 }
 
 bool move(const Problem& problem, const Eigen::VectorXd& step, double length,

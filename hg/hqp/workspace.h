@@ -44,10 +44,11 @@ struct Workspace {
   Point point;
   Point saved;  ///< the same, put aside
   std::vector<RowState> second_guess;
-  double x_norm = 0.0;             ///< largest |x| met in this solve: rounding errors scale with it
-  std::vector<double> value;       ///< c x by row
-  std::vector<double> last_value;  ///< same, of the point that the next step starts from
-  int steps = 0;                   ///< since that point was x = 0
+  double x_norm = 0.0;        ///< size of x that tolerances are relative to: of the point, or the
+                              ///< largest on the way to it
+  std::vector<double> value;  ///< c x by row
+  std::vector<double> last_value;       ///< same, of the point that the next step starts from
+  int steps = 0;                        ///< since that point was x = 0
   std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
   bool is_direct = false;               ///< the pivots of `point` are those of `direct`
   int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state

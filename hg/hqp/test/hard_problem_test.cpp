@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -52,6 +53,27 @@ Problem problem_with_growth(int n, bool is_equality, std::vector<double>& expect
     problem.add_bound(i, {wish, wish});
   }
   return problem;
+}
+
+// W. Kahan's matrix: rows e_t - sum of the e_j behind it depend on each other but for 2^-n, which
+// no row shows.
+TEST(HardProblem, ARankThatNoRowShowsIsNoticed) {
+  for (const int n : {20, 32, 48, 60}) {
+    for (const bool is_one_level : {false, true}) {
+      SCOPED_TRACE("n " + std::to_string(n) + (is_one_level ? ", one level" : ""));
+      Problem problem({.variables = n, .levels = 2, .rows = n});
+      problem.add_level();
+      std::vector<double> row(static_cast<std::size_t>(n), -1.0);
+      for (int t = 0; t + 1 < n; ++t) {
+        row[static_cast<std::size_t>(t)] = 1.0;
+        problem.add_row(row, {0.0, 0.0});
+        row[static_cast<std::size_t>(t)] = 0.0;
+      }
+      if (!is_one_level) problem.add_level();
+      problem.add_row(row, {-1.0, -1.0});  // -x[n-1]
+      solve(problem);                      // judges the result
+    }
+  }
 }
 
 TEST(HardProblem, EliminationThatLosesDigitsIsNoticed) {

@@ -212,7 +212,7 @@ TEST(Solve, NamesTheFirstBadRowAndKeepsTheLevelsAbove) {
 }
 
 TEST(Solve, StopsAtTheIterationCapWithWhatIsSettled) {
-  int stopped = 0;
+  int stopped = 0, stopped_later = 0;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Problem problem = random_problem(seed, {});
@@ -232,9 +232,11 @@ TEST(Solve, StopsAtTheIterationCapWithWhatIsSettled) {
                     1e-9 * (1.0 + full.solution.levels[p].slack_squared));
       }
       ++stopped;
+      stopped_later += bench.solution.completed_levels > 0;
     }
   }
   EXPECT_GT(stopped, 100);
+  EXPECT_GT(stopped_later, 30);
 }
 
 TEST(Solve, KeepsAFinitePointWhereNumbersOverflow) {
@@ -247,6 +249,38 @@ TEST(Solve, KeepsAFinitePointWhereNumbersOverflow) {
   Bench bench;
   bench.solve(problem, kInfinity);
   for (const double x : bench.solution.x) EXPECT_TRUE(std::isfinite(x));
+}
+
+TEST(Solve, SaysWhereSlacksOverflow) {
+  Problem problem({.variables = 2, .levels = 2, .rows = 2});
+  problem.add_level();
+  problem.add_bound(0, {-1.0, 1.0});
+  problem.add_level();
+  problem.add_bound(0, {1e300, 1e300});
+  Bench bench;
+  EXPECT_EQ(bench.solve(problem), Status::kNumericalFailure);
+  EXPECT_EQ(bench.solution.completed_levels, 1);
+  EXPECT_TRUE(std::isfinite(bench.solution.x[0]));
+}
+
+TEST(SolveDeathTest, StopsBeforeItOverwritesMemory) {
+  Problem problem({.variables = 3, .levels = 1, .rows = 3});
+  problem.add_level();
+  for (int i = 0; i < 3; ++i) problem.add_bound(i, {1.0, 1.0});
+  const Capacity small = {.variables = 2, .levels = 1, .rows = 2};
+  ActiveSet active;
+  EXPECT_DEATH(
+      {
+        Solution solution(problem.capacity());
+        Solver(small).solve(problem, {}, active, solution);
+      },
+      "larger than the capacity of the solver");
+  EXPECT_DEATH(
+      {
+        Solution solution(small);
+        Solver(problem.capacity()).solve(problem, {}, active, solution);
+      },
+      "larger than the capacity of the solution");
 }
 
 TEST(Solve, ConfirmsItsOwnActiveSetInOneIteration) {
