@@ -59,7 +59,8 @@ class Cycle {
   const hqp::Problem& problem() const noexcept { return rendering_.problem(); }
   /// Solves that failed or were slow, see Rendering::kept_problems(). For one other thread.
   const hqp::KeptProblems& kept_problems() const noexcept { return rendering_.kept_problems(); }
-  /// Keeps the last solve of the last step, too, which took that long.
+  /// Keeps the last solve of the last step, too, which took that long; nothing when the step solved
+  /// nothing: its sensor values were not finite.
   void keep_problem(double cycle_time_us) noexcept {
     rendering_.keep_problem(state_.cycle - 1, cycle_time_us);
   }

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "hg/core/stage_probe.h"
 #include "hg/hqp/kept_problems.h"
@@ -67,7 +68,7 @@ class Rendering {
   /// Solves that failed, that took options.slow_solve active sets or more, or that keep_problem()
   /// was called for. One other thread may read them.
   const hqp::KeptProblems& kept_problems() const noexcept { return *kept_problems_; }
-  /// Keeps the last solve, which belonged to cycle `cycle`; 0 us: not for the time that this took.
+  /// Keeps the last solve if it belonged to cycle `cycle`; 0 us: not for the time that this took.
   void keep_problem(std::uint64_t cycle, double cycle_time_us = 0.0) noexcept;
   /// s of the last step (11): how H had to accelerate relative to E.
   const Vector6& synchronisation() const noexcept { return tasks_.synchronisation(); }
@@ -91,7 +92,8 @@ class Rendering {
   hqp::Options solver_options_;
   hqp::Solver solver_;
   hqp::Solution solution_;
-  hqp::ActiveSet guess_;  ///< that the last solve began with
+  hqp::ActiveSet guess_;                       ///< that the last solve began with
+  std::optional<std::uint64_t> solved_cycle_;  ///< of the last solve
   std::unique_ptr<hqp::KeptProblems> kept_problems_;
   StageProbe ended_;
 };

@@ -130,6 +130,20 @@ TEST(Cycle, ANanInTheWrenchEndsInASafeCommandWithItsCause) {
   EXPECT_EQ(loop.record.fault.index, 16);
 }
 
+TEST(Cycle, OnlyItsOwnSolveIsKeptForASlowStep) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[2] = std::numeric_limits<double>::quiet_NaN();
+  loop.step();
+  loop.cycle->keep_problem(99.0);  // nothing was solved
+  EXPECT_EQ(loop.cycle->kept_problems().count(), 0U);
+  loop.sensors.w_S[2] = 0.0;
+  loop.step();
+  loop.cycle->keep_problem(99.0);
+  ASSERT_EQ(loop.cycle->kept_problems().size(), 1U);
+  EXPECT_EQ(loop.cycle->kept_problems()[0].cycle, loop.record.cycle);
+}
+
 TEST(Cycle, AnInfinityInTheJointsEndsInASafeCommand) {
   Loop loop;
   loop.start_running();

@@ -93,8 +93,12 @@ TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessAskedFor) {
   Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
   State state = rendering.start(kPosture);
   CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
+  rendering.keep_problem(record.cycle);  // nothing has been solved
+  record.cycle = 5;
   rendering.step(state, 0.0, record);
+  rendering.keep_problem(6);  // not that cycle's
   EXPECT_EQ(rendering.kept_problems().size(), 0U);
+  EXPECT_EQ(rendering.kept_problems().count(), 0U);
   rendering.keep_problem(5);
   ASSERT_EQ(rendering.kept_problems().size(), 1U);
   EXPECT_EQ(rendering.kept_problems()[0].cycle, 5U);
