@@ -48,6 +48,24 @@ nb::object integers(std::size_t size, Get get) {
   return nb::cast(IntegersOut(owned->data(), {size}, owner), nb::rv_policy::automatic);
 }
 
+ArrayOut vector_to_numpy(std::vector<double> numbers) {
+  const std::size_t size = numbers.size();
+  return to_numpy(std::move(numbers), {size});
+}
+
+// a member of every level's result
+template <int LevelResult::*member>
+nb::object by_level(const SolutionOut& out) {
+  const auto& levels = out.solution.levels;
+  return integers(levels.size(), [&](std::size_t i) { return levels[i].*member; });
+}
+
+ArrayOut slack_squared_of(const SolutionOut& out) {
+  std::vector<double> values;
+  for (const LevelResult& level : out.solution.levels) values.push_back(level.slack_squared);
+  return vector_to_numpy(std::move(values));
+}
+
 // number i of an array that has one number for all, or `size`
 double number_of(const ArrayIn& in, std::size_t i, std::size_t size, const char* name) {
   if (in.size() != 1 && in.size() != size) refuse_size(name, size, in.size());
@@ -148,10 +166,46 @@ void bind_enums(nb::module_& module) {
       .value("ABOVE", RowState::kAbove, "violated: stays above its upper bound");
 }
 
+// What is said of one row.
+void bind_single_rows(nb::class_<Problem>& problem) {
+  problem
+      .def(
+          "set_row",
+          [](Problem& self, int row, const ArrayIn& coefficients) {
+            require_row(self, row);
+            require(self.variable(row) < 0, "set_row is not for rows made by add_bound");
+            self.set_row(row, row_of(self, coefficients));
+          },
+          nb::arg("row"), nb::arg("coefficients"))
+      .def(
+          "set_bounds",
+          [](Problem& self, int row, double lb, double ub) {
+            require_row(self, row);
+            self.set_bounds(row, {lb, ub});
+          },
+          nb::arg("row"), nb::arg("lb"), nb::arg("ub"))
+      .def(
+          "set_weight",
+          [](Problem& self, int row, double weight) {
+            require_row(self, row);
+            self.set_weight(row, weight);
+          },
+          nb::arg("row"), nb::arg("weight"))
+      .def(
+          "level_of",
+          [](const Problem& self, int row) {
+            require_row(self, row);
+            return self.level_of(row);
+          },
+          nb::arg("row"), "The level that a row belongs to.");
+}
+
 void bind_problem(nb::module_& module) {
-  nb::class_<Problem>(module, "Problem",
-                      "Levels of rows lb <= c x <= ub, the first level being the most important. "
-                      "Equalities have lb = ub; infinite ends are no bounds. Rows keep their id.")
+  nb::class_<Problem> problem(
+      module, "Problem",
+      "Levels of rows lb <= c x <= ub, the first level being the most important. "
+      "Equalities have lb = ub; infinite ends are no bounds. Rows keep their id.");
+  problem
       .def(
           "__init__",
           [](Problem* self, int variables, int levels, int rows) {
@@ -180,41 +234,13 @@ void bind_problem(nb::module_& module) {
            "numbers or one for all. Returns the ids.")
       .def("add_bounds", &add_bounds, nb::arg("lb"), nb::arg("ub"), nb::arg("weights") = 1.0,
            "Appends a row per variable to the last level, as add_rows(). Returns the ids.")
-      .def(
-          "set_row",
-          [](Problem& self, int row, const ArrayIn& coefficients) {
-            require_row(self, row);
-            require(self.variable(row) < 0, "set_row is not for rows made by add_bound");
-            self.set_row(row, row_of(self, coefficients));
-          },
-          nb::arg("row"), nb::arg("coefficients"))
-      .def(
-          "set_bounds",
-          [](Problem& self, int row, double lb, double ub) {
-            require_row(self, row);
-            self.set_bounds(row, {lb, ub});
-          },
-          nb::arg("row"), nb::arg("lb"), nb::arg("ub"))
-      .def(
-          "set_weight",
-          [](Problem& self, int row, double weight) {
-            require_row(self, row);
-            self.set_weight(row, weight);
-          },
-          nb::arg("row"), nb::arg("weight"))
       .def_prop_ro("variables", &Problem::variables)
       .def_prop_ro("levels", &Problem::levels)
-      .def_prop_ro("rows", &Problem::rows)
-      .def(
-          "level_of",
-          [](const Problem& self, int row) {
-            require_row(self, row);
-            return self.level_of(row);
-          },
-          nb::arg("row"), "The level that a row belongs to.");
+      .def_prop_ro("rows", &Problem::rows);
+  bind_single_rows(problem);
 }
 
-void bind_solution(nb::module_& module) {
+void bind_options(nb::module_& module) {
   nb::class_<ActiveSet>(module, "ActiveSet",
                         "Guess of the row states; the default is a cold start. A wrong guess costs "
                         "time, never correctness.")
@@ -233,6 +259,9 @@ void bind_solution(nb::module_& module) {
       .def_ro("options", &hqp::RecordedProblem::options)
       .def_ro("active_set", &hqp::RecordedProblem::guess, "None: nothing is known")
       .def_ro("name", &hqp::RecordedProblem::name, "where it comes from");
+}
+
+void bind_solution(nb::module_& module) {
   nb::class_<SolutionOut>(module, "Solution", "Result of one solve.")
       .def_prop_ro("status", [](const SolutionOut& out) { return out.solution.status; })
       .def_prop_ro(
@@ -242,14 +271,10 @@ void bind_solution(nb::module_& module) {
           "completed_levels", [](const SolutionOut& out) { return out.solution.completed_levels; },
           "levels known to be optimal, from the top")
       .def_prop_ro(
-          "x",
-          [](const SolutionOut& out) { return to_numpy(out.solution.x, {out.solution.x.size()}); },
+          "x", [](const SolutionOut& out) { return vector_to_numpy(out.solution.x); },
           "(variables)")
       .def_prop_ro(
-          "slack",
-          [](const SolutionOut& out) {
-            return to_numpy(out.solution.slack, {out.solution.slack.size()});
-          },
+          "slack", [](const SolutionOut& out) { return vector_to_numpy(out.solution.slack); },
           "(rows) nearest bound minus c x, 0 inside")
       .def_prop_ro(
           "state",
@@ -258,38 +283,16 @@ void bind_solution(nb::module_& module) {
             return integers(state.size(), [&](std::size_t i) { return state[i]; });
           },
           "(rows) RowState of every row")
-      .def_prop_ro(
-          "slack_squared",
-          [](const SolutionOut& out) {
-            std::vector<double> values;
-            for (const LevelResult& level : out.solution.levels) {
-              values.push_back(level.slack_squared);
-            }
-            const std::size_t levels = values.size();
-            return to_numpy(std::move(values), {levels});
-          },
-          "(levels) sum of (weight * slack)^2")
-      .def_prop_ro(
-          "freedom",
-          [](const SolutionOut& out) {
-            const auto& levels = out.solution.levels;
-            return integers(levels.size(), [&](std::size_t i) { return levels[i].freedom; });
-          },
-          "(levels) dimensions that each level found left to it")
-      .def_prop_ro(
-          "blocking_row",
-          [](const SolutionOut& out) {
-            const auto& levels = out.solution.levels;
-            return integers(levels.size(), [&](std::size_t i) { return levels[i].blocking_row; });
-          },
-          "(levels) row above that costs each level most, -1: none")
+      .def_prop_ro("slack_squared", &slack_squared_of, "(levels) sum of (weight * slack)^2")
+      .def_prop_ro("freedom", &by_level<&LevelResult::freedom>,
+                   "(levels) dimensions that each level found left to it")
+      .def_prop_ro("blocking_row", &by_level<&LevelResult::blocking_row>,
+                   "(levels) row above that costs each level most, -1: none")
       .def(
           "multipliers",
           [](const SolutionOut& out, int level) {
             double remainder = 0.0;
-            std::vector<double> mu = multipliers_of(out, level, remainder);
-            const std::size_t rows = mu.size();
-            return to_numpy(std::move(mu), {rows});
+            return vector_to_numpy(multipliers_of(out, level, remainder));
           },
           nb::arg("level"),
           "(rows) what the rows above `level` do against it: >= 0 at an upper bound, <= 0 at a "
@@ -305,6 +308,7 @@ void bind_solution(nb::module_& module) {
 void bind_hqp(nb::module_& module) {
   bind_enums(module);
   bind_problem(module);
+  bind_options(module);
   bind_solution(module);
   module.def("solve", &solve, nb::arg("problem"), nb::arg("active_set") = nb::none(),
              nb::arg("options") = hqp::Options{},
