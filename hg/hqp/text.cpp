@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -30,6 +31,15 @@ std::string in_quotes(std::string_view word) { return std::string("'").append(wo
 std::string to_text(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof(text), value).ptr};
+}
+
+// A name of several lines, or with other control characters, would not be read back.
+std::string in_one_line(std::string name) {
+  const auto is_control = [](unsigned char c) { return std::iscntrl(c) != 0; };
+  std::replace_if(name.begin(), name.end(), is_control, ' ');
+  const auto first = name.find_first_not_of(' ');
+  if (first == std::string::npos) return {};
+  return name.substr(first, name.find_last_not_of(' ') - first + 1);
 }
 
 // Splits a text into lines and the current line into words.
@@ -287,7 +297,7 @@ RecordedProblem parse_recorded(Reader& reader) {
     reader.need_line("'level'");
     const std::string word = reader.need_one_of(keywords);
     if (word == "level") break;
-    if (word == "name") name = reader.rest_of_line();
+    if (word == "name") name = in_one_line(std::string(reader.rest_of_line()));
     if (word == "options") options = parse_options(reader);
   }
   const std::vector<ParsedRow> rows = parse_levels(reader, n, levels);
@@ -342,11 +352,9 @@ void write_row(std::ostream& out, const Problem& problem, int row, bool is_equal
   out << '\n';
 }
 
-// A name of several lines, or with other control characters, would not be read back.
-void write_name(std::ostream& out, std::string name) {
-  const auto is_control = [](unsigned char c) { return c < ' ' || c == '\x7f'; };
-  std::replace_if(name.begin(), name.end(), is_control, ' ');
-  if (!name.empty()) out << "name " << name << '\n';
+void write_name(std::ostream& out, const std::string& name) {
+  const std::string line = in_one_line(name);
+  if (!line.empty()) out << "name " << line << '\n';
 }
 
 void write_options(std::ostream& out, const Options& options) {
