@@ -1,5 +1,6 @@
 #include "hg/hqp/sweep.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hg::hqp {
@@ -7,6 +8,7 @@ namespace {
 
 // Rest of a gradient, relative to its terms, up to which direct elimination has cancelled it.
 constexpr double kSmallRest = 1e-10;
+// Steps from the first point, docs/hqp.md: more help where few rows act, and harm where many do.
 constexpr int kVariablesPerEarlyStep = 6;
 
 // The smallest |x| is a level below all others.
@@ -255,8 +257,9 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
     if (!can_push && !is_least_squares) continue;
     const LevelGradient size = guess_gradient(problem, options, level, work);
     if (size.is_zero) continue;
-    if (!find_multipliers(problem, options, size, level, first_held, work))
+    if (!find_multipliers(problem, options, size, level, first_held, work)) {
       return Judgement::kInDoubt;
+    }
     const int pulling_row = judge_multipliers(problem, size, level, first_held, work);
     if (pulling_row < 0) continue;
     set_guess(problem, pulling_row, RowState::kInactive, work);
