@@ -35,6 +35,7 @@ struct Playing {
   double worst_gap = 0.0;
   double worst_jump = 0.0;  // of a twin acceleration from one cycle to the next
   VectorA last_ddq;
+  int changes = 0;  // of limits that act
 
   explicit Playing(const TwinModel& twin, const Options& options = without_synchronisation())
       : rendering(unlimited_device(), twin, options), state(rendering.start(kPosture)) {}
@@ -48,6 +49,7 @@ struct Playing {
     if (last_ddq.size() > 0)
       worst_jump = std::max(worst_jump, (ddq - last_ddq).cwiseAbs().maxCoeff());
     last_ddq = ddq;
+    changes += record.active_set_changes;
     rendering.integrate(state);
   }
 
@@ -83,6 +85,29 @@ inline TwinModel door() {
   twin.dofs[0].limits = {0.0, 1.75, kInfinity, 6.0};
   twin.dofs[1].limits = {0.0, 0.80, 3.0, 35.0};
   return twin;
+}
+
+// The same, pulled shut by a closer, with a handle that springs back.
+inline TwinModel door_with_closer() {
+  TwinModel twin = door();
+  twin.dofs[0].limits = {0.0, 1.75, 1.2, 25.0};
+  twin.dofs[1].limits = {0.0, 0.80, 6.0, 200.0};
+  twin.dofs[0].stiffness = 4.0;
+  twin.dofs[0].preload = 3.0;
+  twin.dofs[1].stiffness = 1.2;
+  twin.dofs[1].preload = 0.6;
+  twin.dofs[0].damping = 2.0;
+  twin.dofs[1].damping = 0.05;
+  return twin;
+}
+
+// Holds the door shut until its handle is pressed.
+inline Lock door_lock() {
+  return {.name = "bolt",
+          .dof = 0,
+          .position = 0.0,
+          .engaged_while = {{.dof = 0, .range = {-kInfinity, 0.03}},
+                            {.dof = 1, .range = {-kInfinity, 0.50}}}};
 }
 
 // A URDF of `joints` joints in a row, the last link of mass `last_mass`, kg.

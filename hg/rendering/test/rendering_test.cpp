@@ -7,13 +7,10 @@
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
-#include "hg/rendering/test/test_models.h"
+#include "hg/rendering/test/playing.h"
 
 namespace hg::rendering {
 namespace {
-
-const VectorM kPosture = posture({0.3, 1.5, -0.6, 1.3, 0.2, 2.1});
-const Eigen::Vector2d kGantryAtHome = Eigen::Vector2d::Zero();
 
 // the twin of [HANDBOOK] 12.1: 6 kg, centre of mass off the handle, inertia about it
 TwinModel golden_twin() {
@@ -191,22 +188,6 @@ double budget_gap(const CycleRecord& record) {
       .norm();
 }
 
-TwinModel door_twin(const Pose& T_B_root) {
-  TwinModel twin =
-      unlimited_twin(model::Chain::from_urdf_file("models/twins/door/door.urdf",
-                                                  {.T_B_root = T_B_root, .gravity = false}),
-                     "handle");
-  twin.dofs[0].limits = {0.0, 1.75, 1.2, 25.0};
-  twin.dofs[1].limits = {0.0, 0.80, 6.0, 200.0};
-  twin.dofs[0].stiffness = 4.0;
-  twin.dofs[0].preload = 3.0;
-  twin.dofs[1].stiffness = 1.2;
-  twin.dofs[1].preload = 0.6;
-  twin.dofs[0].damping = 2.0;
-  twin.dofs[1].damping = 0.05;
-  return twin;
-}
-
 TEST(Rendering, TheBudgetClosesAndTheBearingsCarryTheRest) {
   constexpr unsigned kSeed = 7;
   SCOPED_TRACE(kSeed);
@@ -215,7 +196,7 @@ TEST(Rendering, TheBudgetClosesAndTheBearingsCarryTheRest) {
   DeviceModel device = unlimited_device();
   for (auto& limits : device.joint_limits) limits = {-10.0, 10.0, 2.0, 12.0};
   for (int trial = 0; trial < 200; ++trial) {
-    TwinModel twin = door_twin({});
+    TwinModel twin = door_with_closer();
     twin.dofs[0].friction = 0.5;
     Rendering rendering(device, twin, without_synchronisation());
     State state = rendering.start(kPosture);
@@ -264,144 +245,6 @@ TEST(Rendering, AtAHeldLimitTheOtherJointsMoveLikeTheReducedModel) {
   // what the limit pushes with is what the equation of the held joint lacks
   EXPECT_NEAR(record.limits[9].reaction, M.row(3).head<3>().dot(expected) + c[3] - record.tau_a[3],
               1e-9);
-}
-
-// Plays `seconds` of a twin on its own: the device has no limits and no synchronisation.
-struct Playing {
-  Rendering rendering;
-  State state;
-  CycleRecord record;
-
-  explicit Playing(const TwinModel& twin)
-      : rendering(unlimited_device(), twin, without_synchronisation()),
-        state(rendering.start(kPosture)) {}
-
-  // torque at the twin's joint `dof`, made by a wrench on E
-  void run(double seconds, int dof, double torque) {
-    for (int k = 0; k < static_cast<int>(1000 * seconds); ++k) {
-      state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-      record = record_with(kGantryAtHome, kPosture, wrench_for(dof, torque));
-      ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
-      rendering.integrate(state);
-      changes += record.active_set_changes;
-    }
-  }
-
-  Vector6 wrench_for(int dof, double torque) {
-    model::Chain chain = rendering.twin().chain;
-    chain.update_kinematics(state.twin.q_a, state.twin.dq_a);
-    const Eigen::MatrixXd J_a_T = chain.jacobian(rendering.twin().end_effector).transpose();
-    const Eigen::VectorXd tau = torque * Eigen::VectorXd::Unit(J_a_T.rows(), dof);
-    return J_a_T.completeOrthogonalDecomposition().solve(tau);
-  }
-
-  int changes = 0;
-};
-
-TEST(Rendering, NothingChattersAtAHeldLimit) {
-  Playing door(door_twin({}));
-  door.run(4.0, 0, 20.0);
-  EXPECT_NEAR(door.state.twin.q_a[0], 1.75, 1e-6);
-  door.changes = 0;
-  door.run(1.0, 0, 20.0);
-  EXPECT_EQ(door.changes, 0);
-  EXPECT_LE(door.state.twin.q_a[0], 1.75);
-  EXPECT_NEAR(door.record.limits[6].reaction, -(20.0 - 3.0 - 4.0 * 1.75), 1e-3);
-}
-
-TEST(Rendering, AStopThatOnlyCarriesASpringIsNotFelt) {
-  Playing door(door_twin({}));
-  door.run(0.1, 0, 0.0);
-  EXPECT_EQ(door.record.limits[6].state, LimitState::kLower);
-  EXPECT_NEAR(door.record.limits[6].reaction, 3.0, 1e-6);  // of the closer
-  EXPECT_EQ(door.record.felt_limit, -1);
-  door.run(0.1, 0, -5.0);  // pulled against the stop
-  EXPECT_EQ(door.record.felt_limit, 6);
-}
-
-TEST(Rendering, CoulombFrictionHoldsUpToItsTorqueAndSlipsBeyond) {
-  TwinModel twin = door_twin({});
-  for (TwinDof& dof : twin.dofs) dof.stiffness = dof.preload = dof.damping = 0.0;
-  twin.dofs[0].friction = 4.0;
-  twin.q_start[0] = 0.5;
-  Playing door(twin);
-  door.run(0.5, 0, 3.9);
-  EXPECT_EQ(door.state.twin.q_a[0], 0.5);
-  EXPECT_EQ(door.record.limits[6].cause, LimitCause::kFriction);
-  door.run(0.2, 0, 5.0);
-  const double inertia = door.rendering.twin().chain.M()(0, 0);
-  EXPECT_NEAR(door.state.twin.dq_a[0], (5.0 - 4.0) * 0.2 / inertia, 1e-3);
-  // let go: it brakes with the friction torque, stops, and stays
-  door.run(0.1, 0, 0.0);
-  const double stopped = door.state.twin.q_a[0];
-  EXPECT_NEAR(door.state.twin.dq_a[0], 0.0, 1e-9);
-  door.run(0.5, 0, 0.0);
-  EXPECT_NEAR(door.state.twin.q_a[0], stopped, 1e-9);
-}
-
-Lock door_lock() {
-  return {.name = "bolt",
-          .dof = 0,
-          .position = 0.0,
-          .engaged_while = {{.dof = 0, .range = {-kInfinity, 0.03}},
-                            {.dof = 1, .range = {-kInfinity, 0.50}}}};
-}
-
-TEST(Rendering, ALockHoldsUntilTheHandleIsPressed) {
-  TwinModel twin = door_twin({});
-  twin.locks = {door_lock()};
-  twin.dofs[1].stiffness = twin.dofs[1].preload = 0.0;  // the handle stays where it is put
-  Playing door(twin);
-  door.run(0.5, 0, 30.0);
-  EXPECT_LT(std::abs(door.state.twin.q_a[0]), 1e-4);
-  EXPECT_EQ(door.record.limits[6].cause, LimitCause::kLock);
-  EXPECT_NEAR(door.record.limits[6].reaction, -(30.0 - 3.0), 0.1);
-  door.state.twin.q_a[1] = 0.6;
-  door.run(0.1, 0, 30.0);
-  EXPECT_GT(door.state.twin.q_a[0], 0.03);
-}
-
-TEST(Rendering, ALatchLetsTheDoorCloseButNotOpenAgain) {
-  TwinModel twin = door_twin({});
-  twin.locks = {door_lock()};
-  twin.q_start[0] = 0.02;
-  Playing door(twin);
-  door.run(0.2, 0, 10.0);  // pushes open, against the latch
-  EXPECT_LE(door.state.twin.q_a[0], 0.02 + 1e-9);
-  EXPECT_EQ(door.record.limits[6].cause, LimitCause::kLatch);
-  door.run(1.0, 0, 0.0);  // the closer pulls it shut
-  EXPECT_NEAR(door.state.twin.q_a[0], 0.0, kLockReached);
-  EXPECT_EQ(door.record.limits[6].cause, LimitCause::kLock);
-  door.run(0.2, 0, 30.0);
-  EXPECT_NEAR(door.state.twin.q_a[0], 0.0, kLockReached);
-}
-
-TEST(Rendering, ALatchBringsTheJointToRestAtALockInMidRange) {
-  TwinModel twin = door_twin({});
-  Lock lock = door_lock();
-  lock.position = 0.9;
-  lock.engaged_while.erase(lock.engaged_while.begin());
-  twin.locks = {lock};
-  twin.q_start[0] = 1.5;
-  Playing door(twin);
-  door.run(0.5, 0, 0.0);
-  EXPECT_NE(door.record.limits[6].cause, LimitCause::kLatch);  // falls freely towards the lock
-  door.run(3.0, 0, 0.0);
-  EXPECT_NEAR(door.state.twin.q_a[0], 0.9, kLockReached);
-  EXPECT_EQ(door.record.limits[6].cause, LimitCause::kLock);
-}
-
-TEST(Rendering, BrakingStopsATwinWithASpring) {
-  Playing door(door_twin({}));
-  door.state.twin.q_a[0] = 1.0;
-  door.state.twin.dq_a[0] = -0.8;
-  for (int k = 0; k < 600; ++k) {
-    door.record = record_with(kGantryAtHome, kPosture, door.wrench_for(0, 20.0));
-    door.state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-    door.rendering.step(door.state, 20.0, door.record);
-    door.rendering.integrate(door.state);
-  }
-  EXPECT_LT(std::abs(door.state.twin.dq_a[0]), 1e-3);
 }
 
 // The free body at the handle, pushed by `force` along x, while the gantry accelerates by `ddq_p`.
@@ -454,7 +297,7 @@ TEST(Rendering, AGantryThatDragsJointsFromTheirLimitsBlocksTheDevice) {
   for (int i = 0; i < 6; ++i) {
     device.joint_limits[static_cast<std::size_t>(i)] = {kPosture[i], kPosture[i], 1.0, 10.0};
   }
-  Rendering rendering(device, door_twin({}), without_synchronisation());
+  Rendering rendering(device, door_with_closer(), without_synchronisation());
   State state = rendering.start(kPosture);
   CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
   rendering.step(state, 0.0, record);
@@ -498,7 +341,7 @@ TEST(Rendering, AStepMakesNoAllocation) {
       {.name = "q4+q5", .weights = posture({0, 0, 0, 1, 1, 0}), .limits = {0.26, 2.88, 4, 40}}};
   device.cartesian_limits = {{.name = "hand", .frame = device.handle, .axes = {}, .margin = 5e-3}};
   device.cartesian_limits[0].axes.fill({-1.5, 1.5, 1.5, 5.0});
-  TwinModel twin = door_twin({});
+  TwinModel twin = door_with_closer();
   twin.locks = {door_lock()};
   twin.dofs[1].friction = 0.3;
   Rendering rendering(device, twin, without_synchronisation());
