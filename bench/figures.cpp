@@ -10,12 +10,20 @@ namespace hg::bench {
 namespace {
 
 // px
-constexpr int kColumns = 2, kWidth = 440, kHeight = 230;
-constexpr int kLeft = 62, kRight = 26, kTop = 30, kBottom = 36, kHead = 40;
+constexpr int kColumns = 2, kWidth = 440, kHeight = 244;
+constexpr int kLeft = 62, kRight = 26, kTop = 44, kBottom = 36, kHead = 40;
 
 // told apart by those who do not see all colours as well (Okabe, Ito)
 constexpr std::array<const char*, 6> kColours = {"#0072b2", "#d55e00", "#009e73",
                                                  "#cc79a7", "#56b4e9", "#e69f00"};
+
+// Outlines of 10 px around 0 0; where lines coincide, different ones show all.
+constexpr std::array<const char*, 6> kMarkers = {"M-5,0A5,5 0 1 0 5,0A5,5 0 1 0 -5,0Z",
+                                                 "M-3,-3H3V3H-3Z",
+                                                 "M0,-5L5,4H-5Z",
+                                                 "M0,-5L5,0L0,5L-5,0Z",
+                                                 "M-4,-4L4,4M-4,4L4,-4",
+                                                 "M-5,0H5M0,-5V5"};
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -86,6 +94,22 @@ std::string grid(const Axis& x, const Axis& y) {
          line(x.begin, y.begin, x.begin, y.end, "axis");
 }
 
+std::string marker(double x, double y, std::size_t place) {
+  return fmt::format("<path stroke=\"{}\" d=\"{}\" transform=\"translate({:.1f} {:.1f})\"/>\n",
+                     kColours[place % kColours.size()], kMarkers[place % kMarkers.size()], x, y);
+}
+
+std::string curve(const std::vector<std::pair<double, double>>& points, std::size_t place,
+                  bool has_markers) {
+  std::string svg =
+      fmt::format("<polyline stroke=\"{}\" points=\"", kColours[place % kColours.size()]);
+  for (const auto& [x, y] : points) svg += fmt::format("{:.1f},{:.1f} ", x, y);
+  svg += "\"/>\n";
+  if (!has_markers) return svg;
+  for (const auto& [x, y] : points) svg += marker(x, y, place);
+  return svg;
+}
+
 std::string draw(const Figure& figure, const Panel& panel, Axis x, Axis y, int left, int top) {
   x.begin = left + kLeft;
   x.end = left + kWidth - kRight;
@@ -97,17 +121,21 @@ std::string draw(const Figure& figure, const Panel& panel, Axis x, Axis y, int l
   const double middle = 0.5 * (y.begin + y.end);
   svg += text_at(left + 16, middle, "middle", figure.y_label,
                  fmt::format(" transform=\"rotate(-90 {} {:.1f})\"", left + 16, middle).c_str());
+  constexpr double kSample = 16, kLetter = 5.8;  // px, of the line in the legend and its text
+  double label = x.begin;
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const Series& series = panel.series[i];
     if (series.points.empty()) continue;
-    const char* colour = kColours[i % kColours.size()];
-    svg += fmt::format("<polyline stroke=\"{}\" points=\"", colour);
-    for (const auto& [px, py] : series.points)
-      svg += fmt::format("{:.1f},{:.1f} ", x.at(px), y.at(py));
-    svg += "\"/>\n";
-    const double row = top + kTop + 10 + 13.0 * static_cast<double>(i);
-    svg += text_at(x.end - 4, row, "end", series.label,
-                   fmt::format(" class=\"label\" fill=\"{}\"", colour).c_str());
+    std::vector<std::pair<double, double>> points;
+    for (const auto& [px, py] : series.points) points.emplace_back(x.at(px), y.at(py));
+    svg += curve(points, i, figure.has_markers);
+
+    const double row = top + 34.0;
+    svg += curve({{label, row}, {label + kSample, row}}, i, false);
+    if (figure.has_markers) svg += marker(label + 0.5 * kSample, row, i);
+    svg += text_at(label + kSample + 4, row + 3.5, "start", series.label,
+                   fmt::format(" fill=\"{}\"", kColours[i % kColours.size()]).c_str());
+    label += kSample + 10 + kLetter * static_cast<double>(series.label.size());
   }
   return svg;
 }
@@ -152,8 +180,7 @@ std::string to_svg(const Figure& figure) {
       "{1}\" "
       "font-family=\"sans-serif\" font-size=\"11\">\n"
       "<style>.grid {{stroke: #ddd}} .axis {{stroke: #333}} "
-      ".label {{paint-order: stroke; stroke: #fff; stroke-width: 3}} "
-      "polyline {{fill: none; stroke-width: 1.4; stroke-linejoin: round}}</style>\n"
+      "polyline, path {{fill: none; stroke-width: 1.4; stroke-linejoin: round}}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
       width, height);
   svg += text_at(kLeft, 24, "start", figure.title, " font-size=\"14\"");

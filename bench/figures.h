@@ -16,13 +16,15 @@ struct Series {
 
 struct Panel {
   std::string title;
-  std::vector<Series> series;  ///< at most 6; the place gives the colour, empty ones are not shown
+  std::vector<Series>
+      series;  ///< at most 6; the place gives colour and marker, empty ones are not shown
 };
 
 /// All panels share their axes, so that they can be compared.
 struct Figure {
   std::string title, x_label, y_label;
   std::vector<Panel> panels;
+  bool has_markers = false;  ///< at every point, one shape per place, for few points
 };
 
 /// Outline of the histogram of the times; bins without any are at half a count.

@@ -97,7 +97,7 @@ ordered_json cycle_bins(const BenchResults& results) {
 }
 
 bench::Figure solver_figure(const BenchResults& results) {
-  bench::Figure figure = {"Time of the solver", "us per problem", "problems", {}};
+  bench::Figure figure = {"Time of the solver", "µs per problem", "problems", {}};
   for (const bench::SolverSet& set : results.solver) {
     bench::Panel panel = {
         fmt::format("{} (n = {}, {} levels)", set.name, set.variables, set.levels), {}};
@@ -115,7 +115,7 @@ bench::Figure solver_figure(const BenchResults& results) {
 
 bench::Figure cycle_figure(const BenchResults& results) {
   bench::Figure figure = {
-      "Time of Cycle::step and its longest stages, law gauss", "us", "cycles", {}};
+      "Time of Cycle::step and its longest stages, law gauss", "µs", "cycles", {}};
   for (const bench::CycleTimes& times : results.cycles) {
     bench::Panel panel = {times.scenario, {bench::outline("Cycle::step", times.total)}};
     for (const Stage stage : {Stage::kSolver, Stage::kRenderingSetUp, Stage::kReactions}) {
@@ -128,7 +128,7 @@ bench::Figure cycle_figure(const BenchResults& results) {
 }
 
 bench::Figure growth_figure(const BenchResults& results) {
-  bench::Figure figure = {"Growth on random problems, median", "variables", "us", {}};
+  bench::Figure figure = {"Growth on random problems, median", "variables", "µs", {}, true};
   for (const bool is_warm : {false, true}) {
     std::map<int, bench::Series> by_levels;
     for (const bench::GrowthRow& row : results.growth) {
