@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "bench/player.h"
@@ -82,7 +83,13 @@ class Observer {
 double per_cycle(double sum, const LawRun& run) { return sum / std::max(1, run.cycles - 1); }
 
 std::string to_text(const evaluation::Distribution& d) {
-  return fmt::format("{:.1f} / {:.1f} / {:.0f}", d.median, d.p99_9, d.max);
+  return fmt::format("{:.1f} / {} / {:.0f}", d.median, bench::to_text(d.p99_9, 1), d.max);
+}
+
+evaluation::Distribution distribution(const evaluation::Histogram& times, int cycles) {
+  evaluation::Distribution d = times.distribution();
+  if (static_cast<std::size_t>(cycles) < kEnoughForTail) d.p99_9 = std::nan("");
+  return d;
 }
 
 std::string violation(const LawRun& m) {
@@ -95,7 +102,7 @@ constexpr const char* kLine =
     "{:<11} {:<6} {:<12} {:>6} {:>9} {:>9} {:>8} {:>8}  {:<19} {:<20} {}\n";
 
 nlohmann::ordered_json to_json(const evaluation::Distribution& d) {
-  return {{"median", d.median}, {"p99_9", d.p99_9}, {"max", d.max}};
+  return {{"median", d.median}, {"p99_9", bench::to_json(d.p99_9)}, {"max", d.max}};
 }
 
 }  // namespace
@@ -122,7 +129,7 @@ std::string to_text(const LawRun& m) {
       fmt::format("{:.2f} %", 100.0 * per_cycle(m.changed_cycles, m)),
       fmt::format("{:.4f}", per_cycle(m.sum_acceleration_change, m)),
       fmt::format("{:.1f}", m.max_acceleration_change), violation(m),
-      to_text(m.solver_us.distribution()), to_text(m.cycle_us.distribution()));
+      to_text(distribution(m.solver_us, m.cycles)), to_text(distribution(m.cycle_us, m.cycles)));
   if (!m.missing.empty()) text += fmt::format("  missing: {}\n", fmt::join(m.missing, ", "));
   if (m.fault != FaultCode::kNone) text += fmt::format("  fault: {}\n", to_string(m.fault));
   if (m.unsolved > 0) text += fmt::format("  {} cycles not solved\n", m.unsolved);
@@ -148,8 +155,8 @@ nlohmann::ordered_json to_json(const LawRun& m) {
            {{"limit", m.worst_limit},
             {"value", m.worst_violation},
             {"unit", m.worst_is_angle ? "rad" : "m"}}},
-          {"solver_us", to_json(m.solver_us.distribution())},
-          {"cycle_us", to_json(m.cycle_us.distribution())}};
+          {"solver_us", to_json(distribution(m.solver_us, m.cycles))},
+          {"cycle_us", to_json(distribution(m.cycle_us, m.cycles))}};
 }
 
 }  // namespace hg::bench

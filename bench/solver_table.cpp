@@ -168,7 +168,7 @@ std::string to_text(const SolverSet& set) {
     const auto once = [&](const auto& value) { return is_first ? fmt::to_string(value) : ""; };
     text += fmt::format(kLine, is_first ? set.name : "", once(set.variables), once(set.levels),
                         once(set.problems), run.solver, fmt::format("{:.2f}", d.median),
-                        fmt::format("{:.2f}", d.p99_9), fmt::format("{:.2f}", d.max),
+                        to_text(d.p99_9, 2), fmt::format("{:.2f}", d.max),
                         is_ours ? fmt::format("{:.2f}", mean_iterations(set, run)) : "",
                         run.failures, run.wrong ? fmt::to_string(*run.wrong) : "-",
                         factor ? fmt::format("{:.{}f} x", *factor, *factor < 10.0 ? 1 : 0) : "");

@@ -1,7 +1,10 @@
 #include "bench/times.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace hg::bench {
@@ -27,14 +30,15 @@ void Times::add(std::size_t index, double us) {
 }
 
 evaluation::Distribution Times::distribution() const {
-  if (us_.empty()) return {};
+  constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+  if (us_.empty()) return {0.0, kNotANumber, 0.0};
   std::vector<double> sorted = us_;
   std::sort(sorted.begin(), sorted.end());
   const auto at = [&](double share) {
     const double rank = std::ceil(share * static_cast<double>(sorted.size()));
     return sorted[static_cast<std::size_t>(rank) - 1];
   };
-  return {at(0.5), at(0.999), sorted.back()};
+  return {at(0.5), sorted.size() < kEnoughForTail ? kNotANumber : at(0.999), sorted.back()};
 }
 
 double Times::mean() const {
@@ -55,9 +59,17 @@ std::vector<Bin> histogram(const Times& times) {
   return bins;
 }
 
+std::string to_text(double us, int decimals) {
+  return std::isnan(us) ? "-" : fmt::format("{:.{}f}", us, decimals);
+}
+
+nlohmann::ordered_json to_json(double us) {
+  return std::isnan(us) ? nlohmann::ordered_json() : nlohmann::ordered_json(us);
+}
+
 void add_to(nlohmann::ordered_json& row, const evaluation::Distribution& distribution) {
   row["median_us"] = distribution.median;
-  row["p99_9_us"] = distribution.p99_9;
+  row["p99_9_us"] = to_json(distribution.p99_9);
   row["max_us"] = distribution.max;
 }
 

@@ -18,6 +18,9 @@ inline double microseconds_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
 }
 
+/// Of fewer times 99.9 % is nothing but the maximum.
+inline constexpr std::size_t kEnoughForTail = 1000;
+
 class Times {
  public:
   /// A time of thing `index`, us; indices grow by one in the first pass.
@@ -25,7 +28,8 @@ class Times {
 
   std::size_t count() const { return us_.size(); }
   const std::vector<double>& us() const { return us_; }
-  /// Exact, of the fastest times; zeros when there are none.
+  /// Exact, of the fastest times; zeros when there are none. p99_9 is not a number when there are
+  /// fewer than kEnoughForTail.
   evaluation::Distribution distribution() const;
   double mean() const;
 
@@ -41,6 +45,11 @@ struct Bin {
 
 /// Bins of equal width on a logarithmic axis, 20 per decade, from the first to the last time.
 std::vector<Bin> histogram(const Times& times);
+
+/// "-" for what is not a number.
+std::string to_text(double us, int decimals);
+/// null for what is not a number.
+nlohmann::ordered_json to_json(double us);
 
 /// The keys median_us, p99_9_us and max_us.
 void add_to(nlohmann::ordered_json& row, const evaluation::Distribution& distribution);

@@ -61,6 +61,11 @@ void show(const std::string& text) {
   std::fflush(stdout);
 }
 
+// Of what --quick measures, for a heading.
+std::string only_first(std::size_t most, const char* what) {
+  return most == kAll ? "" : fmt::format("--quick: only the first {} {}\n", most, what);
+}
+
 // Until the rows of what is being measured take its place.
 void announce(const std::string& what) {
   if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "measuring {} ...\r", what);
@@ -77,8 +82,11 @@ bool measure_solvers(const std::vector<NamedScenario>& scenarios,
                      std::vector<bench::ProblemSource>& reference, const Effort& effort,
                      BenchResults& results) {
   const bench::BaselineSolve baseline = bench::find_baseline();
-  show(fmt::format("\nSolver, us per problem: the fastest of {} passes for each problem\n\n{}",
-                   effort.passes, bench::solver_header()));
+  show(fmt::format(
+      "\nSolver, us per problem: the fastest of {} passes for each problem\n{}\n{}", effort.passes,
+      only_first(effort.problems,
+                 "problems of each set; in those of a scenario usually nothing touches yet"),
+      bench::solver_header()));
   bool all_right = true;
   const auto measure = [&](bench::ProblemSource& source) {
     announce(source.name());
@@ -106,8 +114,10 @@ void measure_cycles(const std::vector<NamedScenario>& scenarios, const Effort& e
                     BenchResults& results) {
   show(fmt::format(
       "\nCycle, law gauss, bounds recoverable, us: the fastest of {} plays for each cycle; stages "
-      "are measured\nin {} plays of their own and contain a look at the clock each\n\n{}",
-      effort.passes, effort.passes, bench::cycle_header()));
+      "are measured\nin {} plays of their own and contain a look at the clock each\n{}\n{}",
+      effort.passes, effort.passes,
+      only_first(effort.cycles, "cycles that render; usually nothing touches yet"),
+      bench::cycle_header()));
   for (const NamedScenario& named : scenarios) {
     announce(named.name);
     results.cycles.push_back(bench::measure_cycle(

@@ -33,6 +33,21 @@ TEST(Times, PercentilesAreExact) {
   EXPECT_EQ(Times().distribution().max, 0.0);
 }
 
+TEST(Times, OfFewerThanAThousandThereIsNoTail) {
+  EXPECT_EQ(times_of(std::vector(1000, 2.0)).distribution().p99_9, 2.0);
+  for (const std::size_t count : {0U, 999U}) {
+    const evaluation::Distribution d = times_of(std::vector(count, 2.0)).distribution();
+    EXPECT_EQ(to_text(d.p99_9, 2), "-");
+    nlohmann::ordered_json row;
+    add_to(row, d);
+    EXPECT_TRUE(row["p99_9_us"].is_null());
+    EXPECT_EQ(row["max_us"], count > 0 ? 2.0 : 0.0);
+    const std::string most = count > 0 ? "2.0" : "0.0";
+    EXPECT_EQ(apps::to_csv(nlohmann::ordered_json::array({row})),
+              "median_us,p99_9_us,max_us\n" + most + ",," + most + "\n");
+  }
+}
+
 TEST(Histogram, EveryTimeIsInTheBinThatHoldsIt) {
   const std::vector<Bin> bins = histogram(times_of({1.0, 1.01, 3.0, 0.2}));
   std::size_t count = 0;
@@ -59,7 +74,22 @@ TEST(Figure, EmptyPanelsAreLeftOutAndTextIsEscaped) {
   EXPECT_EQ(svg.find(">empty<"), std::string::npos);
   EXPECT_NE(svg.find(">full<"), std::string::npos);
   // two decades of x over the panel: from its left edge to its right one
-  EXPECT_NE(svg.find("points=\"62.0,234.0 414.0,70.0 \""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("points=\"62.0,248.0 414.0,84.0 \""), std::string::npos) << svg;
+}
+
+TEST(Figure, MarkersTellLinesThatCoincideApart) {
+  Figure figure = {
+      "", "x", "y", {{"full", {{"a", {{1.0, 1.0}, {2.0, 2.0}}}, {"b", {{1.0, 1.0}}}}}}};
+  const auto count = [&](const char* what) {
+    const std::string svg = to_svg(figure);
+    int found = 0;
+    for (auto at = svg.find(what); at != std::string::npos; at = svg.find(what, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("<path"), 0);
+  figure.has_markers = true;
+  EXPECT_EQ(count("<path"), 5);       // one per point, one per line of the legend
+  EXPECT_EQ(count("d=\"M-5,0A"), 3);  // of the first line only
 }
 
 TEST(Csv, HasOneLineOfKeysAndQuotesWhatNeedsIt) {
