@@ -4,7 +4,6 @@ Usage: command_line_test.py PROGRAM   (from the repository root)
 """
 
 import contextlib
-import csv
 import fcntl
 import json
 import os
@@ -16,26 +15,13 @@ import signal
 import socket
 import struct
 import subprocess
-import sys
-import tempfile
 import termios
 import threading
 import time
 import unittest
-import unittest.mock
-import xml.etree.ElementTree
 
 from mcap.reader import make_reader
-
-PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
-MODELS = pathlib.Path("models").resolve()
-
-
-def run(*arguments, timeout=120):
-    """(exit code, standard output, standard error) of the program."""
-    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                          timeout=timeout, stdin=subprocess.DEVNULL)
-    return done.returncode, done.stdout, done.stderr
+from program import MODELS, PROGRAM, TemporaryFolder, run
 
 
 def drain(terminal):
@@ -46,12 +32,6 @@ def drain(terminal):
             shown += part
     os.close(terminal)
     return shown
-
-
-class TemporaryFolder(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, self.folder)
 
 
 class MainJob(TemporaryFolder):
@@ -252,102 +232,6 @@ class Drafts(TemporaryFolder):
         self.assertFalse(self.device.exists())
 
 
-class Bench(TemporaryFolder):
-    SETS = ["door, gauss, recoverable", "door, paper, paper"]
-
-    def rows(self, name):
-        with open(self.out / f"{name}.csv", newline="") as file:
-            return list(csv.DictReader(file, strict=True))
-
-    def test_a_quick_run_of_the_door_fills_every_table_and_figure(self):
-        self.out = self.folder / "new" / "results"
-        told = self.folder / "bench.json"
-        code, out, err = run("bench", "door", "--quick", "--json", told, "--out", self.out)
-        self.assertEqual((code, err), (0, ""), out)
-        told = json.loads(told.read_text())
-
-        # both laws play the scenario to its end
-        self.assertEqual([(r["law"], r["bounds"]) for r in told["runs"]],
-                         [("gauss", "recoverable"), ("paper", "recoverable"),
-                          ("gauss", "paper"), ("paper", "paper")])
-        for played in told["runs"]:
-            self.assertEqual(played["missing_events"], [])
-            self.assertGreater(played["cycles"], 10000)
-        self.assertEqual([r["law"] for r in self.rows("laws")],
-                         [r["law"] for r in told["runs"]])
-
-        # the solver: recorded problems and reference data, ours without a mistake
-        solver = self.rows("solver")
-        self.assertEqual(len(solver), len(told["solver"]))
-        names = {row["set"] for row in solver}
-        self.assertLess({*self.SETS, "exc_two"}, names)
-        for row in solver:
-            self.assertLessEqual(float(row["median_us"]), float(row["p99_9_us"]))
-            self.assertLessEqual(float(row["p99_9_us"]), float(row["max_us"]))
-            if row["solver"] != "cascade":
-                self.assertEqual(row["failed"], "0", row)
-                self.assertIn(row["wrong"], ("", "0"), row)
-        if not any(row["solver"] == "cascade" for row in solver):
-            self.assertIn("the paper's cascade was not built", out)
-
-        # histograms count every problem and cycle
-        counted = {}
-        for row in self.rows("solver_histogram"):
-            key = row["set"], row["solver"]
-            counted[key] = counted.get(key, 0) + int(row["count"])
-        for row in solver:
-            first = 1 if row["solver"] == "warm" else 0  # has nothing to start from
-            self.assertEqual(counted[row["set"], row["solver"]], int(row["problems"]) - first, row)
-
-        # the stages make up the cycle; they are measured in other plays, so about
-        stages = {row["stage"]: row for row in self.rows("cycle")}
-        self.assertEqual(len(stages), 11)
-        self.assertEqual({row["cycles"] for row in stages.values()}, {"2000"})
-        total = float(stages.pop("total")["mean_us"])
-        together = sum(float(row["mean_us"]) for row in stages.values())
-        self.assertTrue(total / 3 < together < 3 * total, (total, together))
-
-        self.assertEqual({row["failed"] for row in self.rows("growth")}, {"0"})
-        self.assertEqual([r["with"] for r in self.rows("growth_exponents")][-1], "levels")
-        for name in ("solver_histogram", "cycle_histogram", "growth"):
-            figure = xml.etree.ElementTree.parse(self.out / f"{name}.svg").getroot()
-            lines = figure.findall("{http://www.w3.org/2000/svg}polyline")
-            self.assertGreaterEqual(len(lines), 4, name)
-        machine = (self.out / "machine.txt").read_text()
-        for key in ("date: 20", "cpu: ", "compiler: ", "flags: ", "commit: "):
-            self.assertIn(key, machine)
-
-    def test_a_missing_event_is_1(self):
-        text = (MODELS / "scenarios" / "door.yaml").read_text().replace("../", f"{MODELS}/")
-        impossible = self.folder / "impossible.yaml"
-        impossible.write_text(text.replace("force_above_N: 10", "force_above_N: 1000"))
-        code, out, _ = run("bench", impossible, "--quick")
-        self.assertEqual(code, 1)
-        self.assertIn("missing: locked", out)
-
-    def test_bad_input_is_one_message_and_leaves_nothing(self):
-        a_file = self.folder / "file"
-        a_file.touch()
-        for words, message in (
-                (["doors", "--out", self.folder / "new"], "did you mean 'door'"),
-                (["door", "--out", a_file], "expected a folder"),
-                (["door", "--json", self.folder / "none" / "b.json"], "cannot be written")):
-            code, out, err = run("bench", "--quick", *words)
-            self.assertEqual((code, out), (2, ""))
-            self.assertEqual(err.count("\n"), 1, err)
-            self.assertIn(message, err)
-        self.assertEqual([p.name for p in self.folder.iterdir()], ["file"])
-
-        bad = self.folder / "bad.hqp"
-        bad.write_text("hqp 2\n")
-        for reference, message in ((self.folder, f"{bad}:1: expected a number of levels"),
-                                   (self.folder / "none", "HG_REFERENCE_DATA: expected a folder")):
-            with unittest.mock.patch.dict(os.environ, HG_REFERENCE_DATA=str(reference)):
-                code, out, err = run("bench", "door", "--quick")
-            self.assertEqual((code, out), (2, ""))
-            self.assertIn(message, err)
-
-
 class BadInput(TemporaryFolder):
     """Every case: exit code 2, one clear message on standard error, nothing written."""
 
@@ -503,113 +387,6 @@ class BadInput(TemporaryFolder):
             code, _, err = run(*arguments)
             self.assertEqual(code, 2)
             self.assertTrue(err)
-
-    def test_problem_files(self):
-        broken = self.folder / "broken.hqp"
-        broken.write_text("hqp 2 1\nlevel 1 0\n1 nonsense 3\nend\n")
-        code, _, err = run("hqp", "solve", broken)
-        self.assertEqual(code, 2)
-        self.assertIn("broken.hqp:3", err)
-        code, _, err = run("hqp", "solve", self.folder / "none.hqp")
-        self.assertEqual(code, 2)
-        self.assertIn("none.hqp", err)
-
-
-class KeptProblems(unittest.TestCase):
-    """Problems of the solver that took long; here all, as one active set is long."""
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name, "made", "here")
-
-    def play(self, *arguments):
-        code, out, err = run("run", "door", "--fast", "--duration", 1, "--recordings", self.folder,
-                             *arguments)
-        self.assertEqual(err, "")
-        return out
-
-    def test_are_written_told_and_reproduced(self):
-        out = self.play("--slow-solve", 1)
-        self.assertEqual(out.count("to look at it:"), 1)
-        command = re.search(r"\n  hapticgiant (hqp solve (\S+) --explain)\n", out)
-        self.assertTrue(pathlib.Path(command[2]).is_file())
-        self.assertRegex(out, r"\n  problems     in 1\d{3} cycles .*, 10 written: \S+_hqp_\*\.hqp\n")
-        files = sorted(self.folder.glob("door_hqp_*.hqp"))
-        self.assertEqual(len(files), 10)
-        for file in files:
-            code, out, err = run("hqp", "solve", file, "--explain")
-            self.assertEqual((code, err), (0, ""))
-            cycle, tried = re.search(r"problem 0, Door, law gauss, .*, cycle (\d+), solved after "
-                                     r"(\d+) active set", out).groups()
-            self.assertEqual(file.name, f"door_hqp_{cycle}.hqp")
-            self.assertIn(f"\nsolved: {tried} active set", out)
-
-    def test_an_ordinary_run_has_none(self):
-        out = self.play()
-        self.assertNotIn("problems", out)
-        self.assertEqual(list(self.folder.glob("*.hqp")), [])
-
-    def test_are_only_counted_without_a_recording(self):
-        out = self.play("--slow-solve", 1, "--no-recording")
-        self.assertRegex(out, r"\n  problems     in 1\d{3} cycles .*, none was written\n")
-        self.assertFalse(self.folder.exists())
-
-    def test_a_file_that_cannot_be_written_stops_nothing(self):
-        for cycle in range(2000):  # whichever comes first
-            (self.folder / f"door_hqp_{cycle}.hqp").mkdir(parents=True)
-        out = self.play("--slow-solve", 1)
-        self.assertEqual(out.count("cannot be written"), 1)
-        self.assertIn("none was written", out)
-
-
-class HqpSolve(unittest.TestCase):
-    """Two problems: x0 <= 1 at any rate, then x0 + x1 = 3, then x0 = 5; and one with a bad row."""
-
-    TEXT = ("hqp 2 3\nname example\noptions max_iterations 50\nlevel 0 1\n1 0 -inf 1\n"
-            "level 1 0\n1 1 3\nlevel 1 0\n1 0 5 weight 0.5\nguess u=<\nend\n"
-            "hqp 1 2\nlevel 1 0\n1 4\nlevel 0 1\n2 4 3 bad\nend\n")
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.file = pathlib.Path(folder.name, "two.hqp")
-        self.file.write_text(self.TEXT)
-
-    def test_numbers(self):
-        code, out, err = run("hqp", "solve", self.file)
-        self.assertEqual((code, out), (1, "1 2 0 0 4\n4 0 0\n"))
-        self.assertEqual(err, "problem 1: bad row, row 1 (level 1): 2 x0 in [4, 3]: lb must not be "
-                              "above ub\n")
-
-    def test_one_problem_in_words(self):
-        code, out, err = run("hqp", "solve", self.file, "--problem", 0, "--level", 2)
-        self.assertEqual((code, err), (0, ""))
-        for words in ("problem 0, example\n", "max_iterations 50", "solved: 1 active set tried",
-                      "  optimal, blocked by row 0\n",
-                      "row 0 (level 0): x0 in [-inf, 1]: held at its upper bound, value 1\n",
-                      "row 2 (level 2): x0 = 5, weight 0.5: violated, too small by 4, value 1\n",
-                      "x = 1 2\n", "multipliers of level 2", "\n            1  row 0 (level 0)"):
-            self.assertIn(words, out)
-
-    def test_a_bad_row_in_words(self):
-        code, out, _ = run("hqp", "solve", self.file, "--problem", 1, "--explain")
-        self.assertEqual(code, 1)
-        self.assertIn("row 1 (level 1): 2 x0 in [4, 3]: lb must not be above ub\n", out)
-        self.assertIn("    1     1  ignored\n", out)
-
-    def test_times(self):
-        code, out, _ = run("hqp", "solve", self.file, "--problem", 0, "--timing")
-        self.assertEqual(code, 0)
-        self.assertRegex(out, r"1 problem, .*\nstart .*\ncold .*\nwarm ")
-
-    def test_no_such_problem_or_level(self):
-        for arguments, words in ((["--problem", 2], "has the problems 0..1, got 2"),
-                                 (["--level", 2, "--problem", 1], "has the levels 0..1, got 2"),
-                                 (["--problem", -1], "--problem"), (["--level", "x"], "--level")):
-            code, _, err = run("hqp", "solve", self.file, *arguments)
-            self.assertEqual(code, 2, err)
-            self.assertIn(words, err)
 
 
 if __name__ == "__main__":
