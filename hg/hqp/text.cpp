@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <ostream>
 #include <utility>
 
@@ -24,7 +25,6 @@ constexpr std::string_view kStateLetters = ".lu=<>";  // in the order of RowStat
 constexpr std::array kTolerances = {
     std::pair{"rank_tolerance", &Options::rank_tolerance},
     std::pair{"feasibility_tolerance", &Options::feasibility_tolerance}};
-constexpr int kMostIterations = 1'000'000'000;
 
 std::string in_quotes(std::string_view word) { return std::string("'").append(word).append("'"); }
 
@@ -210,19 +210,21 @@ Options parse_options(Reader& reader) {
   names.emplace_back();
   while (true) {
     const std::string name = reader.need_one_of(names);
-    if (name.empty()) return options;
-    if (name == "max_iterations")
-      options.max_iterations = reader.need_integer(name, 1, kMostIterations);
+    if (name.empty()) break;
+    if (name == "max_iterations") {
+      options.max_iterations = reader.need_integer(name, 1, std::numeric_limits<int>::max());
+    }
     if (name == "minimum_norm") options.minimum_norm = reader.need_integer(name, 0, 1) == 1;
     for (const auto& [tolerance, member] : kTolerances) {
-      if (name != tolerance) continue;
-      const double value = reader.need_number("a tolerance");
-      if (!(value > 0.0 && value < 1.0)) {
-        reader.fail("a " + name + " between 0 and 1", in_quotes(to_text(value)));
-      }
-      options.*member = value;
+      if (name == tolerance) options.*member = reader.need_number("a tolerance");
     }
   }
+  try {
+    check(options);
+  } catch (const SetupError& error) {
+    reader.fail(error.what());
+  }
+  return options;
 }
 
 using States = std::array<RowState, kMaxRows>;
@@ -453,6 +455,7 @@ Capacity capacity_for(std::span<const RecordedProblem> problems) {
 }
 
 void write_problem(std::ostream& out, const RecordedProblem& recorded) {
+  check(recorded.options);
   const Problem& problem = recorded.problem;
   out << "hqp " << problem.variables() << ' ' << problem.levels() << '\n';
   write_name(out, recorded.name);

@@ -115,6 +115,7 @@ std::vector<int> add_bounds(Problem& problem, const ArrayIn& lb, const ArrayIn& 
 }
 
 SolutionOut solve(const Problem& problem, const ActiveSet* active, const hqp::Options& options) {
+  hqp::check(options);
   hqp::Solver solver(problem.capacity());
   SolutionOut out{problem, options, Solution(problem.capacity()), active ? *active : ActiveSet{}};
   const hqp::Status status = solver.solve(problem, options, out.active_set, out.solution);
@@ -143,6 +144,7 @@ std::string explain(const SolutionOut& out, std::optional<int> level) {
 
 void write_problem(const std::string& file, const Problem& problem, const ActiveSet* active,
                    const hqp::Options& options, const std::string& name) {
+  hqp::check(options);  // before the file is touched
   std::optional<ActiveSet> guess;
   if (active != nullptr) guess = *active;
   std::ofstream out(file);
@@ -313,7 +315,8 @@ void bind_hqp(nb::module_& module) {
   module.def("solve", &solve, nb::arg("problem"), nb::arg("active_set") = nb::none(),
              nb::arg("options") = hqp::Options{},
              "Minimises the violations of every level, in the order of the levels. Raises "
-             "ValueError with the first row that is not right: not finite, lb > ub, weight <= 0.");
+             "ValueError with the first row that is not right: not finite, lb > ub, weight <= 0; "
+             "SetupError for options that are not.");
   module.def("read_problems", &hqp::read_problems, nb::arg("file"),
              "All problems of a file in the format of docs/hqp.md, plain or gzipped.");
   module.def("read_recorded_problems", &hqp::read_recorded_problems, nb::arg("file"),

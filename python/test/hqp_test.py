@@ -149,6 +149,19 @@ class Solve(unittest.TestCase):
             self.assertEqual(read.name, "two lines")
             with self.assertRaisesRegex(SetupError, "cannot be written"):
                 hqp.write_problem(folder, problem)
+            options.max_iterations = 0
+            with self.assertRaisesRegex(SetupError, "max_iterations"):
+                hqp.write_problem(file, problem, options=options)
+            self.assertEqual(len(hqp.read_problems(file)), 1)  # what was there
+
+    def test_options_that_are_not_right_are_refused(self):
+        problem = problem_of([[([1.0, 0.0], 1.0, 1.0)]], 2)
+        for name, value in (("rank_tolerance", 0.0), ("feasibility_tolerance", float("nan")),
+                            ("max_iterations", 0)):
+            options = hqp.Options()
+            setattr(options, name, value)
+            with self.assertRaisesRegex(SetupError, name):
+                hqp.solve(problem, options=options)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -98,9 +99,11 @@ TEST(ParseProblems, NamesTheNearestKeyword) {
             "'feasibility_tolerance' or the end of the line, got 'max_iteration', nearest is "
             "'max_iterations'");
   EXPECT_EQ(message_of("hqp 1 1\noptions max_iterations 0\n"),
-            "x.hqp:2: expected max_iterations of 1..1000000000, got '0'");
+            "x.hqp:2: expected max_iterations of 1..2147483647, got '0'");
   EXPECT_EQ(message_of("hqp 1 1\noptions rank_tolerance nan\n"),
-            "x.hqp:2: expected a rank_tolerance between 0 and 1, got 'nan'");
+            "x.hqp:2: rank_tolerance must be in 0 .. 1e-3, above 0");
+  EXPECT_EQ(message_of("hqp 1 1\noptions feasibility_tolerance 0.1\n"),
+            "x.hqp:2: feasibility_tolerance must be in 0 .. 1e-3, above 0");
   EXPECT_EQ(message_of("hqp 1 1\nlevel 2 0\n1 2\n1 3\nguess =\nend\n"),
             "x.hqp:5: expected a letter of .lu=<> for each of the 2 rows, got '='");
   EXPECT_EQ(message_of("hqp 1 1\nlevel 1 0\n1 2\nguess x\nend\n"),
@@ -216,6 +219,22 @@ TEST(WriteProblem, ANameStaysOnItsLine) {
   EXPECT_EQ(read[0].problem.rows(), 0);
   const std::string blank = to_text({.problem = problem, .name = "\n"});
   EXPECT_EQ(parse_recorded_problems(blank, "x.hqp")[0].name, "");
+}
+
+TEST(WriteProblem, RefusesOptionsThatCouldNotBeRead) {
+  Problem problem({.variables = 1, .levels = 1, .rows = 1});
+  problem.add_level();
+  for (const Options& wrong :
+       {Options{.rank_tolerance = 0.0}, Options{.feasibility_tolerance = std::nan("")},
+        Options{.feasibility_tolerance = 1.0}, Options{.max_iterations = 0}}) {
+    std::ostringstream text;
+    EXPECT_THROW(write_problem(text, {.problem = problem, .options = wrong}), SetupError);
+    EXPECT_EQ(text.str(), "");
+  }
+  const Options most = {.rank_tolerance = 1e-3, .max_iterations = std::numeric_limits<int>::max()};
+  const auto read = parse_recorded_problems(to_text({problem, most}), "x.hqp");
+  EXPECT_EQ(read[0].options.max_iterations, most.max_iterations);
+  EXPECT_EQ(read[0].options.rank_tolerance, most.rank_tolerance);
 }
 
 // Status, effort and every number of a solve.
