@@ -12,11 +12,13 @@ KeptProblems::KeptProblems(const Capacity& capacity) {
 void KeptProblems::put(const Problem& problem, const Options& options, const ActiveSet& guess,
                        const Solution& solution, std::uint64_t cycle,
                        double cycle_time_us) noexcept {
-  if (last_cycle_ == cycle) return;
+  if (last_cycle_ != cycle) count_.fetch_add(1, std::memory_order_relaxed);
   last_cycle_ = cycle;
-  count_.fetch_add(1, std::memory_order_relaxed);
   const std::size_t size = size_.load(std::memory_order_relaxed);
-  if (size == kMost) return;
+  const bool is_solved = solution.status == Status::kSolved;
+  const bool has_room = size < kMost && !(is_solved && solved_ == kMostSolved);
+  if (!has_room || (size > 0 && problems_[size - 1].cycle == cycle)) return;
+  if (is_solved) ++solved_;
   KeptProblem& kept = problems_[size];
   assert(problem.capacity().variables == kept.problem.capacity().variables);
   assert(problem.capacity().levels == kept.problem.capacity().levels);

@@ -1,7 +1,8 @@
 /// Problems of a control loop that failed or were slow, for a thread that writes them.
 ///
-/// Keeps the first ones and counts the rest. One thread puts, one reads. put() copies into memory
-/// that the constructor allocates: no allocation, lock or system call.
+/// Keeps the first ones and counts the rest; slow ones leave room for those that failed. One thread
+/// puts, one reads. put() copies into memory that the constructor allocates: no allocation, lock or
+/// system call.
 #pragma once
 
 #include <atomic>
@@ -29,11 +30,12 @@ struct KeptProblem {
 class KeptProblems {
  public:
   static constexpr std::size_t kMost = 10;
+  static constexpr std::size_t kMostSolved = 5;  ///< of these, slow ones that were solved
 
   /// For problems of this very capacity. Throws SetupError, see check(Capacity).
   explicit KeptProblems(const Capacity& capacity);
 
-  /// Loop only. Copies, unless kMost are kept; of each cycle only the first problem.
+  /// Loop only. Copies while there is room; of each cycle only one problem.
   void put(const Problem& problem, const Options& options, const ActiveSet& guess,
            const Solution& solution, std::uint64_t cycle, double cycle_time_us = 0.0) noexcept;
 
@@ -48,6 +50,7 @@ class KeptProblems {
  private:
   std::vector<KeptProblem> problems_;
   std::optional<std::uint64_t> last_cycle_;  ///< of put()
+  std::size_t solved_ = 0;                   ///< of those that are kept
   std::atomic<std::size_t> size_{0};
   std::atomic<std::uint64_t> count_{0};
 };

@@ -63,6 +63,23 @@ TEST(KeptProblems, KeepsTheFirstOnesAndCountsAll) {
 }
 
 // What a run does with a problem that the solver gave up.
+TEST(KeptProblems, ThoseThatFailedFindRoomAfterSlowOnes) {
+  KeptProblems problems(kCapacity);
+  Solution solution(kCapacity);
+  std::uint64_t cycle = 0;
+  while (++cycle <= 20) problems.put(problem_of(1.0), {}, {}, solution, cycle);
+  EXPECT_EQ(problems.size(), KeptProblems::kMostSolved);
+  problems.put(problem_of(2.0), {}, {}, solution, cycle);
+  solution.status = Status::kIterationLimit;
+  problems.put(problem_of(3.0), {}, {}, solution, cycle);  // in the cycle of a slow one
+  ASSERT_EQ(problems.size(), KeptProblems::kMostSolved + 1);
+  EXPECT_EQ(problems[KeptProblems::kMostSolved].problem.weight(1), 3.0);
+  EXPECT_EQ(problems[KeptProblems::kMostSolved].cycle, 21U);
+  while (++cycle <= 40) problems.put(problem_of(4.0), {}, {}, solution, cycle);
+  EXPECT_EQ(problems.size(), KeptProblems::kMost);
+  EXPECT_EQ(problems.count(), 40U);
+}
+
 TEST(KeptProblems, AFailedSolveIsWrittenReadAndFailsAgainBitForBit) {
   const Capacity capacity = {.variables = 60, .levels = 20, .rows = 600};
   Solver solver(capacity);
@@ -108,7 +125,8 @@ TEST(KeptProblems, NeverShowsHalfAProblem) {
   for (int repetition = 0; repetition < 100; ++repetition) {
     KeptProblems problems(kCapacity);
     std::thread loop([&] {
-      const Solution solution(kCapacity);
+      Solution solution(kCapacity);
+      solution.status = Status::kIterationLimit;
       for (int cycle = 0; cycle < 12; ++cycle) {
         problems.put(problem_of(1.0 + cycle), {}, {}, solution, static_cast<std::uint64_t>(cycle));
       }
