@@ -143,6 +143,11 @@ Problems read(const HqpSolveArguments& arguments, std::size_t& first) {
 }  // namespace
 
 int run_hqp_solve(const HqpSolveArguments& arguments) {
+  if (arguments.has_timing && (arguments.explains || arguments.level)) {
+    const char* const other = arguments.explains ? "--explain" : "--level";
+    throw SetupError(fmt::format(
+        "--timing shows times only: leave out {0}, or --timing to see what {0} shows", other));
+  }
   std::size_t first = 0;
   const Problems problems = read(arguments, first);
   if (!arguments.has_timing) return print_solutions(problems, first, arguments) ? 0 : 1;

@@ -11,7 +11,7 @@ struct HqpSolveArguments {
   std::optional<int> problem;  ///< index of the only one to solve; unset: all
   std::optional<int> level;    ///< whose multipliers are shown
   bool explains = false;       ///< in words instead of numbers
-  bool has_timing = false;     ///< times instead of solutions
+  bool has_timing = false;     ///< times instead of solutions; not with `level` or `explains`
 };
 
 /// Solves the problems of a file with their options. Each starts from its own guess; without one,
@@ -25,7 +25,8 @@ struct HqpSolveArguments {
 ///
 /// Problems that the solver does not settle are named on stderr with their status.
 /// Returns the exit code: 0, or 1 when a problem was not settled. Throws SetupError with
-/// "file:line: ..." when the file is not right, and when there is no such problem or level.
+/// "file:line: ..." when the file is not right, when there is no such problem or level, and when
+/// times and explanations are asked for.
 int run_hqp_solve(const HqpSolveArguments& arguments);
 
 }  // namespace hg::apps

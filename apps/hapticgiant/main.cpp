@@ -5,7 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "apps/hapticgiant/bench_command.h"
 #include "apps/hapticgiant/check_command.h"
@@ -14,17 +16,51 @@
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
+#include "hg/core/nearest_name.h"
 
 namespace {
 
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
 
-// ranges let "nan" through
-std::string finite_number(const std::string& text) {
-  double value = 0.0;
-  const bool is_finite = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-  return is_finite ? "" : "expected a number, got '" + text + "'";
+using Check = std::function<std::string(const std::string&)>;
+
+// CLI11's ranges let "nan" through and print all digits of their ends.
+Check number_that(const std::string& rule, const std::function<bool(double)>& holds) {
+  return [=](const std::string& text) -> std::string {
+    double value = 0.0;
+    if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) {
+      return "expected a number, got '" + text + "'";
+    }
+    return holds(value) ? "" : "must be " + rule + ", got " + text;
+  };
+}
+
+Check at_least(int least) {
+  return number_that(fmt::format("at least {}", least), [=](double v) { return v >= least; });
+}
+
+// The subcommand of `app` that was missed, and which there are.
+std::string missing_subcommand(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (const std::string& word : app.remaining()) {
+    if (word.starts_with('-')) continue;
+    return fmt::format("{}: no such subcommand of {}, did you mean '{}'?", word, app.get_name(),
+                       hg::nearest_name(word, names));
+  }
+  return fmt::format("{}: expected a subcommand: {}", app.get_name(), fmt::join(names, ", "));
+}
+
+int explain(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().back();
+  if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr ||
+      last->get_require_subcommand_min() == 0) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  fmt::print(stderr, "{}\nRun with --help for more information.\n", missing_subcommand(*last));
+  return kBadInput;
 }
 
 void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
@@ -41,12 +77,11 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
   command->add_option("--twin", run.twin, "twin.yaml instead of the scenario's");
   command->add_option("--user", run.user, "script file, mouse or none");
   command->add_option("--duration", run.duration_s, "seconds; default: until the script has played")
-      ->check(finite_number)
-      ->check(CLI::PositiveNumber);
+      ->check(number_that("more than 0", [](double value) { return value > 0.0; }));
   command->add_flag("--fast", run.is_fast, "as fast as it can instead of in real time");
   command->add_option("--rate-hz", run.rate_Hz, "control rate, 100..20000; default: the device's")
-      ->check(finite_number)
-      ->check(CLI::Range(100.0, 20000.0));
+      ->check(number_that("from 100 to 20000",
+                          [](double value) { return value >= 100.0 && value <= 20000.0; }));
   command->add_option("--law", run.law, "gauss or paper; default: the device's")
       ->check(CLI::IsMember({"gauss", "paper"}));
   command->add_option("--bounds", run.bounds, "recoverable or paper; default: the device's")
@@ -58,9 +93,10 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       ->capture_default_str();
   command->add_flag("!--no-recording", run.has_recording, "without a recording");
   command
-      ->add_option("--slow-solve", run.slow_solve,
-                   "keep problems of the solver that take this many active sets, beside the recording")
-      ->check(CLI::PositiveNumber)
+      ->add_option(
+          "--slow-solve", run.slow_solve,
+          "keep problems of the solver that take this many active sets, beside the recording")
+      ->check(at_least(1))
       ->capture_default_str();
   command->callback([&run, &exit_code] { exit_code = hg::apps::run(run); });
 }
@@ -120,10 +156,10 @@ void add_hqp(CLI::App& app, hg::apps::HqpSolveArguments& arguments, int& exit_co
       "  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --problem 7 --explain");
   solve->add_option("file", arguments.file, "problem file, format in docs/hqp.md")->required();
   solve->add_option("--problem", arguments.problem, "only this problem, counted from 0")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   solve->add_flag("--explain", arguments.explains, "levels, rows that act and why, in words");
   solve->add_option("--level", arguments.level, "as --explain, with the multipliers of this level")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   solve->add_flag("--timing", arguments.has_timing, "microseconds, cold and warm");
   solve->callback([&arguments, &exit_code] { exit_code = hg::apps::run_hqp_solve(arguments); });
 }
@@ -157,6 +193,7 @@ int main(int argc, char** argv) {
   // a subcommand that has been parsed runs at once
   int exit_code = 0;
   hg::apps::RunArguments run;
+  run.program = argv[0];
   hg::apps::CheckArguments check;
   hg::apps::NewArguments created;
   hg::apps::HqpSolveArguments hqp;
@@ -171,7 +208,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     return exit_code;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
+    return explain(app, error);
   } catch (const hg::SetupError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;

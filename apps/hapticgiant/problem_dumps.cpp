@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -30,21 +33,33 @@ bool write(const fs::path& file, const hqp::KeptProblem& kept, const std::string
   return out.good();
 }
 
+// A word of a command, as a shell takes it.
+std::string shell_word(const std::string& text) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("/._-+,:=@%").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 }  // namespace
 
-ProblemDumps::ProblemDumps(fs::path folder, std::string name, std::string origin)
-    : folder_(std::move(folder)), name_(std::move(name)), origin_(std::move(origin)) {}
+ProblemDumps::ProblemDumps(Place place) : place_(std::move(place)) {}
 
 std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
-  if (folder_.empty() || has_failed_ || next_ == problems.size()) return {};
+  if (place_.folder.empty() || has_failed_ || next_ == problems.size()) return {};
   const hqp::KeptProblem& kept = problems[next_++];
-  const fs::path file = folder_ / fmt::format("{}_hqp_{}.hqp", name_, kept.cycle);
+  const fs::path file = place_.folder / fmt::format("{}_hqp_{}.hqp", place_.stem, kept.cycle);
   has_failed_ =
-      !write(file, kept, fmt::format("{}, cycle {}, {}", origin_, kept.cycle, ended(kept)));
+      !write(file, kept, fmt::format("{}, cycle {}, {}", place_.origin, kept.cycle, ended(kept)));
   if (has_failed_) return fmt::format("solver: {} cannot be written", file.string());
   if (++files_ > 1) return {};
-  return fmt::format("solver: cycle {}, {}; to look at it:\n  hapticgiant hqp solve {} --explain",
-                     kept.cycle, ended(kept), file.string());
+  return fmt::format("solver: cycle {}, {}; to look at it:\n  {} hqp solve {} --explain",
+                     kept.cycle, ended(kept), shell_word(place_.program),
+                     shell_word(file.string()));
 }
 
 std::string ProblemDumps::summary(const hqp::KeptProblems& problems) const {
@@ -52,8 +67,8 @@ std::string ProblemDumps::summary(const hqp::KeptProblems& problems) const {
   std::string text = fmt::format("  problems     in {} cycle{} the solver failed or took long, ",
                                  problems.count(), problems.count() == 1 ? "" : "s");
   if (files_ == 0) return text + "none was written\n";
-  return text +
-         fmt::format("{} written: {}\n", files_, (folder_ / (name_ + "_hqp_*.hqp")).string());
+  return text + fmt::format("{} written: {}\n", files_,
+                            (place_.folder / (place_.stem + "_hqp_*.hqp")).string());
 }
 
 }  // namespace hg::apps

@@ -11,9 +11,14 @@ namespace hg::apps {
 
 class ProblemDumps {
  public:
-  /// Files are folder/NAME_hqp_CYCLE.hqp; those of earlier runs are overwritten. An empty folder:
-  /// nothing is written. `origin` is what the files say about where they come from.
-  ProblemDumps(std::filesystem::path folder, std::string name, std::string origin);
+  struct Place {
+    std::filesystem::path folder;  ///< empty: nothing is written
+    std::string stem;              ///< files are folder/STEM_hqp_CYCLE.hqp
+    std::string origin;            ///< what the files say about where they come from
+    std::string program;           ///< how it was called, for the command that shows a file
+  };
+
+  explicit ProblemDumps(Place place);
 
   /// Writes the next one of `problems`, if there is one. Returns what the user should know now: how
   /// to look at the first file, or that a file cannot be written, after which no more is tried;
@@ -24,8 +29,7 @@ class ProblemDumps {
   std::string summary(const hqp::KeptProblems& problems) const;
 
  private:
-  std::filesystem::path folder_;
-  std::string name_, origin_;
+  Place place_;
   std::size_t next_ = 0;
   int files_ = 0;
   bool has_failed_ = false;

@@ -194,14 +194,16 @@ int run(const RunArguments& arguments) {
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && viewer != nullptr;
   const runtime::Options options = runtime_options(scenario, arguments, goes_on);
+  auto recorder = make_recorder(scenario, arguments);
+  auto dumps = problem_dumps(scenario, arguments, recorder.get());
   Observers observers{
       .scenario = scenario,
       .detector = {scenario.events, scenario.limits},
       .summary = evaluation::Summary(scenario.limits),
       .status_line = StatusLine(is_terminal),
       .viewer = std::move(viewer),
-      .recorder = make_recorder(scenario, arguments),
-      .dumps = problem_dumps(scenario, arguments),
+      .recorder = std::move(recorder),
+      .dumps = std::move(dumps),
       .is_fast = arguments.is_fast,
       .script_end_s = options.duration_s == 0.0 ? assembly::planned_duration_s(scenario) : 0.0};
 

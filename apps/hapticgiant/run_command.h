@@ -8,6 +8,7 @@
 namespace hg::apps {
 
 struct RunArguments {
+  std::string program = "hapticgiant";  ///< as it was called, for commands that it prints
   std::string scenario = "door";
   std::string device;  ///< device.yaml instead of the scenario's; empty = the scenario's
   std::string twin;    ///< twin.yaml likewise

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "hg/config/law_names.h"
 #include "hg/core/error.h"
 #include "hg/inspection/workspace.h"
+#include "hg/recording/recording_folder.h"
 #include "hg/rendering/catalogue.h"
 
 namespace hg::apps {
@@ -146,11 +148,17 @@ config::Scenario make_scenario(const RunArguments& arguments) {
   return scenario;
 }
 
-ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments) {
+ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments,
+                           const recording::Recorder* recorder) {
   const rendering::Options& law = scenario.device.rendering;
-  return {arguments.has_recording ? arguments.recordings : "", recording_name(arguments.scenario),
-          fmt::format("{}, law {}, bounds {}", scenario.title, rendering::to_string(law.law),
-                      rendering::to_string(law.bounds))};
+  const auto now = std::chrono::system_clock::now();
+  return ProblemDumps(
+      {.folder = arguments.has_recording ? arguments.recordings : "",
+       .stem = recorder != nullptr ? recorder->stem()
+                                   : recording::stamped(recording_name(arguments.scenario), now),
+       .origin = fmt::format("{}, law {}, bounds {}", scenario.title, rendering::to_string(law.law),
+                             rendering::to_string(law.bounds)),
+       .program = arguments.program});
 }
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,

@@ -15,8 +15,10 @@ namespace hg::apps {
 /// The scenario with everything that the command line changes. Throws SetupError.
 config::Scenario make_scenario(const RunArguments& arguments);
 
-/// Beside the recording, if there is one.
-ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments);
+/// Beside the recording of `recorder`, under its name; nullptr: there is none, it may have been
+/// switched off.
+ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments,
+                           const recording::Recorder* recorder);
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
                                         const RunArguments& arguments);

@@ -110,6 +110,7 @@ class Recorder::Writer {
   void push_waiting(const Sample& sample);
   void event(double time_s, std::string_view name, std::string_view text);
   RecordingSummary close();
+  const std::string& stem() const { return stem_; }
   std::string error() const;
 
  private:
@@ -137,6 +138,7 @@ class Recorder::Writer {
   // used by the thread alone while it runs
   RecordingFolder folder_;
   std::filesystem::path path_;
+  const std::string stem_;
   McapFile file_;
   CdrWriter cdr_;
   ToolMessages tool_messages_;
@@ -160,6 +162,7 @@ Recorder::Writer::Writer(const RecordingInfo& info)
       ring_(static_cast<std::size_t>(std::ceil(kRingSeconds * info.rate_Hz))),
       folder_(info.folder),
       path_(folder_.new_path(info.name, info.start)),
+      stem_(path_.stem().stem().string()),
       file_(path_),
       tool_messages_(info) {
   write_head(info);
@@ -336,6 +339,8 @@ Recorder::Recorder(const RecordingInfo& info) {
 }
 
 Recorder::~Recorder() = default;
+
+const std::string& Recorder::stem() const { return writer_->stem(); }
 
 bool Recorder::push(const Sample& sample) noexcept { return writer_->push(sample); }
 

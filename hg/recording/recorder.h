@@ -63,6 +63,9 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
+  /// File name without extensions: that of everything that belongs to this recording.
+  const std::string& stem() const;
+
   /// From the control loop: no allocation, lock or system call. False when the sample is dropped
   /// because the ring, which holds one second, is full.
   bool push(const Sample& sample) noexcept;

@@ -18,15 +18,6 @@ namespace fs = std::filesystem;
 constexpr std::string_view kPartial = ".partial";
 constexpr std::string_view kExtension = ".mcap";
 
-std::string utc_stamp(std::chrono::system_clock::time_point time) {
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  char text[32];
-  const std::size_t length = std::strftime(text, sizeof(text), "%Y%m%d_%H%M%S", &parts);
-  return {text, length};
-}
-
 /// A finished, broken or current recording.
 struct Recording {
   std::string stamp;  ///< age: date and time, then the number that tells files of one second apart
@@ -58,6 +49,15 @@ std::vector<Recording> oldest_first(const fs::path& folder) {
 
 }  // namespace
 
+std::string stamped(const std::string& name, std::chrono::system_clock::time_point time) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[32];
+  const std::size_t length = std::strftime(text, sizeof(text), "_%Y%m%d_%H%M%S", &parts);
+  return name + std::string(text, length);
+}
+
 RecordingFolder::RecordingFolder(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   fs::create_directories(folder_, error);
@@ -76,7 +76,7 @@ fs::path RecordingFolder::new_path(const std::string& name,
         name + "\"");
   }
 
-  const std::string stem = name + "_" + utc_stamp(start);
+  const std::string stem = stamped(name, start);
   for (int number = 1;; ++number) {
     const std::string numbered = number == 1 ? stem : stem + "_" + std::to_string(number);
     const fs::path complete = folder_ / (numbered + std::string(kExtension));

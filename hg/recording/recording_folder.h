@@ -12,6 +12,9 @@
 
 namespace hg::recording {
 
+/// NAME_yyyymmdd_hhmmss, the time in UTC.
+std::string stamped(const std::string& name, std::chrono::system_clock::time_point time);
+
 class RecordingFolder {
  public:
   /// Creates the folder where it is missing. Throws SetupError when that fails.

@@ -383,10 +383,24 @@ class BadInput(TemporaryFolder):
         self.refused("--duration", arguments=["door", "--user", "mouse"])
 
     def test_unknown_flag_and_subcommand(self):
-        for arguments in (["run", "--fst"], ["rum"], []):
+        for arguments, message in ((["run", "--fst"], "--fst"),
+                                   (["rum"], "rum: no such subcommand of hapticgiant, did you mean "
+                                             "'run'?"),
+                                   (["hqp", "slove", "x"], "did you mean 'solve'?"),
+                                   (["new"], "new: expected a subcommand: device, twin"),
+                                   ([], "hapticgiant: expected a subcommand: run, ")):
             code, _, err = run(*arguments)
             self.assertEqual(code, 2)
-            self.assertTrue(err)
+            self.assertIn(message, err)
+
+    def test_numbers_out_of_range(self):
+        for option, value, message in (("--slow-solve", 0, "must be at least 1, got 0"),
+                                       ("--duration", 0, "must be more than 0, got 0"),
+                                       ("--duration", "nan", "expected a number, got 'nan'"),
+                                       ("--rate-hz", 99, "must be from 100 to 20000, got 99")):
+            code, _, err = run("run", "door", option, value)
+            self.assertEqual(code, 2)
+            self.assertIn(f"{option}: {message}\n", err)
 
 
 if __name__ == "__main__":

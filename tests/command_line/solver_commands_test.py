@@ -4,10 +4,12 @@ Usage: solver_commands_test.py PROGRAM   (from the repository root)
 """
 
 import csv
+import datetime
 import json
 import os
 import pathlib
 import re
+import subprocess
 import unittest
 import unittest.mock
 import xml.etree.ElementTree
@@ -122,7 +124,7 @@ class KeptProblems(TemporaryFolder):
 
     def setUp(self):
         super().setUp()
-        self.folder = self.folder / "made" / "here"
+        self.folder = self.folder / "it's made" / "here"
 
     def play(self, *arguments):
         code, out, err = run("run", "door", "--fast", "--duration", 1, "--recordings", self.folder,
@@ -133,18 +135,25 @@ class KeptProblems(TemporaryFolder):
     def test_are_written_told_and_reproduced(self):
         out = self.play("--slow-solve", 1)
         self.assertEqual(out.count("to look at it:"), 1)
-        command = re.search(r"\n  hapticgiant (hqp solve (\S+) --explain)\n", out)
-        self.assertTrue(pathlib.Path(command[2]).is_file())
-        self.assertRegex(out, r"\n  problems     in 1\d{3} cycles .*, 10 written: \S+_hqp_\*\.hqp\n")
-        files = sorted(self.folder.glob("door_hqp_*.hqp"))
-        self.assertEqual(len(files), 10)
+        command = re.search(r"to look at it:\n  (\S+ hqp solve \S.* --explain)\n", out)[1]
+        told = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
+        self.assertIn("problem 0, Door, ", told.stdout)
+        stem = re.search(r"\n  recording +(.*)\.mcap\n", out)[1]
+        self.assertRegex(out, r"\n  problems     in 1\d{3} cycles .*, 5 written: "
+                         + re.escape(stem) + r"_hqp_\*\.hqp\n")
+        stem = pathlib.Path(stem).name
+        files = sorted(self.folder.glob("*.hqp"))
+        self.assertEqual(len(files), 5)
         for file in files:
             code, out, err = run("hqp", "solve", file, "--explain")
             self.assertEqual((code, err), (0, ""))
             cycle, tried = re.search(r"problem 0, Door, law gauss, .*, cycle (\d+), solved after "
                                      r"(\d+) active set", out).groups()
-            self.assertEqual(file.name, f"door_hqp_{cycle}.hqp")
+            self.assertEqual(file.name, f"{stem}_hqp_{cycle}.hqp")
             self.assertIn(f"\nsolved: {tried} active set", out)
+
+        self.play("--slow-solve", 1)  # keeps its own beside them
+        self.assertEqual(len(list(self.folder.glob("*.hqp"))), 10)
 
     def test_an_ordinary_run_has_none(self):
         out = self.play()
@@ -157,8 +166,15 @@ class KeptProblems(TemporaryFolder):
         self.assertFalse(self.folder.exists())
 
     def test_a_file_that_cannot_be_written_stops_nothing(self):
-        for cycle in range(2000):  # whichever comes first
-            (self.folder / f"door_hqp_{cycle}.hqp").mkdir(parents=True)
+        self.play("--slow-solve", 1)
+        first = min(int(file.stem.split("_")[-1]) for file in self.folder.glob("*.hqp"))
+        now = datetime.datetime.now(datetime.timezone.utc)
+        for seconds in range(120):  # whenever it starts
+            stamp = (now + datetime.timedelta(seconds=seconds)).strftime("%Y%m%d_%H%M%S")
+            for number in ("", "_2"):
+                file = self.folder / f"door_{stamp}{number}_hqp_{first}.hqp"
+                if not file.exists():  # one of the first run
+                    file.mkdir()
         out = self.play("--slow-solve", 1)
         self.assertEqual(out.count("cannot be written"), 1)
         self.assertIn("none was written", out)
@@ -203,10 +219,17 @@ class HqpSolve(TemporaryFolder):
         self.assertEqual(code, 0)
         self.assertRegex(out, r"1 problem, .*\nstart .*\ncold .*\nwarm ")
 
+    def test_times_and_explanations_exclude_each_other(self):
+        for words in (["--explain"], ["--level", 1]):
+            code, out, err = run("hqp", "solve", self.file, "--timing", *words)
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn(f"leave out {words[0]}, or --timing", err)
+
     def test_no_such_problem_or_level(self):
         for arguments, words in ((["--problem", 2], "has the problems 0..1, got 2"),
                                  (["--level", 2, "--problem", 1], "has the levels 0..1, got 2"),
-                                 (["--problem", -1], "--problem"), (["--level", "x"], "--level")):
+                                 (["--problem", -1], "--problem: must be at least 0, got -1"),
+                                 (["--level", "x"], "--level: expected a number, got 'x'")):
             code, _, err = run("hqp", "solve", self.file, *arguments)
             self.assertEqual(code, 2, err)
             self.assertIn(words, err)
