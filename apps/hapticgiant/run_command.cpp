@@ -56,7 +56,7 @@ struct Observers {
   evaluation::Summary summary;
   StatusLine status_line;
   std::unique_ptr<viewer_server::ViewerServer> viewer;
-  std::unique_ptr<recording::Recorder> recorder;  ///< last: a refused run leaves no file
+  std::unique_ptr<recording::Recorder> recorder;
   ProblemDumps dumps;
   bool is_fast = false;
   Clock::time_point last_status = {};
@@ -194,7 +194,7 @@ int run(const RunArguments& arguments) {
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && viewer != nullptr;
   const runtime::Options options = runtime_options(scenario, arguments, goes_on);
-  auto recorder = make_recorder(scenario, arguments);
+  auto recorder = make_recorder(scenario, arguments);  // last: a refused run leaves no file
   auto dumps = problem_dumps(scenario, arguments, recorder.get());
   Observers observers{
       .scenario = scenario,

@@ -34,6 +34,8 @@ class Bench(TemporaryFolder):
         told = self.folder / "bench.json"
         code, out, err = run("bench", "door", "--quick", "--json", told, "--out", self.out)
         self.assertEqual((code, err), (0, ""), out)
+        self.assertIn("--quick: only the first 500 problems of each set", out)
+        self.assertIn("--quick: only the first 2000 cycles", out)
         told = json.loads(told.read_text())
 
         # both laws play the scenario to its end
