@@ -11,8 +11,6 @@ constexpr double kRoundOff = 1e-14;  // residual below this share of the gradien
 constexpr double kParallel = 1e-10;  // cosine below which a row does not oppose a direction
 constexpr int kChangesPerRow = 4;    // bound on the loop; convergence mostly needs one per row
 
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 }  // namespace
 
 Cone::Cone(int max_variables, int max_candidates)

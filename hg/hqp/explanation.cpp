@@ -12,8 +12,6 @@ namespace {
 
 constexpr int kMostTerms = 6;  // of a row that is shown
 
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof(text), "%.6g", value);
@@ -75,8 +73,6 @@ std::string head_text(const Problem& problem, const Solution& solution) {
   }
   return text;
 }
-
-bool is_held(RowState state) { return state == RowState::kLower || state == RowState::kUpper; }
 
 std::string level_line(const Problem& problem, const Solution& solution, int level) {
   const LevelResult& result = solution.levels[at(level)];

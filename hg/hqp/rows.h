@@ -3,10 +3,13 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstddef>
 
 #include "hg/hqp/problem.h"
 
 namespace hg::hqp {
+
+inline std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 using VectorView = Eigen::Map<const Eigen::VectorXd>;
 

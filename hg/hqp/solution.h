@@ -26,6 +26,9 @@ enum class RowState : std::uint8_t {
   kBelow,     ///< violated: stays below its lower bound
   kAbove,     ///< violated: stays above its upper bound
 };
+constexpr bool is_held(RowState s) noexcept {
+  return s == RowState::kLower || s == RowState::kUpper;
+}
 constexpr bool is_violated(RowState s) noexcept {
   return s == RowState::kBelow || s == RowState::kAbove;
 }

@@ -16,10 +16,6 @@ bool wants_smallest_norm(const Problem& problem, const Options& options, int lev
   return options.minimum_norm && levels == problem.levels();
 }
 
-bool is_held_state(RowState state) noexcept {
-  return state == RowState::kLower || state == RowState::kUpper;
-}
-
 double bound_of(Interval bounds, RowState state) noexcept {
   return as_guess(state) == RowState::kLower ? bounds.lb : bounds.ub;
 }
@@ -97,7 +93,7 @@ int pivot_row(const Workspace& work, int t) noexcept {
 }
 
 bool is_held_pivot(const Workspace& work, int t) noexcept {
-  return is_held_state(work.point.state[at(pivot_row(work, t))]);
+  return is_held(work.point.state[at(pivot_row(work, t))]);
 }
 
 // Multipliers of the pivots above `level` that cancel its gradient, from `first_held` on, into
@@ -156,7 +152,7 @@ LevelGradient guess_gradient(const Problem& problem, const Options& options, int
   work.gradient.head(problem.variables()).setZero();
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
     const RowState state = work.point.state[at(row)];
-    if (problem.norm(row) == 0.0 || state == RowState::kInactive || is_held_state(state)) continue;
+    if (problem.norm(row) == 0.0 || state == RowState::kInactive || is_held(state)) continue;
     const double bound = bound_of(problem.bounds(row), state);
     if (add_pull(problem, row, bound, work, result) >
         tolerance(problem, options, work, row, bound)) {

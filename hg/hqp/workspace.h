@@ -79,8 +79,6 @@ struct LevelGradient {
   double surely_pulling() const noexcept { return 1e-12 * scale + rounding; }
 };
 
-inline std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 /// Rows of the first `levels` levels.
 inline int rows_of(const Problem& problem, int levels) noexcept {
   return levels > 0 ? problem.end_row(levels - 1) : 0;
