@@ -43,6 +43,7 @@ TEST(Compare, TheFirstLevelThatDiffersDecides) {
 
 TEST(Compare, WhatIsBoughtFromALevelAboveIsWorse) {
   EXPECT_EQ(compare(std::array{1.0 + 1e-7, 4.0}, std::array{1.0, 5.0}), Verdict::kWorse);
+  EXPECT_EQ(compare(std::array{1e-9, 4.0}, std::array{0.0, 5.0}), Verdict::kWorse);
 }
 
 TEST(Compare, WhatIsNotANumberIsWorse) {
