@@ -175,15 +175,16 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
     problem_.add_row(coefficients, {0.0, 0.0});
   }
   problem_.add_level();
+  std::array<VectorA, kMaxLimits> columns;
   double largest = 0.0;
   for (std::size_t j = 0; j < coefficients.size(); ++j) {
-    const VectorA column = torque(active_[j]) * scale_[j];
-    largest = std::max(largest, column.cwiseAbs().maxCoeff());
+    columns[j] = torque(active_[j]) * scale_[j];
+    largest = std::max(largest, columns[j].cwiseAbs().maxCoeff());
   }
   for (int i = 0; i < n_a_; ++i) {
     double largest_in_row = 0.0;
     for (std::size_t j = 0; j < coefficients.size(); ++j) {
-      row[j] = torque(active_[j])[i] * scale_[j];
+      row[j] = columns[j][i];
       largest_in_row = std::max(largest_in_row, std::abs(row[j]));
     }
     // near singular postures, what is left of a joint that no limit reaches must not decide
