@@ -43,9 +43,13 @@ void fields(Archive& a, T& sensors) {
   a("time_s", sensors.time_s, "clock of the device");
   a("q_m", sensors.q_m, "link-side encoders of the manipulator, rad");
   a("dq_m", sensors.dq_m, "rad/s");
+  a("theta_m", sensors.theta_m, "motor-side encoders at the output of the gear, rad");
   a("tau_m", sensors.tau_m, "joint torque sensors, Nm");
   a("q_p", sensors.q_p, "gantry encoders, m");
   a("w_s", sensors.w_S, "wrench at the force/torque sensor, resolved in it: force N, torque Nm");
+  a("a_s", sensors.a_S, "accelerometer in the sensor: acceleration minus gravity, m/s^2");
+  a("omega_s", sensors.omega_S, "gyroscope in the sensor, rad/s");
+  a("answered_sequence", sensors.answered_sequence, "of the newest command at work");
   a("dead_man", sensors.dead_man, "the dead-man switch is closed");
   a("emergency_stop", sensors.emergency_stop, "the safety inputs ask for a stop");
 }
@@ -78,6 +82,7 @@ void fields(Archive& a, T& command) {
   a("q_m", command.q_m, "reference of the manipulator, rad");
   a("dq_m", command.dq_m, "rad/s");
   a("ddq_m", command.ddq_m, "rad/s^2");
+  a("tau_m", command.tau_m, "motor torques, Nm; empty: the drives follow the reference");
   a("dq_p", command.dq_p, "gantry, m/s");
   a("hand_target", command.hand_target);
 }
@@ -92,8 +97,11 @@ void fields(Archive& a, T& fault) {
 
 template <typename Archive, Is<RobotState> T>
 void fields(Archive& a, T& robot) {
-  a("q_m", robot.q_m, "measured, unwrapped, rad");
+  a("q_m", robot.q_m, "link side, unwrapped, rad");
   a("dq_m", robot.dq_m, "rad/s");
+  a("theta_m", robot.theta_m, "motor side, unwrapped, rad");
+  a("dtheta_m", robot.dtheta_m, "rad/s");
+  a("tau_m", robot.tau_m, "joint torque sensors, Nm");
   a("q_p", robot.q_p, "gantry, m");
   a("dq_p", robot.dq_p, "m/s");
   a("ddq_p", robot.ddq_p, "m/s^2");

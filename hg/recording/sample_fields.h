@@ -24,6 +24,8 @@ inline constexpr std::string_view kMessageName<LimitReport> = "hapticgiant_msgs/
 template <>
 inline constexpr std::string_view kMessageName<CycleRecord> = "hapticgiant_msgs/CycleRecord";
 template <>
+inline constexpr std::string_view kMessageName<Truth> = "hapticgiant_msgs/Truth";
+template <>
 inline constexpr std::string_view kMessageName<Sample> = "hapticgiant_msgs/Sample";
 template <>
 inline constexpr std::string_view kMessageName<Event> = "hapticgiant_msgs/Event";
@@ -83,12 +85,31 @@ void fields(Archive& a, T& record) {
   a("state_hash", record.state_hash, "equal in a replay");
 }
 
+template <typename Archive, Is<Truth> T>
+void fields(Archive& a, T& truth) {
+  a("is_known", truth.is_known, "false: the device is real");
+  a("q_m", truth.q_m, "link side, rad");
+  a("dq_m", truth.dq_m, "rad/s");
+  a("theta_m", truth.theta_m, "motor side, rad");
+  a("dtheta_m", truth.dtheta_m, "rad/s");
+  a("tau_j", truth.tau_J, "transmitted by the springs, Nm");
+  a("tau_motor", truth.tau_motor, "Nm");
+  a("q_p", truth.q_p, "gantry, m");
+  a("dq_p", truth.dq_p, "m/s");
+  a("ddq_p", truth.ddq_p, "m/s^2");
+  a("handle", truth.T_B_H);
+  a("twist", truth.twist, "of the handle: m/s, rad/s");
+  a("acceleration", truth.acceleration, "of the handle: m/s^2, rad/s^2");
+  a("w_h", truth.w_H, "wrench of the user at the handle: N, Nm");
+}
+
 template <typename Archive, Is<Sample> T>
 void fields(Archive& a, T& sample) {
   a("sensors", sample.sensors, "input of the cycle");
   a("operator_input", sample.operator_input, "input of the cycle");
   a("command", sample.command, "output of the cycle");
   a("record", sample.record);
+  a("truth", sample.truth, "what only a simulation knows; not part of a replay");
   a("cycle_time_us", sample.cycle_time_us, "measured, not part of a replay");
 }
 

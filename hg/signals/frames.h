@@ -16,11 +16,17 @@ struct SensorFrame {
   double time_s = 0.0;            ///< the device's clock
   VectorM q_m;                    ///< link-side encoders; unlimited joints wrapped to [-pi, pi)
   VectorM dq_m;                   ///< link-side joint velocities
+  VectorM theta_m;                ///< motor-side encoders at the output of the gear; empty = none
   VectorM tau_m;                  ///< joint torque sensors
   VectorP q_p;                    ///< gantry encoders
   Vector6 w_S = Vector6::Zero();  ///< wrench on the handle at S, resolved in S, force first
-  bool dead_man = false;          ///< the user's hand closes the dead-man switch of the handle
-  bool emergency_stop = false;    ///< the safety inputs ask for a stop
+  /// Accelerometer in S: acceleration minus gravity, resolved in S; zero without one.
+  Eigen::Vector3d a_S = Eigen::Vector3d::Zero();
+  Eigen::Vector3d omega_S = Eigen::Vector3d::Zero();  ///< gyroscope in S; zero without one
+  /// CommandFrame::sequence of the newest command at work: tells the latency of the loop.
+  std::uint64_t answered_sequence = 0;
+  bool dead_man = false;        ///< the user's hand closes the dead-man switch of the handle
+  bool emergency_stop = false;  ///< the safety inputs ask for a stop
 };
 
 /// Where a simulated person wants the handle. Only simulated devices look at it.
@@ -70,6 +76,7 @@ struct CommandFrame {
   VectorM q_m;                 ///< reference positions of the manipulator
   VectorM dq_m;                ///< reference velocities
   VectorM ddq_m;               ///< reference accelerations
+  VectorM tau_m;               ///< motor torques; empty: the drives follow the reference
   VectorP dq_p;                ///< gantry velocities
   HandTarget hand_target;      ///< handed through to a simulated person
 };

@@ -13,6 +13,7 @@
 #include "hg/signals/fault.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/limit.h"
+#include "hg/signals/truth.h"
 
 namespace hg {
 
@@ -30,9 +31,11 @@ std::string_view to_string(Mode mode) noexcept;
 
 /// What estimation knows about the device.
 struct RobotState {
-  VectorM q_m, dq_m;              ///< measured, unlimited joints unwrapped
+  VectorM q_m, dq_m;              ///< link side, unlimited joints unwrapped
+  VectorM theta_m, dtheta_m;      ///< motor side, unwrapped like the link; empty without encoders
+  VectorM tau_m;                  ///< joint torque sensors
   VectorP q_p, dq_p, ddq_p;       ///< gantry, from the observer with the drive model
-  Vector6 w_H = Vector6::Zero();  ///< wrench of the user
+  Vector6 w_H = Vector6::Zero();  ///< wrench of the user, filtered, without the payload's share
 };
 
 /// Integrated reference of the manipulator.
@@ -112,6 +115,7 @@ struct Sample {
   OperatorFrame operator_input;
   CommandFrame command;
   CycleRecord record;
+  Truth truth;                 ///< at the time of `sensors`; not part of a replay
   double cycle_time_us = 0.0;  ///< measured by the runtime; not part of a replay
 };
 
