@@ -1,0 +1,36 @@
+/// What hangs beyond the force/torque sensor: handle, brackets, the sensor's own free side. Shared
+/// by the simulation of the sensor and by the estimation of the user's wrench.
+///
+/// Frame S is the sensor. [HANDBOOK] 1.4, 1.6: 1.18 kg (handle and sensor 1.4 kg minus the sensor's
+/// 0.22 kg).
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "hg/core/types.h"
+
+namespace hg {
+
+/// Set-up data. Default: nothing hangs there.
+struct Payload {
+  double mass = 0.0;                                  ///< kg, >= 0
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< centre of mass in S, m
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the COM, axes of S, kg m^2
+};
+
+/// Wrench that the payload exerts on the sensor, at S, resolved in S, force first: its weight minus
+/// its inertia. `a_S` is the acceleration of S minus gravity (at rest: g upwards), `omega_S` and
+/// `alpha_S` are the angular velocity and acceleration, all resolved in S.
+inline Vector6 payload_wrench(const Payload& payload, const Eigen::Vector3d& a_S,
+                              const Eigen::Vector3d& omega_S,
+                              const Eigen::Vector3d& alpha_S) noexcept {
+  const Eigen::Vector3d a_com =
+      a_S + alpha_S.cross(payload.com) + omega_S.cross(omega_S.cross(payload.com));
+  const Eigen::Vector3d f = -payload.mass * a_com;
+  const Eigen::Vector3d spin = payload.inertia * omega_S;  // angular momentum about the COM
+  const Eigen::Vector3d n = payload.com.cross(f) - payload.inertia * alpha_S - omega_S.cross(spin);
+  return (Vector6() << f, n).finished();
+}
+
+}  // namespace hg
