@@ -1,0 +1,53 @@
+/// Modes of a series elastic arm and the feedback gains that place their poles; [C] 1.
+///
+/// With shaped rotor inertias Jt = K / w0^2 the links' mass matrix M, the springs K and Jt have
+/// common modes: the eigenvectors of K^-1/2 M K^-1/2. Every mode is a two-mass oscillator of its
+/// own. No allocation, noexcept.
+#pragma once
+
+#include "hg/core/types.h"
+
+namespace hg::control {
+
+using MatrixM = MatrixUpTo<kMaxManipulator, kMaxManipulator>;
+
+/// Poles of the closed loop. rad/s; derived from the latency of the loop by poles_for().
+struct Poles {
+  double w0 = 200.0;       ///< of the shaped rotor on its spring
+  double w1 = 65.0;        ///< slow pair: how the link follows
+  double z1 = 0.8;         ///< its damping ratio
+  double z2 = 0.5;         ///< damping ratio of the fast pair, which keeps its natural frequency
+  double w2_max = 300.0;   ///< stiffer modes are controlled from the motor side alone
+  double w_motor = 120.0;  ///< and have a double pole there
+};
+
+/// The fastest poles that tolerate `latency` (s), which includes the lag of the current: w0 = 0.75
+/// of what is just stable, [C] 1 "Latency decides w0"; the others scale along.
+Poles poles_for(double latency) noexcept;
+
+/// v = motor (theta_r - theta) + motor_rate (theta_r' - theta') + link (q_r - q) + link_rate (..)
+struct ModeGains {
+  double motor = 0.0, motor_rate = 0.0, link = 0.0, link_rate = 0.0;
+};
+
+/// `mu` is the eigenvalue of the mode in s^2: 1/sqrt(mu) is its frequency with brakes closed.
+ModeGains gains_of(const Poles& poles, double mu) noexcept;
+
+/// Eigenvectors Q and eigenvalues mu of a symmetric matrix that changes slowly: every call turns
+/// the vectors of the last call by one cyclic sweep of Jacobi rotations, which converges
+/// quadratically.
+class Modes {
+ public:
+  /// Starts with the identity.
+  explicit Modes(int n = 0);
+
+  void follow(const MatrixM& A, int sweeps = 1) noexcept;
+  const MatrixM& Q() const noexcept { return Q_; }
+  const VectorM& mu() const noexcept { return mu_; }
+
+ private:
+  MatrixM Q_;
+  VectorM mu_;
+};
+
+}  // namespace hg::control
