@@ -52,6 +52,7 @@ void fields(Archive& a, T& sensors) {
   a("answered_sequence", sensors.answered_sequence, "of the newest command at work");
   a("dead_man", sensors.dead_man, "the dead-man switch is closed");
   a("emergency_stop", sensors.emergency_stop, "the safety inputs ask for a stop");
+  a("driver_fault", sensors.driver_fault, "0 none; numbers are listed in hg/signals/fault.h");
 }
 
 template <typename Archive, Is<HandTarget> T>

@@ -12,6 +12,10 @@ std::string_view to_string(FaultCode code) noexcept {
       return "device skipped or repeated a sample";
     case FaultCode::kEmergencyStop:
       return "emergency stop";
+    case FaultCode::kDeviceSilent:
+      return "remote device is silent";
+    case FaultCode::kDeviceGone:
+      return "remote device has ended the session";
     case FaultCode::kWrenchTooLarge:
       return "user wrench exceeds the sensor's range";
     case FaultCode::kSolverFailed:

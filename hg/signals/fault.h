@@ -11,6 +11,8 @@ enum class FaultCode : std::uint16_t {
   kSensorNotFinite = 100,     ///< a measured value is NaN or infinite
   kSequenceGap = 101,         ///< the device skipped or repeated a sample
   kEmergencyStop = 102,       ///< the safety inputs asked for a stop
+  kDeviceSilent = 103,        ///< nothing was heard from a remote device for too long
+  kDeviceGone = 104,          ///< a remote device has ended the session
   kWrenchTooLarge = 110,      ///< the user's force or torque exceeds the sensor's range
   kSolverFailed = 200,        ///< the rendering problem was not solved
   kReferenceNotFinite = 201,  ///< the rendering gave NaN or infinity

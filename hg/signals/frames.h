@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "hg/core/types.h"
+#include "hg/signals/fault.h"
 
 namespace hg {
 
@@ -27,6 +28,7 @@ struct SensorFrame {
   std::uint64_t answered_sequence = 0;
   bool dead_man = false;        ///< the user's hand closes the dead-man switch of the handle
   bool emergency_stop = false;  ///< the safety inputs ask for a stop
+  FaultCode driver_fault = FaultCode::kNone;  ///< why the driver has no (good) values
 };
 
 /// Where a simulated person wants the handle. Only simulated devices look at it.
@@ -36,7 +38,15 @@ struct HandTarget {
   double press = 0.0;  ///< how far the hand presses the lever it holds, 0..1
 };
 
-enum class ModeRequest : std::uint8_t { kNone = 0, kArm = 1, kRun = 2, kStop = 3, kReset = 4 };
+/// Numbers are recorded and never change their meaning.
+enum class ModeRequest : std::uint8_t {
+  kNone = 0,
+  kArm = 1,
+  kRun = 2,
+  kStop = 3,
+  kReset = 4,
+  kTare = 5,  ///< what the force/torque sensor shows of a free handle at rest is its zero
+};
 
 /// What of a twin may change while it runs. Numbers are recorded and never change their meaning.
 enum class Parameter : std::uint8_t {

@@ -39,6 +39,8 @@ void bind_fault_codes(nb::module_& module) {
       .value("SENSOR_NOT_FINITE", FaultCode::kSensorNotFinite)
       .value("SEQUENCE_GAP", FaultCode::kSequenceGap)
       .value("EMERGENCY_STOP", FaultCode::kEmergencyStop)
+      .value("DEVICE_SILENT", FaultCode::kDeviceSilent)
+      .value("DEVICE_GONE", FaultCode::kDeviceGone)
       .value("WRENCH_TOO_LARGE", FaultCode::kWrenchTooLarge)
       .value("SOLVER_FAILED", FaultCode::kSolverFailed)
       .value("REFERENCE_NOT_FINITE", FaultCode::kReferenceNotFinite)

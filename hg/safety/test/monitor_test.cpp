@@ -57,6 +57,15 @@ TEST(CheckSensors, NamesTheComponentThatIsNotFinite) {
   EXPECT_EQ(check_sensors(config(), sensors, 7).index, 19);
 }
 
+TEST(CheckSensors, AFaultThatTheDriverReportsComesFirst) {
+  SensorFrame sensors = good_sensors();
+  sensors.driver_fault = FaultCode::kDeviceSilent;
+  sensors.time_s = 1.5;
+  const Fault fault = check_sensors(config(), sensors, 6);
+  EXPECT_EQ(fault.code, FaultCode::kDeviceSilent);
+  EXPECT_EQ(fault.value, 1.5);
+}
+
 TEST(CheckSensors, SeesGapsEmergencyStopsAndWrenchesBeyondTheSensor) {
   EXPECT_EQ(check_sensors(config(), good_sensors(), 6).code, FaultCode::kSequenceGap);
   SensorFrame sensors = good_sensors();

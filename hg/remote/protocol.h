@@ -1,0 +1,122 @@
+/// The messages between a controller and a remote device, one per datagram. Described to the byte
+/// in docs/device_protocol.md; the fields stand in message_fields.h and nowhere else.
+///
+/// Little endian, fixed layout. No allocation, noexcept.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include "hg/signals/frames.h"
+
+namespace hg::remote {
+
+inline constexpr std::uint32_t kMagic = 0x50444748;  ///< "HGDP"
+inline constexpr std::uint16_t kVersion = 1;
+/// A datagram that no network divides.
+inline constexpr std::size_t kLargestDatagram = 1400;
+
+enum class MessageType : std::uint16_t {
+  kHello = 1,    ///< client: who I am and what I expect
+  kWelcome = 2,  ///< device: who I am, or why not
+  kReady = 3,    ///< client: begin with the first frame
+  kSensors = 4,  ///< device
+  kCommand = 5,  ///< client
+  kGoodbye = 6,  ///< either: the session is over
+};
+
+/// Fixed room for text; what does not fit is cut.
+template <std::size_t kSize>
+struct Text {
+  std::array<char, kSize> bytes{};
+
+  Text() = default;
+  Text(std::string_view text) noexcept {  // NOLINT(google-explicit-constructor)
+    std::memcpy(bytes.data(), text.data(), std::min(text.size(), kSize));
+  }
+  std::string_view view() const noexcept {
+    return {bytes.data(), static_cast<std::size_t>(
+                              std::find(bytes.begin(), bytes.end(), '\0') - bytes.begin())};
+  }
+};
+
+/// What drives are told: where to be (they follow CommandFrame::q_m), or torques (tau_m).
+enum class Interface : std::uint32_t { kPosition = 1, kTorque = 2 };
+
+/// What both sides must agree on.
+struct Description {
+  Text<64> device;  ///< name of the device in its device.yaml
+  std::uint32_t n_p = 0;
+  std::uint32_t n_m = 0;
+  double rate_Hz = 0.0;
+  Interface interface = Interface::kPosition;
+  bool is_lock_step = false;  ///< each side waits for the other instead of for a clock
+};
+
+enum class Refusal : std::uint32_t {
+  kNone = 0,
+  kBusy = 1,      ///< another client has the device
+  kVersion = 2,   ///< of the protocol
+  kMismatch = 3,  ///< of the descriptions
+};
+
+enum class Farewell : std::uint32_t {
+  kDone = 1,    ///< as planned
+  kFault = 2,   ///< the client stopped because of a fault
+  kSilent = 3,  ///< the other side was not heard any more
+};
+
+/// In front of every message.
+struct Header {
+  std::uint32_t magic = kMagic;
+  std::uint16_t version = kVersion;
+  std::uint16_t type = 0;
+  std::uint32_t length = 0;
+  std::uint32_t session = 0;
+  std::uint64_t number = 0;
+  std::uint64_t time_ns = 0;
+};
+
+struct Hello {
+  std::uint64_t nonce = 0;
+  Description expected;
+  Text<64> client;
+};
+
+struct Welcome {
+  std::uint64_t nonce = 0;
+  Refusal refusal = Refusal::kNone;
+  Description actual;
+  double command_timeout_s = 0.0;
+  Text<64> server;
+  Text<192> reason;
+};
+
+struct Ready {};
+
+struct Goodbye {
+  Farewell farewell = Farewell::kDone;
+  Text<64> reason;
+};
+
+/// Each type of C++ and its number on the wire.
+template <typename Message>
+inline constexpr MessageType kTypeOf = MessageType{};
+template <>
+inline constexpr MessageType kTypeOf<Hello> = MessageType::kHello;
+template <>
+inline constexpr MessageType kTypeOf<Welcome> = MessageType::kWelcome;
+template <>
+inline constexpr MessageType kTypeOf<Ready> = MessageType::kReady;
+template <>
+inline constexpr MessageType kTypeOf<SensorFrame> = MessageType::kSensors;
+template <>
+inline constexpr MessageType kTypeOf<CommandFrame> = MessageType::kCommand;
+template <>
+inline constexpr MessageType kTypeOf<Goodbye> = MessageType::kGoodbye;
+
+}  // namespace hg::remote
