@@ -1,0 +1,133 @@
+#include "hg/simulation/sensors.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace hg::simulation {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+double wrapped(double q) noexcept { return q - kTurn * std::floor((q + std::numbers::pi) / kTurn); }
+
+SensorFilterConfig no_filter() { return {.average = 0.0, .delay = 0.0}; }
+
+std::size_t at(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
+
+const Eigen::Vector3d kGravity_B(0.0, 0.0, -9.81);
+
+}  // namespace
+
+SensorsConfig ideal_sensors() {
+  SensorsConfig config;
+  config.link_encoder = config.motor_encoder = config.gantry_encoder = {};
+  config.has_differenced_velocity = false;
+  config.torque = {.noise = 0.0,
+                   .gain_error = 0.0,
+                   .offset = 0.0,
+                   .ripple = 0.0,
+                   .range = kInfinity,
+                   .resolution = 0.0};
+  config.wrench = {.force_noise = 0.0,
+                   .torque_noise = 0.0,
+                   .gain_error = 0.0,
+                   .cross_talk = 0.0,
+                   .bias = 0.0,
+                   .bias_walk = 0.0,
+                   .temperature_drift = 0.0,
+                   .range = kInfinity,
+                   .resolution = 0.0,
+                   .filter = no_filter()};
+  config.accelerometer = config.gyroscope = {};
+  config.imu_filter = no_filter();
+  return config;
+}
+
+Sensors::Sensors(const SensorsConfig& config, const SensedDevice& device)
+    : config_(config),
+      device_(device),
+      wrench_sensor_(config.wrench, device.step, device.period, config.seed),
+      accelerometer_(config.accelerometer, config.imu_filter, device.step, device.period,
+                     config.seed,
+                     {RandomEffect::kAccelerometerNoise, RandomEffect::kAccelerometerErrors,
+                      RandomEffect::kAccelerometerDrift}),
+      gyroscope_(config.gyroscope, config.imu_filter, device.step, device.period, config.seed,
+                 {RandomEffect::kGyroscopeNoise, RandomEffect::kGyroscopeErrors,
+                  RandomEffect::kGyroscopeDrift}),
+      temperature_(config.temperature, device.period,
+                   RandomStream(config.seed, RandomEffect::kTemperature)) {
+  const std::uint64_t seed = config.seed;
+  for (Eigen::Index i = 0; i < device.gear_ratio.size(); ++i) {
+    const int joint = static_cast<int>(i);
+    const double ratio = device.gear_ratio[i];
+    link_encoders_[at(i)] =
+        Encoder(config.link_encoder, 1.0, RandomStream(seed, RandomEffect::kLinkEncoder, joint));
+    motor_encoders_[at(i)] = Encoder(config.motor_encoder, ratio,
+                                     RandomStream(seed, RandomEffect::kMotorEncoder, joint));
+    torque_sensors_[at(i)] = TorqueSensor(config.torque, device.torque_full_scale[i], ratio,
+                                          RandomStream(seed, RandomEffect::kTorqueErrors, joint),
+                                          RandomStream(seed, RandomEffect::kTorqueNoise, joint));
+  }
+  for (int axis = 0; axis < kMaxGantry; ++axis)
+    gantry_encoders_[at(axis)] =
+        Encoder(config.gantry_encoder, 1.0, RandomStream(seed, RandomEffect::kGantryEncoder, axis));
+}
+
+void Sensors::observe(const Truth& truth) noexcept {
+  // the sensor is fixed to the handle: same angular motion, further terms by the lever
+  const Eigen::Matrix3d R_S_B = (truth.T_B_H.R * device_.T_H_S.R).transpose();
+  const Eigen::Vector3d p_H_S_in_S = device_.T_H_S.R.transpose() * device_.T_H_S.p;
+  const Eigen::Vector3d omega_S = R_S_B * truth.twist.tail<3>();
+  const Eigen::Vector3d alpha_S = R_S_B * truth.acceleration.tail<3>();
+  const Eigen::Vector3d a_S = R_S_B * (truth.acceleration.head<3>() - kGravity_B) +
+                              alpha_S.cross(p_H_S_in_S) + omega_S.cross(omega_S.cross(p_H_S_in_S));
+
+  const Eigen::Vector3d f = R_S_B * truth.w_H.head<3>();
+  Vector6 w_S = payload_wrench(device_.payload, a_S, omega_S, alpha_S);
+  w_S.head<3>() += f;
+  w_S.tail<3>() += R_S_B * truth.w_H.tail<3>() - p_H_S_in_S.cross(f);
+
+  wrench_sensor_.observe(w_S);
+  accelerometer_.observe(a_S);
+  gyroscope_.observe(omega_S);
+}
+
+void Sensors::sample(const Truth& truth, SensorFrame& frame) noexcept {
+  frame.time_s = static_cast<double>(samples_) * device_.period;
+  sample_joints(truth, frame);
+
+  frame.q_p.resize(truth.q_p.size());
+  for (Eigen::Index i = 0; i < truth.q_p.size(); ++i)
+    frame.q_p[i] = gantry_encoders_[at(i)].reading(truth.q_p[i]);
+
+  const double warmer = temperature_.next();
+  frame.w_S = wrench_sensor_.sample(warmer);
+  frame.a_S = accelerometer_.sample(warmer);
+  frame.omega_S = gyroscope_.sample(warmer);
+  ++samples_;
+}
+
+void Sensors::sample_joints(const Truth& truth, SensorFrame& frame) noexcept {
+  const Eigen::Index n = truth.q_m.size();
+  frame.q_m.resize(n);
+  frame.dq_m.resize(n);
+  frame.theta_m.resize(truth.theta_m.size());
+  frame.tau_m.resize(truth.tau_J.size());
+  q_m_before_.conservativeResize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto reported = [&](double q) { return device_.is_endless[at(i)] ? wrapped(q) : q; };
+    const double q = link_encoders_[at(i)].reading(truth.q_m[i]);
+    const double before = samples_ == 0 ? q : q_m_before_[i];
+    q_m_before_[i] = q;
+    frame.q_m[i] = reported(q);
+    frame.dq_m[i] =
+        config_.has_differenced_velocity ? (q - before) / device_.period : truth.dq_m[i];
+    if (i < truth.theta_m.size())
+      frame.theta_m[i] = reported(motor_encoders_[at(i)].reading(truth.theta_m[i]));
+    if (i < truth.tau_J.size())
+      frame.tau_m[i] = torque_sensors_[at(i)].sample(
+          truth.tau_J[i], i < truth.theta_m.size() ? truth.theta_m[i] : truth.q_m[i]);
+  }
+}
+
+}  // namespace hg::simulation

@@ -1,0 +1,87 @@
+/// All sensors of the device: from the true state of the plant to what the controller is told.
+///
+/// observe() after every step of the plant, sample() at the end of a period. Each effect is a
+/// parameter and can be switched off; ideal_sensors() has all off. The same seed and inputs give
+/// the same bits. Copyable; no allocation and noexcept after set-up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hg/core/types.h"
+#include "hg/signals/frames.h"
+#include "hg/signals/payload.h"
+#include "hg/signals/truth.h"
+#include "hg/simulation/encoder.h"
+#include "hg/simulation/imu.h"
+#include "hg/simulation/temperature.h"
+#include "hg/simulation/torque_sensor.h"
+#include "hg/simulation/wrench_sensor.h"
+
+namespace hg::simulation {
+
+/// Set-up data.
+struct SensorsConfig {
+  std::uint64_t seed = 1;
+  /// [A] 1.2: 20 bit absolute; offset and errors: what calibration leaves.
+  EncoderConfig link_encoder{
+      .resolution = 5.992112e-6, .offset = 1e-4, .error_1 = 5e-5, .error_2 = 2e-5};
+  /// [A] 1.2: 17 bit on the motor; error_2 is the kinematic error of the gear as well ([C]), which
+  /// the encoder sees and the output does not.
+  EncoderConfig motor_encoder{
+      .resolution = 4.793690e-5, .offset = 1e-4, .error_1 = 4e-6, .error_2 = 3e-5};
+  /// [K] 1.5: 10 um, accuracy 0.15 mm + 0.02 mm/m, here for 5 m, as a smooth error.
+  EncoderConfig gantry_encoder{.resolution = 1e-5, .error_1 = 2.5e-4, .period = 1.0};
+  /// True: dq_m is the difference of the link encoder over a period, as a drive reports it; false:
+  /// the true velocity.
+  bool has_differenced_velocity = true;
+  TorqueSensorConfig torque;
+  WrenchSensorConfig wrench;
+  InertialSensorConfig accelerometer = mems_accelerometer();
+  InertialSensorConfig gyroscope = mems_gyroscope();
+  SensorFilterConfig imu_filter;
+  TemperatureConfig temperature;  ///< of the force/torque sensor with the IMU inside
+};
+
+/// No errors, no noise, no delays: what is true.
+SensorsConfig ideal_sensors();
+
+/// What the sensors sit on.
+struct SensedDevice {
+  double step = 0.25e-3;                           ///< of the plant, s
+  double period = 1e-3;                            ///< of the loop, s; a whole number of steps
+  std::array<bool, kMaxManipulator> is_endless{};  ///< manipulator joints without limits
+  VectorM gear_ratio;                              ///< motor turns per turn of the joint
+  VectorM torque_full_scale;                       ///< of the joint torque sensors, Nm
+  Pose T_H_S;                                      ///< force/torque sensor in the handle frame
+  Payload payload;                                 ///< beyond the force/torque sensor
+};
+
+class Sensors {
+ public:
+  /// Throws SetupError when a filter is too long.
+  Sensors(const SensorsConfig& config, const SensedDevice& device);
+
+  /// After every step of the plant; the first call counts as a device at rest there for ever.
+  void observe(const Truth& truth) noexcept;
+  /// At the end of a period, after observe() of the same `truth`: fills q_m, dq_m, theta_m, tau_m,
+  /// q_p, w_S, a_S, omega_S and time_s of `frame`. theta_m and tau_m stay empty where the truth has
+  /// none. time_s counts periods from 0 at the first call.
+  void sample(const Truth& truth, SensorFrame& frame) noexcept;
+
+ private:
+  void sample_joints(const Truth& truth, SensorFrame& frame) noexcept;
+
+  SensorsConfig config_;
+  SensedDevice device_;
+  std::array<Encoder, kMaxManipulator> link_encoders_, motor_encoders_;
+  std::array<Encoder, kMaxGantry> gantry_encoders_;
+  std::array<TorqueSensor, kMaxManipulator> torque_sensors_;
+  WrenchSensor wrench_sensor_;
+  InertialSensor accelerometer_, gyroscope_;
+  Temperature temperature_;
+  VectorM q_m_before_;  // readings of the link encoders a period ago; empty before the first sample
+  std::uint64_t samples_ = 0;
+};
+
+}  // namespace hg::simulation
