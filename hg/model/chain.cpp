@@ -490,6 +490,16 @@ const Eigen::MatrixXd& Chain::M() const noexcept { return impl_->data.M; }
 const Eigen::VectorXd& Chain::c() const noexcept { return impl_->data.nle; }
 const Eigen::VectorXd& Chain::gravity() const noexcept { return impl_->data.g; }
 
+double Chain::potential_energy() const noexcept {
+  const pinocchio::Model& model = impl_->parts.model;
+  double energy = 0.0;
+  for (pinocchio::JointIndex i = 1; i < impl_->data.oMi.size(); ++i) {
+    const pinocchio::Inertia& body = model.inertias[i];
+    energy -= body.mass() * impl_->data.oMi[i].act(body.lever()).dot(model.gravity.linear());
+  }
+  return energy;
+}
+
 VectorA Chain::inverse_dynamics(const VectorIn& q, const VectorIn& dq,
                                 const VectorIn& ddq) noexcept {
   assert(q.size() == nq() && dq.size() == nv() && ddq.size() == nv());

@@ -136,6 +136,9 @@ class Chain {
   const Eigen::VectorXd& c() const noexcept;
   /// Part of c() that gravity makes (nv); zero without gravity.
   const Eigen::VectorXd& gravity() const noexcept;
+  /// Energy in gravity after update(), J, with default_loads(): zero without gravity, else zero
+  /// where all masses are at the height of B.
+  double potential_energy() const noexcept;
 
   /// tau = M ddq + c without external wrenches; leaves the results of update() as they are.
   VectorA inverse_dynamics(const VectorIn& q, const VectorIn& dq, const VectorIn& ddq) noexcept;

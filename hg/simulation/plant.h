@@ -5,57 +5,22 @@
 ///   M ddq = tau_J + tau_stop + J^T w - c - M_mp ddq_p,  tau_J = K (theta - q) + D (theta' - q')
 ///   Jm theta'' = tau_motor - tau_J - viscous theta' + tau_friction,
 /// in linearly implicit steps; springs, dampers, friction and stops at the end of the step.
-/// Coulomb friction and closed brakes are one box problem, see friction.h.
+/// Coulomb friction, closed brakes and end stops are one box problem, see friction.h.
 ///
 /// SI units; for a prismatic joint read N for Nm and m for rad. Set-up throws SetupError. After it
 /// nothing allocates or throws. Copyable: a copy goes on by itself.
 #pragma once
 
-#include <vector>
+#include <array>
 
-#include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/model/chain.h"
-#include "hg/signals/actuator_model.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/truth.h"
 #include "hg/simulation/friction.h"
+#include "hg/simulation/plant_config.h"
 
 namespace hg::simulation {
-
-inline constexpr int kMaxFlexible = 8;  ///< flexible joints
-inline constexpr int kMaxLinks = kMaxManipulator + kMaxFlexible;
-using VectorL = VectorUpTo<kMaxLinks>;  ///< joints that the forces move: manipulator, then flexible
-using MatrixL = MatrixUpTo<kMaxLinks, kMaxLinks>;
-using VectorQ = VectorUpTo<kMaxGantry + kMaxLinks>;  ///< all joints, in the order of the chain
-
-/// A joint that nobody drives: the bending of a link, of the trolley or of the gantry's frame.
-struct FlexibleJoint {
-  int joint = 0;           ///< its index in the chain
-  double stiffness = 0.0;  ///< Nm/rad towards position 0, >= 0; 0 = it moves freely
-  double damping = 0.0;    ///< Nms/rad, >= 0
-};
-
-/// Buffers at the ends of travel: they push and never pull.
-struct EndStopModel {
-  double stiffness = 1e5;      ///< Nm/rad, > 0; rubber on steel, assumed
-  double damping_ratio = 5.0;  ///< of the joint's own inertia on it, >= 0; 5 throws back 1 %
-};
-
-/// Set-up data. Indices are those of Chain::joints(); every joint is in exactly one list.
-struct PlantConfig {
-  double step = 0.25e-3;         ///< s, > 0; damps 15 Hz by 1.2 % of critical, [HANDBOOK] 4.4
-  std::vector<int> gantry;       ///< joints that the drives prescribe
-  std::vector<int> manipulator;  ///< joints with actuators
-  std::vector<FlexibleJoint> flexible;
-  std::vector<ActuatorModel> actuators;  ///< one per manipulator joint
-  double current_lag = 0.5e-3;           ///< from torque command to torque, s, >= 0; CONTROL_NOTES
-  DriveModel drive;                      ///< of every gantry axis
-  std::vector<Interval> end_stops;       ///< of the links of the manipulator; empty = none
-  EndStopModel end_stop;
-  VectorP q_p_start;
-  VectorM q_m_start;
-};
 
 /// What drives the plant during one step.
 struct PlantInput {
@@ -81,20 +46,21 @@ struct PlantForces {
 struct PlantEnergy {
   double kinetic = 0.0;    ///< links, gantry and rotors, J
   double potential = 0.0;  ///< in gravity
-  double spring = 0.0;     ///< joints, flexible joints and end stops
+  double spring = 0.0;     ///< joints and flexible joints
 
   double sum() const noexcept { return kinetic + potential + spring; }
 };
 
-/// Powers of the last step with the speeds at its end, W. Dissipated ones are >= 0.
+/// Powers of the last step with the speeds at its end, W.
 struct PlantPower {
-  double motors = 0.0, user = 0.0, gantry = 0.0;  ///< put in
-  double joint_damping = 0.0, viscous_friction = 0.0, coulomb_friction = 0.0;
-  double flexible_damping = 0.0, stop_damping = 0.0;
+  double motors = 0.0, user = 0.0, gantry = 0.0;                               ///< put in
+  double joint_damping = 0.0, viscous_friction = 0.0, coulomb_friction = 0.0;  ///< lost, >= 0
+  double flexible_damping = 0.0;                                               ///< lost, >= 0
+  double end_stops = 0.0;  ///< taken by the stops; a little of it comes back
 
   double put_in() const noexcept { return motors + user + gantry; }
-  double dissipated() const noexcept {
-    return joint_damping + viscous_friction + coulomb_friction + flexible_damping + stop_damping;
+  double taken() const noexcept {
+    return joint_damping + viscous_friction + coulomb_friction + flexible_damping + end_stops;
   }
 };
 
@@ -121,11 +87,52 @@ class Plant {
   const PlantConfig& config() const noexcept { return config_; }
 
  private:
+  // The equations of one step before friction and stops have had their say.
+  struct Equations {
+    MatrixL L;                  // Cholesky factor of the links' inertia with all that is implicit
+    VectorL tau;                // torques on the links
+    VectorL spring;             // transmitted on the links, were there no acceleration
+    VectorM motor;              // torques on the motors
+    VectorM inertia, coupling;  // of the motors with all that is implicit; to their links
+  };
+  // Links at their end stops: which way the stop pushes, how far they are in, damping.
+  struct Contact {
+    int joint;
+    double side, depth, damping;
+  };
+  struct Contacts {
+    std::array<Contact, kMaxManipulator> at;
+    int count = 0;
+  };
+
+  void start_in_balance() noexcept;
+  void move_motors(const VectorM& tau_command) noexcept;
+  VectorP gantry_acceleration(const VectorP& dq_p_command) noexcept;
+  Contacts touched_stops() const noexcept;
+  Equations equations(const VectorP& ddq_p) const noexcept;
+  void resist(const Equations& eq, const Contacts& contacts, bool brakes_closed) noexcept;
+  double friction_bound(int joint) const noexcept;
+  void accelerate(Equations& eq, const Contacts& contacts) noexcept;
+  void integrate(const VectorP& ddq_p) noexcept;
+  void observe() noexcept;
+
   PlantConfig config_;
   model::Chain chain_;
-  Truth truth_;
+  int handle_, n_p_, n_m_, n_l_;
+  int dead_steps_;
+  double current_share_;                // of the way to its command that a current goes in one step
+  std::array<int, kMaxLinks> links_{};  // their joints
+  std::array<CommandDelay, kMaxGantry> delays_;
+  std::array<BoxState, kMaxManipulator> friction_states_{}, stop_states_{};
+  VectorM current_;  // as torques of the motors without the limit of their speed
+  model::Jacobian J_H_;
+  VectorQ q_, dq_, ddq_;
+  VectorQ q_before_, dq_before_;  // at the start of the last step
+  VectorQ tau_user_;              // of the user in it, on all joints
+  BoxProblem box_;
+  BoxSolution box_solution_;
   PlantForces forces_;
-  VectorQ q_, dq_;
+  Truth truth_;
 };
 
 }  // namespace hg::simulation

@@ -1,0 +1,53 @@
+/// What a simulated machine is made of: set-up data of Plant.
+///
+/// SI units; for a prismatic joint read N for Nm and m for rad.
+#pragma once
+
+#include <vector>
+
+#include "hg/core/interval.h"
+#include "hg/core/types.h"
+#include "hg/model/chain.h"
+#include "hg/signals/actuator_model.h"
+#include "hg/signals/drive_model.h"
+
+namespace hg::simulation {
+
+inline constexpr int kMaxFlexible = 8;  ///< flexible joints
+inline constexpr int kMaxLinks = kMaxManipulator + kMaxFlexible;
+using VectorL = VectorUpTo<kMaxLinks>;  ///< joints that the forces move: manipulator, then flexible
+using MatrixL = MatrixUpTo<kMaxLinks, kMaxLinks>;
+using VectorQ = VectorUpTo<kMaxGantry + kMaxLinks>;  ///< all joints, in the order of the chain
+
+/// A joint that nobody drives: the bending of a link, of the trolley or of the gantry's frame.
+struct FlexibleJoint {
+  int joint = 0;           ///< its index in the chain
+  double stiffness = 0.0;  ///< Nm/rad towards position 0, >= 0; 0 = it moves freely
+  double damping = 0.0;    ///< Nms/rad, >= 0
+};
+
+/// Buffers at the ends of travel: they push and never pull.
+struct EndStopModel {
+  double stiffness = 1e5;      ///< Nm/rad, > 0; rubber on steel, assumed
+  double damping_ratio = 5.0;  ///< of the joint's own inertia on it, >= 0; 5 throws back 1 %
+};
+
+/// Set-up data. Indices are those of Chain::joints(); every joint is in exactly one list.
+struct PlantConfig {
+  double step = 0.25e-3;         ///< s, > 0; damps 15 Hz by 1.2 % of critical, [HANDBOOK] 4.4
+  std::vector<int> gantry;       ///< joints that the drives prescribe
+  std::vector<int> manipulator;  ///< joints with actuators
+  std::vector<FlexibleJoint> flexible;
+  std::vector<ActuatorModel> actuators;  ///< one per manipulator joint
+  double current_lag = 0.5e-3;           ///< from torque command to torque, s, >= 0; CONTROL_NOTES
+  DriveModel drive;                      ///< of every gantry axis
+  std::vector<Interval> end_stops;       ///< of the links of the manipulator; empty = none
+  EndStopModel end_stop;
+  VectorP q_p_start;
+  VectorM q_m_start;
+};
+
+/// Throws SetupError, `item: rule, got value`, unless a plant can be made of it.
+void check(const PlantConfig& config, const model::Chain& chain);
+
+}  // namespace hg::simulation

@@ -1,0 +1,61 @@
+#include <algorithm>
+
+#include "hg/simulation/plant.h"
+
+// What a plant says about itself when asked: energy, power and the check of its equations.
+
+namespace hg::simulation {
+namespace {
+
+double square(double x) noexcept { return x * x; }
+
+}  // namespace
+
+PlantEnergy Plant::energy() const noexcept {
+  PlantEnergy energy;
+  energy.potential = chain_.potential_energy();
+  for (int i = 0; i < dq_.size(); ++i) {
+    energy.kinetic += 0.5 * dq_[i] * chain_.M().col(i).dot(dq_);
+  }
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& a = config_.actuators[static_cast<std::size_t>(i)];
+    energy.kinetic += 0.5 * a.rotor_inertia * square(truth_.dtheta_m[i]);
+    energy.spring += 0.5 * a.stiffness * square(truth_.theta_m[i] - truth_.q_m[i]);
+  }
+  for (const FlexibleJoint& flexible : config_.flexible) {
+    energy.spring += 0.5 * flexible.stiffness * square(q_[flexible.joint]);
+  }
+  return energy;
+}
+
+PlantPower Plant::power() const noexcept {
+  PlantPower power;
+  power.motors = truth_.tau_motor.dot(truth_.dtheta_m);
+  power.user = tau_user_.dot(dq_);
+  power.gantry = forces_.f_p.dot(truth_.dq_p);
+  power.coulomb_friction = -forces_.tau_friction.dot(truth_.dtheta_m);
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& a = config_.actuators[static_cast<std::size_t>(i)];
+    power.viscous_friction += a.viscous_friction * square(truth_.dtheta_m[i]);
+    power.joint_damping += a.damping * square(truth_.dtheta_m[i] - truth_.dq_m[i]);
+    power.end_stops -= forces_.tau_stop[i] * truth_.dq_m[i];
+  }
+  for (const FlexibleJoint& flexible : config_.flexible) {
+    power.flexible_damping += flexible.damping * square(dq_[flexible.joint]);
+  }
+  return power;
+}
+
+double Plant::residual() noexcept {
+  const VectorA tau = chain_.inverse_dynamics(q_before_, dq_before_, ddq_);
+  double worst = 0.0;
+  for (int i = 0; i < n_l_; ++i) {
+    const int joint = links_[static_cast<std::size_t>(i)];
+    double error = tau[joint] - tau_user_[joint] - forces_.tau_links[i];
+    if (i < n_m_) error -= forces_.tau_stop[i];
+    worst = std::max(worst, std::abs(error));
+  }
+  return worst;
+}
+
+}  // namespace hg::simulation
