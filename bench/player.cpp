@@ -29,7 +29,7 @@ void Player::begin() {
 bool Player::end() {
   device_.write(sample_->command);
   sample_->operator_input.request =
-      runtime::next_request(record().mode, cycle_.is_held(sample_->sensors), false);
+      runtime::next_request(record(), cycle_.is_held(sample_->sensors), false);
   return record().time_s < end_s_ && record().mode != Mode::kFault;
 }
 

@@ -15,7 +15,7 @@ int main(int count, char** arguments) {
     cycle.step(sample.sensors, sample.operator_input, sample.command, sample.record);
     device.write(sample.command);
     sample.operator_input.request =
-        hg::runtime::next_request(sample.record.mode, cycle.is_held(sample.sensors), false);
+        hg::runtime::next_request(sample.record, cycle.is_held(sample.sensors), false);
   }
   std::printf("hinge at %.2f rad after %.1f s\n", sample.record.twin.q_a[0], sample.record.time_s);
 }

@@ -50,15 +50,15 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
 
   // supervisor: may this sample be used, and what is the device allowed to do
   if (state_.cycle == 0) state_.next_sequence = sensors.sequence;
-  const Fault fault = safety::check_sensors(config_.monitor, sensors, state_.next_sequence);
-  safety::advance(state_.supervisor, operator_input.request, is_held(sensors), fault);
+  supervise(sensors, operator_input.request, record);
 
   record.change = rendering_.change(operator_input.change, state_.rendering);
   ended_(Stage::kSupervision);
 
   // estimation -> rendering -> prepositioning
   if (safety::is_finite(sensors)) {
-    record.robot = estimation_.step(sensors, state_.dq_p, state_.estimation);
+    record.robot = estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m,
+                                    state_.estimation);
     ended_(Stage::kEstimation);
     const Mode mode = state_.supervisor.mode;
     if (mode == Mode::kRunning || mode == Mode::kStopping) {
@@ -80,6 +80,8 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   record.mode = state_.supervisor.mode;
   record.fault = state_.supervisor.fault;
   record.state_hash = hash_of(state_, record.robot, rendering_.problem().rows());
+  record.tare = state_.estimation.wrench.tare.status;
+  record.is_tared = estimation_.is_tared(state_.estimation);
   ended_(Stage::kStateHash);
 }
 
@@ -89,6 +91,22 @@ void Cycle::watch(const StageProbe& probe) noexcept {
 }
 
 // Nothing moves. Before it is armed the device may be moved by others: the twin goes along.
+void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
+                      CycleRecord& record) noexcept {
+  safety::SupervisorState& supervisor = state_.supervisor;
+  const bool is_new = request != supervisor.last_request;
+  const bool is_arming = is_new && request == ModeRequest::kArm && supervisor.mode == Mode::kReady;
+  if (is_arming && !estimation_.is_tared(state_.estimation)) record.refusal = Refusal::kNotTared;
+
+  const bool is_refused = record.refusal != Refusal::kNone;
+  safety::advance(supervisor, is_refused ? ModeRequest::kNone : request, is_held(sensors),
+                  safety::check_sensors(config_.monitor, sensors, state_.next_sequence));
+  supervisor.last_request = request;
+
+  const bool is_at_rest = supervisor.mode != Mode::kRunning && supervisor.mode != Mode::kStopping;
+  estimation_.tare(is_new && request == ModeRequest::kTare, is_at_rest, state_.estimation);
+}
+
 void Cycle::hold(CycleRecord& record) noexcept {
   rendering::State& rendering = state_.rendering;
   if (state_.supervisor.mode != Mode::kArmed) {

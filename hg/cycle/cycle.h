@@ -69,6 +69,7 @@ class Cycle {
   void hold(CycleRecord& record) noexcept;
   void render(CycleRecord& record) noexcept;
   void write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
+  void supervise(const SensorFrame& sensors, ModeRequest request, CycleRecord& record) noexcept;
                      CommandFrame& command) noexcept;
   void stop_with(const Fault& fault) noexcept;
 

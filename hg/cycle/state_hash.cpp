@@ -82,6 +82,34 @@ void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
   hash.mix_bytes(state.touched.upper.data(), state.touched.upper.size());
 }
 
+void mix(const estimation::TareState& tare, Hash& hash) noexcept {
+  hash.mix(static_cast<std::uint64_t>(tare.status) | std::uint64_t{tare.is_valid} << 8U);
+  hash.mix(static_cast<std::uint64_t>(tare.count));
+  hash.mix(tare.offset);
+  hash.mix(tare.mean);
+  hash.mix(tare.square);
+  hash.mix(tare.first_half);
+  hash.mix(tare.q_m);
+  hash.mix(tare.q_p);
+}
+
+void mix(const estimation::State& state, Hash& hash) noexcept {
+  for (const estimation::GantryObserver& axis : state.gantry) {
+    for (const double value : {axis.q, axis.dq, axis.ddq, axis.disturbance}) hash.mix(value);
+  }
+  hash.mix(state.q_m);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(state.q_m.size()); ++i) {
+    for (const double value :
+         {state.link[i].q, state.link[i].dq, state.motor[i].theta, state.motor[i].dtheta}) {
+      hash.mix(value);
+    }
+  }
+  hash.mix(state.wrench.omega_S);
+  hash.mix(state.wrench.alpha_S);
+  hash.mix(state.wrench.w_S);
+  mix(state.wrench.tare, hash);
+}
+
 }  // namespace
 
 std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noexcept {
@@ -95,10 +123,7 @@ std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noe
   hash.mix(static_cast<std::uint64_t>(state.supervisor.mode));
   hash.mix(static_cast<std::uint64_t>(state.supervisor.last_request));
   hash.mix(static_cast<std::uint64_t>(state.supervisor.fault.code));
-  for (const estimation::GantryObserver& axis : state.estimation.gantry) {
-    for (const double value : {axis.q, axis.dq, axis.ddq, axis.disturbance}) hash.mix(value);
-  }
-  hash.mix(state.estimation.q_m);
+  mix(state.estimation, hash);
   hash.mix(robot.w_H);
   return hash.value();
 }

@@ -1,30 +1,11 @@
 #include "hg/estimation/estimation.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "hg/core/stacked.h"
 #include "hg/model/haptic_giant.h"
 
 namespace hg::estimation {
-namespace {
-
-// [C] 2: predict with the drive model, correct position, speed and disturbance; triple pole p
-void observe(const Config& config, double q_measured, double dq_cmd_delayed,
-             GantryObserver& axis) noexcept {
-  const double dt = config.dt;
-  const double p = std::exp(-2.0 * std::numbers::pi * config.observer_pole_Hz * dt);
-  axis.ddq = drive_acceleration(config.drive, axis.dq, dq_cmd_delayed) + axis.disturbance;
-  axis.q += dt * axis.dq + 0.5 * dt * dt * axis.ddq;
-  axis.dq += dt * axis.ddq;
-
-  const double innovation = q_measured - axis.q;
-  axis.q += (1.0 - p * p * p) * innovation;
-  axis.dq += 1.5 * (1.0 - p) * (1.0 - p) * (1.0 + p) / dt * innovation;
-  axis.disturbance += (1.0 - p) * (1.0 - p) * (1.0 - p) / (dt * dt) * innovation;
-}
-
-}  // namespace
 
 Estimation::Estimation(const Config& config, const model::Chain& chain, int n_p, int n_m,
                        int handle)
@@ -33,51 +14,105 @@ Estimation::Estimation(const Config& config, const model::Chain& chain, int n_p,
       n_p_(n_p),
       n_m_(n_m),
       handle_(handle),
-      dead_periods_(static_cast<int>(std::lround(config.drive.dead_time / config.dt))) {}
+      dead_periods_(static_cast<int>(std::lround(config.drive.dead_time / config.dt))),
+      gantry_gains_(gantry_gains(config.observer_pole_Hz, config.dt)),
+      link_pole_(low_pass_pole(config.link_pole_Hz, config.dt)),
+      motor_pole_(low_pass_pole(config.motor_low_pass_Hz, config.dt)) {}
 
 bool Estimation::turns_without_end(int joint) const noexcept {
   return chain_.joints()[static_cast<std::size_t>(joint)].type == model::JointType::kContinuous;
 }
 
-RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
-                            State& state) noexcept {
-  if (!state.is_started) {
-    state.q_m = sensors.q_m;
-    for (int i = 0; i < n_p_; ++i) state.gantry[static_cast<std::size_t>(i)].q = sensors.q_p[i];
-    state.is_started = true;
-  }
+double Estimation::unwrapped(int joint, double measured, double last) const noexcept {
+  return turns_without_end(joint) ? model::haptic_giant::nearest_turn(measured, last) : measured;
+}
 
+void Estimation::tare(bool is_asked_for, bool is_at_rest, State& state) const noexcept {
+  TareState& tare = state.wrench.tare;
+  if (is_asked_for) begin(tare);
+  if (tare.status == TareStatus::kUnderWay && !is_at_rest) {
+    tare.status = TareStatus::kRefusedRunning;
+  }
+}
+
+RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
+                            const VectorM& ddq_m_reference, State& state) noexcept {
+  if (!state.is_started) start(sensors, state);
   RobotState robot;
-  robot.q_m = sensors.q_m;
-  robot.dq_m = sensors.dq_m;
+  observe_joints(sensors, ddq_m_reference, state, robot);
+  observe_gantry(sensors, dq_p_cmd, state, robot);
+  observe_wrench(sensors, state, robot);
+  return robot;
+}
+
+void Estimation::start(const SensorFrame& sensors, State& state) const noexcept {
+  state.q_m = sensors.q_m;
   for (int i = 0; i < n_m_; ++i) {
-    if (turns_without_end(n_p_ + i)) {
-      robot.q_m[i] = model::haptic_giant::nearest_turn(sensors.q_m[i], state.q_m[i]);
+    const auto joint = static_cast<std::size_t>(i);
+    state.link[joint].q = sensors.q_m[i];
+    if (sensors.theta_m.size() == n_m_) {
+      state.motor[joint].theta = unwrapped(n_p_ + i, sensors.theta_m[i], sensors.q_m[i]);
     }
   }
-  state.q_m = robot.q_m;
+  for (int i = 0; i < n_p_; ++i) state.gantry[static_cast<std::size_t>(i)].q = sensors.q_p[i];
+  state.is_started = true;
+}
 
+void Estimation::observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference,
+                                State& state, RobotState& robot) const noexcept {
+  robot.q_m = sensors.q_m;
+  robot.dq_m = sensors.dq_m;
+  robot.tau_m = sensors.tau_m;
+  const bool has_motor_encoders = sensors.theta_m.size() == n_m_;
+  if (has_motor_encoders) robot.theta_m = robot.dtheta_m = sensors.theta_m;
+  for (int i = 0; i < n_m_; ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    robot.q_m[i] = unwrapped(n_p_ + i, sensors.q_m[i], state.q_m[i]);
+    if (!has_motor_encoders) continue;
+
+    LinkObserver& link = state.link[joint];
+    observe(link_pole_, config_.dt, ddq_m_reference[i], robot.q_m[i], link);
+    robot.q_m[i] = link.q;
+    robot.dq_m[i] = link.dq;
+
+    MotorObserver& motor = state.motor[joint];
+    const double theta = unwrapped(n_p_ + i, sensors.theta_m[i], link.q);
+    observe(motor_pole_, config_.dt, theta, motor);
+    robot.theta_m[i] = motor.theta;
+    robot.dtheta_m[i] = motor.dtheta;
+  }
+  state.q_m = robot.q_m;
+}
+
+void Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd, State& state,
+                                RobotState& robot) const noexcept {
   robot.q_p.resize(n_p_);
   robot.dq_p.resize(n_p_);
   robot.ddq_p.resize(n_p_);
   for (int i = 0; i < n_p_; ++i) {
     GantryObserver& axis = state.gantry[static_cast<std::size_t>(i)];
-    const double q = turns_without_end(i)
-                         ? model::haptic_giant::nearest_turn(sensors.q_p[i], axis.q)
-                         : sensors.q_p[i];
-    observe(config_, q, axis.delay.shift(dq_p_cmd[i], dead_periods_), axis);
+    observe(config_.drive, gantry_gains_, config_.dt, unwrapped(i, sensors.q_p[i], axis.q),
+            axis.delay.shift(dq_p_cmd[i], dead_periods_), axis);
     robot.q_p[i] = axis.q;
     robot.dq_p[i] = axis.dq;
     robot.ddq_p[i] = axis.ddq;
   }
+}
 
-  // the sensor measures in S; the law needs the same wrench about H, resolved in B
+void Estimation::observe_wrench(const SensorFrame& sensors, State& state,
+                                RobotState& robot) noexcept {
   chain_.update_poses(stacked(robot.q_p, robot.q_m));
   const Eigen::Matrix3d R_B_H = chain_.pose(handle_).R;
-  const Eigen::Vector3d f_H = config_.T_H_S.R * sensors.w_S.head<3>();
-  const Eigen::Vector3d n_H = config_.T_H_S.R * sensors.w_S.tail<3>() + config_.T_H_S.p.cross(f_H);
+  const Eigen::Matrix3d R_B_S = R_B_H * config_.T_H_S.R;
+  advance(config_.wrench.tare, config_.dt, without_weight(config_.wrench, sensors, R_B_S),
+          sensors.dead_man, robot.q_m, robot.q_p, state.wrench.tare);
+  estimate(config_.wrench, config_.dt, sensors, R_B_S, state.wrench);
+
+  // the sensor measures in S; the law needs the same wrench about H, resolved in B
+  const Vector6& w_S = state.wrench.w_S;
+  const Eigen::Vector3d f_H = config_.T_H_S.R * w_S.head<3>();
+  const Eigen::Vector3d n_H = config_.T_H_S.R * w_S.tail<3>() + config_.T_H_S.p.cross(f_H);
   robot.w_H << R_B_H * f_H, R_B_H * n_H;
-  return robot;
 }
 
 }  // namespace hg::estimation

@@ -1,13 +1,16 @@
-/// From sensors to state: unwrapped joints, gantry motion, user wrench at the handle.
+/// From sensors to state: joints, gantry motion, user wrench at the handle.
 ///
-/// The gantry's velocity and acceleration come from an observer with the drive model and the
-/// command as input, never from differences of a quantised encoder ([HANDBOOK] 1.5).
+/// Sources: [C] 2, [HANDBOOK] 1.5, 1.6. What a device does not measure is not estimated: without
+/// motor-side encoders (ideal position-controlled devices) joints are taken as measured.
 /// No allocation, noexcept after set-up.
 #pragma once
 
 #include <array>
 
 #include "hg/core/types.h"
+#include "hg/estimation/gantry_observer.h"
+#include "hg/estimation/joint_observer.h"
+#include "hg/estimation/user_wrench.h"
 #include "hg/model/chain.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/state.h"
@@ -16,23 +19,22 @@ namespace hg::estimation {
 
 /// Set-up data.
 struct Config {
-  double dt = 1e-3;               ///< period, s
-  DriveModel drive;               ///< of every gantry axis
-  double observer_pole_Hz = 8.0;  ///< triple pole of the gantry observer
-  Pose T_H_S;                     ///< force/torque sensor S in the handle frame H
-};
-
-/// Observer of one gantry axis: q, dq and an acceleration disturbance; [C] 2.
-struct GantryObserver {
-  double q = 0.0, dq = 0.0, ddq = 0.0;
-  double disturbance = 0.0;
-  CommandDelay delay;
+  double dt = 1e-3;                  ///< period, s
+  DriveModel drive;                  ///< of every gantry axis
+  double observer_pole_Hz = 8.0;     ///< of the gantry, see gantry_observer.h
+  double link_pole_Hz = 100.0;       ///< of the link side; [C] 2: 60-160 equal, 40 marginal
+  double motor_low_pass_Hz = 200.0;  ///< of the motor side's speed
+  Pose T_H_S;                        ///< force/torque sensor S in the handle frame H
+  WrenchConfig wrench;
 };
 
 struct State {
   bool is_started = false;
   std::array<GantryObserver, kMaxGantry> gantry;
   VectorM q_m;  ///< unwrapped joints of the last sample
+  std::array<LinkObserver, kMaxManipulator> link;
+  std::array<MotorObserver, kMaxManipulator> motor;
+  WrenchState wrench;
 };
 
 class Estimation {
@@ -40,16 +42,34 @@ class Estimation {
   /// `chain` holds the gantry joints first; `handle` is its frame H.
   Estimation(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
 
-  /// `dq_p_cmd` is the gantry command that was sent in the last cycle (n_p).
-  RobotState step(const SensorFrame& sensors, const VectorP& dq_p_cmd, State& state) noexcept;
+  /// `dq_p_cmd` is the gantry command that was sent in the last cycle (n_p), `ddq_m_reference` the
+  /// acceleration of the manipulator's reference since then (n_m).
+  RobotState step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
+                  const VectorM& ddq_m_reference, State& state) noexcept;
+
+  /// Starts a tare of the wrench when asked for; ends one under way unless the device is at rest.
+  void tare(bool is_asked_for, bool is_at_rest, State& state) const noexcept;
+  /// Whether the wrench is as good as this device needs it for running.
+  bool is_tared(const State& state) const noexcept {
+    return state.wrench.tare.is_valid || !config_.wrench.tare.is_needed;
+  }
 
  private:
   bool turns_without_end(int joint) const noexcept;
+  double unwrapped(int joint, double measured, double last) const noexcept;
+  void start(const SensorFrame& sensors, State& state) const noexcept;
+  void observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference, State& state,
+                      RobotState& robot) const noexcept;
+  void observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd, State& state,
+                      RobotState& robot) const noexcept;
+  void observe_wrench(const SensorFrame& sensors, State& state, RobotState& robot) noexcept;
 
   Config config_;
   model::Chain chain_;
   int n_p_, n_m_, handle_;
   int dead_periods_;
+  GantryGains gantry_gains_;
+  double link_pole_, motor_pole_;
 };
 
 }  // namespace hg::estimation

@@ -71,7 +71,7 @@ void fields(Archive& a, T& change) {
 
 template <typename Archive, Is<OperatorFrame> T>
 void fields(Archive& a, T& input) {
-  a("request", input.request, "0 none, 1 arm, 2 run, 3 stop, 4 reset");
+  a("request", input.request, "0 none, 1 arm, 2 run, 3 stop, 4 reset, 5 tare");
   a("hand_target", input.hand_target);
   a("change", input.change, "of a parameter of the twin");
 }

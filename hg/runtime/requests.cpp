@@ -1,11 +1,21 @@
 #include "hg/runtime/requests.h"
 
 namespace hg::runtime {
+namespace {
 
-ModeRequest next_request(Mode mode, bool is_held, bool is_stopping) noexcept {
-  switch (mode) {
+ModeRequest ready_request(const CycleRecord& record, bool is_held) noexcept {
+  if (record.is_tared) return ModeRequest::kArm;
+  const bool is_under_way = record.tare == TareStatus::kUnderWay;
+  const bool is_hopeless = record.tare == TareStatus::kRefusedHeld && is_held;
+  return is_under_way || is_hopeless ? ModeRequest::kNone : ModeRequest::kTare;
+}
+
+}  // namespace
+
+ModeRequest next_request(const CycleRecord& record, bool is_held, bool is_stopping) noexcept {
+  switch (record.mode) {
     case Mode::kReady:
-      return ModeRequest::kArm;
+      return ready_request(record, is_held);
     case Mode::kArmed:
       return is_held && !is_stopping ? ModeRequest::kRun : ModeRequest::kNone;
     case Mode::kRunning:

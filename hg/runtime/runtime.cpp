@@ -129,7 +129,7 @@ void Runtime::loop() noexcept {
     report_.stop_timed_out = is_stopping && record.time_s > stop_since_s + kLongestStop;
     if (report_.stop_timed_out) break;
     sample->operator_input.request =
-        next_request(record.mode, cycle_.is_held(sample->sensors), is_stopping);
+        next_request(record, cycle_.is_held(sample->sensors), is_stopping);
 
     if (options_.is_fast) continue;
     report_.overruns += schedule.advance(now_ns());

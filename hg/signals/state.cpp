@@ -34,4 +34,34 @@ std::string_view to_string(SolverStatus status) noexcept {
   return "unknown";
 }
 
+std::string_view to_string(TareStatus status) noexcept {
+  switch (status) {
+    case TareStatus::kNone:
+      return "none";
+    case TareStatus::kUnderWay:
+      return "under way";
+    case TareStatus::kDone:
+      return "done";
+    case TareStatus::kRefusedHeld:
+      return "refused: the handle is held, let go of the dead-man";
+    case TareStatus::kRefusedMoving:
+      return "refused: the device moves";
+    case TareStatus::kRefusedUnsteady:
+      return "refused: the wrench is not steady, nobody may touch the handle";
+    case TareStatus::kRefusedRunning:
+      return "refused: the device runs";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(Refusal refusal) noexcept {
+  switch (refusal) {
+    case Refusal::kNone:
+      return "none";
+    case Refusal::kNotTared:
+      return "not armed: this device needs a tare first";
+  }
+  return "unknown";
+}
+
 }  // namespace hg

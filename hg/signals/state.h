@@ -87,6 +87,27 @@ struct CycleRecord {
   Fault fault;
   ChangeStatus change = ChangeStatus::kNone;
   RobotState robot;
+/// How the last tare of the force/torque sensor went. A refused one leaves the old tare.
+enum class TareStatus : std::uint8_t {
+  kNone = 0,             ///< there was none
+  kUnderWay = 1,         ///< the wrench is being averaged
+  kDone = 2,             ///< its mean is taken off from now on
+  kRefusedHeld = 3,      ///< the dead-man was closed: somebody held the handle
+  kRefusedMoving = 4,    ///< joints or gantry moved
+  kRefusedUnsteady = 5,  ///< the wrench varied more than the sensor's noise: somebody touched it
+  kRefusedRunning = 6,   ///< the device ran or stopped
+};
+
+std::string_view to_string(TareStatus status) noexcept;
+
+/// Why a request of the operator was not followed.
+enum class Refusal : std::uint8_t {
+  kNone = 0,
+  kNotTared = 1,  ///< arming a device that needs a tare and has none
+};
+
+std::string_view to_string(Refusal refusal) noexcept;
+
   ReferenceState reference;
   TwinState twin;
   Pose T_B_H;                                     ///< handle at the reference
@@ -94,6 +115,9 @@ struct CycleRecord {
   Eigen::Vector3d v_H = Eigen::Vector3d::Zero();  ///< its velocity
   Eigen::Vector3d a_H = Eigen::Vector3d::Zero();  ///< its acceleration asked for this sample
   Eigen::Vector3d p_B_elbow = Eigen::Vector3d::Zero();
+  TareStatus tare = TareStatus::kNone;
+  bool is_tared = false;             ///< a tare is there, or this device needs none
+  Refusal refusal = Refusal::kNone;  ///< of this cycle's request
   double sync_error = 0.0;        ///< distance of H and E in m
   double sync_error_angle = 0.0;  ///< angle between H and E in rad
   VectorA tau_a;                  ///< J_a^T w

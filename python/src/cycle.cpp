@@ -156,7 +156,7 @@ void bind_parts(nb::module_& module) {
             self.device.write(command);
           },
           nb::arg("command"), "Lives one period.");
-  module.def("next_request", &runtime::next_request, nb::arg("mode"), nb::arg("is_held"),
+  module.def("next_request", &runtime::next_request, nb::arg("record"), nb::arg("is_held"),
              nb::arg("is_stopping") = false,
              "What an operator asks for who wants nothing but to run.");
 }

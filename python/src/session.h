@@ -26,7 +26,7 @@ class Session {
     wishes_.change = {};
     if (cycles_ > 0) {
       now.operator_input.request =
-          runtime::next_request(now.record.mode, cycle_.is_held(now.sensors), is_stopping_);
+          runtime::next_request(now.record, cycle_.is_held(now.sensors), is_stopping_);
     }
     const ParameterChange due = changes_.due(static_cast<double>(cycles_++) / rate_Hz_);
     if (due.parameter != Parameter::kNone) now.operator_input.change = due;

@@ -25,7 +25,19 @@ void bind_modes(nb::module_& module) {
       .value("ARM", ModeRequest::kArm)
       .value("RUN", ModeRequest::kRun)
       .value("STOP", ModeRequest::kStop)
-      .value("RESET", ModeRequest::kReset);
+      .value("RESET", ModeRequest::kReset)
+      .value("TARE", ModeRequest::kTare);
+  nb::enum_<TareStatus>(module, "TareStatus", nb::is_arithmetic(), "How the last tare went.")
+      .value("NONE", TareStatus::kNone)
+      .value("UNDER_WAY", TareStatus::kUnderWay)
+      .value("DONE", TareStatus::kDone)
+      .value("REFUSED_HELD", TareStatus::kRefusedHeld)
+      .value("REFUSED_MOVING", TareStatus::kRefusedMoving)
+      .value("REFUSED_UNSTEADY", TareStatus::kRefusedUnsteady)
+      .value("REFUSED_RUNNING", TareStatus::kRefusedRunning);
+  nb::enum_<Refusal>(module, "Refusal", nb::is_arithmetic(), "Why a request was not followed.")
+      .value("NONE", Refusal::kNone)
+      .value("NOT_TARED", Refusal::kNotTared);
   nb::enum_<SolverStatus>(module, "SolverStatus", nb::is_arithmetic())
       .value("NOT_RUN", SolverStatus::kNotRun)
       .value("SOLVED", SolverStatus::kSolved)

@@ -136,7 +136,7 @@ class OwnLoop(unittest.TestCase):
         self.command, self.record = self.cycle.step(self.sensors, self.operator)
         self.device.write(self.command)
         self.operator.request = hg.next_request(
-            self.record.mode, self.cycle.is_held(self.sensors))
+            self.record, self.cycle.is_held(self.sensors))
 
     def test_every_field_can_be_read(self):
         self.step()

@@ -80,7 +80,7 @@ class ScenarioRun {
       }
       device_.write(sample->command);
       sample->operator_input.request =
-          runtime::next_request(sample->record.mode, cycle_.is_held(sample->sensors), false);
+          runtime::next_request(sample->record, cycle_.is_held(sample->sensors), false);
       summary_.add(*sample);
       if (const auto event = detector_.observe(sample->record)) summary_.add(*event);
       if (sample->record.mode == Mode::kRunning) add_quality(sample->record);

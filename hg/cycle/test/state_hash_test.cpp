@@ -55,7 +55,19 @@ TEST(StateHash, SeesEveryValueOfTheState) {
       [](State& s) { s.supervisor.last_request = ModeRequest::kStop; },
       [](State& s) { s.supervisor.fault.code = FaultCode::kSyncLost; },
       [](State& s) { s.estimation.gantry[1].disturbance = 1.0; },
-      [](State& s) { s.estimation.q_m[3] = 0.0; },
+      [](State& s) { s.estimation.q_m[3] = 0.0; }, [](State& s) { s.estimation.link[5].dq = 1.0; },
+      [](State& s) { s.estimation.motor[5].theta = 1.0; },
+      [](State& s) { s.estimation.wrench.omega_S.x() = 1.0; },
+      [](State& s) { s.estimation.wrench.alpha_S.y() = 1.0; },
+      [](State& s) { s.estimation.wrench.w_S[4] = 1.0; },
+      [](State& s) { s.estimation.wrench.tare.status = TareStatus::kDone; },
+      [](State& s) { s.estimation.wrench.tare.is_valid = true; },
+      [](State& s) { s.estimation.wrench.tare.count = 3; },
+      [](State& s) { s.estimation.wrench.tare.offset[5] = 1.0; },
+      [](State& s) { s.estimation.wrench.tare.mean[5] = 2.0; },
+      [](State& s) { s.estimation.wrench.tare.square[0] = 1.0; },
+      [](State& s) { s.estimation.wrench.tare.first_half[1] = 1.0; },
+      [](State& s) { s.estimation.wrench.tare.q_m = VectorM::Ones(1); },
       // two signs at once, which a hash of words without rotation does not see
       [](State& s) { s.rendering.reference.q_m[0] = s.rendering.reference.q_m[1] = -1.0; }};
   const RobotState robot;
