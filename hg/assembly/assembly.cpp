@@ -41,6 +41,7 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
   return cycle::Cycle({.estimation = device.estimation,
                        .prepositioning = device.prepositioning,
                        .rendering = device.rendering,
+                       .control = device.control,
                        .monitor = device.monitor},
                       device.model, scenario.twin.model);
 }
@@ -65,7 +66,8 @@ device::SimulatedDevice make_simulated_device(const config::Scenario& scenario) 
 
 double planned_duration_s(const config::Scenario& scenario) {
   if (scenario.person != user::PersonKind::kScript) return 0.0;
-  return scenario.duration_s > 0.0 ? scenario.duration_s : scenario.script.script.duration_s;
+  const user::Script& script = scenario.script.script;
+  return script.grasp_s + (scenario.duration_s > 0.0 ? scenario.duration_s : script.duration_s);
 }
 
 }  // namespace hg::assembly

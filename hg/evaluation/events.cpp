@@ -96,14 +96,17 @@ bool EventDetector::holds(const Condition& condition, const CycleRecord& record)
     case ConditionKind::kGantryBelow:
       return record.robot.q_p[condition.index] < condition.value;
     case ConditionKind::kElapsed:
-      return record.time_s > condition.value;
+      return record.time_s - start_s_ > condition.value;
   }
   return false;
 }
 
 std::optional<Event> EventDetector::observe(const CycleRecord& record) {
   if (record.mode != Mode::kRunning) return std::nullopt;
-  if (q_m_start_.size() == 0) q_m_start_ = record.reference.q_m;
+  if (q_m_start_.size() == 0) {
+    q_m_start_ = record.reference.q_m;
+    start_s_ = record.time_s;
+  }
 
   if (!rules_.empty()) {
     if (next_ == rules_.size()) return std::nullopt;

@@ -21,7 +21,7 @@ enum class ConditionKind {
   kTurns,        ///< manipulator joint `index` has turned by `value` turns since the start
   kGantryAbove,  ///< gantry joint `index` > value, m
   kGantryBelow,  ///< gantry joint `index` < value, m
-  kElapsed,      ///< time > value, s
+  kElapsed,      ///< time since the first running cycle > value, s
 };
 
 struct Condition {
@@ -65,7 +65,8 @@ class EventDetector {
   std::vector<EventRule> rules_;
   LimitCatalogue catalogue_;
   std::size_t next_ = 0;
-  VectorM q_m_start_;
+  VectorM q_m_start_;  ///< in the first running cycle
+  double start_s_ = 0.0;
   std::vector<Situation> situations_;  ///< of every limit in the last record
 };
 

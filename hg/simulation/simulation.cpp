@@ -26,7 +26,6 @@ Simulation::Simulation(const Config& config, const model::Chain& chain, int hand
       dq_m_(VectorM::Zero(n_m_)) {
   for (int i = 0; i < n_p_; ++i) axes_[static_cast<std::size_t>(i)].q = config.q_p_start[i];
   sensors_.tau_m = VectorM::Zero(n_m_);
-  sensors_.dead_man = config_.has_dead_man;
   measure({});
 }
 
@@ -74,6 +73,7 @@ void Simulation::measure(const HandTarget& target) noexcept {
   for (int i = 0; i < n_m_; ++i) sensors_.q_m[i] = encoder(n_p_ + i, q_m_[i]);
   sensors_.dq_m = dq_m_;
 
+  sensors_.dead_man = config_.has_dead_man && person_.is_holding(time_s_);
   const user::HandleMotion handle{chain_.pose(handle_), chain_.twist(handle_)};
   const Vector6 w_H = person_.wrench(time_s_, handle, target);
   const Eigen::Matrix3d R_S_B = (handle.T_B_H.R * config_.T_H_S.R).transpose();

@@ -1,32 +1,25 @@
-/// A simulated person: pulls the handle towards where the hand wants it, through the impedance of
-/// an arm, and pushes as the script says. Source: [HANDBOOK] 5.1, 5.3.
+/// A simulated person: takes the handle and pulls it towards where the hand wants it, as a script,
+/// a walk or a mouse says. Source: [HANDBOOK] 5.
 ///
-/// SI units; wrenches act on the handle, at H, resolved in B. No allocation, noexcept after set-up.
+/// SI units; wrenches act on the handle, at H, resolved in B. Copyable, no allocation, noexcept
+/// after set-up; the same calls give the same bits.
 #pragma once
+
+#include <array>
+#include <cstdint>
 
 #include "hg/core/types.h"
 #include "hg/model/chain.h"
 #include "hg/signals/frames.h"
+#include "hg/user/hand.h"
 #include "hg/user/script.h"
+#include "hg/user/tremor.h"
+#include "hg/user/walker.h"
 
 namespace hg::user {
 
-/// Hand impedance. Angular values hold about the axes of H.
-struct HandImpedance {
-  Eigen::Vector3d stiffness{200, 200, 200};        ///< N/m in B
-  Eigen::Vector3d damping{20, 20, 20};             ///< Ns/m
-  Eigen::Vector3d angular_stiffness{2, 2, 2};      ///< Nm/rad
-  Eigen::Vector3d angular_damping{0.1, 0.1, 0.1};  ///< Nms/rad
-  double force_max = 60;                           ///< a person pulls no harder, N
-  double torque_max = 8;                           ///< Nm
-  double press_force = 14;  ///< with HandTarget::press = 1, downwards at the handle, N
-};
-
-/// Throws SetupError naming the field that is out of range.
-void check(const HandImpedance& hand);
-
 enum class PersonKind {
-  kNone,    ///< nobody holds the handle
+  kNone,    ///< nobody pulls; the dead-man switch is tied down
   kScript,  ///< plays a script
   kMouse,   ///< follows HandTarget only
 };
@@ -35,12 +28,7 @@ struct Config {
   PersonKind kind = PersonKind::kScript;
   HandImpedance hand;
   Script script;
-};
-
-/// Where and how fast the handle is.
-struct HandleMotion {
-  Pose T_B_H;
-  Vector6 twist = Vector6::Zero();
+  std::uint64_t seed = 1;  ///< of the tremor
 };
 
 class Person {
@@ -48,25 +36,44 @@ class Person {
   /// `twin` and its frame `end_effector` give the pose of kTwinJoints and kCylindrical channels.
   Person(const Config& config, const model::Chain& twin, int end_effector, const Pose& T_B_twin);
 
-  /// Wrench on the handle at time `t`. An active hand target overrules the script.
+  /// Wrench on the handle at time `t`, in s since the start of the run; the arm lives from call to
+  /// call. An active hand target overrules the script. Zero before Script::grasp_s.
   Vector6 wrench(double t, const HandleMotion& handle, const HandTarget& target) noexcept;
 
-  /// Seconds until the script has played; 0 without a script.
+  /// The hand closes the dead-man switch at time `t`: from the grasp on, and for good.
+  bool is_holding(double t) const noexcept { return t >= config_.script.grasp_s; }
+
+  /// Seconds until the script has played, with the time before the grasp; 0 without a script.
   double duration_s() const noexcept;
 
+  /// Of a walk along checkpoints.
+  const Score& score() const noexcept { return score_; }
+
  private:
-  struct Goal {
-    Pose pose;
-    Vector6 twist = Vector6::Zero();
-    bool has_orientation = true;
-  };
-  Goal script_goal(double t, const std::array<double, kChannels>& channels) noexcept;
-  Pose channel_pose(const std::array<double, kChannels>& channels) noexcept;
+  void grasp(double t, const HandleMotion& handle) noexcept;
+  bool is_pulling(const HandTarget& target) const noexcept;
+  Goal script_goal(double t, double dt, const Pose& T_B_H) noexcept;
+  Pose channel_pose() noexcept;
+  void keep_score(double dt, const HandleMotion& handle) noexcept;
 
   Config config_;
   model::Chain twin_;
   int end_effector_;
   Pose T_B_twin_;
+  Arm arm_;
+  Tremor tremor_;
+  Walker walker_;
+
+  bool has_grasped_ = false;
+  bool follows_target_ = false;               ///< instead of the script
+  double time_s_ = 0.0;                       ///< of the last call
+  Pose goal_;                                 ///< of the last call
+  std::array<double, kChannels> channels_{};  ///< of the script now
+
+  Score score_;
+  Eigen::Vector2d last_point_ = Eigen::Vector2d::Zero();  ///< start or checkpoint
+  Eigen::Vector2d last_p_H_ = Eigen::Vector2d::Zero();
+  double way_ = 0.0, impulse_ = 0.0, walked_s_ = 0.0, since_point_s_ = 0.0;  ///< so far
 };
 
 }  // namespace hg::user

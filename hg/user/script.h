@@ -1,4 +1,5 @@
-/// A scripted hand: what the person wants to do, as ramps of named channels over time.
+/// A scripted hand: what the person wants to do, as ramps of named channels over time. Time counts
+/// from the grasp.
 ///
 /// Pose channels say where the hand wants the handle to be, wrench channels what it pushes with.
 /// Every segment moves its channels along a minimum-jerk ramp from what they were to a target;
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "hg/core/types.h"
+#include "hg/user/walker.h"
 
 namespace hg::user {
 
@@ -41,10 +43,12 @@ struct Segment {
 };
 
 struct Script {
+  double grasp_s = 0.7;  ///< the hand takes the handle; until then its sensors can be tared
   ScriptFrame frame = ScriptFrame::kBase;
   std::array<double, kChannels> start{};  ///< values before the first segment
   std::vector<Segment> segments;          ///< in the order of their start
   double duration_s = 0.0;                ///< after it the script has played
+  Walk walk;  ///< kBase only: moves x, y and azimuth; the segments of these channels do nothing
 };
 
 /// Minimum-jerk ramp from 0 to 1 over [start, start + duration]; [HANDBOOK] 5.2.
