@@ -6,12 +6,14 @@
 namespace hg::device {
 
 /// One call of read() and one of write() per period, from the control thread only. Neither
-/// allocates, blocks or throws.
+/// allocates or throws, and only the read() of a device that is the clock blocks.
 class Device {
  public:
   virtual ~Device() = default;
   virtual void read(SensorFrame& sensors) noexcept = 0;
   virtual void write(const CommandFrame& command) noexcept = 0;
+  /// Whether read() waits for the next sample, at most a fixed time: then nobody else keeps time.
+  virtual bool is_clock() const noexcept { return false; }
 };
 
 }  // namespace hg::device

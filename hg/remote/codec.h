@@ -31,7 +31,7 @@ class Encoder {
   std::size_t size() const noexcept { return static_cast<std::size_t>(at_ - begin_); }
 
   template <typename T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void operator()(const char*, T value, const char*) noexcept {
     if constexpr (std::is_enum_v<T> || std::same_as<T, bool>) {
       put(static_cast<std::uint32_t>(value));
@@ -73,7 +73,7 @@ class Decoder {
   bool is_good() const noexcept { return is_good_; }
 
   template <typename T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void operator()(const char*, T& value, const char*) noexcept {
     if constexpr (std::same_as<T, bool>) {
       const auto number = take<std::uint32_t>();

@@ -23,7 +23,8 @@ void fields(Archive& a, T& header) {
   a("type", header.type, "of the message");
   a("length", header.length, "of the datagram, header and checksum included");
   a("session", header.session, "as the welcome says; 0 in hello and in a refusal");
-  a("number", header.number, "1, 2, 3 .. of the datagrams that the sender has sent in this session");
+  a("number", header.number,
+    "1, 2, 3 .. of the datagrams that the sender has sent in this session");
   a("time_ns", header.time_ns, "when it was sent, on the sender's clock");
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -35,12 +36,14 @@ struct Text {
   std::array<char, kSize> bytes{};
 
   Text() = default;
-  Text(std::string_view text) noexcept {  // NOLINT(google-explicit-constructor)
+  template <std::convertible_to<std::string_view> T>
+  Text(const T& value) noexcept {  // NOLINT(google-explicit-constructor)
+    const std::string_view text = value;
     std::memcpy(bytes.data(), text.data(), std::min(text.size(), kSize));
   }
   std::string_view view() const noexcept {
-    return {bytes.data(), static_cast<std::size_t>(
-                              std::find(bytes.begin(), bytes.end(), '\0') - bytes.begin())};
+    return {bytes.data(),
+            static_cast<std::size_t>(std::find(bytes.begin(), bytes.end(), '\0') - bytes.begin())};
   }
 };
 
@@ -60,7 +63,7 @@ struct Description {
 enum class Refusal : std::uint32_t {
   kNone = 0,
   kBusy = 1,      ///< another client has the device
-  kVersion = 2,   ///< of the protocol
+  kProtocol = 2,  ///< of another version
   kMismatch = 3,  ///< of the descriptions
 };
 

@@ -1,0 +1,71 @@
+#include "hg/remote/agreement.h"
+
+#include <fmt/format.h>
+
+namespace hg::remote {
+namespace {
+
+const char* words(Interface interface) noexcept {
+  return interface == Interface::kTorque ? "torques" : "positions";
+}
+
+const char* words(bool is_lock_step) noexcept {
+  return is_lock_step ? "lock-step (--fast)" : "real time";
+}
+
+}  // namespace
+
+std::string difference(const Description& actual, const Description& expected) {
+  if (actual.device.bytes != expected.device.bytes) {
+    return fmt::format("device: '{}', expected '{}'", actual.device.view(), expected.device.view());
+  }
+  if (actual.n_p != expected.n_p) {
+    return fmt::format("gantry axes: {}, expected {}", actual.n_p, expected.n_p);
+  }
+  if (actual.n_m != expected.n_m) {
+    return fmt::format("joints: {}, expected {}", actual.n_m, expected.n_m);
+  }
+  if (actual.rate_Hz != expected.rate_Hz) {
+    return fmt::format("rate: {:g} Hz, expected {:g} Hz", actual.rate_Hz, expected.rate_Hz);
+  }
+  if (actual.interface != expected.interface) {
+    return fmt::format("drives take {}, expected {}", words(actual.interface),
+                       words(expected.interface));
+  }
+  if (actual.is_lock_step != expected.is_lock_step) {
+    return fmt::format("time: {}, expected {}", words(actual.is_lock_step),
+                       words(expected.is_lock_step));
+  }
+  return {};
+}
+
+bool fits(const Description& agreed, const SensorFrame& sensors) noexcept {
+  const auto n_m = static_cast<Eigen::Index>(agreed.n_m);
+  const auto all_or_none = [&](const VectorM& v) { return v.size() == n_m || v.size() == 0; };
+  return sensors.q_m.size() == n_m && sensors.dq_m.size() == n_m && all_or_none(sensors.theta_m) &&
+         all_or_none(sensors.tau_m) && sensors.q_p.size() == static_cast<Eigen::Index>(agreed.n_p);
+}
+
+bool fits(const Description& agreed, const CommandFrame& command) noexcept {
+  const auto n_m = static_cast<Eigen::Index>(agreed.n_m);
+  const bool is_torque = agreed.interface == Interface::kTorque;
+  const bool has_right_torques =
+      command.tau_m.size() == (is_torque ? n_m : 0) || (!command.enable && !command.tau_m.size());
+  const HandTarget& hand = command.hand_target;
+  return command.q_m.size() == n_m && command.dq_m.size() == n_m && command.ddq_m.size() == n_m &&
+         has_right_torques && command.dq_p.size() == static_cast<Eigen::Index>(agreed.n_p) &&
+         command.q_m.allFinite() && command.dq_m.allFinite() && command.ddq_m.allFinite() &&
+         command.tau_m.allFinite() && command.dq_p.allFinite() && hand.p_B.allFinite() &&
+         std::isfinite(hand.press);
+}
+
+CommandFrame off_command(const Description& agreed) {
+  const auto n_m = static_cast<Eigen::Index>(agreed.n_m);
+  CommandFrame command;
+  command.q_m = command.dq_m = command.ddq_m = VectorM::Zero(n_m);
+  if (agreed.interface == Interface::kTorque) command.tau_m = VectorM::Zero(n_m);
+  command.dq_p = VectorP::Zero(static_cast<Eigen::Index>(agreed.n_p));
+  return command;
+}
+
+}  // namespace hg::remote

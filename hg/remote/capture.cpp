@@ -1,0 +1,50 @@
+#include "hg/remote/capture.h"
+
+#include <array>
+#include <cstring>
+
+#include "hg/core/error.h"
+
+namespace hg::remote {
+namespace {
+
+constexpr std::uint32_t kNanosecondMagic = 0xa1b23c4d;
+constexpr std::uint32_t kVersion = 2 | 4U << 16U;
+constexpr std::uint32_t kLinkTypeUser0 = 147;
+constexpr std::uint32_t kLargest = 65535;
+constexpr std::array<std::uint32_t, 6> kFileHeader = {kNanosecondMagic, kVersion,      0, 0,
+                                                      kLargest,         kLinkTypeUser0};
+using PacketHeader = std::array<std::uint32_t, 4>;  // s, ns, captured bytes, bytes
+
+}  // namespace
+
+Capture::Capture(const std::string& file) : file_(file, std::ios::binary) {
+  file_.write(reinterpret_cast<const char*>(kFileHeader.data()), sizeof kFileHeader);
+  if (!file_) throw SetupError(file + ": cannot be written");
+}
+
+void Capture::add(std::int64_t time_ns, std::span<const std::byte> datagram) {
+  const auto size = static_cast<std::uint32_t>(datagram.size());
+  const PacketHeader header = {static_cast<std::uint32_t>(time_ns / 1'000'000'000),
+                               static_cast<std::uint32_t>(time_ns % 1'000'000'000), size, size};
+  file_.write(reinterpret_cast<const char*>(header.data()), sizeof header);
+  file_.write(reinterpret_cast<const char*>(datagram.data()), size);
+}
+
+std::vector<std::vector<std::byte>> read_capture(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::array<std::uint32_t, 6> found{};
+  in.read(reinterpret_cast<char*>(found.data()), sizeof found);
+  if (!in || found != kFileHeader) throw SetupError(file + ": is no capture of this program");
+  std::vector<std::vector<std::byte>> datagrams;
+  PacketHeader header{};
+  while (in.read(reinterpret_cast<char*>(header.data()), sizeof header)) {
+    if (header[2] > kLargest) throw SetupError(file + ": a packet is too long");
+    std::vector<std::byte>& datagram = datagrams.emplace_back(header[2]);
+    in.read(reinterpret_cast<char*>(datagram.data()), header[2]);
+    if (!in) throw SetupError(file + ": ends inside a packet");
+  }
+  return datagrams;
+}
+
+}  // namespace hg::remote

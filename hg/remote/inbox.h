@@ -1,0 +1,48 @@
+/// Which datagrams of one session count: each good one once, in whatever order they come.
+///
+/// Pure: no socket, no clock. No allocation, noexcept.
+#pragma once
+
+#include <cstdint>
+
+#include "hg/remote/codec.h"
+#include "hg/signals/link_counts.h"
+
+namespace hg::remote {
+
+/// Numbers that have been seen, like the replay window of IPsec (RFC 4303, 3.4.3).
+class NumberWindow {
+ public:
+  static constexpr std::uint64_t kSize = 64;  ///< numbers that may be overtaken by so many
+  enum class Place { kNewest, kOvertaken, kSeen };
+
+  /// A number older than the window counts as seen.
+  Place accept(std::uint64_t number) noexcept;
+  /// Numbers since the first that have not been seen.
+  std::uint64_t missing() const noexcept { return count_ == 0 ? 0 : newest_ - first_ + 1 - count_; }
+
+ private:
+  std::uint64_t first_ = 0, newest_ = 0, count_ = 0;
+  std::uint64_t seen_ = 0;  ///< bit i: newest_ - i
+};
+
+class Inbox {
+ public:
+  explicit Inbox(std::uint32_t session) : session_(session) {}
+
+  /// Counts a datagram by what read_header() said of it; true: look at its fields.
+  bool accept(Verdict verdict, const Header& header) noexcept;
+  /// Whether the datagram accepted last was overtaken by a later one.
+  bool was_overtaken() const noexcept { return was_overtaken_; }
+
+  /// What is known here; users add what they know.
+  LinkCounts counts() const noexcept;
+
+ private:
+  std::uint32_t session_;
+  NumberWindow window_;
+  bool was_overtaken_ = false;
+  LinkCounts counts_;
+};
+
+}  // namespace hg::remote

@@ -1,0 +1,32 @@
+/// Numbers and stamps the datagrams of one session.
+#pragma once
+
+#include "hg/remote/codec.h"
+#include "hg/remote/udp_socket.h"
+
+namespace hg::remote {
+
+class Outbox {
+ public:
+  explicit Outbox(std::uint32_t session) : session_(session) {}
+
+  /// The bytes are valid until the next call.
+  template <typename Message>
+  std::span<const std::byte> encode(const Message& message) noexcept {
+    const Header header{
+        .session = session_, .number = ++number_, .time_ns = static_cast<std::uint64_t>(now_ns())};
+    remote::encode(header, message, datagram_);
+    return datagram_.view();
+  }
+  /// Datagrams encoded so far.
+  std::uint64_t number() const noexcept { return number_; }
+  /// From here on in a session; the numbers go on.
+  void join(std::uint32_t session) noexcept { session_ = session; }
+
+ private:
+  std::uint32_t session_;
+  std::uint64_t number_ = 0;
+  Datagram datagram_;
+};
+
+}  // namespace hg::remote

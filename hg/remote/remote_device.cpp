@@ -1,0 +1,188 @@
+#include "hg/remote/remote_device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "hg/core/error.h"
+#include "hg/remote/agreement.h"
+
+namespace hg::remote {
+namespace {
+
+constexpr std::int64_t kHelloPeriod = 100'000'000;  // ns
+constexpr std::int64_t kRepeatPeriod = 20'000'000;  // ns, in lock-step and for the first frame
+constexpr int kMostAtOnce = 64;                     // datagrams
+constexpr int kGoodbyes = 3;                        // nobody answers them: one may be lost
+
+std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
+
+std::uint64_t random_number() {
+  std::random_device random;
+  return std::uint64_t{random()} << 32U | random();
+}
+
+}  // namespace
+
+RemoteDevice::RemoteDevice(const Address& address, const ClientConfig& config)
+    : config_(config), socket_(UdpSocket::talking_to(address)) {
+  connect(address.host + ":" + address.port);
+}
+
+RemoteDevice::~RemoteDevice() { close(fault_); }
+
+void RemoteDevice::connect(const std::string& at) {
+  const std::uint64_t nonce = random_number();
+  const std::int64_t deadline = now_ns() + ns(config_.answer_timeout_s);
+  while (now_ns() < deadline) {
+    send(Hello{nonce, config_.expected, config_.client});
+    const std::int64_t again = std::min(now_ns() + kHelloPeriod, deadline);
+    while (now_ns() < again) {
+      socket_.wait(again);
+      if (answers(at, nonce)) return;
+      if (socket_.was_refused()) break;  // come back later
+    }
+    while (now_ns() < again) socket_.wait(again);
+  }
+  throw SetupError(
+      fmt::format("{}: no device answers there within {:g} s; is its server running "
+                  "(hapticgiant simulate --listen {})?",
+                  at, config_.answer_timeout_s, at));
+}
+
+// whether a datagram was the welcome
+bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce) {
+  Peer from;
+  if (!socket_.receive(datagram_, from)) return false;
+  Header header;
+  const Verdict verdict = read_header(datagram_.view(), header);
+  if (verdict == Verdict::kWrongVersion) {
+    throw SetupError(
+        fmt::format("{}: the device speaks version {} of the protocol, this program {}", at,
+                    header.version, kVersion));
+  }
+  if (verdict != Verdict::kGood || header.type != static_cast<std::uint16_t>(MessageType::kWelcome))
+    return false;
+  if (!decode(datagram_.view(), welcome_) || welcome_.nonce != nonce) return false;
+  if (welcome_.refusal != Refusal::kNone) {
+    throw SetupError(fmt::format("{}: the device refuses: {}", at, welcome_.reason.view()));
+  }
+  const std::string unlike = difference(welcome_.actual, config_.expected);
+  if (!unlike.empty()) {
+    throw SetupError(fmt::format("{}: the device does not fit: {}", at, unlike));
+  }
+  outbox_.join(header.session);
+  inbox_ = Inbox(header.session);
+  return inbox_.accept(verdict, header);
+}
+
+void RemoteDevice::read(SensorFrame& sensors) noexcept {
+  if (fault_ != FaultCode::kNone) return stop(fault_, sensors);
+  const bool is_lock_step = config_.expected.is_lock_step;
+  const double timeout_s = !is_started_   ? config_.first_timeout_s
+                           : is_lock_step ? config_.lock_step_timeout_s
+                                          : config_.frame_timeout_s;
+  const std::int64_t begin = now_ns();
+  const std::int64_t deadline = begin + ns(timeout_s);
+  std::int64_t again = is_started_ ? begin + kRepeatPeriod : begin;
+  while (true) {
+    take_in();
+    if (queue_.pop(sensors)) {
+      is_started_ = true;
+      return;
+    }
+    if (has_left_) return stop(FaultCode::kDeviceGone, sensors);
+    const std::int64_t now = now_ns();
+    if (now >= deadline) return stop(FaultCode::kDeviceSilent, sensors);
+    const bool says_again = is_lock_step || !is_started_;
+    if (says_again && now >= again) {
+      say_again();
+      again = now + kRepeatPeriod;
+    }
+    socket_.wait(says_again ? std::min(again, deadline) : deadline);
+  }
+}
+
+void RemoteDevice::take_in() noexcept {
+  Peer from;
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    if (queue_.is_full() || !socket_.receive(datagram_, from)) return;
+    Header header;
+    const Verdict verdict = read_header(datagram_.view(), header);
+    if (inbox_.accept(verdict, header)) take(header);
+  }
+}
+
+void RemoteDevice::take(const Header& header) noexcept {
+  switch (static_cast<MessageType>(header.type)) {
+    case MessageType::kSensors:
+      if (!decode(datagram_.view(), arrived_) || !fits(config_.expected, arrived_)) {
+        ++own_.malformed;
+      } else if (!queue_.push(arrived_)) {
+        ++own_.late;
+      }
+      return;
+    case MessageType::kGoodbye:
+      if (!decode(datagram_.view(), goodbye_)) ++own_.malformed;
+      has_left_ = true;
+      return;
+    case MessageType::kWelcome:  // answers a hello that was sent twice
+      return;
+    case MessageType::kHello:
+    case MessageType::kReady:
+    case MessageType::kCommand:
+      ++own_.foreign;
+      return;
+  }
+}
+
+// the server waits for what has been lost
+void RemoteDevice::say_again() noexcept {
+  if (has_command_) {
+    send(last_command_);
+    ++own_.repeated;
+  } else {
+    send(Ready{});
+  }
+}
+
+void RemoteDevice::stop(FaultCode fault, SensorFrame& sensors) noexcept {
+  fault_ = fault;
+  if (!is_started_) {
+    const auto n_m = static_cast<Eigen::Index>(config_.expected.n_m);
+    sensors.q_m = sensors.dq_m = sensors.tau_m = VectorM::Zero(n_m);
+    sensors.q_p = VectorP::Zero(static_cast<Eigen::Index>(config_.expected.n_p));
+  }
+  ++sensors.sequence;
+  sensors.driver_fault = fault;
+}
+
+void RemoteDevice::write(const CommandFrame& command) noexcept {
+  last_command_ = command;
+  has_command_ = true;
+  send(command);
+}
+
+void RemoteDevice::close(FaultCode reason) noexcept {
+  if (is_closed_ || has_left_) return;
+  is_closed_ = true;
+  const bool is_fault = reason != FaultCode::kNone;
+  const Goodbye goodbye{is_fault ? Farewell::kFault : Farewell::kDone,
+                        is_fault ? to_string(reason) : "done"};
+  for (int i = 0; i < kGoodbyes; ++i) send(goodbye);
+}
+
+LinkCounts RemoteDevice::counts() const noexcept {
+  LinkCounts counts = inbox_.counts();
+  counts.sent = outbox_.number();
+  counts.held = queue_.held();
+  counts.late = own_.late;
+  counts.repeated = own_.repeated;
+  counts.malformed = own_.malformed;
+  counts.foreign += own_.foreign;
+  return counts;
+}
+
+}  // namespace hg::remote

@@ -1,0 +1,82 @@
+/// A device at the other end of a network: the client of docs/device_protocol.md.
+///
+/// Set-up (constructor, close()) may block and throw; read() and write() follow the contract of
+/// Device, but read() waits for the next frame: the device is the clock.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "hg/device/device.h"
+#include "hg/remote/frame_queue.h"
+#include "hg/remote/inbox.h"
+#include "hg/remote/outbox.h"
+#include "hg/remote/protocol.h"
+#include "hg/remote/udp_socket.h"
+#include "hg/signals/link_counts.h"
+
+namespace hg::remote {
+
+/// Set-up data.
+struct ClientConfig {
+  Description expected;           ///< anything else is refused
+  std::string client;             ///< program and version, for the server's log
+  double answer_timeout_s = 3.0;  ///< for the welcome
+  double first_timeout_s = 1.0;   ///< for the first frame
+  /// Between frames. In real time what a gantry at 1.5 m/s may do in it (75 mm) counts, in
+  /// lock-step the patience with a slow simulator.
+  double frame_timeout_s = 0.05;
+  double lock_step_timeout_s = 5.0;
+};
+
+class RemoteDevice final : public device::Device {
+ public:
+  /// Connects. Throws SetupError: nobody answers, refused and why, another device or version.
+  RemoteDevice(const Address& address, const ClientConfig& config);
+  ~RemoteDevice() override;
+
+  /// Waits for the next frame, at most one of the time-outs. Then, and when the server has said
+  /// goodbye, the last frame comes again with its driver_fault set, from now on at once.
+  void read(SensorFrame& sensors) noexcept override;
+  void write(const CommandFrame& command) noexcept override;
+  bool is_clock() const noexcept override { return true; }
+
+  /// Tells the server that the session is over, and why: kNone = as planned. Once.
+  void close(FaultCode reason) noexcept;
+
+  const Welcome& welcome() const noexcept { return welcome_; }
+  /// Why the server ended the session; empty: it did not.
+  std::string_view farewell() const noexcept { return goodbye_.reason.view(); }
+  LinkCounts counts() const noexcept;
+
+ private:
+  void connect(const std::string& at);
+  bool answers(const std::string& at, std::uint64_t nonce);
+  void take_in() noexcept;
+  void take(const Header& header) noexcept;
+  void say_again() noexcept;
+  void stop(FaultCode fault, SensorFrame& sensors) noexcept;
+  template <typename Message>
+  void send(const Message& message) noexcept {
+    socket_.send(outbox_.encode(message));
+  }
+
+  ClientConfig config_;
+  UdpSocket socket_;
+  Outbox outbox_{0};
+  Inbox inbox_{0};
+  FrameQueue queue_;
+  Welcome welcome_;
+  Goodbye goodbye_;
+  SensorFrame arrived_;
+  CommandFrame last_command_;
+  Datagram datagram_;
+  bool is_started_ = false;  ///< the first frame has come
+  bool has_command_ = false;
+  bool has_left_ = false;  ///< the server
+  bool is_closed_ = false;
+  FaultCode fault_ = FaultCode::kNone;
+  LinkCounts own_;  ///< what neither inbox nor queue can count
+};
+
+}  // namespace hg::remote
