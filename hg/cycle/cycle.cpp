@@ -79,9 +79,9 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   ++state_.cycle;
   record.mode = state_.supervisor.mode;
   record.fault = state_.supervisor.fault;
-  record.state_hash = hash_of(state_, record.robot, rendering_.problem().rows());
   record.tare = state_.estimation.wrench.tare.status;
   record.is_tared = estimation_.is_tared(state_.estimation);
+  record.state_hash = hash_of(state_, record.robot, rendering_.problem().rows());
   ended_(Stage::kStateHash);
 }
 
@@ -90,7 +90,6 @@ void Cycle::watch(const StageProbe& probe) noexcept {
   rendering_.watch(probe);
 }
 
-// Nothing moves. Before it is armed the device may be moved by others: the twin goes along.
 void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
                       CycleRecord& record) noexcept {
   safety::SupervisorState& supervisor = state_.supervisor;
@@ -107,6 +106,7 @@ void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
   estimation_.tare(is_new && request == ModeRequest::kTare, is_at_rest, state_.estimation);
 }
 
+// Nothing moves. Before it is armed the device may be moved by others: the twin goes along.
 void Cycle::hold(CycleRecord& record) noexcept {
   rendering::State& rendering = state_.rendering;
   if (state_.supervisor.mode != Mode::kArmed) {

@@ -66,10 +66,10 @@ class Cycle {
   }
 
  private:
+  void supervise(const SensorFrame& sensors, ModeRequest request, CycleRecord& record) noexcept;
   void hold(CycleRecord& record) noexcept;
   void render(CycleRecord& record) noexcept;
   void write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
-  void supervise(const SensorFrame& sensors, ModeRequest request, CycleRecord& record) noexcept;
                      CommandFrame& command) noexcept;
   void stop_with(const Fault& fault) noexcept;
 

@@ -63,6 +63,10 @@ void fields(Archive& a, T& record) {
   a("mode", record.mode, "0 off, 1 ready, 2 armed, 3 running, 4 stopping, 5 fault");
   a("fault", record.fault);
   a("change", record.change, "of a parameter: 0 none, 1 taken, 2 refused");
+  a("tare", record.tare,
+    "0 none, 1 under way, 2 done, 3 refused: held, 4 moving, 5 unsteady, 6 running");
+  a("is_tared", record.is_tared, "a tare is there, or this device needs none");
+  a("refusal", record.refusal, "of the request: 0 none, 1 not tared");
   a("robot", record.robot, "estimated state of the device");
   a("reference", record.reference, "integrated reference of the manipulator");
   a("twin", record.twin);
@@ -73,10 +77,6 @@ void fields(Archive& a, T& record) {
   a("p_b_elbow", record.p_B_elbow, "m");
   a("sync_error", record.sync_error, "distance of handle and twin, m");
   a("sync_error_angle", record.sync_error_angle, "rad");
-  a("tare", record.tare,
-    "0 none, 1 under way, 2 done, 3 refused: held, 4 moving, 5 unsteady, 6 running");
-  a("is_tared", record.is_tared, "a tare is there, or this device needs none");
-  a("refusal", record.refusal, "of the request: 0 none, 1 not tared");
   a("tau_a", record.tau_a, "J_a^T w, Nm or N");
   a("budget", record.budget, "where the user's wrench goes");
   a.sequence("limits", record.limits, record.limit_count, "in the order of metadata \"limits\"");

@@ -79,14 +79,6 @@ enum class ChangeStatus : std::uint8_t {
   kRefused = 2,  ///< parameter or index unknown to this twin, or value out of range: ignored
 };
 
-/// Everything that a cycle has to say: recorded, shown, and judged after the run.
-struct CycleRecord {
-  std::uint64_t cycle = 0;
-  double time_s = 0.0;  ///< nominal time since the cycle was created
-  Mode mode = Mode::kOff;
-  Fault fault;
-  ChangeStatus change = ChangeStatus::kNone;
-  RobotState robot;
 /// How the last tare of the force/torque sensor went. A refused one leaves the old tare.
 enum class TareStatus : std::uint8_t {
   kNone = 0,             ///< there was none
@@ -108,6 +100,17 @@ enum class Refusal : std::uint8_t {
 
 std::string_view to_string(Refusal refusal) noexcept;
 
+/// Everything that a cycle has to say: recorded, shown, and judged after the run.
+struct CycleRecord {
+  std::uint64_t cycle = 0;
+  double time_s = 0.0;  ///< nominal time since the cycle was created
+  Mode mode = Mode::kOff;
+  Fault fault;
+  ChangeStatus change = ChangeStatus::kNone;
+  TareStatus tare = TareStatus::kNone;
+  bool is_tared = false;             ///< a tare is there, or this device needs none
+  Refusal refusal = Refusal::kNone;  ///< of this cycle's request
+  RobotState robot;
   ReferenceState reference;
   TwinState twin;
   Pose T_B_H;                                     ///< handle at the reference
@@ -115,9 +118,6 @@ std::string_view to_string(Refusal refusal) noexcept;
   Eigen::Vector3d v_H = Eigen::Vector3d::Zero();  ///< its velocity
   Eigen::Vector3d a_H = Eigen::Vector3d::Zero();  ///< its acceleration asked for this sample
   Eigen::Vector3d p_B_elbow = Eigen::Vector3d::Zero();
-  TareStatus tare = TareStatus::kNone;
-  bool is_tared = false;             ///< a tare is there, or this device needs none
-  Refusal refusal = Refusal::kNone;  ///< of this cycle's request
   double sync_error = 0.0;        ///< distance of H and E in m
   double sync_error_angle = 0.0;  ///< angle between H and E in rad
   VectorA tau_a;                  ///< J_a^T w
