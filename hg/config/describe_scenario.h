@@ -45,7 +45,8 @@ void describe_parts(V& v, ScenarioDraft& d) {
   v.path("twin", d.twin, "twin.yaml", Need::kRequired);
   v.path_or_choice("person", d.script, d.person, kPersons,
                    "script.yaml of the hand, or mouse, or none", Need::kRequired);
-  v.number("duration_s", d.duration_s, kPositive, "length of the run", Need::kRequired);
+  v.number("duration_s", d.duration_s, kPositive,
+           "length of the run, from when a scripted hand takes the handle", Need::kRequired);
 }
 
 /// Conditions on single limits.
@@ -101,7 +102,18 @@ void describe_conditions(V& v, const EventNames& names, evaluation::EventRule& e
           "positions in m");
   by_name("gantry_below", ConditionKind::kGantryBelow, names.gantry, "a gantry joint",
           "positions in m");
-  number("elapsed_s", ConditionKind::kElapsed, "time since the start");
+  number("elapsed_s", ConditionKind::kElapsed, "time since the device began to run");
+  v.group(
+      "handle_at",
+      [&](auto& child) {
+        evaluation::Condition& at = event.all_of.emplace_back();
+        at.kind = ConditionKind::kHandleAt;
+        child.number("x_m", at.place.x(), kAnyNumber, "in B", Need::kRequired);
+        child.number("y_m", at.place.y(), kAnyNumber, "in B", Need::kRequired);
+        child.number("azimuth_rad", at.place.z(), kAnyNumber, "of the hand axis about z of B",
+                     Need::kRequired);
+      },
+      "the handle is nearer than 0.10 m and 15 degrees");
   v.rule(!event.all_of.empty(), "", "an event needs at least one condition");
 }
 

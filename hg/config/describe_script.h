@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ std::vector<Channel> pose_channels(user::ScriptFrame frame);
 struct ScriptDraft {
   user::ScriptFrame frame = user::ScriptFrame::kBase;
   user::HandImpedance hand;
+  double grasp_s = user::Script{}.grasp_s;
+  user::Walk walk;
   std::vector<Channel> channels;  ///< those of the frame, then wrench and grip
   std::array<double, user::kChannels> start{};
   std::array<bool, user::kChannels> start_given{};
@@ -39,23 +42,80 @@ inline constexpr std::array<Choice<user::ScriptFrame>, 3> kScriptFrames = {
      {"cylindrical", user::ScriptFrame::kCylindrical},
      {"twin_joints", user::ScriptFrame::kTwinJoints}}};
 
+inline constexpr std::array<Choice<user::HandPreset>, 3> kHandPresets = {
+    {{"relaxed", user::HandPreset::kRelaxed},
+     {"normal", user::HandPreset::kNormal},
+     {"stiff", user::HandPreset::kStiff}}};
+
 template <class V>
 void describe(V& v, user::HandImpedance& hand) {
-  v.vector("stiffness_N_per_m", hand.stiffness, kNotNegative, "along x, y, z of B");
-  v.vector("damping_Ns_per_m", hand.damping, kNotNegative, "along x, y, z of B");
+  user::HandPreset preset = user::HandPreset::kNormal;
+  const bool is_given =
+      v.choice("preset", preset, kHandPresets, "values of the keys below that are not given");
+  if (is_given) hand = user::hand(preset);
+  v.vector(
+      "stiffness_N_per_m", hand.stiffness, kNotNegative,
+      "of the arm, along fore-aft, left-right and vertical: x, y, z of B, turned by the heading "
+      "in frame base");
+  v.vector("damping_Ns_per_m", hand.damping, kNotNegative, "of the arm, along the same axes");
+  v.vector("mass_kg", hand.mass, kPositive, "effective, of hand and arm, along the same axes");
+  v.number("grip_stiffness_N_per_m", hand.grip_stiffness, kPositive,
+           "between hand and handle, in series with the arm");
+  v.number("grip_damping_Ns_per_m", hand.grip_damping, kNotNegative, "between hand and handle");
   v.vector("angular_stiffness_Nm_per_rad", hand.angular_stiffness, kNotNegative,
            "about x, y, z of H");
   v.vector("angular_damping_Nms_per_rad", hand.angular_damping, kNotNegative, "about x, y, z of H");
-  v.number("force_max_N", hand.force_max, kPositive, "the hand pulls no harder");
+  v.number("force_max_N", hand.force_max, kPositive, "the arm pulls no harder");
   v.number("torque_max_Nm", hand.torque_max, kPositive, "the hand turns no harder");
   v.number("press_force_N", hand.press_force, kNotNegative, "of a mouse that presses the lever");
+  v.number("tremor_N", hand.tremor_rms, kNotNegative,
+           "root mean square of the tremor of 8 to 12 Hz along each axis; 0 = none");
+}
+
+template <class V>
+void describe(V& v, user::Walk& walk) {
+  const bool has_circle =
+      v.number("circle_radius_m", walk.circle_radius, kPositive,
+               "the hand goes round such a circle, counterclockwise; or checkpoints");
+  const bool has_checkpoints = v.list(
+      "checkpoints",
+      [&](auto& child) {
+        user::Checkpoint& checkpoint = walk.checkpoints.emplace_back();
+        child.number("x_m", checkpoint.p.x(), kAnyNumber, "of the handle in B", Need::kRequired);
+        child.number("y_m", checkpoint.p.y(), kAnyNumber, "of the handle in B", Need::kRequired);
+        child.number("heading_rad", checkpoint.heading, kAnyNumber, "of the person",
+                     Need::kRequired);
+      },
+      "the hand goes there in this order; reached nearer than 0.10 m and 15 degrees");
+  v.number("speed_m_per_s", walk.speed, kPositive, "of the hand on a circle, else of the body");
+  v.number("azimuth_from_heading_rad", walk.azimuth_from_heading, kAnyNumber,
+           "azimuth of the handle minus heading of the person who holds it");
+  v.number("vertical_bob_m", walk.vertical_bob, kNotNegative,
+           "of the hand, 1.8 Hz; from 0.6 m/s on, less when slower");
+  v.number("lateral_bob_m", walk.lateral_bob, kNotNegative, "of the hand, 0.9 Hz; likewise");
+  v.rule(has_circle != has_checkpoints, "", "a walk needs either circle_radius_m or checkpoints");
+  v.rule(walk.checkpoints.size() <= user::kMaxCheckpoints, "checkpoints", "at most 16 checkpoints",
+         std::to_string(walk.checkpoints.size()));
+  if (has_circle) walk.kind = user::WalkKind::kCircle;
+  if (has_checkpoints) walk.kind = user::WalkKind::kCheckpoints;
+  v.rule(!has_circle || user::has_room(walk), "circle_radius_m",
+         "so large that the body can walk inside the circle of its hand, at this speed");
 }
 
 template <class V>
 void describe_frame(V& v, ScriptDraft& d) {
   v.choice("frame", d.frame, kScriptFrames, "what the pose channels mean");
   v.group(
-      "hand", [&](auto& child) { describe(child, d.hand); }, "impedance of the hand");
+      "hand", [&](auto& child) { describe(child, d.hand); }, "impedance of arm and grip");
+  v.number(
+      "grasp_s", d.grasp_s, kNotNegative,
+      "when the hand takes the handle and closes the dead-man switch; sensors are tared before. "
+      "The times below count from here");
+  if (v.covers(d.frame == user::ScriptFrame::kBase)) {
+    v.group(
+        "walk", [&](auto& child) { describe(child, d.walk); },
+        "a walking person: moves x_m, y_m and azimuth_rad of the hand; frame base only");
+  }
 }
 
 /// Gives the channels in this map to take(channel index, value).
@@ -112,6 +172,13 @@ void describe_segments(V& v, ScriptDraft& d) {
       "ramps, which may overlap; later ones act on what earlier ones have made");
   v.number("duration_s", d.duration_s, kPositive,
            "length of the script; without it, until the last ramp ends");
+  if (d.walk.kind == user::WalkKind::kNone) return;
+  v.rule(!std::isnan(d.duration_s), "walk", "a walk needs duration_s");
+  for (const user::Segment& segment : d.segments) {
+    const bool is_walked = segment.channel == 0 || segment.channel == 1 || segment.channel == 3;
+    v.rule(!is_walked, "segments",
+           "with a walk, no segment moves x_m, y_m or azimuth_rad, or has circle_turns");
+  }
 }
 
 }  // namespace hg::config

@@ -87,6 +87,7 @@ Script load_script(const std::filesystem::path& path, const rendering::TwinModel
 
   Script script;
   script.hand = draft.hand;
+  script.script.grasp_s = draft.grasp_s;
   script.script.frame = draft.frame;
   script.script.start = draft.start;
   script.script.segments = std::move(draft.segments);
@@ -95,6 +96,7 @@ Script load_script(const std::filesystem::path& path, const rendering::TwinModel
     script.script.duration_s =
         std::max(script.script.duration_s, segment.start_s + segment.duration_s);
   }
+  script.script.walk = std::move(draft.walk);
   if (!std::isnan(draft.duration_s)) script.script.duration_s = draft.duration_s;
   std::copy_n(draft.start_given.begin(), script.start_given.size(), script.start_given.begin());
   script.sources = reader.since(first_source);

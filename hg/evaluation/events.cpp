@@ -12,6 +12,16 @@ namespace {
 constexpr double kNearMetres = 2e-3;
 constexpr double kNearRadians = 5e-3;
 
+// [HANDBOOK] 5.3: a checkpoint is reached
+constexpr double kThereMetres = 0.10;
+constexpr double kThereRadians = 15.0 * std::numbers::pi / 180.0;
+
+bool is_at(const Pose& T_B_H, const Eigen::Vector3d& place) noexcept {
+  const double azimuth = std::atan2(T_B_H.R(1, 2), T_B_H.R(0, 2));
+  return (T_B_H.p - place).head<2>().norm() < kThereMetres &&
+         std::abs(std::remainder(azimuth - place.z(), 2.0 * std::numbers::pi)) < kThereRadians;
+}
+
 bool is_held(LimitCause cause) noexcept {
   return cause == LimitCause::kLock || cause == LimitCause::kLatch ||
          cause == LimitCause::kFriction;
@@ -97,6 +107,8 @@ bool EventDetector::holds(const Condition& condition, const CycleRecord& record)
       return record.robot.q_p[condition.index] < condition.value;
     case ConditionKind::kElapsed:
       return record.time_s - start_s_ > condition.value;
+    case ConditionKind::kHandleAt:
+      return is_at(record.T_B_H, condition.place);
   }
   return false;
 }

@@ -22,6 +22,7 @@ enum class ConditionKind {
   kGantryAbove,  ///< gantry joint `index` > value, m
   kGantryBelow,  ///< gantry joint `index` < value, m
   kElapsed,      ///< time since the first running cycle > value, s
+  kHandleAt,     ///< the handle is nearer than 0.10 m and 15 degrees to `place`
 };
 
 struct Condition {
@@ -29,6 +30,7 @@ struct Condition {
   int index = 0;
   LimitState side = LimitState::kInactive;  ///< kInactive = either side
   double value = 0.0;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< x, y, azimuth of the handle in B
 };
 
 struct EventRule {

@@ -55,6 +55,8 @@ double arrival_speed(double d) {
 
 }  // namespace
 
+bool has_room(const Walk& walk) noexcept { return body_radius(walk) > 0.0; }
+
 void check(const Walk& walk) {
   const auto require = [](bool ok, const std::string& rule) {
     if (!ok) throw SetupError("walk: " + rule);
@@ -62,7 +64,7 @@ void check(const Walk& walk) {
   require(walk.speed > 0.0, "speed must be positive");
   require(walk.vertical_bob >= 0.0 && walk.lateral_bob >= 0.0, "bob must not be negative");
   if (walk.kind == WalkKind::kCircle) {
-    require(body_radius(walk) > 0.0, "the circle is too small for a body that walks inside it");
+    require(has_room(walk), "the circle is too small for a body that walks inside it");
   }
   if (walk.kind == WalkKind::kCheckpoints) {
     require(!walk.checkpoints.empty() && walk.checkpoints.size() <= kMaxCheckpoints,

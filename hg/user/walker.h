@@ -36,6 +36,8 @@ struct Walk {
   std::vector<Checkpoint> checkpoints;
 };
 
+/// The body has room inside the circle of its hand.
+bool has_room(const Walk& walk) noexcept;
 /// Throws SetupError naming the field that is out of range.
 void check(const Walk& walk);
 
