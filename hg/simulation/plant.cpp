@@ -41,15 +41,21 @@ Plant::Plant(const PlantConfig& config, const model::Chain& chain, int handle)
 }
 
 // The springs carry the weight.
+model::Loads Plant::loads() const noexcept {
+  model::Loads loads = chain_.default_loads();
+  loads.mass = config_.mass;
+  return loads;
+}
+
 void Plant::start_in_balance() noexcept {
   constexpr int kRounds = 50;  // the sag of a flexible joint changes its load but little
   for (int round = 0; round < kRounds; ++round) {
-    chain_.update(q_, dq_);
+    chain_.update(q_, dq_, loads());
     for (const FlexibleJoint& joint : config_.flexible) {
       if (joint.stiffness > 0.0) q_[joint.joint] = -chain_.c()[joint.joint] / joint.stiffness;
     }
   }
-  chain_.update(q_, dq_);
+  chain_.update(q_, dq_, loads());
   q_before_ = q_;
   dq_before_ = dq_;
 
@@ -75,11 +81,11 @@ void Plant::step(const PlantInput& input) noexcept {
   tau_user_.noalias() = J_H_.transpose().lazyProduct(input.w_H);
 
   Equations eq = equations(truth_.ddq_p);
-  const Contacts contacts = touched_stops();
+  const Contacts contacts = near_stops();
   resist(eq, contacts, input.brakes_closed);
   accelerate(eq, contacts);
   integrate(truth_.ddq_p);
-  chain_.update(q_, dq_);
+  chain_.update(q_, dq_, loads());
   observe();
 }
 
@@ -105,18 +111,24 @@ VectorP Plant::gantry_acceleration(const VectorP& dq_p_command) noexcept {
   return ddq_p;
 }
 
-Plant::Contacts Plant::touched_stops() const noexcept {
-  Contacts contacts;
+// Stops that a link can be at when the step ends. Of the damper only the way inside counts, so that
+// a link pays for all that a stop stores.
+Plant::Contacts Plant::near_stops() const noexcept {
+  constexpr double kSpeedGained = 1.0;  // rad/s, at most in one step
+  const double h = config_.step;
   const EndStopModel& stop = config_.end_stop;
+  Contacts contacts;
   for (int i = 0; i < n_m_; ++i) {
     const int joint = links_[at(i)];
     const Interval& travel = config_.end_stops[at(i)];
     const double below = travel.lb - q_[joint], above = q_[joint] - travel.ub;
-    if (below < 0.0 && above < 0.0) continue;
-    const double damping =
+    const double depth = std::max(below, above);
+    if (depth < -h * (std::abs(dq_[joint]) + kSpeedGained)) continue;
+    const double give =
+        h * stop.stiffness +
         2.0 * stop.damping_ratio * std::sqrt(stop.stiffness * chain_.M()(joint, joint));
-    contacts.at[at(contacts.count++)] = {i, below >= 0.0 ? 1.0 : -1.0, std::max(below, above),
-                                         damping};
+    const double rest = depth > 0.0 ? stop.stiffness * depth / give : depth / h;
+    contacts.at[at(contacts.count++)] = {i, below > above ? 1.0 : -1.0, give, rest};
   }
   return contacts;
 }
@@ -186,13 +198,11 @@ void Plant::resist(const Equations& eq, const Contacts& contacts, bool brakes_cl
   }
   for (int k = 0; k < contacts.count; ++k) {
     const Contact& contact = contacts.at[at(k)];
-    const double give = h * config_.end_stop.stiffness + contact.damping;
     box_.lb[n_m_ + k] = 0.0;
     box_.ub[n_m_ + k] = kInfinity;
     box_solution_.state[at(n_m_ + k)] = stop_states_[at(contact.joint)];
     G(contact.joint, n_m_ + k) = contact.side;
-    box_.w_free[n_m_ + k] = contact.side * dq_[links_[at(contact.joint)]] -
-                            config_.end_stop.stiffness * contact.depth / give;
+    box_.w_free[n_m_ + k] = contact.side * dq_[links_[at(contact.joint)]] - contact.rest;
   }
   for (int k = 0; k < n; ++k) {
     solve_lower(eq.L, G.col(k), k < n_m_ ? k : contacts.at[at(k - n_m_)].joint);
@@ -201,8 +211,7 @@ void Plant::resist(const Equations& eq, const Contacts& contacts, bool brakes_cl
   box_.w_free += h * G.transpose().lazyProduct(ddq_free);
   for (int i = 0; i < n_m_; ++i) box_.A(i, i) += h / eq.inertia[i];
   for (int k = 0; k < contacts.count; ++k) {
-    box_.A(n_m_ + k, n_m_ + k) +=
-        1.0 / (h * config_.end_stop.stiffness + contacts.at[at(k)].damping);
+    box_.A(n_m_ + k, n_m_ + k) += 1.0 / contacts.at[at(k)].give;
   }
   solve(box_, box_solution_);
 }

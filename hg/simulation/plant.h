@@ -95,20 +95,21 @@ class Plant {
     VectorM motor;              // torques on the motors
     VectorM inertia, coupling;  // of the motors with all that is implicit; to their links
   };
-  // Links at their end stops: which way the stop pushes, how far they are in, damping.
+  // A link at an end stop: push = max(0, give (rest - speed)) with its speed away from the stop.
   struct Contact {
     int joint;
-    double side, depth, damping;
+    double side, give, rest;
   };
   struct Contacts {
     std::array<Contact, kMaxManipulator> at;
     int count = 0;
   };
 
+  model::Loads loads() const noexcept;
   void start_in_balance() noexcept;
   void move_motors(const VectorM& tau_command) noexcept;
   VectorP gantry_acceleration(const VectorP& dq_p_command) noexcept;
-  Contacts touched_stops() const noexcept;
+  Contacts near_stops() const noexcept;
   Equations equations(const VectorP& ddq_p) const noexcept;
   void resist(const Equations& eq, const Contacts& contacts, bool brakes_closed) noexcept;
   double friction_bound(int joint) const noexcept;

@@ -40,6 +40,7 @@ struct PlantConfig {
   std::vector<FlexibleJoint> flexible;
   std::vector<ActuatorModel> actuators;  ///< one per manipulator joint
   double current_lag = 0.5e-3;           ///< from torque command to torque, s, >= 0; CONTROL_NOTES
+  double mass = 1.0;                     ///< all masses of the chain times this, > 0
   DriveModel drive;                      ///< of every gantry axis
   std::vector<Interval> end_stops;       ///< of the links of the manipulator; empty = none
   EndStopModel end_stop;

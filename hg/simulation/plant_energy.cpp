@@ -13,7 +13,7 @@ double square(double x) noexcept { return x * x; }
 
 PlantEnergy Plant::energy() const noexcept {
   PlantEnergy energy;
-  energy.potential = chain_.potential_energy();
+  energy.potential = config_.mass * chain_.potential_energy();
   for (int i = 0; i < dq_.size(); ++i) {
     energy.kinetic += 0.5 * dq_[i] * chain_.M().col(i).dot(dq_);
   }
@@ -47,7 +47,7 @@ PlantPower Plant::power() const noexcept {
 }
 
 double Plant::residual() noexcept {
-  const VectorA tau = chain_.inverse_dynamics(q_before_, dq_before_, ddq_);
+  const VectorA tau = config_.mass * chain_.inverse_dynamics(q_before_, dq_before_, ddq_);
   double worst = 0.0;
   for (int i = 0; i < n_l_; ++i) {
     const int joint = links_[static_cast<std::size_t>(i)];
