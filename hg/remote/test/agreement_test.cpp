@@ -1,0 +1,73 @@
+#include "hg/remote/agreement.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "hg/remote/test/example_messages.h"
+
+namespace hg::remote {
+namespace {
+
+const Description kTorqueDevice{
+    .device = "arm", .n_p = 2, .n_m = 6, .rate_Hz = 1000.0, .interface = Interface::kTorque};
+
+TEST(Difference, NamesTheFirstThingThatDiffers) {
+  EXPECT_EQ(difference(kTorqueDevice, kTorqueDevice), "");
+  Description other = kTorqueDevice;
+  other.is_lock_step = true;
+  EXPECT_EQ(difference(kTorqueDevice, other), "time: real time, expected lock-step (--fast)");
+  other.interface = Interface::kPosition;
+  EXPECT_EQ(difference(kTorqueDevice, other), "drives take torques, expected positions");
+  other.rate_Hz = 2000.0;
+  EXPECT_EQ(difference(kTorqueDevice, other), "rate: 1000 Hz, expected 2000 Hz");
+  other.n_m = 7;
+  EXPECT_EQ(difference(kTorqueDevice, other), "joints: 6, expected 7");
+  other.n_p = 0;
+  EXPECT_EQ(difference(kTorqueDevice, other), "gantry axes: 2, expected 0");
+  other.device = "leg";
+  EXPECT_EQ(difference(kTorqueDevice, other), "device: 'arm', expected 'leg'");
+}
+
+TEST(Fits, SensorsHaveTheAgreedSizes) {
+  std::mt19937 random(1);
+  SensorFrame sensors = example_sensors(random, 1);
+  EXPECT_TRUE(fits(kTorqueDevice, sensors));
+  sensors.theta_m.resize(0);
+  EXPECT_TRUE(fits(kTorqueDevice, sensors));
+  sensors.theta_m.resize(5);
+  EXPECT_FALSE(fits(kTorqueDevice, sensors));
+  sensors.theta_m.resize(0);
+  sensors.dq_m.resize(5);
+  EXPECT_FALSE(fits(kTorqueDevice, sensors));
+  sensors = example_sensors(random, 1);
+  sensors.q_p.resize(1);
+  EXPECT_FALSE(fits(kTorqueDevice, sensors));
+}
+
+TEST(Fits, OnlyFiniteCommandsOfTheRightKindGoToDrives) {
+  std::mt19937 random(1);
+  CommandFrame command = example_command(random, 1);
+  command.enable = true;
+  EXPECT_TRUE(fits(kTorqueDevice, command));
+  EXPECT_TRUE(fits(kTorqueDevice, off_command(kTorqueDevice)));
+  command.tau_m.resize(0);
+  EXPECT_FALSE(fits(kTorqueDevice, command));
+  command.enable = false;
+  EXPECT_TRUE(fits(kTorqueDevice, command));
+  Description position = kTorqueDevice;
+  position.interface = Interface::kPosition;
+  EXPECT_TRUE(fits(position, command));
+  for (VectorM* v : {&command.q_m, &command.dq_m, &command.ddq_m}) {
+    const double kept = (*v)[3];
+    (*v)[3] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(fits(position, command));
+    (*v)[3] = kept;
+  }
+  command.dq_p[1] = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(fits(position, command));
+}
+
+}  // namespace
+}  // namespace hg::remote
