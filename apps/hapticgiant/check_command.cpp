@@ -14,6 +14,7 @@
 #include "hg/config/file_kind.h"
 #include "hg/config/scenario.h"
 #include "hg/config/script.h"
+#include "hg/config/simulation.h"
 #include "hg/config/tool.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"
@@ -79,6 +80,11 @@ void load(const std::string& file, Check& check) {
       case FileKind::kTool: {
         config::SourceReader reader;
         config::load_tool(file, reader);
+        break;
+      }
+      case FileKind::kSimulation: {
+        config::SourceReader reader;
+        config::load_simulation(file, reader, {});
         break;
       }
     }

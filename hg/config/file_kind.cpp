@@ -16,16 +16,18 @@ struct Signature {
   std::vector<std::string> keys;
 };
 
-const std::array<Signature, 5>& signatures() {
-  static const std::array<Signature, 5> all = {{
+const std::array<Signature, 6>& signatures() {
+  static const std::array<Signature, 6> all = {{
       {FileKind::kDevice,
        {"manipulator", "gantry", "flange", "kinematics", "rate_Hz", "virtual_joints",
         "cartesian_limits", "drive", "synchronisation", "prepositioning", "estimation", "monitor"}},
       {FileKind::kTwin,
        {"end_effector", "placement", "free_body", "gravity", "floating_root", "locks"}},
       {FileKind::kScenario, {"twin", "device", "person", "title", "description", "events"}},
-      {FileKind::kScript, {"segments", "frame", "hand"}},
+      {FileKind::kScript, {"segments", "frame", "hand", "walk", "grasp_s"}},
       {FileKind::kTool, {"mass_kg", "centre_of_mass_m", "inertia_kg_m2", "dead_man"}},
+      {FileKind::kSimulation,
+       {"sensors", "seed", "step_s", "factors", "end_stops", "gear_ratio", "flexible"}},
   }};
   return all;
 }
@@ -60,6 +62,8 @@ std::string_view to_string(FileKind kind) noexcept {
       return "script";
     case FileKind::kTool:
       return "tool";
+    case FileKind::kSimulation:
+      return "simulation";
   }
   return "";
 }

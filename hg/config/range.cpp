@@ -14,7 +14,17 @@ struct Unit {
 };
 
 // longer suffixes first: "_m_per_s" also ends in "_s"
-constexpr std::array<Unit, 20> kUnits = {{
+constexpr std::array<Unit, 32> kUnits = {{
+    {"_rad_per_s2_per_sqrt_Hz", "rad/s^2/sqrt(Hz)"},
+    {"_rad_per_s_per_sqrt_Hz", "rad/s/sqrt(Hz)"},
+    {"_m_per_s3_per_sqrt_Hz", "m/s^3/sqrt(Hz)"},
+    {"_m_per_s2_per_sqrt_Hz", "m/s^2/sqrt(Hz)"},
+    {"_rad_per_s_per_K", "rad/s/K"},
+    {"_m_per_s2_per_K", "m/s^2/K"},
+    {"_Nm_per_sqrt_Hz", "Nm/sqrt(Hz)"},
+    {"_N_per_sqrt_Hz", "N/sqrt(Hz)"},
+    {"_1_per_sqrt_s", "1/sqrt(s)"},
+    {"_K_per_sqrt_s", "K/sqrt(s)"},
     {"_Nms2_per_rad2", "Nms^2/rad^2"},
     {"_Ns2_per_m2", "Ns^2/m^2"},
     {"_Nms_per_rad", "Nms/rad"},
@@ -27,6 +37,7 @@ constexpr std::array<Unit, 20> kUnits = {{
     {"_N_per_m", "N/m"},
     {"_m_per_s", "m/s"},
     {"_1_per_s", "1/s"},
+    {"_1_per_K", "1/K"},
     {"_kg_m2", "kg m^2"},
     {"_rad", "rad"},
     {"_kg", "kg"},
@@ -35,6 +46,7 @@ constexpr std::array<Unit, 20> kUnits = {{
     {"_N", "N"},
     {"_m", "m"},
     {"_s", "s"},
+    {"_K", "K"},
 }};
 
 }  // namespace

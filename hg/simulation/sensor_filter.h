@@ -13,6 +13,9 @@
 
 namespace hg::simulation {
 
+/// Window and delay together, in steps of the plant.
+inline constexpr int kMaxFilterSteps = 128;
+
 /// Set-up data. [C] 2: mass compensation wants the same filter for wrench and acceleration.
 struct SensorFilterConfig {
   double average = 1e-3;  ///< window of the mean, s, >= 0; less than a step: none; [A] 1.6
@@ -23,15 +26,14 @@ struct SensorFilterConfig {
 template <class Value>
 class SensorFilter {
  public:
-  static constexpr int kMaxSteps = 128;
-
-  /// Throws SetupError when window and delay together exceed kMaxSteps steps of `step` seconds.
+  /// Throws SetupError when window and delay together exceed kMaxFilterSteps steps of `step`
+  /// seconds.
   SensorFilter(const SensorFilterConfig& config, double step) {
     const double window = std::max(1.0, std::round(config.average / step));
     const double delay = std::round(config.delay / step);
-    if (!(window + delay <= kMaxSteps))
+    if (!(window + delay <= kMaxFilterSteps))
       throw SetupError("filter of a sensor: window and delay must not exceed " +
-                       std::to_string(kMaxSteps) + " steps of the plant, got " +
+                       std::to_string(kMaxFilterSteps) + " steps of the plant, got " +
                        std::to_string(window + delay));
     window_ = static_cast<int>(window);
     length_ = window_ + static_cast<int>(delay);
@@ -53,7 +55,7 @@ class SensorFilter {
   }
 
  private:
-  std::array<Value, kMaxSteps> values_{};
+  std::array<Value, kMaxFilterSteps> values_{};
   int window_ = 1, length_ = 1, newest_ = 0;
   bool has_values_ = false;
 };

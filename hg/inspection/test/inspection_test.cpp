@@ -493,6 +493,7 @@ TEST(FileKind, IsToldFromTheKeysOfTheFile) {
     EXPECT_EQ(kind_of(models + "scenarios/" + name + ".yaml", disk), FileKind::kScenario);
     EXPECT_EQ(kind_of(models + "scripts/" + name + ".yaml", disk), FileKind::kScript);
   }
+  EXPECT_EQ(kind_of("models/haptic_giant/simulation.yaml", disk), FileKind::kSimulation);
   config::SourceReader texts(
       {{"tool.yaml", "name: grip\nmass_kg: 1\n"}, {"x.yaml", "colour: red\n"}});
   EXPECT_EQ(kind_of("tool.yaml", texts), FileKind::kTool);

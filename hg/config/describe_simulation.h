@@ -1,0 +1,108 @@
+/// Description of simulation.yaml.
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hg/config/describe_sensors.h"
+#include "hg/config/simulation.h"
+
+namespace hg::config {
+
+struct FlexibleDraft {
+  JointUnit unit = JointUnit::kEither;
+  double stiffness = 0.0, damping = 0.0;
+};
+
+/// What stands in simulation.yaml, before it becomes a Simulation.
+struct SimulationDraft {
+  Simulation simulation;
+  double seed = 1.0;
+  std::filesystem::path urdf;
+  std::vector<std::string> joint_names;                ///< of that URDF
+  std::vector<JointUnit> joint_units;                  ///< of that URDF
+  std::vector<std::optional<FlexibleDraft>> flexible;  ///< of its joints, where given
+};
+
+template <class V>
+void describe(V& v, RealityFactors& factors) {
+  v.number("stiffness", factors.stiffness, kPositive, "of the joints");
+  v.number("damping", factors.damping, kPositive, "parallel to the stiffness");
+  v.number("friction", factors.friction, kPositive, "Coulomb, viscous and load-dependent");
+  v.number("rotor_inertia", factors.rotor_inertia, kPositive, "of the motors");
+  v.number("mass", factors.mass, kPositive, "of all links, with their inertia");
+  v.number(
+      "payload", factors.payload, kPositive,
+      "mass and inertia of what hangs beyond the force/torque sensor, as that sensor feels it");
+  v.number("latency", factors.latency, kPositive, "of the torque loop");
+  v.number("current_lag", factors.current_lag, kPositive, "of the motors");
+  v.number("gantry_lag", factors.gantry_lag, kPositive, "of the drives of the gantry");
+}
+
+template <class V>
+void describe_end_stops(V& v, Simulation& simulation) {
+  v.number("beyond_rad", simulation.stop_distance_angle, kNotNegative,
+           "beyond the limits of revolute joints");
+  v.number("beyond_m", simulation.stop_distance_length, kNotNegative,
+           "beyond the limits of prismatic joints");
+  v.number("stiffness_Nm_per_rad", simulation.end_stop.stiffness, kPositive,
+           "of a prismatic joint in N/m");
+  v.number("damping_ratio", simulation.end_stop.damping_ratio, kNotNegative,
+           "with the joint's own inertia; 5 throws back 1 % of the energy");
+}
+
+template <class V>
+void describe(V& v, FlexibleDraft& joint) {
+  v.joint_number({"stiffness_Nm_per_rad", "stiffness_N_per_m"}, joint.unit, joint.stiffness,
+                 kNotNegative, "towards position 0; 0 = it moves freely");
+  v.joint_number({"damping_Nms_per_rad", "damping_Ns_per_m"}, joint.unit, joint.damping,
+                 kNotNegative, "viscous");
+}
+
+/// The first part: what names the joints of the second.
+template <class V>
+void describe_plant(V& v, SimulationDraft& draft) {
+  constexpr double kLargestSeed = 9007199254740992.0;  // 2^53: a number of YAML is exact so far
+  v.number("step_s", draft.simulation.step_s, {.lb = 1e-5, .ub = 2e-3},
+           "largest step of the plant; a period is divided into equal steps");
+  v.number("seed", draft.seed, {.lb = 0.0, .ub = kLargestSeed},
+           "of everything random: the same seed gives the same run");
+  v.rule(draft.seed == std::floor(draft.seed), "seed", "must be a whole number",
+         model::to_text(draft.seed));
+  v.path("urdf", draft.urdf,
+         "of a plant with more joints than the controller knows; without it that of the device");
+}
+
+template <class V>
+void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>& manipulator) {
+  v.groups_by_name(
+      "flexible", draft.joint_names, "a joint of the URDF",
+      [&](auto& child, int index) {
+        const auto i = static_cast<std::size_t>(index);
+        FlexibleDraft& joint = draft.flexible[i].emplace();
+        joint.unit = draft.joint_units[i];
+        describe(child, joint);
+      },
+      "joints of 'urdf' that nobody drives: bending links or frames");
+  v.rule(v.is_given("urdf") || !v.is_given("flexible"), "flexible",
+         "needs 'urdf': the device has no joints but those that are driven");
+  v.group(
+      "factors", [&](auto& child) { describe(child, draft.simulation.factors); },
+      "true values over those of the device file and its URDF");
+  v.group(
+      "end_stops", [&](auto& child) { describe_end_stops(child, draft.simulation); },
+      "buffers of the manipulator's joints");
+  draft.simulation.gear_ratio = VectorM::Ones(static_cast<int>(manipulator.size()));
+  v.numbers_by_name(
+      "gear_ratio", manipulator, "a joint of the manipulator", kPositive,
+      [&](int index, double ratio) { draft.simulation.gear_ratio[index] = ratio; },
+      "turns of the motor per turn of the joint, 1 where not given");
+  v.group(
+      "sensors", [&](auto& child) { describe(child, draft.simulation.sensors); },
+      "of the device; each 0 switches an effect off, and so does .inf as a range", Need::kRequired);
+}
+
+}  // namespace hg::config

@@ -1,0 +1,342 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "hg/config/simulation.h"
+#include "hg/core/test/message_of.h"
+
+namespace hg::config {
+namespace {
+
+const SimulatedDevice kDevice = {
+    .gantry = {"slide"}, .manipulator = {"turn", "lift"}, .handle = "hand", .chain = {}};
+
+// base - slide - [bend, where there is one] - turn - lift - hand
+std::string urdf(const std::string& bend) {
+  const std::string mass =
+      "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
+      "</inertial></link>";
+  const auto joint = [&](const std::string& name, const std::string& type,
+                         const std::string& parent, const std::string& child) {
+    return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+           "'/><child link='" + child + "'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' " +
+           "velocity='1' effort='1'/></joint><link name='" + child + "'>" + mass;
+  };
+  std::string text =
+      "<robot name='arm'><link name='base'/>" + joint("slide", "prismatic", "base", "trolley");
+  if (!bend.empty()) text += joint("bend", bend, "trolley", "frame");
+  text += joint("turn", "continuous", bend.empty() ? "trolley" : "frame", "arm");
+  return text + joint("lift", "prismatic", "arm", "hand") + "</robot>";
+}
+
+Simulation load(const std::string& yaml, const SimulatedDevice& device = kDevice) {
+  SourceReader reader({{"simulation.yaml", yaml},
+                       {"bent.urdf", urdf("revolute")},
+                       {"slid.urdf", urdf("prismatic")},
+                       {"free.urdf", urdf("floating")},
+                       {"plain.urdf", urdf("")}});
+  return load_simulation("simulation.yaml", reader, device);
+}
+
+// What is wrong with the file; the text starts in line 2.
+std::string message(const std::string& yaml, const SimulatedDevice& device = kDevice) {
+  return message_of([&] { load("sensors: {}\n" + yaml, device); });
+}
+
+TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
+  SourceReader disk;
+  const Simulation shipped = load_simulation("models/haptic_giant/simulation.yaml", disk,
+                                             {.gantry = {"ppu1", "ppu2"},
+                                              .manipulator = {"m1", "m2", "m3", "m4", "m5", "m6"},
+                                              .handle = "handle",
+                                              .chain = {}});
+  EXPECT_EQ(shipped.step_s, 0.25e-3);
+  EXPECT_NEAR(1.0 / shipped.factors.stiffness, 1.1, 1e-3);  // [C]: what the controller believes
+  EXPECT_NEAR(1.0 / shipped.factors.friction, 0.75, 1e-3);
+  EXPECT_NEAR(1.0 / shipped.factors.mass, 0.95, 1e-3);
+  EXPECT_EQ(shipped.gear_ratio[0], 121.0);
+  EXPECT_EQ(shipped.gear_ratio[5], 101.0);
+  EXPECT_FALSE(shipped.chain);
+
+  // those of the code, from which tests and other devices start
+  const simulation::SensorsConfig& sensors = shipped.sensors;
+  const simulation::SensorsConfig standard;
+  const auto expect_near = [](double value, double expected) {
+    EXPECT_NEAR(value, expected, 2e-3 * std::abs(expected));
+  };
+  for (auto encoder :
+       {&simulation::SensorsConfig::link_encoder, &simulation::SensorsConfig::motor_encoder,
+        &simulation::SensorsConfig::gantry_encoder}) {
+    expect_near((sensors.*encoder).resolution, (standard.*encoder).resolution);
+    expect_near((sensors.*encoder).offset, (standard.*encoder).offset);
+    expect_near((sensors.*encoder).error_1, (standard.*encoder).error_1);
+    expect_near((sensors.*encoder).error_2, (standard.*encoder).error_2);
+    expect_near((sensors.*encoder).period, (standard.*encoder).period);
+  }
+  for (auto part :
+       {&simulation::SensorsConfig::accelerometer, &simulation::SensorsConfig::gyroscope}) {
+    expect_near((sensors.*part).noise, (standard.*part).noise);
+    expect_near((sensors.*part).bias_instability, (standard.*part).bias_instability);
+    expect_near((sensors.*part).random_walk, (standard.*part).random_walk);
+    expect_near((sensors.*part).bias, (standard.*part).bias);
+    expect_near((sensors.*part).temperature_drift, (standard.*part).temperature_drift);
+    expect_near((sensors.*part).scale_error, (standard.*part).scale_error);
+    expect_near((sensors.*part).misalignment, (standard.*part).misalignment);
+    expect_near((sensors.*part).range, (standard.*part).range);
+    expect_near((sensors.*part).resolution, (standard.*part).resolution);
+  }
+  expect_near(sensors.torque.noise, standard.torque.noise);
+  expect_near(sensors.torque.gain_error, standard.torque.gain_error);
+  expect_near(sensors.torque.offset, standard.torque.offset);
+  expect_near(sensors.torque.ripple, standard.torque.ripple);
+  expect_near(sensors.torque.range, standard.torque.range);
+  expect_near(sensors.torque.resolution, standard.torque.resolution);
+  EXPECT_EQ(sensors.wrench.full_scale, standard.wrench.full_scale);
+  expect_near(sensors.wrench.force_noise, standard.wrench.force_noise);
+  expect_near(sensors.wrench.torque_noise, standard.wrench.torque_noise);
+  expect_near(sensors.wrench.gain_error, standard.wrench.gain_error);
+  expect_near(sensors.wrench.cross_talk, standard.wrench.cross_talk);
+  expect_near(sensors.wrench.bias, standard.wrench.bias);
+  expect_near(sensors.wrench.bias_walk, standard.wrench.bias_walk);
+  expect_near(sensors.wrench.temperature_drift, standard.wrench.temperature_drift);
+  expect_near(sensors.wrench.range, standard.wrench.range);
+  expect_near(sensors.wrench.resolution, standard.wrench.resolution);
+  for (auto filter : {sensors.wrench.filter, sensors.imu_filter}) {
+    expect_near(filter.average, standard.imu_filter.average);
+    expect_near(filter.delay, standard.imu_filter.delay);
+  }
+  expect_near(sensors.temperature.environment, standard.temperature.environment);
+  expect_near(sensors.temperature.self_heating, standard.temperature.self_heating);
+  expect_near(sensors.temperature.time_constant, standard.temperature.time_constant);
+  expect_near(sensors.temperature.fluctuation, standard.temperature.fluctuation);
+  expect_near(sensors.temperature.time_on, standard.temperature.time_on);
+}
+
+TEST(SimulationFile, EveryKeyOfASensorReachesItsField) {
+  const simulation::SensorsConfig sensors = load(R"(
+sensors:
+  link_encoder: {resolution_rad: 1, offset_rad: 2, error_1_rad: 3, error_2_rad: 4}
+  motor_encoder: {resolution_rad: 5, offset_rad: 6, error_1_rad: 7, error_2_rad: 8}
+  gantry_encoder: {resolution_m: 9, offset_m: 10, error_1_m: 11, error_2_m: 12, period_m: 13}
+  torque_sensor: {noise: 14, gain_error: 15, offset: 16, ripple: 17, range: .inf, resolution: 18}
+  wrench_sensor: {force_N: [19, 20, 21], torque_Nm: [22, 23, 24], noise_N_per_sqrt_Hz: 25,
+    noise_Nm_per_sqrt_Hz: 26, gain_error: 27, cross_talk: 28, bias: 29, bias_walk_1_per_sqrt_s: 30,
+    temperature_drift_1_per_K: 31, range: 32, resolution: 33, filter: {average_s: 0.0034, delay_s: 0.0035}}
+  accelerometer: {noise_m_per_s2_per_sqrt_Hz: 36, bias_instability_m_per_s2: 37,
+    random_walk_m_per_s3_per_sqrt_Hz: 38, bias_m_per_s2: 39, temperature_drift_m_per_s2_per_K: 40,
+    scale_error: 41, misalignment_rad: 42, range_m_per_s2: 43, resolution_m_per_s2: 44}
+  gyroscope: {noise_rad_per_s_per_sqrt_Hz: 45, bias_instability_rad_per_s: 46,
+    random_walk_rad_per_s2_per_sqrt_Hz: 47, bias_rad_per_s: 48,
+    temperature_drift_rad_per_s_per_K: 49, scale_error: 50, misalignment_rad: 51,
+    range_rad_per_s: 52, resolution_rad_per_s: 53}
+  imu_filter: {average_s: 0.0054, delay_s: 0.0055}
+  temperature: {environment_K: 56, self_heating_K: 57, time_constant_s: 58,
+    fluctuation_K_per_sqrt_s: 59, time_on_s: 60}
+)")
+                                                .sensors;
+  std::vector<double> values;
+  for (const auto& encoder : {sensors.link_encoder, sensors.motor_encoder}) {
+    for (double value : {encoder.resolution, encoder.offset, encoder.error_1, encoder.error_2})
+      values.push_back(value);
+  }
+  const simulation::EncoderConfig& gantry = sensors.gantry_encoder;
+  const simulation::TorqueSensorConfig& torque = sensors.torque;
+  EXPECT_EQ(torque.range, kInfinity);
+  const simulation::WrenchSensorConfig& wrench = sensors.wrench;
+  for (double value :
+       {gantry.resolution, gantry.offset, gantry.error_1, gantry.error_2, gantry.period,
+        torque.noise, torque.gain_error, torque.offset, torque.ripple, torque.resolution})
+    values.push_back(value);
+  for (double value : wrench.full_scale) values.push_back(value);
+  for (double value :
+       {wrench.force_noise, wrench.torque_noise, wrench.gain_error, wrench.cross_talk, wrench.bias,
+        wrench.bias_walk, wrench.temperature_drift, wrench.range, wrench.resolution,
+        1e4 * wrench.filter.average, 1e4 * wrench.filter.delay})
+    values.push_back(value);
+  for (const auto& part : {sensors.accelerometer, sensors.gyroscope}) {
+    for (double value :
+         {part.noise, part.bias_instability, part.random_walk, part.bias, part.temperature_drift,
+          part.scale_error, part.misalignment, part.range, part.resolution})
+      values.push_back(value);
+  }
+  const simulation::TemperatureConfig& temperature = sensors.temperature;
+  for (double value : {1e4 * sensors.imu_filter.average, 1e4 * sensors.imu_filter.delay,
+                       temperature.environment, temperature.self_heating, temperature.time_constant,
+                       temperature.fluctuation, temperature.time_on})
+    values.push_back(value);
+  ASSERT_EQ(values.size(), 60u);
+  for (std::size_t k = 0; k < values.size(); ++k) EXPECT_EQ(values[k], static_cast<double>(k + 1));
+}
+
+TEST(SimulationFile, IdealSensorsKeepWhatIsGiven) {
+  const simulation::SensorsConfig sensors =
+      load("sensors: {torque_sensor: {noise: 0.1}, ideal: true}\n").sensors;
+  EXPECT_EQ(sensors.torque.noise, 0.1);
+  EXPECT_EQ(sensors.torque.ripple, 0.0);
+  EXPECT_EQ(sensors.wrench.range, kInfinity);
+  EXPECT_FALSE(sensors.has_differenced_velocity);
+}
+
+TEST(SimulationFile, TheRestReachesItsFields) {
+  const Simulation simulation = load(
+      "step_s: 0.0001\nseed: 77\ngear_ratio: {lift: 50}\n"
+      "factors: {stiffness: 2, damping: 3, friction: 4, rotor_inertia: 5, mass: 6, payload: 7, "
+      "latency: 8, current_lag: 9, gantry_lag: 10}\n"
+      "end_stops: {beyond_rad: 0.1, beyond_m: 0.2, stiffness_Nm_per_rad: 3, damping_ratio: 4}\n"
+      "sensors: {differenced_velocity: false}\n");
+  EXPECT_EQ(simulation.step_s, 1e-4);
+  EXPECT_EQ(simulation.seed, 77u);
+  EXPECT_EQ(simulation.sensors.seed, 77u);
+  EXPECT_FALSE(simulation.sensors.has_differenced_velocity);
+  EXPECT_EQ(simulation.gear_ratio.size(), 2);
+  EXPECT_EQ(simulation.gear_ratio[0], 1.0);
+  EXPECT_EQ(simulation.gear_ratio[1], 50.0);
+  EXPECT_EQ(simulation.stop_distance_angle, 0.1);
+  EXPECT_EQ(simulation.stop_distance_length, 0.2);
+  EXPECT_EQ(simulation.end_stop.stiffness, 3.0);
+  EXPECT_EQ(simulation.end_stop.damping_ratio, 4.0);
+  EXPECT_EQ(simulation.factors.mass, 6.0);
+
+  const ActuatorModel told = {.rotor_inertia = 1.0,
+                              .stiffness = 1.0,
+                              .damping = 1.0,
+                              .coulomb_friction = 1.0,
+                              .viscous_friction = 1.0,
+                              .load_friction = 1.0,
+                              .stiction = 1.0,
+                              .torque_max = 1.0};
+  const ActuatorModel real = actual(told, simulation.factors);
+  EXPECT_EQ(real.stiffness, 2.0);
+  EXPECT_EQ(real.damping, 3.0);
+  EXPECT_EQ(real.coulomb_friction, 4.0);
+  EXPECT_EQ(real.viscous_friction, 4.0);
+  EXPECT_EQ(real.load_friction, 4.0);
+  EXPECT_EQ(real.rotor_inertia, 5.0);
+  EXPECT_EQ(real.stiction, 1.0);
+  EXPECT_EQ(real.torque_max, 1.0);
+  const Payload payload =
+      actual(Payload{.mass = 1.0, .com = {1, 1, 1}, .inertia = Eigen::Matrix3d::Identity()},
+             simulation.factors);
+  EXPECT_EQ(payload.mass, 7.0);
+  EXPECT_EQ(payload.com.x(), 1.0);
+  EXPECT_EQ(payload.inertia(0, 0), 7.0);
+  EXPECT_EQ(actual(TorqueLoop{.latency = 1.0, .current_lag = 1.0}, simulation.factors).latency,
+            8.0);
+  EXPECT_EQ(actual(TorqueLoop{.latency = 1.0, .current_lag = 1.0}, simulation.factors).current_lag,
+            9.0);
+  EXPECT_EQ(actual(DriveModel{.lag = 1.0}, simulation.factors).lag, 10.0);
+}
+
+TEST(SimulationFile, AUrdfMayHaveFurtherJointsThatBend) {
+  const Simulation bent = load(
+      "urdf: bent.urdf\nflexible: {bend: {stiffness_Nm_per_rad: 9000, damping_Nms_per_rad: 12}}\n"
+      "sensors: {}\n");
+  ASSERT_TRUE(bent.chain);
+  EXPECT_EQ(bent.chain->joints().size(), 4u);
+  EXPECT_EQ(bent.gantry, std::vector<int>{0});
+  EXPECT_EQ(bent.manipulator, (std::vector<int>{2, 3}));
+  ASSERT_EQ(bent.flexible.size(), 1u);
+  EXPECT_EQ(bent.flexible[0].joint, 1);
+  EXPECT_EQ(bent.flexible[0].stiffness, 9000.0);
+  EXPECT_EQ(bent.flexible[0].damping, 12.0);
+  EXPECT_EQ(message("urdf: slid.urdf\nflexible: {bend: {stiffness_N_per_m: 9000}}\n"), "no error");
+  EXPECT_EQ(message("urdf: plain.urdf\n"), "no error");
+}
+
+struct Case {
+  const char* name;
+  const char* yaml;
+  const char* message;
+};
+
+std::string name_of(const testing::TestParamInfo<Case>& info) { return info.param.name; }
+
+class BadSimulation : public testing::TestWithParam<Case> {};
+
+TEST_P(BadSimulation, IsRefusedWithPlaceRuleValueAndNearestName) {
+  EXPECT_EQ(message(GetParam().yaml), GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Config, BadSimulation,
+    testing::Values(
+        Case{"Good", "seed: 3\n", "no error"},
+        Case{"UnknownKey", "sed: 3\n",
+             "simulation.yaml:2:1: sed: unknown key, did you mean 'seed'?"},
+        Case{"SeedWithAFraction", "seed: 1.5\n",
+             "simulation.yaml:2:7: seed: must be a whole number, got 1.5"},
+        Case{"NegativeSeed", "seed: -1\n",
+             "simulation.yaml:2:7: seed: must be 0 .. 9007199254740992, got -1"},
+        Case{"StepInMilliseconds", "step_s: 0.25\n",
+             "simulation.yaml:2:9: step_s: must be 1e-05 .. 0.002, got 0.25"},
+        Case{"StiffnessOfNothing", "factors: {stiffness: 0}\n",
+             "simulation.yaml:2:22: factors.stiffness: must be > 0, got 0"},
+        Case{"UnknownFactor", "factors: {frictoin: 1}\n",
+             "simulation.yaml:2:11: factors.frictoin: unknown key, did you mean 'friction'?"},
+        Case{"StopInsideTheLimits", "end_stops: {beyond_m: -1}\n",
+             "simulation.yaml:2:23: end_stops.beyond_m: must be >= 0, got -1"},
+        Case{"RatioOfAnUnknownJoint", "gear_ratio: {lit: 5}\n",
+             "simulation.yaml:2:14: gear_ratio.lit: must be a joint of the manipulator, got 'lit', "
+             "did you mean 'lift'?"},
+        Case{"RatioOfTheGantry", "gear_ratio: {slide: 5}\n",
+             "simulation.yaml:2:14: gear_ratio.slide: must be a joint of the manipulator, got "
+             "'slide', did you mean 'lift'?"},
+        Case{"FlexibleWithoutUrdf", "flexible: {bend: {}}\n",
+             "simulation.yaml:2:11: flexible: needs 'urdf': the device has no joints but those "
+             "that are driven"},
+        Case{"UrdfThatDoesNotExist", "urdf: bend.urdf\n",
+             "simulation.yaml:2:7: urdf: no such file, got 'bend.urdf'"},
+        Case{"JointThatIsNotFlexible", "urdf: bent.urdf\n",
+             "simulation.yaml:2:7: urdf: every joint that the device does not have must be in "
+             "'flexible', got 'bend'"},
+        Case{"DrivenJointThatBends", "urdf: plain.urdf\nflexible: {lift: {}}\n",
+             "simulation.yaml:3:11: flexible: must not be a joint that the device drives, got "
+             "'lift'"},
+        Case{"UnknownFlexibleJoint", "urdf: bent.urdf\nflexible: {bent: {}}\n",
+             "simulation.yaml:3:12: flexible.bent: must be a joint of the URDF, got 'bent', did "
+             "you mean 'bend'?"},
+        Case{"StiffnessInTheWrongUnit",
+             "urdf: bent.urdf\nflexible: {bend: {stiffness_N_per_m: 1}}\n",
+             "simulation.yaml:3:19: flexible.bend.stiffness_N_per_m: unknown key, did you mean "
+             "'stiffness_Nm_per_rad'?"},
+        Case{"FloatingJoint", "urdf: free.urdf\nflexible: {bend: {}}\n",
+             "simulation.yaml:2:7: urdf: a device has no floating joints, got 'bend'"}),
+    name_of);
+
+TEST(SimulationFile, AnUrdfOfAnotherDeviceIsRefused) {
+  SimulatedDevice other = kDevice;
+  other.manipulator = {"turn", "reach"};
+  EXPECT_EQ(message("urdf: plain.urdf\nflexible: {lift: {}}\n", other),
+            "simulation.yaml:2:7: urdf: must have all joints of the device, there is no 'reach'");
+  other = kDevice;
+  other.manipulator = {"lift", "turn"};
+  EXPECT_EQ(message("urdf: plain.urdf\n", other),
+            "simulation.yaml:2:7: urdf: must have the joints of the device in the same order");
+  other = kDevice;
+  other.handle = "grip";
+  EXPECT_EQ(message("urdf: plain.urdf\n", other),
+            "simulation.yaml:2:7: urdf: must have the handle of the device, got no link 'grip'");
+}
+
+TEST(SimulationFile, AFilterOfMoreStepsThanTheSensorHoldsIsRefused) {
+  for (const char* filter : {"imu_filter", "wrench_sensor: {filter"}) {
+    const std::string closing = filter[0] == 'w' ? "}}" : "}";
+    const std::string text = std::string("sensors: {") + filter + ": {average_s: 0.01, delay_s: ";
+    EXPECT_EQ(message_of([&] { load(text + "0.022}" + closing); }), "no error");
+    EXPECT_EQ(message_of([&] { load(text + "0.023}" + closing); }),
+              "simulation.yaml:1:10: sensors: window and delay of a filter must not exceed 128 "
+              "steps of the plant, 0.032 s, got 0.033");
+  }
+}
+
+TEST(SimulationFile, WithoutSensorsItIsRefused) {
+  EXPECT_EQ(message_of([] { load("seed: 1\n"); }), "simulation.yaml:1:1: key 'sensors' is missing");
+}
+
+TEST(SimulationFile, OfAnUnknownDeviceNoNamesAreChecked) {
+  EXPECT_EQ(message("gear_ratio: {m1: 5}\nurdf: bent.urdf\n", {}), "no error");
+}
+
+}  // namespace
+}  // namespace hg::config
