@@ -12,8 +12,10 @@
 #include "apps/hapticgiant/bench_command.h"
 #include "apps/hapticgiant/check_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
+#include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/new_command.h"
 #include "apps/hapticgiant/run_command.h"
+#include "apps/hapticgiant/simulate_command.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
@@ -75,6 +77,9 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       ->capture_default_str();
   command->add_option("--device", run.device, "device.yaml instead of the scenario's");
   command->add_option("--twin", run.twin, "twin.yaml instead of the scenario's");
+  command->add_option(
+      "--device-address", run.device_address,
+      "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one");
   command->add_option("--user", run.user, "script file, mouse or none");
   command->add_option("--duration", run.duration_s, "seconds; default: until the script has played")
       ->check(number_that("more than 0", [](double value) { return value > 0.0; }));
@@ -99,6 +104,31 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       ->check(at_least(1))
       ->capture_default_str();
   command->callback([&run, &exit_code] { exit_code = hg::apps::run(run); });
+}
+
+void add_simulate(CLI::App& app, hg::apps::SimulateArguments& simulate, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "simulate", "Device and person of a scenario for a controller elsewhere, over UDP.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant simulate door --listen 127.0.0.1:4810     then, in another terminal:\n"
+      "  hapticgiant run door --device-address 127.0.0.1:4810");
+  command->add_option("scenario", simulate.scenario, "as in run")->capture_default_str();
+  command
+      ->add_option("--listen", simulate.listen,
+                   "HOST:PORT to serve at; whoever can reach it can move the device")
+      ->required();
+  command->add_option("--device", simulate.device, "as in run");
+  command->add_option("--twin", simulate.twin, "as in run");
+  command->add_option("--user", simulate.user, "as in run");
+  command->add_flag("--fast", simulate.is_fast,
+                    "lock-step: each side waits for the other (run --fast) instead of real time");
+  command->add_option("--rate-hz", simulate.rate_Hz, "as in run")
+      ->check(number_that("from 100 to 20000",
+                          [](double value) { return value >= 100.0 && value <= 20000.0; }));
+  command->add_option("--capture", simulate.capture,
+                      "write every datagram to this pcap file (docs/device_protocol.md)");
+  command->callback([&simulate, &exit_code] { exit_code = hg::apps::simulate(simulate); });
 }
 
 void add_new(CLI::App& app, hg::apps::NewArguments& arguments, int& exit_code) {
@@ -183,6 +213,23 @@ void add_check(CLI::App& app, hg::apps::CheckArguments& check, int& exit_code) {
   command->callback([&check, &exit_code] { exit_code = hg::apps::run_check(check); });
 }
 
+void add_identify(CLI::App& app, hg::apps::IdentifyArguments& arguments, int& exit_code) {
+  CLI::App* identify = app.add_subcommand("identify", "Parameters of a device from measurements.");
+  identify->require_subcommand(1);
+  CLI::App* payload = identify->add_subcommand(
+      "payload", "Mass and centre of what hangs beyond the force/torque sensor.");
+  payload->footer(
+      "Examples:\n"
+      "  hapticgiant identify payload             the simulated device takes the poses itself\n"
+      "  hapticgiant identify payload poses.csv   columns a_x a_y a_z f_x f_y f_z n_x n_y n_z pose");
+  payload->add_option("files", arguments.files, "CSV files of poses at rest; none: simulate");
+  payload->add_option("--device", arguments.device, "device.yaml")->capture_default_str();
+  payload->add_option("--poses", arguments.poses, "poses of the simulated device")
+      ->check(at_least(1))
+      ->capture_default_str();
+  payload->callback([&arguments, &exit_code] { exit_code = hg::apps::identify_payload(arguments); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -194,14 +241,18 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   hg::apps::RunArguments run;
   run.program = argv[0];
+  hg::apps::SimulateArguments simulate;
   hg::apps::CheckArguments check;
   hg::apps::NewArguments created;
   hg::apps::HqpSolveArguments hqp;
+  hg::apps::IdentifyArguments identified;
   hg::apps::BenchArguments compared;
   add_run(app, run, exit_code);
+  add_simulate(app, simulate, exit_code);
   add_check(app, check, exit_code);
   add_new(app, created, exit_code);
   add_hqp(app, hqp, exit_code);
+  add_identify(app, identified, exit_code);
   add_bench(app, compared, exit_code);
 
   try {

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -14,9 +12,11 @@
 #include <thread>
 #include <utility>
 
+#include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/problem_dumps.h"
+#include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
@@ -35,22 +35,9 @@ constexpr std::chrono::milliseconds kIdle(2);
 constexpr std::chrono::milliseconds kStatusPeriod(100);
 constexpr double kSlowCycle = 0.5;  // of the period
 
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // written by a signal handler
-
-void interrupt(int) { interrupted.store(true); }
-
-// a recording is completed when the terminal closes or the reader of a pipe goes
-void handle_signals() {
-  interrupted.store(false);
-  std::signal(SIGINT, interrupt);
-  std::signal(SIGTERM, interrupt);
-  if (std::signal(SIGHUP, interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
-  std::signal(SIGPIPE, SIG_IGN);
-}
-
 /// Everything that watches a run from outside the control thread.
 struct Observers {
+  const std::atomic<bool>& interrupted;  ///< ends the run; its recording is completed
   const config::Scenario& scenario;
   evaluation::EventDetector detector;
   evaluation::Summary summary;
@@ -112,7 +99,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
     if (any && !observers.is_fast) show(observers, *sample);
     look_at_problems(observers, runtime.kept_problems());
     if (is_finished) break;
-    if (interrupted.load()) runtime.request_stop();
+    if (observers.interrupted.load()) runtime.request_stop();
     HandTarget target;
     if (observers.viewer && observers.viewer->take_hand_target(target)) {
       runtime.set_hand_target(target);
@@ -147,6 +134,27 @@ std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scena
   return std::make_unique<recording::Recorder>(recording_info(scenario, arguments));
 }
 
+struct AnyDevice {
+  std::unique_ptr<device::Device> device;
+  remote::RemoteDevice* remote = nullptr;  ///< the same; nullptr: it is simulated here
+};
+
+AnyDevice make_device(const config::Scenario& scenario, const RunArguments& arguments) {
+  if (arguments.device_address.empty()) {
+    return {std::make_unique<device::SimulatedDevice>(assembly::make_simulated_device(scenario))};
+  }
+  auto device = connect_device(arguments.device_address, scenario, arguments.is_fast);
+  remote::RemoteDevice* remote = device.get();
+  return {std::move(device), remote};
+}
+
+void close_device(remote::RemoteDevice& device, const Fault& fault) {
+  device.close(fault.code);
+  if (!device.farewell().empty()) {
+    print_out(fmt::format("the remote device says: {}\n", device.farewell()));
+  }
+}
+
 // `goes_on`: after the script, until Ctrl-C
 runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments,
                                  bool goes_on) {
@@ -176,9 +184,10 @@ std::string close_recording(recording::Recorder* recorder) {
   return recorded.file.string();
 }
 
-int exit_code(const evaluation::Summary& summary, const std::vector<std::string>& missing) {
+int exit_code(const evaluation::Summary& summary, const std::vector<std::string>& missing,
+              bool was_interrupted) {
   if (summary.fault().code != FaultCode::kNone) return 3;
-  if (interrupted.load()) return 0;
+  if (was_interrupted) return 0;
   return missing.empty() && summary.limits_held() ? 0 : 1;
 }
 
@@ -187,9 +196,9 @@ int exit_code(const evaluation::Summary& summary, const std::vector<std::string>
 int run(const RunArguments& arguments) {
   check_writable(arguments.summary);
   const config::Scenario scenario = make_scenario(arguments);
-  handle_signals();
   cycle::Cycle cycle = assembly::make_cycle(scenario);
-  device::SimulatedDevice device = assembly::make_simulated_device(scenario);
+  auto [device, remote] = make_device(scenario, arguments);
+  const std::atomic<bool>& interrupted = watch_interruption();
   auto viewer = make_viewer(scenario, arguments);
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && viewer != nullptr;
@@ -197,6 +206,7 @@ int run(const RunArguments& arguments) {
   auto recorder = make_recorder(scenario, arguments);  // last: a refused run leaves no file
   auto dumps = problem_dumps(scenario, arguments, recorder.get());
   Observers observers{
+      .interrupted = interrupted,
       .scenario = scenario,
       .detector = {scenario.events, scenario.limits},
       .summary = evaluation::Summary(scenario.limits),
@@ -211,11 +221,12 @@ int run(const RunArguments& arguments) {
   if (observers.viewer) print_out(fmt::format("page        {}\n", observers.viewer->url()));
   if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
 
-  runtime::Runtime runtime(options, cycle, device);
+  runtime::Runtime runtime(options, cycle, *device);
   const auto begin = Clock::now();
   runtime.start();
   watch(runtime, observers);
   const runtime::Report report = runtime.join();
+  if (remote != nullptr) close_device(*remote, observers.summary.fault());
 
   const std::chrono::duration<double> wall_time = Clock::now() - begin;
   const rendering::Options& law = scenario.device.rendering;
@@ -231,6 +242,7 @@ int run(const RunArguments& arguments) {
                                    .is_real_time = report.is_real_time,
                                    .is_memory_locked = report.is_memory_locked,
                                    .stop_timed_out = report.stop_timed_out,
+                                   .link = remote != nullptr ? remote->counts() : LinkCounts{},
                                    .recording = close_recording(observers.recorder.get()),
                                    .wall_time_s = wall_time.count()};
   const std::vector<std::string> missing = observers.detector.missing();
@@ -239,7 +251,7 @@ int run(const RunArguments& arguments) {
   if (!arguments.summary.empty()) {
     write_output(arguments.summary, observers.summary.to_json(facts, missing));
   }
-  return exit_code(observers.summary, missing);
+  return exit_code(observers.summary, missing, interrupted.load());
 }
 
 }  // namespace hg::apps

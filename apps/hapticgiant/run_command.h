@@ -10,9 +10,10 @@ namespace hg::apps {
 struct RunArguments {
   std::string program = "hapticgiant";  ///< as it was called, for commands that it prints
   std::string scenario = "door";
-  std::string device;  ///< device.yaml instead of the scenario's; empty = the scenario's
-  std::string twin;    ///< twin.yaml likewise
-  std::string user;    ///< script file, "mouse" or "none"; empty = the scenario's
+  std::string device;          ///< device.yaml instead of the scenario's; empty = the scenario's
+  std::string twin;            ///< twin.yaml likewise
+  std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
+  std::string user;            ///< script file, "mouse" or "none"; empty = the scenario's
   /// Unset: until the script has played; on a terminal with a page until Ctrl-C.
   std::optional<double> duration_s;
   bool is_fast = false;           ///< as fast as it can, without page

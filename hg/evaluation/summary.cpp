@@ -22,6 +22,12 @@ nlohmann::ordered_json to_json(const Distribution& d) {
   return {{"median", d.median}, {"p99_9", d.p99_9}, {"max", d.max}};
 }
 
+nlohmann::ordered_json to_json(const LinkCounts& counts) {
+  nlohmann::ordered_json json = {{"sent", counts.sent}, {"received", counts.received}};
+  for (const LinkCount& count : kLinkTroubles) json[count.name] = counts.*count.value;
+  return json;
+}
+
 double per_second(std::uint64_t count, double duration_s) {
   return duration_s > 0.0 ? static_cast<double>(count) / duration_s : 0.0;
 }
@@ -61,6 +67,17 @@ double Histogram::at(double share) const noexcept {
 Distribution Histogram::distribution() const noexcept {
   if (count_ == 0) return {};
   return {at(0.5), at(0.999), max_};
+}
+
+std::string link_text(const LinkCounts& counts) {
+  std::string text = fmt::format("{} sent, {} received", counts.sent, counts.received);
+  const char* separator = "; ";
+  for (const LinkCount& count : kLinkTroubles) {
+    if (counts.*count.value == 0) continue;
+    text += fmt::format("{}{} {}", separator, counts.*count.value, count.name);
+    separator = ", ";
+  }
+  return text;
 }
 
 Summary::Summary(LimitCatalogue catalogue)
@@ -149,6 +166,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["real_time"] = facts.is_real_time;
   json["memory_locked"] = facts.is_memory_locked;
   json["stop_timed_out"] = facts.stop_timed_out;
+  if (facts.link.sent > 0) json["link"] = evaluation::to_json(facts.link);
   json["recording"] = facts.recording;
   json["fault"] = {{"code", static_cast<int>(fault_.code)},
                    {"what", std::string(to_string(fault_.code))},
@@ -194,12 +212,13 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
                                  time.median, time.p99_9, time.max, facts.overruns));
   line("priority", priority_of(facts));
   line("allocations", fmt::format("{} in the loop", facts.allocations_in_loop));
+  if (facts.link.sent > 0) line("link", link_text(facts.link));
   line("recording", facts.recording.empty() ? "off" : facts.recording);
   if (facts.stop_timed_out) line("STOP", "timed out: drives off while the device was moving");
   if (fault_.code != FaultCode::kNone) {
-    line("FAULT",
-         fmt::format("{} {} (number {}: {:.4g}, limit {:.4g})", static_cast<int>(fault_.code),
-                     to_string(fault_.code), fault_.index, fault_.value, fault_.limit));
+    const std::string number = fault_.index < 0 ? "" : fmt::format("number {}: ", fault_.index);
+    line("FAULT", fmt::format("{} {} ({}{:.4g}, limit {:.4g})", static_cast<int>(fault_.code),
+                              to_string(fault_.code), number, fault_.value, fault_.limit));
   }
   return text;
 }

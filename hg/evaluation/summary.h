@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hg/evaluation/events.h"
+#include "hg/signals/link_counts.h"
 #include "hg/signals/state.h"
 
 namespace hg::evaluation {
@@ -51,9 +52,13 @@ struct RunFacts {
   bool is_real_time = false;      ///< SCHED_FIFO
   bool is_memory_locked = false;  ///< mlockall
   bool stop_timed_out = false;    ///< drives were disabled while the device was moving
+  LinkCounts link;                ///< to a remote device; nothing was sent: there is none
   std::string recording;          ///< file, empty when off
   double wall_time_s = 0.0;
 };
+
+/// "12 sent, 11 received; 1 lost".
+std::string link_text(const LinkCounts& counts);
 
 class Summary {
  public:

@@ -1,0 +1,27 @@
+#include "apps/hapticgiant/remote_setup.h"
+
+#include "apps/hapticgiant/version.h"
+
+namespace hg::apps {
+
+remote::Description describe(const config::Scenario& scenario, bool is_lock_step) {
+  const config::Device& device = scenario.device;
+  const bool has_drives = device.control.method == control::Method::kDrives;
+  return {.device = device.name,
+          .n_p = static_cast<std::uint32_t>(device.model.n_p),
+          .n_m = static_cast<std::uint32_t>(device.model.n_m),
+          .rate_Hz = device.rate_Hz,
+          .interface = has_drives ? remote::Interface::kPosition : remote::Interface::kTorque,
+          .is_lock_step = is_lock_step};
+}
+
+std::unique_ptr<remote::RemoteDevice> connect_device(const std::string& address,
+                                                     const config::Scenario& scenario,
+                                                     bool is_lock_step) {
+  const remote::ClientConfig config{.expected = describe(scenario, is_lock_step),
+                                    .client = std::string("hapticgiant run ") + kVersion};
+  return std::make_unique<remote::RemoteDevice>(remote::parse_address("--device-address", address),
+                                                config);
+}
+
+}  // namespace hg::apps

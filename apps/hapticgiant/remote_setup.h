@@ -1,0 +1,20 @@
+/// From a scenario to either end of a connection to a remote device.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "hg/config/scenario.h"
+#include "hg/remote/remote_device.h"
+
+namespace hg::apps {
+
+/// What the scenario's device must be, or is.
+remote::Description describe(const config::Scenario& scenario, bool is_lock_step);
+
+/// The scenario's device behind `address` (HOST:PORT of --device-address). Throws SetupError.
+std::unique_ptr<remote::RemoteDevice> connect_device(const std::string& address,
+                                                     const config::Scenario& scenario,
+                                                     bool is_lock_step);
+
+}  // namespace hg::apps

@@ -1,0 +1,161 @@
+"""A client of the device protocol (docs/device_protocol.md) with nothing but the standard library.
+
+Connects to a server, for example `hapticgiant simulate door --listen 127.0.0.1:4810`, takes the
+device as it is, prints what its sensors say, and holds the arm where it is.
+
+    python examples/python/device_client.py 127.0.0.1:4810 --seconds 5
+"""
+
+import argparse
+import random
+import socket
+import struct
+import time
+import zlib
+
+HELLO, WELCOME, READY, SENSORS, COMMAND, GOODBYE = range(1, 7)
+MAGIC, VERSION = 0x50444748, 1
+HEADER = struct.Struct("<IHHIIQQ")  # magic, version, type, length, session, number, time_ns
+DESCRIPTION = "64sIIdII"  # device, n_p, n_m, rate_Hz, interface, is_lock_step
+FIELDS = {
+    HELLO: struct.Struct("<Q" + DESCRIPTION + "64s"),
+    WELCOME: struct.Struct("<QII" + DESCRIPTION + "d64s192s"),
+    READY: struct.Struct("<"),
+    SENSORS: struct.Struct("<QdQIIII" + 4 * "II7d" + "II2d" + "6d3d3d"),
+    COMMAND: struct.Struct("<QII3dd" + 4 * "II7d" + "II2d"),
+    GOODBYE: struct.Struct("<II64s"),
+}
+
+
+def encode(kind, session, number, *values):
+    """One datagram."""
+    fields = FIELDS[kind].pack(*values)
+    length = HEADER.size + len(fields) + 4
+    data = HEADER.pack(MAGIC, VERSION, kind, length, session, number, time.monotonic_ns()) + fields
+    return data + struct.pack("<I", zlib.crc32(data))
+
+
+def decode(data):
+    """Type, session, number and fields of a datagram; None if it is not a good one."""
+    if len(data) < HEADER.size + 4 or zlib.crc32(data[:-4]) != struct.unpack("<I", data[-4:])[0]:
+        return None
+    magic, version, kind, length, session, number, _ = HEADER.unpack_from(data)
+    if (magic, version, length) != (MAGIC, VERSION, len(data)) or kind not in FIELDS:
+        return None
+    if len(data) != HEADER.size + FIELDS[kind].size + 4:
+        return None
+    return kind, session, number, FIELDS[kind].unpack_from(data, HEADER.size)
+
+
+def text(field):
+    return field.split(b"\0")[0].decode(errors="replace")
+
+
+def vector(values, room=7):
+    """count, zero, and the values with room for the largest device."""
+    values = list(values)
+    return [len(values), 0] + values + [0.0] * (room - len(values))
+
+
+def unpack_sensors(fields):
+    """The fields of a sensors message by name."""
+    names = ["sequence", "time_s", "answered_sequence", "dead_man", "emergency_stop", "driver_fault"]
+    sensors = dict(zip(names, fields))
+    at = 7
+    for name, room in [("q_m", 7), ("dq_m", 7), ("theta_m", 7), ("tau_m", 7), ("q_p", 2)]:
+        sensors[name] = fields[at + 2:at + 2 + fields[at]]
+        at += 2 + room
+    sensors["w_S"], sensors["a_S"], sensors["omega_S"] = fields[at:at + 6], fields[at + 6:at + 9], fields[at + 9:]
+    return sensors
+
+
+def pack_command(sequence, enable, q_m, dq_m, ddq_m, tau_m, dq_p):
+    """The fields of a command message; a hand that is nowhere."""
+    return [sequence, enable, 0, 0.0, 0.0, 0.0, 0.0, *vector(q_m), *vector(dq_m), *vector(ddq_m),
+            *vector(tau_m), *vector(dq_p, 2)]
+
+
+class Client:
+    def __init__(self, host, port, name):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.connect((host, port))
+        self.session = self.number = 0
+        self.last = None
+        welcome = self.ask([b"?", 0, 0, 0.0, 1, 0], name)
+        if welcome[1] == 3:  # refused as something else was expected: take the device as it is
+            welcome = self.ask(welcome[3:9], name)
+        if welcome[1] != 0:
+            raise SystemExit(f"the device refuses: {text(welcome[11])}")
+        self.device, (self.n_p, self.n_m, self.rate_Hz, self.interface, self.is_lock_step) = (
+            text(welcome[3]), welcome[4:9])
+        self.send(READY)
+
+    def ask(self, description, name):
+        nonce = random.getrandbits(64)
+        self.socket.settimeout(0.1)
+        for _ in range(30):
+            self.send(HELLO, nonce, *description, name.encode())
+            try:
+                message = decode(self.socket.recv(2048))
+            except (TimeoutError, ConnectionRefusedError):
+                time.sleep(0.1)
+                continue
+            if message and message[0] == WELCOME and message[3][0] == nonce:
+                self.session = message[1]
+                return message[3]
+        raise SystemExit("no device answers there")
+
+    def send(self, kind, *values):
+        self.number += 1
+        self.last = (kind, values)
+        self.socket.send(encode(kind, self.session, self.number, *values))
+
+    def sensors(self, timeout_s=1.0):
+        """The next frame; says the last message again when nothing comes."""
+        self.socket.settimeout(0.02)
+        for _ in range(int(timeout_s / 0.02)):
+            try:
+                message = decode(self.socket.recv(2048))
+            except TimeoutError:
+                self.send(self.last[0], *self.last[1])
+                continue
+            if message is None or message[1] != self.session:
+                continue
+            if message[0] == GOODBYE:
+                raise SystemExit(f"the device says goodbye: {text(message[3][2])}")
+            if message[0] == SENSORS:
+                return unpack_sensors(message[3])
+        raise SystemExit("the device is silent")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("address", metavar="HOST:PORT")
+    parser.add_argument("--seconds", type=float, default=5.0)
+    arguments = parser.parse_args()
+    host, port = arguments.address.rsplit(":", 1)
+    client = Client(host, int(port), "device_client.py")
+    mode = "lock-step" if client.is_lock_step else "real time"
+    print(f"{client.device}: {client.n_p} gantry axes, {client.n_m} joints, {client.rate_Hz:g} Hz, {mode}")
+
+    first = last = client.sensors()
+    while last["time_s"] - first["time_s"] < arguments.seconds:
+        tau_m = ()
+        if client.interface == 2:  # carry the weight as at the start, pull back softly
+            tau_m = [tau - 200.0 * (q - q_0) - 20.0 * dq for tau, q, q_0, dq in
+                     zip(first["tau_m"], last["q_m"], first["q_m"], last["dq_m"])]
+        zeros = [0.0] * client.n_m
+        client.send(COMMAND, *pack_command(last["sequence"], 1, first["q_m"], zeros, zeros, tau_m,
+                                           [0.0] * client.n_p))
+        last = client.sensors()
+        if last["sequence"] % round(client.rate_Hz / 2) == 0:
+            print(f"{last['time_s']:8.3f} s  q_m", *(f"{q:8.4f}" for q in last["q_m"]),
+                  "  w_S", *(f"{w:7.2f}" for w in last["w_S"]))
+    for _ in range(3):
+        client.send(GOODBYE, 1, 0, b"done")
+    moved = max(abs(a - b) for a, b in zip(last["q_m"], first["q_m"]))
+    print(f"held for {arguments.seconds:g} s, moved by at most {moved:.4f} rad")
+
+
+if __name__ == "__main__":
+    main()
