@@ -22,11 +22,11 @@ constexpr double kReach = 0.65;                          // m
 constexpr double kVertical_Hz = 1.8, kLateral_Hz = 0.9;  // gait
 constexpr double kFullGait = 0.6;                        // m/s, slowest speed of 5.2
 
-constexpr double kTurnSpeed = pi;                 // rad/s, [HANDBOOK] 5.4
-constexpr double kBraking = 0.7;                  // m/s^2, [A]: gentler than a person can
-constexpr double kArrival_s = 0.3;                // s, [A]: of the last centimetres
-constexpr double kArrivalDistance = 0.5;          // m, [A]: from here on the body turns to its goal
-constexpr double kNear = 0.10;                    // m, [HANDBOOK] 5.3
+constexpr double kTurnSpeed = 0.5 * pi;   // rad/s, [A]: of the body, half of what 5.4 gives a hand
+constexpr double kBraking = 0.7;          // m/s^2, [A]: gentler than a person can
+constexpr double kArrival_s = 0.3;        // s, [A]: of the last centimetres
+constexpr double kArrivalDistance = 1.0;  // m, [A]: from here on the body turns to its goal
+constexpr double kNear = 0.10;            // m, [HANDBOOK] 5.3
 constexpr double kNearAngle = 15.0 * pi / 180.0;  // rad, [HANDBOOK] 5.3
 
 Vector2d forward(double heading) { return {std::cos(heading), std::sin(heading)}; }
@@ -55,7 +55,9 @@ double arrival_speed(double d) {
 
 }  // namespace
 
-bool has_room(const Walk& walk) noexcept { return body_radius(walk) > 0.0; }
+bool has_room(const Walk& walk) noexcept {
+  return walk.speed < kTurnSpeed * walk.circle_radius && body_radius(walk) > 0.0;
+}
 
 void check(const Walk& walk) {
   const auto require = [](bool ok, const std::string& rule) {

@@ -181,6 +181,42 @@ TEST(BadScript, TimesAndValuesHaveRanges) {
             "got '200'");
 }
 
+TEST(BadScript, AHandHasAPresetOrValuesOfAHand) {
+  EXPECT_EQ(script_message("hand: {preset: stif}\n"),
+            "script.yaml:1:16: hand.preset: must be one of relaxed, normal, stiff, got 'stif', did "
+            "you mean 'stiff'?");
+  EXPECT_EQ(script_message("hand: {mass_kg: [1, 0, 1], grip_stiffness_N_per_m: 0, tremor_N: -1}\n"
+                           "grasp_s: -1\n"),
+            "script.yaml:1:21: hand.mass_kg[1]: must be > 0, got 0\n"
+            "script.yaml:1:51: hand.grip_stiffness_N_per_m: must be > 0, got 0\n"
+            "script.yaml:1:64: hand.tremor_N: must be >= 0, got -1\n"
+            "script.yaml:2:10: grasp_s: must be >= 0, got -1");
+}
+
+TEST(BadScript, AWalkIsACircleOrCheckpointsAndNothingElseMovesTheHandAlong) {
+  EXPECT_EQ(script_message("walk: {speed_m_per_s: 1}\nduration_s: 9\n"),
+            "script.yaml:1:7: walk: a walk needs either circle_radius_m or checkpoints");
+  EXPECT_EQ(script_message("walk: {circle_radius_m: 0.3}\nduration_s: 9\n"),
+            "script.yaml:1:25: walk.circle_radius_m: so large that the body can walk inside the "
+            "circle of its hand, at this speed");
+  EXPECT_EQ(script_message("walk: {checkpoints: [{x_m: 1, y_m: 2, headin_rad: 0}]}\n"
+                           "duration_s: 9\n"),
+            "script.yaml:1:22: walk.checkpoints[0]: key 'heading_rad' is missing\n"
+            "script.yaml:1:39: walk.checkpoints[0].headin_rad: unknown key, did you mean "
+            "'heading_rad'?");
+  EXPECT_EQ(script_message("walk: {circle_radius_m: 0.7}\n"),
+            "script.yaml:1:1: walk: a walk needs duration_s");
+  EXPECT_EQ(script_message("walk: {circle_radius_m: 0.7}\nduration_s: 9\nsegments:\n"
+                           "  - {start_s: 1, duration_s: 1, z_m: -0.6}\n"),
+            "no error");
+  EXPECT_EQ(script_message("walk: {circle_radius_m: 0.7}\nduration_s: 9\nsegments:\n"
+                           "  - {start_s: 1, duration_s: 1, y_m: 1}\n"),
+            "script.yaml:3:1: segments: with a walk, no segment moves x_m, y_m or azimuth_rad, or "
+            "has circle_turns");
+  EXPECT_EQ(script_message("frame: cylindrical\nwalk: {circle_radius_m: 0.7}\n"),
+            "script.yaml:2:1: walk: unknown key");
+}
+
 std::string scenario_message(const std::string& yaml) {
   return message_of([&] {
     load_scenario({{"run.yaml", yaml},

@@ -210,6 +210,58 @@ TEST(Script, FreeSpaceHandWalksTheCircleOfTheHandbook) {
   EXPECT_EQ(script.duration_s, 48.0);
 }
 
+TEST(Script, TheHandTakesHoldAfterTheTareAndHasAnArm) {
+  const Script& script = door().script;
+  EXPECT_EQ(script.script.grasp_s, 0.7);
+  EXPECT_EQ(script.hand.mass, Eigen::Vector3d(1.0, 1.5, 1.5));  // [HANDBOOK] 5.1
+  EXPECT_EQ(script.hand.stiffness, Eigen::Vector3d(80, 80, 80));
+  EXPECT_EQ(script.script.walk.kind, user::WalkKind::kNone);
+}
+
+TEST(Script, APresetFillsInWhatIsNotGiven) {
+  SourceReader reader(
+      {{"script.yaml", "hand: {damping_Ns_per_m: [1, 2, 3], preset: stiff}\ngrasp_s: 0.2\n"}});
+  const Script script = load_script("script.yaml", free_space().twin.model, reader);
+  EXPECT_EQ(script.hand.stiffness, Eigen::Vector3d(600, 400, 500));
+  EXPECT_EQ(script.hand.damping, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(script.hand.grip_stiffness, 3000);
+  EXPECT_EQ(script.script.grasp_s, 0.2);
+}
+
+TEST(Script, ThePathHasTheCheckpointsOfTheHandbook) {
+  const Scenario scenario = load_scenario("models/scenarios/path.yaml");
+  const user::Walk& walk = scenario.script.script.walk;
+  ASSERT_EQ(walk.kind, user::WalkKind::kCheckpoints);
+  const std::vector<Eigen::Vector3d> expected = {{-1.2, -1.5, 0},   {1.2, -1.5, 0.5 * pi},
+                                                 {1.45, 0.3, pi},   {0, 0, 1.5 * pi},
+                                                 {-1.45, 1.2, 0.0}, {1.0, 1.85, 0.5 * pi}};
+  ASSERT_EQ(walk.checkpoints.size(), expected.size());
+  ASSERT_EQ(scenario.events.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    SCOPED_TRACE(i);
+    EXPECT_EQ(walk.checkpoints[i].p, expected[i].head<2>());
+    EXPECT_NEAR(walk.checkpoints[i].heading, expected[i].z(), kWritten);
+    // the event is the same place, with the azimuth that the handle then has
+    ASSERT_EQ(scenario.events[i].all_of.size(), 1u);
+    const evaluation::Condition& at = scenario.events[i].all_of[0];
+    EXPECT_EQ(at.kind, ConditionKind::kHandleAt);
+    EXPECT_EQ(at.place.head<2>(), walk.checkpoints[i].p);
+    EXPECT_NEAR(
+        std::remainder(at.place.z() - walk.checkpoints[i].heading - walk.azimuth_from_heading,
+                       2.0 * pi),
+        0.0, kWritten);
+  }
+}
+
+TEST(Script, TheSlowWalkIsTheOneOfTheControlNotes) {
+  const Script script = load_scenario("models/scenarios/walk.yaml").script;
+  EXPECT_EQ(script.script.walk.kind, user::WalkKind::kCircle);
+  EXPECT_EQ(script.script.walk.circle_radius, 0.7);
+  EXPECT_EQ(script.script.walk.speed, 0.25);
+  EXPECT_EQ(script.script.duration_s, 16.0);
+  EXPECT_EQ(script.hand.stiffness, user::hand(user::HandPreset::kNormal).stiffness);
+}
+
 TEST(Script, DoorHandPushesAndPressesInTheFrameOfTheHandle) {
   const Script& script = door().script;
   EXPECT_EQ(script.script.frame, user::ScriptFrame::kTwinJoints);
