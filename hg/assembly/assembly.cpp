@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "hg/assembly/start_posture.h"
 
@@ -34,6 +35,79 @@ void fill_in_start(const config::Scenario& scenario, const Start& start, user::S
   }
 }
 
+simulation::PlantConfig elastic_plant(const config::Device& device, const Start& start,
+                                      double step) {
+  const config::Simulation& reality = device.simulation;
+  simulation::PlantConfig plant = {
+      .step = step,
+      .gantry = reality.gantry,
+      .manipulator = reality.manipulator,
+      .flexible = reality.flexible,
+      .current_lag = actual(device.control.loop, reality.factors).current_lag,
+      .mass = reality.factors.mass,
+      .drive = actual(device.drive, reality.factors),
+      .end_stop = reality.end_stop,
+      .q_p_start = start.q_p,
+      .q_m_start = start.q_m};
+  if (!reality.chain) {
+    for (int i = 0; i < device.model.n_p; ++i) plant.gantry.push_back(i);
+    for (int i = 0; i < device.model.n_m; ++i) plant.manipulator.push_back(device.model.n_p + i);
+  }
+  for (int i = 0; i < device.model.n_m; ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    plant.actuators.push_back(actual(device.control.actuators[joint], reality.factors));
+    const limits::JointLimits& limits = device.model.joint_limits[joint];
+    const bool is_slide = !device.monitor.is_slide.empty() && device.monitor.is_slide[joint];
+    const double beyond = is_slide ? reality.stop_distance_length : reality.stop_distance_angle;
+    plant.end_stops.push_back({limits.q_min - beyond, limits.q_max + beyond});
+  }
+  return plant;
+}
+
+// The machine of a device: elastic joints where its joints have actuators.
+simulation::Config device_simulation(const config::Device& device, const Start& start) {
+  const config::Simulation& reality = device.simulation;
+  const double period = device.rendering.dt;
+  const bool is_elastic = device.control.method != control::Method::kDrives;
+  simulation::Config config = {.sensors = reality.sensors,
+                               .has_dead_man = device.monitor.has_dead_man};
+  if (is_elastic) {
+    config.steps = static_cast<int>(std::ceil(period / reality.step_s - 1e-9));
+    config.latency = actual(device.control.loop, reality.factors).latency;
+    config.plant = elastic_plant(device, start, period / config.steps);
+  } else {
+    config.plant = simulation::IdealPlantConfig{.period = period,
+                                                .drive = actual(device.drive, reality.factors),
+                                                .q_p_start = start.q_p,
+                                                .q_m_start = start.q_m};
+  }
+  simulation::SensedDevice& sensed = config.sensed;
+  sensed.step = period / config.steps;
+  sensed.period = period;
+  sensed.gear_ratio = reality.gear_ratio;
+  sensed.T_H_S = device.T_H_S;
+  sensed.payload = actual(device.estimation.wrench.payload, reality.factors);
+  sensed.torque_full_scale = VectorM::Ones(device.model.n_m);
+  for (int i = 0; i < device.model.n_m; ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    const auto in_chain = static_cast<std::size_t>(device.model.n_p + i);
+    sensed.is_endless[joint] =
+        device.model.chain.joints()[in_chain].type == model::JointType::kContinuous;
+    if (is_elastic) sensed.torque_full_scale[i] = device.control.actuators[joint].torque_max;
+  }
+  return config;
+}
+
+simulation::Simulation simulation_of(const config::Device& device, const Start& start,
+                                     user::Person person) {
+  const model::Chain& chain =
+      device.simulation.chain ? *device.simulation.chain : device.model.chain;
+  const std::string& handle =
+      device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
+  return simulation::Simulation(device_simulation(device, start), chain, chain.frame(handle),
+                                std::move(person));
+}
+
 }  // namespace
 
 cycle::Cycle make_cycle(const config::Scenario& scenario) {
@@ -46,22 +120,26 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
                       device.model, scenario.twin.model);
 }
 
-device::SimulatedDevice make_simulated_device(const config::Scenario& scenario) {
+simulation::Simulation make_simulation(const config::Scenario& scenario) {
   const config::Device& device = scenario.device;
   const Start start = find_start(scenario);
-  user::Config person{scenario.person, scenario.script.hand, scenario.script.script};
+  user::Config person{scenario.person, scenario.script.hand, scenario.script.script,
+                      device.simulation.seed};
   if (scenario.person == user::PersonKind::kScript) fill_in_start(scenario, start, person.script);
 
-  const simulation::Config config{.dt = device.rendering.dt,
-                                  .drive = device.drive,
-                                  .T_H_S = device.T_H_S,
-                                  .has_dead_man = device.monitor.has_dead_man,
-                                  .q_m_start = start.q_m,
-                                  .q_p_start = start.q_p};
-  return device::SimulatedDevice(simulation::Simulation(
-      config, device.model.chain, device.model.handle,
-      user::Person(person, scenario.twin.model.chain, scenario.twin.model.end_effector,
-                   scenario.twin.T_B_root)));
+  return simulation_of(device, start,
+                       user::Person(person, scenario.twin.model.chain,
+                                    scenario.twin.model.end_effector, scenario.twin.T_B_root));
+}
+
+simulation::Simulation make_unheld_simulation(const config::Device& device, const Start& start) {
+  return simulation_of(
+      device, start,
+      user::Person({.kind = user::PersonKind::kNone}, model::Chain::free_body({}), 0, Pose{}));
+}
+
+device::SimulatedDevice make_simulated_device(const config::Scenario& scenario) {
+  return device::SimulatedDevice(make_simulation(scenario));
 }
 
 double planned_duration_s(const config::Scenario& scenario) {

@@ -1,6 +1,7 @@
 /// From a loaded scenario to the parts of a run.
 #pragma once
 
+#include "hg/assembly/start_posture.h"
 #include "hg/config/scenario.h"
 #include "hg/cycle/cycle.h"
 #include "hg/device/simulated_device.h"
@@ -10,8 +11,12 @@ namespace hg::assembly {
 /// The control cycle of the scenario's device and twin. Throws SetupError.
 cycle::Cycle make_cycle(const config::Scenario& scenario);
 
-/// A simulated device that starts where the twin starts, held by the scenario's person. Throws
+/// A simulated world that starts where the twin starts, held by the scenario's person. Throws
 /// SetupError when the device cannot reach that pose.
+simulation::Simulation make_simulation(const config::Scenario& scenario);
+/// The device alone at `start` (of which the pose of the handle does not matter): nobody holds it.
+simulation::Simulation make_unheld_simulation(const config::Device& device, const Start& start);
+/// The same as make_simulation() behind the boundary of a device.
 device::SimulatedDevice make_simulated_device(const config::Scenario& scenario);
 
 /// Seconds until everything planned has happened; 0 = nothing is planned.

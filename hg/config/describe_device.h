@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct DeviceJoint {
 /// What stands in device.yaml, before it becomes a Device.
 struct DeviceDraft {
   std::string name;
-  std::filesystem::path urdf, tool;
+  std::filesystem::path urdf, tool, simulation;
   ChainPart part;
   std::vector<std::string> link_names;  ///< of the URDF
   int flange = -1;
@@ -41,6 +42,8 @@ struct DeviceDraft {
   std::vector<rendering::VirtualJoint> virtual_joints;
   std::vector<rendering::CartesianLimit> cartesian_limits;
   DriveModel drive;
+  std::vector<std::optional<ActuatorModel>> actuators;  ///< of all joints, where given
+  control::Config control;
   rendering::Options rendering;
   prepositioning::Config prepositioning;
   estimation::Config estimation;
@@ -91,6 +94,9 @@ void describe_structure(V& v, DeviceDraft& d) {
   v.group(
       "sensor", [&](auto& child) { describe(child, d.sensor); },
       "force/torque sensor S in the handle frame H");
+  v.path("simulation", d.simulation,
+         "what a simulation of the device needs to know beyond this: its sensors, and how it "
+         "differs from what is said here; without it nothing differs and the sensors are ideal");
   v.choice("kinematics", d.kinematics, kKinematics,
            "how the start posture and the gantry's target are found: in closed form or, for any "
            "device, numerically");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hg/config/describe_control.h"
 #include "hg/config/describe_device.h"
 #include "hg/config/describe_device_behaviour.h"
 #include "hg/config/loader.h"
@@ -14,16 +15,20 @@
 namespace hg::config {
 namespace {
 
-std::optional<model::Chain> make_chain(LoaderFile& file, const DeviceDraft& draft,
-                                       const std::optional<UrdfText>& urdf,
-                                       const std::optional<Tool>& tool) {
-  if (!urdf || !draft.part.is_usable) return no_chain(file);
+model::ChainOptions chain_options(const DeviceDraft& draft, const std::optional<Tool>& tool) {
   model::ChainOptions options = {.root_link = name_of(draft.link_names, draft.part.root_link),
                                  .tip_link = name_of(draft.link_names, draft.part.tip_link)};
   if (tool && draft.flange >= 0) {
     options.tool = tool->body;
     options.tool->link = name_of(draft.link_names, draft.flange);
   }
+  return options;
+}
+
+std::optional<model::Chain> make_chain(LoaderFile& file, const DeviceDraft& draft,
+                                       const std::optional<UrdfText>& urdf,
+                                       const model::ChainOptions& options) {
+  if (!urdf || !draft.part.is_usable) return no_chain(file);
   return read_chain(file, *urdf, options);
 }
 
@@ -41,6 +46,7 @@ void take_joints(const model::Chain& chain, DeviceDraft& draft) {
   draft.frame_names = chain.frame_names();
   for (const model::Joint& joint : chain.joints()) {
     draft.joint_names.push_back(joint.name);
+    draft.actuators.emplace_back();
     draft.joints.push_back(
         {joint.name,
          unit_of(joint.type),
@@ -113,6 +119,47 @@ void check_joints(Loader& loader, const model::Chain& chain, const DeviceDraft& 
   }
 }
 
+// All joints of the manipulator have an actuator, or none.
+void check_actuators(LoaderFile& file, const DeviceDraft& draft) {
+  const auto is_actuated = [&](int joint) {
+    return draft.actuators[static_cast<std::size_t>(joint)].has_value();
+  };
+  for (int i : draft.gantry) {
+    if (!is_actuated(i)) continue;
+    const std::string item = "actuators." + draft.joint_names[static_cast<std::size_t>(i)];
+    file.faults.add(file.places.nearest(item), item,
+                    "must be a joint of the manipulator: the gantry has 'drive'");
+  }
+  if (std::ranges::none_of(draft.manipulator, is_actuated)) return;
+  for (int i : draft.manipulator) {
+    if (is_actuated(i)) continue;
+    file.faults.add(file.places.nearest("actuators"), "actuators",
+                    "all joints of the manipulator need one, there is none for '" +
+                        draft.joint_names[static_cast<std::size_t>(i)] + "'");
+  }
+}
+
+// names for the simulation file; empty ones are not checked
+SimulatedDevice simulated_device(const DeviceDraft& draft, const model::ChainOptions& options) {
+  SimulatedDevice device = {.handle = name_of(draft.frame_names, draft.handle), .chain = options};
+  if (!draft.has_joints) return device;
+  for (int i : draft.gantry) {
+    device.gantry.push_back(draft.joint_names[static_cast<std::size_t>(i)]);
+  }
+  device.manipulator = draft.manipulator_names;
+  return device;
+}
+
+std::optional<Simulation> read_simulation(LoaderFile& file, const SimulatedDevice& device,
+                                          const std::filesystem::path& path) {
+  try {
+    return load_simulation(path, file.sources, device);
+  } catch (const SetupError& error) {
+    file.faults.add_complete(error.what());
+    return {};
+  }
+}
+
 void check_ratings(LoaderFile& file, const DeviceDraft& draft) {
   for (int i : draft.manipulator) {
     const DeviceJoint& joint = draft.joints[static_cast<std::size_t>(i)];
@@ -155,8 +202,20 @@ rendering::DeviceModel make_model(model::Chain chain, const DeviceDraft& draft) 
   return model;
 }
 
+Simulation ideal_simulation(const DeviceDraft& draft) {
+  Simulation simulation;
+  simulation.sensors = simulation::ideal_sensors();
+  simulation.gear_ratio = VectorM::Ones(static_cast<int>(draft.manipulator.size()));
+  return simulation;
+}
+
 // What follows from other values: periods, the drive in all its roles, monitored ranges.
 void derive(Device& device, const DeviceDraft& draft) {
+  if (device.control.method != control::Method::kDrives) {
+    for (int i : draft.manipulator) {
+      device.control.actuators.push_back(*draft.actuators[static_cast<std::size_t>(i)]);
+    }
+  }
   device.estimation.drive = device.drive;
   device.estimation.T_H_S = device.T_H_S;
 
@@ -196,6 +255,7 @@ void set_rate(Device& device, double rate_Hz) {
   device.rate_Hz = rate_Hz;
   device.rendering.dt = dt;
   device.estimation.dt = dt;
+  device.control.dt = dt;
   device.prepositioning.drive.tau = device.drive.dead_time + device.drive.lag + dt;
 }
 
@@ -210,6 +270,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
   DeviceDraft draft;
   std::optional<model::Chain> chain;
   std::optional<Tool> tool;
+  std::optional<Simulation> simulation;
   load_file(file, [&](Loader& loader) {
     describe_chain(loader, draft);
     const std::optional<UrdfText> urdf = read_urdf(file, draft.urdf);
@@ -217,7 +278,8 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
     describe(loader, draft.part, draft.link_names);
     describe_tool(loader, draft);
     tool = read_tool(file, draft);
-    chain = make_chain(file, draft, urdf, tool);
+    const model::ChainOptions options = chain_options(draft, tool);
+    chain = make_chain(file, draft, urdf, options);
     if (chain) take_joints(*chain, draft);
     describe_structure(loader, draft);
     if (chain && tool && draft.flange >= 0) draft.handle = chain->frame(tool->body.handle);
@@ -225,11 +287,16 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
     draft.manipulator_names = manipulator_names(draft);
     describe_limits(loader, draft);
     describe_behaviour(loader, draft);
+    describe_control(loader, draft);
+    if (!draft.simulation.empty()) {
+      simulation = read_simulation(file, simulated_device(draft, options), draft.simulation);
+    }
     if (!chain || !draft.has_joints) return;
     check_order(loader, *chain, draft);
     check_gantry(loader, *chain, draft);
     check_joints(loader, *chain, draft);
     check_ratings(file, draft);
+    check_actuators(file, draft);
   });
 
   Device device = {.name = draft.name,
@@ -238,12 +305,14 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .floor_z = draft.floor_z,
                    .kinematics = draft.kinematics,
                    .drive = draft.drive,
+                   .control = draft.control,
                    .T_H_S = pose_of(draft.sensor),
                    .model = make_model(std::move(*chain), draft),
                    .rendering = draft.rendering,
                    .prepositioning = draft.prepositioning,
                    .estimation = draft.estimation,
                    .monitor = draft.monitor,
+                   .simulation = simulation.value_or(ideal_simulation(draft)),
                    .sources = reader.since(first_source),
                    .places = std::move(file.places)};
   if (tool) {

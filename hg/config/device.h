@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "hg/config/faults.h"
+#include "hg/config/simulation.h"
 #include "hg/config/sources.h"
+#include "hg/control/joint_control.h"
 #include "hg/core/types.h"
 #include "hg/estimation/estimation.h"
 #include "hg/prepositioning/prepositioning.h"
@@ -30,12 +32,14 @@ struct Device {
   double floor_z = 0.0;  ///< height of the floor in B, m; for the page only
   Kinematics kinematics = Kinematics::kGeneric;
   DriveModel drive;
+  control::Config control;  ///< its method is kDrives for a device without actuators
   Pose T_H_S;  ///< force/torque sensor S in the handle frame H
   rendering::DeviceModel model;
   rendering::Options rendering;
   prepositioning::Config prepositioning;
   estimation::Config estimation;
   safety::MonitorConfig monitor;
+  Simulation simulation;  ///< of this device; without a file its defaults
   std::vector<SourceText> sources;  ///< the YAML file first
   Places places;                    ///< of the keys of the YAML file
 };

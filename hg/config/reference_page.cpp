@@ -1,10 +1,12 @@
 #include "hg/config/reference_page.h"
 
 #include "hg/config/describe_changes.h"
+#include "hg/config/describe_control.h"
 #include "hg/config/describe_device.h"
 #include "hg/config/describe_device_behaviour.h"
 #include "hg/config/describe_scenario.h"
 #include "hg/config/describe_script.h"
+#include "hg/config/describe_simulation.h"
 #include "hg/config/describe_tool.h"
 #include "hg/config/describe_twin.h"
 #include "hg/config/describe_twin_joints.h"
@@ -17,7 +19,7 @@ constexpr const char* kIntroduction = R"(# Configuration files
 
 <!-- Generated from the descriptions in hg/config: edit those. -->
 
-Five kinds of YAML files set up a run. `models/` has complete examples.
+Six kinds of YAML files set up a run. `models/` has complete examples.
 
 - A key ends in its unit: `q_max_rad`, `stiffness_N_per_m`, `k_ppu_1_per_s`. Values are plain
   numbers in that unit; `15 deg` is refused. Where the unit depends on the joint, revolute joints
@@ -33,6 +35,7 @@ Five kinds of YAML files set up a run. `models/` has complete examples.
 std::string device_table() {
   DeviceDraft draft;
   draft.joints.emplace_back();  // stands for every joint
+  draft.actuators.emplace_back();
   DocWriter writer;
   describe_chain(writer, draft);
   describe(writer, draft.part, {});
@@ -40,6 +43,7 @@ std::string device_table() {
   describe_structure(writer, draft);
   describe_limits(writer, draft);
   describe_behaviour(writer, draft);
+  describe_control(writer, draft);
   return writer.table();
 }
 
@@ -47,6 +51,16 @@ std::string tool_table() {
   ToolDraft draft;
   DocWriter writer;
   describe(writer, draft);
+  return writer.table();
+}
+
+std::string simulation_table() {
+  SimulationDraft draft;
+  draft.joint_units.push_back(JointUnit::kEither);  // stands for every joint
+  draft.flexible.emplace_back();
+  DocWriter writer;
+  describe_plant(writer, draft);
+  describe_rest(writer, draft, {"NAME"});
   return writer.table();
 }
 
@@ -99,6 +113,7 @@ std::string reference_page() {
   };
   section("## Device: device.yaml", device_table());
   section("## Tool of a device: tool.yaml", tool_table());
+  section("## Simulated device: simulation.yaml", simulation_table());
   section("## Twin: twin.yaml", twin_table());
   section("## Script of a hand: script.yaml", script_table());
   section("### Channels of frame base", channel_table(pose_channels(user::ScriptFrame::kBase)));

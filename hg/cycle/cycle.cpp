@@ -1,6 +1,5 @@
 #include "hg/cycle/cycle.h"
 
-#include "hg/control/tracking.h"
 #include "hg/cycle/state_hash.h"
 
 namespace hg::cycle {
@@ -36,9 +35,11 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
     : config_(config),
       estimation_(config.estimation, device.chain, device.n_p, device.n_m, device.handle),
       rendering_(device, twin, config.rendering),
+      control_(config.control, device.chain, device.n_p, device.n_m, device.handle),
       gantry_target_(target_of(config.prepositioning, device), device.chain) {
   prepositioning::check(config_.prepositioning);
   state_.rendering = rendering_.start(VectorM::Zero(device.n_m));
+  state_.control = control_.start();
   state_.dq_p = VectorP::Zero(device.n_p);
 }
 
@@ -69,7 +70,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   }
 
   // control -> sanitiser
-  write_command(sensors, operator_input, command);
+  write_command(sensors, operator_input, command, record);
   ended_(Stage::kControl);
   safety::sanitise(config_.monitor, command);
   ended_(Stage::kSafety);
@@ -126,6 +127,8 @@ void Cycle::hold(CycleRecord& record) noexcept {
 
 void Cycle::render(CycleRecord& record) noexcept {
   const bool is_stopping = state_.supervisor.mode == Mode::kStopping;
+  const bool has_left =
+      rendering_.stay_near(record.robot, config_.control.error_max, state_.rendering);
   rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record);
 
   const Fault fault = safety::check_reference(config_.monitor, record);
@@ -140,6 +143,7 @@ void Cycle::render(CycleRecord& record) noexcept {
   record.q_p_target = gantry.q_target;
   state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
   state_.is_blocked = rendering_.is_blocked();
+  record.tracking.is_clamped = has_left;
   ended_(Stage::kPrepositioning);
   rendering_.integrate(state_.rendering);
   if (is_stopping && stands_still(record)) safety::has_stopped(state_.supervisor);
@@ -151,13 +155,18 @@ void Cycle::stop_with(const Fault& fault) noexcept {
 }
 
 void Cycle::write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
-                          CommandFrame& command) noexcept {
+                          CommandFrame& command, CycleRecord& record) noexcept {
   const Mode mode = state_.supervisor.mode;
   command.sequence = sensors.sequence;
   command.enable = mode == Mode::kArmed || mode == Mode::kRunning || mode == Mode::kStopping;
-  control::track(state_.rendering.reference, command);
   command.dq_p = state_.dq_p;
-  if (!command.enable) command.dq_p.setZero();
+  const ReferenceState& reference = state_.rendering.reference;
+  if (command.enable) {
+    control_.step(reference, record.robot, state_.control, command, record.tracking);
+  } else {
+    control_.rest(reference, sensors, state_.control, command);
+    command.dq_p.setZero();
+  }
   command.hand_target = operator_input.hand_target;
 }
 

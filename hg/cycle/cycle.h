@@ -4,6 +4,7 @@
 /// construction.
 #pragma once
 
+#include "hg/control/joint_control.h"
 #include "hg/core/stage_probe.h"
 #include "hg/estimation/estimation.h"
 #include "hg/prepositioning/gantry_target.h"
@@ -20,6 +21,7 @@ struct Config {
   estimation::Config estimation;
   prepositioning::Config prepositioning;
   rendering::Options rendering;
+  control::Config control;
   safety::MonitorConfig monitor;
 };
 
@@ -31,6 +33,7 @@ struct State {
   safety::SupervisorState supervisor;
   estimation::State estimation;
   rendering::State rendering;
+  control::State control;
   prepositioning::TargetState gantry_target;
   VectorP dq_p;             ///< gantry command of the last cycle
   bool is_blocked = false;  ///< a device limit could not be met in the last cycle
@@ -70,12 +73,13 @@ class Cycle {
   void hold(CycleRecord& record) noexcept;
   void render(CycleRecord& record) noexcept;
   void write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
-                     CommandFrame& command) noexcept;
+                     CommandFrame& command, CycleRecord& record) noexcept;
   void stop_with(const Fault& fault) noexcept;
 
   Config config_;
   estimation::Estimation estimation_;
   rendering::Rendering rendering_;
+  control::JointControl control_;
   prepositioning::GantryTarget gantry_target_;
   State state_;
   StageProbe ended_;

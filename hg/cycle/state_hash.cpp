@@ -124,6 +124,15 @@ std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noe
   hash.mix(static_cast<std::uint64_t>(state.supervisor.last_request));
   hash.mix(static_cast<std::uint64_t>(state.supervisor.fault.code));
   mix(state.estimation, hash);
+  const control::State& control = state.control;
+  hash.mix(std::uint64_t{control.is_started} | std::uint64_t{control.is_saturated} << 1U);
+  hash.mix(control.latency);
+  hash.mix(control.poles.w0);
+  hash.mix(control.modes.Q());
+  for (const VectorM* v : {&control.integral, &control.tau_r, &control.dtau_r, &control.dtheta_r,
+                           &control.ddtheta_r}) {
+    hash.mix(*v);
+  }
   hash.mix(robot.w_H);
   return hash.value();
 }

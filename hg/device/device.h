@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hg/signals/frames.h"
+#include "hg/signals/truth.h"
 
 namespace hg::device {
 
@@ -12,6 +13,8 @@ class Device {
   virtual ~Device() = default;
   virtual void read(SensorFrame& sensors) noexcept = 0;
   virtual void write(const CommandFrame& command) noexcept = 0;
+  /// What is really the case at the last read(); null where nobody knows: the device is real.
+  virtual const Truth* truth() const noexcept { return nullptr; }
   /// Whether read() waits for the next sample, at most a fixed time: then nobody else keeps time.
   virtual bool is_clock() const noexcept { return false; }
 };

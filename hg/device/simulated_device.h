@@ -15,6 +15,7 @@ class SimulatedDevice final : public Device {
 
   void read(SensorFrame& sensors) noexcept override { sensors = simulation_.sensors(); }
   void write(const CommandFrame& command) noexcept override { simulation_.step(command); }
+  const Truth* truth() const noexcept override { return &simulation_.truth(); }
 
  private:
   simulation::Simulation simulation_;

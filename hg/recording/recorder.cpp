@@ -81,7 +81,8 @@ KeyValues limit_metadata(const LimitCatalogue& limits) {
   KeyValues pairs;
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const LimitInfo& limit = limits[i];
-    const std::string index = (i < 10 ? "0" : "") + std::to_string(i);
+    std::string index = std::to_string(i);
+    if (i < 10) index.insert(index.begin(), '0');
     pairs.emplace_back(index + ".name", limit.name);
     pairs.emplace_back(index + ".kind", to_string(limit.kind));
     pairs.emplace_back(index + ".unit", limit.is_angle ? "rad" : "m");

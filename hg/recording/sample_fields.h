@@ -22,6 +22,8 @@ inline constexpr std::string_view kMessageName<Budget> = "hapticgiant_msgs/Budge
 template <>
 inline constexpr std::string_view kMessageName<LimitReport> = "hapticgiant_msgs/LimitReport";
 template <>
+inline constexpr std::string_view kMessageName<TrackingReport> = "hapticgiant_msgs/TrackingReport";
+template <>
 inline constexpr std::string_view kMessageName<CycleRecord> = "hapticgiant_msgs/CycleRecord";
 template <>
 inline constexpr std::string_view kMessageName<Truth> = "hapticgiant_msgs/Truth";
@@ -56,6 +58,14 @@ void fields(Archive& a, T& report) {
   a("reaction", report.reaction, "constraint force N or torque Nm");
 }
 
+template <typename Archive, Is<TrackingReport> T>
+void fields(Archive& a, T& tracking) {
+  a("error", tracking.error, "reference minus link side, rad");
+  a("torque_share", tracking.torque_share, "motor torque asked for over its peak");
+  a("latency_s", tracking.latency_s, "of the torque loop, as measured");
+  a("is_clamped", tracking.is_clamped, "the reference was brought back to the device");
+}
+
 template <typename Archive, Is<CycleRecord> T>
 void fields(Archive& a, T& record) {
   a("cycle", record.cycle);
@@ -82,6 +92,7 @@ void fields(Archive& a, T& record) {
   a.sequence("limits", record.limits, record.limit_count, "in the order of metadata \"limits\"");
   a("felt_limit", record.felt_limit, "the limit that the user feels most, -1 none");
   a("w_felt", record.w_felt, "its reaction as a wrench on the handle");
+  a("tracking", record.tracking, "how well the device follows");
   a("q_p_target", record.q_p_target, "where prepositioning wants the gantry, m");
   a("solver_status", record.solver_status, "0 not run, 1 solved, 2 iteration limit, 3 failed");
   a("solver_iterations", record.solver_iterations);

@@ -206,6 +206,25 @@ void Rendering::align(const RobotState& robot, State& state) noexcept {
   }
 }
 
+bool Rendering::stay_near(const RobotState& robot, double largest, State& state) noexcept {
+  bool is_far = false;
+  for (int i = 0; i < device_.n_m; ++i) {
+    double& q = state.reference.q_m[i];
+    const double nearest = std::clamp(q, robot.q_m[i] - largest, robot.q_m[i] + largest);
+    if (nearest == q) continue;
+    q = nearest;
+    state.reference.dq_m[i] = robot.dq_m[i];
+    is_far = true;
+  }
+  if (!is_far) return false;
+  align(robot, state);
+  twin_.chain.update_kinematics(state.twin.q_a, state.twin.dq_a);
+  const Vector6 twist = device_.chain.twist(device_.handle);
+  const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
+  state.twin.dq_a = J_a.completeOrthogonalDecomposition().solve(twist);
+  return true;
+}
+
 // Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
 void Rendering::solve(State& state, CycleRecord& record) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();

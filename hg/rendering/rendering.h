@@ -56,6 +56,11 @@ class Rendering {
   /// Moves the twin at rest to where its end effector meets the handle, as far as its joints allow.
   void align(const RobotState& robot, State& state) noexcept;
 
+  /// Keeps the reference within `largest` (rad or m) of the measured joints: where the device was
+  /// left behind, reference and twin come back to it, so that nothing runs away and then snaps;
+  /// [C] 6. True when it had to.
+  bool stay_near(const RobotState& robot, double largest, State& state) noexcept;
+
   /// In the last step a joint or virtual joint of the device could not be kept within its limits:
   /// what the gantry does to a held twin stands above them.
   bool is_blocked() const noexcept;

@@ -75,8 +75,10 @@ Report Runtime::join() {
 }
 
 void Runtime::run_cycle(Sample& sample) noexcept {
-  const auto begin = std::chrono::steady_clock::now();
   device_.read(sample.sensors);
+  const Truth* truth = device_.truth();
+  sample.truth = truth != nullptr ? *truth : Truth{};
+  const auto begin = std::chrono::steady_clock::now();
   while (hand_targets_.pop(sample.operator_input.hand_target)) {
   }
   sample.operator_input.change =
@@ -101,6 +103,7 @@ void Runtime::release(CommandFrame& command) noexcept {
   command.enable = false;
   command.dq_m.setZero();
   command.ddq_m.setZero();
+  command.tau_m.setZero();
   command.dq_p.setZero();
   device_.write(command);
 }
@@ -131,7 +134,7 @@ void Runtime::loop() noexcept {
     sample->operator_input.request =
         next_request(record, cycle_.is_held(sample->sensors), is_stopping);
 
-    if (options_.is_fast) continue;
+    if (options_.is_fast || device_.is_clock()) continue;
     report_.overruns += schedule.advance(now_ns());
     sleep_until(schedule.due_ns());
   }

@@ -100,11 +100,13 @@ Fault check_reference(const MonitorConfig& config, const CycleRecord& record) no
 
 void sanitise(const MonitorConfig& config, CommandFrame& command) noexcept {
   const bool is_finite = command.q_m.allFinite() && command.dq_m.allFinite() &&
-                         command.ddq_m.allFinite() && command.dq_p.allFinite();
+                         command.ddq_m.allFinite() && command.tau_m.allFinite() &&
+                         command.dq_p.allFinite();
   if (!is_finite) {
     command.enable = false;
     command.dq_m.setZero();
     command.ddq_m.setZero();
+    command.tau_m.setZero();
     command.dq_p.setZero();
     for (double& q : command.q_m) q = std::isfinite(q) ? q : 0.0;
     return;

@@ -63,6 +63,14 @@ struct Budget {
   Vector6 structure = Vector6::Zero();  ///< part of w in the null space of J_a^T
 };
 
+/// How well the device follows its reference.
+struct TrackingReport {
+  VectorM error;            ///< reference minus link side, rad or m
+  VectorM torque_share;     ///< motor torque asked for over its peak; empty without torque control
+  double latency_s = 0.0;   ///< of the torque loop, as measured before it was closed
+  bool is_clamped = false;  ///< tracking was lost: the reference was brought back to the device
+};
+
 enum class SolverStatus : std::uint8_t {
   kNotRun = 0,
   kSolved = 1,
@@ -126,7 +134,8 @@ struct CycleRecord {
   int limit_count = 0;
   int felt_limit = -1;               ///< index of the limit that the user feels most; -1 = none
   Vector6 w_felt = Vector6::Zero();  ///< its reaction as a wrench on the handle (device rows only)
-  VectorP q_p_target;                ///< where prepositioning wants the gantry
+  TrackingReport tracking;
+  VectorP q_p_target;  ///< where prepositioning wants the gantry
   SolverStatus solver_status = SolverStatus::kNotRun;
   int solver_iterations = 0;
   int active_set_changes = 0;

@@ -1,84 +1,98 @@
 #include "hg/simulation/simulation.h"
 
 #include <cmath>
-#include <numbers>
+#include <string>
 #include <utility>
 
-#include "hg/core/stacked.h"
+#include "hg/core/error.h"
 
 namespace hg::simulation {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+std::variant<IdealPlant, Plant> make_plant(const Config& config, const model::Chain& chain,
+                                           int handle) {
+  if (const auto* elastic = std::get_if<PlantConfig>(&config.plant)) {
+    return Plant(*elastic, chain, handle);
+  }
+  return IdealPlant(std::get<IdealPlantConfig>(config.plant), chain, handle);
+}
+
+// drives off, brakes closed
+CommandFrame silence(const Truth& truth) {
+  CommandFrame command;
+  command.q_m = truth.q_m;
+  command.dq_m = command.ddq_m = VectorM::Zero(truth.q_m.size());
+  command.tau_m = VectorM::Zero(truth.theta_m.size());
+  command.dq_p = VectorP::Zero(truth.q_p.size());
+  return command;
+}
 
 }  // namespace
 
 Simulation::Simulation(const Config& config, const model::Chain& chain, int handle,
                        user::Person person)
     : config_(config),
-      chain_(chain),
-      n_p_(static_cast<int>(config.q_p_start.size())),
-      n_m_(static_cast<int>(config.q_m_start.size())),
-      handle_(handle),
-      dead_periods_(static_cast<int>(std::lround(config.drive.dead_time / config.dt))),
-      person_(std::move(person)),
-      q_m_(config.q_m_start),
-      dq_m_(VectorM::Zero(n_m_)) {
-  for (int i = 0; i < n_p_; ++i) axes_[static_cast<std::size_t>(i)].q = config.q_p_start[i];
-  sensors_.tau_m = VectorM::Zero(n_m_);
-  measure({});
+      plant_(make_plant(config, chain, handle)),
+      latency_steps_(static_cast<std::uint64_t>(std::llround(config.latency / config.sensed.step))),
+      sensors_(config.sensors, config.sensed),
+      person_(std::move(person)) {
+  if (latency_steps_ > static_cast<std::uint64_t>(kMaxLatency * config_.steps)) {
+    throw SetupError("simulation: latency must be at most " + std::to_string(kMaxLatency) +
+                     " periods, got " + std::to_string(config_.latency) + " s");
+  }
+  look({});
+  at_work_ = silence(truth_);
+  sample();
 }
 
 void Simulation::step(const CommandFrame& command) noexcept {
-  const double dt = config_.dt;
-  if (command.enable) {
-    q_m_ = command.q_m;
-    dq_m_ = command.dq_m;
-  } else {
-    dq_m_.setZero();
+  const std::size_t slot = (first_waiting_ + waiting_count_) % waiting_.size();
+  waiting_[slot] = {command, steps_ + latency_steps_};
+  ++waiting_count_;
+  for (int i = 0; i < config_.steps; ++i) {
+    take_due_command();
+    move(at_work_);
+    ++steps_;
+    look(command.hand_target);
   }
-  for (int i = 0; i < n_p_; ++i) {
-    Axis& axis = axes_[static_cast<std::size_t>(i)];
-    const double dq_cmd = command.enable ? command.dq_p[i] : 0.0;
-    const double ddq =
-        drive_acceleration(config_.drive, axis.dq, axis.delay.shift(dq_cmd, dead_periods_));
-    axis.q += dt * axis.dq + 0.5 * dt * dt * ddq;
-    axis.dq += dt * ddq;
-  }
-  ++sensors_.sequence;
-  time_s_ = static_cast<double>(sensors_.sequence) * dt;
-  measure(command.hand_target);
+  ++frame_.sequence;
+  sample();
 }
 
-// An absolute encoder; of a joint that turns without end: [-pi, pi).
-double Simulation::encoder(int joint, double q) const noexcept {
-  const model::Joint& described = chain_.joints()[static_cast<std::size_t>(joint)];
-  if (described.type != model::JointType::kContinuous) return q;
-  return q - kTurn * std::floor((q + std::numbers::pi) / kTurn);
+void Simulation::take_due_command() noexcept {
+  while (waiting_count_ > 0 && waiting_[first_waiting_].due <= steps_) {
+    at_work_ = waiting_[first_waiting_].command;
+    first_waiting_ = (first_waiting_ + 1) % waiting_.size();
+    --waiting_count_;
+  }
 }
 
-void Simulation::measure(const HandTarget& target) noexcept {
-  VectorP q_p(n_p_), dq_p(n_p_);
-  sensors_.q_p.resize(n_p_);
-  for (int i = 0; i < n_p_; ++i) {
-    const Axis& axis = axes_[static_cast<std::size_t>(i)];
-    q_p[i] = axis.q;
-    dq_p[i] = axis.dq;
-    sensors_.q_p[i] = encoder(i, axis.q);
+void Simulation::move(const CommandFrame& command) noexcept {
+  if (auto* ideal = std::get_if<IdealPlant>(&plant_)) {
+    ideal->step(command);
+    return;
   }
-  chain_.update_kinematics(stacked(q_p, q_m_), stacked(dq_p, dq_m_));
+  std::get<Plant>(plant_).step({.tau_command = command.tau_m,
+                                .brakes_closed = !command.enable,
+                                .dq_p_command = command.dq_p,
+                                .w_H = w_H_});
+}
 
-  sensors_.time_s = time_s_;
-  sensors_.q_m.resize(n_m_);
-  for (int i = 0; i < n_m_; ++i) sensors_.q_m[i] = encoder(n_p_ + i, q_m_[i]);
-  sensors_.dq_m = dq_m_;
+// The person feels where the handle is now and pulls accordingly until the next step; on an ideal
+// plant, which nobody can move, at once.
+void Simulation::look(const HandTarget& target) noexcept {
+  truth_ = std::visit([](const auto& plant) noexcept { return plant.truth(); }, plant_);
+  const double time_s = static_cast<double>(steps_) * config_.sensed.step;
+  w_H_ = person_.wrench(time_s, {truth_.T_B_H, truth_.twist}, target);
+  if (std::holds_alternative<IdealPlant>(plant_)) truth_.w_H = w_H_;
+  sensors_.observe(truth_);
+}
 
-  sensors_.dead_man = config_.has_dead_man && person_.is_holding(time_s_);
-  const user::HandleMotion handle{chain_.pose(handle_), chain_.twist(handle_)};
-  const Vector6 w_H = person_.wrench(time_s_, handle, target);
-  const Eigen::Matrix3d R_S_B = (handle.T_B_H.R * config_.T_H_S.R).transpose();
-  const Eigen::Vector3d p_H_S_in_B = handle.T_B_H.R * config_.T_H_S.p;
-  sensors_.w_S << R_S_B * w_H.head<3>(), R_S_B * (w_H.tail<3>() - p_H_S_in_B.cross(w_H.head<3>()));
+void Simulation::sample() noexcept {
+  sensors_.sample(truth_, frame_);
+  frame_.answered_sequence = at_work_.sequence;
+  frame_.dead_man =
+      config_.has_dead_man && person_.is_holding(static_cast<double>(steps_) * config_.sensed.step);
 }
 
 }  // namespace hg::simulation

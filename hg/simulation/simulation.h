@@ -1,56 +1,75 @@
-/// The simulated world: a device that tracks its reference perfectly, a gantry with dead time and
-/// lag, and a person who holds the handle.
+/// The simulated world: a machine, its sensors, and a person who holds the handle.
 ///
-/// One call of step() is one period. No allocation, noexcept after set-up.
+/// One call of step() is one period of the loop. The same seeds and commands give the same bits.
+/// No allocation, noexcept after set-up.
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <variant>
 
 #include "hg/core/types.h"
 #include "hg/model/chain.h"
-#include "hg/signals/drive_model.h"
 #include "hg/signals/frames.h"
+#include "hg/signals/truth.h"
+#include "hg/simulation/ideal_plant.h"
+#include "hg/simulation/plant.h"
+#include "hg/simulation/sensors.h"
 #include "hg/user/person.h"
 
 namespace hg::simulation {
 
 /// Set-up data.
 struct Config {
-  double dt = 1e-3;  ///< period, s
-  DriveModel drive;  ///< of every gantry axis
-  Pose T_H_S;        ///< force/torque sensor S in the handle frame H
+  /// Series elastic joints that take torques, or drives that take positions.
+  std::variant<IdealPlantConfig, PlantConfig> plant;
+  int steps = 1;         ///< of the plant per period; 1 for an ideal one
+  double latency = 0.0;  ///< of torque commands, s; rounded to steps of the plant
+  SensorsConfig sensors = ideal_sensors();
+  SensedDevice sensed;  ///< with the step of the plant and the period
   bool has_dead_man = true;
-  VectorM q_m_start;
-  VectorP q_p_start;
 };
 
 class Simulation {
  public:
-  /// `chain` holds the gantry joints first; `handle` is its frame H.
+  static constexpr int kMaxLatency = 15;  ///< periods
+
+  /// `chain` is that of the plant, `handle` its frame H. Throws SetupError when the latency is
+  /// longer than kMaxLatency periods.
   Simulation(const Config& config, const model::Chain& chain, int handle, user::Person person);
 
   /// What the sensors say now.
-  const SensorFrame& sensors() const noexcept { return sensors_; }
-  /// Lives one period under `command`.
+  const SensorFrame& sensors() const noexcept { return frame_; }
+  /// What is the case now.
+  const Truth& truth() const noexcept { return truth_; }
+  const user::Person& person() const noexcept { return person_; }
+  /// Lives one period under `command`, which has come as answer to sensors().
   void step(const CommandFrame& command) noexcept;
 
  private:
-  struct Axis {
-    double q = 0.0, dq = 0.0;
-    CommandDelay delay;
+  /// Commands on their way to the drives, the oldest first.
+  struct Waiting {
+    CommandFrame command;
+    std::uint64_t due = 0;  // step of the plant
   };
-  void measure(const HandTarget& target) noexcept;
-  double encoder(int joint, double q) const noexcept;
+
+  void take_due_command() noexcept;
+  void move(const CommandFrame& command) noexcept;
+  void look(const HandTarget& target) noexcept;
+  void sample() noexcept;
 
   Config config_;
-  model::Chain chain_;
-  int n_p_, n_m_, handle_;
-  int dead_periods_;
+  std::variant<IdealPlant, Plant> plant_;
+  std::uint64_t latency_steps_;
+  Sensors sensors_;
   user::Person person_;
-  double time_s_ = 0.0;
-  VectorM q_m_, dq_m_;
-  std::array<Axis, kMaxGantry> axes_;
-  SensorFrame sensors_;
+  std::uint64_t steps_ = 0;  ///< of the plant so far
+  std::array<Waiting, kMaxLatency + 1> waiting_;
+  std::size_t first_waiting_ = 0, waiting_count_ = 0;
+  CommandFrame at_work_;  ///< the newest command that has reached the drives
+  Vector6 w_H_ = Vector6::Zero();
+  Truth truth_;
+  SensorFrame frame_;
 };
 
 }  // namespace hg::simulation

@@ -1,0 +1,81 @@
+/// Description of device.yaml, third part: joints with series elastic actuators and their control.
+#pragma once
+
+#include <array>
+
+#include "hg/config/describe_device.h"
+
+namespace hg::config {
+
+inline constexpr std::array<Choice<control::Method>, 2> kMethods = {
+    {{"modal", control::Method::kModal}, {"motor_pd", control::Method::kMotorPd}}};
+
+template <class V>
+void describe(V& v, ActuatorModel& actuator) {
+  constexpr auto kNeeded = Need::kRequired;
+  v.number("rotor_inertia_kg_m2", actuator.rotor_inertia, kPositive,
+           "of motor and gear at the output: motor inertia times ratio squared", kNeeded);
+  v.number("stiffness_Nm_per_rad", actuator.stiffness, kPositive, "of gear and torque sensor",
+           kNeeded);
+  v.number("damping_Nms_per_rad", actuator.damping, kNotNegative, "in parallel with the stiffness");
+  v.number("coulomb_friction_Nm", actuator.coulomb_friction, kNotNegative, "of motor and gear");
+  v.number("viscous_friction_Nms_per_rad", actuator.viscous_friction, kNotNegative,
+           "of motor and gear");
+  v.number("load_friction", actuator.load_friction, kNotNegative,
+           "further Coulomb friction per torque of the joint");
+  v.number("stiction", actuator.stiction, {.lb = 1.0}, "break-away torque over Coulomb friction");
+  v.number("stribeck_rad_per_s", actuator.stribeck_speed, kPositive,
+           "speed at which stiction has mostly gone");
+  v.number("torque_max_Nm", actuator.torque_max, kPositive, "peak torque", kNeeded);
+  v.number("torque_rated_Nm", actuator.torque_rated, kPositive, "that it gives for ever", kNeeded);
+  v.number("full_torque_to_rad_per_s", actuator.speed_full_torque, kPositive,
+           "speed up to which there is peak torque", kNeeded);
+  v.number("no_load_rad_per_s", actuator.speed_no_load, kPositive,
+           "speed at which no torque is left", kNeeded);
+  v.rule(actuator.speed_no_load > actuator.speed_full_torque, "no_load_rad_per_s",
+         "must be above full_torque_to_rad_per_s", model::to_text(actuator.speed_no_load));
+  v.rule(actuator.torque_rated <= actuator.torque_max, "torque_rated_Nm",
+         "must not be above torque_max_Nm", model::to_text(actuator.torque_rated));
+}
+
+template <class V>
+void describe(V& v, control::Config& config) {
+  v.choice("method", config.method, kMethods,
+           "modal: all states of the arm in its modes; motor_pd: each motor for itself");
+  v.number("latency_s", config.loop.latency, kNotNegative,
+           "expected from a sample to the torque at the drive; the true one is measured");
+  v.number("current_lag_s", config.loop.current_lag, kNotNegative, "time constant of the current");
+  v.number("integral_1_per_s", config.integral_rate, kNotNegative,
+           "modal: rate at which a remaining error goes");
+  v.number("flatness_Hz", config.flatness_Hz, kPositive,
+           "low-pass of the derivatives of the torques fed forward");
+  v.number("error_max_rad", config.error_max, kPositive,
+           "the reference is never further ahead of the joint: a joint that is held back takes "
+           "reference and twin with it");
+  v.number("friction_share", config.friction_share, {.lb = 0.0, .ub = 1.0},
+           "of the Coulomb friction that is fed forward");
+  v.number("friction_speed_rad_per_s", config.friction_speed, kPositive,
+           "speed over which it changes its sign");
+}
+
+template <class V>
+void describe_control(V& v, DeviceDraft& d) {
+  v.groups_by_name(
+      "actuators", d.joint_names, "a joint of the URDF",
+      [&](auto& child, int index) {
+        describe(child, d.actuators[static_cast<std::size_t>(index)].emplace());
+      },
+      "series elastic joints, for all or none of the manipulator; without them the drives follow "
+      "a reference of positions");
+  v.rule(v.is_given("actuators") || !v.is_given("control"), "control",
+         "concerns 'actuators', and there are none");
+  if (v.is_given("actuators")) {
+    d.control.method = control::Method::kModal;
+    d.control.error_max = 0.007;  // [C] 6: 5 to 10 mrad
+  }
+  v.group(
+      "control", [&](auto& child) { describe(child, d.control); },
+      "how motor torques make the joints follow the reference");
+}
+
+}  // namespace hg::config

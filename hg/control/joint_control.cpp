@@ -1,0 +1,189 @@
+#include "hg/control/joint_control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "hg/core/error.h"
+#include "hg/core/stacked.h"
+
+namespace hg::control {
+namespace {
+
+constexpr double kLatencyMemory = 0.05;  // share of the newest sample in the mean
+constexpr int kSweepsAtStart = 12;       // far more than any matrix of seven rows needs
+constexpr double kMotorPdDamping = 1.4;  // [C] 1: Kd = 1.4 sqrt(K Jm)
+
+// drives that follow positions need no more
+void fill(const ReferenceState& reference, CommandFrame& command) noexcept {
+  command.q_m = reference.q_m;
+  command.dq_m = reference.dq_m;
+  command.ddq_m = reference.ddq_m;
+}
+
+// share of the new value in a first-order low-pass
+double smoothing(double cutoff_Hz, double dt) noexcept {
+  return 1.0 - std::exp(-2.0 * std::numbers::pi * cutoff_Hz * dt);
+}
+
+}  // namespace
+
+JointControl::JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m,
+                           int handle)
+    : config_(config), chain_(chain), n_p_(n_p), n_m_(n_m), handle_(handle) {
+  if (config_.method == Method::kDrives) return;
+  if (static_cast<int>(config_.actuators.size()) != n_m_) {
+    throw SetupError("control: " + std::to_string(n_m_) + " actuators expected, got " +
+                     std::to_string(config_.actuators.size()));
+  }
+  K_.resize(n_m_);
+  Jm_.resize(n_m_);
+  for (int i = 0; i < n_m_; ++i) {
+    K_[i] = config_.actuators[static_cast<std::size_t>(i)].stiffness;
+    Jm_[i] = config_.actuators[static_cast<std::size_t>(i)].rotor_inertia;
+  }
+  sqrt_K_ = K_.cwiseSqrt();
+}
+
+State JointControl::start() const {
+  State state;
+  state.latency = config_.loop.latency / config_.dt;
+  state.modes = Modes(n_m_);
+  state.integral = VectorM::Zero(n_m_);
+  state.tau_r = state.dtau_r = state.dtheta_r = state.ddtheta_r = VectorM::Zero(n_m_);
+  return state;
+}
+
+void JointControl::rest(const ReferenceState& reference, const SensorFrame& sensors, State& state,
+                        CommandFrame& command) const noexcept {
+  fill(reference, command);
+  state.is_started = false;
+  if (config_.method == Method::kDrives || sensors.answered_sequence == 0) return;
+  command.tau_m = VectorM::Zero(n_m_);
+  const auto periods = static_cast<double>(sensors.sequence - sensors.answered_sequence);
+  state.latency += kLatencyMemory * (periods - state.latency);
+}
+
+void JointControl::step(const ReferenceState& reference, const RobotState& robot, State& state,
+                        CommandFrame& command, TrackingReport& report) noexcept {
+  fill(reference, command);
+  report.error = reference.q_m - robot.q_m;
+  if (config_.method == Method::kDrives) return;
+
+  const Feedforward forward = feedforward(reference, robot, state);
+  command.tau_m = config_.method == Method::kModal ? modal_torque(reference, robot, forward, state)
+                                                   : motor_pd_torque(robot, forward, state);
+  command.tau_m += friction(forward, state);
+
+  state.is_saturated = false;
+  report.torque_share.resize(n_m_);
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    double& tau = command.tau_m[i];
+    const double available = tau * robot.dtheta_m[i] > 0.0
+                                 ? torque_available(actuator, robot.dtheta_m[i])
+                                 : actuator.torque_max;
+    report.torque_share[i] = std::abs(tau) / actuator.torque_max;
+    state.is_saturated = state.is_saturated || std::abs(tau) > available;
+    tau = std::clamp(tau, -available, available);
+  }
+  report.latency_s = state.latency * config_.dt;
+}
+
+// What moves the links as the reference says, and by how much the springs twist for it ([C] 1).
+JointControl::Feedforward JointControl::feedforward(const ReferenceState& reference,
+                                                    const RobotState& robot,
+                                                    State& state) noexcept {
+  chain_.update(stacked(robot.q_p, reference.q_m), stacked(robot.dq_p, reference.dq_m));
+  const auto M = chain_.M().bottomRows(n_m_);
+  const auto J_m = chain_.jacobian(handle_).rightCols(n_m_);
+  Feedforward forward;
+  forward.M = M.rightCols(n_m_);
+  forward.tau = chain_.c().tail(n_m_);
+  forward.tau.noalias() += forward.M * reference.ddq_m;
+  forward.tau.noalias() += M.leftCols(n_p_) * robot.ddq_p;
+  forward.tau.noalias() -= J_m.transpose() * robot.w_H;
+  forward.theta = reference.q_m + forward.tau.cwiseQuotient(K_);
+
+  if (!state.is_started) {
+    const double latency = state.latency * config_.dt + config_.loop.current_lag;
+    state.poles = poles_for(latency);
+    state.modes = Modes(n_m_);
+    state.modes.follow(
+        sqrt_K_.cwiseInverse().asDiagonal() * forward.M * sqrt_K_.cwiseInverse().asDiagonal(),
+        kSweepsAtStart);
+    state.integral.setZero();
+    state.tau_r = forward.tau;
+    state.dtau_r.setZero();
+    state.dtheta_r = reference.dq_m;
+    state.ddtheta_r.setZero();
+    state.is_started = true;
+  }
+  const double share = smoothing(config_.flatness_Hz, config_.dt);
+  state.dtau_r += share * ((forward.tau - state.tau_r) / config_.dt - state.dtau_r);
+  state.tau_r = forward.tau;
+  const VectorM dtheta_r = reference.dq_m + state.dtau_r.cwiseQuotient(K_);
+  state.ddtheta_r += share * ((dtheta_r - state.dtheta_r) / config_.dt - state.ddtheta_r);
+  state.dtheta_r = dtheta_r;
+  return forward;
+}
+
+VectorM JointControl::modal_torque(const ReferenceState& reference, const RobotState& robot,
+                                   const Feedforward& forward, State& state) const noexcept {
+  const VectorM error = reference.q_m - robot.q_m;
+  if (!state.is_saturated) {
+    state.integral += config_.dt * error;
+    state.integral = state.integral.cwiseMax(-config_.integral_max).cwiseMin(config_.integral_max);
+  }
+  const auto inverse_sqrt_K = sqrt_K_.cwiseInverse().asDiagonal();
+  const MatrixM scaled_M = inverse_sqrt_K * forward.M * inverse_sqrt_K;
+  state.modes.follow(scaled_M);
+
+  const auto in_modes = [&](const VectorM& v) noexcept -> VectorM {
+    const VectorM scaled = sqrt_K_.cwiseProduct(v);
+    return state.modes.Q().transpose() * scaled;
+  };
+  const VectorM e = in_modes(forward.theta - robot.theta_m);
+  const VectorM de = in_modes(state.dtheta_r - robot.dtheta_m);
+  const VectorM f = in_modes(error);
+  const VectorM df = in_modes(reference.dq_m - robot.dq_m);
+  const VectorM f_integral = in_modes(state.integral);
+  VectorM v(n_m_);
+  for (int i = 0; i < n_m_; ++i) {
+    const ModeGains gains = gains_of(state.poles, state.modes.mu()[i]);
+    v[i] = gains.motor * e[i] + gains.motor_rate * de[i] + gains.link * f[i] +
+           gains.link_rate * df[i] +
+           config_.integral_rate * (gains.motor + gains.link) * f_integral[i];
+  }
+  const double w0_2 = state.poles.w0 * state.poles.w0;
+  const VectorM Jt = K_ / w0_2;
+  VectorM u = forward.tau + Jt.cwiseProduct(state.ddtheta_r);
+  const VectorM back = state.modes.Q() * v;
+  u += sqrt_K_.cwiseProduct(back);
+  // the measured torque makes the rotor look like one of inertia Jt
+  return Jm_.cwiseQuotient(Jt).cwiseProduct(u - robot.tau_m) + robot.tau_m;
+}
+
+VectorM JointControl::motor_pd_torque(const RobotState& robot, const Feedforward& forward,
+                                      const State& state) const noexcept {
+  const VectorM Kd = kMotorPdDamping * K_.cwiseProduct(Jm_).cwiseSqrt();
+  return forward.tau + Jm_.cwiseProduct(state.ddtheta_r) +
+         K_.cwiseProduct(forward.theta - robot.theta_m) +
+         Kd.cwiseProduct(state.dtheta_r - robot.dtheta_m);
+}
+
+VectorM JointControl::friction(const Feedforward& forward, const State& state) const noexcept {
+  VectorM tau(n_m_);
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    const double coulomb =
+        actuator.coulomb_friction + actuator.load_friction * std::abs(forward.tau[i]);
+    tau[i] =
+        config_.friction_share * coulomb * std::tanh(state.dtheta_r[i] / config_.friction_speed) +
+        actuator.viscous_friction * state.dtheta_r[i];
+  }
+  return tau;
+}
+
+}  // namespace hg::control

@@ -1,0 +1,35 @@
+/// Whether the closed torque loop is stable: sampling, latency, current lag, filters, feedback.
+///
+/// Linear: without Coulomb friction (which only helps), the user, and torque limits. Set-up only.
+#pragma once
+
+#include <vector>
+
+#include "hg/control/joint_control.h"
+
+namespace hg::control {
+
+/// Filters of the estimation that stand in the loop.
+struct LoopFilters {
+  double link_pole_Hz = 100.0;
+  double motor_low_pass_Hz = 200.0;  ///< 0 = none
+};
+
+/// An arm with its controller, as far as they stand in the loop.
+struct Loop {
+  Config config;
+  LoopFilters filters;
+  model::Chain chain;  ///< gantry joints first
+  int n_p = 0, n_m = 0, handle = 0;
+};
+
+/// Largest modulus of the eigenvalues of one period at rest in posture `q` (gantry first), with the
+/// gains for `latency` (s): below 1 errors die out. The feedback is found by asking JointControl.
+double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency);
+
+/// The longest latency in whole periods, at most `most`, at which the loop is stable in all
+/// `postures`; 0 = not even at one period.
+int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures,
+                           int most);
+
+}  // namespace hg::control

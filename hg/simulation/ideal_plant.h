@@ -1,0 +1,44 @@
+/// A machine whose drives follow their reference perfectly; only its gantry has dead time and lag.
+///
+/// For devices that take positions, and for looking at the law alone. SI units. Copyable; no
+/// allocation, noexcept after set-up.
+#pragma once
+
+#include <array>
+
+#include "hg/core/types.h"
+#include "hg/model/chain.h"
+#include "hg/signals/drive_model.h"
+#include "hg/signals/frames.h"
+#include "hg/signals/truth.h"
+
+namespace hg::simulation {
+
+/// Set-up data.
+struct IdealPlantConfig {
+  double period = 1e-3;  ///< s
+  DriveModel drive;      ///< of every gantry axis
+  VectorP q_p_start;
+  VectorM q_m_start;
+};
+
+class IdealPlant {
+ public:
+  /// `chain` holds the gantry joints first; `handle` is its frame H.
+  IdealPlant(const IdealPlantConfig& config, const model::Chain& chain, int handle);
+
+  /// Lives one period.
+  void step(const CommandFrame& command) noexcept;
+  const Truth& truth() const noexcept { return truth_; }
+
+ private:
+  void observe(const VectorM& ddq_m) noexcept;
+
+  IdealPlantConfig config_;
+  model::Chain chain_;
+  int handle_, dead_periods_;
+  std::array<CommandDelay, kMaxGantry> delays_;
+  Truth truth_;
+};
+
+}  // namespace hg::simulation
