@@ -112,7 +112,7 @@ install_list() {  # install_list LIST STAMP WHAT
 install_list tools/requirements.txt .venv/.hapticgiant-requirements \
   "Pinocchio, Coal, Eigen, Boost headers"
 if [ "$purpose" = test ]; then
-  install_list tools/requirements-test.txt .venv/.hapticgiant-requirements-test "robots and nanobind for the tests"
+  install_list tools/requirements-test.txt .venv/.hapticgiant-requirements-test "robots, nanobind and MuJoCo for the tests"
 fi
 if [ "$purpose" = bench ]; then
   install_list tools/requirements-bench.txt .venv/.hapticgiant-requirements-bench \

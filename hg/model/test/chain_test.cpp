@@ -242,6 +242,19 @@ TEST(Chain, TorquesBalanceTheKineticEnergy) {
   });
 }
 
+TEST(Chain, GravityIsTheSlopeOfThePotentialEnergy) {
+  for_all_chains([](Chain& chain, const auto& q, const Eigen::VectorXd& dq, RandomState&) {
+    const auto energy_at = [&](double t) {
+      chain.update(Eigen::VectorXd(chain.integrate(q, Eigen::VectorXd(dq * t))), dq);
+      return chain.potential_energy();
+    };
+    const double growth = (energy_at(kStep) - energy_at(-kStep)) / (2.0 * kStep);
+    chain.update(q, dq);
+    const double power = dq.dot(chain.gravity());
+    ASSERT_NEAR(power, growth, 1e-4 * (1.0 + std::abs(power)));
+  });
+}
+
 TEST(Chain, WithoutGravityOnlyTheCoriolisPartOfTheBiasRemains) {
   Chain with = mixed_chain({.T_B_root = slanted()});
   Chain without = mixed_chain({.T_B_root = slanted(), .gravity = false});
