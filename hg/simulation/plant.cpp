@@ -40,13 +40,13 @@ Plant::Plant(const PlantConfig& config, const model::Chain& chain, int handle)
   start_in_balance();
 }
 
-// The springs carry the weight.
 model::Loads Plant::loads() const noexcept {
   model::Loads loads = chain_.default_loads();
   loads.mass = config_.mass;
   return loads;
 }
 
+// The springs carry the weight.
 void Plant::start_in_balance() noexcept {
   constexpr int kRounds = 50;  // the sag of a flexible joint changes its load but little
   for (int round = 0; round < kRounds; ++round) {

@@ -87,6 +87,7 @@ void check(const PlantConfig& config, const model::Chain& chain) {
   check_joints(config, chain);
   require_positive("step", config.step);
   require_not_negative("current_lag", config.current_lag);
+  require_positive("mass", config.mass);
   require_size("actuators", static_cast<Eigen::Index>(config.actuators.size()),
                config.manipulator.size());
   require_size("q_p_start", config.q_p_start.size(), config.gantry.size());

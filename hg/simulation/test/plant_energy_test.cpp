@@ -87,6 +87,27 @@ TEST(PlantEnergy, NeverGrowsWithoutInput) {
   }
 }
 
+TEST(PlantEnergy, AHeavierArmWeighsMoreAndFallsAsFast) {
+  PlantConfig config = reference_config();
+  for (ActuatorModel& a : config.actuators) {
+    a.coulomb_friction = a.load_friction = a.viscous_friction = 0.0;
+    a.rotor_inertia *= 1e-3;
+  }
+  const model::Chain chain = haptic_giant();
+  Plant plant(config, chain, chain.frame("handle"));
+  config.mass = 1.3;
+  Plant heavy(config, chain, chain.frame("handle"));
+  EXPECT_LT((heavy.truth().tau_J - 1.3 * plant.truth().tau_J).norm(), 1e-9);
+  EXPECT_NEAR(heavy.energy().potential, 1.3 * plant.energy().potential, 1e-9);
+  for (int k = 0; k < 800; ++k) {
+    plant.step(idle(config, false));
+    heavy.step(idle(config, false));
+    ASSERT_LT(heavy.residual(), 1e-12);
+  }
+  EXPECT_GT(plant.truth().twist.norm(), 1.0);
+  EXPECT_LT((heavy.truth().twist - plant.truth().twist).norm(), 0.02 * plant.truth().twist.norm());
+}
+
 // A gantry that nothing drives: joints that move freely.
 TEST(PlantEnergy, WithoutHorizontalForcesTheHorizontalMomentumStays) {
   const model::Chain chain = haptic_giant();
