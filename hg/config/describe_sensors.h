@@ -1,7 +1,7 @@
-/// Description of the sensors in simulation.yaml.
+/// Description of the sensors in simulation.yaml, second part: at the handle, and all of them.
 #pragma once
 
-#include "hg/config/describe_common.h"
+#include "hg/config/describe_joint_sensors.h"
 #include "hg/simulation/sensors.h"
 
 namespace hg::config {
@@ -26,41 +26,6 @@ inline constexpr InertialKeys kAccelerometerKeys = {"noise_m_per_s2_per_sqrt_Hz"
                                                     "temperature_drift_m_per_s2_per_K",
                                                     "range_m_per_s2",
                                                     "resolution_m_per_s2"};
-
-template <class V>
-void describe_joint_encoder(V& v, simulation::EncoderConfig& encoder) {
-  v.number("resolution_rad", encoder.resolution, kNotNegative,
-           "one step on its own shaft; of a prismatic joint in m, as all that follows");
-  v.number("offset_rad", encoder.offset, kNotNegative,
-           "standard deviation of what is left of the mounting offset, at the joint");
-  v.number("error_1_rad", encoder.error_1, kNotNegative,
-           "amplitude of the error once per turn of its shaft, at the joint");
-  v.number("error_2_rad", encoder.error_2, kNotNegative,
-           "the same twice per turn; of a motor also the kinematic error of its gear");
-}
-
-template <class V>
-void describe_gantry_encoder(V& v, simulation::EncoderConfig& encoder) {
-  v.number("resolution_m", encoder.resolution, kNotNegative,
-           "one step; of a revolute axis in rad, as all that follows");
-  v.number("offset_m", encoder.offset, kNotNegative, "standard deviation of the offset");
-  v.number("error_1_m", encoder.error_1, kNotNegative, "amplitude of the error once per period");
-  v.number("error_2_m", encoder.error_2, kNotNegative, "the same twice per period");
-  v.number("period_m", encoder.period, kPositive, "length over which these errors repeat");
-}
-
-template <class V>
-void describe(V& v, simulation::TorqueSensorConfig& sensor) {
-  v.number("noise", sensor.noise, kNotNegative,
-           "standard deviation of a sample, like all here a share of the full scale, which is the "
-           "peak torque of the joint");
-  v.number("gain_error", sensor.gain_error, kNotNegative, "standard deviation");
-  v.number("offset", sensor.offset, kNotNegative, "standard deviation");
-  v.number("ripple", sensor.ripple, kNotNegative,
-           "amplitude of the ripple of the gear, twice per turn of the motor");
-  v.number("range", sensor.range, kPositiveOrNone, "where the reading ends");
-  v.number("resolution", sensor.resolution, kNotNegative, "one step");
-}
 
 template <class V>
 void describe(V& v, simulation::SensorFilterConfig& filter) {

@@ -7,7 +7,7 @@
 namespace hg::simulation {
 namespace {
 
-constexpr std::size_t kMany = 400'000;
+constexpr std::size_t kMany = 200'000;
 const double kChance = 5.0 / std::sqrt(kMany);  // five standard deviations of a mean of such
 
 template <class Draw>
