@@ -219,8 +219,8 @@ TEST(Script, TheHandTakesHoldAfterTheTareAndHasAnArm) {
 }
 
 TEST(Script, APresetFillsInWhatIsNotGiven) {
-  SourceReader reader(
-      {{"script.yaml", "hand: {damping_Ns_per_m: [1, 2, 3], preset: stiff}\ngrasp_s: 0.2\n"}});
+  SourceReader reader(std::vector<SourceText>{
+      {"script.yaml", "hand: {damping_Ns_per_m: [1, 2, 3], preset: stiff}\ngrasp_s: 0.2\n"}});
   const Script script = load_script("script.yaml", free_space().twin.model, reader);
   EXPECT_EQ(script.hand.stiffness, Eigen::Vector3d(600, 400, 500));
   EXPECT_EQ(script.hand.damping, Eigen::Vector3d(1, 2, 3));
