@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hg/assembly/start_posture.h"
+#include "hg/rendering/catalogue.h"
 
 namespace hg::assembly {
 namespace {
@@ -120,16 +121,17 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
                       device.model, scenario.twin.model);
 }
 
-simulation::Simulation make_simulation(const config::Scenario& scenario) {
-  const config::Device& device = scenario.device;
-  const Start start = find_start(scenario);
+user::Person make_person(const config::Scenario& scenario, const Start& start) {
   user::Config person{scenario.person, scenario.script.hand, scenario.script.script,
-                      device.simulation.seed};
+                      scenario.device.simulation.seed};
   if (scenario.person == user::PersonKind::kScript) fill_in_start(scenario, start, person.script);
+  return user::Person(person, scenario.twin.model.chain, scenario.twin.model.end_effector,
+                      scenario.twin.T_B_root);
+}
 
-  return simulation_of(device, start,
-                       user::Person(person, scenario.twin.model.chain,
-                                    scenario.twin.model.end_effector, scenario.twin.T_B_root));
+simulation::Simulation make_simulation(const config::Scenario& scenario) {
+  const Start start = find_start(scenario);
+  return simulation_of(scenario.device, start, make_person(scenario, start));
 }
 
 simulation::Simulation make_unheld_simulation(const config::Device& device, const Start& start) {
@@ -140,6 +142,14 @@ simulation::Simulation make_unheld_simulation(const config::Device& device, cons
 
 device::SimulatedDevice make_simulated_device(const config::Scenario& scenario) {
   return device::SimulatedDevice(make_simulation(scenario));
+}
+
+evaluation::Summary make_summary(const config::Scenario& scenario) {
+  auto positions = [device = scenario.device.model](const Truth& truth,
+                                                    std::vector<double>& values) mutable {
+    rendering::limit_positions(device, truth.q_p, truth.q_m, values);
+  };
+  return {scenario.limits, std::move(positions), scenario.device.rate_Hz};
 }
 
 double planned_duration_s(const config::Scenario& scenario) {

@@ -5,11 +5,16 @@
 #include "hg/config/scenario.h"
 #include "hg/cycle/cycle.h"
 #include "hg/device/simulated_device.h"
+#include "hg/evaluation/summary.h"
+#include "hg/user/person.h"
 
 namespace hg::assembly {
 
 /// The control cycle of the scenario's device and twin. Throws SetupError.
 cycle::Cycle make_cycle(const config::Scenario& scenario);
+
+/// The scenario's person, who takes the handle of a device at `start`.
+user::Person make_person(const config::Scenario& scenario, const Start& start);
 
 /// A simulated world that starts where the twin starts, held by the scenario's person. Throws
 /// SetupError when the device cannot reach that pose.
@@ -18,6 +23,9 @@ simulation::Simulation make_simulation(const config::Scenario& scenario);
 simulation::Simulation make_unheld_simulation(const config::Device& device, const Start& start);
 /// The same as make_simulation() behind the boundary of a device.
 device::SimulatedDevice make_simulated_device(const config::Scenario& scenario);
+
+/// The judge of a run of the scenario.
+evaluation::Summary make_summary(const config::Scenario& scenario);
 
 /// Seconds until everything planned has happened; 0 = nothing is planned.
 double planned_duration_s(const config::Scenario& scenario);

@@ -21,6 +21,7 @@ from hapticgiant._core import (
     OperatorFrame,
     Parameter,
     ParameterChange,
+    Person,
     Pose,
     Refusal,
     Scenario,
@@ -31,6 +32,7 @@ from hapticgiant._core import (
     SolverStatus,
     TareStatus,
     next_request,
+    start_posture,
 )
 from hapticgiant.recording import read_recording
 from hapticgiant.scenario import MODELS, load_scenario, run
@@ -52,6 +54,7 @@ __all__ = [
     "OperatorFrame",
     "Parameter",
     "ParameterChange",
+    "Person",
     "Pose",
     "Refusal",
     "Scenario",
@@ -69,4 +72,5 @@ __all__ = [
     "next_request",
     "read_recording",
     "run",
+    "start_posture",
 ]

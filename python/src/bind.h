@@ -14,6 +14,7 @@ void bind_haptic_giant(nb::module_& module);
 void bind_model(nb::module_& module);
 void bind_signals(nb::module_& module);
 void bind_cycle(nb::module_& module);
+void bind_person(nb::module_& module);
 void bind_run(nb::module_& module);
 
 }  // namespace hg::python

@@ -34,5 +34,6 @@ NB_MODULE(_core, module) {
   bind_model(model);
   bind_haptic_giant(haptic_giant);
   bind_cycle(module);
+  bind_person(module);
   bind_run(module);
 }
