@@ -140,6 +140,18 @@ TEST(Person, TheMouseOverrulesTheScriptAndPressesTheLever) {
   EXPECT_NEAR(hold(person, {start_pose()}, 8.0, 12.0).norm(), 0.0, 1e-6);  // back to the script
 }
 
+TEST(Person, BackFromTheMouseTheScriptDoesNotCatchUpAtOnce) {
+  Config config = scripted();
+  config.hand.stiffness.setZero();  // damper only
+  config.script.segments = {{1.0, 1.0, 0, Blend::kTo, 1.0}};
+  Person person = make(config);
+  hold(person, {start_pose()}, 0.0, kGrasp + 0.5);
+  HandTarget target;
+  target.active = true;
+  hold(person, {start_pose()}, kGrasp + 0.5, kGrasp + 3.0, target);
+  EXPECT_LT(hold(person, {start_pose()}, kGrasp + 3.0, kGrasp + 3.0 + 2 * kDt).norm(), 0.1);
+}
+
 TEST(Person, AMouseThatLetsGoLetsGoAtOnceAndTakesHoldGently) {
   Config config = scripted();
   config.kind = PersonKind::kMouse;
