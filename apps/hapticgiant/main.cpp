@@ -221,13 +221,15 @@ void add_identify(CLI::App& app, hg::apps::IdentifyArguments& arguments, int& ex
   payload->footer(
       "Examples:\n"
       "  hapticgiant identify payload             the simulated device takes the poses itself\n"
-      "  hapticgiant identify payload poses.csv   columns a_x a_y a_z f_x f_y f_z n_x n_y n_z pose");
+      "  hapticgiant identify payload poses.csv   columns a_x a_y a_z f_x f_y f_z n_x n_y n_z "
+      "pose");
   payload->add_option("files", arguments.files, "CSV files of poses at rest; none: simulate");
   payload->add_option("--device", arguments.device, "device.yaml")->capture_default_str();
   payload->add_option("--poses", arguments.poses, "poses of the simulated device")
       ->check(at_least(1))
       ->capture_default_str();
-  payload->callback([&arguments, &exit_code] { exit_code = hg::apps::identify_payload(arguments); });
+  payload->callback(
+      [&arguments, &exit_code] { exit_code = hg::apps::identify_payload(arguments); });
 }
 
 }  // namespace

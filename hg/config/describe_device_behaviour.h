@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hg/config/describe_device.h"
+#include "hg/config/describe_estimation.h"
 #include "hg/config/law_names.h"
 
 namespace hg::config {
@@ -67,7 +68,7 @@ void describe_prepositioning(V& v, DeviceDraft& d) {
 
 template <class V>
 void describe_behaviour(V& v, DeviceDraft& d) {
-  for (const char* key : {"drive", "prepositioning", "estimation"}) {
+  for (const char* key : {"drive", "prepositioning"}) {
     v.rule(!d.has_joints || !d.gantry.empty() || !v.is_given(key), key,
            "concerns the gantry, and there is none");
   }
@@ -97,13 +98,7 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       "rendering", [&](auto& child) { describe(child, d.rendering, d.manipulator.size()); },
       "the law, see docs/law.md");
   describe_prepositioning(v, d);
-  v.group(
-      "estimation",
-      [&](auto& child) {
-        child.number("observer_pole_Hz", d.estimation.observer_pole_Hz, kPositive,
-                     "triple pole of the observer of the gantry's motion");
-      },
-      "from sensors to state");
+  describe_estimation(v, d);
   v.group(
       "monitor", [&](auto& child) { describe(child, d.monitor); },
       "when the device is stopped by a fault");

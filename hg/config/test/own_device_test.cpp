@@ -131,6 +131,31 @@ TEST(OwnDevice, WithoutAGantryNothingOfItIsGiven) {
   EXPECT_EQ(message("handle: l7\nroot_link: l1\n"), "no error");
 }
 
+TEST(OwnDevice, SaysHowSensorsAreReadAndWhatHangsBeyondThem) {
+  SourceReader reader = reader_of(
+      "handle: l7\nroot_link: l1\n"
+      "estimation: {link_pole_Hz: 80, motor_low_pass_Hz: 150, wrench_low_pass_Hz: 50, has_imu: "
+      "false, angular_low_pass_Hz: 40, needs_tare: true, noise_N: 0.1, noise_Nm: 0.003}\n"
+      "payload: {mass_kg: 1.2, centre_of_mass_m: [0.01, 0, 0.02], inertia_kg_m2: [3e-3, 3e-3, "
+      "1e-3]}\n",
+      arm_urdf("revolute"), kTool);
+  const estimation::Config estimation = load_device("device.yaml", reader).estimation;
+  EXPECT_EQ(estimation.link_pole_Hz, 80.0);
+  EXPECT_EQ(estimation.motor_low_pass_Hz, 150.0);
+  EXPECT_EQ(estimation.wrench.low_pass_Hz, 50.0);
+  EXPECT_FALSE(estimation.wrench.has_imu);
+  EXPECT_EQ(estimation.wrench.alpha_low_pass_Hz, 40.0);
+  EXPECT_TRUE(estimation.wrench.tare.is_needed);
+  EXPECT_EQ(estimation.wrench.tare.noise_force, 0.1);
+  EXPECT_EQ(estimation.wrench.tare.noise_torque, 0.003);
+  EXPECT_EQ(estimation.wrench.payload.mass, 1.2);
+  EXPECT_EQ(estimation.wrench.payload.com, Eigen::Vector3d(0.01, 0.0, 0.02));
+  EXPECT_EQ(estimation.wrench.payload.inertia.diagonal(), Eigen::Vector3d(3e-3, 3e-3, 1e-3));
+  EXPECT_EQ(message("handle: l7\nroot_link: l1\nestimation: {observer_pole_Hz: 8}\n"),
+            "device.yaml:6:32: estimation.observer_pole_Hz: concerns the gantry, and there is "
+            "none");
+}
+
 TEST(OwnDevice, WithoutPrepositioningTheGantryKeepsWithinItsDrive) {
   const auto load = [](const std::string& rest) {
     SourceReader reader = reader_of(kGantry + "handle: l7\n" + rest, arm_urdf("revolute"), kTool);

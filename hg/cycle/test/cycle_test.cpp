@@ -26,12 +26,13 @@ struct Loop {
   std::array<double, 2> gantry_speed{};
   std::array<CommandDelay, 2> delay{};
 
-  Loop() {
+  explicit Loop(bool needs_tare = false) {
     rendering::TwinModel twin = rendering::unlimited_twin(
         model::Chain::free_body({.mass = 6.0}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
     Config config;
+    config.estimation.wrench.tare.is_needed = needs_tare;
     config.prepositioning.n_p = 2;
     config.prepositioning.has_closed_form = true;
     config.prepositioning.q_limits.fill({-1.4, 1.4});
@@ -289,6 +290,61 @@ TEST(Cycle, AStepMakesNoAllocation) {
   loop.sensors.w_S[0] = std::numeric_limits<double>::quiet_NaN();
   loop.run(2);
   EXPECT_EQ(allocations.count(), 0u);
+}
+
+TEST(Cycle, ADeviceThatNeedsATareIsNotArmedWithout) {
+  Loop loop(true);
+  loop.sensors.dead_man = false;
+  loop.sensors.w_S[1] = 4.0;  // offset of the sensor
+  loop.step();
+  EXPECT_FALSE(loop.record.is_tared);
+  loop.operator_input.request = ModeRequest::kArm;
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kReady);
+  EXPECT_EQ(loop.record.refusal, Refusal::kNotTared);
+  loop.run(5);
+  EXPECT_EQ(loop.record.refusal, Refusal::kNone) << "one request, one answer";
+
+  loop.operator_input.request = ModeRequest::kTare;
+  loop.run(499);
+  EXPECT_EQ(loop.record.tare, TareStatus::kUnderWay);
+  loop.step();
+  EXPECT_EQ(loop.record.tare, TareStatus::kDone);
+  EXPECT_TRUE(loop.record.is_tared);
+  loop.step();
+  EXPECT_LT(loop.record.robot.w_H.norm(), 1e-12);
+  loop.operator_input.request = ModeRequest::kArm;
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kArmed);
+  EXPECT_EQ(loop.record.refusal, Refusal::kNone);
+}
+
+TEST(Cycle, AnArmRequestThatWasRefusedDoesNotArmLater) {
+  Loop loop(true);
+  loop.sensors.dead_man = false;
+  loop.step();
+  loop.operator_input.request = ModeRequest::kTare;
+  loop.step();
+  loop.operator_input.request = ModeRequest::kArm;  // held down until the tare is done
+  loop.run(600);
+  EXPECT_TRUE(loop.record.is_tared);
+  EXPECT_EQ(loop.record.mode, Mode::kReady);
+}
+
+TEST(Cycle, ATareIsRefusedWhileTheHandleIsHeldOrTheDeviceRuns) {
+  Loop held(true);
+  held.step();
+  held.operator_input.request = ModeRequest::kTare;
+  held.step();
+  EXPECT_EQ(held.record.tare, TareStatus::kRefusedHeld);
+  EXPECT_FALSE(held.record.is_tared);
+
+  Loop running;
+  running.start_running();
+  running.operator_input.request = ModeRequest::kTare;
+  running.step();
+  EXPECT_EQ(running.record.tare, TareStatus::kRefusedRunning);
+  EXPECT_EQ(running.record.mode, Mode::kRunning);
 }
 
 }  // namespace

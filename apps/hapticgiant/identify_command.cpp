@@ -1,0 +1,95 @@
+#include "apps/hapticgiant/identify_command.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "apps/hapticgiant/paths.h"
+#include "hg/config/device.h"
+#include "hg/core/error.h"
+#include "hg/identification/payload.h"
+#include "hg/identification/static_poses.h"
+
+namespace hg::apps {
+namespace {
+
+using identification::PayloadEstimate;
+using identification::StaticPose;
+
+// as given, or among the data that comes with the program
+std::string find_device(const std::string& file) {
+  if (std::ifstream(file)) return file;
+  return (data_root() / file).string();
+}
+
+std::vector<StaticPose> simulated_poses(const config::Device& device, int count) {
+  std::vector<StaticPose> poses;
+  for (const VectorM& q_m : identification::static_postures(device, count)) {
+    poses.push_back(identification::measure_simulated(device, q_m));
+  }
+  return poses;
+}
+
+std::vector<StaticPose> poses_of(const std::vector<std::string>& files) {
+  std::vector<StaticPose> poses;
+  for (const std::string& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw SetupError(file + ": cannot be read");
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    for (const StaticPose& pose : identification::read_static_poses(file, text)) {
+      poses.push_back(pose);
+    }
+  }
+  return poses;
+}
+
+std::string row(const Eigen::Vector3d& v, int digits) {
+  return fmt::format("{:.{}f}, {:.{}f}, {:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
+}
+
+void print_estimate(const PayloadEstimate& found) {
+  fmt::print("mass            {:.4f} kg, +-{:.4f}\n", found.mass, found.mass_deviation);
+  fmt::print("centre of mass  {} m in S, +-{:.4f}\n", row(found.com, 4), found.com_deviation);
+  fmt::print("sensor offset   {} N; {} Nm\n", row(found.offset.head<3>(), 2),
+             row(found.offset.tail<3>(), 4));
+  fmt::print("residuals       {:.3f} N, {:.4f} Nm rms\n", found.force_residual,
+             found.torque_residual);
+  fmt::print("condition       {:.1f}  (1 = every direction shows alike)\n", found.condition);
+}
+
+void print_comparison(const PayloadEstimate& found, const Payload& told) {
+  if (!(told.mass > 0.0)) return;
+  fmt::print("device.yaml     {:+.2f} % mass, {:.1f} mm of centre away from what it says\n",
+             100.0 * (found.mass / told.mass - 1.0), 1e3 * (found.com - told.com).norm());
+}
+
+void print_yaml(const PayloadEstimate& found) {
+  fmt::print(
+      "\nfor device.yaml:\npayload:\n  mass_kg: {:.4f}\n  centre_of_mass_m: [{}]\n"
+      "  # inertia_kg_m2 does not show at rest: from the drawing\n",
+      found.mass, row(found.com, 4));
+}
+
+}  // namespace
+
+int identify_payload(const IdentifyArguments& arguments) {
+  const config::Device device = config::load_device(find_device(arguments.device));
+  const bool is_simulated = arguments.files.empty();
+  const std::vector<StaticPose> poses =
+      is_simulated ? simulated_poses(device, arguments.poses) : poses_of(arguments.files);
+  fmt::print("{} poses {}\n\n", poses.size(),
+             is_simulated ? "of the simulated " + device.name + ", nobody at the handle"
+                          : "from " + fmt::format("{}", fmt::join(arguments.files, ", ")));
+  const PayloadEstimate found = identification::identify_payload(poses);
+  print_estimate(found);
+  print_comparison(found, device.estimation.wrench.payload);
+  if (!found.missing.empty()) {
+    fmt::print(stderr, "not usable: {}\n", found.missing);
+    return 2;
+  }
+  print_yaml(found);
+  return 0;
+}
+
+}  // namespace hg::apps

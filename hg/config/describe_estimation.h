@@ -1,0 +1,56 @@
+/// Description of device.yaml: from sensors to state, and what hangs beyond the sensor.
+#pragma once
+
+#include "hg/config/describe_device.h"
+
+namespace hg::config {
+
+template <class V>
+void describe(V& v, Payload& payload) {
+  v.number("mass_kg", payload.mass, kNotNegative, "mass");
+  v.vector("centre_of_mass_m", payload.com, kAnyNumber, "in the sensor's frame S");
+  v.inertia("inertia_kg_m2", payload.inertia,
+            "about the centre of mass, axes of S: [ixx, iyy, izz] or [ixx, iyy, izz, ixy, ixz, "
+            "iyz]");
+}
+
+template <class V>
+void describe_wrench(V& v, estimation::WrenchConfig& wrench) {
+  v.number("wrench_low_pass_Hz", wrench.low_pass_Hz, kNotNegative,
+           "first-order low-pass of the user's wrench, 0 = none; 50 for a noisy sensor");
+  v.flag("has_imu", wrench.has_imu,
+         "whether accelerometer and gyroscope in the sensor take part: then the payload's inertia "
+         "is compensated, otherwise its weight alone");
+  v.number("angular_low_pass_Hz", wrench.alpha_low_pass_Hz, kNotNegative,
+           "first-order low-pass of the gyroscope's differences, 0 = none");
+  v.flag("needs_tare", wrench.tare.is_needed,
+         "no arming before the force/torque sensor has been tared, with nobody at the handle");
+  v.number("noise_N", wrench.tare.noise_force, kPositive,
+           "rms of a force of the sensor: what varies more is not tared");
+  v.number("noise_Nm", wrench.tare.noise_torque, kPositive, "rms of a torque of the sensor");
+}
+
+template <class V>
+void describe_estimation(V& v, DeviceDraft& d) {
+  const bool has_gantry = !d.has_joints || !d.gantry.empty();
+  v.group(
+      "estimation",
+      [&](auto& child) {
+        child.number("observer_pole_Hz", d.estimation.observer_pole_Hz, kPositive,
+                     "Kalman filter of the gantry: large trusts the encoder, small the drive");
+        child.rule(has_gantry || !child.is_given("observer_pole_Hz"), "observer_pole_Hz",
+                   "concerns the gantry, and there is none");
+        child.number("link_pole_Hz", d.estimation.link_pole_Hz, kPositive,
+                     "observer of the link side of elastic joints");
+        child.number("motor_low_pass_Hz", d.estimation.motor_low_pass_Hz, kNotNegative,
+                     "first-order low-pass of the motor side's speed, 0 = none");
+        describe_wrench(child, d.estimation.wrench);
+      },
+      "from sensors to state");
+  v.group(
+      "payload", [&](auto& child) { describe(child, d.estimation.wrench.payload); },
+      "what hangs beyond the force/torque sensor, handle included; 'hapticgiant identify payload' "
+      "measures it");
+}
+
+}  // namespace hg::config

@@ -1,0 +1,47 @@
+#include "hg/runtime/requests.h"
+
+#include <gtest/gtest.h>
+
+namespace hg::runtime {
+namespace {
+
+CycleRecord ready(TareStatus tare) {
+  CycleRecord record;
+  record.mode = Mode::kReady;
+  record.tare = tare;
+  return record;
+}
+
+TEST(NextRequest, ArmsRunsAndStops) {
+  CycleRecord record = ready(TareStatus::kNone);
+  record.is_tared = true;
+  EXPECT_EQ(next_request(record, false, false), ModeRequest::kArm);
+  record.mode = Mode::kArmed;
+  EXPECT_EQ(next_request(record, false, false), ModeRequest::kNone);
+  EXPECT_EQ(next_request(record, true, false), ModeRequest::kRun);
+  EXPECT_EQ(next_request(record, true, true), ModeRequest::kNone);
+  record.mode = Mode::kRunning;
+  EXPECT_EQ(next_request(record, true, false), ModeRequest::kNone);
+  EXPECT_EQ(next_request(record, true, true), ModeRequest::kStop);
+  for (const Mode mode : {Mode::kOff, Mode::kStopping, Mode::kFault}) {
+    record.mode = mode;
+    EXPECT_EQ(next_request(record, true, false), ModeRequest::kNone);
+  }
+}
+
+TEST(NextRequest, TaresFirstWhereTheDeviceNeedsIt) {
+  EXPECT_EQ(next_request(ready(TareStatus::kNone), false, false), ModeRequest::kTare);
+  // even when held: the refusal tells why nothing happens
+  EXPECT_EQ(next_request(ready(TareStatus::kNone), true, false), ModeRequest::kTare);
+  EXPECT_EQ(next_request(ready(TareStatus::kUnderWay), false, false), ModeRequest::kNone);
+  EXPECT_EQ(next_request(ready(TareStatus::kRefusedUnsteady), false, false), ModeRequest::kTare);
+  EXPECT_EQ(next_request(ready(TareStatus::kRefusedMoving), false, false), ModeRequest::kTare);
+}
+
+TEST(NextRequest, AsksForATareOfAHeldHandleOnlyOnce) {
+  EXPECT_EQ(next_request(ready(TareStatus::kRefusedHeld), true, false), ModeRequest::kNone);
+  EXPECT_EQ(next_request(ready(TareStatus::kRefusedHeld), false, false), ModeRequest::kTare);
+}
+
+}  // namespace
+}  // namespace hg::runtime
