@@ -107,6 +107,7 @@ TEST(Simulation, TheSensorShowsTheHandsWrenchInItsOwnFrame) {
   const model::Chain body = model::Chain::free_body({}, {.gravity = false});
   user::Config mouse;
   mouse.kind = user::PersonKind::kMouse;
+  mouse.hand.tremor_rms = 0.0;
   const int handle = device_chain().frame("handle");
   Simulation device(simulation, device_chain(), handle,
                     user::Person(mouse, body, body.frame("handle"), {}));
@@ -120,7 +121,11 @@ TEST(Simulation, TheSensorShowsTheHandsWrenchInItsOwnFrame) {
   command.hand_target.active = true;
   command.hand_target.p_B = T_B_H.p + Eigen::Vector3d(0.1, 0.0, 0.0);
   device.step(command);
-  const Eigen::Vector3d f_B(20.0, 0.0, 0.0);
+  EXPECT_FALSE(device.sensors().dead_man);  // nobody yet
+  EXPECT_EQ(device.sensors().w_S.norm(), 0.0);
+  for (int k = 0; k < 8000; ++k) device.step(command);
+  EXPECT_TRUE(device.sensors().dead_man);
+  const Eigen::Vector3d f_B(0.1 * 200.0, 0.0, 0.0);  // 250 N/m of the arm, 1000 of the grip
   EXPECT_LT((device.sensors().w_S.head<3>() - T_B_H.R.transpose() * f_B).norm(), 1e-9);
   const Eigen::Vector3d n_S = -simulation.T_H_S.p.cross(T_B_H.R.transpose() * f_B);
   EXPECT_LT((device.sensors().w_S.tail<3>() - n_S).norm(), 1e-9);
