@@ -1,0 +1,143 @@
+"""`hapticgiant simulate` and `run --device-address` as a user sees them, and the Python client.
+
+    remote_commands_test.py PROGRAM
+"""
+
+import json
+import pathlib
+import re
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "examples" / "python"))
+import device_client  # noqa: E402
+
+PROGRAM = None
+CLIENT = ROOT / "examples" / "python" / "device_client.py"
+
+
+class Server:
+    """`hapticgiant simulate` at a free port."""
+
+    def __init__(self, *arguments):
+        self.process = subprocess.Popen(
+            [PROGRAM, "simulate", "--listen", "127.0.0.1:0", *arguments], cwd=ROOT, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.head = []
+        while not (self.head and self.head[-1].startswith("stop")):
+            self.head.append(self.process.stdout.readline())
+        self.address = re.search(r"^address +(\S+)$", "".join(self.head), re.MULTILINE)[1]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        """Ctrl-C; its exit code and what it said since it began to listen."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        said = self.process.communicate(timeout=60)[0] if not self.process.stdout.closed else ""
+        return self.process.returncode, said
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, "run", "--no-recording", "--no-viewer", *arguments], cwd=ROOT,
+                          text=True, capture_output=True, timeout=200)
+
+
+class Commands(unittest.TestCase):
+    def test_the_door_there_is_the_door_here(self):
+        with tempfile.TemporaryDirectory() as folder, Server("door", "--fast") as server:
+            here, there = pathlib.Path(folder, "here"), pathlib.Path(folder, "there")
+            run("door", "--fast", "--summary", here)
+            result = run("door", "--fast", "--device-address", server.address, "--summary", there)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            here, there = json.loads(here.read_text()), json.loads(there.read_text())
+            for key in ("events", "limits", "force", "cycles", "sync_error"):
+                self.assertEqual(there[key], here[key], key)
+            link = there["link"]
+            self.assertGreater(link["received"], 10000)
+            self.assertEqual(link["lost"], 0)
+            self.assertIn("  link         ", result.stdout)
+            code, said = server.close()
+            self.assertEqual(code, 0)
+            self.assertRegex(said, r"session +hapticgiant run \S+ at 127\.0\.0\.1:\d+, 1\d\.\d s")
+            self.assertRegex(said, r"end +the client left: done")
+            self.assertRegex(said, r"link +\d+ sent, \d+ received\n")
+            self.assertRegex(said, r"truth +joint limits .*; force of the user at most \d")
+
+    def test_a_server_that_goes_is_a_fault_with_exit_code_3(self):
+        with Server("door", "--fast") as server:
+            process = subprocess.Popen(
+                [PROGRAM, "run", "door", "--fast", "--duration", "100000", "--no-recording",
+                 "--device-address", server.address], cwd=ROOT, text=True, stdout=subprocess.PIPE)
+            process.stdout.readline()
+            while "s  " not in process.stdout.readline():  # an event: the run is under way
+                pass
+            server.close()
+            said = process.communicate(timeout=100)[0]
+            self.assertEqual(process.returncode, 3, said)
+            self.assertIn("the remote device says: the server was stopped", said)
+            self.assertIn("104 remote device has ended the session", said)
+
+    def test_what_does_not_fit_is_one_clear_sentence(self):
+        with Server("door") as server:
+            for arguments, sentence in [
+                (("--fast",), "the device refuses: time: real time, expected lock-step (--fast)"),
+                (("--rate-hz", "500"), "the device refuses: rate: 1000 Hz, expected 500 Hz"),
+            ]:
+                result = run("door", "--device-address", server.address, *arguments)
+                self.assertEqual(result.returncode, 2)
+                self.assertEqual(result.stderr, f"{server.address}: {sentence}\n")
+            second = subprocess.run([PROGRAM, "simulate", "--listen", server.address], cwd=ROOT,
+                                    text=True, capture_output=True, timeout=100)
+            self.assertEqual(second.returncode, 2)
+            self.assertEqual(second.stderr,
+                             f"{server.address}: cannot listen there: Address already in use\n")
+        result = run("door", "--device-address", "there")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("--device-address: expected HOST:PORT", result.stderr)
+
+    def test_the_python_client_holds_the_arm(self):
+        with Server("door", "--fast") as server:
+            result = subprocess.run([sys.executable, CLIENT, server.address, "--seconds", "0.5"],
+                                    text=True, capture_output=True, timeout=100)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertIn("HapticGiant: 2 gantry axes, 6 joints, 1000 Hz, lock-step", result.stdout)
+            moved = float(re.search(r"moved by at most (\S+) rad", result.stdout)[1])
+            self.assertLess(moved, 0.02)
+
+
+class PythonCodec(unittest.TestCase):
+    def test_it_understands_a_captured_session_and_writes_the_same_bytes(self):
+        data = (ROOT / "tests" / "remote" / "session.pcap").read_bytes()
+        at, kinds = 24, []
+        while at < len(data):
+            size = struct.unpack_from("<IIII", data, at)[2]
+            datagram = data[at + 16:at + 16 + size]
+            at += 16 + size
+            kind, session, number, fields = device_client.decode(datagram)
+            kinds.append(kind)
+            again = device_client.encode(kind, session, number, *fields)
+            self.assertEqual(again[:24] + again[32:-4], datagram[:24] + datagram[32:-4])
+            self.assertIsNone(device_client.decode(datagram[:-1]))
+            self.assertIsNone(device_client.decode(datagram[:50] + b"\7" + datagram[51:]))
+            if kind == device_client.SENSORS:
+                sensors = device_client.unpack_sensors(fields)
+                self.assertEqual(len(sensors["q_m"]), 6)
+                self.assertEqual(len(sensors["q_p"]), 2)
+                self.assertAlmostEqual(sensors["q_m"][1], 1.5709, places=3)
+                self.assertEqual(len(sensors["omega_S"]), 3)
+        self.assertEqual(kinds.count(device_client.SENSORS), 21)
+
+
+if __name__ == "__main__":
+    PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()
