@@ -48,7 +48,22 @@ struct Observers {
   bool is_fast = false;
   Clock::time_point last_status = {};
   double script_end_s = 0.0;  ///< > 0: the run goes on after the script, tell so
+  TareStatus told_tare = TareStatus::kNone;
 };
+
+// how a tare went, once per answer however often it is tried, and what was refused
+void tell_requests(Observers& observers, const CycleRecord& record) {
+  const auto tell = [&](const char* name, std::string_view what) {
+    observers.status_line.print(fmt::format("{:8.3f} s  {:<18} {}", record.time_s, name, what));
+    if (observers.recorder) observers.recorder->event(record.time_s, name, what);
+  };
+  const bool has_ended = record.tare != TareStatus::kNone && record.tare != TareStatus::kUnderWay;
+  if (has_ended && record.tare != observers.told_tare) {
+    observers.told_tare = record.tare;
+    tell("tare", to_string(record.tare));
+  }
+  if (record.refusal != Refusal::kNone) tell("arm", to_string(record.refusal));
+}
 
 void announce(Observers& observers, const evaluation::Event& event) {
   observers.summary.add(event);
@@ -64,6 +79,7 @@ void observe(Observers& observers, const Sample& sample) {
     observers.status_line.print("the script has played; drag the handle in the page");
   }
   observers.summary.add(sample);
+  tell_requests(observers, sample.record);
   if (observers.recorder && observers.is_fast) observers.recorder->push_waiting(sample);
   if (observers.recorder && !observers.is_fast) observers.recorder->push(sample);
   if (const auto event = observers.detector.observe(sample.record)) announce(observers, *event);
