@@ -9,33 +9,31 @@ namespace {
 // of the flicker processes: this factor apart, the shortest time constant in s
 constexpr double kSpread = 10.0;
 constexpr double kShortest = 1.0;
-constexpr double kEarth = 9.80665;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 }  // namespace
 
 InertialSensorConfig mems_accelerometer() {
-  return {.noise = 1e-3,                          // [A] 1.6: 100 ug/sqrt(Hz)
-          .bias_instability = 40e-6 * kEarth,     // [A] 1.6
-          .random_walk = 1e-5,                    // [A]
-          .bias = 20e-3 * kEarth,                 // [A] 1.6
-          .temperature_drift = 0.2e-3 * kEarth,   // [A] 1.6
-          .scale_error = 5e-3,                    // [A]
-          .misalignment = 5e-3,                   // [A]
-          .range = 8.0 * kEarth,                  // [A] 1.6
-          .resolution = 8.0 * kEarth * 0x1p-15};  // [A] 16 bit
+  return {.noise = 1e-3,                 // [A] 1.6: 100 ug/sqrt(Hz)
+          .bias_instability = 3.92e-4,   // [A] 1.6: 40 ug
+          .random_walk = 1e-5,           // [A]
+          .bias = 0.196,                 // [A] 1.6: 20 mg
+          .temperature_drift = 1.96e-3,  // [A] 1.6: 0.2 mg/K
+          .scale_error = 5e-3,           // [A]
+          .misalignment = 5e-3,          // [A]
+          .range = 78.5,                 // [A] 1.6: 8 g
+          .resolution = 2.4e-3};         // [A] 16 bit
 }
 
 InertialSensorConfig mems_gyroscope() {
-  return {.noise = 1.2e-4,                            // [A] 1.6: 0.007 deg/s/sqrt(Hz)
-          .bias_instability = 5e-5,                   // [A] 1.6: 10 deg/h
-          .random_walk = 1e-6,                        // [A] 1.6
-          .bias = 0.5 * kDegree,                      // [A] 1.6
-          .temperature_drift = 0.03 * kDegree,        // [A] 1.6
-          .scale_error = 5e-3,                        // [A]
-          .misalignment = 5e-3,                       // [A]
-          .range = 2000.0 * kDegree,                  // [A] 1.6
-          .resolution = 2000.0 * kDegree * 0x1p-15};  // [A] 16 bit
+  return {.noise = 1.2e-4,              // [A] 1.6: 0.007 deg/s/sqrt(Hz)
+          .bias_instability = 5e-5,     // [A] 1.6: 10 deg/h
+          .random_walk = 1e-6,          // [A] 1.6
+          .bias = 8.7e-3,               // [A] 1.6: 0.5 deg/s
+          .temperature_drift = 5.2e-4,  // [A] 1.6: 0.03 deg/s/K
+          .scale_error = 5e-3,          // [A]
+          .misalignment = 5e-3,         // [A]
+          .range = 35.0,                // [A] 1.6: 2000 deg/s
+          .resolution = 1.07e-3};       // [A] 16 bit
 }
 
 InertialSensor::InertialSensor(const InertialSensorConfig& config, const SensorFilterConfig& filter,

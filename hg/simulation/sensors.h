@@ -25,11 +25,11 @@ struct SensorsConfig {
   std::uint64_t seed = 1;
   /// [A] 1.2: 20 bit absolute; offset and errors: what calibration leaves.
   EncoderConfig link_encoder{
-      .resolution = 5.992112e-6, .offset = 1e-4, .error_1 = 5e-5, .error_2 = 2e-5};
+      .resolution = 5.992e-6, .offset = 1e-4, .error_1 = 5e-5, .error_2 = 2e-5};
   /// [A] 1.2: 17 bit on the motor; error_2 is the kinematic error of the gear as well ([C]), which
   /// the encoder sees and the output does not.
   EncoderConfig motor_encoder{
-      .resolution = 4.793690e-5, .offset = 1e-4, .error_1 = 4e-6, .error_2 = 3e-5};
+      .resolution = 4.794e-5, .offset = 1e-4, .error_1 = 4e-6, .error_2 = 3e-5};
   /// [K] 1.5: 10 um, accuracy 0.15 mm + 0.02 mm/m, here for 5 m, as a smooth error.
   EncoderConfig gantry_encoder{.resolution = 1e-5, .error_1 = 2.5e-4, .period = 1.0};
   /// True: dq_m is the difference of the link encoder over a period, as a drive reports it; false:

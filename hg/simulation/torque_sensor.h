@@ -20,7 +20,7 @@ struct TorqueSensorConfig {
   double offset = 2e-3;  ///< standard deviation, >= 0; [A]
   double ripple = 2e-3;  ///< amplitude of the gear's ripple, twice per motor turn; [A] 1.2
   double range = 1.5;    ///< where the reading ends, > 0; [A] strain gauges have a reserve
-  double resolution = 0x1p-15;  ///< LSB, >= 0; [A] 16 bit from -1 to 1
+  double resolution = 3.05e-5;  ///< LSB, >= 0; [A] 16 bit from -1 to 1
 };
 
 class TorqueSensor {

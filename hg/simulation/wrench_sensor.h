@@ -26,7 +26,7 @@ struct WrenchSensorConfig {
   double bias_walk = 4e-6;      ///< share/sqrt(s); [A] 15 mN in a minute
   double temperature_drift = 1e-4;  ///< standard deviation, share/K; [A] 0.05 N/K
   double range = 1.0;               ///< where an axis ends, share, > 0; [K] 1.6
-  double resolution = 0x1p-15;      ///< LSB, share, >= 0; [A] 16 bit from -1 to 1
+  double resolution = 3.05e-5;      ///< LSB, share, >= 0; [A] 16 bit from -1 to 1
   SensorFilterConfig filter;
 };
 

@@ -405,10 +405,10 @@ TEST(Scenario, ConditionsPointAtLimitsJointsAndCoordinates) {
 
 TEST(Scenario, LoadsAgainFromItsSourcesAlone) {
   const std::vector<SourceText>& sources = door().sources;
-  ASSERT_EQ(sources.size(), 6u);
+  ASSERT_EQ(sources.size(), 7u);
   EXPECT_EQ(sources.front().name, "models/scenarios/door.yaml");
   EXPECT_EQ(door().device.sources.front().name, "models/haptic_giant/device.yaml");
-  EXPECT_EQ(door().device.sources.size(), 2u);
+  EXPECT_EQ(door().device.sources.size(), 3u);
   EXPECT_EQ(door().twin.sources.size(), 2u);
   EXPECT_EQ(door().script.sources.size(), 1u);
 

@@ -62,55 +62,52 @@ TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
   // those of the code, from which tests and other devices start
   const simulation::SensorsConfig& sensors = shipped.sensors;
   const simulation::SensorsConfig standard;
-  const auto expect_near = [](double value, double expected) {
-    EXPECT_NEAR(value, expected, 2e-3 * std::abs(expected));
-  };
   for (auto encoder :
        {&simulation::SensorsConfig::link_encoder, &simulation::SensorsConfig::motor_encoder,
         &simulation::SensorsConfig::gantry_encoder}) {
-    expect_near((sensors.*encoder).resolution, (standard.*encoder).resolution);
-    expect_near((sensors.*encoder).offset, (standard.*encoder).offset);
-    expect_near((sensors.*encoder).error_1, (standard.*encoder).error_1);
-    expect_near((sensors.*encoder).error_2, (standard.*encoder).error_2);
-    expect_near((sensors.*encoder).period, (standard.*encoder).period);
+    EXPECT_DOUBLE_EQ((sensors.*encoder).resolution, (standard.*encoder).resolution);
+    EXPECT_DOUBLE_EQ((sensors.*encoder).offset, (standard.*encoder).offset);
+    EXPECT_DOUBLE_EQ((sensors.*encoder).error_1, (standard.*encoder).error_1);
+    EXPECT_DOUBLE_EQ((sensors.*encoder).error_2, (standard.*encoder).error_2);
+    EXPECT_DOUBLE_EQ((sensors.*encoder).period, (standard.*encoder).period);
   }
   for (auto part :
        {&simulation::SensorsConfig::accelerometer, &simulation::SensorsConfig::gyroscope}) {
-    expect_near((sensors.*part).noise, (standard.*part).noise);
-    expect_near((sensors.*part).bias_instability, (standard.*part).bias_instability);
-    expect_near((sensors.*part).random_walk, (standard.*part).random_walk);
-    expect_near((sensors.*part).bias, (standard.*part).bias);
-    expect_near((sensors.*part).temperature_drift, (standard.*part).temperature_drift);
-    expect_near((sensors.*part).scale_error, (standard.*part).scale_error);
-    expect_near((sensors.*part).misalignment, (standard.*part).misalignment);
-    expect_near((sensors.*part).range, (standard.*part).range);
-    expect_near((sensors.*part).resolution, (standard.*part).resolution);
+    EXPECT_DOUBLE_EQ((sensors.*part).noise, (standard.*part).noise);
+    EXPECT_DOUBLE_EQ((sensors.*part).bias_instability, (standard.*part).bias_instability);
+    EXPECT_DOUBLE_EQ((sensors.*part).random_walk, (standard.*part).random_walk);
+    EXPECT_DOUBLE_EQ((sensors.*part).bias, (standard.*part).bias);
+    EXPECT_DOUBLE_EQ((sensors.*part).temperature_drift, (standard.*part).temperature_drift);
+    EXPECT_DOUBLE_EQ((sensors.*part).scale_error, (standard.*part).scale_error);
+    EXPECT_DOUBLE_EQ((sensors.*part).misalignment, (standard.*part).misalignment);
+    EXPECT_DOUBLE_EQ((sensors.*part).range, (standard.*part).range);
+    EXPECT_DOUBLE_EQ((sensors.*part).resolution, (standard.*part).resolution);
   }
-  expect_near(sensors.torque.noise, standard.torque.noise);
-  expect_near(sensors.torque.gain_error, standard.torque.gain_error);
-  expect_near(sensors.torque.offset, standard.torque.offset);
-  expect_near(sensors.torque.ripple, standard.torque.ripple);
-  expect_near(sensors.torque.range, standard.torque.range);
-  expect_near(sensors.torque.resolution, standard.torque.resolution);
+  EXPECT_DOUBLE_EQ(sensors.torque.noise, standard.torque.noise);
+  EXPECT_DOUBLE_EQ(sensors.torque.gain_error, standard.torque.gain_error);
+  EXPECT_DOUBLE_EQ(sensors.torque.offset, standard.torque.offset);
+  EXPECT_DOUBLE_EQ(sensors.torque.ripple, standard.torque.ripple);
+  EXPECT_DOUBLE_EQ(sensors.torque.range, standard.torque.range);
+  EXPECT_DOUBLE_EQ(sensors.torque.resolution, standard.torque.resolution);
   EXPECT_EQ(sensors.wrench.full_scale, standard.wrench.full_scale);
-  expect_near(sensors.wrench.force_noise, standard.wrench.force_noise);
-  expect_near(sensors.wrench.torque_noise, standard.wrench.torque_noise);
-  expect_near(sensors.wrench.gain_error, standard.wrench.gain_error);
-  expect_near(sensors.wrench.cross_talk, standard.wrench.cross_talk);
-  expect_near(sensors.wrench.bias, standard.wrench.bias);
-  expect_near(sensors.wrench.bias_walk, standard.wrench.bias_walk);
-  expect_near(sensors.wrench.temperature_drift, standard.wrench.temperature_drift);
-  expect_near(sensors.wrench.range, standard.wrench.range);
-  expect_near(sensors.wrench.resolution, standard.wrench.resolution);
+  EXPECT_DOUBLE_EQ(sensors.wrench.force_noise, standard.wrench.force_noise);
+  EXPECT_DOUBLE_EQ(sensors.wrench.torque_noise, standard.wrench.torque_noise);
+  EXPECT_DOUBLE_EQ(sensors.wrench.gain_error, standard.wrench.gain_error);
+  EXPECT_DOUBLE_EQ(sensors.wrench.cross_talk, standard.wrench.cross_talk);
+  EXPECT_DOUBLE_EQ(sensors.wrench.bias, standard.wrench.bias);
+  EXPECT_DOUBLE_EQ(sensors.wrench.bias_walk, standard.wrench.bias_walk);
+  EXPECT_DOUBLE_EQ(sensors.wrench.temperature_drift, standard.wrench.temperature_drift);
+  EXPECT_DOUBLE_EQ(sensors.wrench.range, standard.wrench.range);
+  EXPECT_DOUBLE_EQ(sensors.wrench.resolution, standard.wrench.resolution);
   for (auto filter : {sensors.wrench.filter, sensors.imu_filter}) {
-    expect_near(filter.average, standard.imu_filter.average);
-    expect_near(filter.delay, standard.imu_filter.delay);
+    EXPECT_DOUBLE_EQ(filter.average, standard.imu_filter.average);
+    EXPECT_DOUBLE_EQ(filter.delay, standard.imu_filter.delay);
   }
-  expect_near(sensors.temperature.environment, standard.temperature.environment);
-  expect_near(sensors.temperature.self_heating, standard.temperature.self_heating);
-  expect_near(sensors.temperature.time_constant, standard.temperature.time_constant);
-  expect_near(sensors.temperature.fluctuation, standard.temperature.fluctuation);
-  expect_near(sensors.temperature.time_on, standard.temperature.time_on);
+  EXPECT_DOUBLE_EQ(sensors.temperature.environment, standard.temperature.environment);
+  EXPECT_DOUBLE_EQ(sensors.temperature.self_heating, standard.temperature.self_heating);
+  EXPECT_DOUBLE_EQ(sensors.temperature.time_constant, standard.temperature.time_constant);
+  EXPECT_DOUBLE_EQ(sensors.temperature.fluctuation, standard.temperature.fluctuation);
+  EXPECT_DOUBLE_EQ(sensors.temperature.time_on, standard.temperature.time_on);
 }
 
 TEST(SimulationFile, EveryKeyOfASensorReachesItsField) {

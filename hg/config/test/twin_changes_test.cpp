@@ -135,6 +135,7 @@ Scenario load_changes(const std::string& changes) {
         "twin: door.yaml\nperson: mouse\nduration_s: 3\nchanges:\n" +
             changes},
        {"models/haptic_giant/device.yaml", text("models/haptic_giant/device.yaml")},
+       {"models/haptic_giant/simulation.yaml", text("models/haptic_giant/simulation.yaml")},
        {"models/haptic_giant/haptic_giant.urdf", text("models/haptic_giant/haptic_giant.urdf")},
        {"door.urdf", kDoorUrdf},
        {"door.yaml", head("")}});
