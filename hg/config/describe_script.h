@@ -111,11 +111,11 @@ void describe_frame(V& v, ScriptDraft& d) {
       "grasp_s", d.grasp_s, kNotNegative,
       "when the hand takes the handle and closes the dead-man switch; sensors are tared before. "
       "The times below count from here");
-  if (v.covers(d.frame == user::ScriptFrame::kBase)) {
-    v.group(
-        "walk", [&](auto& child) { describe(child, d.walk); },
-        "a walking person: moves x_m, y_m and azimuth_rad of the hand; frame base only");
-  }
+  v.group(
+      "walk", [&](auto& child) { describe(child, d.walk); },
+      "a walking person: moves x_m, y_m and azimuth_rad of the hand; frame base only");
+  v.rule(d.walk.kind == user::WalkKind::kNone || d.frame == user::ScriptFrame::kBase, "walk",
+         "a walk needs frame base");
 }
 
 /// Gives the channels in this map to take(channel index, value).

@@ -11,7 +11,7 @@ namespace hg::user {
 namespace {
 
 constexpr double kStep = 0.25e-3;  // s, the plant's
-constexpr int kMaxSteps = 400;     // 0.1 s: a hand that was left alone for longer has no past
+constexpr double kMaxSteps = 400;  // 0.1 s: a hand that was left alone for longer has no past
 constexpr double kReach = 0.65;    // m from the shoulder, [HANDBOOK] 5.2
 constexpr double kReachStiffness = 500.0;  // N/m beyond it, [A]: soft
 
@@ -88,7 +88,7 @@ void Arm::grasp(const HandleMotion& handle) noexcept {
 void Arm::step(double dt, const HandleMotion& handle, const Goal& goal,
                const Eigen::Vector3d& tremor) noexcept {
   // a small excess over a whole number of steps is rounding
-  const int steps = std::clamp(static_cast<int>(std::ceil(dt / kStep - 1e-3)), 1, kMaxSteps);
+  const int steps = static_cast<int>(std::clamp(std::ceil(dt / kStep - 1e-3), 1.0, kMaxSteps));
   const double h = std::min(dt / steps, kStep);
   for (int k = 1; k <= steps; ++k) {
     // handle and goal on their way to where they are at the end

@@ -188,8 +188,8 @@ TEST(BadScript, AHandHasAPresetOrValuesOfAHand) {
   EXPECT_EQ(script_message("hand: {mass_kg: [1, 0, 1], grip_stiffness_N_per_m: 0, tremor_N: -1}\n"
                            "grasp_s: -1\n"),
             "script.yaml:1:21: hand.mass_kg[1]: must be > 0, got 0\n"
-            "script.yaml:1:51: hand.grip_stiffness_N_per_m: must be > 0, got 0\n"
-            "script.yaml:1:64: hand.tremor_N: must be >= 0, got -1\n"
+            "script.yaml:1:52: hand.grip_stiffness_N_per_m: must be > 0, got 0\n"
+            "script.yaml:1:65: hand.tremor_N: must be >= 0, got -1\n"
             "script.yaml:2:10: grasp_s: must be >= 0, got -1");
 }
 
@@ -205,16 +205,16 @@ TEST(BadScript, AWalkIsACircleOrCheckpointsAndNothingElseMovesTheHandAlong) {
             "script.yaml:1:39: walk.checkpoints[0].headin_rad: unknown key, did you mean "
             "'heading_rad'?");
   EXPECT_EQ(script_message("walk: {circle_radius_m: 0.7}\n"),
-            "script.yaml:1:1: walk: a walk needs duration_s");
+            "script.yaml:1:7: walk: a walk needs duration_s");
   EXPECT_EQ(script_message("walk: {circle_radius_m: 0.7}\nduration_s: 9\nsegments:\n"
                            "  - {start_s: 1, duration_s: 1, z_m: -0.6}\n"),
             "no error");
   EXPECT_EQ(script_message("walk: {circle_radius_m: 0.7}\nduration_s: 9\nsegments:\n"
                            "  - {start_s: 1, duration_s: 1, y_m: 1}\n"),
-            "script.yaml:3:1: segments: with a walk, no segment moves x_m, y_m or azimuth_rad, or "
+            "script.yaml:4:3: segments: with a walk, no segment moves x_m, y_m or azimuth_rad, or "
             "has circle_turns");
-  EXPECT_EQ(script_message("frame: cylindrical\nwalk: {circle_radius_m: 0.7}\n"),
-            "script.yaml:2:1: walk: unknown key");
+  EXPECT_EQ(script_message("frame: cylindrical\nduration_s: 9\nwalk: {circle_radius_m: 0.7}\n"),
+            "script.yaml:3:7: walk: a walk needs frame base");
 }
 
 std::string scenario_message(const std::string& yaml) {

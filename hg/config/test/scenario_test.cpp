@@ -301,7 +301,10 @@ TEST(Script, DoorHandPushesAndPressesInTheFrameOfTheHandle) {
 TEST(Script, ExcavatorHandTurnsTheBucketAboutItsAxis) {
   const Script& script = excavator().script;
   EXPECT_EQ(script.script.frame, user::ScriptFrame::kCylindrical);
-  EXPECT_EQ(script.hand.stiffness, Eigen::Vector3d::Constant(350));
+  // 350 N/m in series with the grip
+  const Eigen::Array3d arm = script.hand.stiffness;
+  const double grip = script.hand.grip_stiffness;
+  EXPECT_TRUE((arm * grip / (arm + grip)).isApproxToConstant(350.0, 1e-3));
   model::Chain chain = excavator().twin.model.chain;
   const int frame = excavator().twin.model.end_effector;
   chain.update_kinematics(excavator().twin.model.q_start, Eigen::Vector4d::Zero());

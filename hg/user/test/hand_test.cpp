@@ -268,7 +268,7 @@ TEST(Arm, LeftAloneForLongItStartsFromThere) {
   goal.pose.p.x() = 0.1;
   left.step(1e6, {}, goal, kNoTremor);
   known.step(0.1, {}, goal, kNoTremor);
-  EXPECT_EQ(left.wrench(), known.wrench());
+  EXPECT_LT((left.wrench() - known.wrench()).norm(), 1e-9);
 }
 
 TEST(Hand, RefusesWhatNoHandHas) {
