@@ -146,6 +146,37 @@ TEST(Estimation, FollowsBothSidesOfElasticJointsThroughTurns) {
   EXPECT_GT(robot.q_m[0], 15.0);  // it has turned more than twice
 }
 
+TEST(Estimation, TakesOffTheWeightByThePoseOfATurnedSensor) {
+  Config config;
+  config.T_H_S.R = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  config.wrench.payload = {.mass = 1.18, .com = {0.01, 0.02, 0.03}};
+  config.wrench.has_imu = false;
+  Estimation estimation = make(config);
+  model::Chain chain = device_chain();
+  Eigen::VectorXd q(8);
+  q << 0, 0, home();
+  chain.update_poses(q);
+  const Eigen::Matrix3d R_B_S = chain.pose(chain.frame("handle")).R * config.T_H_S.R;
+  SensorFrame sensors = sensors_at(home());
+  sensors.w_S =
+      payload_wrench(config.wrench.payload, 9.81 * R_B_S.row(2).transpose(), {0, 0, 0}, {0, 0, 0});
+  State state;
+  const RobotState robot = estimation.step(sensors, VectorP::Zero(2), VectorM::Zero(6), state);
+  EXPECT_LT(robot.w_H.norm(), 1e-12);
+}
+
+TEST(Estimation, BeginsAtRestWhereTheJointsAre) {
+  Estimation estimation = make();
+  State state;
+  const Swing now;
+  const RobotState robot =
+      estimation.step(now.sensors(), VectorP::Zero(2), VectorM::Zero(6), state);
+  EXPECT_LT((robot.q_m - now.sensors().q_m).norm(), 1e-12);
+  EXPECT_LT(robot.dq_m.norm(), 1e-12);
+  EXPECT_LT((robot.theta_m - now.sensors().theta_m).norm(), 1e-12);
+  EXPECT_LT(robot.dtheta_m.norm(), 1e-12);
+}
+
 TEST(Estimation, TakesIdealJointsAsMeasured) {
   Estimation estimation = make();
   State state;
@@ -182,6 +213,13 @@ TEST(Estimation, TaresOnlyAtRest) {
   Config config;
   config.wrench.tare.is_needed = true;
   Estimation estimation = make(config);
+  State held;
+  SensorFrame in_hand = sensors_at(home());
+  in_hand.dead_man = true;
+  estimation.tare(true, true, held);
+  estimation.step(in_hand, VectorP::Zero(2), VectorM::Zero(6), held);
+  EXPECT_EQ(held.wrench.tare.status, TareStatus::kRefusedHeld);
+
   State state;
   EXPECT_FALSE(estimation.is_tared(state));
   estimation.tare(true, false, state);

@@ -98,6 +98,12 @@ TEST_P(TareSeeds, RefusesAndKeepsTheOldOne) {
   }
 }
 
+TEST(Tare, ANewOneReplacesTheOld) {
+  const TareState again = Trial{}.run(2, Trial{}.run(1));
+  EXPECT_EQ(again.status, TareStatus::kDone);
+  EXPECT_LT((again.offset - kOffset).norm(), 0.05);
+}
+
 TEST(Tare, DoesNothingUnlessAskedFor) {
   TareState tare;
   for (int k = 0; k < 2000; ++k) {
