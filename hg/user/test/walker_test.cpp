@@ -197,6 +197,9 @@ TEST(Walker, RefusesAWalkThatNobodyWalks) {
   walk.circle_radius = 0.3;
   EXPECT_FALSE(has_room(walk));
   EXPECT_THROW(Walker{walk}, SetupError);
+  walk.circle_radius = 0.7;
+  walk.speed = 1.2;  // turns faster than a body
+  EXPECT_FALSE(has_room(walk));
   EXPECT_THROW(Walker{path({})}, SetupError);
   EXPECT_THROW(Walker{path(std::vector<Checkpoint>(17))}, SetupError);
   walk = circle();
