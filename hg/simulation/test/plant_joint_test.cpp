@@ -259,6 +259,9 @@ TEST(PlantJoint, EndStopsPushAndCarryWhatTheMotorPresses) {
     for (int k = 0; k < 20'000; ++k) {
       plant.step(input);
       ASSERT_GE(-way * plant.forces().tau_stop[1], 0.0);
+      if (plant.forces().tau_stop[1] != 0.0) {  // only where it touches, and at once
+        ASSERT_GT(way * (plant.truth().q_m[1] - config.q_m_start[1]), 0.1 - 1e-12);
+      }
       ASSERT_EQ(plant.forces().tau_stop[0], 0.0);
     }
     const double carried = -plant.forces().tau_stop[1];
