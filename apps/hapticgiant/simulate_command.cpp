@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
+#include <string>
+
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/remote_setup.h"
@@ -26,6 +30,45 @@ std::string how_it_ended(const remote::SessionReport& report) {
   }
   return {};
 }
+
+/// A device of which the truth is watched: what no controller can know.
+class WatchedDevice final : public device::Device {
+ public:
+  WatchedDevice(const device::SimulatedDevice& device, const rendering::DeviceModel& model)
+      : device_(device), model_(model) {}
+
+  void read(SensorFrame& sensors) noexcept override { device_.read(sensors); }
+  void write(const CommandFrame& command) noexcept override {
+    device_.write(command);
+    const Truth& truth = *device_.truth();
+    for (int i = 0; i < truth.q_m.size(); ++i) {
+      const limits::JointLimits& limits = model_.joint_limits[static_cast<std::size_t>(i)];
+      const double q = truth.q_m[i];
+      const double excess = std::max(limits.q_min - q, q - limits.q_max);
+      if (excess <= worst_excess_) continue;
+      worst_excess_ = excess;
+      worst_joint_ = i;
+    }
+    max_force_ = std::max(max_force_, truth.w_H.head<3>().norm());
+  }
+
+  /// "joint limits exceeded by at most 0.31e-3 rad or m (m4); force of the user at most 38.2 N".
+  std::string truth_text() const {
+    std::string limits = "joint limits held";
+    if (worst_joint_ >= 0) {
+      const auto joint = static_cast<std::size_t>(model_.n_p + worst_joint_);
+      limits = fmt::format("joint limits exceeded by at most {:.2f}e-3 rad or m ({})",
+                           1e3 * worst_excess_, model_.chain.joints()[joint].name);
+    }
+    return fmt::format("{}; force of the user at most {:.1f} N", limits, max_force_);
+  }
+
+ private:
+  device::SimulatedDevice device_;
+  const rendering::DeviceModel& model_;
+  double worst_excess_ = 0.0, max_force_ = 0.0;
+  int worst_joint_ = -1;
+};
 
 std::string closing_lines(const remote::SessionReport& report, double rate_Hz) {
   std::string text;
@@ -61,9 +104,10 @@ int simulate(const SimulateArguments& arguments) {
   print_out(fmt::format("HapticGiant {}  {}, simulated\n", kVersion, scenario.title));
   print_out(fmt::format("address     {}\nstop        Ctrl-C\n", server.address()));
   while (server.wait_for_client(stop)) {
-    device::SimulatedDevice device = world;
+    WatchedDevice device(world, scenario.device.model);
     const remote::SessionReport report = server.serve(device, stop);
-    print_out(fmt::format("\n{}", closing_lines(report, scenario.device.rate_Hz)));
+    print_out(fmt::format("\n{}  {:<12} {}\n", closing_lines(report, scenario.device.rate_Hz),
+                          "truth", device.truth_text()));
   }
   return 0;
 }

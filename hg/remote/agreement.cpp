@@ -41,9 +41,13 @@ std::string difference(const Description& actual, const Description& expected) {
 
 bool fits(const Description& agreed, const SensorFrame& sensors) noexcept {
   const auto n_m = static_cast<Eigen::Index>(agreed.n_m);
-  const auto all_or_none = [&](const VectorM& v) { return v.size() == n_m || v.size() == 0; };
-  return sensors.q_m.size() == n_m && sensors.dq_m.size() == n_m && all_or_none(sensors.theta_m) &&
-         all_or_none(sensors.tau_m) && sensors.q_p.size() == static_cast<Eigen::Index>(agreed.n_p);
+  // whoever commands torques needs to know both sides of the springs
+  const bool may_lack = agreed.interface == Interface::kPosition;
+  const auto fits_joints = [&](const VectorM& v) {
+    return v.size() == n_m || (may_lack && v.size() == 0);
+  };
+  return sensors.q_m.size() == n_m && sensors.dq_m.size() == n_m && fits_joints(sensors.theta_m) &&
+         fits_joints(sensors.tau_m) && sensors.q_p.size() == static_cast<Eigen::Index>(agreed.n_p);
 }
 
 bool fits(const Description& agreed, const CommandFrame& command) noexcept {

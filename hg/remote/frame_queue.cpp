@@ -38,13 +38,12 @@ bool FrameQueue::pop(SensorFrame& frame) noexcept {
   if (count_ == 0) return false;
   const std::size_t index = first();
   const std::uint64_t sequence = waiting_[index].sequence;
-  if (is_started_ && sequence > next_ && sequence - next_ + held_in_row_ <= kMostHeld) {
+  if (is_started_ && sequence > next_ && sequence - next_ <= kMostHeld) {
     fill_in();
   } else {
     before_ = last_;
     last_ = waiting_[index];
     waiting_[index] = waiting_[--count_];
-    held_in_row_ = 0;
   }
   is_started_ = true;
   next_ = last_.sequence + 1;
@@ -62,7 +61,6 @@ void FrameQueue::fill_in() noexcept {
     go_on(before_.q_p, last_.q_p);
   }
   before_ = before;
-  ++held_in_row_;
   ++held_;
 }
 

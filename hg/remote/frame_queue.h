@@ -35,8 +35,7 @@ class FrameQueue {
   std::array<SensorFrame, kRoom> waiting_;
   std::size_t count_ = 0;
   bool is_started_ = false;
-  std::uint64_t next_ = 0;         ///< number of the frame that comes out next
-  std::uint64_t held_in_row_ = 0;  ///< up to the last that came out
+  std::uint64_t next_ = 0;  ///< number of the frame that comes out next
   std::uint64_t held_ = 0;
   SensorFrame last_, before_;  ///< the last two that came out
 };

@@ -34,16 +34,26 @@ TEST(Fits, SensorsHaveTheAgreedSizes) {
   std::mt19937 random(1);
   SensorFrame sensors = example_sensors(random, 1);
   EXPECT_TRUE(fits(kTorqueDevice, sensors));
-  sensors.theta_m.resize(0);
-  EXPECT_TRUE(fits(kTorqueDevice, sensors));
   sensors.theta_m.resize(5);
   EXPECT_FALSE(fits(kTorqueDevice, sensors));
-  sensors.theta_m.resize(0);
+  sensors = example_sensors(random, 1);
   sensors.dq_m.resize(5);
   EXPECT_FALSE(fits(kTorqueDevice, sensors));
   sensors = example_sensors(random, 1);
   sensors.q_p.resize(1);
   EXPECT_FALSE(fits(kTorqueDevice, sensors));
+}
+
+TEST(Fits, OnlyDrivesThatTakePositionsMayLackMotorSensors) {
+  std::mt19937 random(1);
+  Description position = kTorqueDevice;
+  position.interface = Interface::kPosition;
+  for (const auto member : {&SensorFrame::theta_m, &SensorFrame::tau_m}) {
+    SensorFrame sensors = example_sensors(random, 1);
+    (sensors.*member).resize(0);
+    EXPECT_FALSE(fits(kTorqueDevice, sensors));
+    EXPECT_TRUE(fits(position, sensors));
+  }
 }
 
 TEST(Fits, OnlyFiniteCommandsOfTheRightKindGoToDrives) {

@@ -34,7 +34,7 @@ Description description(bool is_lock_step) {
 class TestDevice final : public device::Device {
  public:
   TestDevice() {
-    frame_.q_m = frame_.dq_m = VectorM::Zero(6);
+    frame_.q_m = frame_.dq_m = frame_.theta_m = frame_.tau_m = VectorM::Zero(6);
     frame_.q_p = VectorP::Zero(1);
   }
   void read(SensorFrame& sensors) noexcept override { sensors = frame_; }

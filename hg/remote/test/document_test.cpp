@@ -18,7 +18,7 @@ class Table {
   explicit Table(std::size_t offset) : offset_(offset) {}
 
   template <typename T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void operator()(const char* name, const T&, const char* note) {
     if constexpr (std::is_enum_v<T> || std::same_as<T, bool>) {
       row(4, "u32", name, note);

@@ -32,6 +32,9 @@ class StillDevice final : public device::Device {
     was_enabled |= command.enable;
   }
 
+  bool is_clock() const noexcept override { return keeps_time; }
+
+  bool keeps_time = false;
   std::uint64_t lost_sample = 0;
   std::uint64_t opens_at = 0, closes_at = 0;  ///< samples with an open dead-man
   CommandFrame last_command;
@@ -83,6 +86,16 @@ TEST(Runtime, FastModePlaysTheWholeDurationAndLosesNoSample) {
   EXPECT_EQ(report.dropped, 0u);
   EXPECT_FALSE(report.stop_timed_out);
   EXPECT_EQ(report.allocations, 0u);
+}
+
+TEST(Runtime, ADeviceThatIsTheClockIsNotWaitedFor) {
+  Parts parts;
+  parts.device.keeps_time = true;
+  std::uint64_t seen = 0;
+  // ten minutes, were the runtime to keep time as well
+  const Report report = run(parts, {.rate_Hz = 100.0, .duration_s = 600.0}, seen);
+  EXPECT_GE(report.cycles, 60001u);
+  EXPECT_EQ(report.overruns, 0u);
 }
 
 TEST(Runtime, KeepsProblemsOfSlowCyclesOnly) {
