@@ -29,7 +29,7 @@ Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
                     std::uint64_t expected_sequence) noexcept {
   if (sensors.emergency_stop) return make_fault(FaultCode::kEmergencyStop, -1, 1.0, 0.0);
   if (sensors.driver_fault != FaultCode::kNone) {
-    return make_fault(sensors.driver_fault, -1, sensors.time_s, 0.0);
+    return make_fault(sensors.driver_fault, -1, 0.0, 0.0);
   }
   if (sensors.sequence != expected_sequence) {
     return make_fault(FaultCode::kSequenceGap, -1, static_cast<double>(sensors.sequence),

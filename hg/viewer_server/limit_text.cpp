@@ -63,6 +63,7 @@ std::string fault_text(const Fault& fault) {
   if (fault.code == FaultCode::kNone) return {};
   std::string text(to_string(fault.code));
   if (fault.index >= 0) text += " (number " + std::to_string(fault.index + 1) + ")";
+  if (fault.value == 0.0 && fault.limit == 0.0) return text;
   return text + ": " + number(fault.value) + ", limit " + number(fault.limit);
 }
 

@@ -60,10 +60,7 @@ TEST(CheckSensors, NamesTheComponentThatIsNotFinite) {
 TEST(CheckSensors, AFaultThatTheDriverReportsComesFirst) {
   SensorFrame sensors = good_sensors();
   sensors.driver_fault = FaultCode::kDeviceSilent;
-  sensors.time_s = 1.5;
-  const Fault fault = check_sensors(config(), sensors, 6);
-  EXPECT_EQ(fault.code, FaultCode::kDeviceSilent);
-  EXPECT_EQ(fault.value, 1.5);
+  EXPECT_EQ(check_sensors(config(), sensors, 6).code, FaultCode::kDeviceSilent);
 }
 
 TEST(CheckSensors, SeesGapsEmergencyStopsAndWrenchesBeyondTheSensor) {
