@@ -57,20 +57,24 @@ class ScenarioRun {
  public:
   explicit ScenarioRun(const std::string& name) : ScenarioRun(shipped(name)) {}
 
-  explicit ScenarioRun(config::Scenario scenario)
+  explicit ScenarioRun(const config::Scenario& scenario)
+      : ScenarioRun(scenario, std::make_unique<device::SimulatedDevice>(
+                                  assembly::make_simulated_device(scenario))) {}
+
+  ScenarioRun(config::Scenario scenario, std::unique_ptr<device::Device> device)
       : scenario_(std::move(scenario)),
         cycle_(assembly::make_cycle(scenario_)),
-        device_(assembly::make_simulated_device(scenario_)),
+        device_(std::move(device)),
         detector_(scenario_.events, scenario_.limits),
         changes_(scenario_.changes),
-        summary_(scenario_.limits) {}
+        summary_(assembly::make_summary(scenario_)) {}
 
   /// Plays until the script has played, or `seconds` of it; `look` sees every sample.
   void play(const std::function<void(const Sample&)>& look = {}, double seconds = 1e9) {
     auto sample = std::make_unique<Sample>();
     const double end = std::min(seconds, assembly::planned_duration_s(scenario_));
     do {
-      device_.read(sample->sensors);
+      device_->read(sample->sensors);
       sample->operator_input.change =
           changes_.due(static_cast<double>(played_++) / scenario_.device.rate_Hz);
       {
@@ -78,7 +82,7 @@ class ScenarioRun {
         cycle_.step(sample->sensors, sample->operator_input, sample->command, sample->record);
         quality_.allocations += counter.count();
       }
-      device_.write(sample->command);
+      device_->write(sample->command);
       sample->operator_input.request =
           runtime::next_request(sample->record, cycle_.is_held(sample->sensors), false);
       summary_.add(*sample);
@@ -131,7 +135,7 @@ class ScenarioRun {
 
   config::Scenario scenario_;
   cycle::Cycle cycle_;
-  device::SimulatedDevice device_;
+  std::unique_ptr<device::Device> device_;
   evaluation::EventDetector detector_;
   TimedChanges changes_;
   std::uint64_t played_ = 0;  ///< cycles

@@ -62,6 +62,9 @@ TEST(Fits, OnlyFiniteCommandsOfTheRightKindGoToDrives) {
   command.enable = true;
   EXPECT_TRUE(fits(kTorqueDevice, command));
   EXPECT_TRUE(fits(kTorqueDevice, off_command(kTorqueDevice)));
+  CommandFrame not_finite = command;
+  not_finite.tau_m[5] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(fits(kTorqueDevice, not_finite));
   command.tau_m.resize(0);
   EXPECT_FALSE(fits(kTorqueDevice, command));
   command.enable = false;

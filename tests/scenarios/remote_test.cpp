@@ -1,0 +1,104 @@
+/// A scenario through UDP in lock-step is the scenario, bit for bit, whatever the network loses.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/hapticgiant/remote_setup.h"
+#include "hg/remote/device_server.h"
+#include "hg/remote/test/bad_link.h"
+#include "tests/scenarios/scenario_run.h"
+
+namespace hg {
+namespace {
+
+struct Played {
+  std::vector<std::uint64_t> hashes;  // of the states of all cycles
+  std::vector<std::string> events;
+};
+
+Played played(ScenarioRun& run, double seconds) {
+  Played result;
+  run.play([&](const Sample& sample) { result.hashes.push_back(sample.record.state_hash); },
+           seconds);
+  for (const evaluation::Event& event : run.summary().events()) {
+    result.events.push_back(event.name + " " + std::to_string(event.time_s));
+  }
+  return result;
+}
+
+// the scenario's world behind a server in a thread of its own
+class World {
+ public:
+  explicit World(const config::Scenario& scenario)
+      : device_(assembly::make_simulated_device(scenario)),
+        server_({"127.0.0.1", "0"}, {.actual = apps::describe(scenario, true),
+                                     .server = "test",
+                                     .lock_step_timeout_s = 60.0}),
+        thread_([this] {
+          if (server_.wait_for_client(stop_)) report = server_.serve(device_, stop_);
+        }) {}
+  ~World() { join(); }
+  remote::Address address() const { return remote::parse_address("test", server_.address()); }
+  void join() {
+    if (thread_.joinable()) thread_.join();
+  }
+  remote::SessionReport report;  // after join()
+
+ private:
+  std::atomic<bool> stop_{false};
+  device::SimulatedDevice device_;
+  remote::DeviceServer server_;
+  std::thread thread_;
+};
+
+std::unique_ptr<remote::RemoteDevice> connect(const remote::Address& address,
+                                              const config::Scenario& scenario) {
+  return std::make_unique<remote::RemoteDevice>(
+      address, remote::ClientConfig{.expected = apps::describe(scenario, true),
+                                    .client = "test",
+                                    .answer_timeout_s = 60.0,
+                                    .first_timeout_s = 60.0,
+                                    .lock_step_timeout_s = 60.0});
+}
+
+void expect_same(const Played& there, const Played& here) {
+  EXPECT_EQ(there.events, here.events);
+  ASSERT_EQ(there.hashes.size(), here.hashes.size());
+  for (std::size_t i = 0; i < here.hashes.size(); ++i) {
+    ASSERT_EQ(there.hashes[i], here.hashes[i]) << "cycle " << i;
+  }
+}
+
+void expect_same_through_udp(const config::Scenario& scenario) {
+  ScenarioRun at_home(scenario);
+  const Played here = played(at_home, 1e9);
+  World world(scenario);
+  ScenarioRun run(scenario, connect(world.address(), scenario));
+  const Played there = played(run, 1e9);
+  expect_same(there, here);
+  EXPECT_TRUE(run.missing().empty());
+  EXPECT_EQ(run.quality().allocations, 0U);
+}
+
+TEST(RemoteScenario, TheDoorThroughUdpIsTheDoor) { expect_same_through_udp(shipped("door")); }
+
+TEST(RemoteScenario, AtTwiceTheRateToo) { expect_same_through_udp(shipped("door", 2000.0)); }
+
+TEST(RemoteScenario, ABadNetworkDoesNotChangeTheDoor) {
+  constexpr double kSeconds = 2.0;  // every loss takes 20 ms
+  const config::Scenario scenario = shipped("door");
+  ScenarioRun at_home(scenario);
+  const Played here = played(at_home, kSeconds);
+  World world(scenario);
+  const remote::BadLink link(world.address(),
+                             {.loses = 0.01, .doubles = 0.02, .swaps = 0.01, .corrupts = 0.01}, 1);
+  ScenarioRun run(scenario, connect(link.address(), scenario));
+  expect_same(played(run, kSeconds), here);
+}
+
+}  // namespace
+}  // namespace hg
