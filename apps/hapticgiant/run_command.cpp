@@ -225,7 +225,7 @@ int run(const RunArguments& arguments) {
       .interrupted = interrupted,
       .scenario = scenario,
       .detector = {scenario.events, scenario.limits},
-      .summary = evaluation::Summary(scenario.limits),
+      .summary = assembly::make_summary(scenario),
       .status_line = StatusLine(is_terminal),
       .viewer = std::move(viewer),
       .recorder = std::move(recorder),

@@ -52,10 +52,12 @@ void describe(V& v, control::Config& config) {
   v.number("error_max_rad", config.error_max, kPositive,
            "the reference is never further ahead of the joint: a joint that is held back takes "
            "reference and twin with it");
-  v.number("friction_share", config.friction_share, {.lb = 0.0, .ub = 1.0},
+  v.number("friction_share", config.friction_share, {.lb = 0.0, .ub = 2.0},
            "of the Coulomb friction that is fed forward");
   v.number("friction_speed_rad_per_s", config.friction_speed, kPositive,
            "speed over which it changes its sign");
+  v.number("friction_learning_1_per_s", config.friction_learning, kNotNegative,
+           "modal: rate at which the true friction is learnt, 0 = never");
 }
 
 template <class V>

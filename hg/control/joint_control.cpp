@@ -12,8 +12,17 @@ namespace hg::control {
 namespace {
 
 constexpr double kLatencyMemory = 0.05;  // share of the newest sample in the mean
+constexpr double kSlides = 0.5;          // share of friction_speed's tanh from which a joint slides
+constexpr double kMostFriction = 2.0;    // times what is configured; more would be another fault
 constexpr int kSweepsAtStart = 12;       // far more than any matrix of seven rows needs
 constexpr double kMotorPdDamping = 1.4;  // [C] 1: Kd = 1.4 sqrt(K Jm)
+
+// Coulomb friction under the torque `tau` of the spring at speed `dtheta`, with what stiction adds
+double coulomb(const ActuatorModel& actuator, double tau, double dtheta) noexcept {
+  const double slow = dtheta / actuator.stribeck_speed;
+  return (actuator.coulomb_friction + actuator.load_friction * std::abs(tau)) *
+         (1.0 + (actuator.stiction - 1.0) * std::exp(-slow * slow));
+}
 
 // drives that follow positions need no more
 void fill(const ReferenceState& reference, CommandFrame& command) noexcept {
@@ -51,6 +60,7 @@ State JointControl::start() const {
   state.latency = config_.loop.latency / config_.dt;
   state.modes = Modes(n_m_);
   state.integral = VectorM::Zero(n_m_);
+  state.friction = VectorM::Constant(n_m_, config_.friction_share);
   state.tau_r = state.dtau_r = state.dtheta_r = state.ddtheta_r = VectorM::Zero(n_m_);
   return state;
 }
@@ -160,7 +170,9 @@ VectorM JointControl::modal_torque(const ReferenceState& reference, const RobotS
   const VectorM Jt = K_ / w0_2;
   VectorM u = forward.tau + Jt.cwiseProduct(state.ddtheta_r);
   const VectorM back = state.modes.Q() * v;
-  u += sqrt_K_.cwiseProduct(back);
+  const VectorM feedback = sqrt_K_.cwiseProduct(back);
+  learn_friction(forward, feedback, robot, state);
+  u += feedback;
   // the measured torque makes the rotor look like one of inertia Jt
   return Jm_.cwiseQuotient(Jt).cwiseProduct(u - robot.tau_m) + robot.tau_m;
 }
@@ -177,13 +189,28 @@ VectorM JointControl::friction(const Feedforward& forward, const State& state) c
   VectorM tau(n_m_);
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
-    const double coulomb =
-        actuator.coulomb_friction + actuator.load_friction * std::abs(forward.tau[i]);
-    tau[i] =
-        config_.friction_share * coulomb * std::tanh(state.dtheta_r[i] / config_.friction_speed) +
-        actuator.viscous_friction * state.dtheta_r[i];
+    const double dtheta = state.dtheta_r[i];
+    tau[i] = state.friction[i] * coulomb(actuator, forward.tau[i], dtheta) *
+                 std::tanh(dtheta / config_.friction_speed) +
+             actuator.viscous_friction * dtheta;
   }
   return tau;
+}
+
+// What the feedback has to add while a joint slides is friction that was not fed forward. Learnt as
+// a factor, it changes its sign with the motion; an integrator would be wrong at every reversal.
+void JointControl::learn_friction(const Feedforward& forward, const VectorM& feedback,
+                                  const RobotState& robot, State& state) const noexcept {
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    const double along = std::tanh(state.dtheta_r[i] / config_.friction_speed);
+    const double slides = std::tanh(robot.dtheta_m[i] / config_.friction_speed) * along;
+    if (slides < kSlides) continue;
+    const double missing =
+        feedback[i] * along / coulomb(actuator, forward.tau[i], state.dtheta_r[i]);
+    state.friction[i] += config_.dt * config_.friction_learning * missing;
+    state.friction[i] = std::clamp(state.friction[i], 0.0, kMostFriction);
+  }
 }
 
 }  // namespace hg::control

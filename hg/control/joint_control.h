@@ -35,6 +35,7 @@ struct Config {
   double error_max = kInfinity;          ///< by which the reference may be ahead, rad or m
   double friction_share = 0.8;           ///< of the Coulomb friction that is fed forward, 0..1
   double friction_speed = 0.01;          ///< rad/s over which it changes its sign
+  double friction_learning = 1.0;  ///< of kModal: rate at which the true friction is learnt, 1/s
 };
 
 /// Part of the copyable state of a cycle.
@@ -44,6 +45,7 @@ struct State {
   Poles poles;           ///< that the latency allows; chosen at the start
   Modes modes;
   VectorM integral;       ///< of q_r - q, rad s
+  VectorM friction;       ///< what is fed forward over the Coulomb friction of the configuration
   VectorM tau_r, dtau_r;  ///< feedforward torque of the links and its derivative
   VectorM dtheta_r, ddtheta_r;
   bool is_saturated = false;
@@ -76,6 +78,8 @@ class JointControl {
   VectorM motor_pd_torque(const RobotState& robot, const Feedforward& forward,
                           const State& state) const noexcept;
   VectorM friction(const Feedforward& forward, const State& state) const noexcept;
+  void learn_friction(const Feedforward& forward, const VectorM& feedback, const RobotState& robot,
+                      State& state) const noexcept;
 
   Config config_;
   model::Chain chain_;

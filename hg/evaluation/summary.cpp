@@ -13,6 +13,8 @@ namespace {
 // [HANDBOOK] 10.1
 constexpr double kToleranceMetres = 2e-3;
 constexpr double kToleranceRadians = 5e-3;
+constexpr double kTrueToleranceMetres = 1e-3;
+constexpr double kTrueToleranceRadians = 2e-3;
 
 // bins of histograms; the first takes what is smaller
 constexpr double kLowest = 1e-9;
@@ -80,8 +82,10 @@ std::string link_text(const LinkCounts& counts) {
   return text;
 }
 
-Summary::Summary(LimitCatalogue catalogue)
-    : catalogue_(std::move(catalogue)), worst_excess_(catalogue_.size(), 0.0) {}
+Summary::Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz)
+    : catalogue_(std::move(catalogue)),
+      reality_(catalogue_, std::move(positions), rate_Hz),
+      worst_excess_(catalogue_.size(), 0.0) {}
 
 void Summary::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
@@ -95,6 +99,7 @@ void Summary::add(const Sample& sample) {
     return;
   }
 
+  reality_.add(sample);
   ++running_cycles_;
   duration_s_ = record.time_s;
   for (std::size_t i = 0; i < catalogue_.size(); ++i) {
@@ -118,6 +123,12 @@ bool Summary::limits_held() const noexcept {
   for (std::size_t i = 0; i < catalogue_.size(); ++i) {
     const double tolerance = catalogue_[i].is_angle ? kToleranceRadians : kToleranceMetres;
     if (worst_excess_[i] > tolerance) return false;
+  }
+  const std::vector<double>& truly = reality_.worst_excess();
+  for (std::size_t i = 0; i < truly.size(); ++i) {
+    if (truly[i] > (catalogue_[i].is_angle ? kTrueToleranceRadians : kTrueToleranceMetres)) {
+      return false;
+    }
   }
   return true;
 }
@@ -146,6 +157,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
                                           {"unit", catalogue_[i].is_angle ? "rad" : "m"}};
   }
   json["limits_held"] = limits_held();
+  if (reality_.is_known()) json["reality"] = reality_json();
   json["sync_error"] = {{"max_m", max_sync_error_}, {"max_rad", max_sync_angle_}};
   json["force"] = {{"mean_N", mean(sum_force_, running_cycles_)},
                    {"max_N", max_force_},
@@ -172,6 +184,61 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
                    {"what", std::string(to_string(fault_.code))},
                    {"index", fault_.index}};
   return json.dump(2) + "\n";
+}
+
+nlohmann::ordered_json Summary::reality_json() const {
+  nlohmann::ordered_json json;
+  const std::vector<double>& excess = reality_.worst_excess();
+  for (std::size_t i = 0; i < excess.size(); ++i) {
+    json["limits"][catalogue_[i].name] = {{"worst_violation", excess[i]},
+                                          {"unit", catalogue_[i].is_angle ? "rad" : "m"}};
+  }
+  json["max_joint_error"] = reality_.max_joint_error();
+  json["max_handle_to_twin_m"] = reality_.max_hand_distance();
+  const VectorM& share = reality_.max_torque_share();
+  json["max_torque_over_peak"] = std::vector<double>(share.begin(), share.end());
+  json["cycles_held_back"] = reality_.clamped_cycles();
+  json["mean_force_N"] = reality_.mean_force();
+  json["vibration_above_5_Hz_m_per_s2"] = reality_.vibration();
+  json["vibration_above_20_Hz_m_per_s2"] = reality_.vibration_20();
+  return json;
+}
+
+// What the simulation knows and no controller does.
+std::string Summary::reality_text() const {
+  std::string text;
+  const auto line = [&](const char* label, const std::string& value) {
+    text += fmt::format("  {:<12} {}\n", label, value);
+  };
+  const std::vector<double>& excess = reality_.worst_excess();
+  const auto worst = std::ranges::max_element(excess);
+  if (worst == excess.end() || *worst == 0.0) {
+    line("in truth", "all limits of the device held");
+  } else {
+    const LimitInfo& limit = catalogue_[static_cast<std::size_t>(worst - excess.begin())];
+    line("in truth", fmt::format("{} beyond its limit by {:.3f} {}", limit.name, 1e3 * *worst,
+                                 limit.is_angle ? "mrad" : "mm"));
+  }
+  const auto joint = static_cast<std::size_t>(std::max(reality_.worst_joint(), 0));
+  line("tracking",
+       fmt::format("joints within {:.2f} mrad ({}), handle within {:.2f} mm of the twin",
+                   1e3 * reality_.max_joint_error(), catalogue_[joint].name,
+                   1e3 * reality_.max_hand_distance()));
+  const VectorM& share = reality_.max_torque_share();
+  if (share.size() > 0) {
+    Eigen::Index most = 0;
+    const double largest = share.maxCoeff(&most);
+    line("torque",
+         fmt::format("at most {:.0f} % of the peak ({}){}", 100.0 * largest,
+                     catalogue_[static_cast<std::size_t>(most)].name,
+                     reality_.clamped_cycles() == 0
+                         ? std::string()
+                         : fmt::format("; held back in {} cycles", reality_.clamped_cycles())));
+  }
+  line("handle", fmt::format("mean force {:.2f} N, vibration {:.3f} m/s^2 rms above 5 Hz, {:.3f} "
+                             "above 20 Hz",
+                             reality_.mean_force(), reality_.vibration(), reality_.vibration_20()));
+  return text;
 }
 
 std::string Summary::to_text(const RunFacts& facts, const std::vector<std::string>& missing) const {
@@ -203,6 +270,7 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("hand - twin", fmt::format("at most {:.3f} mm apart", 1e3 * max_sync_error_));
   line("force",
        fmt::format("mean {:.1f} N, max {:.1f} N", mean(sum_force_, running_cycles_), max_force_));
+  if (reality_.is_known()) text += reality_text();
   line("solver", fmt::format("{} solved, {} not; {:.1f} active-set changes per second",
                              solver_status_[1], solver_status_[2] + solver_status_[3],
                              per_second(active_set_changes_, duration_s_)));
@@ -217,8 +285,11 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   if (facts.stop_timed_out) line("STOP", "timed out: drives off while the device was moving");
   if (fault_.code != FaultCode::kNone) {
     const std::string number = fault_.index < 0 ? "" : fmt::format("number {}: ", fault_.index);
-    line("FAULT", fmt::format("{} {} ({}{:.4g}, limit {:.4g})", static_cast<int>(fault_.code),
-                              to_string(fault_.code), number, fault_.value, fault_.limit));
+    const bool has_values = fault_.value != 0.0 || fault_.limit != 0.0;
+    line("FAULT", fmt::format("{} {}", static_cast<int>(fault_.code), to_string(fault_.code)) +
+                      (has_values ? fmt::format(" ({}{:.4g}, limit {:.4g})", number, fault_.value,
+                                                fault_.limit)
+                                  : ""));
   }
   return text;
 }

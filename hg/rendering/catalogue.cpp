@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hg/core/stacked.h"
+
 namespace hg::rendering {
 namespace {
 
@@ -40,6 +42,19 @@ std::vector<std::string> repeated_names(const LimitCatalogue& catalogue) {
     if (first != limit) repeated.push_back(limit->name);
   }
   return repeated;
+}
+
+void limit_positions(DeviceModel& device, const VectorP& q_p, const VectorM& q_m,
+                     std::vector<double>& positions) {
+  positions.assign(q_m.begin(), q_m.end());
+  for (const VirtualJoint& joint : device.virtual_joints) {
+    positions.push_back(joint.weights.dot(q_m));
+  }
+  device.chain.update_poses(stacked(q_p, q_m));
+  for (const CartesianLimit& limit : device.cartesian_limits) {
+    const Eigen::Vector3d p = device.chain.pose(limit.frame).p;
+    positions.insert(positions.end(), p.begin(), p.end());
+  }
 }
 
 }  // namespace hg::rendering

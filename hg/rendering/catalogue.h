@@ -18,4 +18,9 @@ LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin);
 /// told apart in events, figures and on the page.
 std::vector<std::string> repeated_names(const LimitCatalogue& catalogue);
 
+/// Positions of the device's limits, first in the catalogue, with the gantry at `q_p` and the
+/// manipulator at `q_m`. Moves `device.chain`.
+void limit_positions(DeviceModel& device, const VectorP& q_p, const VectorM& q_m,
+                     std::vector<double>& positions);
+
 }  // namespace hg::rendering

@@ -147,7 +147,7 @@ TEST(Histogram, TakesValuesOutsideItsBins) {
 }
 
 TEST(Summary, TellsPriorityAndATimedOutStop) {
-  const Summary summary(catalogue());
+  const Summary summary(catalogue(), {}, 1000.0);
   const auto text = [&](const RunFacts& facts) { return summary.to_text(facts, {}); };
   EXPECT_NE(text({}).find("normal (SCHED_FIFO refused)"), std::string::npos);
   EXPECT_NE(text({.is_real_time = true}).find("real time (memory not locked)"), std::string::npos);
@@ -159,7 +159,7 @@ TEST(Summary, TellsPriorityAndATimedOutStop) {
 }
 
 TEST(Summary, TheJsonHoldsWhatScriptsNeed) {
-  Summary summary(catalogue());
+  Summary summary(catalogue(), {}, 1000.0);
   Sample sample;
   for (int k = 0; k < 10; ++k) {
     sample.record = running(1e-3 * k);
@@ -188,7 +188,7 @@ TEST(Summary, TheJsonHoldsWhatScriptsNeed) {
 }
 
 TEST(Summary, MoreThanFiveMilliradiansOutsideIsALimitExceeded) {
-  Summary summary(catalogue());
+  Summary summary(catalogue(), {}, 1000.0);
   Sample sample;
   sample.record = running(0.0);
   sample.record.limits[0].excess = 5.1e-3;
