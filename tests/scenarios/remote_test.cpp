@@ -89,13 +89,13 @@ TEST(RemoteScenario, TheDoorThroughUdpIsTheDoor) { expect_same_through_udp(shipp
 TEST(RemoteScenario, AtTwiceTheRateToo) { expect_same_through_udp(shipped("door", 2000.0)); }
 
 TEST(RemoteScenario, ABadNetworkDoesNotChangeTheDoor) {
-  constexpr double kSeconds = 2.0;  // every loss takes 20 ms
+  constexpr double kSeconds = 3.0;  // every loss takes 20 ms
   const config::Scenario scenario = shipped("door");
   ScenarioRun at_home(scenario);
   const Played here = played(at_home, kSeconds);
   World world(scenario);
   const remote::BadLink link(world.address(),
-                             {.loses = 0.01, .doubles = 0.02, .swaps = 0.01, .corrupts = 0.01}, 1);
+                             {.loses = 2e-3, .doubles = 0.02, .swaps = 2e-3, .corrupts = 2e-3}, 1);
   ScenarioRun run(scenario, connect(link.address(), scenario));
   expect_same(played(run, kSeconds), here);
 }
