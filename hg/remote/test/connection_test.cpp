@@ -286,13 +286,13 @@ class Script {
 
 TEST(Connection, ASilentDeviceIsAFaultAndNothingIsReadFromItAnyMore) {
   Script server;
+  std::mt19937 random(1);
+  SensorFrame frame = example_sensors(random, 5);
+  frame.driver_fault = FaultCode::kNone;
+  frame.q_p.conservativeResize(1);
   std::thread thread([&] {
     server.welcome(description(false));
     server.await(MessageType::kReady);
-    std::mt19937 random(1);
-    SensorFrame frame = example_sensors(random, 5);
-    frame.driver_fault = FaultCode::kNone;
-    frame.q_p.conservativeResize(1);
     server.send(frame, {.session = 7, .number = 2});
   });
   ClientConfig config = client(false);
@@ -307,7 +307,8 @@ TEST(Connection, ASilentDeviceIsAFaultAndNothingIsReadFromItAnyMore) {
   EXPECT_EQ(sensors.driver_fault, FaultCode::kDeviceSilent);
   EXPECT_EQ(sensors.sequence, 6U);
   EXPECT_EQ(sensors.q_m, q_m);
-  server.send(SensorFrame{.sequence = 6}, {.session = 7, .number = 3});
+  frame.sequence = 6;
+  server.send(frame, {.session = 7, .number = 3});
   there.read(sensors);
   EXPECT_EQ(sensors.driver_fault, FaultCode::kDeviceSilent);
 }
