@@ -11,7 +11,8 @@
 namespace hg::control {
 namespace {
 
-constexpr double kLatencyMemory = 0.05;  // share of the newest sample in the mean
+constexpr double kLatencyMemory = 0.05;    // share of the newest sample in the mean
+constexpr double kFeedforwardShare = 0.7;  // of the peak torque, the rest is for feedback
 constexpr double kSlides = 0.5;          // share of friction_speed's tanh from which a joint slides
 constexpr double kMostFriction = 2.0;    // times what is configured; more would be another fault
 constexpr int kSweepsAtStart = 12;       // far more than any matrix of seven rows needs
@@ -61,7 +62,7 @@ State JointControl::start() const {
   state.modes = Modes(n_m_);
   state.integral = VectorM::Zero(n_m_);
   state.friction = VectorM::Constant(n_m_, config_.friction_share);
-  state.tau_r = state.dtau_r = state.dtheta_r = state.ddtheta_r = VectorM::Zero(n_m_);
+  state.tau_r = state.dtau_r = state.ddtau_r = VectorM::Zero(n_m_);
   return state;
 }
 
@@ -75,15 +76,21 @@ void JointControl::rest(const ReferenceState& reference, const SensorFrame& sens
   state.latency += kLatencyMemory * (periods - state.latency);
 }
 
-void JointControl::step(const ReferenceState& reference, const RobotState& robot, State& state,
-                        CommandFrame& command, TrackingReport& report) noexcept {
-  fill(reference, command);
-  report.error = reference.q_m - robot.q_m;
+void JointControl::step(const ReferenceState& now, const ReferenceState& next,
+                        const RobotState& robot, State& state, CommandFrame& command,
+                        TrackingReport& report) noexcept {
+  fill(next, command);
+  report.error = now.q_m - robot.q_m;
   if (config_.method == Method::kDrives) return;
 
-  const Feedforward forward = feedforward(reference, robot, state);
-  command.tau_m = config_.method == Method::kModal ? modal_torque(reference, robot, forward, state)
-                                                   : motor_pd_torque(robot, forward, state);
+  if (!state.is_started) begin(next, robot, state);
+  const Errors errors = {.theta = now.q_m + state.tau_r.cwiseQuotient(K_) - robot.theta_m,
+                         .dtheta = now.dq_m + state.dtau_r.cwiseQuotient(K_) - robot.dtheta_m,
+                         .q = report.error,
+                         .dq = now.dq_m - robot.dq_m};
+  const Feedforward forward = feedforward(next, robot, state);
+  command.tau_m = config_.method == Method::kModal ? modal_torque(errors, robot, forward, state)
+                                                   : motor_pd_torque(errors, forward);
   command.tau_m += friction(forward, state);
 
   state.is_saturated = false;
@@ -101,63 +108,81 @@ void JointControl::step(const ReferenceState& reference, const RobotState& robot
   report.latency_s = state.latency * config_.dt;
 }
 
-// What moves the links as the reference says, and by how much the springs twist for it ([C] 1).
-JointControl::Feedforward JointControl::feedforward(const ReferenceState& reference,
-                                                    const RobotState& robot,
-                                                    State& state) noexcept {
+// Torques of the springs that move the links as the reference says ([C] 1).
+VectorM JointControl::link_torque(const ReferenceState& reference,
+                                  const RobotState& robot) noexcept {
   chain_.update(stacked(robot.q_p, reference.q_m), stacked(robot.dq_p, reference.dq_m));
   const auto M = chain_.M().bottomRows(n_m_);
   const auto J_m = chain_.jacobian(handle_).rightCols(n_m_);
-  Feedforward forward;
-  forward.M = M.rightCols(n_m_);
-  forward.tau = chain_.c().tail(n_m_);
-  forward.tau.noalias() += forward.M * reference.ddq_m;
-  forward.tau.noalias() += M.leftCols(n_p_) * robot.ddq_p;
-  forward.tau.noalias() -= J_m.transpose() * robot.w_H;
-  forward.theta = reference.q_m + forward.tau.cwiseQuotient(K_);
-
-  if (!state.is_started) {
-    const double latency = state.latency * config_.dt + config_.loop.current_lag;
-    state.poles = poles_for(latency);
-    state.modes = Modes(n_m_);
-    state.modes.follow(
-        sqrt_K_.cwiseInverse().asDiagonal() * forward.M * sqrt_K_.cwiseInverse().asDiagonal(),
-        kSweepsAtStart);
-    state.integral.setZero();
-    state.tau_r = forward.tau;
-    state.dtau_r.setZero();
-    state.dtheta_r = reference.dq_m;
-    state.ddtheta_r.setZero();
-    state.is_started = true;
-  }
-  const double share = smoothing(config_.flatness_Hz, config_.dt);
-  state.dtau_r += share * ((forward.tau - state.tau_r) / config_.dt - state.dtau_r);
-  state.tau_r = forward.tau;
-  const VectorM dtheta_r = reference.dq_m + state.dtau_r.cwiseQuotient(K_);
-  state.ddtheta_r += share * ((dtheta_r - state.dtheta_r) / config_.dt - state.ddtheta_r);
-  state.dtheta_r = dtheta_r;
-  return forward;
+  VectorM tau = chain_.c().tail(n_m_);
+  tau.noalias() += M.rightCols(n_m_) * reference.ddq_m;
+  tau.noalias() += M.leftCols(n_p_) * robot.ddq_p;
+  tau.noalias() -= J_m.transpose() * robot.w_H;
+  return tau;
 }
 
-VectorM JointControl::modal_torque(const ReferenceState& reference, const RobotState& robot,
+// Scaled mass matrix, whose eigenvectors are the modes.
+MatrixM JointControl::scaled_mass() const noexcept {
+  const auto inverse_sqrt_K = sqrt_K_.cwiseInverse().asDiagonal();
+  return inverse_sqrt_K * chain_.M().bottomRightCorner(n_m_, n_m_) * inverse_sqrt_K;
+}
+
+void JointControl::begin(const ReferenceState& reference, const RobotState& robot,
+                         State& state) noexcept {
+  state.poles = poles_for(state.latency * config_.dt + config_.loop.current_lag);
+  state.tau_r = link_torque(reference, robot);
+  state.dtau_r.setZero();
+  state.ddtau_r.setZero();
+  state.integral.setZero();
+  state.modes = Modes(n_m_);
+  state.modes.follow(scaled_mass(), kSweepsAtStart);
+  state.is_started = true;
+}
+
+JointControl::Feedforward JointControl::feedforward(const ReferenceState& reference,
+                                                    const RobotState& robot,
+                                                    State& state) noexcept {
+  follow_torque(link_torque(reference, robot), state);
+  return {.tau = state.tau_r,
+          .dtheta = reference.dq_m + state.dtau_r.cwiseQuotient(K_),
+          .ddtheta = reference.ddq_m + state.ddtau_r.cwiseQuotient(K_)};
+}
+
+// The springs cannot take a torque at once: their motors have to twist them. What is fed forward
+// follows as fast as the peak torque lets a rotor turn, so that nothing saturates at a stop.
+void JointControl::follow_torque(const VectorM& tau, State& state) const noexcept {
+  const double w = 2.0 * std::numbers::pi * config_.flatness_Hz;
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    const double peak = kFeedforwardShare * actuator.torque_max;
+    const double per_torque = actuator.stiffness / actuator.rotor_inertia;
+    const double braking = 0.5 * peak * per_torque;
+    const double error = tau[i] - state.tau_r[i];
+    const double distance = std::abs(error);
+    const double linear = braking / (w * w);  // up to which the approach is exponential
+    const double speed =
+        distance < linear ? w * distance : std::sqrt(braking * (2.0 * distance - linear));
+    const double wanted = w * (std::copysign(speed, error) - state.dtau_r[i]);
+    state.ddtau_r[i] = std::clamp(wanted, (-peak - state.tau_r[i]) * per_torque,
+                                  (peak - state.tau_r[i]) * per_torque);
+    state.dtau_r[i] += config_.dt * state.ddtau_r[i];
+    state.tau_r[i] += config_.dt * state.dtau_r[i];
+  }
+}
+
+VectorM JointControl::modal_torque(const Errors& errors, const RobotState& robot,
                                    const Feedforward& forward, State& state) const noexcept {
-  const VectorM error = reference.q_m - robot.q_m;
   if (!state.is_saturated) {
-    state.integral += config_.dt * error;
+    state.integral += config_.dt * errors.q;
     state.integral = state.integral.cwiseMax(-config_.integral_max).cwiseMin(config_.integral_max);
   }
-  const auto inverse_sqrt_K = sqrt_K_.cwiseInverse().asDiagonal();
-  const MatrixM scaled_M = inverse_sqrt_K * forward.M * inverse_sqrt_K;
-  state.modes.follow(scaled_M);
-
-  const auto in_modes = [&](const VectorM& v) noexcept -> VectorM {
-    const VectorM scaled = sqrt_K_.cwiseProduct(v);
+  state.modes.follow(scaled_mass());
+  const auto in_modes = [&](const VectorM& x) noexcept -> VectorM {
+    const VectorM scaled = sqrt_K_.cwiseProduct(x);
     return state.modes.Q().transpose() * scaled;
   };
-  const VectorM e = in_modes(forward.theta - robot.theta_m);
-  const VectorM de = in_modes(state.dtheta_r - robot.dtheta_m);
-  const VectorM f = in_modes(error);
-  const VectorM df = in_modes(reference.dq_m - robot.dq_m);
+  const VectorM e = in_modes(errors.theta), de = in_modes(errors.dtheta);
+  const VectorM f = in_modes(errors.q), df = in_modes(errors.dq);
   const VectorM f_integral = in_modes(state.integral);
   VectorM v(n_m_);
   for (int i = 0; i < n_m_; ++i) {
@@ -168,28 +193,26 @@ VectorM JointControl::modal_torque(const ReferenceState& reference, const RobotS
   }
   const double w0_2 = state.poles.w0 * state.poles.w0;
   const VectorM Jt = K_ / w0_2;
-  VectorM u = forward.tau + Jt.cwiseProduct(state.ddtheta_r);
   const VectorM back = state.modes.Q() * v;
   const VectorM feedback = sqrt_K_.cwiseProduct(back);
   learn_friction(forward, feedback, robot, state);
-  u += feedback;
+  const VectorM u = forward.tau + Jt.cwiseProduct(forward.ddtheta) + feedback;
   // the measured torque makes the rotor look like one of inertia Jt
   return Jm_.cwiseQuotient(Jt).cwiseProduct(u - robot.tau_m) + robot.tau_m;
 }
 
-VectorM JointControl::motor_pd_torque(const RobotState& robot, const Feedforward& forward,
-                                      const State& state) const noexcept {
+VectorM JointControl::motor_pd_torque(const Errors& errors,
+                                      const Feedforward& forward) const noexcept {
   const VectorM Kd = kMotorPdDamping * K_.cwiseProduct(Jm_).cwiseSqrt();
-  return forward.tau + Jm_.cwiseProduct(state.ddtheta_r) +
-         K_.cwiseProduct(forward.theta - robot.theta_m) +
-         Kd.cwiseProduct(state.dtheta_r - robot.dtheta_m);
+  return forward.tau + Jm_.cwiseProduct(forward.ddtheta) + K_.cwiseProduct(errors.theta) +
+         Kd.cwiseProduct(errors.dtheta);
 }
 
 VectorM JointControl::friction(const Feedforward& forward, const State& state) const noexcept {
   VectorM tau(n_m_);
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
-    const double dtheta = state.dtheta_r[i];
+    const double dtheta = forward.dtheta[i];
     tau[i] = state.friction[i] * coulomb(actuator, forward.tau[i], dtheta) *
                  std::tanh(dtheta / config_.friction_speed) +
              actuator.viscous_friction * dtheta;
@@ -203,11 +226,11 @@ void JointControl::learn_friction(const Feedforward& forward, const VectorM& fee
                                   const RobotState& robot, State& state) const noexcept {
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
-    const double along = std::tanh(state.dtheta_r[i] / config_.friction_speed);
+    const double along = std::tanh(forward.dtheta[i] / config_.friction_speed);
     const double slides = std::tanh(robot.dtheta_m[i] / config_.friction_speed) * along;
     if (slides < kSlides) continue;
     const double missing =
-        feedback[i] * along / coulomb(actuator, forward.tau[i], state.dtheta_r[i]);
+        feedback[i] * along / coulomb(actuator, forward.tau[i], forward.dtheta[i]);
     state.friction[i] += config_.dt * config_.friction_learning * missing;
     state.friction[i] = std::clamp(state.friction[i], 0.0, kMostFriction);
   }

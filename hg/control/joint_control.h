@@ -44,10 +44,9 @@ struct State {
   double latency = 0.0;  ///< mean of what was measured before the start, periods
   Poles poles;           ///< that the latency allows; chosen at the start
   Modes modes;
-  VectorM integral;       ///< of q_r - q, rad s
-  VectorM friction;       ///< what is fed forward over the Coulomb friction of the configuration
-  VectorM tau_r, dtau_r;  ///< feedforward torque of the links and its derivative
-  VectorM dtheta_r, ddtheta_r;
+  VectorM integral;  ///< of q_r - q, rad s
+  VectorM friction;  ///< what is fed forward over the Coulomb friction of the configuration
+  VectorM tau_r, dtau_r, ddtau_r;  ///< feedforward torque of the links and its derivatives
   bool is_saturated = false;
 };
 
@@ -61,22 +60,29 @@ class JointControl {
   /// Drives are off: the next step begins anew. Learns the latency from the answered command.
   void rest(const ReferenceState& reference, const SensorFrame& sensors, State& state,
             CommandFrame& command) const noexcept;
-  /// Fills the manipulator part of `command` and says how well the last reference was met.
-  void step(const ReferenceState& reference, const RobotState& robot, State& state,
-            CommandFrame& command, TrackingReport& report) noexcept;
+  /// Fills the manipulator part of `command`: `now` is the reference at the time of the sample,
+  /// `next` where the drives should be a period later.
+  void step(const ReferenceState& now, const ReferenceState& next, const RobotState& robot,
+            State& state, CommandFrame& command, TrackingReport& report) noexcept;
 
  private:
-  struct Feedforward {
-    VectorM tau;    ///< of the springs
-    VectorM theta;  ///< motor angles that twist the springs so
-    MatrixM M;      ///< of the links at the reference
+  /// Reference minus measured, at the time of the sample.
+  struct Errors {
+    VectorM theta, dtheta, q, dq;
   };
+  /// For the next period: torques of the springs, motion of the motors.
+  struct Feedforward {
+    VectorM tau, dtheta, ddtheta;
+  };
+  VectorM link_torque(const ReferenceState& reference, const RobotState& robot) noexcept;
+  MatrixM scaled_mass() const noexcept;
+  void begin(const ReferenceState& reference, const RobotState& robot, State& state) noexcept;
   Feedforward feedforward(const ReferenceState& reference, const RobotState& robot,
                           State& state) noexcept;
-  VectorM modal_torque(const ReferenceState& reference, const RobotState& robot,
-                       const Feedforward& forward, State& state) const noexcept;
-  VectorM motor_pd_torque(const RobotState& robot, const Feedforward& forward,
-                          const State& state) const noexcept;
+  void follow_torque(const VectorM& tau, State& state) const noexcept;
+  VectorM modal_torque(const Errors& errors, const RobotState& robot, const Feedforward& forward,
+                       State& state) const noexcept;
+  VectorM motor_pd_torque(const Errors& errors, const Feedforward& forward) const noexcept;
   VectorM friction(const Feedforward& forward, const State& state) const noexcept;
   void learn_friction(const Feedforward& forward, const VectorM& feedback, const RobotState& robot,
                       State& state) const noexcept;

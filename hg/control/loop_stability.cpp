@@ -85,7 +85,7 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, double late
     State state = at_start;
     CommandFrame command;
     TrackingReport report;
-    control.step(reference, seen, state, command, report);
+    control.step(reference, reference, seen, state, command, report);
     return command.tau_m;
   };
   const Eigen::VectorXd undisturbed = torque(robot);
@@ -102,13 +102,19 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, double late
   return answers;
 }
 
+Config with(Config config, const Reality& reality) {
+  config.actuators = reality.actuators;
+  config.loop = reality.loop;
+  return config;
+}
+
 // One period of the loop as a matrix, column by column.
 class SampledLoop {
  public:
-  SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency)
-      : config_(loop.config),
-        layout_{loop.n_m, static_cast<int>(std::ceil(latency / config_.dt - 1e-9))},
-        latency_steps_(static_cast<int>(std::lround(latency / config_.dt * kSteps))),
+  SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency, const Reality& reality)
+      : config_(with(loop.config, reality)),
+        layout_{loop.n_m, static_cast<int>(std::ceil(config_.loop.latency / config_.dt - 1e-9))},
+        latency_steps_(static_cast<int>(std::lround(config_.loop.latency / config_.dt * kSteps))),
         step_((plant_with_input(config_, link_mass(loop, q)) * (config_.dt / kSteps)).exp()),
         feedback_(feedback(loop, q, latency)) {
     const LoopFilters& filters = loop.filters;
@@ -179,7 +185,7 @@ class SampledLoop {
     return next;
   }
 
-  Config config_;
+  Config config_;  // of what is real
   Layout layout_;
   int latency_steps_;
   Eigen::MatrixXd step_;
@@ -190,7 +196,14 @@ class SampledLoop {
 }  // namespace
 
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency) {
-  const Eigen::MatrixXd period = SampledLoop(loop, q, latency).period();
+  Reality as_believed = {loop.config.actuators, loop.config.loop};
+  as_believed.loop.latency = latency;
+  return spectral_radius(loop, q, latency, as_believed);
+}
+
+double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency,
+                       const Reality& reality) {
+  const Eigen::MatrixXd period = SampledLoop(loop, q, latency, reality).period();
   return Eigen::EigenSolver<Eigen::MatrixXd>(period, false).eigenvalues().cwiseAbs().maxCoeff();
 }
 

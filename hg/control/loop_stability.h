@@ -23,9 +23,18 @@ struct Loop {
   int n_p = 0, n_m = 0, handle = 0;
 };
 
+/// What is really the case, whatever the controller believes.
+struct Reality {
+  std::vector<ActuatorModel> actuators;
+  TorqueLoop loop;
+};
+
 /// Largest modulus of the eigenvalues of one period at rest in posture `q` (gantry first), with the
 /// gains for `latency` (s): below 1 errors die out. The feedback is found by asking JointControl.
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency);
+/// The same where the controller is wrong: it believes its configuration and `latency`.
+double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency,
+                       const Reality& reality);
 
 /// The longest latency in whole periods, at most `most`, at which the loop is stable in all
 /// `postures`; 0 = not even at one period.

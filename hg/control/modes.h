@@ -18,7 +18,7 @@ struct Poles {
   double z1 = 0.8;         ///< its damping ratio
   double z2 = 0.5;         ///< damping ratio of the fast pair, which keeps its natural frequency
   double w2_max = 300.0;   ///< stiffer modes are controlled from the motor side alone
-  double w_motor = 120.0;  ///< and have a double pole there
+  double w_motor = 135.0;  ///< and have a double pole there
 };
 
 /// The fastest poles that tolerate `latency` (s), which includes the lag of the current: w0 = 0.75

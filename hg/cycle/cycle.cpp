@@ -58,8 +58,8 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
 
   // estimation -> rendering -> prepositioning
   if (safety::is_finite(sensors)) {
-    record.robot = estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m,
-                                    state_.estimation);
+    record.robot =
+        estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
     ended_(Stage::kEstimation);
     const Mode mode = state_.supervisor.mode;
     if (mode == Mode::kRunning || mode == Mode::kStopping) {
@@ -162,7 +162,8 @@ void Cycle::write_command(const SensorFrame& sensors, const OperatorFrame& opera
   command.dq_p = state_.dq_p;
   const ReferenceState& reference = state_.rendering.reference;
   if (command.enable) {
-    control_.step(reference, record.robot, state_.control, command, record.tracking);
+    control_.step(record.reference, reference, record.robot, state_.control, command,
+                  record.tracking);
   } else {
     control_.rest(reference, sensors, state_.control, command);
     command.dq_p.setZero();

@@ -129,8 +129,8 @@ std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noe
   hash.mix(control.latency);
   hash.mix(control.poles.w0);
   hash.mix(control.modes.Q());
-  for (const VectorM* v : {&control.integral, &control.friction, &control.tau_r, &control.dtau_r,
-                           &control.dtheta_r, &control.ddtheta_r}) {
+  for (const VectorM* v :
+       {&control.integral, &control.friction, &control.tau_r, &control.dtau_r, &control.ddtau_r}) {
     hash.mix(*v);
   }
   hash.mix(robot.w_H);

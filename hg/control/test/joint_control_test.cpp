@@ -1,0 +1,325 @@
+#include "hg/control/joint_control.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hg/control/test/control_setup.h"
+#include "hg/core/allocation_counter.h"
+#include "hg/core/error.h"
+
+namespace hg::control {
+namespace {
+
+constexpr double kDigits = 1e-5;  // [HANDBOOK] 1.4 gives five decimals
+
+struct Answer {
+  CommandFrame command;
+  TrackingReport report;
+};
+
+Answer answer(JointControl& control, State& state, const ReferenceState& reference,
+              const RobotState& robot) {
+  Answer result;
+  control.step(reference, reference, robot, state, result.command, result.report);
+  return result;
+}
+
+Answer first_answer(const Config& config, const ReferenceState& reference,
+                    const RobotState& robot) {
+  JointControl control = control_of(config);
+  State state = control.start();
+  return answer(control, state, reference, robot);
+}
+
+double largest(const VectorM& v) { return v.lpNorm<Eigen::Infinity>(); }
+
+class BothMethods : public ::testing::TestWithParam<Method> {};
+INSTANTIATE_TEST_SUITE_P(Torque, BothMethods, ::testing::Values(Method::kModal, Method::kMotorPd),
+                         [](const auto& test) {
+                           return test.param == Method::kModal ? "Modal" : "MotorPd";
+                         });
+
+TEST_P(BothMethods, AtRestTheMotorsCarryTheWeightAndTheSpringsAreTwistedByIt) {
+  const VectorM weight = joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0);  // [HANDBOOK] 1.4
+  const ReferenceState reference = at_rest(home());
+  const Answer held =
+      first_answer(reference_config(GetParam()), reference, following(reference, weight));
+  // an error of the digits twists the springs of m1 by 1e-5 / K, which the feedback answers
+  EXPECT_LT(largest(held.command.tau_m - weight), 20.0 * kDigits);
+
+  // without the twist the feedback of the motors pulls it up
+  RobotState robot = following(reference, weight);
+  robot.theta_m = reference.q_m;
+  const Answer untwisted = first_answer(reference_config(GetParam()), reference, robot);
+  EXPECT_GT(untwisted.command.tau_m[3] - weight[3], 10.0);
+}
+
+// [HANDBOOK] 1.4: all at once, weight, inertia, Coriolis forces, gantry and user
+TEST_P(BothMethods, InMotionTheFeedforwardIsTheInverseDynamicsOfTheHandbook) {
+  const ReferenceState reference = {.q_m = joints(0.4, 1.2, -0.5, 1.1, 0.3, -0.7),
+                                    .dq_m = joints(0.5, -0.6, 0.7, 0.8, -0.9, 1.0),
+                                    .ddq_m = joints(-0.3, 0.4, -0.5, 0.6, -0.7, 0.8)};
+  struct Golden {
+    Vector6 w_H;
+    VectorM tau;
+  };
+  const Golden free = {Vector6::Zero(),
+                       joints(0.24974, -0.38784, -0.02738, 28.11989, 2.15888, 0.00097)};
+  const Golden pulled = {(Vector6() << 10.0, -20.0, 30.0, 1.0, 2.0, -3.0).finished(),
+                         joints(12.52455, 0.05981, -5.8856, 10.52451, -1.67575, 1.69455)};
+  for (const Golden& golden : {free, pulled}) {
+    RobotState robot = following(reference, golden.tau);
+    robot.q_p << 0.3, -0.2;
+    robot.dq_p << 0.2, -0.1;
+    robot.ddq_p << 0.1, 0.2;
+    robot.w_H = golden.w_H;
+    const Answer moved = first_answer(frictionless_config(GetParam()), reference, robot);
+    const VectorM expected = golden.tau + rotor_inertia().cwiseProduct(reference.ddq_m);
+    EXPECT_LT(largest(moved.command.tau_m - expected), 20.0 * kDigits);
+    EXPECT_LT(largest(moved.report.error), 1e-15);
+  }
+}
+
+TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
+  // a force of the user that grows with 100 N/s: theta_r' = tau_r' / K
+  Config config = frictionless_config(GetParam());
+  JointControl control = control_of(config);
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  RobotState robot = following(reference, VectorM::Zero(6));
+  for (int k = 0; k < 300; ++k) {
+    robot.w_H[2] = 0.1 * k;
+    answer(control, state, reference, robot);
+  }
+  model::Chain chain = arm();
+  chain.update(posture(home()), Eigen::VectorXd::Zero(8));
+  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  const VectorM dtau = -100.0 * J.rightCols(6).row(2).transpose();
+  EXPECT_LT(largest(state.dtau_r - dtau), 1e-6 * largest(dtau));
+}
+
+TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
+  const ReferenceState reference = at_rest(home());
+  const Config config = reference_config(GetParam());
+  for (const double side : {-1.0, 1.0}) {
+    RobotState robot = following(reference, VectorM::Zero(6));
+    robot.theta_m.array() -= 0.5 * side;  // far behind
+    robot.q_m = robot.theta_m;
+    const Answer standing = first_answer(config, reference, robot);
+    robot.dtheta_m.setConstant(side * 3.0);  // m1: half of the way to no load
+    robot.theta_m[0] -= 2.0 * side;
+    const Answer running = first_answer(config, reference, robot);
+    robot.dtheta_m.setConstant(side * -3.0);  // brakes: all the torque
+    const Answer braking = first_answer(config, reference, robot);
+    EXPECT_DOUBLE_EQ(standing.command.tau_m[0], side * 176.0);
+    EXPECT_DOUBLE_EQ(running.command.tau_m[0], side * 88.0);
+    EXPECT_DOUBLE_EQ(braking.command.tau_m[0], side * 176.0);
+    EXPECT_GT(standing.report.torque_share[0], 1.0);  // what was asked for
+    for (int i = 0; i < 6; ++i) {
+      const double peak = config.actuators[static_cast<std::size_t>(i)].torque_max;
+      EXPECT_LE(std::abs(standing.command.tau_m[i]), peak);
+      EXPECT_LE(std::abs(braking.command.tau_m[i]), peak);
+    }
+  }
+}
+
+TEST(ModalControl, TheIntegralStopsAtItsBoundAndWaitsWhileAMotorIsSaturated) {
+  const Config config = reference_config();
+  JointControl control = control_of(config);
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  RobotState near = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
+  near.q_m.array() -= 1e-5;  // stays like that
+  for (int k = 0; k < 1000; ++k) answer(control, state, reference, near);
+  EXPECT_NEAR(state.integral[3], 1e-5, 1e-12);  // rad s
+
+  RobotState far = near;
+  far.q_m.array() -= 0.5;
+  answer(control, state, reference, far);  // tells of the saturation
+  ASSERT_TRUE(state.is_saturated);
+  const VectorM integral = state.integral;
+  for (int k = 0; k < 1000; ++k) answer(control, state, reference, far);
+  EXPECT_EQ(state.integral, integral);
+
+  near.q_m = reference.q_m;
+  near.q_m[5] -= 2e-3;  // without saturation
+  for (int k = 0; k < 20'000; ++k) answer(control, state, reference, near);
+  EXPECT_EQ(state.integral[5], config.integral_max);
+}
+
+TEST(ModalControl, AConstantErrorOfALinkIsAnsweredMoreAndMore) {
+  JointControl control = control_of(reference_config());
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
+  robot.q_m[3] -= 1e-4;
+  robot.theta_m[3] -= 1e-4;
+  const double first = answer(control, state, reference, robot).command.tau_m[3];
+  double last = first;
+  for (int k = 0; k < 1000; ++k) last = answer(control, state, reference, robot).command.tau_m[3];
+  // wi t = 2 after a second: three times what the error alone is worth
+  const double proportional = first - 30.67587;
+  EXPECT_GT(proportional, 0.1);
+  EXPECT_NEAR((last - first) / proportional, 2.0, 0.05);
+}
+
+TEST_P(BothMethods, FrictionIsFedForwardWithTheDirectionOfTheReference) {
+  const Config config = reference_config(GetParam()), smooth = frictionless_config(GetParam());
+  for (const double speed : {-0.3, -2e-3, 2e-3, 0.3}) {
+    SCOPED_TRACE(speed);
+    ReferenceState reference = at_rest(home());
+    reference.dq_m[0] = speed;
+    const RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
+    const VectorM friction = first_answer(config, reference, robot).command.tau_m -
+                             first_answer(smooth, reference, robot).command.tau_m;
+    // Coulomb 4 Nm, of which 0.8; stiction adds 20 % that vanish over 0.05 rad/s; viscous 3
+    const double stiction = 1.0 + 0.2 * std::exp(-std::pow(speed / 0.05, 2));
+    const double load = 0.06 * std::abs(first_answer(smooth, reference, robot).command.tau_m[0]);
+    const double expected = 0.8 * (4.0 + load) * stiction * std::tanh(speed / 0.01) + 3.0 * speed;
+    EXPECT_NEAR(friction[0], expected, 0.02);
+    EXPECT_LT(largest(friction.tail(5)), 1e-12);  // they stand
+  }
+}
+
+// m4 slides, and the spring transmits less than the reference needs: the controller has to push.
+State after_sliding(double speed, double motor_speed, double behind, int periods) {
+  JointControl control = control_of(reference_config());
+  State state = control.start();
+  ReferenceState reference = at_rest(home());
+  reference.dq_m[3] = speed;
+  for (int k = 0; k < periods; ++k) {
+    RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
+    robot.theta_m[3] -= behind;
+    robot.q_m[3] -= behind;
+    robot.dtheta_m[3] = motor_speed;
+    answer(control, state, reference, robot);
+  }
+  return state;
+}
+
+TEST(ModalControl, FrictionThatTheFeedbackHasToOvercomeIsLearntWhileTheJointSlides) {
+  constexpr double kStart = 0.8;
+  for (const double way : {-1.0, 1.0}) {
+    const State more = after_sliding(0.2 * way, 0.2 * way, 1e-4 * way, 200);
+    EXPECT_GT(more.friction[3], kStart + 0.01);
+    EXPECT_EQ(more.friction[0], kStart);  // stands
+    const State less = after_sliding(0.2 * way, 0.2 * way, -1e-4 * way, 200);
+    EXPECT_LT(less.friction[3], kStart - 0.01);
+    // it does not slide: what the feedback adds is no friction
+    EXPECT_EQ(after_sliding(0.2 * way, 0.0, 1e-4 * way, 200).friction[3], kStart);
+    EXPECT_EQ(after_sliding(1e-3 * way, 1e-3 * way, 1e-4 * way, 200).friction[3], kStart);
+    EXPECT_EQ(after_sliding(0.2 * way, -0.2 * way, 1e-4 * way, 200).friction[3], kStart);
+    // bounds: a feedback that wants more has another reason
+    EXPECT_EQ(after_sliding(0.2 * way, 0.2 * way, 5e-3 * way, 20'000).friction[3], 2.0);
+    EXPECT_EQ(after_sliding(0.2 * way, 0.2 * way, -5e-3 * way, 20'000).friction[3], 0.0);
+  }
+}
+
+SensorFrame answered(std::uint64_t sequence, std::uint64_t periods_ago) {
+  SensorFrame frame;
+  frame.sequence = sequence;
+  frame.answered_sequence = sequence - periods_ago;
+  return frame;
+}
+
+TEST(Latency, IsMeasuredFromTheAnsweredCommandWhileTheDrivesAreOff) {
+  for (const std::uint64_t periods : {1u, 2u, 3u}) {
+    SCOPED_TRACE(periods);
+    JointControl control = control_of(reference_config());
+    State state = control.start();
+    const ReferenceState reference = at_rest(home());
+    CommandFrame command;
+    for (std::uint64_t k = 10; k < 510; ++k) {
+      control.rest(reference, answered(k, periods), state, command);
+    }
+    const double latency = static_cast<double>(periods) * 1e-3;
+    const Answer on = answer(control, state, reference, following(reference, VectorM::Zero(6)));
+    EXPECT_NEAR(on.report.latency_s, latency, 1e-9);
+    EXPECT_NEAR(state.poles.w0, poles_for(latency + 0.5e-3).w0, 1e-4);
+    EXPECT_EQ(command.tau_m, VectorM::Zero(6));
+  }
+}
+
+TEST(Latency, WithoutAnAnswerItIsWhatTheConfigurationExpects) {
+  Config config = reference_config();
+  config.loop.latency = 2e-3;
+  JointControl control = control_of(config);
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  CommandFrame command;
+  SensorFrame silent;
+  for (silent.sequence = 0; silent.sequence < 100; ++silent.sequence) {
+    control.rest(reference, silent, state, command);
+  }
+  const Answer on = answer(control, state, reference, following(reference, VectorM::Zero(6)));
+  EXPECT_DOUBLE_EQ(on.report.latency_s, 2e-3);
+  EXPECT_DOUBLE_EQ(state.poles.w0, 0.3 / 2.5e-3);
+}
+
+TEST(Latency, ChangesNothingWhileTheDrivesAreOn) {
+  JointControl control = control_of(reference_config());
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  answer(control, state, reference, following(reference, VectorM::Zero(6)));
+  const double w0 = state.poles.w0;
+  state.latency = 5.0;
+  answer(control, state, reference, following(reference, VectorM::Zero(6)));
+  EXPECT_EQ(state.poles.w0, w0);
+}
+
+TEST(JointControl, AfterARestItBeginsAnew) {
+  JointControl control = control_of(reference_config());
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  RobotState robot = following(reference, VectorM::Zero(6));
+  const Answer first = answer(control, state, reference, robot);
+  robot.q_m[0] -= 1e-3;
+  for (int k = 0; k < 100; ++k) answer(control, state, reference, robot);
+  CommandFrame command;
+  control.rest(reference, {}, state, command);
+  robot.q_m[0] += 1e-3;
+  EXPECT_EQ(answer(control, state, reference, robot).command.tau_m, first.command.tau_m);
+}
+
+TEST(JointControl, DrivesThatFollowPositionsGetTheReferenceAndNoTorques) {
+  Config config;
+  config.method = Method::kDrives;
+  ReferenceState reference = at_rest(home());
+  reference.dq_m.setConstant(0.1);
+  reference.ddq_m.setConstant(-0.2);
+  RobotState robot;
+  robot.q_m = home();
+  robot.q_m[2] -= 1e-3;
+  const Answer driven = first_answer(config, reference, robot);
+  EXPECT_EQ(driven.command.q_m, reference.q_m);
+  EXPECT_EQ(driven.command.dq_m, reference.dq_m);
+  EXPECT_EQ(driven.command.ddq_m, reference.ddq_m);
+  EXPECT_EQ(driven.command.tau_m.size(), 0);
+  EXPECT_EQ(driven.report.torque_share.size(), 0);
+  EXPECT_NEAR(driven.report.error[2], 1e-3, 1e-15);
+}
+
+TEST(JointControl, NeedsOneActuatorPerJoint) {
+  Config config = reference_config();
+  config.actuators.pop_back();
+  EXPECT_THROW(control_of(config), SetupError);
+  config.method = Method::kDrives;
+  EXPECT_NO_THROW(control_of(config));
+}
+
+TEST_P(BothMethods, StepsWithoutAllocating) {
+  JointControl control = control_of(reference_config(GetParam()));
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  const RobotState robot = following(reference, VectorM::Zero(6));
+  CommandFrame command;
+  TrackingReport report;
+  const AllocationCounter counter;
+  for (int k = 0; k < 10; ++k) control.step(reference, reference, robot, state, command, report);
+  control.rest(reference, answered(7, 2), state, command);
+  EXPECT_EQ(counter.count(), 0u);
+}
+
+}  // namespace
+}  // namespace hg::control
