@@ -32,11 +32,6 @@ void fill(const ReferenceState& reference, CommandFrame& command) noexcept {
   command.ddq_m = reference.ddq_m;
 }
 
-// share of the new value in a first-order low-pass
-double smoothing(double cutoff_Hz, double dt) noexcept {
-  return 1.0 - std::exp(-2.0 * std::numbers::pi * cutoff_Hz * dt);
-}
-
 }  // namespace
 
 JointControl::JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m,

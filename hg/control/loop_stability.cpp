@@ -76,9 +76,17 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, double late
   at_start.latency = latency / loop.config.dt;
   const VectorM at_rest = VectorM::Zero(n);
   const ReferenceState reference = {.q_m = q.tail(n), .dq_m = at_rest, .ddq_m = at_rest};
+  model::Chain chain = loop.chain;
+  chain.update(q, Eigen::VectorXd::Zero(q.size()));
   RobotState robot;
-  robot.q_m = robot.theta_m = q.tail(n);
-  robot.dq_m = robot.dtheta_m = robot.tau_m = at_rest;
+  robot.q_m = q.tail(n);
+  robot.tau_m = chain.c().tail(n);
+  robot.theta_m = robot.q_m;
+  for (int i = 0; i < n; ++i) {
+    robot.theta_m[i] +=
+        robot.tau_m[i] / loop.config.actuators[static_cast<std::size_t>(i)].stiffness;
+  }
+  robot.dq_m = robot.dtheta_m = at_rest;
   robot.q_p = q.head(loop.n_p);
   robot.dq_p = robot.ddq_p = VectorP::Zero(loop.n_p);
   const auto torque = [&](const RobotState& seen) -> Eigen::VectorXd {

@@ -33,7 +33,7 @@ void rotate(int p, int r, MatrixM& B, MatrixM& Q) noexcept {
 Poles poles_for(double latency) noexcept {
   const Poles fastest;
   Poles poles = fastest;
-  poles.w0 = std::min(fastest.w0, 0.3 / latency);
+  poles.w0 = std::min(fastest.w0, 0.24 / latency);
   const double share = poles.w0 / fastest.w0;
   poles.w1 *= share;
   poles.w_motor *= share;

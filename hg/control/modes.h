@@ -13,12 +13,12 @@ using MatrixM = MatrixUpTo<kMaxManipulator, kMaxManipulator>;
 
 /// Poles of the closed loop. rad/s; derived from the latency of the loop by poles_for().
 struct Poles {
-  double w0 = 200.0;       ///< of the shaped rotor on its spring
-  double w1 = 65.0;        ///< slow pair: how the link follows
+  double w0 = 160.0;       ///< of the shaped rotor on its spring
+  double w1 = 52.0;        ///< slow pair: how the link follows
   double z1 = 0.8;         ///< its damping ratio
   double z2 = 0.5;         ///< damping ratio of the fast pair, which keeps its natural frequency
   double w2_max = 300.0;   ///< stiffer modes are controlled from the motor side alone
-  double w_motor = 135.0;  ///< and have a double pole there
+  double w_motor = 100.0;  ///< and have a double pole there
 };
 
 /// The fastest poles that tolerate `latency` (s), which includes the lag of the current: w0 = 0.75

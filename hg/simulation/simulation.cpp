@@ -89,6 +89,7 @@ void Simulation::look(const HandTarget& target) noexcept {
 }
 
 void Simulation::sample() noexcept {
+  take_due_command();  // what arrives at the moment of the sample is at work
   sensors_.sample(truth_, frame_);
   frame_.answered_sequence = at_work_.sequence;
   frame_.dead_man =
