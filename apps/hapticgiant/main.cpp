@@ -11,6 +11,7 @@
 
 #include "apps/hapticgiant/bench_command.h"
 #include "apps/hapticgiant/check_command.h"
+#include "apps/hapticgiant/experiment_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/new_command.h"
@@ -80,6 +81,16 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
   command->add_option(
       "--device-address", run.device_address,
       "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one");
+  command->add_option("--plant", run.plant, "elastic: all that makes haptics hard; or ideal")
+      ->check(CLI::IsMember({"elastic", "ideal"}));
+  command->add_option("--sensors", run.sensors, "real: with all their errors; or ideal")
+      ->check(CLI::IsMember({"real", "ideal"}));
+  command->add_option("--hand", run.hand, "how hard the simulated hand is made")
+      ->check(CLI::IsMember({"relaxed", "normal", "stiff"}));
+  command->add_option("--seed", run.seed, "of noise and tremor: the same seed, the same run");
+  command->add_option("--step", run.step_s, "largest step of the simulated machine, s")
+      ->check(number_that("from 1e-5 to 2e-3",
+                          [](double value) { return value >= 1e-5 && value <= 2e-3; }));
   command->add_option("--user", run.user, "script file, mouse or none");
   command->add_option("--duration", run.duration_s, "seconds; default: until the script has played")
       ->check(number_that("more than 0", [](double value) { return value > 0.0; }));
@@ -232,6 +243,32 @@ void add_identify(CLI::App& app, hg::apps::IdentifyArguments& arguments, int& ex
       [&arguments, &exit_code] { exit_code = hg::apps::identify_payload(arguments); });
 }
 
+void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "experiment", "What the simulated device is like to hold, measured (docs/simulator.md).");
+  command->require_subcommand(1);
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant experiment free-space        force and vibration on a slow walk, what makes "
+      "them\n"
+      "  hapticgiant experiment stability-map --svg stability.svg\n"
+      "  hapticgiant experiment impedance --json impedance.json");
+  const auto add = [&](const char* name, const char* text,
+                       int (*run)(const hg::apps::ExperimentArguments&)) {
+    CLI::App* what = command->add_subcommand(name, text);
+    what->add_option("--json", arguments.json, "write all figures as JSON to this file");
+    what->callback([&arguments, &exit_code, run] { exit_code = run(arguments); });
+    return what;
+  };
+  add("free-space", "force and vibration at the handle of a free body, and what makes them",
+      hg::apps::experiment_free_space);
+  add("stability-map", "how stiff a hand may be for how light a body, before contact is unstable",
+      hg::apps::experiment_stability_map)
+      ->add_option("--svg", arguments.svg, "draw the map to this file");
+  add("impedance", "how far the handle gives way, by frequency and under a constant push",
+      hg::apps::experiment_impedance);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -248,6 +285,7 @@ int main(int argc, char** argv) {
   hg::apps::NewArguments created;
   hg::apps::HqpSolveArguments hqp;
   hg::apps::IdentifyArguments identified;
+  hg::apps::ExperimentArguments measured;
   hg::apps::BenchArguments compared;
   add_run(app, run, exit_code);
   add_simulate(app, simulate, exit_code);
@@ -255,6 +293,7 @@ int main(int argc, char** argv) {
   add_new(app, created, exit_code);
   add_hqp(app, hqp, exit_code);
   add_identify(app, identified, exit_code);
+  add_experiment(app, measured, exit_code);
   add_bench(app, compared, exit_code);
 
   try {

@@ -74,6 +74,23 @@ void choose(const char* option, const std::string& text, config::Choices<T> choi
   throw SetupError(fmt::format("{}: expected one of the names of --help, got '{}'", option, text));
 }
 
+// what --plant, --sensors, --hand, --seed and --step change
+void apply_to_simulation(const RunArguments& arguments, config::Scenario& scenario) {
+  config::Device& device = scenario.device;
+  if (arguments.plant == "ideal") device.control.method = control::Method::kDrives;
+  if (arguments.plant == "elastic" && device.control.actuators.empty()) {
+    throw SetupError("--plant elastic: needs 'actuators' in " + device.sources.front().name);
+  }
+  if (arguments.seed) device.simulation.seed = *arguments.seed;
+  device.simulation.sensors.seed = device.simulation.seed;
+  if (arguments.sensors == "ideal") device.simulation.sensors = simulation::ideal_sensors();
+  if (arguments.step_s) device.simulation.step_s = *arguments.step_s;
+  user::HandImpedance& hand = scenario.script.hand;
+  if (arguments.hand == "relaxed") hand = user::hand(user::HandPreset::kRelaxed);
+  if (arguments.hand == "normal") hand = user::hand(user::HandPreset::kNormal);
+  if (arguments.hand == "stiff") hand = user::hand(user::HandPreset::kStiff);
+}
+
 std::vector<std::string> joint_names(const rendering::DeviceModel& device, int first, int count) {
   std::vector<std::string> names;
   for (int i = first; i < first + count; ++i) {
@@ -117,6 +134,11 @@ std::string changes(const RunArguments& arguments) {
   line("--twin", arguments.twin);
   line("--user", arguments.user);
   if (arguments.rate_Hz) line("--rate-hz", fmt::format("{}", *arguments.rate_Hz));
+  line("--plant", arguments.plant);
+  line("--sensors", arguments.sensors);
+  line("--hand", arguments.hand);
+  if (arguments.seed) line("--seed", fmt::format("{}", *arguments.seed));
+  if (arguments.step_s) line("--step", fmt::format("{}", *arguments.step_s));
   line("--law", arguments.law);
   line("--bounds", arguments.bounds);
   return text;
@@ -145,6 +167,7 @@ config::Scenario make_scenario(const RunArguments& arguments) {
   choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
          scenario.device.rendering.bounds);
   scenario.device.rendering.slow_solve = arguments.slow_solve;
+  apply_to_simulation(arguments, scenario);
   return scenario;
 }
 

@@ -1,11 +1,18 @@
 #include "hg/assembly/assembly.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <random>
 #include <utility>
+#include <vector>
 
 #include "hg/assembly/start_posture.h"
+#include "hg/control/loop_stability.h"
+#include "hg/core/error.h"
 #include "hg/rendering/catalogue.h"
 
 namespace hg::assembly {
@@ -109,6 +116,48 @@ simulation::Simulation simulation_of(const config::Device& device, const Start& 
                                 std::move(person));
 }
 
+constexpr int kStabilityPostures = 32;
+constexpr int kLongestLatency = 8;  // periods
+
+// postures all over the limits of the joints; one without limits is looked at in one turn
+std::vector<Eigen::VectorXd> postures_of(const rendering::DeviceModel& device) {
+  std::mt19937 random(1);
+  std::vector<Eigen::VectorXd> postures;
+  for (int k = 0; k < kStabilityPostures; ++k) {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(device.n_p + device.n_m);
+    for (int i = 0; i < device.n_m; ++i) {
+      const limits::JointLimits& joint = device.joint_limits[static_cast<std::size_t>(i)];
+      const double lo = std::max(joint.q_min, -std::numbers::pi);
+      const double hi = std::min(joint.q_max, std::numbers::pi);
+      const double share = static_cast<double>(random()) / static_cast<double>(random.max());
+      q[device.n_p + i] = lo + (hi - lo) * share;
+    }
+    postures.push_back(std::move(q));
+  }
+  return postures;
+}
+
+// Elastic joints: until which latency the gains that follow from it are stable.
+control::Config checked_control(const config::Device& device) {
+  control::Config control = device.control;
+  if (control.method == control::Method::kDrives) return control;
+  const control::Loop loop = {.config = control,
+                              .filters = {.link_pole_Hz = device.estimation.link_pole_Hz,
+                                          .motor_low_pass_Hz = device.estimation.motor_low_pass_Hz},
+                              .chain = device.model.chain,
+                              .n_p = device.model.n_p,
+                              .n_m = device.model.n_m,
+                              .handle = device.model.handle};
+  const int periods =
+      control::longest_stable_latency(loop, postures_of(device.model), kLongestLatency);
+  control.latency_max = (periods + 0.25) * control.dt;  // what was measured is a mean
+  if (control.loop.latency > control.latency_max) {
+    throw SetupError(fmt::format("control.latency_s: the torque loop is stable up to {} s, got {}",
+                                 periods * control.dt, control.loop.latency));
+  }
+  return control;
+}
+
 }  // namespace
 
 cycle::Cycle make_cycle(const config::Scenario& scenario) {
@@ -116,7 +165,7 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
   return cycle::Cycle({.estimation = device.estimation,
                        .prepositioning = device.prepositioning,
                        .rendering = device.rendering,
-                       .control = device.control,
+                       .control = checked_control(device),
                        .monitor = device.monitor},
                       device.model, scenario.twin.model);
 }

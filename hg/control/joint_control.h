@@ -29,6 +29,7 @@ struct Config {
   Method method = Method::kDrives;
   std::vector<ActuatorModel> actuators;  ///< one per manipulator joint; empty with kDrives
   TorqueLoop loop;                       ///< its latency is measured, this one is expected
+  double latency_max = kInfinity;        ///< measured, with which the loop is known to be stable, s
   double integral_rate = 2.0;            ///< of kModal: error of the links goes with it, 1/s
   double integral_max = 0.01;            ///< of the link error, rad s: no wind-up beyond
   double flatness_Hz = 40.0;             ///< low-pass of derivatives of feedforward torques
@@ -60,6 +61,10 @@ class JointControl {
   /// Drives are off: the next step begins anew. Learns the latency from the answered command.
   void rest(const ReferenceState& reference, const SensorFrame& sensors, State& state,
             CommandFrame& command) const noexcept;
+  /// Whether the loop may be closed with the latency that was measured.
+  bool is_stable(const State& state) const noexcept {
+    return state.latency * config_.dt <= config_.latency_max;
+  }
   /// Fills the manipulator part of `command`: `now` is the reference at the time of the sample,
   /// `next` where the drives should be a period later.
   void step(const ReferenceState& now, const ReferenceState& next, const RobotState& robot,

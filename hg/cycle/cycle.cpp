@@ -97,6 +97,7 @@ void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
   const bool is_new = request != supervisor.last_request;
   const bool is_arming = is_new && request == ModeRequest::kArm && supervisor.mode == Mode::kReady;
   if (is_arming && !estimation_.is_tared(state_.estimation)) record.refusal = Refusal::kNotTared;
+  if (is_arming && !control_.is_stable(state_.control)) record.refusal = Refusal::kLatencyTooLong;
 
   const bool is_refused = record.refusal != Refusal::kNone;
   safety::advance(supervisor, is_refused ? ModeRequest::kNone : request, is_held(sensors),

@@ -90,6 +90,7 @@ Summary::Summary(LimitCatalogue catalogue, LimitPositions positions, double rate
 void Summary::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
   ++cycles_;
+  last_hash_ = record.state_hash;
   cycle_time_us_.add(sample.cycle_time_us);
   if (record.fault.code != FaultCode::kNone && fault_.code == FaultCode::kNone) {
     fault_ = record.fault;
@@ -172,6 +173,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["acceleration_change_per_cycle"]["mean"] = mean(sum_acceleration_change_, running_cycles_);
   json["acceleration_change_per_cycle"]["unit"] = "m/s^2";
   json["cycle_time_us"] = evaluation::to_json(cycle_time_us_.distribution());
+  json["state_hash"] = fmt::format("{:016x}", last_hash_);
   json["overruns"] = facts.overruns;
   json["dropped_samples"] = facts.dropped;
   json["allocations_in_loop"] = facts.allocations_in_loop;
@@ -281,6 +283,8 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("priority", priority_of(facts));
   line("allocations", fmt::format("{} in the loop", facts.allocations_in_loop));
   if (facts.link.sent > 0) line("link", link_text(facts.link));
+  line("state",
+       fmt::format("{:016x} (hash of the last cycle: the same run has the same)", last_hash_));
   line("recording", facts.recording.empty() ? "off" : facts.recording);
   if (facts.stop_timed_out) line("STOP", "timed out: drives off while the device was moving");
   if (fault_.code != FaultCode::kNone) {

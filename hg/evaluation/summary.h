@@ -101,6 +101,7 @@ class Summary {
   Histogram acceleration_change_;
   double sum_acceleration_change_ = 0.0;
   Eigen::Vector3d last_acceleration_ = Eigen::Vector3d::Zero();
+  std::uint64_t last_hash_ = 0;
   Fault fault_;
 };
 

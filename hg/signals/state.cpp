@@ -60,6 +60,8 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "none";
     case Refusal::kNotTared:
       return "not armed: this device needs a tare first";
+    case Refusal::kLatencyTooLong:
+      return "not armed: the torque loop is not stable at the latency that was measured";
   }
   return "unknown";
 }

@@ -103,7 +103,8 @@ std::string_view to_string(TareStatus status) noexcept;
 /// Why a request of the operator was not followed.
 enum class Refusal : std::uint8_t {
   kNone = 0,
-  kNotTared = 1,  ///< arming a device that needs a tare and has none
+  kNotTared = 1,        ///< arming a device that needs a tare and has none
+  kLatencyTooLong = 2,  ///< arming a torque loop that would not be stable
 };
 
 std::string_view to_string(Refusal refusal) noexcept;

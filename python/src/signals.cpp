@@ -37,7 +37,8 @@ void bind_modes(nb::module_& module) {
       .value("REFUSED_RUNNING", TareStatus::kRefusedRunning);
   nb::enum_<Refusal>(module, "Refusal", nb::is_arithmetic(), "Why a request was not followed.")
       .value("NONE", Refusal::kNone)
-      .value("NOT_TARED", Refusal::kNotTared);
+      .value("NOT_TARED", Refusal::kNotTared)
+      .value("LATENCY_TOO_LONG", Refusal::kLatencyTooLong);
   nb::enum_<SolverStatus>(module, "SolverStatus", nb::is_arithmetic())
       .value("NOT_RUN", SolverStatus::kNotRun)
       .value("SOLVED", SolverStatus::kSolved)
