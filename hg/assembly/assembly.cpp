@@ -116,8 +116,8 @@ simulation::Simulation simulation_of(const config::Device& device, const Start& 
                                 std::move(person));
 }
 
-constexpr int kStabilityPostures = 32;
-constexpr int kLongestLatency = 8;  // periods
+constexpr int kStabilityPostures = 32;  // as many as are within all limits
+constexpr int kLongestLatency = 8;      // periods
 
 // postures all over the limits of the joints; one without limits is looked at in one turn
 std::vector<Eigen::VectorXd> postures_of(const rendering::DeviceModel& device) {
@@ -132,7 +132,11 @@ std::vector<Eigen::VectorXd> postures_of(const rendering::DeviceModel& device) {
       const double share = static_cast<double>(random()) / static_cast<double>(random.max());
       q[device.n_p + i] = lo + (hi - lo) * share;
     }
-    postures.push_back(std::move(q));
+    const auto is_within = [&](const rendering::VirtualJoint& joint) {
+      const double sum = joint.weights.dot(q.tail(device.n_m));
+      return joint.limits.q_min <= sum && sum <= joint.limits.q_max;
+    };
+    if (std::ranges::all_of(device.virtual_joints, is_within)) postures.push_back(std::move(q));
   }
   return postures;
 }
