@@ -18,7 +18,7 @@ constexpr double kGrasp = 0.7;  // s, running from here on
 
 // the hand stays where the twin starts
 config::Scenario held(const std::string& name, double seconds) {
-  config::Scenario scenario = shipped(name);
+  config::Scenario scenario = law_alone(name);
   scenario.script.script.segments.clear();
   scenario.script.script.duration_s = seconds;
   scenario.duration_s = seconds;
@@ -77,7 +77,7 @@ TEST(ChangesInClosedLoop, ThatMakeNoSenseAreIgnoredAndSeen) {
 }
 
 TEST(TwinOutOfReach, IsRefusedWithAdvice) {
-  config::Scenario scenario = shipped("door");
+  config::Scenario scenario = law_alone("door");
   model::ChainOptions far = {.gravity = false};
   far.T_B_root.p = {30.0, 0.0, -0.8};
   scenario.twin.model.chain = model::Chain::from_urdf_file(scenario.twin.urdf, far);

@@ -22,7 +22,7 @@ double hinge_speed(const CycleRecord& record) { return record.twin.dq_a[kHinge];
 
 class Door : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { trace_ = std::make_unique<Trace>(shipped("door")); }
+  static void SetUpTestSuite() { trace_ = std::make_unique<Trace>(law_alone("door")); }
   static void TearDownTestSuite() { trace_.reset(); }
 
   static const Trace& trace() { return *trace_; }
@@ -105,7 +105,7 @@ TEST_F(Door, ReleasedItFallsShutNoFasterThanItsCloserAllows) {
 
 // without a closer nothing presses the hinge onto its bolt: rounding must not seem to open it
 TEST(DoorAtRest, ALockHoldsInEveryCycle) {
-  config::Scenario scenario = shipped("door");
+  config::Scenario scenario = law_alone("door");
   scenario.twin.model.dofs[0].preload = scenario.twin.model.dofs[0].stiffness = 0.0;
   scenario.script.script.segments.clear();
   // rad; locked but not quite there: both bounds come close to zero and differ by rounding
@@ -122,7 +122,7 @@ TEST(DoorAtRest, ALockHoldsInEveryCycle) {
 // the hand leans from 7.5 s on, with 35 N as it ships
 config::Scenario leaning(double force_N) {
   constexpr int kPush = user::kWrenchChannel + 2;  // along z of the handle, out of the leaf
-  config::Scenario scenario = shipped("door");
+  config::Scenario scenario = law_alone("door");
   for (user::Segment& segment : scenario.script.script.segments) {
     if (segment.channel == kPush && segment.start_s == 7.5) segment.value = -force_N;
   }

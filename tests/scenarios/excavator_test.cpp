@@ -19,7 +19,7 @@ double stick_speed(const CycleRecord& record) { return record.twin.dq_a[kStick];
 
 class Excavator : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { trace_ = std::make_unique<Trace>(shipped("excavator")); }
+  static void SetUpTestSuite() { trace_ = std::make_unique<Trace>(law_alone("excavator")); }
   static void TearDownTestSuite() { trace_.reset(); }
 
   static const Trace& trace() { return *trace_; }

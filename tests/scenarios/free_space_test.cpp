@@ -23,7 +23,7 @@ class FreeSpace : public ::testing::Test {
  protected:
   // without the tremor of the hand, whose force is not the device's
   static void SetUpTestSuite() {
-    config::Scenario scenario = shipped("free_space");
+    config::Scenario scenario = law_alone("free_space");
     scenario.script.hand.tremor_rms = 0.0;
     trace_ = std::make_unique<Trace>(scenario);
   }
@@ -147,8 +147,8 @@ TEST_F(FreeSpace, AtLimitsTheHandPushesMoreThanThreeTimesHarderThanElsewhere) {
 // part m6 and cos s parts of turning about the vertical; nothing else changes. Both runs are the
 // same to the last bit until the limit acts.
 TEST(FreeSpaceRoll, TheLimitOfM6ChangesNothingButTheTurnAboutTheHeading) {
-  const Trace with(shipped("free_space"), kGrasp + 29.5);
-  config::Scenario scenario = shipped("free_space");
+  const Trace with(law_alone("free_space"), kGrasp + 29.5);
+  config::Scenario scenario = law_alone("free_space");
   scenario.device.model.joint_limits[kM6].q_min = -kInfinity;
   const Trace without(scenario, kGrasp + 29.5);
   const double acts = with.first(kGrasp + 28.0, [&](const CycleRecord& record) {

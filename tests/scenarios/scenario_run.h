@@ -27,6 +27,20 @@ inline config::Scenario shipped(const std::string& name, double rate_Hz) {
   return apps::make_scenario(apps::RunArguments{.scenario = name, .rate_Hz = rate_Hz});
 }
 
+/// Leaves the law alone: drives follow perfectly, sensors have no errors. Only the gantry lags, and
+/// the estimation filters the wrench.
+inline config::Scenario with_ideal_device(config::Scenario scenario) {
+  scenario.device.control.method = control::Method::kDrives;
+  scenario.device.simulation.sensors = simulation::ideal_sensors();
+  return scenario;
+}
+inline config::Scenario law_alone(const std::string& name) {
+  return with_ideal_device(shipped(name));
+}
+inline config::Scenario law_alone(const std::string& name, double rate_Hz) {
+  return with_ideal_device(shipped(name, rate_Hz));
+}
+
 /// What must hold in every cycle of every run, collected over the cycles that render.
 struct Quality {
   int cycles = 0;
@@ -75,6 +89,7 @@ class ScenarioRun {
     const double end = std::min(seconds, assembly::planned_duration_s(scenario_));
     do {
       device_->read(sample->sensors);
+      if (device_->truth() != nullptr) sample->truth = *device_->truth();
       sample->operator_input.change =
           changes_.due(static_cast<double>(played_++) / scenario_.device.rate_Hz);
       {

@@ -26,7 +26,7 @@ void set_known_lag(config::Scenario& scenario, double lag_s) {
 
 // One thing varies at a time: a tremor decides which rows collide for a cycle, and so how hard.
 config::Scenario calm(const std::string& name) {
-  config::Scenario scenario = shipped(name, 500.0);
+  config::Scenario scenario = law_alone(name, 500.0);
   scenario.script.hand.tremor_rms = 0.0;
   return scenario;
 }
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped, EveryScenario,
                          [](const auto& test) { return std::string(test.param); });
 
 TEST_P(EveryScenario, RunsSmoothlyAndSoundlyAtItsOwnRate) {
-  ScenarioRun run(GetParam());
+  ScenarioRun run(law_alone(GetParam()));
   run.play();
   expect_sound(run);
   EXPECT_LT(run.quality().changes, kChangesPerCycleMax * run.quality().cycles);
@@ -48,7 +48,7 @@ TEST_P(EveryScenario, RunsSmoothlyAndSoundlyAtItsOwnRate) {
 TEST_P(EveryScenario, ShowsTheSameEventsAtHalfAndTwiceTheRate) {
   for (const double rate_Hz : {500.0, 2000.0}) {
     SCOPED_TRACE(rate_Hz);
-    ScenarioRun run(shipped(GetParam(), rate_Hz));
+    ScenarioRun run(law_alone(GetParam(), rate_Hz));
     run.play();
     expect_sound(run);
   }
