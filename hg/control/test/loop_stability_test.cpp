@@ -15,10 +15,17 @@ Loop reference_loop(Method method = Method::kModal) {
           .handle = arm().frame("handle")};
 }
 
-std::vector<Eigen::VectorXd> postures() {
+std::vector<Eigen::VectorXd> usual_postures() {
   return {posture(home()), posture(joints(0.0, 0.4, -0.3, 0.6, 0.4, 0.0)),  // stretched
           posture(joints(0.0, 2.6, -1.5, 2.2, 0.5, 0.5)),                   // folded
           posture(joints(0.3, 1.2, 0.8, 1.0, -0.5, 1.0))};
+}
+
+// with the worst one that was found: forearm and hand steeply down
+std::vector<Eigen::VectorXd> postures() {
+  std::vector<Eigen::VectorXd> all = usual_postures();
+  all.push_back(posture(joints(0.0, 1.57, -0.67, 0.4, 0.6, 0.0)));
+  return all;
 }
 
 double worst_radius(const Loop& loop, double latency) {
@@ -29,8 +36,8 @@ double worst_radius(const Loop& loop, double latency) {
   return worst;
 }
 
-// the slowest pole there is comes from w1: errors die out as fast as it says
-TEST(LoopStability, AtOneMillisecondThePolesAreWhereTheyWereAskedFor) {
+// not faster than asked for, and not much slower: they die out within 50 ms
+TEST(LoopStability, AtOneMillisecondErrorsDieOutAboutAsFastAsThePolesSay) {
   const double radius = worst_radius(reference_loop(), 1e-3);
   EXPECT_LT(radius, std::exp(-20.0 * 1e-3));
   EXPECT_GT(radius, std::exp(-65.0 * 1e-3));
@@ -50,7 +57,7 @@ double worst_radius_in_reality(double believed, double latency, double rotor) {
   reality.loop.latency = latency;
   for (ActuatorModel& actuator : reality.actuators) actuator.rotor_inertia *= rotor;
   double worst = 0.0;
-  for (const Eigen::VectorXd& q : postures()) {
+  for (const Eigen::VectorXd& q : usual_postures()) {
     worst = std::max(worst, spectral_radius(loop, q, believed, reality));
   }
   return worst;

@@ -72,7 +72,15 @@ TEST(Poles, AStiffModeIsLedByItsMotorAlone) {
                      poles.w_motor * poles.w_motor * (mu + 1.0 / (poles.w0 * poles.w0)));
     EXPECT_DOUBLE_EQ(gains.motor_rate * poles.w_motor, 2.0 * gains.motor);
     const Eigen::Vector4cd values = closed_loop(poles, gains, mu).eigenvalues();
-    EXPECT_LT(values.real().maxCoeff(), -0.6 * poles.w_motor);
+    EXPECT_LT(values.real().maxCoeff(), 0.0);  // its own oscillation keeps what damping it has
+    int slow = 0;
+    for (const Complex& value : values) {
+      if (std::abs(value) > 2.0 * poles.w_motor) continue;
+      ++slow;
+      EXPECT_NEAR(std::abs(value), poles.w_motor, 0.1 * poles.w_motor);
+      EXPECT_LT(value.real(), -0.9 * poles.w_motor);
+    }
+    EXPECT_EQ(slow, 2);
   }
 }
 
@@ -83,24 +91,26 @@ TEST(Poles, ModesAreStiffFromTheirOwnFrequencyOnNotTheLockedOne) {
   EXPECT_EQ(gains_of(poles, std::pow(1.001 * w_locked, -2)).link_rate, 0.0);
 }
 
-// [C] 1, "Latency decides w0": w0 = min(200, 0.3 / total) stays below the largest stable w0
+// [C] 1, "Latency decides w0": at most 0.75 of the largest stable w0, and not much less
 TEST(Poles, FollowTheTableOfLatencies) {
   struct Row {
     double latency_s, largest_w0;  // latency without the lag of the current
   };
+  double last_w0 = kInfinity;
   for (const Row& row :
        {Row{0.5e-3, 260.0}, {1e-3, 260.0}, {1.5e-3, 200.0}, {2e-3, 160.0}, {3e-3, 120.0}}) {
     SCOPED_TRACE(row.latency_s);
     const Poles poles = poles_for(row.latency_s + 0.5e-3);
-    EXPECT_LE(poles.w0, 0.78 * row.largest_w0);
-    EXPECT_DOUBLE_EQ(poles.w0, std::min(200.0, 0.3 / (row.latency_s + 0.5e-3)));
-    EXPECT_NEAR(poles.w1 / poles.w0, 0.325, 1e-12);
-    EXPECT_NEAR(poles.w_motor / poles.w0, 0.6, 1e-12);
+    EXPECT_LE(poles.w0, 0.75 * row.largest_w0);
+    EXPECT_GE(poles.w0, 0.55 * row.largest_w0);
+    EXPECT_LE(poles.w0, last_w0);
+    EXPECT_NEAR(poles.w1 / poles.w0, Poles{}.w1 / Poles{}.w0, 1e-12);
+    EXPECT_NEAR(poles.w_motor / poles.w0, Poles{}.w_motor / Poles{}.w0, 1e-12);
+    last_w0 = poles.w0;
   }
-  EXPECT_EQ(poles_for(1.5e-3).w0, 200.0);
-  EXPECT_EQ(poles_for(1.5e-3).w1, 65.0);
-  EXPECT_EQ(poles_for(1.5e-3).w_motor, 120.0);
-  EXPECT_EQ(poles_for(0.2e-3).w0, 200.0);  // no faster than the defaults
+  EXPECT_EQ(poles_for(1.5e-3).w0, Poles{}.w0);
+  EXPECT_EQ(poles_for(0.2e-3).w0, Poles{}.w0);  // no faster than the defaults
+  EXPECT_LT(poles_for(2.5e-3).w0, Poles{}.w0);
 }
 
 MatrixM scaled_mass(const VectorM& q_m) {
@@ -178,7 +188,8 @@ TEST(Modes, AreTheLockedFrequenciesOfTheHandbook) {
   Eigen::VectorXd frequencies = modes.mu().cwiseSqrt().cwiseInverse() / (2.0 * std::numbers::pi);
   std::sort(frequencies.begin(), frequencies.end());
   const VectorM handbook = joints(4.1, 9.0, 11.4, 12.4, 77.0, 252.0);  // 1.4
-  for (int i = 0; i < 6; ++i) EXPECT_NEAR(frequencies[i], handbook[i], 0.01 * handbook[i]);
+  const VectorM digits = joints(0.05, 0.05, 0.05, 0.05, 0.5, 0.5);
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(frequencies[i], handbook[i], digits[i]);
 }
 
 TEST(Modes, FollowWithoutAllocating) {
