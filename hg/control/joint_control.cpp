@@ -165,12 +165,19 @@ void JointControl::follow_torque(const VectorM& tau, State& state) const noexcep
   }
 }
 
+// While a motor has no more to give, what has been integrated may only shrink.
+void JointControl::integrate(const VectorM& error, State& state) const noexcept {
+  for (int i = 0; i < n_m_; ++i) {
+    double& integral = state.integral[i];
+    if (state.is_saturated && error[i] * integral >= 0.0) continue;
+    integral =
+        std::clamp(integral + config_.dt * error[i], -config_.integral_max, config_.integral_max);
+  }
+}
+
 VectorM JointControl::modal_torque(const Errors& errors, const RobotState& robot,
                                    const Feedforward& forward, State& state) const noexcept {
-  if (!state.is_saturated) {
-    state.integral += config_.dt * errors.q;
-    state.integral = state.integral.cwiseMax(-config_.integral_max).cwiseMin(config_.integral_max);
-  }
+  integrate(errors.q, state);
   state.modes.follow(scaled_mass());
   const auto in_modes = [&](const VectorM& x) noexcept -> VectorM {
     const VectorM scaled = sqrt_K_.cwiseProduct(x);

@@ -31,7 +31,7 @@ struct Config {
   TorqueLoop loop;                       ///< its latency is measured, this one is expected
   double latency_max = kInfinity;        ///< measured, with which the loop is known to be stable, s
   double integral_rate = 2.0;            ///< of kModal: error of the links goes with it, 1/s
-  double integral_max = 0.01;            ///< of the link error, rad s: no wind-up beyond
+  double integral_max = 5e-4;            ///< of the link error, rad s: no wind-up beyond
   double flatness_Hz = 40.0;             ///< low-pass of derivatives of feedforward torques
   double error_max = kInfinity;          ///< by which the reference may be ahead, rad or m
   double friction_share = 0.8;           ///< of the Coulomb friction that is fed forward, 0..1
@@ -84,6 +84,7 @@ class JointControl {
   void begin(const ReferenceState& reference, const RobotState& robot, State& state) noexcept;
   Feedforward feedforward(const ReferenceState& reference, const RobotState& robot,
                           State& state) noexcept;
+  void integrate(const VectorM& error, State& state) const noexcept;
   void follow_torque(const VectorM& tau, State& state) const noexcept;
   VectorM modal_torque(const Errors& errors, const RobotState& robot, const Feedforward& forward,
                        State& state) const noexcept;

@@ -13,16 +13,17 @@ using MatrixM = MatrixUpTo<kMaxManipulator, kMaxManipulator>;
 
 /// Poles of the closed loop. rad/s; derived from the latency of the loop by poles_for().
 struct Poles {
-  double w0 = 160.0;       ///< of the shaped rotor on its spring
-  double w1 = 52.0;        ///< slow pair: how the link follows
-  double z1 = 0.8;         ///< its damping ratio
-  double z2 = 0.5;         ///< damping ratio of the fast pair, which keeps its natural frequency
-  double w2_max = 300.0;   ///< stiffer modes are controlled from the motor side alone
-  double w_motor = 100.0;  ///< and have a double pole there
+  double w0 = 150.0;      ///< of the shaped rotor on its spring
+  double w1 = 49.0;       ///< slow pair: how the link follows
+  double z1 = 0.8;        ///< its damping ratio
+  double z2 = 0.5;        ///< damping ratio of the fast pair, which keeps its natural frequency
+  double w2_max = 300.0;  ///< stiffer modes are controlled from the motor side alone
+  double w_motor = 90.0;  ///< and have a double pole there
 };
 
-/// The fastest poles that tolerate `latency` (s), which includes the lag of the current: w0 = 0.75
-/// of what is just stable, [C] 1 "Latency decides w0"; the others scale along.
+/// The fastest poles that tolerate `latency` (s), which includes the lag of the current; w0 = 0.24
+/// / latency up to its default, the others scale along. [C] 1 has 0.3 and 200 rad/s, which rests on
+/// friction: without it 16 of 200 random postures are unstable (loop_stability.h).
 Poles poles_for(double latency) noexcept;
 
 /// v = motor (theta_r - theta) + motor_rate (theta_r' - theta') + link (q_r - q) + link_rate (..)
