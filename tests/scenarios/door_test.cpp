@@ -79,7 +79,8 @@ TEST_F(Door, PressedWhileTheHandLeansItPopsOpen) {
   ASSERT_GT(unlocks, leans);
   const double speed_before = std::abs(hinge_speed(trace().record(unlocks)));
   EXPECT_LT(speed_before, 1e-3);
-  EXPECT_GT(trace().largest(unlocks, unlocks + 0.1, hinge_speed), 0.3);
+  // half of what the acceleration rating of the hinge, 3 rad/s^2, gives in that time
+  EXPECT_GT(trace().largest(unlocks, unlocks + 0.1, hinge_speed), 0.15);
   EXPECT_LT(trace().time_of("unlocked") - unlocks, 0.15);
 }
 
@@ -129,10 +130,10 @@ config::Scenario leaning(double force_N) {
   return scenario;
 }
 
-// The hinge's own acceleration rating ends that: 6 rad/s^2 is reached with 24 N.
+// The hinge's own acceleration rating ends that: 3 rad/s^2 is reached with 12 N.
 TEST(DoorLeaning, TheHarderTheHandLeansTheFasterTheDoorPops) {
   double last_speed = 0.0;
-  for (const double force_N : {10.0, 15.0, 20.0, 40.0}) {
+  for (const double force_N : {5.0, 7.5, 10.0, 20.0}) {
     SCOPED_TRACE(force_N);
     const Trace trace(leaning(force_N));
     expect_sound(trace.run());
@@ -142,7 +143,7 @@ TEST(DoorLeaning, TheHarderTheHandLeansTheFasterTheDoorPops) {
     EXPECT_LT(std::abs(hinge(trace.record(unlocks))), kHeld);
     const double speed = hinge_speed(trace.record(unlocks + 0.1));
     EXPECT_GT(speed, last_speed + 0.02);
-    EXPECT_LE(speed, 0.1 * 6.0);
+    EXPECT_LE(speed, 0.1 * 3.0);
     last_speed = speed;
   }
 }

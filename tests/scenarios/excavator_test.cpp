@@ -87,7 +87,7 @@ TEST_F(Excavator, AfterTheHitTheOtherJointsObeyTheReducedModel) {
   model::Chain chain = twin.chain;
   int compared = 0;
   double most_different = 0.0;
-  for (double t = trace().time_of("t_a"); t < trace().time_of("t_a") + 0.4; t += trace().period()) {
+  for (double t = trace().time_of("t_a"); t < trace().time_of("t_a") + 1.0; t += trace().period()) {
     const CycleRecord& record = trace().record(t);
     if (!only_limit(record, kBucket) || std::abs(record.twin.dq_a[kBucket]) > 1e-6) continue;
     chain.update(record.twin.q_a, record.twin.dq_a);
