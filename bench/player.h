@@ -1,46 +1,14 @@
-/// Plays a scenario on the simulated device as fast as it can, without page and recording.
-///
-/// Deterministic: cycle k is the same in every play of the same scenario.
+/// The player of experiments, for measurements of laws.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-
 #include "hg/config/scenario.h"
-#include "hg/cycle/cycle.h"
-#include "hg/device/simulated_device.h"
-#include "hg/signals/state.h"
+#include "hg/experiments/player.h"
 
 namespace hg::bench {
 
+using experiments::Player;
+
 /// The scenario with the law and the bounds put into its device.
 config::Scenario with_law(config::Scenario scenario, rendering::Law law, rendering::Bounds bounds);
-
-class Player {
- public:
-  /// `scenario` needs a planned end (assembly::planned_duration_s) and must outlive the player.
-  explicit Player(const config::Scenario& scenario);
-
-  /// One period is begin(), run(), end(); run() is Cycle::step and nothing else.
-  void begin();
-  void run() noexcept {
-    cycle_.step(sample_->sensors, sample_->operator_input, sample_->command, sample_->record);
-  }
-  /// False when this was the last period: the plan is over, or a fault stopped the device.
-  bool end();
-
-  const CycleRecord& record() const noexcept { return sample_->record; }
-  bool is_running() const noexcept { return record().mode == Mode::kRunning; }
-  cycle::Cycle& cycle() noexcept { return cycle_; }
-
- private:
-  const config::Scenario& scenario_;
-  cycle::Cycle cycle_;
-  device::SimulatedDevice device_;
-  TimedChanges changes_;
-  double end_s_;
-  std::uint64_t played_ = 0;
-  std::unique_ptr<Sample> sample_ = std::make_unique<Sample>();
-};
 
 }  // namespace hg::bench

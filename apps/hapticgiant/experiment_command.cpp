@@ -1,0 +1,76 @@
+#include "apps/hapticgiant/experiment_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/status_line.h"
+#include "apps/hapticgiant/version.h"
+#include "hg/config/scenario.h"
+#include "hg/experiments/free_space.h"
+#include "hg/experiments/impedance.h"
+#include "hg/experiments/stability_map.h"
+
+namespace hg::apps {
+namespace {
+
+// "12 of 180" in place, for those who watch
+experiments::Progress progress_of(const std::string& what) {
+  if (isatty(STDERR_FILENO) == 0) return {};
+  return [what](std::size_t done, std::size_t total) {
+    fmt::print(stderr, "{}: {} of {}{}", what, done, total, done < total ? " \r" : "\r\033[K");
+  };
+}
+
+config::Scenario walk_scenario() { return config::load_scenario(find_scenario("walk")); }
+
+void begin(const ExperimentArguments& arguments, const std::string& what) {
+  check_writable(arguments.json);
+  check_writable(arguments.svg);
+  print_out(fmt::format("HapticGiant {}  {}\n", kVersion, what));
+}
+
+void write_json(const ExperimentArguments& arguments, nlohmann::ordered_json json) {
+  if (arguments.json.empty()) return;
+  json["version"] = kVersion;
+  write_output(arguments.json, json.dump(2) + "\n");
+}
+
+}  // namespace
+
+int experiment_free_space(const ExperimentArguments& arguments) {
+  begin(arguments, "Free space: a hand walks a free body round a circle of 0.7 m at 0.25 m/s\n");
+  const auto runs = experiments::measure_free_space(walk_scenario(), progress_of("walks"));
+  print_out(experiments::to_text(runs));
+  write_json(arguments, experiments::to_json(runs));
+  return 0;
+}
+
+int experiment_stability_map(const ExperimentArguments& arguments) {
+  const experiments::StabilityConfig config;
+  begin(arguments,
+        fmt::format("Stability: a kick of {:g} N for {:g} ms on a free body held by a hand\n\n",
+                    config.kick.force, 1e3 * config.kick.duration));
+  const experiments::StabilityMap map =
+      experiments::make_stability_map(walk_scenario(), config, progress_of("kicks"));
+  print_out(experiments::to_text(map));
+  write_json(arguments, experiments::to_json(map));
+  if (!arguments.svg.empty()) write_output(arguments.svg, experiments::to_svg(map));
+  return 0;
+}
+
+int experiment_impedance(const ExperimentArguments& arguments) {
+  const experiments::ImpedanceConfig config;
+  begin(arguments,
+        fmt::format("Impedance at the handle, pushed to and fro with {:g} N\n\n", config.force));
+  const experiments::ImpedanceReport report =
+      experiments::measure_impedance(walk_scenario(), config, progress_of("pushes"));
+  print_out(experiments::to_text(report));
+  write_json(arguments, experiments::to_json(report));
+  return 0;
+}
+
+}  // namespace hg::apps

@@ -1,0 +1,49 @@
+#include "hg/experiments/changes.h"
+
+#include "hg/core/error.h"
+
+namespace hg::experiments {
+namespace {
+
+void require_free_body(const config::Scenario& scenario) {
+  const auto& joints = scenario.twin.model.chain.joints();
+  if (joints.size() != 1 || joints.front().type != model::JointType::kFloating) {
+    throw SetupError("experiment: needs a free body as the twin, got '" + scenario.twin.name + "'");
+  }
+}
+
+// inertia of the body about its origin, in its own axes
+Eigen::MatrixXd inertia_of(const config::Scenario& scenario) {
+  model::Chain chain = scenario.twin.model.chain;
+  const VectorA at_rest = VectorA::Zero(chain.nv());
+  chain.update(scenario.twin.model.q_start, at_rest);
+  return chain.M();
+}
+
+}  // namespace
+
+void set_free_twin(config::Scenario& scenario, const FreeTwin& twin) {
+  require_free_body(scenario);
+  rendering::TwinModel& model = scenario.twin.model;
+  const model::FreeBody body = {.mass = twin.mass,
+                                .inertia = inertia_of(scenario).bottomRightCorner<3, 3>()};
+  model.chain = model::Chain::free_body(body, {.T_B_root = scenario.twin.T_B_root,
+                                               .gravity = model.chain.default_loads().gravity > 0});
+  model.end_effector = model.chain.frame("handle");
+  model.mass_scale = 1.0;
+  for (std::size_t i = 0; i < 3; ++i) model.dofs[i].damping = twin.damping;
+}
+
+FreeTwin free_twin_of(const config::Scenario& scenario) {
+  require_free_body(scenario);
+  const rendering::TwinModel& model = scenario.twin.model;
+  return {.mass = model.mass_scale * inertia_of(scenario)(0, 0), .damping = model.dofs[0].damping};
+}
+
+void take_friction(control::Config& control) {
+  for (ActuatorModel& actuator : control.actuators) {
+    actuator.coulomb_friction = actuator.viscous_friction = actuator.load_friction = 0.0;
+  }
+}
+
+}  // namespace hg::experiments

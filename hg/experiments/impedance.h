@@ -1,0 +1,70 @@
+/// The impedance seen at the handle: how far the device gives way where the twin does not, and how
+/// closely it renders a twin that does, by frequency. Source: [C] 1.
+///
+/// A person pushes along one axis of H to and fro, with smooth ramps; amplitudes at the frequency
+/// itself come from the true force and the true velocity of the handle.
+#pragma once
+
+#include <complex>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "hg/config/scenario.h"
+#include "hg/experiments/workers.h"
+#include "hg/signals/fault.h"
+
+namespace hg::experiments {
+
+struct ImpedanceConfig {
+  std::vector<double> frequency_Hz{0.5, 1, 2, 3, 5, 8, 12, 20, 30};  ///< [C] 1 goes to 30
+  double force = 10.0;         ///< amplitude, N, [A]: small, but beyond the friction of the joints
+  double static_force = 50.0;  ///< N; [C] 1
+  double ramp = 0.05;          ///< of the static force, s, [A]: a step without shock
+  double held = 1.5;           ///< that it is held, s; [C] 1 looks at 0.5 to 1 s
+  double pause = 1.0;          ///< before everything, s
+  int periods = 6;             ///< of each frequency that count; at least `least` long
+  double least = 1.0;          ///< s
+  double heavy = 1e4;          ///< mass of a twin that gives way to nobody, kg
+  double heavy_damping = 1e5;  ///< Ns/m
+  Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
+};
+
+/// Which part of the line answers the push.
+struct ImpedanceCase {
+  std::string name;
+  bool is_modal = true;  ///< otherwise motor PD
+  bool has_friction = true;
+  bool is_blind = false;  ///< the force/torque sensor shows nothing: no wrench feedforward
+  bool is_rigid = true;   ///< the twin gives way to nobody; otherwise it is the scenario's
+};
+
+struct ImpedanceRun {
+  std::string name;
+  bool is_rigid = true;
+  char axis = 'x';  ///< of H
+  /// Velocity over force at ImpedanceConfig::frequency_Hz, m/(Ns).
+  std::vector<std::complex<double>> mobility;
+  double static_peak = 0.0;  ///< largest deflection under the static force, m; rigid twin only
+  double static_end = 0.0;   ///< deflection at its end
+  FaultCode fault = FaultCode::kNone;
+};
+
+struct ImpedanceReport {
+  ImpedanceConfig config;
+  double mass = 0.0, damping = 0.0;  ///< of the scenario's twin
+  std::vector<ImpedanceRun> runs;
+};
+
+/// `axis` 0..2 of H.
+ImpedanceRun push(const config::Scenario& scenario, const ImpedanceConfig& config,
+                  const ImpedanceCase& what, int axis);
+
+/// All cases and axes, on all cores. Throws SetupError when the twin is not a free body.
+ImpedanceReport measure_impedance(const config::Scenario& scenario, const ImpedanceConfig& config,
+                                  const Progress& progress);
+
+std::string to_text(const ImpedanceReport& report);
+nlohmann::ordered_json to_json(const ImpedanceReport& report);
+
+}  // namespace hg::experiments

@@ -1,0 +1,48 @@
+/// Plays a scenario on the simulated device as fast as it can, without page and recording.
+///
+/// Deterministic: cycle k is the same in every play of the same scenario. One player serves one
+/// thread; several may play the same scenario at once.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "hg/config/scenario.h"
+#include "hg/cycle/cycle.h"
+#include "hg/device/simulated_device.h"
+#include "hg/signals/state.h"
+
+namespace hg::experiments {
+
+class Player {
+ public:
+  /// `scenario` needs a planned end (assembly::planned_duration_s) and must outlive the player.
+  explicit Player(const config::Scenario& scenario);
+
+  /// One period is begin(), run(), end(); run() is Cycle::step and nothing else.
+  void begin();
+  void run() noexcept {
+    cycle_.step(sample_->sensors, sample_->operator_input, sample_->command, sample_->record);
+  }
+  /// False when this was the last period: the plan is over, or a fault stopped the device.
+  bool end();
+
+  const CycleRecord& record() const noexcept { return sample_->record; }
+  /// Between begin() and end(): at the time of the sensors.
+  const Truth& truth() const noexcept { return *device_.truth(); }
+  /// For disturbances: what is changed between run() and end() is what the device gets.
+  CommandFrame& command() noexcept { return sample_->command; }
+  bool is_running() const noexcept { return record().mode == Mode::kRunning; }
+  cycle::Cycle& cycle() noexcept { return cycle_; }
+
+ private:
+  const config::Scenario& scenario_;
+  cycle::Cycle cycle_;
+  device::SimulatedDevice device_;
+  TimedChanges changes_;
+  double end_s_;
+  std::uint64_t played_ = 0;
+  std::unique_ptr<Sample> sample_ = std::make_unique<Sample>();
+};
+
+}  // namespace hg::experiments

@@ -1,0 +1,84 @@
+/// Where contact becomes unstable: a hand of a certain stiffness holds a free body of a certain
+/// mass, gets a kick, and either calms down or does not. Source: [C] 3.
+#pragma once
+
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "hg/config/scenario.h"
+#include "hg/experiments/motion_analysis.h"
+#include "hg/experiments/workers.h"
+#include "hg/user/hand.h"
+
+namespace hg::experiments {
+
+/// An arm that is a mass on a spring, without muscle limits and tremor. Its rotations are those of
+/// the normal hand.
+struct SpringHand {
+  double mass = 1.5;           ///< of the arm, kg; [C] 3
+  double damping_ratio = 0.2;  ///< of the arm on its spring; [C] 3
+  double grip = 1e4;           ///< N/m; [C] 3
+  double grip_ratio = 0.2;     ///< damping ratio of the arm on the grip, [A]: as on its spring
+};
+user::HandImpedance spring_hand(const SpringHand& hand, double stiffness);
+
+struct Kick {
+  double force = 15.0;     ///< N, along the diagonal of the axes of H; [C] 3, direction [A]
+  double duration = 0.01;  ///< s; [C] 3
+  double settling = 1.0;   ///< from the grasp to the kick, s
+  double watched = 4.0;    ///< after the kick, s; see CalmRule
+};
+
+struct StabilityConfig {
+  std::vector<double> stiffness{100, 300, 1000, 2000, 3000, 6000};  ///< N/m, of spring hands; [C] 3
+  std::vector<double> mass{0.5, 1, 1.5, 2, 3, 4, 6, 10, 20};        ///< of the twin, kg; [C] 3
+  std::vector<double> damping{4, 20};                               ///< of the twin, Ns/m; [C] 3
+  SpringHand hand;
+  Kick kick;
+  CalmRule calm;
+  double least_mass = 0.1;                     ///< no lighter twin is tried, kg
+  double mass_tolerance = 0.05;                ///< of the smallest stable mass, relative
+  Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
+};
+
+/// What became of one kick.
+struct KickOutcome {
+  Verdict verdict = Verdict::kStable;
+  double last_speed = 0.0;  ///< largest of the handle in the last window, m/s
+  bool was_lost = false;    ///< the reference was not followed in the last window, or a fault came
+  FaultCode fault = FaultCode::kNone;
+};
+
+/// One hand with one damping of the twin.
+struct StabilityRow {
+  std::string hand;
+  double damping = 0.0;
+  std::vector<KickOutcome> outcomes;  ///< one per mass of the configuration
+  /// Smallest mass that is stable, from below the first stable one of the row; infinity: there is
+  /// none. Heavier ones may be unstable again.
+  double stable_from = 0.0;
+};
+
+struct StabilityMap {
+  StabilityConfig config;
+  std::vector<StabilityRow> rows;  ///< by damping; spring hands, then relaxed, normal, stiff
+  std::string device;              ///< its name and its control
+};
+
+/// `scenario` gives device and free twin; its hand is replaced. Where the handle does not calm down
+/// the kick is repeated without friction, to see what goes on.
+KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config,
+                 const user::HandImpedance& hand, double mass, double damping);
+
+/// On all cores. Throws SetupError when the twin of the scenario is not a free body.
+StabilityMap make_stability_map(const config::Scenario& scenario, const StabilityConfig& config,
+                                const Progress& progress);
+
+/// As in [C] 3: one letter per cell.
+std::string to_text(const StabilityMap& map);
+nlohmann::ordered_json to_json(const StabilityMap& map);
+std::string to_svg(const StabilityMap& map);
+
+}  // namespace hg::experiments
