@@ -387,6 +387,11 @@ class BadInput(TemporaryFolder):
                                    (["rum"], "rum: no such subcommand of hapticgiant, did you mean "
                                              "'run'?"),
                                    (["hqp", "slove", "x"], "did you mean 'solve'?"),
+                                   (["experiment"], "experiment: expected a subcommand: free-space"),
+                                   (["experiment", "stability"], "did you mean 'stability-map'?"),
+                                   (["experiment", "free-space", "--svg", "x"], "--svg"),
+                                   (["experiment", "impedance", "--json", "/no/such/x"],
+                                    "/no/such"),
                                    (["new"], "new: expected a subcommand: device, twin"),
                                    ([], "hapticgiant: expected a subcommand: run, ")):
             code, _, err = run(*arguments)
