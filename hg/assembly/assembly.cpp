@@ -156,8 +156,10 @@ control::Config checked_control(const config::Device& device) {
       control::longest_stable_latency(loop, postures_of(device.model), kLongestLatency);
   control.latency_max = (periods + 0.25) * control.dt;  // what was measured is a mean
   if (control.loop.latency > control.latency_max) {
-    throw SetupError(fmt::format("control.latency_s: the torque loop is stable up to {} s, got {}",
-                                 periods * control.dt, control.loop.latency));
+    throw SetupError(fmt::format(
+        "control.latency_s: at {:g} Hz the torque loop is stable up to {:g} s, got {:g}: raise the "
+        "rate, or run with --plant ideal",
+        device.rate_Hz, periods * control.dt, control.loop.latency));
   }
   return control;
 }

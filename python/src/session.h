@@ -31,6 +31,7 @@ class Session {
     const ParameterChange due = changes_.due(static_cast<double>(cycles_++) / rate_Hz_);
     if (due.parameter != Parameter::kNone) now.operator_input.change = due;
     device_.read(now.sensors);
+    now.truth = *device_.truth();
     cycle_.step(now.sensors, now.operator_input, now.command, now.record);
     device_.write(now.command);
   }

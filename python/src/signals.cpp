@@ -135,6 +135,8 @@ void bind_signals(nb::module_& module) {
   bind_fields<RobotState>(module, "RobotState", "What estimation knows about the device.");
   bind_fields<ReferenceState>(module, "ReferenceState", "Reference of the manipulator.");
   bind_fields<TwinState>(module, "TwinState", "State of the twin.");
+  bind_fields<TrackingReport>(module, "TrackingReport", "How well the device follows.");
+  bind_fields<Truth>(module, "Truth", "What is really the case; only a simulation knows.");
   bind_fields<Budget>(module, "Budget", "Where the user's wrench goes.");
   bind_fields<LimitReport>(module, "LimitReport", "One limit in one cycle.");
   bind_fields<CycleRecord>(module, "CycleRecord", "Everything that a cycle has to say.");

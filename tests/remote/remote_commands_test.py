@@ -98,7 +98,7 @@ class Commands(unittest.TestCase):
         with Server("door") as server:
             for arguments, sentence in [
                 (("--fast",), "the device refuses: time: real time, expected lock-step (--fast)"),
-                (("--rate-hz", "500"), "the device refuses: rate: 1000 Hz, expected 500 Hz"),
+                (("--rate-hz", "2000"), "the device refuses: rate: 1000 Hz, expected 2000 Hz"),
             ]:
                 result = run("door", "--device-address", server.address, *arguments)
                 self.assertEqual(result.returncode, 2)

@@ -47,8 +47,9 @@ TEST(Device, HasTheLimitsOfTheHandbook) {
   ASSERT_EQ(model.n_m, 6);
   // accelerations of m1..m4: what their torques can do, see device.yaml
   const std::vector<limits::JointLimits> expected = {
-      {-kInfinity, kInfinity, 2.0, 8.0}, {0.20, 2.75, 2.0, 9.0},   {-2.60, 2.60, 2.6, 18.0},
-      {0.20, 2.45, 2.6, 12.0},           {-2.00, 2.10, 3.1, 40.0}, {-2.60, 2.10, 3.5, 40.0}};
+      {-kInfinity, kInfinity, 2.0, 6.5}, {0.20, 2.75, 2.0, 7.5},
+      {-2.60, 2.60, 2.6, 15.0},          {0.20, 2.45, 2.6, 8.0},
+      {-2.00, 2.10, 3.1, 40.0},          {-2.60, 2.10, 3.5, 40.0}};
   ASSERT_EQ(model.joint_limits.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     SCOPED_TRACE(model.manipulator_joint(static_cast<int>(i)));
@@ -81,7 +82,7 @@ TEST(Device, KeepsHandAndElbowInTheBox) {
   EXPECT_EQ(hand.axes[1].q_min, -1.95);
   EXPECT_EQ(hand.axes[2].q_max, -0.30);
   EXPECT_EQ(hand.axes[0].dq_max, 1.5);
-  EXPECT_EQ(hand.axes[0].ddq_max, 3.5);  // as the joints can
+  EXPECT_EQ(hand.axes[0].ddq_max, 3.0);  // as the joints can
   EXPECT_EQ(hand.margin, 0.005);
   EXPECT_EQ(elbow.axes[0].q_max, 1.65);
 
@@ -234,7 +235,7 @@ TEST(Script, ThePathHasTheCheckpointsOfTheHandbook) {
   ASSERT_EQ(walk.kind, user::WalkKind::kCheckpoints);
   const std::vector<Eigen::Vector3d> expected = {{-1.2, -1.5, 0},   {1.2, -1.5, 0.5 * pi},
                                                  {1.45, 0.3, pi},   {0, 0, 1.5 * pi},
-                                                 {-1.45, 1.2, 0.0}, {1.0, 1.85, 0.5 * pi}};
+                                                 {-1.45, 1.2, 0.0}, {1.0, 1.6, 0.5 * pi}};
   ASSERT_EQ(walk.checkpoints.size(), expected.size());
   ASSERT_EQ(scenario.events.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {

@@ -22,9 +22,15 @@ namespace {
 constexpr SurveyOptions kFew = {.seed = 1, .postures = 1'000, .positions = 2'000};
 constexpr double kDt = 1e-3;
 
+// Without the name of the simulation file, which is not beside the text; lines stay where they are.
 std::string text_of(const std::string& file) {
   std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string name = "simulation: simulation.yaml";
+  if (const std::size_t at = text.find(name); at != std::string::npos) {
+    text.replace(at, name.size(), "# without a simulation file");
+  }
+  return text;
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -335,26 +341,26 @@ TEST(Pair, TwinOutOfReachIsAFaultAtItsPlacement) {
 TEST(Pair, AccelerationThatTheHandCannotBrakeIsNamedWithTheOneItCan) {
   const config::Device device = shipped_device();
   const Findings bad =
-      inspect(device, door({"ddq_max_rad_per_s2: 6", "ddq_max_rad_per_s2: 25", "", ""}));
+      inspect(device, door({"ddq_max_rad_per_s2: 3 ", "ddq_max_rad_per_s2: 25 ", "", ""}));
   const Finding* finding = find(bad, "joints.hinge.ddq_max_rad_per_s2", "Cartesian limits");
   ASSERT_NE(finding, nullptr) << all_of(bad);
-  // 5 m/s^2 at 0.75 m, more along one axis where the arc runs aslant
-  EXPECT_EQ(finding->mend.substr(0, 14), "lower it to 6.");
+  // 3 m/s^2 at 0.75 m, more along one axis where the arc runs aslant
+  EXPECT_EQ(finding->mend.substr(0, 14), "lower it to 4.");
   EXPECT_EQ(find(inspect(device, door({})), "joints.hinge.ddq_max_rad_per_s2", "Cartesian limits"),
             nullptr);
 }
 
 TEST(Pair, SpeedThatTheHandCannotFollowIsFound) {
   const Findings findings = inspect(
-      shipped_device(), door({"    ddq_max_rad_per_s2: 6",
-                              "    dq_max_rad_per_s: 4\n    ddq_max_rad_per_s2: 6", "", ""}));
+      shipped_device(), door({"    ddq_max_rad_per_s2: 3 ",
+                              "    dq_max_rad_per_s: 4\n    ddq_max_rad_per_s2: 3 ", "", ""}));
   EXPECT_NE(find(findings, "joints.hinge.dq_max_rad_per_s", "speed"), nullptr) << all_of(findings);
 }
 
 TEST(Pair, LeverThatTheWristCannotStopIsFound) {
   const config::Device device = shipped_device();
   const Findings findings =
-      inspect(device, door({"ddq_max_rad_per_s2: 35", "ddq_max_rad_per_s2: 44", "", ""}));
+      inspect(device, door({"ddq_max_rad_per_s2: 20", "ddq_max_rad_per_s2: 44", "", ""}));
   EXPECT_NE(find(findings, "joints.lever.ddq_max_rad_per_s2", "joint m"), nullptr)
       << all_of(findings);
 }
