@@ -117,7 +117,7 @@ simulation::Simulation simulation_of(const config::Device& device, const Start& 
 }
 
 constexpr int kStabilityPostures = 32;  // as many as are within all limits
-constexpr int kLongestLatency = 8;      // periods
+constexpr int kFurtherLatency = 4;      // periods beyond what is expected
 
 // postures all over the limits of the joints; one without limits is looked at in one turn
 std::vector<Eigen::VectorXd> postures_of(const rendering::DeviceModel& device) {
@@ -152,8 +152,10 @@ control::Config checked_control(const config::Device& device) {
                               .n_p = device.model.n_p,
                               .n_m = device.model.n_m,
                               .handle = device.model.handle};
-  const int periods =
-      control::longest_stable_latency(loop, postures_of(device.model), kLongestLatency);
+  const int expected =
+      std::max(1, static_cast<int>(std::ceil(control.loop.latency / control.dt - 1e-9)));
+  const int periods = control::longest_stable_latency(loop, postures_of(device.model),
+                                                      expected + kFurtherLatency, expected);
   control.latency_max = (periods + 0.25) * control.dt;  // what was measured is a mean
   if (control.loop.latency > control.latency_max) {
     throw SetupError(fmt::format(

@@ -65,8 +65,9 @@ void JointControl::rest(const ReferenceState& reference, const SensorFrame& sens
                         CommandFrame& command) const noexcept {
   fill(reference, command);
   state.is_started = false;
-  if (config_.method == Method::kDrives || sensors.answered_sequence == 0) return;
+  if (config_.method == Method::kDrives) return;
   command.tau_m = VectorM::Zero(n_m_);
+  if (sensors.answered_sequence == 0) return;  // nothing has been answered yet
   const auto periods = static_cast<double>(sensors.sequence - sensors.answered_sequence);
   state.latency += kLatencyMemory * (periods - state.latency);
 }

@@ -216,8 +216,8 @@ double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latenc
 }
 
 int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures,
-                           int most) {
-  for (int periods = 1; periods <= most; ++periods) {
+                           int most, int least) {
+  for (int periods = least; periods <= most; ++periods) {
     for (const Eigen::VectorXd& q : postures) {
       if (spectral_radius(loop, q, periods * loop.config.dt) >= 1.0) return periods - 1;
     }

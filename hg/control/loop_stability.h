@@ -36,9 +36,9 @@ double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latenc
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency,
                        const Reality& reality);
 
-/// The longest latency in whole periods, at most `most`, at which the loop is stable in all
-/// `postures`; 0 = not even at one period.
-int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures,
-                           int most);
+/// The longest latency in whole periods, from `least` to `most`, up to which the loop is stable in
+/// all `postures`; least - 1 = not even at the least.
+int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures, int most,
+                           int least = 1);
 
 }  // namespace hg::control

@@ -182,7 +182,7 @@ class MainJob(TemporaryFolder):
         file, = recordings.glob("my_door_*.mcap")
         with file.open("rb") as stream:
             told = {a.name: a.data.decode() for a in make_reader(stream).iter_attachments()}
-        self.assertEqual(told["arguments"], "--user none\n--rate-hz 500\n")
+        self.assertEqual(told["arguments"], "--user none\n--rate-hz 2000\n")
 
     def test_real_time_without_terminal_ends_when_the_duration_is_over(self):
         begin = time.monotonic()
