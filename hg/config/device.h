@@ -33,13 +33,13 @@ struct Device {
   Kinematics kinematics = Kinematics::kGeneric;
   DriveModel drive;
   control::Config control;  ///< its method is kDrives for a device without actuators
-  Pose T_H_S;  ///< force/torque sensor S in the handle frame H
+  Pose T_H_S;               ///< force/torque sensor S in the handle frame H
   rendering::DeviceModel model;
   rendering::Options rendering;
   prepositioning::Config prepositioning;
   estimation::Config estimation;
   safety::MonitorConfig monitor;
-  Simulation simulation;  ///< of this device; without a file its defaults
+  Simulation simulation;            ///< of this device; without a file its defaults
   std::vector<SourceText> sources;  ///< the YAML file first
   Places places;                    ///< of the keys of the YAML file
 };

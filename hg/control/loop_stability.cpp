@@ -215,8 +215,8 @@ double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latenc
   return Eigen::EigenSolver<Eigen::MatrixXd>(period, false).eigenvalues().cwiseAbs().maxCoeff();
 }
 
-int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures,
-                           int most, int least) {
+int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures, int most,
+                           int least) {
   for (int periods = least; periods <= most; ++periods) {
     for (const Eigen::VectorXd& q : postures) {
       if (spectral_radius(loop, q, periods * loop.config.dt) >= 1.0) return periods - 1;

@@ -70,7 +70,8 @@ void fields(Archive& a, T& sensors) {
   a.zeros("zero");
   a("q_m", sensors.q_m, "link-side encoders, rad; unlimited joints in [-pi, pi)");
   a("dq_m", sensors.dq_m, "link-side velocities, rad/s");
-  a("theta_m", sensors.theta_m, "motor-side encoders at the output of the gear, rad; may be none with interface 1");
+  a("theta_m", sensors.theta_m,
+    "motor-side encoders at the output of the gear, rad; may be none with interface 1");
   a("tau_m", sensors.tau_m, "joint torque sensors, Nm; may be none with interface 1");
   a("q_p", sensors.q_p, "gantry encoders, m");
   a("w_S", sensors.w_S, "wrench on the handle at the sensor S, in S: force N, torque Nm");
