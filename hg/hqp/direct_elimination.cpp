@@ -32,12 +32,36 @@ void subtract(int size, double factor, const double* __restrict r, double* __res
   }
 }
 
+using Block = Eigen::Array<double, kBlock, 1>;
+using BlockView = Eigen::Map<const Block>;
+
+// y = a b, number by number; `size` is a multiple of kBlock here and below.
+void multiply(int size, const double* a, const double* b, double* y) noexcept {
+  for (int v = 0; v < size; v += kBlock) {
+    Eigen::Map<Block>(y + v) = BlockView(a + v) * BlockView(b + v);
+  }
+}
+
+// Size of the largest number of y.
+double largest(int size, const double* y) noexcept {
+  Block result = Block::Zero();
+  for (int v = 0; v < size; v += kBlock) result = result.max(BlockView(y + v).abs());
+  return result.maxCoeff();
+}
+
+// Index of the first number of y that has at least this size.
+int find_size(int n, const double* y, double size) noexcept {
+  int v = 0;
+  while (v + 1 < n && std::abs(y[v]) < size) ++v;
+  return v;
+}
+
 }  // namespace
 
 DirectElimination::DirectElimination(int max_variables, int max_rows)
     : pivots_(index(max_variables)),
       pivot_of_variable_(index(max_variables)),
-      preference_(max_variables),
+      preference_(padded(max_variables)),
       R_((max_variables + 1) * padded(max_variables)),
       L_((max_variables + 1) * padded(max_variables)),
       weak_rows_(max_rows * padded(max_variables)),
@@ -49,7 +73,7 @@ DirectElimination::DirectElimination(int max_variables, int max_rows)
       rhs_(max_variables + max_rows),
       change_(max_variables),
       order_(max_variables + max_rows),
-      scratch_(max_variables) {
+      scratch_(padded(max_variables)) {
   weak_.reserve(index(max_rows));
 }
 
@@ -59,10 +83,11 @@ void DirectElimination::reset(const Problem& problem) noexcept {
   rank_ = 0;
   std::fill_n(pivot_of_variable_.begin(), n_, -1);
   has_preference_ = false;
-  for (int row = 0; row < problem.rows(); ++row) {
+  const int rows = problem.rows();
+  for (int row = 0; row < rows; ++row) {
     const int variable = problem.variable(row);
     if (variable < 0 || !is_equality(problem.bounds(row))) continue;
-    if (!has_preference_) preference_.head(n_).setOnes();
+    if (!has_preference_) preference_.head(stride_).setOnes();
     has_preference_ = true;
     preference_[variable] = kTakenLast;
   }
@@ -77,9 +102,9 @@ void DirectElimination::load(const double* c, double* y) const noexcept {
   std::fill(y + n_, y + stride_, 0.0);
 }
 
-// y -= factors R for the pivots from `first` up to `end`.
-void DirectElimination::subtract_pivots(int first, int end, double* y,
-                                        double* factors) const noexcept {
+// y -= factors R for the pivots from `first` up to `end`; `rest` follows.
+void DirectElimination::subtract_pivots(int first, int end, double* y, double* factors,
+                                        Rest& rest) const noexcept {
   for (int s = first; s < end; ++s) {
     const Pivot& pivot = pivots_[index(s)];
     const double factor = y[pivot.variable] * pivot.inverse;
@@ -87,18 +112,7 @@ void DirectElimination::subtract_pivots(int first, int end, double* y,
     if (factor == 0.0) continue;
     if (!pivot.is_unit) subtract(stride_, factor, reduced_row(s), y);
     y[pivot.variable] = 0.0;
-  }
-}
-
-// Adds what the pivots from `first` on do to a row.
-void DirectElimination::subtract_values(int first, const double* factors,
-                                        Rest& rest) const noexcept {
-  for (int s = first; s < rank_; ++s) {
-    const Pivot& pivot = pivots_[index(s)];
-    const double term = factors[s] * pivot.value;
-    rest.value -= term;
-    rest.value_scale += std::abs(term);
-    rest.growth += std::abs(factors[s]) * pivot.size;
+    rest.subtract(factor, pivot);
   }
 }
 
@@ -117,15 +131,15 @@ void DirectElimination::reduce_unit(int variable, double target) noexcept {
   std::fill_n(factor, rank_, 0.0);
   if (pivots_[index(t)].is_unit) {
     factor[t] = 1.0;
+    rest_.subtract(1.0, pivots_[index(t)]);
     largest_ = 0.0;
   } else {
     double* y = reduced_row(rank_);
     std::fill_n(y, stride_, 0.0);
     y[variable] = 1.0;
-    subtract_pivots(t, rank_, y, factor);
+    subtract_pivots(t, rank_, y, factor, rest_);
     choose_variable();
   }
-  subtract_values(t, factor, rest_);
 }
 
 void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
@@ -136,22 +150,21 @@ void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
   }
   double* y = reduced_row(rank_);
   load(problem.coefficients(row.row).data(), y);
-  subtract_pivots(0, rank_, y, factors(rank_));
   is_unit_ = false;
   rest_ = {.value = row.target, .value_scale = std::abs(row.target)};
-  subtract_values(0, factors(rank_), rest_);
+  subtract_pivots(0, rank_, y, factors(rank_), rest_);
   choose_variable();
 }
 
 // The variable that y would take, and the size of y.
 void DirectElimination::choose_variable() noexcept {
-  Eigen::Map<Eigen::VectorXd> y(reduced_row(rank_), n_);
-  largest_ = y.cwiseAbs().maxCoeff();
+  const double* y = reduced_row(rank_);
+  largest_ = largest(stride_, y);
   if (has_preference_) {
-    y.cwiseAbs().cwiseProduct(preference_.head(n_)).maxCoeff(&variable_);
+    multiply(stride_, y, preference_.data(), scratch_.data());
+    variable_ = find_size(n_, scratch_.data(), largest(stride_, scratch_.data()));
   } else {
-    variable_ = 0;
-    while (variable_ + 1 < n_ && std::abs(y[variable_]) < largest_) ++variable_;
+    variable_ = find_size(n_, y, largest_);
   }
 }
 
@@ -176,7 +189,7 @@ DirectElimination::Outcome DirectElimination::judge_closely(double norm,
   for (int s = rank_ - 1; s >= 0; --s) {
     const Pivot& pivot = pivots_[index(s)];
     if (pivot.is_unit) continue;
-    z[pivot.variable] = -VectorView(reduced_row(s), n_).dot(z) * pivot.inverse;
+    z[pivot.variable] = -dot(n_, reduced_row(s), z.data()) * pivot.inverse;
   }
   const double distance = (std::abs(y[variable_]) - rounding) / z.norm();
   return distance > tolerance * norm ? Outcome::kIndependent : Outcome::kUnsure;
@@ -258,8 +271,7 @@ bool DirectElimination::add_weak_rows(const Problem& problem, int first,
       WeakRow& row = weak_[k];
       double* y = weak_rows_.data() + row.slot * stride_;
       double* factor = weak_factors_.data() + row.slot * stride_;
-      subtract_pivots(row.depth, rank_, y, factor);
-      subtract_values(row.depth, factor, row.rest);
+      subtract_pivots(row.depth, rank_, y, factor, row.rest);
       row.depth = rank_;
       const double share = VectorView(y, n_).cwiseAbs().maxCoeff() / row.norm;
       if (share <= largest_share) continue;
@@ -379,17 +391,16 @@ void DirectElimination::solve_by_reflections(const Problem& problem, int first) 
   solve_least_squares(m, r, A.data(), rhs_.data(), order_.data(), change_.data());
 }
 
-bool DirectElimination::find_point(double* x_data) const noexcept {
-  Eigen::Map<Eigen::VectorXd> x(x_data, n_);
-  x.setZero();
+bool DirectElimination::find_point(double* x) const noexcept {
+  std::fill_n(x, n_, 0.0);
   double largest_term = 0.0;
   for (int t = rank_ - 1; t >= 0; --t) {
     const Pivot& pivot = pivots_[index(t)];
-    const double others = pivot.is_unit ? 0.0 : VectorView(reduced_row(t), n_).dot(x);
+    const double others = pivot.is_unit ? 0.0 : dot(n_, reduced_row(t), x);
     x[pivot.variable] = (pivot.value - others) * pivot.inverse;
     largest_term = std::max(largest_term, std::abs(pivot.value * pivot.inverse));
   }
-  return x.cwiseAbs().maxCoeff() <= kLargestGrowth * largest_term;  // false for NaN
+  return VectorView(x, n_).cwiseAbs().maxCoeff() <= kLargestGrowth * largest_term;  // false for NaN
 }
 
 double DirectElimination::find_multipliers(const double* g, int rank, int first,
@@ -397,7 +408,8 @@ double DirectElimination::find_multipliers(const double* g, int rank, int first,
   double* y = reduced_row(n_);
   Eigen::Map<Eigen::VectorXd> factor(factors(n_), n_);
   load(g, y);
-  subtract_pivots(0, rank, y, factor.data());
+  Rest unused;
+  subtract_pivots(0, rank, y, factor.data(), unused);
   for (int t = rank - 1; t >= first; --t) {
     mu[t] = -factor[t];
     if (!pivots_[index(t)].is_unit) factor.head(t) += mu[t] * VectorView(factors(t), t);

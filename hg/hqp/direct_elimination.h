@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -71,6 +72,14 @@ class DirectElimination {
     double value = 0.0;        ///< of its target, for y x
     double value_scale = 0.0;  ///< size of the terms of that
     double growth = 0.0;       ///< same of y
+
+    /// Follows y -= factor R_t, with the pivot t.
+    void subtract(double factor, const Pivot& pivot) noexcept {
+      const double term = factor * pivot.value;
+      value -= term;
+      value_scale += std::abs(term);
+      growth += std::abs(factor) * pivot.size;
+    }
   };
   /// A row put aside, reduced by the first `depth` pivots.
   struct WeakRow {
@@ -87,10 +96,9 @@ class DirectElimination {
   double* factors(int t) noexcept { return L_.data() + t * stride_; }
   const double* factors(int t) const noexcept { return L_.data() + t * stride_; }
   void load(const double* c, double* y) const noexcept;
-  void subtract_pivots(int first, int end, double* y, double* factors) const noexcept;
+  void subtract_pivots(int first, int end, double* y, double* factors, Rest& rest) const noexcept;
   void reduce(const Problem& problem, TargetRow row) noexcept;
   void reduce_unit(int variable, double target) noexcept;
-  void subtract_values(int first, const double* factors, Rest& rest) const noexcept;
   void choose_variable() noexcept;
   Outcome judge(double norm, double tolerance) noexcept;
   Outcome judge_closely(double norm, double tolerance) noexcept;

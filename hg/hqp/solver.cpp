@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "hg/hqp/primal.h"
 #include "hg/hqp/sweep.h"
@@ -28,7 +29,8 @@ void require(bool is_right, const char* what) noexcept {
 }
 
 int find_bad_row(const Problem& problem) noexcept {
-  for (int row = 0; row < problem.rows(); ++row) {
+  const int rows = problem.rows();
+  for (int row = 0; row < rows; ++row) {
     if (broken_rule(problem, row) != nullptr) return row;
   }
   return -1;
@@ -70,14 +72,13 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
   const bool has_second = load_guess(problem, levels, active.before, second) &&
                           !std::equal(first.begin(), first.begin() + rows, second.begin());
   if (has_second) {
-    guess.swap(second);
-    start_from_zero(problem, work);
+    start_from_zero_with(problem, second, work);
     if (try_for(kEffortOfSecondGuess)) return true;
   } else if (is_guess_from_zero(problem, levels, first)) {
     return try_for(effort_from_zero);
   }
-  guess_from_zero(problem, levels, guess);
-  start_from_zero(problem, work);
+  guess_from_zero(problem, levels, second);
+  start_from_zero_with(problem, second, work);
   return try_for(effort_from_zero);
 }
 
@@ -108,6 +109,7 @@ Status solve_levels(const Problem& problem, const Options& options, const Active
 // Receives the states of a solution; what was there before is kept when it is another guess.
 void update(const Problem& problem, const std::vector<RowState>& state,
             ActiveSet& active) noexcept {
+  if (std::memcmp(state.data(), active.state.data(), state.size()) == 0) return;
   bool is_same = true;
   for (int row = 0; row < problem.rows() && is_same; ++row) {
     is_same = is_equality(problem.bounds(row)) ||

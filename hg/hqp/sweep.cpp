@@ -25,7 +25,7 @@ void collect_active(const Problem& problem, int level, Workspace& work) noexcept
   work.targets.clear();
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
     const RowState state = work.point.state[at(row)];
-    if (problem.norm(row) == 0.0 || state == RowState::kInactive) continue;
+    if (state == RowState::kInactive || problem.norm(row) == 0.0) continue;
     work.targets.push_back({row, bound_of(problem.bounds(row), state)});
   }
 }
@@ -152,7 +152,7 @@ LevelGradient guess_gradient(const Problem& problem, const Options& options, int
   work.gradient.head(problem.variables()).setZero();
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
     const RowState state = work.point.state[at(row)];
-    if (problem.norm(row) == 0.0 || state == RowState::kInactive || is_held(state)) continue;
+    if (state == RowState::kInactive || is_held(state) || problem.norm(row) == 0.0) continue;
     const double bound = bound_of(problem.bounds(row), state);
     if (add_pull(problem, row, bound, work, result) >
         tolerance(problem, options, work, row, bound)) {
@@ -208,32 +208,29 @@ RowState found_state(const Problem& problem, const Options& options, int row,
 
 // Reads the states of active rows from their values, and lets go of those that x is inside of.
 // True when the guess has changed.
-bool drop_rows(const Problem& problem, const Options& options, int rows, Workspace& work) noexcept {
+bool drop_rows(const Problem& problem, const Options& options, int levels,
+               Workspace& work) noexcept {
   bool is_changed = false;
-  for (int row = 0; row < rows; ++row) {
-    RowState& state = work.point.state[at(row)];
-    const bool is_zero = problem.norm(row) == 0.0;
-    if (state == RowState::kInactive && !is_zero) continue;
-    const RowState found = found_state(problem, options, row, work);
-    const bool is_as_guessed =
-        is_zero || is_equality(problem.bounds(row)) || as_guess(found) == as_guess(state);
-    if (is_as_guessed) {
-      state = found;
-    } else {
-      set_guess(problem, row, found, work);
-      is_changed = true;
+  for (int level = 0; level < levels; ++level) {
+    bool has_violated = false;
+    for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+      RowState& state = work.point.state[at(row)];
+      const bool is_zero = !(problem.norm(row) > 0.0);
+      if (state == RowState::kInactive && !is_zero) continue;
+      const RowState found = found_state(problem, options, row, work);
+      const bool is_as_guessed =
+          is_zero || is_equality(problem.bounds(row)) || as_guess(found) == as_guess(state);
+      if (is_as_guessed) {
+        state = found;
+      } else {
+        set_guess(problem, row, found, work);
+        is_changed = true;
+      }
+      has_violated |= is_violated(found) && !is_zero;
     }
+    work.has_violated[at(level)] = has_violated;
   }
   return is_changed;
-}
-
-// Whether a level that should be met is not: direct elimination has lost digits.
-bool is_missed(const Problem& problem, int level, const Workspace& work) noexcept {
-  if (level == problem.levels() || work.fit[at(level)] != Fit::kMet) return false;
-  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-    if (is_violated(work.point.state[at(row)]) && problem.norm(row) > 0.0) return true;
-  }
-  return false;
 }
 
 // Level after level: whether held rows push against it. Lets go of the one that pulls most.
@@ -247,10 +244,11 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
   const int end = wants_smallest_norm(problem, options, levels) ? levels + 1 : levels;
   for (int level = 0; level < end; ++level) {
     work.point.blocking_row[at(level)] = -1;
-    if (work.is_direct && is_missed(problem, level, work)) return Judgement::kInDoubt;
-    const bool is_least_squares = !work.is_direct || work.fit[at(level)] == Fit::kLeastSquares;
+    // a level that should be met is not: direct elimination has lost digits
+    const Fit fit = work.is_direct ? work.fit[at(level)] : Fit::kLeastSquares;
+    if (fit == Fit::kMet && work.has_violated[at(level)]) return Judgement::kInDoubt;
     const bool can_push = work.point.rank_at_level[at(level)] > first_held;
-    if (!can_push && !is_least_squares) continue;
+    if (!can_push && fit != Fit::kLeastSquares) continue;
     const LevelGradient size = guess_gradient(problem, options, level, work);
     if (size.is_zero) continue;
     if (!find_multipliers(problem, options, size, level, first_held, work)) {
@@ -281,7 +279,7 @@ Judgement judge_guess(const Problem& problem, const Options& options, int levels
     }
     std::copy_n(work.value.begin(), rows, work.last_value.begin());
   }
-  if (drop_rows(problem, options, rows, work)) return Judgement::kCorrected;
+  if (drop_rows(problem, options, levels, work)) return Judgement::kCorrected;
   const Judgement judgement = judge_levels(problem, options, levels, work);
   const bool is_blocked = judgement == Judgement::kProven && is_early &&
                           hold_obstacle(problem, options, rows, way, work);
@@ -310,6 +308,7 @@ bool load_guess(const Problem& problem, int levels, std::span<const RowState> gu
       continue;
     }
     state = as_guess(guess[at(row)]);
+    if (state == RowState::kInactive) continue;
     // an equality that has become an interval: where |c x| is smaller
     if (state == RowState::kEqual) {
       state = std::abs(bounds.lb) < std::abs(bounds.ub) ? RowState::kLower : RowState::kUpper;
@@ -339,6 +338,19 @@ void start_from_zero(const Problem& problem, Workspace& work) noexcept {
   std::fill_n(work.last_value.begin(), problem.rows(), 0.0);
   work.direct_levels = 0;
   work.steps = 0;
+}
+
+void start_from_zero_with(const Problem& problem, std::vector<RowState>& guess,
+                          Workspace& work) noexcept {
+  int kept = work.direct_levels;
+  for (int row = 0; row < rows_of(problem, kept); ++row) {
+    const bool is_same = is_equality(problem.bounds(row)) ||
+                         as_guess(guess[at(row)]) == as_guess(work.point.state[at(row)]);
+    if (!is_same) kept = problem.level_of(row);
+  }
+  work.point.state.swap(guess);
+  start_from_zero(problem, work);
+  work.direct_levels = kept;
 }
 
 Judgement solve_guess(const Problem& problem, const Options& options, int levels,

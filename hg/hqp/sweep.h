@@ -29,6 +29,11 @@ bool is_guess_from_zero(const Problem& problem, int levels,
 /// The last point is x = 0; nothing is known of work.point.state.
 void start_from_zero(const Problem& problem, Workspace& work) noexcept;
 
+/// The same with `guess`, which is exchanged for work.point.state: levels above the first one where
+/// they differ keep their pivots.
+void start_from_zero_with(const Problem& problem, std::vector<RowState>& guess,
+                          Workspace& work) noexcept;
+
 enum class Judgement {
   kProven,     ///< work.point is optimal for each level
   kCorrected,  ///< it is not; work.point.state is the next guess

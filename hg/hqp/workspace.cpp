@@ -26,6 +26,7 @@ Workspace::Workspace(const Capacity& c)
       last_value(at(c.rows)),
       is_frozen(at(c.variables)),
       direct_rank_at_level(at(c.levels) + 1),
+      has_violated(at(c.levels) + 1),
       fit(at(c.levels) + 1),
       mu(c.variables),
       slope(at(c.rows)),

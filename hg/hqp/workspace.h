@@ -53,7 +53,8 @@ struct Workspace {
   bool is_direct = false;               ///< the pivots of `point` are those of `direct`
   int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state
   std::vector<int> direct_rank_at_level;
-  std::vector<Fit> fit;  ///< of the levels in `direct`, and of the smallest norm
+  std::vector<std::uint8_t> has_violated;  ///< by level, as found at the point
+  std::vector<Fit> fit;                    ///< of the levels in `direct`, and of the smallest norm
 
   std::vector<TargetRow> targets;
   std::vector<TouchedRow> touched;
