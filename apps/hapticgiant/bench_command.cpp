@@ -49,7 +49,9 @@ struct NamedScenario {
 };
 
 NamedScenario load(const std::string& name) {
-  config::Scenario scenario = make_scenario({.scenario = name});
+  // solver and law are compared without what an elastic machine adds
+  config::Scenario scenario =
+      make_scenario({.scenario = name, .plant = "ideal", .sensors = "ideal"});
   if (assembly::planned_duration_s(scenario) == 0.0) {
     throw SetupError(name + ": bench needs a scenario with a script");
   }
