@@ -11,6 +11,7 @@
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/assembly/start_posture.h"
+#include "hg/config/describe_script.h"
 #include "hg/config/law_names.h"
 #include "hg/core/error.h"
 #include "hg/inspection/workspace.h"
@@ -85,10 +86,12 @@ void apply_to_simulation(const RunArguments& arguments, config::Scenario& scenar
   device.simulation.sensors.seed = device.simulation.seed;
   if (arguments.sensors == "ideal") device.simulation.sensors = simulation::ideal_sensors();
   if (arguments.step_s) device.simulation.step_s = *arguments.step_s;
-  user::HandImpedance& hand = scenario.script.hand;
-  if (arguments.hand == "relaxed") hand = user::hand(user::HandPreset::kRelaxed);
-  if (arguments.hand == "normal") hand = user::hand(user::HandPreset::kNormal);
-  if (arguments.hand == "stiff") hand = user::hand(user::HandPreset::kStiff);
+  if (!arguments.hand.empty()) {
+    user::HandPreset preset = user::HandPreset::kNormal;
+    choose("--hand", arguments.hand, config::Choices<user::HandPreset>(config::kHandPresets),
+           preset);
+    scenario.script.hand = user::hand(preset);
+  }
 }
 
 std::vector<std::string> joint_names(const rendering::DeviceModel& device, int first, int count) {

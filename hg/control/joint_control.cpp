@@ -18,13 +18,6 @@ constexpr double kMostFriction = 2.0;    // times what is configured; more would
 constexpr int kSweepsAtStart = 12;       // far more than any matrix of seven rows needs
 constexpr double kMotorPdDamping = 1.4;  // [C] 1: Kd = 1.4 sqrt(K Jm)
 
-// Coulomb friction under the torque `tau` of the spring at speed `dtheta`, with what stiction adds
-double coulomb(const ActuatorModel& actuator, double tau, double dtheta) noexcept {
-  const double slow = dtheta / actuator.stribeck_speed;
-  return (actuator.coulomb_friction + actuator.load_friction * std::abs(tau)) *
-         (1.0 + (actuator.stiction - 1.0) * std::exp(-slow * slow));
-}
-
 // drives that follow positions need no more
 void fill(const ReferenceState& reference, CommandFrame& command) noexcept {
   command.q_m = reference.q_m;
@@ -216,7 +209,7 @@ VectorM JointControl::friction(const Feedforward& forward, const State& state) c
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
     const double dtheta = forward.dtheta[i];
-    tau[i] = state.friction[i] * coulomb(actuator, forward.tau[i], dtheta) *
+    tau[i] = state.friction[i] * coulomb_torque(actuator, dtheta, forward.tau[i]) *
                  std::tanh(dtheta / config_.friction_speed) +
              actuator.viscous_friction * dtheta;
   }
@@ -233,7 +226,7 @@ void JointControl::learn_friction(const Feedforward& forward, const VectorM& fee
     const double slides = std::tanh(robot.dtheta_m[i] / config_.friction_speed) * along;
     if (slides < kSlides) continue;
     const double missing =
-        feedback[i] * along / coulomb(actuator, forward.tau[i], forward.dtheta[i]);
+        feedback[i] * along / coulomb_torque(actuator, forward.dtheta[i], forward.tau[i]);
     state.friction[i] += config_.dt * config_.friction_learning * missing;
     state.friction[i] = std::clamp(state.friction[i], 0.0, kMostFriction);
   }

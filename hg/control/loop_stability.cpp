@@ -4,9 +4,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
+
+#include "hg/estimation/joint_observer.h"
 
 namespace hg::control {
 namespace {
@@ -61,14 +62,10 @@ Eigen::MatrixXd plant_with_input(const Config& config, const MatrixM& M) {
   return A;
 }
 
-MatrixM link_mass(const Loop& loop, const Eigen::VectorXd& q) {
-  model::Chain chain = loop.chain;
-  chain.update(q, Eigen::VectorXd::Zero(q.size()));
-  return chain.M().bottomRightCorner(loop.n_m, loop.n_m);
-}
-
 // Torques that the controller answers with to unit errors of theta, theta', q, q' and tau_J.
-Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, double latency) {
+// `weight` holds the links in posture `q`.
+Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const VectorM& weight,
+                         double latency) {
   constexpr double kError = 1e-7;  // small against every limit of the controller
   const int n = loop.n_m;
   JointControl control(loop.config, loop.chain, loop.n_p, n, loop.handle);
@@ -76,11 +73,9 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, double late
   at_start.latency = latency / loop.config.dt;
   const VectorM at_rest = VectorM::Zero(n);
   const ReferenceState reference = {.q_m = q.tail(n), .dq_m = at_rest, .ddq_m = at_rest};
-  model::Chain chain = loop.chain;
-  chain.update(q, Eigen::VectorXd::Zero(q.size()));
   RobotState robot;
   robot.q_m = q.tail(n);
-  robot.tau_m = chain.c().tail(n);
+  robot.tau_m = weight;
   robot.theta_m = robot.q_m;
   for (int i = 0; i < n; ++i) {
     robot.theta_m[i] +=
@@ -122,17 +117,14 @@ class SampledLoop {
   SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency, const Reality& reality)
       : config_(with(loop.config, reality)),
         layout_{loop.n_m, static_cast<int>(std::ceil(config_.loop.latency / config_.dt - 1e-9))},
-        latency_steps_(static_cast<int>(std::lround(config_.loop.latency / config_.dt * kSteps))),
-        step_((plant_with_input(config_, link_mass(loop, q)) * (config_.dt / kSteps)).exp()),
-        feedback_(feedback(loop, q, latency)) {
-    const LoopFilters& filters = loop.filters;
-    const double p = std::exp(-2.0 * std::numbers::pi * filters.link_pole_Hz * config_.dt);
-    link_share_ = 1.0 - p * p;
-    link_rate_ = (1.0 - p) * (1.0 - p) / config_.dt;
-    motor_share_ =
-        filters.motor_low_pass_Hz > 0.0
-            ? 1.0 - std::exp(-2.0 * std::numbers::pi * filters.motor_low_pass_Hz * config_.dt)
-            : 1.0;
+        latency_steps_(static_cast<int>(std::lround(config_.loop.latency / config_.dt * kSteps))) {
+    model::Chain chain = loop.chain;
+    chain.update(q, Eigen::VectorXd::Zero(q.size()));
+    const MatrixM M = chain.M().bottomRightCorner(loop.n_m, loop.n_m);
+    step_ = (plant_with_input(config_, M) * (config_.dt / kSteps)).exp();
+    feedback_ = feedback(loop, q, chain.c().tail(loop.n_m), latency);
+    link_pole_ = estimation::low_pass_pole(loop.filters.link_pole_Hz, config_.dt);
+    motor_pole_ = estimation::low_pass_pole(loop.filters.motor_low_pass_Hz, config_.dt);
   }
 
   Eigen::MatrixXd period() const {
@@ -150,15 +142,16 @@ class SampledLoop {
     Eigen::VectorXd next = now;
     const auto part = [n](auto& state, int first) { return state.segment(first, n); };
 
-    // estimation of the sample, see hg/estimation/joint_observer.h
-    const Eigen::VectorXd rate = (part(now, at.theta()) - part(now, at.theta_last())) / config_.dt;
-    part(next, at.dtheta_filtered()) += motor_share_ * (rate - part(now, at.dtheta_filtered()));
-    part(next, at.theta_last()) = part(now, at.theta());
-    const Eigen::VectorXd predicted =
-        part(now, at.q_observed()) + config_.dt * part(now, at.dq_observed());
-    const Eigen::VectorXd innovation = part(now, at.q()) - predicted;
-    part(next, at.q_observed()) = predicted + link_share_ * innovation;
-    part(next, at.dq_observed()) += link_rate_ * innovation;
+    for (int i = 0; i < n; ++i) {
+      estimation::MotorObserver motor{now[at.theta_last() + i], now[at.dtheta_filtered() + i]};
+      estimation::observe(motor_pole_, config_.dt, now[at.theta() + i], motor);
+      next[at.theta_last() + i] = motor.theta;
+      next[at.dtheta_filtered() + i] = motor.dtheta;
+      estimation::LinkObserver link{now[at.q_observed() + i], now[at.dq_observed() + i]};
+      estimation::observe(link_pole_, config_.dt, 0.0, now[at.q() + i], link);
+      next[at.q_observed() + i] = link.q;
+      next[at.dq_observed() + i] = link.dq;
+    }
 
     Eigen::VectorXd tau_J(n);
     for (int i = 0; i < n; ++i) {
@@ -198,7 +191,7 @@ class SampledLoop {
   int latency_steps_;
   Eigen::MatrixXd step_;
   Eigen::MatrixXd feedback_;  // torques from theta, theta', q, q', tau_J
-  double link_share_ = 0.0, link_rate_ = 0.0, motor_share_ = 0.0;
+  double link_pole_ = 0.0, motor_pole_ = 0.0;
 };
 
 }  // namespace

@@ -34,6 +34,14 @@ inline double torque_available(const ActuatorModel& actuator, double dtheta) noe
   return actuator.torque_max * (1.0 - std::clamp(used, 0.0, 1.0));
 }
 
+/// Largest torque of the dry friction at speed `dtheta` under the torque `tau_J` of the spring:
+/// stiction at rest, of which less and less is left with the speed; [HANDBOOK] 4.3.
+inline double coulomb_torque(const ActuatorModel& actuator, double dtheta, double tau_J) noexcept {
+  const double share = dtheta / actuator.stribeck_speed;
+  const double stribeck = 1.0 + (actuator.stiction - 1.0) * std::exp(-share * share);
+  return (actuator.coulomb_friction + actuator.load_friction * std::abs(tau_J)) * stribeck;
+}
+
 /// From a torque command to the torque of the motors.
 struct TorqueLoop {
   double latency = 1e-3;        ///< from the sensor sample to the command at the drive, s, >= 0

@@ -10,13 +10,6 @@ namespace {
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
-// [HANDBOOK] 4.3: stiction at rest that goes with the speed, both greater under load.
-double sliding_friction(const ActuatorModel& a, double dtheta, double tau_J) noexcept {
-  const double share = dtheta / a.stribeck_speed;
-  const double stribeck = 1.0 + (a.stiction - 1.0) * std::exp(-share * share);
-  return (a.coulomb_friction + a.load_friction * std::abs(tau_J)) * stribeck;
-}
-
 }  // namespace
 
 Plant::Plant(const PlantConfig& config, const model::Chain& chain, int handle)
@@ -175,8 +168,8 @@ Plant::Equations Plant::equations(const VectorP& ddq_p) const noexcept {
 }
 
 double Plant::friction_bound(int joint) const noexcept {
-  return sliding_friction(config_.actuators[at(joint)], truth_.dtheta_m[joint],
-                          forces_.tau_links[joint]);
+  return coulomb_torque(config_.actuators[at(joint)], truth_.dtheta_m[joint],
+                        forces_.tau_links[joint]);
 }
 
 // Friction, brakes and stops as one box problem in the speeds at the end of the step.

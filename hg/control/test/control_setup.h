@@ -7,6 +7,7 @@
 
 #include "hg/control/joint_control.h"
 #include "hg/model/chain.h"
+#include "hg/signals/test/reference_actuators.h"
 
 namespace hg::control {
 
@@ -16,37 +17,6 @@ inline const model::Chain& arm() {
   static const model::Chain chain =
       model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
   return chain;
-}
-
-inline std::vector<ActuatorModel> reference_actuators() {
-  const ActuatorModel large = {.rotor_inertia = 1.46,
-                               .stiffness = 12000.0,
-                               .damping = 12.0,
-                               .coulomb_friction = 4.0,
-                               .viscous_friction = 3.0,
-                               .torque_max = 176.0,
-                               .torque_rated = 90.0,
-                               .speed_full_torque = 2.0,
-                               .speed_no_load = 4.0};
-  const ActuatorModel middle = {.rotor_inertia = 0.61,
-                                .stiffness = 7000.0,
-                                .damping = 6.0,
-                                .coulomb_friction = 2.5,
-                                .viscous_friction = 1.5,
-                                .torque_max = 110.0,
-                                .torque_rated = 60.0,
-                                .speed_full_torque = 2.6,
-                                .speed_no_load = 5.2};
-  const ActuatorModel small = {.rotor_inertia = 0.12,
-                               .stiffness = 3000.0,
-                               .damping = 2.0,
-                               .coulomb_friction = 1.0,
-                               .viscous_friction = 0.5,
-                               .torque_max = 40.0,
-                               .torque_rated = 20.0,
-                               .speed_full_torque = 3.5,
-                               .speed_no_load = 7.0};
-  return {large, large, middle, middle, small, small};
 }
 
 inline Config reference_config(Method method = Method::kModal) {

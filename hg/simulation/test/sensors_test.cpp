@@ -169,8 +169,7 @@ TEST(Sensors, AtRestTheSensorCarriesTheWeightOfThePayload) {
 TEST(Sensors, ASpinningPayloadPullsOutwards) {
   SensedDevice spun = device();
   spun.T_H_S = {};
-  spun.payload = {.mass = 2.0, .com = {0.1, 0.0, 0.0}, .inertia = {}};
-  spun.payload.inertia.setZero();
+  spun.payload = {.mass = 2.0, .com = {0.1, 0.0, 0.0}};
   Truth truth = Motion::truth(0.0);
   truth.T_B_H = {};
   truth.w_H.setZero();
