@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace hg::remote {
 namespace {
 
@@ -17,7 +19,8 @@ const char* words(bool is_lock_step) noexcept {
 
 std::string difference(const Description& actual, const Description& expected) {
   if (actual.device.bytes != expected.device.bytes) {
-    return fmt::format("device: '{}', expected '{}'", actual.device.view(), expected.device.view());
+    return fmt::format("device: '{}', expected '{}'", actual.device.printable(),
+                       expected.device.printable());
   }
   if (actual.n_p != expected.n_p) {
     return fmt::format("gantry axes: {}, expected {}", actual.n_p, expected.n_p);
@@ -47,20 +50,22 @@ bool fits(const Description& agreed, const SensorFrame& sensors) noexcept {
     return v.size() == n_m || (may_lack && v.size() == 0);
   };
   return sensors.q_m.size() == n_m && sensors.dq_m.size() == n_m && fits_joints(sensors.theta_m) &&
-         fits_joints(sensors.tau_m) && sensors.q_p.size() == static_cast<Eigen::Index>(agreed.n_p);
+         fits_joints(sensors.tau_m) &&
+         sensors.q_p.size() == static_cast<Eigen::Index>(agreed.n_p) &&
+         std::isfinite(sensors.time_s) && sensors.q_m.allFinite() && sensors.dq_m.allFinite() &&
+         sensors.theta_m.allFinite() && sensors.tau_m.allFinite() && sensors.q_p.allFinite() &&
+         sensors.w_S.allFinite() && sensors.a_S.allFinite() && sensors.omega_S.allFinite();
 }
 
 bool fits(const Description& agreed, const CommandFrame& command) noexcept {
   const auto n_m = static_cast<Eigen::Index>(agreed.n_m);
   const bool is_torque = agreed.interface == Interface::kTorque;
-  const bool has_right_torques =
-      command.tau_m.size() == (is_torque ? n_m : 0) || (!command.enable && !command.tau_m.size());
   const HandTarget& hand = command.hand_target;
   return command.q_m.size() == n_m && command.dq_m.size() == n_m && command.ddq_m.size() == n_m &&
-         has_right_torques && command.dq_p.size() == static_cast<Eigen::Index>(agreed.n_p) &&
-         command.q_m.allFinite() && command.dq_m.allFinite() && command.ddq_m.allFinite() &&
-         command.tau_m.allFinite() && command.dq_p.allFinite() && hand.p_B.allFinite() &&
-         std::isfinite(hand.press);
+         command.tau_m.size() == (is_torque ? n_m : 0) &&
+         command.dq_p.size() == static_cast<Eigen::Index>(agreed.n_p) && command.q_m.allFinite() &&
+         command.dq_m.allFinite() && command.ddq_m.allFinite() && command.tau_m.allFinite() &&
+         command.dq_p.allFinite() && hand.p_B.allFinite() && hand.press >= 0.0 && hand.press <= 1.0;
 }
 
 CommandFrame off_command(const Description& agreed) {

@@ -10,9 +10,10 @@ namespace hg::remote {
 /// The first thing in which the two differ, as "rate: 1000 Hz, expected 2000 Hz"; empty: nothing.
 std::string difference(const Description& actual, const Description& expected);
 
-/// Whether all vectors have the sizes that were agreed upon. noexcept, no allocation.
+/// Whether all vectors have the sizes that were agreed upon and all values are finite. noexcept, no
+/// allocation.
 bool fits(const Description& agreed, const SensorFrame& sensors) noexcept;
-/// The same, and all values are finite: such a command may go to drives.
+/// The same, and the hand presses by 0..1: such a command may go to drives.
 bool fits(const Description& agreed, const CommandFrame& command) noexcept;
 
 /// Drives off, brakes closed, for a device like this.

@@ -43,7 +43,8 @@ DeviceServer::Event DeviceServer::receive() {
     on_hello(header, verdict, from);
     return Event::kNone;
   }
-  return inbox_.accept(verdict, header) ? take(header) : Event::kNone;
+  // a session begins with a hello, and what is left of an old one is not for the next
+  return has_client_ && inbox_.accept(verdict, header) ? take(header) : Event::kNone;
 }
 
 DeviceServer::Event DeviceServer::take(const Header& header) {
@@ -59,7 +60,7 @@ DeviceServer::Event DeviceServer::take(const Header& header) {
     case MessageType::kGoodbye: {
       Goodbye goodbye;
       if (!decode(datagram_.view(), goodbye)) ++malformed_;
-      report_.farewell = goodbye.reason.view();
+      report_.farewell = goodbye.reason.printable();
       has_left_ = true;
       return Event::kGoodbye;
     }
@@ -85,7 +86,7 @@ void DeviceServer::on_hello(const Header& header, Verdict verdict, const Peer& f
   }
   if (has_client_ && !(from == client_ && hello.nonce == hello_.nonce)) {
     refuse(Refusal::kBusy,
-           fmt::format("{} at {} has the device", hello_.client.view(), to_string(client_)),
+           fmt::format("{} at {} has the device", hello_.client.printable(), to_string(client_)),
            hello.nonce, from);
     return;
   }
@@ -140,7 +141,7 @@ bool DeviceServer::wait_for_client(const std::atomic<bool>& stop) {
 
 SessionReport DeviceServer::serve(device::Device& device, const std::atomic<bool>& stop) {
   report_ = {};
-  report_.client = fmt::format("{} at {}", hello_.client.view(), to_string(client_));
+  report_.client = fmt::format("{} at {}", hello_.client.printable(), to_string(client_));
   answers_ = answers_ns_ = longest_answer_ns_ = 0;
   refused_ = late_ = malformed_ = foreign_ = 0;
   command_ = off_command(config_.actual);
@@ -195,6 +196,9 @@ void DeviceServer::measure_answer() {
 void DeviceServer::live_in_real_time(device::Device& device, const std::atomic<bool>& stop) {
   runtime::Schedule schedule(now_ns(), std::llround(1e9 / config_.actual.rate_Hz));
   const std::int64_t timeout = ns(config_.command_timeout_s);
+  // the age of the frame that a command answers: a client that falls behind is not to be followed
+  const auto most_periods =
+      static_cast<std::uint64_t>(config_.command_timeout_s * config_.actual.rate_Hz);
   while (!stop.load() && now_ns() - heard_ns_ <= timeout) {
     device.read(frame_);
     frame_ns_ = now_ns();
@@ -205,7 +209,7 @@ void DeviceServer::live_in_real_time(device::Device& device, const std::atomic<b
       for (Event event = receive(); event != Event::kNone; event = receive()) {
         if (event == Event::kGoodbye) return;
         if (event != Event::kCommand) continue;
-        if (inbox_.was_overtaken()) {
+        if (inbox_.was_overtaken() || arrived_.sequence + most_periods < frame_.sequence) {
           ++late_;
           continue;
         }

@@ -22,8 +22,9 @@ namespace hg::remote {
 /// Set-up data.
 struct ServerConfig {
   Description actual;
-  std::string server;               ///< program and version, for the client
-  double command_timeout_s = 0.05;  ///< real time: without a good command, drives off
+  std::string server;  ///< program and version, for the client
+  /// Real time: without a good command, drives off; one that answers an older frame is none.
+  double command_timeout_s = 0.05;
   double lock_step_timeout_s = 5.0;
   double ready_timeout_s = 30.0;  ///< between welcome and ready: the client sets itself up
   std::string capture;            ///< every datagram into this file, see Capture; empty = none
@@ -38,8 +39,8 @@ enum class SessionEnd {
 /// What a session was like.
 struct SessionReport {
   SessionEnd end = SessionEnd::kStopped;
-  std::string client;         ///< name and address
-  std::string farewell;       ///< the client's
+  std::string client;         ///< name and address, printable
+  std::string farewell;       ///< the client's, printable
   std::uint64_t periods = 0;  ///< that the device has lived
   std::uint64_t overruns = 0;
   double mean_answer_s = 0.0, max_answer_s = 0.0;  ///< from a frame to the command that answers it

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 #include "hg/signals/frames.h"
@@ -30,6 +31,9 @@ enum class MessageType : std::uint16_t {
   kGoodbye = 6,  ///< either: the session is over
 };
 
+/// Text from elsewhere for a terminal: a '?' for each byte of a control character.
+std::string printable(std::string_view text);
+
 /// Fixed room for text; what does not fit is cut.
 template <std::size_t kSize>
 struct Text {
@@ -41,10 +45,12 @@ struct Text {
     const std::string_view text = value;
     std::memcpy(bytes.data(), text.data(), std::min(text.size(), kSize));
   }
+  /// As it came; people get printable().
   std::string_view view() const noexcept {
     return {bytes.data(),
             static_cast<std::size_t>(std::find(bytes.begin(), bytes.end(), '\0') - bytes.begin())};
   }
+  std::string printable() const { return remote::printable(view()); }
 };
 
 /// What drives are told: where to be (they follow CommandFrame::q_m), or torques (tau_m).

@@ -67,7 +67,7 @@ bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce) {
     return false;
   if (!decode(datagram_.view(), welcome_) || welcome_.nonce != nonce) return false;
   if (welcome_.refusal != Refusal::kNone) {
-    throw SetupError(fmt::format("{}: the device refuses: {}", at, welcome_.reason.view()));
+    throw SetupError(fmt::format("{}: the device refuses: {}", at, welcome_.reason.printable()));
   }
   const std::string unlike = difference(welcome_.actual, config_.expected);
   if (!unlike.empty()) {

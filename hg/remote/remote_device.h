@@ -45,8 +45,8 @@ class RemoteDevice final : public device::Device {
   void close(FaultCode reason) noexcept;
 
   const Welcome& welcome() const noexcept { return welcome_; }
-  /// Why the server ended the session; empty: it did not.
-  std::string_view farewell() const noexcept { return goodbye_.reason.view(); }
+  /// Why the server ended the session, printable; empty: it did not.
+  std::string farewell() const { return goodbye_.reason.printable(); }
   LinkCounts counts() const noexcept;
 
  private:

@@ -30,6 +30,12 @@ TEST(Difference, NamesTheFirstThingThatDiffers) {
   EXPECT_EQ(difference(kTorqueDevice, other), "device: 'arm', expected 'leg'");
 }
 
+TEST(Difference, ShowsNamesWithoutControlCharacters) {
+  Description other = kTorqueDevice;
+  other.device = "\x1B[2Jleg";
+  EXPECT_EQ(difference(other, kTorqueDevice), "device: '?[2Jleg', expected 'arm'");
+}
+
 TEST(Fits, SensorsHaveTheAgreedSizes) {
   std::mt19937 random(1);
   SensorFrame sensors = example_sensors(random, 1);
@@ -42,6 +48,27 @@ TEST(Fits, SensorsHaveTheAgreedSizes) {
   sensors = example_sensors(random, 1);
   sensors.q_p.resize(1);
   EXPECT_FALSE(fits(kTorqueDevice, sensors));
+}
+
+TEST(Fits, SensorsAreFinite) {
+  std::mt19937 random(1);
+  const SensorFrame good = example_sensors(random, 1);
+  SensorFrame sensors = good;
+  const auto spoil = [&](double& value) {
+    for (const double wrong :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      value = wrong;
+      EXPECT_FALSE(fits(kTorqueDevice, sensors));
+    }
+    sensors = good;
+    EXPECT_TRUE(fits(kTorqueDevice, sensors));
+  };
+  spoil(sensors.time_s);
+  for (VectorM* v : {&sensors.q_m, &sensors.dq_m, &sensors.theta_m, &sensors.tau_m}) spoil((*v)[5]);
+  spoil(sensors.q_p[1]);
+  spoil(sensors.w_S[5]);
+  spoil(sensors.a_S[2]);
+  spoil(sensors.omega_S[2]);
 }
 
 TEST(Fits, OnlyDrivesThatTakePositionsMayLackMotorSensors) {
@@ -66,9 +93,10 @@ TEST(Fits, OnlyFiniteCommandsOfTheRightKindGoToDrives) {
   not_finite.tau_m[5] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(fits(kTorqueDevice, not_finite));
   command.tau_m.resize(0);
-  EXPECT_FALSE(fits(kTorqueDevice, command));
-  command.enable = false;
-  EXPECT_TRUE(fits(kTorqueDevice, command));
+  for (const bool enable : {true, false}) {
+    command.enable = enable;
+    EXPECT_FALSE(fits(kTorqueDevice, command));
+  }
   Description position = kTorqueDevice;
   position.interface = Interface::kPosition;
   EXPECT_TRUE(fits(position, command));
@@ -77,6 +105,14 @@ TEST(Fits, OnlyFiniteCommandsOfTheRightKindGoToDrives) {
     (*v)[3] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(fits(position, command));
     (*v)[3] = kept;
+  }
+  for (const double press : {-0.01, 1.01, std::numeric_limits<double>::quiet_NaN()}) {
+    command.hand_target.press = press;
+    EXPECT_FALSE(fits(position, command)) << press;
+  }
+  for (const double press : {0.0, 1.0}) {
+    command.hand_target.press = press;
+    EXPECT_TRUE(fits(position, command)) << press;
   }
   command.dq_p[1] = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(fits(position, command));

@@ -35,6 +35,17 @@ Datagram with(Datagram datagram, std::size_t offset, T value) {
   return sealed(datagram);
 }
 
+TEST(Printable, KeepsTextAndReplacesWhatATerminalWouldObey) {
+  EXPECT_EQ(printable("Gr\u00F6\u00DFe \u20AC \u00C0 1.5\u00B0"),
+            "Gr\u00F6\u00DFe \u20AC \u00C0 1.5\u00B0");
+  EXPECT_EQ(printable("\x1B[31mred\n\r\t\x07\x7F."), "?[31mred?????.");
+  EXPECT_EQ(printable("a\xC2\x9B"
+                      "31m\x9B"
+                      "31m"),
+            "a??31m?31m");  // CSI, in UTF-8 and as one byte
+  EXPECT_EQ((Text<4>{"\n\nabc"}.printable()), "??ab");
+}
+
 TEST(Checksum, IsTheOneOfZlib) {
   const std::string text = "123456789";  // the check value of CRC-32/ISO-HDLC
   EXPECT_EQ(checksum(std::as_bytes(std::span(text.data(), text.size()))), 0xCBF43926U);

@@ -3,125 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <functional>
 #include <memory>
+#include <random>
 #include <thread>
 #include <vector>
 
 #include "hg/core/allocation_counter.h"
-#include "hg/core/error.h"
-#include "hg/remote/agreement.h"
-#include "hg/remote/device_server.h"
-#include "hg/remote/remote_device.h"
 #include "hg/remote/test/bad_link.h"
 #include "hg/remote/test/example_messages.h"
+#include "hg/remote/test/peers.h"
 
 namespace hg::remote {
 namespace {
-
-constexpr double kLong = 60.0;  // s; nobody waits for so long unless something is broken
-
-Description description(bool is_lock_step) {
-  return {.device = "test device",
-          .n_p = 1,
-          .n_m = 6,
-          .rate_Hz = 200.0,
-          .interface = Interface::kTorque,
-          .is_lock_step = is_lock_step};
-}
-
-/// What it measures depends on everything it was ever told.
-class TestDevice final : public device::Device {
- public:
-  TestDevice() {
-    frame_.q_m = frame_.dq_m = frame_.theta_m = frame_.tau_m = VectorM::Zero(6);
-    frame_.q_p = VectorP::Zero(1);
-  }
-  void read(SensorFrame& sensors) noexcept override { sensors = frame_; }
-  void write(const CommandFrame& command) noexcept override {
-    last = command;
-    if (command.enable) was_enabled = true;
-    ++frame_.sequence;
-    frame_.time_s = 5e-3 * static_cast<double>(frame_.sequence);
-    frame_.q_m = 0.9 * frame_.q_m + 0.1 * command.tau_m;
-    frame_.q_p += 5e-3 * command.dq_p;
-    frame_.answered_sequence = command.sequence;
-  }
-
-  CommandFrame last;
-  bool was_enabled = false;
-
- private:
-  SensorFrame frame_;
-};
-
-// a controller whose command depends on everything it measured
-CommandFrame answer(const SensorFrame& sensors) {
-  CommandFrame command = off_command(description(true));
-  command.sequence = sensors.sequence;
-  command.enable = true;
-  command.tau_m = VectorM::Constant(6, 1.0) - 0.5 * sensors.q_m;
-  command.tau_m[0] += 0.01 * static_cast<double>(sensors.sequence % 7);
-  command.dq_p = -sensors.q_p + VectorP::Constant(1, 0.3);
-  return command;
-}
-
-/// A server with its device in a thread of its own.
-class Serving {
- public:
-  explicit Serving(bool is_lock_step, double command_timeout_s = kLong)
-      : server_({"127.0.0.1", "0"}, {.actual = description(is_lock_step),
-                                     .server = "test server",
-                                     .command_timeout_s = command_timeout_s,
-                                     .lock_step_timeout_s = command_timeout_s}),
-        thread_([this] {
-          while (server_.wait_for_client(stop_)) {
-            TestDevice device;
-            const SessionReport report = server_.serve(device, stop_);
-            was_enabled = device.was_enabled;
-            ends_off = !device.last.enable;
-            reports.push_back(report);
-            sessions.fetch_add(1);
-          }
-        }) {}
-  ~Serving() { stop(); }
-
-  Address address() const { return parse_address("test", server_.address()); }
-  void stop() {
-    stop_.store(true);
-    if (thread_.joinable()) thread_.join();
-  }
-  void await_sessions(int count) const {
-    while (sessions.load() < count) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-
-  std::vector<SessionReport> reports;  // after stop() or await_sessions()
-  bool was_enabled = false, ends_off = false;
-  std::atomic<int> sessions{0};
-
- private:
-  std::atomic<bool> stop_{false};
-  DeviceServer server_;
-  std::thread thread_;
-};
-
-ClientConfig client(bool is_lock_step) {
-  return {.expected = description(is_lock_step),
-          .client = "test client",
-          .answer_timeout_s = kLong,
-          .first_timeout_s = kLong,
-          .frame_timeout_s = kLong,
-          .lock_step_timeout_s = kLong};
-}
-
-std::string message_of(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 // all frames of a run, as bits
 std::vector<Datagram> play(device::Device& device, int periods) {
@@ -179,26 +72,6 @@ TEST(Connection, ABadNetworkChangesNothingInLockStep) {
   }
 }
 
-TEST(Connection, InRealTimeLostFramesAreFilledInAndTheNumbersGoOn) {
-  Serving serving(false);
-  const BadLink link(serving.address(), {.loses = 0.1, .doubles = 0.1, .swaps = 0.1}, 3);
-  RemoteDevice there(link.address(), client(false));
-  SensorFrame sensors;
-  there.read(sensors);
-  const std::uint64_t first = sensors.sequence;
-  for (std::uint64_t i = 1; i < 200; ++i) {
-    there.write(answer(sensors));
-    there.read(sensors);
-    ASSERT_EQ(sensors.driver_fault, FaultCode::kNone);
-    ASSERT_EQ(sensors.sequence, first + i);
-  }
-  EXPECT_GT(there.counts().held, 0U);
-  there.close(FaultCode::kNone);
-  serving.await_sessions(1);
-  EXPECT_GT(serving.reports[0].link.held, 0U);  // periods with the command of the one before
-  EXPECT_GT(serving.reports[0].link.late, 0U);  // overtaken by a newer one
-}
-
 TEST(Connection, ASilentClientSwitchesTheDrivesOffAndIsToldSo) {
   Serving serving(false, 0.05);
   RemoteDevice there(serving.address(), client(false));
@@ -249,40 +122,6 @@ TEST(Connection, AStoppedServerIsAFaultWithItsWords) {
   EXPECT_EQ(sensors.driver_fault, FaultCode::kDeviceGone);
   EXPECT_EQ(there.farewell(), "the server was stopped");
 }
-
-// speaks the protocol as far as a test wants
-class Script {
- public:
-  Script() : socket_(UdpSocket::listening_at({"127.0.0.1", "0"})) {}
-  Address address() const { return parse_address("test", to_string(socket_.own_address())); }
-  Header await(MessageType type) {
-    Header header;
-    do {
-      socket_.wait(now_ns() + 1'000'000'000);
-    } while (!socket_.receive(datagram, client_) ||
-             read_header(datagram.view(), header) != Verdict::kGood ||
-             header.type != static_cast<std::uint16_t>(type));
-    return header;
-  }
-  template <typename Message>
-  void send(const Message& message, const Header& header) {
-    Datagram out;
-    encode(header, message, out);
-    socket_.send(out.view(), client_);
-  }
-  void send_raw(std::span<const std::byte> bytes) { socket_.send(bytes, client_); }
-  void welcome(const Description& actual) {
-    await(MessageType::kHello);
-    Hello hello;
-    (void)decode(datagram.view(), hello);
-    send(Welcome{.nonce = hello.nonce, .actual = actual}, {.session = 7, .number = 1});
-  }
-  Datagram datagram;
-
- private:
-  UdpSocket socket_;
-  Peer client_;
-};
 
 TEST(Connection, ASilentDeviceIsAFaultAndNothingIsReadFromItAnyMore) {
   Script server;
