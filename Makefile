@@ -19,7 +19,7 @@ BUILD := build/$(PRESET)
 RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
   head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering prepositioning control safety \
-  cycle user simulation remote evaluation fuzz_replay)
+  cycle user simulation remote identification evaluation fuzz_replay)
 TSAN_TESTS := $(addsuffix _test, core runtime viewer_server)
 FUZZ_SECONDS ?= 600
 FUZZ_CXX ?= $(firstword $(foreach name,clang++ clang++-19 clang++-16 clang++-14,$(shell command -v $(name))) clang++)

@@ -117,6 +117,9 @@ void print_bandwidth(const inspection::Bandwidth& bandwidth) {
   if (bandwidth.gantry_Hz > 0.0) {
     fmt::print(", gantry {:.1f} Hz (its drive {:.1f} Hz)", bandwidth.gantry_Hz, bandwidth.drive_Hz);
   }
+  if (bandwidth.wrench_delay_s > 0.0) {
+    fmt::print(", force {:.1f} ms behind", 1e3 * bandwidth.wrench_delay_s);
+  }
   fmt::print("\n");
 }
 

@@ -47,9 +47,9 @@ void describe_end_stops(V& v, Simulation& simulation) {
   v.number("beyond_rad", simulation.stop_distance_angle, kNotNegative,
            "beyond the limits of revolute joints");
   v.number("beyond_m", simulation.stop_distance_length, kNotNegative,
-           "beyond the limits of prismatic joints");
+           "beyond the limits of prismatic joints, the gantry's too");
   v.number("stiffness_Nm_per_rad", simulation.end_stop.stiffness, kPositive,
-           "of a prismatic joint in N/m");
+           "of a prismatic joint in N/m; the manipulator's");
   v.number("damping_ratio", simulation.end_stop.damping_ratio, kNotNegative,
            "with the joint's own inertia; 5 throws back 1 % of the energy");
 }
@@ -94,7 +94,7 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
       "true values over those of the device file and its URDF");
   v.group(
       "end_stops", [&](auto& child) { describe_end_stops(child, draft.simulation); },
-      "buffers of the manipulator's joints");
+      "buffers at the ends of all joints");
   draft.simulation.gear_ratio = VectorM::Ones(static_cast<int>(manipulator.size()));
   v.numbers_by_name(
       "gear_ratio", manipulator, "a joint of the manipulator", kPositive,

@@ -30,8 +30,13 @@ Eigen::Vector3d HighPass::step(const Eigen::Vector3d& value) noexcept {
   return y;
 }
 
-Reality::Reality(const LimitCatalogue& catalogue, LimitPositions positions, double rate_Hz)
-    : positions_of_(std::move(positions)), above_5_(5.0, rate_Hz), above_20_(20.0, rate_Hz) {
+Reality::Reality(const LimitCatalogue& catalogue, LimitPositions positions, double rate_Hz,
+                 const VectorM& torque_rated)
+    : positions_of_(std::move(positions)),
+      above_5_(5.0, rate_Hz),
+      above_20_(20.0, rate_Hz),
+      torque_rated_(torque_rated),
+      sum_torque_(VectorM::Zero(torque_rated.size())) {
   for (const LimitInfo& limit : catalogue) {
     if (limit.kind != LimitKind::kTwinJoint) ranges_.push_back(limit.range);
   }
@@ -59,11 +64,17 @@ void Reality::add(const Sample& sample) {
   const VectorM& share = record.tracking.torque_share;
   if (max_torque_share_.size() != share.size()) max_torque_share_ = share;
   max_torque_share_ = max_torque_share_.cwiseMax(share);
+  if (share.size() > 0) sum_torque_ += truth.tau_motor.cwiseAbs2();
 
   const Eigen::Vector3d a = truth.acceleration.head<3>();
   sum_force_ += truth.w_H.head<3>().norm();
   sum_vibration_ += above_5_.step(a).squaredNorm();
   sum_vibration_20_ += above_20_.step(a).squaredNorm();
+}
+
+VectorM Reality::rated_torque_share() const {
+  if (max_torque_share_.size() == 0) return {};
+  return (sum_torque_ / static_cast<double>(cycles_)).cwiseSqrt().cwiseQuotient(torque_rated_);
 }
 
 double Reality::mean_force() const noexcept {

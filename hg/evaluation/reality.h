@@ -30,8 +30,10 @@ using LimitPositions = std::function<void(const Truth&, std::vector<double>&)>;
 
 class Reality {
  public:
-  /// `catalogue` begins with the limits of the device.
-  Reality(const LimitCatalogue& catalogue, LimitPositions positions, double rate_Hz);
+  /// `catalogue` begins with the limits of the device. `torque_rated`: of the motors, Nm; empty for
+  /// a device without torque control.
+  Reality(const LimitCatalogue& catalogue, LimitPositions positions, double rate_Hz,
+          const VectorM& torque_rated = {});
 
   void add(const Sample& sample);
 
@@ -45,6 +47,9 @@ class Reality {
   double max_hand_distance() const noexcept { return max_hand_distance_; }
   /// Largest motor torque over its peak, per joint; empty without torque control.
   const VectorM& max_torque_share() const noexcept { return max_torque_share_; }
+  /// rms of the true motor torque over what the motor can give for ever, per joint; above 1 it
+  /// would get too hot. Empty without torque control.
+  VectorM rated_torque_share() const;
   std::uint64_t clamped_cycles() const noexcept { return clamped_cycles_; }
   /// True force of the user on the handle, N.
   double mean_force() const noexcept;
@@ -62,7 +67,7 @@ class Reality {
   std::uint64_t cycles_ = 0, clamped_cycles_ = 0;
   double max_joint_error_ = 0.0, max_hand_distance_ = 0.0;
   int worst_joint_ = -1;
-  VectorM max_torque_share_;
+  VectorM max_torque_share_, torque_rated_, sum_torque_;
   double sum_force_ = 0.0, sum_vibration_ = 0.0, sum_vibration_20_ = 0.0;
 };
 

@@ -82,9 +82,10 @@ std::string link_text(const LinkCounts& counts) {
   return text;
 }
 
-Summary::Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz)
+Summary::Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz,
+                 const VectorM& torque_rated)
     : catalogue_(std::move(catalogue)),
-      reality_(catalogue_, std::move(positions), rate_Hz),
+      reality_(catalogue_, std::move(positions), rate_Hz, torque_rated),
       worst_excess_(catalogue_.size(), 0.0) {}
 
 void Summary::add(const Sample& sample) {
@@ -199,6 +200,8 @@ nlohmann::ordered_json Summary::reality_json() const {
   json["max_handle_to_twin_m"] = reality_.max_hand_distance();
   const VectorM& share = reality_.max_torque_share();
   json["max_torque_over_peak"] = std::vector<double>(share.begin(), share.end());
+  const VectorM rated = reality_.rated_torque_share();
+  json["rms_torque_over_rated"] = std::vector<double>(rated.begin(), rated.end());
   json["cycles_held_back"] = reality_.clamped_cycles();
   json["mean_force_N"] = reality_.mean_force();
   json["vibration_above_5_Hz_m_per_s2"] = reality_.vibration();
@@ -230,9 +233,12 @@ std::string Summary::reality_text() const {
   if (share.size() > 0) {
     Eigen::Index most = 0;
     const double largest = share.maxCoeff(&most);
+    Eigen::Index hottest = 0;
+    const double warmth = reality_.rated_torque_share().maxCoeff(&hottest);
     line("torque",
-         fmt::format("at most {:.0f} % of the peak ({}){}", 100.0 * largest,
-                     catalogue_[static_cast<std::size_t>(most)].name,
+         fmt::format("at most {:.0f} % of the peak ({}), rms {:.0f} % of the rated ({}){}",
+                     100.0 * largest, catalogue_[static_cast<std::size_t>(most)].name,
+                     100.0 * warmth, catalogue_[static_cast<std::size_t>(hottest)].name,
                      reality_.clamped_cycles() == 0
                          ? std::string()
                          : fmt::format("; held back in {} cycles", reality_.clamped_cycles())));

@@ -65,7 +65,9 @@ std::string link_text(const LinkCounts& counts);
 class Summary {
  public:
   /// `positions` judges devices whose truth is known.
-  Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz);
+  /// As Reality.
+  Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz,
+          const VectorM& torque_rated = {});
 
   void add(const Sample& sample);
   void add(const Event& event) { events_.push_back(event); }

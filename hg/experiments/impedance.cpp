@@ -138,6 +138,7 @@ ImpedanceRun push(const config::Scenario& scenario, const ImpedanceConfig& confi
                       .is_rigid = what.is_rigid,
                       .axis = "xyz"[axis],
                       .fault = player.record().fault.code};
+  if (run.fault != FaultCode::kNone) return run;  // parts of a period mean nothing
   const auto spell = [&](const Spell& part) {
     const auto at = [&](double time) {
       const auto index = static_cast<std::size_t>(std::llround(time * rate_Hz));
@@ -196,8 +197,10 @@ std::string to_text(const ImpedanceReport& report) {
     for (std::size_t i = 0; i < run.mobility.size(); ++i) {
       text += fmt::format("{:>7.1f}", 1e6 * compliance(run.mobility[i], config.frequency_Hz[i]));
     }
-    text += fmt::format("{:>10.2f} {:>8.2f} mm{}\n", 1e3 * run.static_peak, 1e3 * run.static_end,
-                        fault_text(run));
+    if (run.fault == FaultCode::kNone) {
+      text += fmt::format("{:>10.2f} {:>8.2f} mm", 1e3 * run.static_peak, 1e3 * run.static_end);
+    }
+    text += fault_text(run) + "\n";
   }
   text +=
       "blind: the force/torque sensor shows nothing, so nothing is fed forward\n"
@@ -234,7 +237,7 @@ nlohmann::ordered_json to_json(const ImpedanceReport& report) {
     for (const std::complex<double>& value : run.mobility) {
       entry["mobility_m_per_Ns"].push_back({value.real(), value.imag()});
     }
-    if (run.is_rigid) {
+    if (run.is_rigid && run.fault == FaultCode::kNone) {
       entry["static_peak_m"] = run.static_peak;
       entry["static_end_m"] = run.static_end;
     }

@@ -43,7 +43,8 @@ struct ImpedanceRun {
   std::string name;
   bool is_rigid = true;
   char axis = 'x';  ///< of H
-  /// Velocity over force at ImpedanceConfig::frequency_Hz, m/(Ns).
+  /// Velocity over force at ImpedanceConfig::frequency_Hz, m/(Ns); empty after a fault, as what
+  /// follows is 0.
   std::vector<std::complex<double>> mobility;
   double static_peak = 0.0;  ///< largest deflection under the static force, m; rigid twin only
   double static_end = 0.0;   ///< deflection at its end

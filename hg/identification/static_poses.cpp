@@ -154,7 +154,8 @@ StaticPose measure_simulated(const config::Device& device, const VectorM& q_m) {
   CommandFrame brakes_closed;
   brakes_closed.q_m = q_m;
   brakes_closed.dq_m = brakes_closed.ddq_m = VectorM::Zero(device.model.n_m);
-  brakes_closed.dq_p = start.q_p;
+  brakes_closed.tau_m = brakes_closed.dq_m;
+  brakes_closed.dq_p = VectorP::Zero(device.model.n_p);
   StaticPose mean;
   const int second = static_cast<int>(std::lround(device.rate_Hz));
   for (int k = 0; k < 2 * second; ++k) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/estimation/user_wrench.h"
+
 namespace hg::inspection {
 namespace {
 
@@ -113,7 +115,8 @@ Datasheet make_datasheet(const config::Device& device, const Survey& survey) {
       .rate_Hz = device.rate_Hz,
       .synchronisation_Hz = std::sqrt(device.rendering.kP_tran) / (2.0 * M_PI),
       .gantry_Hz = device.model.n_p > 0 ? device.prepositioning.k_ppu / (2.0 * M_PI) : 0.0,
-      .drive_Hz = device.model.n_p > 0 ? 1.0 / (2.0 * M_PI * device.drive.lag) : 0.0};
+      .drive_Hz = device.model.n_p > 0 ? 1.0 / (2.0 * M_PI * device.drive.lag) : 0.0,
+      .wrench_delay_s = estimation::wrench_delay(device.estimation.wrench, device.rendering.dt)};
   return sheet;
 }
 

@@ -38,6 +38,7 @@ struct Bandwidth {
   double synchronisation_Hz = 0.0;  ///< of (11), sqrt(kP) / (2 pi)
   double gantry_Hz = 0.0;           ///< of (27), k_ppu / (2 pi)
   double drive_Hz = 0.0;            ///< of the gantry's drive, 1 / (2 pi lag)
+  double wrench_delay_s = 0.0;      ///< of the user's wrench behind the sensor, by its low-pass
 };
 
 struct Datasheet {

@@ -70,6 +70,10 @@ void check_joints(const PlantConfig& config, const model::Chain& chain) {
 void check_end_stops(const PlantConfig& config, const model::Chain& chain) {
   require_positive("end stop stiffness", config.end_stop.stiffness);
   require_not_negative("end stop damping_ratio", config.end_stop.damping_ratio);
+  if (!config.gantry_stops.empty()) {
+    require_size("gantry_stops", static_cast<Eigen::Index>(config.gantry_stops.size()),
+                 config.gantry.size());
+  }
   if (config.end_stops.empty()) return;
   require_size("end_stops", static_cast<Eigen::Index>(config.end_stops.size()),
                config.manipulator.size());

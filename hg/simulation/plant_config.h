@@ -42,6 +42,7 @@ struct PlantConfig {
   double current_lag = 0.5e-3;           ///< from torque command to torque, s, >= 0; CONTROL_NOTES
   double mass = 1.0;                     ///< all masses of the chain times this, > 0
   DriveModel drive;                      ///< of every gantry axis
+  std::vector<Interval> gantry_stops;    ///< buffers at the ends of the gantry; empty = none
   std::vector<Interval> end_stops;       ///< of the links of the manipulator; empty = none
   EndStopModel end_stop;
   VectorP q_p_start;

@@ -72,10 +72,12 @@ void Simulation::move(const CommandFrame& command) noexcept {
     ideal->step(command);
     return;
   }
-  std::get<Plant>(plant_).step({.tau_command = command.tau_m,
-                                .brakes_closed = !command.enable,
-                                .dq_p_command = command.dq_p,
-                                .w_H = w_H_});
+  PlantInput input = {.tau_command = command.tau_m,
+                      .brakes_closed = !command.enable,
+                      .dq_p_command = command.dq_p,
+                      .w_H = w_H_};
+  if (!command.enable) input.dq_p_command.setZero();
+  std::get<Plant>(plant_).step(input);
 }
 
 // The person feels where the handle is now and pulls accordingly until the next step; on an ideal

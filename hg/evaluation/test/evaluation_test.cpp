@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <utility>
 
 #include "hg/evaluation/events.h"
 #include "hg/evaluation/summary.h"
@@ -144,6 +147,69 @@ TEST(Histogram, TakesValuesOutsideItsBins) {
   histogram.add(kInfinity);
   EXPECT_EQ(histogram.distribution().median, 0.0);
   EXPECT_EQ(histogram.distribution().max, kInfinity);
+}
+
+Sample known(int k) {
+  Sample sample;
+  sample.record = running(1e-3 * k);
+  sample.record.reference.q_m = VectorM::Zero(2);
+  sample.record.tracking.torque_share = VectorM::Constant(2, 0.1);
+  sample.truth.is_known = true;
+  sample.truth.q_m = sample.truth.tau_motor = VectorM::Zero(2);
+  return sample;
+}
+
+Reality reality() {
+  const auto positions = [](const Truth& truth, std::vector<double>& values) {
+    values = {truth.q_m[0]};
+  };
+  return {catalogue(), positions, 1000.0, VectorM::Constant(2, 20.0)};
+}
+
+TEST(Reality, JudgesTheTrueLinksNotTheBelievedOnes) {
+  Reality truly = reality();
+  for (int k = 0; k < 100; ++k) {
+    Sample sample = known(k);
+    sample.truth.q_m << (k == 50 ? 2.452 : 1.0), 0.0;  // m4 ends at 2.45
+    sample.record.reference.q_m << 1.0, (k == 70 ? 1.5 : 0.0);
+    sample.truth.T_B_H.p.x() = k == 20 ? 3e-3 : 0.0;
+    truly.add(sample);
+  }
+  EXPECT_NEAR(truly.worst_excess()[0], 2e-3, 1e-12);
+  EXPECT_NEAR(truly.max_joint_error(), 1.5, 1e-12);
+  EXPECT_EQ(truly.worst_joint(), 1);
+  EXPECT_NEAR(truly.max_hand_distance(), 3e-3, 1e-12);
+}
+
+TEST(Reality, TorquesAreComparedWithWhatTheMotorsCanGiveForEver) {
+  Reality truly = reality();
+  EXPECT_EQ(truly.rated_torque_share().size(), 0);
+  for (int k = 0; k < 1000; ++k) {
+    Sample sample = known(k);
+    sample.truth.tau_motor << 10.0, (k % 2 == 0 ? 30.0 : -30.0);
+    sample.record.tracking.torque_share[1] = k == 10 ? 1.2 : 0.3;
+    truly.add(sample);
+  }
+  EXPECT_NEAR(truly.rated_torque_share()[0], 0.5, 1e-12);
+  EXPECT_NEAR(truly.rated_torque_share()[1], 1.5, 1e-12);
+  EXPECT_EQ(truly.max_torque_share()[1], 1.2);
+}
+
+TEST(Reality, VibrationIsWhatIsFasterThanPeopleMove) {
+  const auto vibration_at = [](double f_Hz) {
+    Reality truly = reality();
+    for (int k = 0; k < 20000; ++k) {
+      Sample sample = known(k);
+      sample.truth.acceleration[1] = std::sin(2.0 * std::numbers::pi * f_Hz * 1e-3 * k);
+      truly.add(sample);
+    }
+    return std::pair(truly.vibration(), truly.vibration_20());
+  };
+  const double rms = std::numbers::sqrt2 / 2.0;
+  EXPECT_LT(vibration_at(0.5).first, 0.011 * rms);                              // (0.5 / 5)^2
+  EXPECT_NEAR(vibration_at(5.0).first, rms * std::numbers::sqrt2 / 2.0, 0.01);  // -3 dB
+  EXPECT_NEAR(vibration_at(50.0).first, rms, 0.01);
+  EXPECT_NEAR(vibration_at(20.0).second, rms * std::numbers::sqrt2 / 2.0, 0.01);
 }
 
 TEST(Summary, TellsPriorityAndATimedOutStop) {

@@ -194,6 +194,32 @@ TEST(Plant, DoesNotAllocate) {
   EXPECT_TRUE(std::isfinite(sum));
 }
 
+TEST(Plant, TheGantryMeetsBuffersAtItsEnds) {
+  PlantConfig config = reference_config();
+  config.gantry_stops = {{-1.42, 1.42}, {-0.2, 0.1}};
+  for (const double side : {1.0, -1.0}) {
+    Plant plant(config, haptic_giant(), haptic_giant().frame("handle"));
+    PlantInput input = idle(config, true);
+    input.dq_p_command[1] = 1.5 * side;
+    double farthest = 0.0, fastest = 0.0;
+    for (int k = 0; k < 12000; ++k) {
+      plant.step(input);
+      farthest = std::max(farthest, side * plant.truth().q_p[1]);
+      fastest = std::max(fastest, side * plant.truth().dq_p[1]);
+    }
+    const double end = side > 0.0 ? 0.1 : 0.2;
+    EXPECT_GT(fastest, 0.6);
+    EXPECT_GT(farthest, end + 1e-3);
+    EXPECT_LT(farthest, end + 0.01);
+    EXPECT_LT(std::abs(plant.truth().dq_p[1]), 1e-3);  // it leans against the buffer
+    EXPECT_GT(side * plant.truth().q_p[1], end);
+    input.dq_p_command[1] = -0.5 * side;  // and may leave
+    for (int k = 0; k < 800; ++k) plant.step(input);
+    EXPECT_LT(side * plant.truth().q_p[1], end - 0.03);
+    EXPECT_EQ(plant.truth().q_p[0], 0.0);
+  }
+}
+
 TEST(Plant, SetUpNamesWhatCannotBe) {
   const model::Chain chain = haptic_giant();
   const auto message = [&](auto&& spoil) -> std::string {

@@ -181,6 +181,17 @@ TEST(Simulation, BrakesHoldTheMotorsOfADisabledDeviceAgainstAnyHand) {
   EXPECT_GT((device.truth().theta_m - theta).lpNorm<Eigen::Infinity>(), 1e-2);
 }
 
+TEST(Simulation, TheGantryOfADisabledDeviceBrakesWhateverItIsTold) {
+  Simulation device = make(elastic_world());
+  CommandFrame command = hold(device);
+  command.dq_p[0] = 0.5;
+  for (int k = 0; k < 400; ++k) device.step(command);
+  EXPECT_GT(device.truth().dq_p[0], 0.4);
+  command.enable = false;
+  for (int k = 0; k < 600; ++k) device.step(command);
+  EXPECT_NEAR(device.truth().dq_p[0], 0.0, 1e-3);
+}
+
 TEST(Simulation, TheSensorCarriesThePayloadWithItsWeightAndInertia) {
   Config world = elastic_world();
   world.sensed.payload.mass = 1.18;
