@@ -66,6 +66,28 @@ int explain(const CLI::App& app, const CLI::ParseError& error) {
   return kBadInput;
 }
 
+// what run and simulate share
+void add_scenario_options(CLI::App& command, hg::apps::ScenarioArguments& world) {
+  command.add_option("scenario", world.scenario, "scenario file, or door, excavator, free_space")
+      ->capture_default_str();
+  command.add_option("--device", world.device, "device.yaml instead of the scenario's");
+  command.add_option("--twin", world.twin, "twin.yaml instead of the scenario's");
+  command.add_option("--plant", world.plant, "elastic: all that makes haptics hard; or ideal")
+      ->check(CLI::IsMember({"elastic", "ideal"}));
+  command.add_option("--sensors", world.sensors, "real: with all their errors; or ideal")
+      ->check(CLI::IsMember({"real", "ideal"}));
+  command.add_option("--hand", world.hand, "how hard the simulated hand is made")
+      ->check(CLI::IsMember({"relaxed", "normal", "stiff"}));
+  command.add_option("--seed", world.seed, "of noise and tremor: the same seed, the same run");
+  command.add_option("--step", world.step_s, "largest step of the simulated machine, s")
+      ->check(number_that("from 1e-5 to 2e-3",
+                          [](double value) { return value >= 1e-5 && value <= 2e-3; }));
+  command.add_option("--user", world.user, "script file, mouse or none");
+  command.add_option("--rate-hz", world.rate_Hz, "control rate, 100..20000; default: the device's")
+      ->check(number_that("from 100 to 20000",
+                          [](double value) { return value >= 100.0 && value <= 20000.0; }));
+}
+
 void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("run", "A person at the device feels the twin (the main job).");
@@ -74,30 +96,13 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       "  hapticgiant run                          the door, scripted hand, page in the browser\n"
       "  hapticgiant run excavator --fast --summary out.json\n"
       "  hapticgiant run door --user mouse        drag the handle in the page");
-  command->add_option("scenario", run.scenario, "scenario file, or door, excavator, free_space")
-      ->capture_default_str();
-  command->add_option("--device", run.device, "device.yaml instead of the scenario's");
-  command->add_option("--twin", run.twin, "twin.yaml instead of the scenario's");
+  add_scenario_options(*command, run.world);
   command->add_option(
       "--device-address", run.device_address,
       "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one");
-  command->add_option("--plant", run.plant, "elastic: all that makes haptics hard; or ideal")
-      ->check(CLI::IsMember({"elastic", "ideal"}));
-  command->add_option("--sensors", run.sensors, "real: with all their errors; or ideal")
-      ->check(CLI::IsMember({"real", "ideal"}));
-  command->add_option("--hand", run.hand, "how hard the simulated hand is made")
-      ->check(CLI::IsMember({"relaxed", "normal", "stiff"}));
-  command->add_option("--seed", run.seed, "of noise and tremor: the same seed, the same run");
-  command->add_option("--step", run.step_s, "largest step of the simulated machine, s")
-      ->check(number_that("from 1e-5 to 2e-3",
-                          [](double value) { return value >= 1e-5 && value <= 2e-3; }));
-  command->add_option("--user", run.user, "script file, mouse or none");
   command->add_option("--duration", run.duration_s, "seconds; default: until the script has played")
       ->check(number_that("more than 0", [](double value) { return value > 0.0; }));
   command->add_flag("--fast", run.is_fast, "as fast as it can instead of in real time");
-  command->add_option("--rate-hz", run.rate_Hz, "control rate, 100..20000; default: the device's")
-      ->check(number_that("from 100 to 20000",
-                          [](double value) { return value >= 100.0 && value <= 20000.0; }));
   command->add_option("--law", run.law, "gauss or paper; default: the device's")
       ->check(CLI::IsMember({"gauss", "paper"}));
   command->add_option("--bounds", run.bounds, "recoverable or paper; default: the device's")
@@ -124,19 +129,13 @@ void add_simulate(CLI::App& app, hg::apps::SimulateArguments& simulate, int& exi
       "Examples:\n"
       "  hapticgiant simulate door --listen 127.0.0.1:4810     then, in another terminal:\n"
       "  hapticgiant run door --device-address 127.0.0.1:4810");
-  command->add_option("scenario", simulate.scenario, "as in run")->capture_default_str();
+  add_scenario_options(*command, simulate.world);
   command
       ->add_option("--listen", simulate.listen,
                    "HOST:PORT to serve at; whoever can reach it can move the device")
       ->required();
-  command->add_option("--device", simulate.device, "as in run");
-  command->add_option("--twin", simulate.twin, "as in run");
-  command->add_option("--user", simulate.user, "as in run");
   command->add_flag("--fast", simulate.is_fast,
                     "lock-step: each side waits for the other (run --fast) instead of real time");
-  command->add_option("--rate-hz", simulate.rate_Hz, "as in run")
-      ->check(number_that("from 100 to 20000",
-                          [](double value) { return value >= 100.0 && value <= 20000.0; }));
   command->add_option("--capture", simulate.capture,
                       "write every datagram to this pcap file (docs/device_protocol.md)");
   command->callback([&simulate, &exit_code] { exit_code = hg::apps::simulate(simulate); });

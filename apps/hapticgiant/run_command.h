@@ -5,27 +5,20 @@
 #include <optional>
 #include <string>
 
+#include "apps/hapticgiant/scenario_arguments.h"
+
 namespace hg::apps {
 
 struct RunArguments {
   std::string program = "hapticgiant";  ///< as it was called, for commands that it prints
-  std::string scenario = "door";
-  std::string device;          ///< device.yaml instead of the scenario's; empty = the scenario's
-  std::string twin;            ///< twin.yaml likewise
+  ScenarioArguments world;
   std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
-  std::string user;            ///< script file, "mouse" or "none"; empty = the scenario's
   /// Unset: until the script has played; on a terminal with a page until Ctrl-C.
   std::optional<double> duration_s;
-  bool is_fast = false;               ///< as fast as it can, without page
-  std::optional<double> rate_Hz;      ///< unset: the device's
-  std::string plant;                  ///< "elastic" or "ideal"; empty = as the device is
-  std::string sensors;                ///< "real" or "ideal"; empty = as the device's simulation
-  std::string hand;                   ///< "relaxed", "normal" or "stiff"; empty = the script's
-  std::optional<std::uint64_t> seed;  ///< of the simulation
-  std::optional<double> step_s;       ///< largest step of the plant
-  std::string law;                    ///< "gauss" or "paper"; empty = the device's
-  std::string bounds;                 ///< "recoverable" or "paper"; empty = the device's
-  std::string summary;                ///< JSON file; empty = none
+  bool is_fast = false;  ///< as fast as it can, without page
+  std::string law;       ///< "gauss" or "paper"; empty = the device's
+  std::string bounds;    ///< "recoverable" or "paper"; empty = the device's
+  std::string summary;   ///< JSON file; empty = none
   bool has_viewer = true;
   std::uint16_t port = 0;  ///< of the page; 0 = any free one
   std::string recordings = "recordings";

@@ -22,7 +22,7 @@ namespace hg::apps {
 namespace {
 
 // what --device, --twin and --user change; expected events belong to the scenario as it stands
-void apply(const RunArguments& arguments, config::Scenario& scenario) {
+void apply(const ScenarioArguments& arguments, config::Scenario& scenario) {
   const auto add_sources = [&](const std::vector<config::SourceText>& sources) {
     scenario.sources.insert(scenario.sources.end(), sources.begin(), sources.end());
   };
@@ -76,7 +76,7 @@ void choose(const char* option, const std::string& text, config::Choices<T> choi
 }
 
 // what --plant, --sensors, --hand, --seed and --step change
-void apply_to_simulation(const RunArguments& arguments, config::Scenario& scenario) {
+void apply_to_simulation(const ScenarioArguments& arguments, config::Scenario& scenario) {
   config::Device& device = scenario.device;
   if (arguments.plant == "ideal") device.control.method = control::Method::kDrives;
   if (arguments.plant == "elastic" && device.control.actuators.empty()) {
@@ -92,6 +92,20 @@ void apply_to_simulation(const RunArguments& arguments, config::Scenario& scenar
            preset);
     scenario.script.hand = user::hand(preset);
   }
+}
+
+// a remote device has its own seed, step, hand and sensors
+void refuse_what_is_simulated(const ScenarioArguments& arguments) {
+  std::vector<std::string> given;
+  if (arguments.seed) given.push_back("--seed");
+  if (arguments.step_s) given.push_back("--step");
+  if (!arguments.hand.empty()) given.push_back("--hand");
+  if (!arguments.sensors.empty()) given.push_back("--sensors");
+  if (given.empty()) return;
+  throw SetupError(
+      fmt::format("{}: the device of --device-address is simulated elsewhere; give this to "
+                  "'hapticgiant simulate' there",
+                  fmt::join(given, ", ")));
 }
 
 std::vector<std::string> joint_names(const rendering::DeviceModel& device, int first, int count) {
@@ -133,15 +147,16 @@ std::string changes(const RunArguments& arguments) {
   const auto line = [&](const char* option, const std::string& value) {
     if (!value.empty()) text += fmt::format("{} {}\n", option, value);
   };
-  line("--device", arguments.device);
-  line("--twin", arguments.twin);
-  line("--user", arguments.user);
-  if (arguments.rate_Hz) line("--rate-hz", fmt::format("{}", *arguments.rate_Hz));
-  line("--plant", arguments.plant);
-  line("--sensors", arguments.sensors);
-  line("--hand", arguments.hand);
-  if (arguments.seed) line("--seed", fmt::format("{}", *arguments.seed));
-  if (arguments.step_s) line("--step", fmt::format("{}", *arguments.step_s));
+  const ScenarioArguments& world = arguments.world;
+  line("--device", world.device);
+  line("--twin", world.twin);
+  line("--user", world.user);
+  if (world.rate_Hz) line("--rate-hz", fmt::format("{}", *world.rate_Hz));
+  line("--plant", world.plant);
+  line("--sensors", world.sensors);
+  line("--hand", world.hand);
+  if (world.seed) line("--seed", fmt::format("{}", *world.seed));
+  if (world.step_s) line("--step", fmt::format("{}", *world.step_s));
   line("--law", arguments.law);
   line("--bounds", arguments.bounds);
   return text;
@@ -161,16 +176,22 @@ Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
 
 }  // namespace
 
-config::Scenario make_scenario(const RunArguments& arguments) {
+config::Scenario make_scenario(const ScenarioArguments& arguments) {
   config::Scenario scenario = config::load_scenario(find_scenario(arguments.scenario));
   apply(arguments, scenario);
   if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
+  apply_to_simulation(arguments, scenario);
+  return scenario;
+}
+
+config::Scenario make_scenario(const RunArguments& arguments) {
+  if (!arguments.device_address.empty()) refuse_what_is_simulated(arguments.world);
+  config::Scenario scenario = make_scenario(arguments.world);
   choose("--law", arguments.law, config::Choices<rendering::Law>(config::kLaws),
          scenario.device.rendering.law);
   choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
          scenario.device.rendering.bounds);
   scenario.device.rendering.slow_solve = arguments.slow_solve;
-  apply_to_simulation(arguments, scenario);
   return scenario;
 }
 
@@ -180,8 +201,9 @@ ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments&
   const auto now = std::chrono::system_clock::now();
   return ProblemDumps(
       {.folder = arguments.has_recording ? arguments.recordings : "",
-       .stem = recorder != nullptr ? recorder->stem()
-                                   : recording::stamped(recording_name(arguments.scenario), now),
+       .stem = recorder != nullptr
+                   ? recorder->stem()
+                   : recording::stamped(recording_name(arguments.world.scenario), now),
        .origin = fmt::format("{}, law {}, bounds {}", scenario.title, rendering::to_string(law.law),
                              rendering::to_string(law.bounds)),
        .program = arguments.program});
@@ -192,7 +214,7 @@ recording::RecordingInfo recording_info(const config::Scenario& scenario,
   const rendering::DeviceModel& device = scenario.device.model;
   recording::RecordingInfo info;
   info.folder = arguments.recordings;
-  info.name = recording_name(arguments.scenario);
+  info.name = recording_name(arguments.world.scenario);
   info.gantry_joints = joint_names(device, 0, device.n_p);
   info.manipulator_joints = joint_names(device, device.n_p, device.n_m);
   for (const model::Joint& joint : scenario.twin.model.chain.joints()) {

@@ -13,6 +13,9 @@
 namespace hg::apps {
 
 /// The scenario with everything that the command line changes. Throws SetupError.
+config::Scenario make_scenario(const ScenarioArguments& arguments);
+/// The same, for a controller: also law and bounds. With a remote device, what only a simulation
+/// looks at is refused.
 config::Scenario make_scenario(const RunArguments& arguments);
 
 /// Beside the recording of `recorder`, under its name; nullptr: there is none, it may have been

@@ -89,11 +89,7 @@ std::string closing_lines(const remote::SessionReport& report, double rate_Hz) {
 
 int simulate(const SimulateArguments& arguments) {
   check_writable(arguments.capture);
-  const config::Scenario scenario = make_scenario({.scenario = arguments.scenario,
-                                                   .device = arguments.device,
-                                                   .twin = arguments.twin,
-                                                   .user = arguments.user,
-                                                   .rate_Hz = arguments.rate_Hz});
+  const config::Scenario scenario = make_scenario(arguments.world);
   const device::SimulatedDevice world = assembly::make_simulated_device(scenario);
   const remote::ServerConfig config{.actual = describe(scenario, arguments.is_fast),
                                     .server = std::string("hapticgiant simulate ") + kVersion,

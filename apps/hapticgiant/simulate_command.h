@@ -2,18 +2,17 @@
 /// scenario for a controller elsewhere.
 #pragma once
 
-#include <optional>
 #include <string>
+
+#include "apps/hapticgiant/scenario_arguments.h"
 
 namespace hg::apps {
 
 struct SimulateArguments {
-  std::string scenario = "door";
-  std::string listen;              ///< HOST:PORT
-  std::string device, twin, user;  ///< as in RunArguments
-  std::optional<double> rate_Hz;   ///< unset: the device's
-  bool is_fast = false;            ///< lock-step instead of real time
-  std::string capture;             ///< pcap file of all datagrams; empty = none
+  ScenarioArguments world;
+  std::string listen;    ///< HOST:PORT
+  bool is_fast = false;  ///< lock-step instead of real time
+  std::string capture;   ///< pcap file of all datagrams; empty = none
 };
 
 /// Serves one client after the other until Ctrl-C, each with a world that begins anew. Exit code 0.

@@ -7,6 +7,7 @@ device as it is, prints what its sensors say, and holds the arm where it is.
 """
 
 import argparse
+import math
 import random
 import socket
 import struct
@@ -48,7 +49,9 @@ def decode(data):
 
 
 def text(field):
-    return field.split(b"\0")[0].decode(errors="replace")
+    """For people: without the control characters that a terminal would obey."""
+    decoded = field.split(b"\0")[0].decode(errors="replace")
+    return "".join(c if c.isprintable() else "?" for c in decoded)
 
 
 def vector(values, room=7):
@@ -57,16 +60,41 @@ def vector(values, room=7):
     return [len(values), 0] + values + [0.0] * (room - len(values))
 
 
+def take_vectors(fields, **rooms):
+    """The vectors by name, how many fields they take, and whether they are as they may be."""
+    at, vectors, is_good = 0, {}, True
+    for name, room in rooms.items():
+        count, zero, values = fields[at], fields[at + 1], fields[at + 2:at + 2 + room]
+        is_good = is_good and count <= room and zero == 0 and not any(values[count:])
+        vectors[name] = values[:count]
+        at += 2 + room
+    return vectors, at, is_good
+
+
 def unpack_sensors(fields):
-    """The fields of a sensors message by name."""
+    """The fields of a sensors message by name; None if it is malformed."""
     names = ["sequence", "time_s", "answered_sequence", "dead_man", "emergency_stop", "driver_fault"]
     sensors = dict(zip(names, fields))
-    at = 7
-    for name, room in [("q_m", 7), ("dq_m", 7), ("theta_m", 7), ("tau_m", 7), ("q_p", 2)]:
-        sensors[name] = fields[at + 2:at + 2 + fields[at]]
-        at += 2 + room
-    sensors["w_S"], sensors["a_S"], sensors["omega_S"] = fields[at:at + 6], fields[at + 6:at + 9], fields[at + 9:]
-    return sensors
+    vectors, size, is_good = take_vectors(fields[7:], q_m=7, dq_m=7, theta_m=7, tau_m=7, q_p=2)
+    rest = fields[7 + size:]
+    flags = (sensors["dead_man"], sensors["emergency_stop"])
+    if not is_good or max(flags) > 1 or fields[6] != 0 or not all(map(math.isfinite, fields)):
+        return None
+    return sensors | vectors | {"w_S": rest[:6], "a_S": rest[6:9], "omega_S": rest[9:]}
+
+
+def unpack_command(fields, n_m, n_p, interface):
+    """The fields of a command message by name; None if it is malformed for such a device."""
+    sequence, enable, hand_active, *hand_p_B, hand_press = fields[:7]
+    vectors, _, is_good = take_vectors(fields[7:], q_m=7, dq_m=7, ddq_m=7, tau_m=7, dq_p=2)
+    sizes = {"q_m": n_m, "dq_m": n_m, "ddq_m": n_m, "tau_m": n_m if interface == 2 else 0, "dq_p": n_p}
+    is_good = is_good and sizes == {name: len(values) for name, values in vectors.items()}
+    if not is_good or max(enable, hand_active) > 1 or not all(map(math.isfinite, fields)):
+        return None
+    if not 0.0 <= hand_press <= 1.0:
+        return None
+    return {"sequence": sequence, "enable": bool(enable),
+            "hand": (bool(hand_active), hand_p_B, hand_press)} | vectors
 
 
 def pack_command(sequence, enable, q_m, dq_m, ddq_m, tau_m, dq_p):
@@ -123,8 +151,8 @@ class Client:
                 continue
             if message[0] == GOODBYE:
                 raise SystemExit(f"the device says goodbye: {text(message[3][2])}")
-            if message[0] == SENSORS:
-                return unpack_sensors(message[3])
+            if message[0] == SENSORS and (sensors := unpack_sensors(message[3])):
+                return sensors
         raise SystemExit("the device is silent")
 
 
@@ -140,7 +168,7 @@ def main():
 
     first = last = client.sensors()
     while last["time_s"] - first["time_s"] < arguments.seconds:
-        tau_m = ()
+        tau_m = ()  # with interface 1
         if client.interface == 2:  # carry the weight as at the start, pull back softly
             tau_m = [tau - 200.0 * (q - q_0) - 20.0 * dq for tau, q, q_0, dq in
                      zip(first["tau_m"], last["q_m"], first["q_m"], last["dq_m"])]

@@ -18,7 +18,7 @@ import numpy as np
 
 import hapticgiant as hg
 from device_client import (COMMAND, GOODBYE, HELLO, READY, SENSORS, WELCOME, decode, encode, text,
-                           vector)
+                           unpack_command, vector)
 
 STEP_S = 0.25e-3
 LATENCY_S, CURRENT_LAG_S = 1e-3, 0.5e-3  # from a command's frame to the motors
@@ -38,6 +38,12 @@ PRESCRIBED = 1e7  # kg on the gantry, so that nothing but its drives moves it
 PAYLOAD_KG, PAYLOAD_COM = 1.18, np.array([0.0, 0.0, -0.003])  # beyond the sensor, in H
 PAYLOAD_INERTIA = np.diag([0.0034, 0.0034, 0.00107])
 P_M6_H, P_H_S = np.array([0.0, 0.0, 0.12]), np.array([0.0, 0.0, -0.0375])
+
+
+def cross(a, b):
+    """np.cross of two vectors, ten times as fast."""
+    (a_x, a_y, a_z), (b_x, b_y, b_z) = a, b
+    return np.array([a_y * b_z - a_z * b_y, a_z * b_x - a_x * b_z, a_x * b_y - a_y * b_x])
 
 
 def build_model():
@@ -110,7 +116,7 @@ class World:
         mujoco.mj_objectVelocity(self.model, self.data, body, self.hand, velocity, 0)
         arm = rotation @ P_M6_H
         self.handle = self.data.xpos[self.hand] + arm
-        twist = np.concatenate([velocity[3:] + np.cross(velocity[:3], arm), velocity[:3]])
+        twist = np.concatenate([velocity[3:] + cross(velocity[:3], arm), velocity[:3]])
         pose = hg.Pose(self.handle, rotation)
         self.w_H = np.asarray(self.person.wrench(self.time_s, pose, twist, self.target))
 
@@ -124,12 +130,12 @@ class World:
         alpha = rotation.T @ acceleration[:3]
         force, torque = rotation.T @ self.w_H[:3], rotation.T @ self.w_H[3:]
         to_com = PAYLOAD_COM - P_H_S
-        a_com = a_S + np.cross(alpha, to_com) + np.cross(omega, np.cross(omega, to_com))
+        a_com = a_S + cross(alpha, to_com) + cross(omega, cross(omega, to_com))
         inertia_force = PAYLOAD_KG * a_com  # a_S has gravity in it
-        inertia_torque = PAYLOAD_INERTIA @ alpha + np.cross(omega, PAYLOAD_INERTIA @ omega)
+        inertia_torque = PAYLOAD_INERTIA @ alpha + cross(omega, PAYLOAD_INERTIA @ omega)
         w_S = np.concatenate([
             force - inertia_force,
-            torque - np.cross(P_H_S, force) - inertia_torque - np.cross(to_com, inertia_force)])
+            torque - cross(P_H_S, force) - inertia_torque - cross(to_com, inertia_force)])
         return [*w_S, *a_S, *omega]
 
     def live(self, command):
@@ -140,7 +146,7 @@ class World:
             while self.torques and self.torques[0][0] <= step:
                 arrived = self.torques.popleft()[1]
                 self.at_work, self.is_enabled = arrived["sequence"], arrived["enable"]
-                self.tau_cmd, self.dq_p_cmd = arrived["tau_m"], arrived["dq_p"]
+                self.tau_cmd, self.dq_p_cmd = np.array(arrived["tau_m"]), np.array(arrived["dq_p"])
             self.step()
         self.sequence += 1
 
@@ -181,12 +187,6 @@ class World:
                 *vector(q[self.p], 2), *self.at_sensor()]
 
 
-def unpack_command(fields):
-    return {"sequence": fields[0], "enable": bool(fields[1]),
-            "hand": (bool(fields[2]), fields[3:6], fields[6]),
-            "tau_m": np.array(fields[36:42]), "dq_p": np.array(fields[45:47])}
-
-
 def off(sequence):
     return {"sequence": sequence, "enable": False, "hand": (False, (0.0, 0.0, 0.0), 0.0),
             "tau_m": np.zeros(6), "dq_p": np.zeros(2)}
@@ -206,7 +206,10 @@ class Server:
         self.socket.sendto(encode(kind, self.session, self.number, *values), self.client)
 
     def receive(self, until_s):
-        """Type and fields of the next message of the client; None when the time has come."""
+        """Type and fields of the next message of the client; None when the time has come.
+
+        Commands are unpacked; one that is malformed is ignored.
+        """
         while True:
             left_s = until_s - time.monotonic()
             self.socket.settimeout(max(left_s, 0.0))  # 0: what waits already
@@ -218,9 +221,14 @@ class Server:
             if message and message[0] == HELLO:
                 self.answer(message[3], sender)
             elif message and sender == self.client and message[1] == self.session:
-                if message[2] > self.seen:  # not what a newer one has overtaken
-                    self.seen = message[2]
-                    return message[0], message[3]
+                if message[2] <= self.seen:  # a newer one has overtaken it
+                    continue
+                self.seen, fields = message[2], message[3]
+                if message[0] == COMMAND:
+                    n_p, n_m = self.device[1:3]
+                    fields = unpack_command(fields, n_m, n_p, TORQUE)
+                if fields is not None:
+                    return message[0], fields
 
     def answer(self, hello, sender):
         actual = (self.device[0].ljust(64, b"\0"), *self.device[1:])
@@ -261,11 +269,12 @@ class Server:
                 message = self.receive(deadline)
                 if message is None or message[0] == GOODBYE:
                     return self.say_goodbye(message)
-                if message[0] == COMMAND and message[1][0] == world.sequence:
+                is_command = message[0] == COMMAND
+                if is_command and message[1]["sequence"] == world.sequence:
                     break
-                if message[0] == READY or message[1][0] < world.sequence:
+                if message[0] == READY or is_command and message[1]["sequence"] < world.sequence:
                     self.send(SENSORS, *world.sensors())
-            world.live(unpack_command(message[1]))
+            world.live(message[1])
 
     def real_time(self, world):
         command, heard_s = off(0), time.monotonic()
@@ -276,8 +285,11 @@ class Server:
             while (message := self.receive(due_s)) is not None:
                 if message[0] == GOODBYE:
                     return self.say_goodbye(message)
-                if message[0] == COMMAND:
-                    command, heard_s = unpack_command(message[1]), time.monotonic()
+                if message[0] != COMMAND:
+                    continue
+                age_s = (world.sequence - message[1]["sequence"]) / self.scenario.rate_Hz
+                if age_s <= COMMAND_TIMEOUT_S:  # a client that falls behind is not followed
+                    command, heard_s = message[1], time.monotonic()
             world.live(command)
         self.say_goodbye(None)
 

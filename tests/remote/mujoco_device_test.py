@@ -1,9 +1,10 @@
-"""The door on a device in MuJoCo, behind the wire: the same events as with our own plant.
+"""A scenario on a device in MuJoCo, behind the wire: the same events as with our own plant.
 
-    mujoco_device_test.py BUILD PROGRAM
+    mujoco_device_test.py BUILD PROGRAM SCENARIO [RATE_HZ ...]
 
-The package hapticgiant is put into the build folder first. Exits with 77, which CTest takes for
-skipped, where MuJoCo is missing (pip install -r tools/requirements-test.txt).
+At 1 and 2 kHz unless told otherwise. The package hapticgiant is put into the build folder first.
+Exits with 77, which CTest takes for skipped, where MuJoCo is missing
+(pip install -r tools/requirements-test.txt).
 """
 
 import json
@@ -13,9 +14,12 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SKIPPED = 77
+# between two plants with different friction, steps and errors of sensors; measured: at most 0.04 s
+TOLERANCE_S = 0.1
 sys.path.insert(0, str(ROOT / "tests" / "packages"))
 from python_package_test import install  # noqa: E402
 
@@ -32,26 +36,52 @@ def free_port():
         return found.getsockname()[1]
 
 
-def main(build, program):
-    with tempfile.TemporaryDirectory() as folder:
-        install(pathlib.Path(build), pathlib.Path(folder))
-        address = f"127.0.0.1:{free_port()}"
-        server = subprocess.Popen(
-            [sys.executable, ROOT / "examples" / "python" / "mujoco_device.py", "door", "--listen",
-             address, "--fast"], env={**os.environ, "PYTHONPATH": folder}, cwd=folder)
-        try:
-            summary = pathlib.Path(folder, "summary.json")
-            for _ in range(20):  # the server needs its time to begin
-                done = subprocess.run([program, "run", "door", "--fast", "--no-recording",
-                                       "--device-address", address, "--summary", summary], cwd=ROOT)
-                if done.returncode != 2:
-                    break
-        finally:
-            server.terminate()
-            server.wait()
-        assert done.returncode == 0, f"exit code {done.returncode}"
-        events = json.loads(summary.read_text())["events"]
-        assert len(events) == 8, events
+def events_of(summary):
+    return {event["name"]: event["time_s"] for event in json.loads(summary.read_text())["events"]}
+
+
+def run(program, summary, *arguments):
+    """Its exit code."""
+    return subprocess.run([program, "run", *arguments, "--fast", "--no-recording", "--summary",
+                           summary], cwd=ROOT).returncode
+
+
+def events_in_mujoco(program, scenario, rate_Hz, folder):
+    address, summary = f"127.0.0.1:{free_port()}", folder / "there.json"
+    server = subprocess.Popen(
+        [sys.executable, ROOT / "examples" / "python" / "mujoco_device.py", scenario, "--listen",
+         address, "--fast", "--rate-hz", rate_Hz],
+        env={**os.environ, "PYTHONPATH": str(folder / "package")}, cwd=folder)
+    try:
+        for _ in range(20):  # the server needs its time to begin
+            code = run(program, summary, scenario, "--rate-hz", rate_Hz, "--device-address", address)
+            if code != 2:
+                break
+    finally:
+        server.terminate()
+        server.wait()
+    assert code == 0, f"exit code {code}"
+    return events_of(summary)
+
+
+def main(build, program, scenario, *rates_Hz):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        install(pathlib.Path(build), folder / "package")
+        for rate_Hz in rates_Hz or ("1000", "2000"):
+            begin = time.monotonic()
+            there = events_in_mujoco(program, scenario, rate_Hz, folder)
+            seconds = time.monotonic() - begin
+            code = run(program, folder / "here.json", scenario, "--rate-hz", rate_Hz)
+            assert code == 0, f"exit code {code} with our own plant"
+            here = events_of(folder / "here.json")
+            assert list(there) == list(here), f"{list(there)}, with our own plant {list(here)}"
+            assert here
+            differences_s = {event: there[event] - here[event] for event in here}
+            worst = max(differences_s, key=lambda event: abs(differences_s[event]))
+            print(f"{scenario} at {rate_Hz} Hz in MuJoCo: {len(there)} events in {seconds:.0f} s, at "
+                  f"most {differences_s[worst]:+.3f} s ({worst}) from our own plant", flush=True)
+            assert abs(differences_s[worst]) < TOLERANCE_S, differences_s
 
 
 if __name__ == "__main__":

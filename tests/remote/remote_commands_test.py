@@ -4,6 +4,7 @@
 """
 
 import json
+import math
 import pathlib
 import re
 import signal
@@ -80,6 +81,36 @@ class Commands(unittest.TestCase):
             self.assertRegex(said, r"link +\d+ sent, \d+ received")
             self.assertRegex(said, r"truth +joint limits .*; force of the user at most \d")
 
+    def test_seed_step_hand_sensors_and_plant_are_arguments_of_simulate(self):
+        for world, for_both in [(["--seed", "7", "--step", "0.5e-3", "--hand", "stiff"], []),
+                                (["--sensors", "ideal"], ["--plant", "ideal"])]:
+            with Server("free_space", "--fast", *world, *for_both) as server:
+                there = self.state(*for_both, "--device-address", server.address)
+                self.assertEqual(there, self.state(*world, *for_both))
+                for at in range(0, len(world), 2):
+                    without = world[:at] + world[at + 2:]
+                    self.assertNotEqual(there, self.state(*without, *for_both), world[at])
+                if for_both:
+                    result = run("free_space", "--fast", "--device-address", server.address)
+                    self.assertEqual(result.returncode, 2)
+                    self.assertIn("drives take positions, expected torques", result.stderr)
+
+    def state(self, *arguments):
+        """Hash of the last cycle of three seconds in free space."""
+        with tempfile.TemporaryDirectory() as folder:
+            summary = pathlib.Path(folder, "summary")
+            run("free_space", "--fast", "--duration", "3", "--summary", summary, *arguments)
+            return json.loads(summary.read_text())["state_hash"]
+
+    def test_what_only_a_simulation_looks_at_is_refused_for_a_remote_device(self):
+        result = run("door", "--device-address", "127.0.0.1:1", "--seed", "7", "--step", "1e-3",
+                     "--hand", "stiff", "--sensors", "ideal")
+        self.assertEqual(result.returncode, 2)
+        self.assertEqual(
+            result.stderr,
+            "--seed, --step, --hand, --sensors: the device of --device-address is simulated "
+            "elsewhere; give this to 'hapticgiant simulate' there\n")
+
     def test_a_server_that_goes_is_a_fault_with_exit_code_3(self):
         with Server("door", "--fast") as server:
             process = subprocess.Popen(
@@ -143,6 +174,35 @@ class PythonCodec(unittest.TestCase):
                 self.assertAlmostEqual(sensors["q_m"][1], 1.5709, places=3)
                 self.assertEqual(len(sensors["omega_S"]), 3)
         self.assertEqual(kinds.count(device_client.SENSORS), 21)
+
+    def test_malformed_messages_are_none(self):
+        command = device_client.pack_command(7, 1, [0.1] * 6, [0.2] * 6, [0.3] * 6, [0.4] * 6,
+                                             [0.5] * 2)
+        unpack = device_client.unpack_command
+        good = unpack(command, 6, 2, 2)
+        self.assertEqual((good["sequence"], good["enable"]), (7, True))
+        self.assertEqual((good["tau_m"], good["dq_p"]), ([0.4] * 6, [0.5] * 2))
+        self.assertIsNone(unpack(command, 7, 2, 2))
+        self.assertIsNone(unpack(command, 6, 1, 2))
+        self.assertIsNone(unpack(command, 6, 2, 1))  # torques for drives that follow q_m
+        for at, value in [(1, 2), (2, 2), (3, math.nan), (6, -0.1), (6, 1.1), (6, math.nan), (7, 5),
+                          (7, 8), (8, 1), (9, math.inf), (15, 0.1), (34, 0), (36, math.nan),
+                          (43, 3), (45, -math.inf)]:
+            with self.subTest(at=at, value=value):
+                self.assertIsNone(unpack([*command[:at], value, *command[at + 1:]], 6, 2, 2))
+
+        sensors = [7, 0.1, 6, 1, 0, 0, 0, *4 * device_client.vector([0.1] * 6),
+                   *device_client.vector([0.2] * 2, 2), *[0.3] * 12]
+        self.assertEqual(device_client.unpack_sensors(sensors)["omega_S"], [0.3] * 3)
+        for at, value in [(1, math.nan), (3, 2), (4, 2), (6, 1), (7, 8), (8, 1), (15, 0.1),
+                          (27, math.inf), (36, math.nan), (43, 3), (46, math.nan), (58, math.nan)]:
+            with self.subTest(at=at, value=value):
+                self.assertIsNone(
+                    device_client.unpack_sensors([*sensors[:at], value, *sensors[at + 1:]]))
+
+    def test_words_from_the_network_cannot_command_a_terminal(self):
+        self.assertEqual(device_client.text(b"Gr\xc3\xbc\xc3\x9fe\x1b[2J\r\xc2\x9b.\0x"),
+                         "Gr\u00fc\u00dfe?[2J??.")
 
 
 if __name__ == "__main__":

@@ -80,13 +80,24 @@ void expect_same_through_udp(const config::Scenario& scenario) {
   ScenarioRun run(scenario, connect(world.address(), scenario));
   const Played there = played(run, 1e9);
   expect_same(there, here);
+  EXPECT_FALSE(there.events.empty());
   EXPECT_TRUE(run.missing().empty());
   EXPECT_EQ(run.quality().allocations, 0U);
 }
 
-TEST(RemoteScenario, TheDoorThroughUdpIsTheDoor) { expect_same_through_udp(shipped("door")); }
+class EveryRemoteScenario : public ::testing::TestWithParam<const char*> {};
 
-TEST(RemoteScenario, AtTwiceTheRateToo) { expect_same_through_udp(shipped("door", 2000.0)); }
+INSTANTIATE_TEST_SUITE_P(Shipped, EveryRemoteScenario,
+                         ::testing::Values("door", "excavator", "free_space"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_P(EveryRemoteScenario, ThroughUdpIsTheScenarioBitForBit) {
+  expect_same_through_udp(shipped(GetParam()));
+}
+
+TEST_P(EveryRemoteScenario, AtTwiceTheRateToo) {
+  expect_same_through_udp(shipped(GetParam(), 2000.0));
+}
 
 TEST(RemoteScenario, ABadNetworkDoesNotChangeTheDoor) {
   constexpr double kSeconds = 3.0;  // every loss takes 20 ms

@@ -21,10 +21,10 @@ namespace hg {
 
 /// A scenario that ships with the program, to be played as it is or changed first.
 inline config::Scenario shipped(const std::string& name) {
-  return apps::make_scenario(apps::RunArguments{.scenario = name});
+  return apps::make_scenario(apps::ScenarioArguments{.scenario = name});
 }
 inline config::Scenario shipped(const std::string& name, double rate_Hz) {
-  return apps::make_scenario(apps::RunArguments{.scenario = name, .rate_Hz = rate_Hz});
+  return apps::make_scenario(apps::ScenarioArguments{.scenario = name, .rate_Hz = rate_Hz});
 }
 
 /// Leaves the law alone: drives follow perfectly, sensors have no errors. Only the gantry lags, and
