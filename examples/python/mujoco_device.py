@@ -143,12 +143,17 @@ class World:
         due = self.sequence * self.steps + round(LATENCY_S / STEP_S)
         self.torques.append((due, command))
         for step in range(self.sequence * self.steps, (self.sequence + 1) * self.steps):
-            while self.torques and self.torques[0][0] <= step:
-                arrived = self.torques.popleft()[1]
-                self.at_work, self.is_enabled = arrived["sequence"], arrived["enable"]
-                self.tau_cmd, self.dq_p_cmd = np.array(arrived["tau_m"]), np.array(arrived["dq_p"])
+            self.take_due_commands(step)
             self.step()
         self.sequence += 1
+        # what arrives at the moment of the sample is at work
+        self.take_due_commands(self.sequence * self.steps)
+
+    def take_due_commands(self, step):
+        while self.torques and self.torques[0][0] <= step:
+            arrived = self.torques.popleft()[1]
+            self.at_work, self.is_enabled = arrived["sequence"], arrived["enable"]
+            self.tau_cmd, self.dq_p_cmd = np.array(arrived["tau_m"]), np.array(arrived["dq_p"])
 
     def step(self):
         data, model = self.data, self.model
