@@ -75,9 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped, ElasticDevice, ::testing::ValuesIn(cases()),
 TEST_P(ElasticDevice, RunsTheScenarioWithinItsTolerances) {
   ScenarioRun run(scenario_of(GetParam()));
   run.play();
-  // how rows that collide push against each other is a matter of the law, see scenario_test: at the
-  // end of free space "hand y" and m2 do for a cycle, here with up to 8 kN
-  expect_sound(run, kSyncMax, kInfinity);
+  expect_sound(run);
   expect_limits_held_in_truth(run);
   const evaluation::Reality& reality = run.summary().reality();
   ASSERT_TRUE(reality.is_known());

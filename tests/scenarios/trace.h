@@ -104,8 +104,7 @@ inline constexpr double kBudgetMax = 1e-9;
 inline constexpr double kReactionMax = 3e4;
 
 /// What [HANDBOOK] 10.1 asserts of every log.
-inline void expect_sound(const ScenarioRun& run, double sync_max = kSyncMax,
-                         double reaction_max = kReactionMax) {
+inline void expect_sound(const ScenarioRun& run, double sync_max = kSyncMax) {
   EXPECT_EQ(run.missing(), std::vector<std::string>{});
   EXPECT_TRUE(run.summary().limits_held());
   EXPECT_LT(run.summary().max_sync_error(), sync_max);
@@ -113,7 +112,7 @@ inline void expect_sound(const ScenarioRun& run, double sync_max = kSyncMax,
   EXPECT_EQ(run.quality().unsolved, 0);
   EXPECT_EQ(run.quality().allocations, 0u);
   EXPECT_LT(run.quality().worst_budget, kBudgetMax);
-  EXPECT_LT(run.quality().largest_reaction, reaction_max);
+  EXPECT_LT(run.quality().largest_reaction, kReactionMax);
 }
 
 }  // namespace hg
