@@ -61,6 +61,13 @@ simulation::PlantConfig elastic_plant(const config::Device& device, const Start&
     for (int i = 0; i < device.model.n_p; ++i) plant.gantry.push_back(i);
     for (int i = 0; i < device.model.n_m; ++i) plant.manipulator.push_back(device.model.n_p + i);
   }
+  for (int i = 0; i < device.model.n_p; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    const Interval& travel = device.prepositioning.q_limits[axis];
+    const bool is_slide = device.model.chain.joints()[axis].type == model::JointType::kPrismatic;
+    const double beyond = is_slide ? reality.stop_distance_length : reality.stop_distance_angle;
+    plant.gantry_stops.push_back({travel.lb - beyond, travel.ub + beyond});
+  }
   for (int i = 0; i < device.model.n_m; ++i) {
     const auto joint = static_cast<std::size_t>(i);
     plant.actuators.push_back(actual(device.control.actuators[joint], reality.factors));
@@ -116,14 +123,16 @@ simulation::Simulation simulation_of(const config::Device& device, const Start& 
                                 std::move(person));
 }
 
-constexpr int kStabilityPostures = 32;  // as many as are within all limits
-constexpr int kFurtherLatency = 4;      // periods beyond what is expected
+constexpr int kStabilityPostures = 32;
+constexpr int kMostDraws = 1'000'000;  // of a posture; takes less than a second
+constexpr int kFurtherLatency = 4;     // periods beyond what is expected
 
-// postures all over the limits of the joints; one without limits is looked at in one turn
+// postures all over the limits of the joints; one without limits is looked at in one turn. Throws
+// SetupError where hardly any is within the virtual limits.
 std::vector<Eigen::VectorXd> postures_of(const rendering::DeviceModel& device) {
   std::mt19937 random(1);
   std::vector<Eigen::VectorXd> postures;
-  for (int k = 0; k < kStabilityPostures; ++k) {
+  for (int k = 0; k < kMostDraws; ++k) {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(device.n_p + device.n_m);
     for (int i = 0; i < device.n_m; ++i) {
       const limits::JointLimits& joint = device.joint_limits[static_cast<std::size_t>(i)];
@@ -136,9 +145,15 @@ std::vector<Eigen::VectorXd> postures_of(const rendering::DeviceModel& device) {
       const double sum = joint.weights.dot(q.tail(device.n_m));
       return joint.limits.q_min <= sum && sum <= joint.limits.q_max;
     };
-    if (std::ranges::all_of(device.virtual_joints, is_within)) postures.push_back(std::move(q));
+    if (!std::ranges::all_of(device.virtual_joints, is_within)) continue;
+    postures.push_back(std::move(q));
+    if (postures.size() == kStabilityPostures) return postures;
   }
-  return postures;
+  throw SetupError(fmt::format(
+      "virtual_joints: only {} of {} random postures within the limits of the joints keep these "
+      "limits, {} are needed to check that the torque loop is stable: widen them, or tighten those "
+      "of the joints",
+      postures.size(), kMostDraws, kStabilityPostures));
 }
 
 // Elastic joints: until which latency the gains that follow from it are stable.
@@ -206,7 +221,12 @@ evaluation::Summary make_summary(const config::Scenario& scenario) {
                                                     std::vector<double>& values) mutable {
     rendering::limit_positions(device, truth.q_p, truth.q_m, values);
   };
-  return {scenario.limits, std::move(positions), scenario.device.rate_Hz};
+  const std::vector<ActuatorModel>& actuators = scenario.device.control.actuators;
+  VectorM torque_rated(static_cast<Eigen::Index>(actuators.size()));
+  for (Eigen::Index i = 0; i < torque_rated.size(); ++i) {
+    torque_rated[i] = actuators[static_cast<std::size_t>(i)].torque_rated;
+  }
+  return {scenario.limits, std::move(positions), scenario.device.rate_Hz, torque_rated};
 }
 
 double planned_duration_s(const config::Scenario& scenario) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "hg/config/describe_device.h"
 
@@ -76,7 +77,15 @@ void describe_control(V& v, DeviceDraft& d) {
     d.control.error_max = 0.007;  // [C] 6: 5 to 10 mrad
   }
   v.group(
-      "control", [&](auto& child) { describe(child, d.control); },
+      "control",
+      [&](auto& child) {
+        describe(child, d.control);
+        const double most = control::largest_flatness_Hz(d.rate_Hz);
+        child.rule(d.control.flatness_Hz < most, "flatness_Hz",
+                   "must be below " + model::to_text(std::floor(10.0 * most) / 10.0) +
+                       ", or the torques fed forward oscillate at this rate_Hz",
+                   model::to_text(d.control.flatness_Hz));
+      },
       "how motor torques make the joints follow the reference");
 }
 

@@ -252,6 +252,9 @@ void set_rate(Device& device, double rate_Hz) {
                      " periods, got " + model::to_text(device.drive.dead_time) + " s at " +
                      model::to_text(rate_Hz) + " Hz");
   }
+  control::Config control = device.control;
+  control.dt = dt;
+  control::check(control);
   device.rate_Hz = rate_Hz;
   device.rendering.dt = dt;
   device.estimation.dt = dt;

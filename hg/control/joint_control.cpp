@@ -7,12 +7,16 @@
 
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
+#include "hg/model/urdf.h"
 
 namespace hg::control {
 namespace {
 
 constexpr double kLatencyMemory = 0.05;    // share of the newest sample in the mean
+constexpr double kLatencyMargin = 0.5;     // periods; with gains for one period two are unstable
+constexpr double kLateFor = 0.05;          // s; a device hears no command for as long, too
 constexpr double kFeedforwardShare = 0.7;  // of the peak torque, the rest is for feedback
+const double kFastestFilter = std::sqrt(5.0) - 1.0;  // rad per period, see largest_flatness_Hz()
 constexpr double kSlides = 0.5;          // share of friction_speed's tanh from which a joint slides
 constexpr double kMostFriction = 2.0;    // times what is configured; more would be another fault
 constexpr int kSweepsAtStart = 12;       // far more than any matrix of seven rows needs
@@ -25,11 +29,34 @@ void fill(const ReferenceState& reference, CommandFrame& command) noexcept {
   command.ddq_m = reference.ddq_m;
 }
 
+// periods since the command that is at work; < 0: none was answered, or one that never was
+double age_of(const SensorFrame& sensors) noexcept {
+  if (sensors.answered_sequence == 0 || sensors.answered_sequence > sensors.sequence) return -1.0;
+  return static_cast<double>(sensors.sequence - sensors.answered_sequence);
+}
+
 }  // namespace
+
+// The eigenvalues of the filter in follow_torque() with z = 2 pi flatness / rate have the product
+// 1 - z and the sum 2 - z - z^2: within the unit circle while 4 - 2 z - z^2 > 0.
+double largest_flatness_Hz(double rate_Hz) noexcept {
+  return kFastestFilter * rate_Hz / (2.0 * std::numbers::pi);
+}
+
+void check(const Config& config) {
+  if (config.method == Method::kDrives) return;
+  const double most = largest_flatness_Hz(1.0 / config.dt);
+  if (config.flatness_Hz < most) return;
+  throw SetupError("control.flatness_Hz: at " + model::to_text(1.0 / config.dt) +
+                   " Hz it must be below " + model::to_text(std::floor(10.0 * most) / 10.0) +
+                   ", or the torques fed forward oscillate, got " +
+                   model::to_text(config.flatness_Hz) + ": lower it, or raise the rate");
+}
 
 JointControl::JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m,
                            int handle)
     : config_(config), chain_(chain), n_p_(n_p), n_m_(n_m), handle_(handle) {
+  check(config_);
   if (config_.method == Method::kDrives) return;
   if (static_cast<int>(config_.actuators.size()) != n_m_) {
     throw SetupError("control: " + std::to_string(n_m_) + " actuators expected, got " +
@@ -37,9 +64,11 @@ JointControl::JointControl(const Config& config, const model::Chain& chain, int 
   }
   K_.resize(n_m_);
   Jm_.resize(n_m_);
+  feed_max_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
     K_[i] = config_.actuators[static_cast<std::size_t>(i)].stiffness;
     Jm_[i] = config_.actuators[static_cast<std::size_t>(i)].rotor_inertia;
+    feed_max_[i] = kFeedforwardShare * config_.actuators[static_cast<std::size_t>(i)].torque_max;
   }
   sqrt_K_ = K_.cwiseSqrt();
 }
@@ -54,15 +83,39 @@ State JointControl::start() const {
   return state;
 }
 
-void JointControl::rest(const ReferenceState& reference, const SensorFrame& sensors, State& state,
+void JointControl::restart(State& state) const noexcept {
+  const double latency = state.latency;
+  const int answers = state.answers;
+  state = start();
+  state.latency = latency;
+  state.answers = answers;
+}
+
+void JointControl::listen(const SensorFrame& sensors, bool on, State& state) const noexcept {
+  if (config_.method == Method::kDrives) return;
+  const double age = age_of(sensors);
+  if (on) {
+    const bool is_late = age < 0.0 || age > state.latency + kLatencyMargin;
+    state.late = std::max(0, state.late + (is_late ? 1 : -1));
+    return;
+  }
+  state.late = 0;
+  if (age < 0.0) return;
+  state.answers = std::min(state.answers + 1, kAnswersNeeded);
+  state.latency += kLatencyMemory * (age - state.latency);
+}
+
+Fault JointControl::check_latency(const SensorFrame& sensors, const State& state) const noexcept {
+  if (state.late * config_.dt < kLateFor) return {};
+  return {FaultCode::kLatencyGrew, -1, age_of(sensors) * config_.dt,
+          (state.latency + kLatencyMargin) * config_.dt};
+}
+
+void JointControl::rest(const ReferenceState& reference, State& state,
                         CommandFrame& command) const noexcept {
   fill(reference, command);
   state.is_started = false;
-  if (config_.method == Method::kDrives) return;
-  command.tau_m = VectorM::Zero(n_m_);
-  if (sensors.answered_sequence == 0) return;  // nothing has been answered yet
-  const auto periods = static_cast<double>(sensors.sequence - sensors.answered_sequence);
-  state.latency += kLatencyMemory * (periods - state.latency);
+  if (config_.method != Method::kDrives) command.tau_m = VectorM::Zero(n_m_);
 }
 
 void JointControl::step(const ReferenceState& now, const ReferenceState& next,
@@ -97,7 +150,8 @@ void JointControl::step(const ReferenceState& now, const ReferenceState& next,
   report.latency_s = state.latency * config_.dt;
 }
 
-// Torques of the springs that move the links as the reference says ([C] 1).
+// Torques of the springs that move the links as the reference says ([C] 1), as far as they may be
+// fed forward: what is beyond is left to the feedback.
 VectorM JointControl::link_torque(const ReferenceState& reference,
                                   const RobotState& robot) noexcept {
   chain_.update(stacked(robot.q_p, reference.q_m), stacked(robot.dq_p, reference.dq_m));
@@ -107,7 +161,7 @@ VectorM JointControl::link_torque(const ReferenceState& reference,
   tau.noalias() += M.rightCols(n_m_) * reference.ddq_m;
   tau.noalias() += M.leftCols(n_p_) * robot.ddq_p;
   tau.noalias() -= J_m.transpose() * robot.w_H;
-  return tau;
+  return tau.cwiseMin(feed_max_).cwiseMax(-feed_max_);
 }
 
 // Scaled mass matrix, whose eigenvectors are the modes.
@@ -143,7 +197,7 @@ void JointControl::follow_torque(const VectorM& tau, State& state) const noexcep
   const double w = 2.0 * std::numbers::pi * config_.flatness_Hz;
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
-    const double peak = kFeedforwardShare * actuator.torque_max;
+    const double peak = feed_max_[i];
     const double per_torque = actuator.stiffness / actuator.rotor_inertia;
     const double braking = 0.5 * peak * per_torque;
     const double error = tau[i] - state.tau_r[i];
@@ -191,10 +245,11 @@ VectorM JointControl::modal_torque(const Errors& errors, const RobotState& robot
   const VectorM Jt = K_ / w0_2;
   const VectorM back = state.modes.Q() * v;
   const VectorM feedback = sqrt_K_.cwiseProduct(back);
-  learn_friction(forward, feedback, robot, state);
+  const VectorM share = Jm_.cwiseQuotient(Jt);  // of a torque on rotors that look like Jt
+  learn_friction(forward, share.cwiseProduct(feedback), robot, state);
   const VectorM u = forward.tau + Jt.cwiseProduct(forward.ddtheta) + feedback;
   // the measured torque makes the rotor look like one of inertia Jt
-  return Jm_.cwiseQuotient(Jt).cwiseProduct(u - robot.tau_m) + robot.tau_m;
+  return share.cwiseProduct(u - robot.tau_m) + robot.tau_m;
 }
 
 VectorM JointControl::motor_pd_torque(const Errors& errors,
@@ -218,13 +273,15 @@ VectorM JointControl::friction(const Feedforward& forward, const State& state) c
 
 // What the feedback has to add while a joint slides is friction that was not fed forward. Learnt as
 // a factor, it changes its sign with the motion; an integrator would be wrong at every reversal.
+// What is missing while a motor is saturated is torque. `feedback` are torques of the motors.
 void JointControl::learn_friction(const Feedforward& forward, const VectorM& feedback,
                                   const RobotState& robot, State& state) const noexcept {
+  if (state.is_saturated) return;
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
     const double along = std::tanh(forward.dtheta[i] / config_.friction_speed);
     const double slides = std::tanh(robot.dtheta_m[i] / config_.friction_speed) * along;
-    if (slides < kSlides) continue;
+    if (!(slides >= kSlides)) continue;
     const double missing =
         feedback[i] * along / coulomb_torque(actuator, forward.dtheta[i], forward.tau[i]);
     state.friction[i] += config_.dt * config_.friction_learning * missing;

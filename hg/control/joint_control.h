@@ -17,6 +17,8 @@
 
 namespace hg::control {
 
+inline constexpr int kAnswersNeeded = 100;  ///< samples until the latency counts as known
+
 enum class Method {
   kDrives,   ///< the drives follow the reference by themselves
   kModal,    ///< full-state feedback in the modes of the arm
@@ -32,17 +34,25 @@ struct Config {
   double latency_max = kInfinity;        ///< measured, with which the loop is known to be stable, s
   double integral_rate = 2.0;            ///< of kModal: error of the links goes with it, 1/s
   double integral_max = 5e-4;            ///< of the link error, rad s: no wind-up beyond
-  double flatness_Hz = 40.0;             ///< low-pass of derivatives of feedforward torques
-  double error_max = kInfinity;          ///< by which the reference may be ahead, rad or m
-  double friction_share = 0.8;           ///< of the Coulomb friction that is fed forward, 0..1
-  double friction_speed = 0.01;          ///< rad/s over which it changes its sign
+  double flatness_Hz = 40.0;       ///< low-pass of derivatives of feedforward torques; check()
+  double error_max = kInfinity;    ///< by which the reference may be ahead, rad or m
+  double friction_share = 0.8;     ///< of the Coulomb friction that is fed forward, 0..1
+  double friction_speed = 0.01;    ///< rad/s over which it changes its sign
   double friction_learning = 1.0;  ///< of kModal: rate at which the true friction is learnt, 1/s
 };
+
+/// Largest flatness_Hz of a loop with `rate_Hz`: beyond, what is fed forward oscillates by itself.
+double largest_flatness_Hz(double rate_Hz) noexcept;
+
+/// Throws SetupError where the period is too long for flatness_Hz.
+void check(const Config& config);
 
 /// Part of the copyable state of a cycle.
 struct State {
   bool is_started = false;
-  double latency = 0.0;  ///< mean of what was measured before the start, periods
+  double latency = 0.0;  ///< mean of what was measured while the drives were off, periods
+  int answers = 0;       ///< samples that this mean is made of, counted up to kAnswersNeeded
+  int late = 0;          ///< samples with old commands over those without, drives on; >= 0
   Poles poles;           ///< that the latency allows; chosen at the start
   Modes modes;
   VectorM integral;  ///< of q_r - q, rad s
@@ -54,17 +64,28 @@ struct State {
 class JointControl {
  public:
   /// `chain` holds the gantry joints first; `handle` is its frame H.
-  /// Throws SetupError where numbers of actuators and joints differ.
+  /// Throws SetupError where numbers of actuators and joints differ, and what check() throws.
   JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
 
   State start() const;
-  /// Drives are off: the next step begins anew. Learns the latency from the answered command.
-  void rest(const ReferenceState& reference, const SensorFrame& sensors, State& state,
-            CommandFrame& command) const noexcept;
+  /// After a fault: as at the start, but for the latency that was measured.
+  void restart(State& state) const noexcept;
+  /// Once per sample, with drives `on` or off: how old is the command that is at work? Off, the
+  /// latency is learnt from that; on, it is watched.
+  void listen(const SensorFrame& sensors, bool on, State& state) const noexcept;
+  /// Whether enough commands were answered to know the latency, or there is no torque loop.
+  bool is_latency_known(const State& state) const noexcept {
+    return config_.method == Method::kDrives || state.answers >= kAnswersNeeded;
+  }
   /// Whether the loop may be closed with the latency that was measured.
   bool is_stable(const State& state) const noexcept {
     return state.latency * config_.dt <= config_.latency_max;
   }
+  /// kLatencyGrew when the command at work was half a period older than the latency that the gains
+  /// know in 50 ms more of samples than it was not; kNone otherwise.
+  Fault check_latency(const SensorFrame& sensors, const State& state) const noexcept;
+  /// Drives are off: the next step begins anew.
+  void rest(const ReferenceState& reference, State& state, CommandFrame& command) const noexcept;
   /// Fills the manipulator part of `command`: `now` is the reference at the time of the sample,
   /// `next` where the drives should be a period later.
   void step(const ReferenceState& now, const ReferenceState& next, const RobotState& robot,
@@ -97,6 +118,7 @@ class JointControl {
   model::Chain chain_;
   int n_p_, n_m_, handle_;
   VectorM K_, sqrt_K_, Jm_;
+  VectorM feed_max_;  ///< largest torque that is fed forward, Nm
 };
 
 }  // namespace hg::control

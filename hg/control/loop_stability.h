@@ -1,6 +1,9 @@
 /// Whether the closed torque loop is stable: sampling, latency, current lag, filters, feedback.
 ///
-/// Linear: without Coulomb friction (which only helps), the user, and torque limits. Set-up only.
+/// Linear: without Coulomb friction (which only helps), the user, and torque limits. Errors of one
+/// period are answered, so that slow or separate parts are not in it: the integral, what is learnt
+/// of the friction, and the filter of the feedforward (stable by itself, see control::check()).
+/// Set-up only.
 #pragma once
 
 #include <vector>

@@ -22,8 +22,9 @@ struct Poles {
 };
 
 /// The fastest poles that tolerate `latency` (s), which includes the lag of the current; w0 = 0.24
-/// / latency up to its default, the others scale along. [C] 1 has 0.3 and 200 rad/s, which rests on
-/// friction: without it 16 of 200 random postures are unstable (loop_stability.h).
+/// / latency up to its default; w1 and w_motor scale along, w2_max and damping ratios do not. [C] 1
+/// has 0.3 and 200 rad/s, which rests on friction: without it 16 of 200 random postures are
+/// unstable (loop_stability.h).
 Poles poles_for(double latency) noexcept;
 
 /// v = motor (theta_r - theta) + motor_rate (theta_r' - theta') + link (q_r - q) + link_rate (..)

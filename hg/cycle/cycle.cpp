@@ -14,6 +14,10 @@ bool stands_still(const CycleRecord& record) noexcept {
          record.robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
 }
 
+bool is_enabled(Mode mode) noexcept {
+  return mode == Mode::kArmed || mode == Mode::kRunning || mode == Mode::kStopping;
+}
+
 prepositioning::TargetConfig target_of(const prepositioning::Config& gantry,
                                        const rendering::DeviceModel& device) {
   prepositioning::TargetConfig target = {.has_closed_form = gantry.has_closed_form,
@@ -37,6 +41,7 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
       rendering_(device, twin, config.rendering),
       control_(config.control, device.chain, device.n_p, device.n_m, device.handle),
       gantry_target_(target_of(config.prepositioning, device), device.chain) {
+  config_.monitor.has_imu = config.estimation.wrench.has_imu;
   prepositioning::check(config_.prepositioning);
   state_.rendering = rendering_.start(VectorM::Zero(device.n_m));
   state_.control = control_.start();
@@ -57,7 +62,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   ended_(Stage::kSupervision);
 
   // estimation -> rendering -> prepositioning
-  if (safety::is_finite(sensors)) {
+  if (safety::is_finite(config_.monitor, sensors)) {
     record.robot =
         estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
     ended_(Stage::kEstimation);
@@ -72,7 +77,8 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   // control -> sanitiser
   write_command(sensors, operator_input, command, record);
   ended_(Stage::kControl);
-  safety::sanitise(config_.monitor, command);
+  const Fault fault = safety::sanitise(config_.monitor, command);
+  if (fault.code != FaultCode::kNone) stop_with(fault);
   ended_(Stage::kSafety);
 
   state_.dq_p = command.dq_p;
@@ -82,6 +88,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   record.fault = state_.supervisor.fault;
   record.tare = state_.estimation.wrench.tare.status;
   record.is_tared = estimation_.is_tared(state_.estimation);
+  record.is_latency_known = control_.is_latency_known(state_.control);
   record.state_hash = hash_of(state_, record.robot, rendering_.problem().rows());
   ended_(Stage::kStateHash);
 }
@@ -95,17 +102,41 @@ void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
                       CycleRecord& record) noexcept {
   safety::SupervisorState& supervisor = state_.supervisor;
   const bool is_new = request != supervisor.last_request;
+  const Fault fault = check(sensors);
   const bool is_arming = is_new && request == ModeRequest::kArm && supervisor.mode == Mode::kReady;
-  if (is_arming && !estimation_.is_tared(state_.estimation)) record.refusal = Refusal::kNotTared;
-  if (is_arming && !control_.is_stable(state_.control)) record.refusal = Refusal::kLatencyTooLong;
+  if (is_arming) record.refusal = refusal_to_arm();
 
   const bool is_refused = record.refusal != Refusal::kNone;
-  safety::advance(supervisor, is_refused ? ModeRequest::kNone : request, is_held(sensors),
-                  safety::check_sensors(config_.monitor, sensors, state_.next_sequence));
+  const bool was_fault = supervisor.mode == Mode::kFault;
+  safety::advance(supervisor, is_refused ? ModeRequest::kNone : request, is_held(sensors), fault);
   supervisor.last_request = request;
+  if (was_fault && supervisor.mode != Mode::kFault) begin_anew();
 
   const bool is_at_rest = supervisor.mode != Mode::kRunning && supervisor.mode != Mode::kStopping;
   estimation_.tare(is_new && request == ModeRequest::kTare, is_at_rest, state_.estimation);
+}
+
+Fault Cycle::check(const SensorFrame& sensors) noexcept {
+  const Fault fault = safety::check_sensors(config_.monitor, sensors, state_.next_sequence);
+  if (fault.code != FaultCode::kNone) return fault;
+  const bool is_on = is_enabled(state_.supervisor.mode);
+  control_.listen(sensors, is_on, state_.control);
+  return is_on ? control_.check_latency(sensors, state_.control) : Fault{};
+}
+
+Refusal Cycle::refusal_to_arm() const noexcept {
+  if (!estimation_.is_tared(state_.estimation)) return Refusal::kNotTared;
+  if (!control_.is_latency_known(state_.control)) return Refusal::kLatencyUnknown;
+  if (!control_.is_stable(state_.control)) return Refusal::kLatencyTooLong;
+  return Refusal::kNone;
+}
+
+// Whatever a fault has left in estimation and control goes; what was measured at rest stays.
+void Cycle::begin_anew() noexcept {
+  const estimation::TareState tare = state_.estimation.wrench.tare;
+  state_.estimation = {};
+  state_.estimation.wrench.tare = tare;
+  control_.restart(state_.control);
 }
 
 // Nothing moves. Before it is armed the device may be moved by others: the twin goes along.
@@ -135,6 +166,8 @@ void Cycle::render(CycleRecord& record) noexcept {
   const Fault fault = safety::check_reference(config_.monitor, record);
   if (fault.code != FaultCode::kNone) {
     stop_with(fault);
+    state_.rendering.reference.ddq_m.setZero();  // the next estimation starts from it
+    state_.rendering.twin.ddq_a.setZero();
     return;
   }
   const VectorP q_p_target =
@@ -159,14 +192,14 @@ void Cycle::write_command(const SensorFrame& sensors, const OperatorFrame& opera
                           CommandFrame& command, CycleRecord& record) noexcept {
   const Mode mode = state_.supervisor.mode;
   command.sequence = sensors.sequence;
-  command.enable = mode == Mode::kArmed || mode == Mode::kRunning || mode == Mode::kStopping;
+  command.enable = is_enabled(mode);
   command.dq_p = state_.dq_p;
   const ReferenceState& reference = state_.rendering.reference;
   if (command.enable) {
     control_.step(record.reference, reference, record.robot, state_.control, command,
                   record.tracking);
   } else {
-    control_.rest(reference, sensors, state_.control, command);
+    control_.rest(reference, state_.control, command);
     command.dq_p.setZero();
   }
   command.hand_target = operator_input.hand_target;

@@ -70,6 +70,9 @@ class Cycle {
 
  private:
   void supervise(const SensorFrame& sensors, ModeRequest request, CycleRecord& record) noexcept;
+  Fault check(const SensorFrame& sensors) noexcept;
+  Refusal refusal_to_arm() const noexcept;
+  void begin_anew() noexcept;
   void hold(CycleRecord& record) noexcept;
   void render(CycleRecord& record) noexcept;
   void write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,

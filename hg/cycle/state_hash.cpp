@@ -127,6 +127,8 @@ std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noe
   const control::State& control = state.control;
   hash.mix(std::uint64_t{control.is_started} | std::uint64_t{control.is_saturated} << 1U);
   hash.mix(control.latency);
+  hash.mix(static_cast<std::uint64_t>(control.answers) | static_cast<std::uint64_t>(control.late)
+                                                             << 32U);
   hash.mix(control.poles.w0);
   hash.mix(control.modes.Q());
   for (const VectorM* v :

@@ -3,8 +3,17 @@
 namespace hg::runtime {
 namespace {
 
+constexpr std::uint64_t kPatience = 1000;  // cycles
+
+// While the latency is unknown arming is asked for now and then only, for a cycle: the refusal
+// tells why nothing happens.
+ModeRequest arm_request(const CycleRecord& record) noexcept {
+  const bool asks = record.is_latency_known || (record.cycle + 1) % kPatience == 0;
+  return asks ? ModeRequest::kArm : ModeRequest::kNone;
+}
+
 ModeRequest ready_request(const CycleRecord& record, bool is_held) noexcept {
-  if (record.is_tared) return ModeRequest::kArm;
+  if (record.is_tared) return arm_request(record);
   const bool is_under_way = record.tare == TareStatus::kUnderWay;
   const bool is_hopeless = record.tare == TareStatus::kRefusedHeld && is_held;
   return is_under_way || is_hopeless ? ModeRequest::kNone : ModeRequest::kTare;

@@ -6,9 +6,10 @@
 
 namespace hg::runtime {
 
-/// What to ask for after the cycle of `record`: tares where the device needs it, arms, runs, and
-/// stops when `is_stopping`. Requests act on their edge, so that running is asked for only while
-/// the handle is held, and a tare that was refused because it is held only once that ends.
+/// What to ask for after the cycle of `record`: tares where the device needs it, arms once the
+/// latency is known, runs, and stops when `is_stopping`. Requests act on their edge, so that
+/// running is asked for only while the handle is held, and a tare that was refused because it is
+/// held only once that ends.
 ModeRequest next_request(const CycleRecord& record, bool is_held, bool is_stopping) noexcept;
 
 }  // namespace hg::runtime

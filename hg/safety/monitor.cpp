@@ -18,11 +18,31 @@ Fault make_fault(FaultCode code, int index, double value, double limit) noexcept
   return {code, static_cast<std::int16_t>(index), value, limit};
 }
 
+// The first of several vectors' components that is not finite, counted through; -1 = none.
+template <typename... Vectors>
+int first_of_all(const Vectors&... vectors) noexcept {
+  int first = 0, found = -1;
+  const auto look = [&](const auto& v) {
+    const int i = first_not_finite(v);
+    if (found < 0 && i >= 0) found = first + i;
+    first += static_cast<int>(v.size());
+  };
+  (look(vectors), ...);
+  return found;
+}
+
+// joints, joint speeds, gantry, wrench, motors, joint torques, accelerometer, gyroscope
+int first_not_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
+  const Eigen::Vector3d kNone = Eigen::Vector3d::Zero();
+  return first_of_all(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
+                      sensors.tau_m, config.has_imu ? sensors.a_S : kNone,
+                      config.has_imu ? sensors.omega_S : kNone);
+}
+
 }  // namespace
 
-bool is_finite(const SensorFrame& sensors) noexcept {
-  return sensors.q_m.allFinite() && sensors.dq_m.allFinite() && sensors.q_p.allFinite() &&
-         sensors.w_S.allFinite();
+bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
+  return first_not_finite(config, sensors) < 0;
 }
 
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
@@ -36,18 +56,8 @@ Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
                       static_cast<double>(expected_sequence));
   }
 
-  // components are counted through in this order: joints, joint speeds, gantry, wrench
-  int first = 0;
-  const auto not_finite = [&](const auto& v) {
-    const int i = first_not_finite(v);
-    const int index = i < 0 ? -1 : first + i;
-    first += static_cast<int>(v.size());
-    return index;
-  };
-  for (const int index : {not_finite(sensors.q_m), not_finite(sensors.dq_m),
-                          not_finite(sensors.q_p), not_finite(sensors.w_S)}) {
-    if (index >= 0) return make_fault(FaultCode::kSensorNotFinite, index, NAN, 0.0);
-  }
+  const int index = first_not_finite(config, sensors);
+  if (index >= 0) return make_fault(FaultCode::kSensorNotFinite, index, NAN, 0.0);
 
   const double force = sensors.w_S.head<3>().norm();
   if (force > config.force_max) {
@@ -98,22 +108,22 @@ Fault check_reference(const MonitorConfig& config, const CycleRecord& record) no
   return {};
 }
 
-void sanitise(const MonitorConfig& config, CommandFrame& command) noexcept {
-  const bool is_finite = command.q_m.allFinite() && command.dq_m.allFinite() &&
-                         command.ddq_m.allFinite() && command.tau_m.allFinite() &&
-                         command.dq_p.allFinite();
-  if (!is_finite) {
+Fault sanitise(const MonitorConfig& config, CommandFrame& command) noexcept {
+  const int index =
+      first_of_all(command.q_m, command.dq_m, command.ddq_m, command.tau_m, command.dq_p);
+  if (index >= 0) {
     command.enable = false;
     command.dq_m.setZero();
     command.ddq_m.setZero();
     command.tau_m.setZero();
     command.dq_p.setZero();
     for (double& q : command.q_m) q = std::isfinite(q) ? q : 0.0;
-    return;
+    return make_fault(FaultCode::kCommandNotFinite, index, NAN, 0.0);
   }
   for (double& dq : command.dq_p) {
     dq = std::clamp(dq, -config.gantry_speed_max, config.gantry_speed_max);
   }
+  return {};
 }
 
 }  // namespace hg::safety

@@ -16,6 +16,7 @@ struct MonitorConfig {
   double force_max = 150.0;                ///< [HANDBOOK] 6.2, N
   double torque_max = 14.0;                ///< Nm; the sensor ends at 15
   bool has_dead_man = true;                ///< false: the handle counts as held all the time
+  bool has_imu = true;                     ///< false: nobody looks at what its fields hold
   double position_tolerance = 0.03;        ///< beyond the limit of a revolute joint, rad
   double slide_tolerance = 0.03;           ///< beyond the limit of a prismatic joint, m
   double cartesian_tolerance = 0.03;       ///< outside a Cartesian limit, m
@@ -37,7 +38,7 @@ inline bool is_held(const MonitorConfig& config, const SensorFrame& sensors) noe
 }
 
 /// Whether every measured value is a number: others must not reach the estimation.
-bool is_finite(const SensorFrame& sensors) noexcept;
+bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept;
 
 /// The first thing wrong with what was measured, or kNone.
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
@@ -46,8 +47,9 @@ Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
 /// The first thing wrong with the reference or the state behind it, or kNone.
 Fault check_reference(const MonitorConfig& config, const CycleRecord& record) noexcept;
 
-/// Last hand on the command: non-finite values become safe ones, speeds are clamped. Leaves a
-/// command that is fine untouched, bit for bit.
-void sanitise(const MonitorConfig& config, CommandFrame& command) noexcept;
+/// Last hand on the command: non-finite values become safe ones and disable the drives, speeds are
+/// clamped. Leaves a command that is fine untouched, bit for bit. Returns kCommandNotFinite, with
+/// the index of the component, when it had to disable.
+Fault sanitise(const MonitorConfig& config, CommandFrame& command) noexcept;
 
 }  // namespace hg::safety

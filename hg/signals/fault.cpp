@@ -22,6 +22,8 @@ std::string_view to_string(FaultCode code) noexcept {
       return "rendering problem was not solved";
     case FaultCode::kReferenceNotFinite:
       return "rendering gave a value that is not finite";
+    case FaultCode::kCommandNotFinite:
+      return "control gave a value that is not finite";
     case FaultCode::kLimitExceeded:
       return "position limit exceeded";
     case FaultCode::kSpeedExceeded:
@@ -30,6 +32,8 @@ std::string_view to_string(FaultCode code) noexcept {
       return "device does not follow its reference";
     case FaultCode::kSyncLost:
       return "handle and twin are apart";
+    case FaultCode::kLatencyGrew:
+      return "latency of the torque loop has grown beyond what is stable";
   }
   return "unknown fault";
 }

@@ -16,10 +16,12 @@ enum class FaultCode : std::uint16_t {
   kWrenchTooLarge = 110,      ///< the user's force or torque exceeds the sensor's range
   kSolverFailed = 200,        ///< the rendering problem was not solved
   kReferenceNotFinite = 201,  ///< the rendering gave NaN or infinity
+  kCommandNotFinite = 202,    ///< the control gave NaN or infinity
   kLimitExceeded = 300,       ///< a joint or frame left its limit by more than the tolerance
   kSpeedExceeded = 301,       ///< a joint is faster than its rating allows
   kTrackingLost = 302,        ///< the device is too far from its reference
   kSyncLost = 303,            ///< handle and twin are too far apart
+  kLatencyGrew = 304,         ///< commands reach the drives later than the torque loop can bear
 };
 
 /// One line for humans, for example "measured value is not finite".

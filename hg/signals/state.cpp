@@ -62,6 +62,9 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "not armed: this device needs a tare first";
     case Refusal::kLatencyTooLong:
       return "not armed: the torque loop is not stable at the latency that was measured";
+    case Refusal::kLatencyUnknown:
+      return "not armed: the latency of the torque loop is unknown, the device has not answered "
+             "100 commands (answered_sequence of its samples)";
   }
   return "unknown";
 }

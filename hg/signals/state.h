@@ -105,6 +105,7 @@ enum class Refusal : std::uint8_t {
   kNone = 0,
   kNotTared = 1,        ///< arming a device that needs a tare and has none
   kLatencyTooLong = 2,  ///< arming a torque loop that would not be stable
+  kLatencyUnknown = 3,  ///< arming a torque loop before enough commands were answered
 };
 
 std::string_view to_string(Refusal refusal) noexcept;
@@ -118,6 +119,7 @@ struct CycleRecord {
   ChangeStatus change = ChangeStatus::kNone;
   TareStatus tare = TareStatus::kNone;
   bool is_tared = false;             ///< a tare is there, or this device needs none
+  bool is_latency_known = false;     ///< it was measured, or this device has no torque loop
   Refusal refusal = Refusal::kNone;  ///< of this cycle's request
   RobotState robot;
   ReferenceState reference;

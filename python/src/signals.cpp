@@ -38,7 +38,8 @@ void bind_modes(nb::module_& module) {
   nb::enum_<Refusal>(module, "Refusal", nb::is_arithmetic(), "Why a request was not followed.")
       .value("NONE", Refusal::kNone)
       .value("NOT_TARED", Refusal::kNotTared)
-      .value("LATENCY_TOO_LONG", Refusal::kLatencyTooLong);
+      .value("LATENCY_TOO_LONG", Refusal::kLatencyTooLong)
+      .value("LATENCY_UNKNOWN", Refusal::kLatencyUnknown);
   nb::enum_<SolverStatus>(module, "SolverStatus", nb::is_arithmetic())
       .value("NOT_RUN", SolverStatus::kNotRun)
       .value("SOLVED", SolverStatus::kSolved)
@@ -57,10 +58,12 @@ void bind_fault_codes(nb::module_& module) {
       .value("WRENCH_TOO_LARGE", FaultCode::kWrenchTooLarge)
       .value("SOLVER_FAILED", FaultCode::kSolverFailed)
       .value("REFERENCE_NOT_FINITE", FaultCode::kReferenceNotFinite)
+      .value("COMMAND_NOT_FINITE", FaultCode::kCommandNotFinite)
       .value("LIMIT_EXCEEDED", FaultCode::kLimitExceeded)
       .value("SPEED_EXCEEDED", FaultCode::kSpeedExceeded)
       .value("TRACKING_LOST", FaultCode::kTrackingLost)
-      .value("SYNC_LOST", FaultCode::kSyncLost);
+      .value("SYNC_LOST", FaultCode::kSyncLost)
+      .value("LATENCY_GREW", FaultCode::kLatencyGrew);
 }
 
 void bind_limit_words(nb::module_& module) {

@@ -249,6 +249,83 @@ TEST(ModalControl, FrictionThatTheFeedbackHasToOvercomeIsLearntWhileTheJointSlid
   }
 }
 
+// What the feedback adds to the torque of a motor that slides is missing friction.
+TEST(ModalControl, TheRateOfLearningIsThatOfTheMissingFriction) {
+  const Config config = reference_config();
+  for (const int joint : {0, 3, 5}) {
+    SCOPED_TRACE(joint);
+    ReferenceState reference = at_rest(home());
+    reference.dq_m[joint] = 0.2;
+    RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
+    JointControl control = control_of(config);
+    State level = control.start(), behind = control.start();
+    const VectorM without = answer(control, level, reference, robot).command.tau_m;
+    robot.theta_m[joint] -= 1e-4;
+    robot.q_m[joint] -= 1e-4;
+    const VectorM with = answer(control, behind, reference, robot).command.tau_m;
+    const double coulomb =
+        coulomb_torque(config.actuators[static_cast<std::size_t>(joint)], 0.2, level.tau_r[joint]);
+    const double missing = (with - without)[joint] / coulomb;
+    const double learnt = behind.friction[joint] - level.friction[joint];
+    EXPECT_GT(missing, 0.02);
+    EXPECT_NEAR(learnt, config.dt * config.friction_learning * missing, 2e-3 * learnt);
+  }
+}
+
+TEST(ModalControl, NoFrictionIsLearntWhileAMotorIsSaturated) {
+  const State once = after_sliding(0.2, 0.2, 0.3, 1);
+  ASSERT_TRUE(once.is_saturated);
+  EXPECT_EQ(after_sliding(0.2, 0.2, 0.3, 100).friction, once.friction);
+}
+
+// 0.8 of the peak of m1 and m2: what is fed forward ends at its bound instead of swinging around it
+TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
+  const Config config = frictionless_config(GetParam());
+  JointControl control = control_of(config);
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  RobotState robot = following(reference, VectorM::Zero(6));
+  model::Chain chain = arm();
+  chain.update(posture(home()), Eigen::VectorXd::Zero(8));
+  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  for (const double side : {-1.0, 1.0}) {
+    for (const double load : {0.5, 0.8}) {
+      robot.w_H = Vector6::Zero();
+      robot.w_H[5] = -side * load * 176.0 / J(5, 2);  // about the axis of m1
+      for (int k = 0; k < 1000; ++k) answer(control, state, reference, robot);
+      EXPECT_NEAR(state.tau_r[0], side * std::min(load, 0.7) * 176.0, 1e-6);
+      EXPECT_NEAR(state.dtau_r[0], 0.0, 1e-6);
+    }
+  }
+}
+
+// a matrix of two states whose largest eigenvalue passes 1 at 2 pi f dt = sqrt(5) - 1
+TEST(JointControl, TheFilterOfTheFeedforwardIsStableUpToItsBoundAndRefusedBeyond) {
+  Config config = frictionless_config();
+  config.dt = 1.0 / 204.0;
+  EXPECT_NO_THROW(check(config));
+  config.dt = 1.0 / 203.0;
+  EXPECT_THROW(check(config), SetupError);
+  EXPECT_THROW(control_of(config), SetupError);
+  config.method = Method::kDrives;
+  EXPECT_NO_THROW(check(config));
+
+  config = frictionless_config();
+  config.flatness_Hz = 0.99 * largest_flatness_Hz(1000.0);
+  JointControl control = control_of(config);
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  RobotState robot = following(reference, VectorM::Zero(6));
+  answer(control, state, reference, robot);
+  robot.w_H[5] = 0.01;
+  double swing = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    answer(control, state, reference, robot);
+    swing = std::abs(state.dtau_r[0]);
+  }
+  EXPECT_LT(swing, 1e-6);
+}
+
 SensorFrame answered(std::uint64_t sequence, std::uint64_t periods_ago) {
   SensorFrame frame;
   frame.sequence = sequence;
@@ -264,7 +341,8 @@ TEST(Latency, IsMeasuredFromTheAnsweredCommandWhileTheDrivesAreOff) {
     const ReferenceState reference = at_rest(home());
     CommandFrame command;
     for (std::uint64_t k = 10; k < 510; ++k) {
-      control.rest(reference, answered(k, periods), state, command);
+      control.listen(answered(k, periods), false, state);
+      control.rest(reference, state, command);
     }
     const double latency = static_cast<double>(periods) * 1e-3;
     const Answer on = answer(control, state, reference, following(reference, VectorM::Zero(6)));
@@ -283,7 +361,8 @@ TEST(Latency, WithoutAnAnswerItIsWhatTheConfigurationExpects) {
   CommandFrame command;
   SensorFrame silent;
   for (silent.sequence = 0; silent.sequence < 100; ++silent.sequence) {
-    control.rest(reference, silent, state, command);
+    control.listen(silent, false, state);
+    control.rest(reference, state, command);
   }
   const Answer on = answer(control, state, reference, following(reference, VectorM::Zero(6)));
   EXPECT_DOUBLE_EQ(on.report.latency_s, 2e-3);
@@ -310,7 +389,7 @@ TEST(JointControl, AfterARestItBeginsAnew) {
   robot.q_m[0] -= 1e-3;
   for (int k = 0; k < 100; ++k) answer(control, state, reference, robot);
   CommandFrame command;
-  control.rest(reference, {}, state, command);
+  control.rest(reference, state, command);
   robot.q_m[0] += 1e-3;
   EXPECT_EQ(answer(control, state, reference, robot).command.tau_m, first.command.tau_m);
 }
@@ -350,7 +429,8 @@ TEST_P(BothMethods, StepsWithoutAllocating) {
   TrackingReport report;
   const AllocationCounter counter;
   for (int k = 0; k < 10; ++k) control.step(reference, reference, robot, state, command, report);
-  control.rest(reference, answered(7, 2), state, command);
+  control.listen(answered(7, 2), false, state);
+  control.rest(reference, state, command);
   EXPECT_EQ(counter.count(), 0u);
 }
 

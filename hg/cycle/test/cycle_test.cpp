@@ -9,6 +9,7 @@
 
 #include "hg/core/allocation_counter.h"
 #include "hg/rendering/test/test_models.h"
+#include "hg/signals/test/reference_actuators.h"
 
 namespace hg::cycle {
 namespace {
@@ -26,7 +27,9 @@ struct Loop {
   std::array<double, 2> gantry_speed{};
   std::array<CommandDelay, 2> delay{};
 
-  explicit Loop(bool needs_tare = false) {
+  std::uint64_t latency = 1;  // periods; 0: the device does not answer
+
+  explicit Loop(bool needs_tare = false, bool has_torque_loop = false) {
     rendering::TwinModel twin = rendering::unlimited_twin(
         model::Chain::free_body({.mass = 6.0}, {.gravity = false}), "handle");
     twin.q_start =
@@ -38,11 +41,18 @@ struct Loop {
     config.prepositioning.q_limits.fill({-1.4, 1.4});
     config.monitor.joint_range.assign(6, {-10.0, 10.0});
     config.monitor.joint_speed_max.assign(6, 10.0);
+    if (has_torque_loop) {
+      config.control.method = control::Method::kModal;
+      config.control.actuators = reference_actuators();
+    }
     cycle = std::make_unique<Cycle>(config, device, twin);
     sensors.q_m = kPosture;
     sensors.dq_m = VectorM::Zero(6);
     sensors.q_p = VectorP::Zero(2);
     sensors.dead_man = true;
+    if (!has_torque_loop) return;
+    sensors.theta_m = kPosture;
+    sensors.tau_m = VectorM::Zero(6);
   }
 
   void step() {
@@ -50,6 +60,7 @@ struct Loop {
     if (command.enable) {
       sensors.q_m = command.q_m;
       sensors.dq_m = command.dq_m;
+      if (sensors.theta_m.size() > 0) sensors.theta_m = command.q_m;
     }
     for (int i = 0; i < 2; ++i) {
       const auto axis = static_cast<std::size_t>(i);
@@ -59,6 +70,8 @@ struct Loop {
       gantry_speed[axis] += 1e-3 * ddq;
     }
     ++sensors.sequence;
+    const bool answers = latency > 0 && sensors.sequence > latency;
+    sensors.answered_sequence = answers ? sensors.sequence - latency : 0;
   }
 
   void start_running() {
@@ -191,6 +204,119 @@ TEST(Cycle, AnEmergencyStopThatCutsTheSensorsOffDoesNotSpoilTheEstimation) {
   loop.run(50);
   EXPECT_EQ(loop.record.mode, Mode::kRunning);
   EXPECT_TRUE(loop.command.q_m.allFinite() && loop.record.robot.q_p.allFinite());
+}
+
+void expect_to_run_again(Loop& loop) {
+  loop.operator_input.request = ModeRequest::kReset;
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kReady);
+  loop.start_running();
+  loop.run(50);
+  EXPECT_EQ(loop.record.mode, Mode::kRunning);
+  EXPECT_TRUE(loop.command.enable);
+  EXPECT_TRUE(loop.command.tau_m.allFinite());
+  EXPECT_TRUE(loop.record.robot.dtheta_m.allFinite() && loop.record.robot.w_H.allFinite());
+}
+
+TEST(Cycle, ANanOfAnySensorOfATorqueLoopIsAFaultAndLeavesNothingBehind) {
+  using Spoil = void (*)(SensorFrame&, double);
+  const std::array<Spoil, 4> spoils = {[](SensorFrame& s, double x) { s.theta_m[2] += x; },
+                                       [](SensorFrame& s, double x) { s.tau_m[0] += x; },
+                                       [](SensorFrame& s, double x) { s.a_S[1] += x; },
+                                       [](SensorFrame& s, double x) { s.omega_S[2] += x; }};
+  for (const Spoil spoil : spoils) {
+    Loop loop(false, true);
+    loop.run(110);
+    loop.start_running();
+    const SensorFrame good = loop.sensors;
+    spoil(loop.sensors, std::numeric_limits<double>::quiet_NaN());
+    expect_safe_stop(loop, FaultCode::kSensorNotFinite);
+    loop.sensors.theta_m = good.theta_m;
+    loop.sensors.tau_m = good.tau_m;
+    loop.sensors.a_S = good.a_S;
+    loop.sensors.omega_S = good.omega_S;
+    expect_to_run_again(loop);
+  }
+}
+
+TEST(Cycle, ATorqueThatIsNotFiniteIsAFaultAndAResetBeginsAnew) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const bool in_estimation : {false, true}) {
+    Loop loop(false, true);
+    loop.run(110);
+    loop.start_running();
+    State state = loop.cycle->state();
+    if (in_estimation) state.estimation.motor[1].dtheta = nan;
+    if (!in_estimation) state.control.friction[1] = nan;
+    loop.cycle->restore(state);
+    expect_safe_stop(loop, FaultCode::kCommandNotFinite);
+    EXPECT_GE(loop.record.fault.index, 18);  // behind q, q', q''
+    expect_to_run_again(loop);
+  }
+}
+
+TEST(Cycle, AReferenceThatIsNotFiniteDoesNotSpoilTheEstimation) {
+  Loop loop(false, true);
+  loop.run(110);
+  loop.start_running();
+  State state = loop.cycle->state();
+  state.rendering.twin.dq_a[0] = std::numeric_limits<double>::quiet_NaN();
+  loop.cycle->restore(state);
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kFault);
+  loop.step();
+  EXPECT_TRUE(loop.record.robot.q_m.allFinite() && loop.record.robot.dq_m.allFinite());
+}
+
+TEST(Cycle, ATorqueLoopIsNotArmedBeforeAHundredCommandsWereAnswered) {
+  for (const std::uint64_t latency : {0U, 2U}) {
+    Loop loop(false, true);
+    loop.latency = latency;
+    loop.run(50);
+    loop.operator_input.request = ModeRequest::kArm;
+    loop.step();
+    EXPECT_EQ(loop.record.mode, Mode::kReady);
+    EXPECT_EQ(loop.record.refusal, Refusal::kLatencyUnknown);
+    EXPECT_FALSE(loop.record.is_latency_known);
+    loop.operator_input.request = ModeRequest::kNone;
+    loop.run(100);
+    EXPECT_EQ(loop.record.is_latency_known, latency > 0);
+    loop.operator_input.request = ModeRequest::kArm;
+    loop.step();
+    EXPECT_EQ(loop.record.mode, latency > 0 ? Mode::kArmed : Mode::kReady);
+  }
+  EXPECT_TRUE(Loop().cycle->state().control.answers == 0);
+  Loop drives;  // have no torque loop
+  drives.latency = 0;
+  drives.start_running();
+}
+
+// Cycles after a change of the latency until the device stops; -1: it does not.
+int cycles_until_latency_fault(std::uint64_t before, const std::vector<std::uint64_t>& after) {
+  Loop loop(false, true);
+  loop.latency = before;
+  loop.run(200);
+  loop.start_running();
+  for (int k = 0; k < 1000; ++k) {
+    loop.latency = after[static_cast<std::size_t>(k) % after.size()];
+    loop.step();
+    if (loop.record.mode != Mode::kFault) continue;
+    EXPECT_EQ(loop.record.fault.code, FaultCode::kLatencyGrew);
+    EXPECT_FALSE(loop.command.enable);
+    return k;
+  }
+  return -1;
+}
+
+TEST(Cycle, ALatencyThatGrowsWhileTheDrivesAreOnStopsTheDevice) {
+  EXPECT_NEAR(cycles_until_latency_fault(1, {2}), 50, 2);
+  EXPECT_NEAR(cycles_until_latency_fault(2, {9}), 50, 2);
+  EXPECT_NEAR(cycles_until_latency_fault(2, {0}), 50, 2);           // answers no more
+  EXPECT_GT(cycles_until_latency_fault(1, {3, 3, 1, 3, 3, 1}), 0);  // mostly late
+  EXPECT_EQ(cycles_until_latency_fault(1, {1}), -1);
+  EXPECT_EQ(cycles_until_latency_fault(3, {1, 2, 3}), -1);
+  // frames that were lost and filled in, see docs/device_protocol.md
+  EXPECT_EQ(cycles_until_latency_fault(1, {2, 3, 4, 1, 1, 1, 1}), -1);
 }
 
 TEST(Cycle, TheTwinMeetsTheHandleAgainAfterAFaultInMotion) {

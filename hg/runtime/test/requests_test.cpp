@@ -14,7 +14,7 @@ CycleRecord ready(TareStatus tare) {
 
 TEST(NextRequest, ArmsRunsAndStops) {
   CycleRecord record = ready(TareStatus::kNone);
-  record.is_tared = true;
+  record.is_tared = record.is_latency_known = true;
   EXPECT_EQ(next_request(record, false, false), ModeRequest::kArm);
   record.mode = Mode::kArmed;
   EXPECT_EQ(next_request(record, false, false), ModeRequest::kNone);
@@ -27,6 +27,26 @@ TEST(NextRequest, ArmsRunsAndStops) {
     record.mode = mode;
     EXPECT_EQ(next_request(record, true, false), ModeRequest::kNone);
   }
+}
+
+TEST(NextRequest, WaitsForTheLatencyAndAsksNowAndThenSoThatARefusalSaysWhy) {
+  CycleRecord record = ready(TareStatus::kNone);
+  record.is_tared = true;
+  int asked = 0, in_a_row = 0;
+  ModeRequest last = ModeRequest::kNone;
+  for (record.cycle = 0; record.cycle < 3000; ++record.cycle) {
+    const ModeRequest request = next_request(record, true, false);
+    asked += request == ModeRequest::kArm;
+    in_a_row += request == ModeRequest::kArm && last == request;
+    if (record.cycle < 500) {
+      EXPECT_EQ(request, ModeRequest::kNone);
+    }
+    last = request;
+  }
+  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(in_a_row, 0);  // requests act on their edge
+  record.is_latency_known = true;
+  EXPECT_EQ(next_request(record, true, false), ModeRequest::kArm);
 }
 
 TEST(NextRequest, TaresFirstWhereTheDeviceNeedsIt) {

@@ -57,6 +57,32 @@ TEST(CheckSensors, NamesTheComponentThatIsNotFinite) {
   EXPECT_EQ(check_sensors(config(), sensors, 7).index, 19);
 }
 
+TEST(CheckSensors, LooksAtMotorsJointTorquesAndTheInertialUnitToo) {
+  SensorFrame complete = good_sensors();
+  complete.theta_m = complete.tau_m = VectorM::Zero(6);
+  EXPECT_TRUE(is_finite(config(), complete));
+  const auto expect_named = [&](auto&& spoil, int index) {
+    SensorFrame sensors = complete;
+    spoil(sensors);
+    EXPECT_FALSE(is_finite(config(), sensors)) << index;
+    EXPECT_EQ(check_sensors(config(), sensors, 7).code, FaultCode::kSensorNotFinite) << index;
+    EXPECT_EQ(check_sensors(config(), sensors, 7).index, index);
+  };
+  expect_named([](SensorFrame& s) { s.theta_m[0] = kNan; }, 20);
+  expect_named([](SensorFrame& s) { s.tau_m[5] = kInfinity; }, 31);
+  expect_named([](SensorFrame& s) { s.a_S[1] = kNan; }, 33);
+  expect_named([](SensorFrame& s) { s.omega_S[2] = -kInfinity; }, 37);
+}
+
+TEST(CheckSensors, WhatADeviceWithoutInertialUnitSaysOfItDoesNotMatter) {
+  SensorFrame sensors = good_sensors();
+  sensors.a_S[0] = sensors.omega_S[0] = kNan;
+  MonitorConfig without = config();
+  without.has_imu = false;
+  EXPECT_TRUE(is_finite(without, sensors));
+  EXPECT_EQ(check_sensors(without, sensors, 7).code, FaultCode::kNone);
+}
+
 TEST(CheckSensors, AFaultThatTheDriverReportsComesFirst) {
   SensorFrame sensors = good_sensors();
   sensors.driver_fault = FaultCode::kDeviceSilent;
@@ -114,7 +140,7 @@ CommandFrame good_command() {
 
 TEST(Sanitise, LeavesAGoodCommandUntouched) {
   CommandFrame command = good_command();
-  sanitise(config(), command);
+  EXPECT_EQ(sanitise(config(), command).code, FaultCode::kNone);
   const CommandFrame expected = good_command();
   EXPECT_TRUE(command.enable);
   EXPECT_EQ(command.q_m, expected.q_m);
@@ -126,11 +152,13 @@ TEST(Sanitise, LeavesAGoodCommandUntouched) {
 TEST(Sanitise, ClampsTheGantryAndDisablesWhatIsNotFinite) {
   CommandFrame command = good_command();
   command.dq_p[1] = -9.0;
-  sanitise(config(), command);
+  EXPECT_EQ(sanitise(config(), command).code, FaultCode::kNone);
   EXPECT_EQ(command.dq_p[1], -1.5);
   EXPECT_TRUE(command.enable);
   command.ddq_m[0] = kNan;
-  sanitise(config(), command);
+  const Fault fault = sanitise(config(), command);
+  EXPECT_EQ(fault.code, FaultCode::kCommandNotFinite);
+  EXPECT_EQ(fault.index, 12);
   EXPECT_FALSE(command.enable);
   EXPECT_TRUE(command.q_m.allFinite() && command.dq_m.isZero() && command.dq_p.isZero());
 }
