@@ -156,11 +156,11 @@ VectorM JointControl::link_torque(const ReferenceState& reference,
                                   const RobotState& robot) noexcept {
   chain_.update(stacked(robot.q_p, reference.q_m), stacked(robot.dq_p, reference.dq_m));
   const auto M = chain_.M().bottomRows(n_m_);
-  const auto J_m = chain_.jacobian(handle_).rightCols(n_m_);
+  const model::Jacobian J = chain_.jacobian(handle_);  // a value: a block of it must not outlive it
   VectorM tau = chain_.c().tail(n_m_);
   tau.noalias() += M.rightCols(n_m_) * reference.ddq_m;
   tau.noalias() += M.leftCols(n_p_) * robot.ddq_p;
-  tau.noalias() -= J_m.transpose() * robot.w_H;
+  tau.noalias() -= J.rightCols(n_m_).transpose() * robot.w_H;
   return tau.cwiseMin(feed_max_).cwiseMax(-feed_max_);
 }
 

@@ -166,8 +166,6 @@ void Cycle::render(CycleRecord& record) noexcept {
   const Fault fault = safety::check_reference(config_.monitor, record);
   if (fault.code != FaultCode::kNone) {
     stop_with(fault);
-    state_.rendering.reference.ddq_m.setZero();  // the next estimation starts from it
-    state_.rendering.twin.ddq_a.setZero();
     return;
   }
   const VectorP q_p_target =

@@ -255,19 +255,6 @@ TEST(Cycle, ATorqueThatIsNotFiniteIsAFaultAndAResetBeginsAnew) {
   }
 }
 
-TEST(Cycle, AReferenceThatIsNotFiniteDoesNotSpoilTheEstimation) {
-  Loop loop(false, true);
-  loop.run(110);
-  loop.start_running();
-  State state = loop.cycle->state();
-  state.rendering.twin.dq_a[0] = std::numeric_limits<double>::quiet_NaN();
-  loop.cycle->restore(state);
-  loop.step();
-  EXPECT_EQ(loop.record.mode, Mode::kFault);
-  loop.step();
-  EXPECT_TRUE(loop.record.robot.q_m.allFinite() && loop.record.robot.dq_m.allFinite());
-}
-
 TEST(Cycle, ATorqueLoopIsNotArmedBeforeAHundredCommandsWereAnswered) {
   for (const std::uint64_t latency : {0U, 2U}) {
     Loop loop(false, true);
@@ -285,7 +272,6 @@ TEST(Cycle, ATorqueLoopIsNotArmedBeforeAHundredCommandsWereAnswered) {
     loop.step();
     EXPECT_EQ(loop.record.mode, latency > 0 ? Mode::kArmed : Mode::kReady);
   }
-  EXPECT_TRUE(Loop().cycle->state().control.answers == 0);
   Loop drives;  // have no torque loop
   drives.latency = 0;
   drives.start_running();
