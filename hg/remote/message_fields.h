@@ -63,7 +63,9 @@ template <typename Archive, Is<SensorFrame> T>
 void fields(Archive& a, T& sensors) {
   a("sequence", sensors.sequence, "counts up by one per period");
   a("time_s", sensors.time_s, "the device's clock, s");
-  a("answered_sequence", sensors.answered_sequence, "of the newest command at work");
+  a("answered_sequence", sensors.answered_sequence,
+    "of the newest command at work; 0 = none yet. A torque loop needs it, see "
+    "[control.md](control.md)");
   a("dead_man", sensors.dead_man, "1: the dead-man switch is closed");
   a("emergency_stop", sensors.emergency_stop, "1: the safety inputs ask for a stop");
   a("driver_fault", sensors.driver_fault, "0, or a number of hg/signals/fault.h");
