@@ -43,7 +43,8 @@ extern "C" [[gnu::noipa]] void counted(const Work& work) {
 namespace {
 
 config::Scenario load(const std::string& name, rendering::Law law, rendering::Bounds bounds) {
-  return bench::with_law(apps::make_scenario({.scenario = name}), law, bounds);
+  return bench::with_law(
+      apps::make_scenario({.scenario = name, .plant = "ideal", .sensors = "ideal"}), law, bounds);
 }
 
 std::size_t run_cycles(const std::string& name) {
