@@ -35,8 +35,9 @@ export function start_program(command) {
   });
 }
 
-// Opens `link`; `problems` collects errors of the page and requests to other machines.
-export async function open_page(link, options = {}) {
+// Opens `link`, after `prepare`; `problems` collects errors of the page and requests to other
+// machines.
+export async function open_page(link, options = {}, prepare = async () => {}) {
   const is_root = process.getuid?.() === 0;
   const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
@@ -49,6 +50,7 @@ export async function open_page(link, options = {}) {
   page.on("request", (request) => {
     if (!request.url().startsWith(new URL(link).origin)) problems.push(request.url());
   });
+  await prepare(page);
   await page.goto(link);
   return { page, problems, close: () => browser.close() };
 }

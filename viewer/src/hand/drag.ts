@@ -2,38 +2,48 @@
 
 import { Raycaster, Vector2, Vector3 } from "three";
 
+import type { Frame, Hand, Quaternion, Vec3 } from "../messages";
+import type { Cameras } from "../scene/cameras";
+import type { Stage } from "../scene/stage";
 import {
   type Ray,
   add,
   drag_normal,
+  meet_axis,
   meet_plane,
-  meet_vertical,
   subtract,
   within_reach,
 } from "./drag_plane";
-import type { Hand, Vec3 } from "./messages";
-import type { Stage } from "./stage";
+import { turned } from "./turn";
 
 const GRAB_RADIUS_PX = 40;
 const RESEND_MS = 33; // the program takes half a second of silence for a closed page
 const REACH = 1.2; // m; a target never leads the handle by more
 
+// What a drag does: moves in the plane, along an axis of B, or turns the handle.
+export type DragMode = "plane" | "x" | "y" | "z" | "turn";
+
+const AXES: Record<"x" | "y" | "z", Vec3> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
+
 export class Drag {
+  chosen_mode: DragMode = "plane"; // by button
+  key_mode: DragMode | null = null; // by a key that is held
+  presses_while_dragging = false;
   private pointer: number | null = null; // that holds the handle
   private target: Vec3 | null = null; // null = the hand is off the handle
-  private anchor: Vec3 = [0, 0, 0]; // the plane of the drag goes through it
+  private turn: Quaternion | null = null; // wanted attitude, null = as the hand likes
+  private anchor: Vec3 = [0, 0, 0]; // plane or axis of the drag go through it
   private offset: Vec3 = [0, 0, 0]; // from where the pointer meets the plane to the target
+  private turn_start: Quaternion = [0, 0, 0, 1];
   private last_pointer = new Vector2();
-  private was_lifting = false;
+  private turn_pointer = new Vector2();
+  private last_mode: DragMode = "plane";
   private is_pressing = false; // by key or button
-  private is_shift = false;
-
-  is_lifting = false; // by button
-  presses_while_dragging = false;
 
   constructor(
     private readonly stage: Stage,
-    private readonly handle: () => Vec3 | null,
+    private readonly cameras: Cameras,
+    private readonly frame: () => Frame | null,
     private readonly send: (hand: Hand) => void,
   ) {
     // on the parent and first, so that the orbit controls find themselves switched off
@@ -46,8 +56,6 @@ export class Drag {
     addEventListener("blur", () => this.let_go());
     document.addEventListener("visibilitychange", () => document.hidden && this.let_go());
     addEventListener("pagehide", () => this.let_go());
-    addEventListener("keydown", (event) => this.set_shift(event.shiftKey));
-    addEventListener("keyup", (event) => this.set_shift(event.shiftKey));
     setInterval(() => this.target && this.tell(), RESEND_MS);
   }
 
@@ -59,6 +67,10 @@ export class Drag {
     return this.target;
   }
 
+  get mode(): DragMode {
+    return this.key_mode ?? this.chosen_mode;
+  }
+
   get press(): number {
     return this.is_pressing || (this.is_dragging && this.presses_while_dragging) ? 1 : 0;
   }
@@ -67,18 +79,32 @@ export class Drag {
   set_pressing(is_pressing: boolean): void {
     if (this.is_pressing === is_pressing) return;
     this.is_pressing = is_pressing;
-    if (!this.is_dragging) this.target = is_pressing ? this.handle() : null;
+    if (!this.is_dragging) this.target = is_pressing ? this.handle : null;
     this.tell();
   }
 
+  let_go(): void {
+    this.is_pressing = false;
+    if (this.target === null) return;
+    this.pointer = null;
+    this.target = null;
+    this.turn = null;
+    this.cameras.controls.enabled = this.cameras.current !== "first person";
+    this.stage.canvas.style.cursor = "";
+    this.tell();
+  }
+
+  private get handle(): Vec3 | null {
+    return this.frame()?.p_B_H_m ?? null;
+  }
+
   private grab(event: PointerEvent): void {
-    this.set_shift(event.shiftKey);
-    const handle = this.handle();
+    const handle = this.handle;
     if (this.is_dragging) return event.stopPropagation(); // a second finger
     if (!handle || event.button !== 0 || !this.is_near(event, handle)) return;
     event.stopPropagation();
     this.pointer = event.pointerId;
-    this.stage.controls.enabled = false;
+    this.cameras.controls.enabled = false;
     this.stage.canvas.setPointerCapture(event.pointerId);
     this.last_pointer.set(event.clientX, event.clientY);
     this.target = handle;
@@ -87,7 +113,7 @@ export class Drag {
   }
 
   private move(event: PointerEvent): void {
-    const handle = this.handle();
+    const handle = this.handle;
     if (event.pointerId !== this.pointer) {
       const can_grab = !this.is_dragging && handle && this.is_near(event, handle);
       this.stage.canvas.style.cursor = can_grab ? "grab" : "";
@@ -95,7 +121,12 @@ export class Drag {
     }
     this.stage.canvas.style.cursor = "grabbing";
     this.last_pointer.set(event.clientX, event.clientY);
-    if (this.lifts !== this.was_lifting) this.restart();
+    if (this.mode !== this.last_mode) this.restart();
+    if (this.mode === "turn") {
+      const move = this.last_pointer.clone().sub(this.turn_pointer);
+      this.turn = turned(this.turn_start, move.x, move.y, this.view);
+      return;
+    }
     const met = this.meet();
     if (met && handle) this.target = within_reach(add(met, this.offset), handle, REACH);
   }
@@ -104,37 +135,24 @@ export class Drag {
     if (pointer === this.pointer) this.let_go();
   }
 
-  private let_go(): void {
-    this.is_pressing = false;
-    if (this.target === null) return;
-    this.pointer = null;
-    this.target = null;
-    this.stage.controls.enabled = true;
-    this.stage.canvas.style.cursor = "";
-    this.tell();
-  }
-
-  private get lifts(): boolean {
-    return this.is_shift || this.is_lifting;
-  }
-
-  private set_shift(is_shift: boolean): void {
-    this.is_shift = is_shift;
-  }
-
   // From now on the target moves with the pointer, starting where it is.
   private restart(): void {
-    this.was_lifting = this.lifts;
+    this.last_mode = this.mode;
     this.anchor = this.target ?? [0, 0, 0];
+    this.turn_start = this.turn ?? this.frame()?.quaternion_B_H ?? [0, 0, 0, 1];
+    this.turn_pointer.copy(this.last_pointer);
     const met = this.meet();
     this.offset = met ? subtract(this.anchor, met) : [0, 0, 0];
   }
 
   private meet(): Vec3 | null {
-    const ray = this.ray();
-    if (this.lifts) return meet_vertical(ray, this.anchor);
-    const view = this.stage.camera.getWorldDirection(new Vector3()).toArray();
-    return meet_plane(ray, this.anchor, drag_normal(view));
+    const { mode } = this;
+    if (mode === "plane") return meet_plane(this.ray(), this.anchor, drag_normal(this.view));
+    return mode === "turn" ? null : meet_axis(this.ray(), this.anchor, AXES[mode]);
+  }
+
+  private get view(): Vec3 {
+    return this.stage.camera.getWorldDirection(new Vector3()).toArray();
   }
 
   private ray(): Ray {
@@ -152,7 +170,8 @@ export class Drag {
   }
 
   private tell(): void {
-    const p_B_m = this.target ?? this.handle() ?? [0, 0, 0];
-    this.send({ type: "hand", active: this.target !== null, p_B_m, press: this.press });
+    const p_B_m = this.target ?? this.handle ?? [0, 0, 0];
+    const active = this.target !== null;
+    this.send({ type: "hand", active, p_B_m, quaternion_B_H: this.turn, press: this.press });
   }
 }

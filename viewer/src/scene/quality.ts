@@ -10,6 +10,9 @@ export class Quality {
   private slow_ms = 0; // how long it has been slow
   private last_ms: number | null = null;
 
+  // `is_fixed`: the best picture, however long it takes.
+  constructor(private readonly is_fixed = false) {}
+
   get has_shadows(): boolean {
     return this.level < 2;
   }
@@ -25,7 +28,7 @@ export class Quality {
     this.last_ms = now_ms;
     const is_slow = elapsed_ms > SLOW_MS && elapsed_ms < PAUSE_MS;
     this.slow_ms = is_slow ? this.slow_ms + elapsed_ms : 0;
-    if (this.slow_ms < PATIENCE_MS || this.level === 3) return false;
+    if (this.is_fixed || this.slow_ms < PATIENCE_MS || this.level === 3) return false;
     this.level += 1;
     this.slow_ms = 0;
     return true;

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
-import { Quality } from "../src/quality";
-import { RateMeter } from "../src/rate_meter";
+import { RateMeter } from "../../src/data/rate_meter";
+import { Quality } from "../../src/scene/quality";
 
 describe("RateMeter", () => {
   it("counts the last second only", () => {

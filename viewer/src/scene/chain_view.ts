@@ -1,21 +1,20 @@
 // A chain on the stage: its URDF, placed in B and posed by coordinates.
 
 import {
-  type Material,
   type Object3D,
   BoxGeometry,
-  Color,
   Group,
   Mesh,
   MeshStandardMaterial,
   Quaternion,
   Vector3,
 } from "three";
-import URDFLoader, { type URDFRobot } from "urdf-loader";
+import URDFLoader, { type URDFJoint, type URDFRobot } from "urdf-loader";
 
-import type { SceneChain, SceneJoint } from "./messages";
+import type { SceneChain, SceneJoint } from "../messages";
+import { current_theme } from "../theme";
+import { paint_shapes } from "./materials";
 import { add_skeleton, has_shapes } from "./skeleton";
-import { current_theme } from "./theme";
 
 const MESHES = "/models/"; // where the program puts mesh files
 
@@ -41,8 +40,16 @@ export class ChainView {
     this.placement.add(this.robot ?? plain_body());
     const is_shown = has_shapes(this.robot) || urdf.includes(`filename="${MESHES}`);
     if (this.robot && !is_shown) add_skeleton(this.robot, current_theme().link);
-    paint(this.placement, opacity);
+    paint_shapes(this.placement, opacity);
     for (const joint of Object.values(this.robot?.joints ?? {})) joint.ignoreLimits = true;
+  }
+
+  joint(name: string): URDFJoint | null {
+    return this.robot?.joints[name] ?? null;
+  }
+
+  link(name: string): Object3D | null {
+    return this.robot?.links[name] ?? null;
   }
 
   // `q` holds the coordinates of all joints in the order of the scene.
@@ -114,38 +121,16 @@ function parse(urdf: string, opacity: number): URDFRobot {
   loader.loadMeshCb = (address, manager, material, done) => {
     if (!address.startsWith(MESHES)) return;
     loader.defaultMeshLoader(address, manager, material, (mesh, error) => {
-      if (mesh) paint(mesh, opacity);
+      if (mesh) paint_shapes(mesh, opacity);
       done(mesh, error);
     });
   };
   return loader.parse(urdf);
 }
 
-function paint(shapes: Object3D, opacity: number): void {
-  shapes.traverse((part) => {
-    if (!(part instanceof Mesh)) return;
-    part.castShadow = true;
-    part.receiveShadow = true;
-    const materials = [part.material].flat() as Material[];
-    const painted = materials.map((material) => matt(material, opacity));
-    part.material = Array.isArray(part.material) ? painted : painted[0]!;
-  });
-}
-
 function plain_body(): Group {
   const body = new Group();
-  const material = new MeshStandardMaterial({ color: new Color(0x4a90a4), roughness: 0.5 });
+  const material = new MeshStandardMaterial({ color: 0x4a90a4 });
   body.add(new Mesh(new BoxGeometry(0.14, 0.14, 0.14), material));
   return body;
-}
-
-function matt(material: Material, opacity: number): Material {
-  const color = "color" in material ? (material.color as Color) : new Color(current_theme().link);
-  return new MeshStandardMaterial({
-    color,
-    roughness: 0.62,
-    metalness: 0.05,
-    opacity: opacity * material.opacity,
-    transparent: opacity * material.opacity < 1,
-  });
 }

@@ -1,6 +1,6 @@
 // Where a pointer ray puts the dragged target. Pure functions; B is the base frame, z up.
 
-import type { Vec3 } from "./messages";
+import type { Vec3 } from "../messages";
 
 export interface Ray {
   origin: Vec3;
@@ -41,12 +41,15 @@ export function meet_plane(ray: Ray, point: Vec3, normal: Vec3): Vec3 | null {
   return along(ray, distance);
 }
 
-// The height at which the ray passes the vertical line through `point`, seen from the camera; null
-// when the camera looks straight down on it.
-export function meet_vertical(ray: Ray, point: Vec3): Vec3 | null {
-  const facing: Vec3 = [ray.direction[0], ray.direction[1], 0];
-  const met = norm(facing) < 0.05 ? null : meet_plane(ray, point, facing);
-  return met && [point[0], point[1], met[2]];
+// The point of the line through `point` along the unit vector `axis` that is nearest to the ray;
+// null when the ray runs along it.
+export function meet_axis(ray: Ray, point: Vec3, axis: Vec3): Vec3 | null {
+  const cosine = dot(ray.direction, axis);
+  const apart = 1 - cosine * cosine;
+  if (apart < 0.0025) return null;
+  const away = subtract(ray.origin, point);
+  const distance = (dot(away, axis) - cosine * dot(away, ray.direction)) / apart;
+  return add(point, [axis[0] * distance, axis[1] * distance, axis[2] * distance]);
 }
 
 // `target` moved towards `center` until it is at most `reach` away.

@@ -4,13 +4,13 @@ import {
   type Ray,
   dot,
   drag_normal,
+  meet_axis,
   meet_plane,
-  meet_vertical,
   norm,
   subtract,
   within_reach,
-} from "../src/drag_plane";
-import type { Vec3 } from "../src/messages";
+} from "../../src/hand/drag_plane";
+import type { Vec3 } from "../../src/messages";
 
 function unit(v: Vec3): Vec3 {
   return [v[0] / norm(v), v[1] / norm(v), v[2] / norm(v)];
@@ -43,17 +43,25 @@ describe("meet_plane", () => {
   });
 });
 
-describe("meet_vertical", () => {
-  it("moves only the height", () => {
+describe("meet_axis", () => {
+  const up: Vec3 = [0, 0, 1];
+
+  it("moves only along the axis", () => {
     const point: Vec3 = [0.2, 1, -1];
-    const met = meet_vertical(down, point)!;
+    const met = meet_axis(down, point, up)!;
     expect(met.slice(0, 2)).toEqual([0.2, 1]);
-    const higher = meet_vertical({ ...down, direction: unit([0.1, 1, -0.3]) }, point)!;
+    const higher = meet_axis({ ...down, direction: unit([0.1, 1, -0.3]) }, point, up)!;
     expect(higher[2]).toBeGreaterThan(met[2]);
   });
 
-  it("gives nothing when the camera looks straight down", () => {
-    expect(meet_vertical({ origin: [0, 0, 5], direction: [0, 0, -1] }, [0, 0, 0])).toBeNull();
+  it("gives the point of the axis that the ray meets", () => {
+    const met = meet_axis({ origin: [3, -4, 1], direction: [0, 1, 0] }, [0, 0, 1], [1, 0, 0])!;
+    expect(met[0]).toBeCloseTo(3, 12);
+    expect(met.slice(1)).toEqual([0, 1]);
+  });
+
+  it("gives nothing when the camera looks along the axis", () => {
+    expect(meet_axis({ origin: [0, 0, 5], direction: [0, 0, -1] }, [0, 0, 0], up)).toBeNull();
   });
 });
 
