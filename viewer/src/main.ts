@@ -131,7 +131,7 @@ class Page {
 
   private draw(now_ms: number): void {
     const { scene, frame } = this.store;
-    if (!scene || !frame || this.world?.scene !== scene) return this.cameras.controls.update() as unknown as void;
+    if (!scene || !frame || this.world?.scene !== scene) return;
     const target = this.drag.target_m ?? this.headset.target_m ?? seen_target(frame);
     this.world.show(frame, target);
     const is_first_person = this.cameras.current === "first person" || this.headset.is_worn;

@@ -1,12 +1,20 @@
 // Headsets by WebXR: room and twin at true scale, a controller is the hand target. The trigger takes
 // hold of the handle from wherever the controller is and moves it alike.
 
-import { Quaternion, Vector3, type XRTargetRaySpace } from "three";
+import {
+  CapsuleGeometry,
+  Mesh,
+  MeshStandardMaterial,
+  Quaternion,
+  Vector3,
+  type XRTargetRaySpace,
+} from "three";
 
 import { icon } from "../icons";
 import type { Frame, Hand, Quaternion as Turn, Vec3 } from "../messages";
 import { element, make_button } from "../page";
 import type { Stage } from "../scene/stage";
+import { TARGET_COLOR } from "../theme";
 import { grip_target, placed_rig } from "./grip";
 
 const RESEND_MS = 33;
@@ -86,6 +94,9 @@ export class Headset {
   }
 
   private connect(controller: XRTargetRaySpace): void {
+    const shape = new CapsuleGeometry(0.02, 0.09, 6, 16).rotateX(Math.PI / 2);
+    controller.add(new Mesh(shape, new MeshStandardMaterial({ color: TARGET_COLOR })));
+    controller.visible = false; // until three finds it
     this.stage.rig.add(controller);
     controller.addEventListener("selectstart", () => this.take_hold(controller));
     controller.addEventListener("selectend", () => this.grip?.controller === controller && this.let_go());

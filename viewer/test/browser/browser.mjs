@@ -1,5 +1,7 @@
 // Helpers of the browser tests: the program, a headless Chromium, the mouse, pictures.
 import { spawn } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { chromium } from "playwright-core";
 
 const FLAGS = [
@@ -12,6 +14,7 @@ const FLAGS = [
   "--use-angle=swiftshader", // WebGL without graphics hardware
   "--enable-unsafe-swiftshader",
 ];
+export const PATIENCE = { timeout: 60_000 }; // a machine may be slow; nothing is timed
 
 // Starts `command` and waits for the link of its page.
 export function start_program(command) {
@@ -35,24 +38,64 @@ export function start_program(command) {
   });
 }
 
-// Opens `link`, after `prepare`; `problems` collects errors of the page and requests to other
-// machines.
-export async function open_page(link, options = {}, prepare = async () => {}) {
+export function start_browser() {
   const is_root = process.getuid?.() === 0;
-  const browser = await chromium.launch({
+  return chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: is_root ? [...FLAGS, "--no-sandbox"] : FLAGS,
   });
-  const page = await browser.newPage({ viewport: { width: 1366, height: 768 }, ...options });
+}
+
+// Opens `link`, after `prepare`, and waits until the scene is drawn; `problems` collects errors of
+// the page and requests to other machines.
+export async function open_page(browser, link, options = {}, prepare = async () => {}) {
+  const context = await browser.newContext({ viewport: { width: 1366, height: 768 }, ...options });
+  const page = await context.newPage();
   const problems = [];
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("console", (line) => line.type() === "error" && problems.push(line.text()));
   page.on("request", (request) => {
-    if (!request.url().startsWith(new URL(link).origin)) problems.push(request.url());
+    const is_own = request.url().startsWith(new URL(link).origin) || /^(blob|data):/.test(request.url());
+    if (!is_own) problems.push(request.url());
   });
   await prepare(page);
   await page.goto(link);
-  return { page, problems, close: () => browser.close() };
+  await drawn(page);
+  return { page, problems, close: () => context.close() };
+}
+
+// Waits until the scene is drawn and the camera rests.
+export async function drawn(page) {
+  await page.waitForFunction(
+    () => window.hapticgiant?.is_connected && window.hapticgiant.is_drawn && window.hapticgiant.frame,
+    null,
+    PATIENCE,
+  );
+  const corner = () => page.evaluate(() => window.hapticgiant.on_screen([0, 0, 0]));
+  for (let last = null; ; ) {
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    const now = await corner();
+    if (last && Math.hypot(now.x - last.x, now.y - last.y) < 0.5) return;
+    last = now;
+  }
+}
+
+export function frame_of(page) {
+  return page.evaluate(() => window.hapticgiant.frame);
+}
+
+export function scene_of(page) {
+  return page.evaluate(() => window.hapticgiant.scene);
+}
+
+// Waits until `test(frame)` holds; false when it does not come.
+export async function comes_true(page, test, patience_ms = PATIENCE.timeout) {
+  for (const end = Date.now() + patience_ms; Date.now() < end; ) {
+    const frame = await frame_of(page);
+    if (frame && test(frame)) return true;
+    await page.waitForTimeout(50);
+  }
+  return false;
 }
 
 // Grabs the handle, moves the mouse over the points (in B), and lets go after `at_end`.
@@ -66,19 +109,31 @@ export async function drag_along(page, points, at_end) {
     await page.mouse.move(x, y);
     await page.waitForTimeout(80);
   }
-  await page.waitForTimeout(800);
   await at_end();
   await page.mouse.up();
 }
 
-// Number of pixels of the scene that change when `check_box` is switched off (and on again).
-export async function hide_and_compare(page, check_box) {
-  const clip = { x: 0, y: 100, width: 1060, height: 560 }; // without the panels
+// Points on the arc of the handle about the hinge, by `angles` from where the handle is.
+export function arc(handle, hinge, angles) {
+  const [x, y] = [handle[0] - hinge[0], handle[1] - hinge[1]];
+  return angles.map((a) => [
+    hinge[0] + x * Math.cos(a) - y * Math.sin(a),
+    hinge[1] + x * Math.sin(a) + y * Math.cos(a),
+    handle[2],
+  ]);
+}
+
+// Number of pixels of the scene that change when `layer` is switched off (and on again).
+export async function hide_and_compare(page, layer) {
+  const { x, y, width, height } = await page.locator("#stage").boundingBox();
+  const clip = { x, y: y + 70, width, height: height - 140 }; // without what lies over it
+  await page.click("#layers summary");
   const shown = await page.screenshot({ clip });
-  await page.uncheck(check_box);
+  await page.uncheck(`#show-${layer}`);
   await page.waitForTimeout(500);
   const hidden = await page.screenshot({ clip });
-  await page.check(check_box);
+  await page.check(`#show-${layer}`);
+  await page.click("#layers summary");
   return page.evaluate(count_different, [shown.toString("base64"), hidden.toString("base64")]);
 }
 
@@ -98,4 +153,14 @@ async function count_different(pictures) {
     if (change > 30) count += 1;
   }
   return count;
+}
+
+// Puts an emulated headset into the page before it loads; the page's script gets `xr_device`.
+export async function wear_headset(page) {
+  const file = createRequire(import.meta.url).resolve("iwer/build/iwer.min.js");
+  await page.addInitScript(readFileSync(file, "utf8"));
+  await page.addInitScript(() => {
+    window.xr_device = new window.IWER.XRDevice(window.IWER.metaQuest3);
+    window.xr_device.installRuntime({ forceInstall: true });
+  });
 }
