@@ -77,6 +77,7 @@ class Page {
       () => this.store.frame,
       (hand) => this.store.connection.send(hand),
     );
+    this.stage.on_resize = () => this.cameras.resize();
     this.listen();
     this.stage.run((now_ms) => this.draw(now_ms));
   }
@@ -133,11 +134,12 @@ class Page {
     const { scene, frame } = this.store;
     if (!scene || !frame || this.world?.scene !== scene) return;
     const target = this.drag.target_m ?? this.headset.target_m ?? seen_target(frame);
-    this.world.show(frame, target);
+    this.world.show(frame, target, this.drag.axis);
     const is_first_person = this.cameras.current === "first person" || this.headset.is_worn;
     this.world.person.hide_body(is_first_person);
     if (!this.headset.is_worn) this.cameras.update(frame.p_B_H_m, this.world.person.eyes);
-    this.hand_controls.show(this.headset.is_worn ? null : this.stage.on_screen(frame.p_B_H_m));
+    const handle_px = this.headset.is_worn ? null : this.stage.on_screen(frame.p_B_H_m);
+    this.hand_controls.show(handle_px, Math.hypot(...frame.force_N));
     if (now_ms - this.panels_ms < PANEL_GAP_MS) return;
     this.panels_ms = now_ms;
     this.show_panels(scene, frame);

@@ -50,6 +50,12 @@ export function fill(bar: HTMLElement, share: number): void {
   if (part.style.transform !== scale) part.style.transform = scale;
 }
 
+// Keys belong to the field that one writes into, not to the page.
+export function is_typing({ target }: Event): boolean {
+  const is_text = target instanceof HTMLInputElement && target.type !== "checkbox";
+  return is_text || target instanceof HTMLSelectElement;
+}
+
 export function download(blob: Blob, name: string): void {
   const link = make("a");
   link.href = URL.createObjectURL(blob);

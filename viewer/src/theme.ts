@@ -54,9 +54,9 @@ const DARK: Theme = {
   wall: 0x5a6068,
   sky_light: 0xdfe7f0,
   ground_light: 0x3a424b,
-  ambient: 0.8,
-  sun: 1.9,
-  reflections: 0.5,
+  ambient: 0.65,
+  sun: 1.4,
+  reflections: 0.4,
   exposure: 1.0,
 };
 

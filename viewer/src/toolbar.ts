@@ -4,7 +4,7 @@ import type { CommandName } from "./data/commands";
 import type { Store } from "./data/store";
 import { type Icon, icon } from "./icons";
 import type { Frame, Scene } from "./messages";
-import { element, make, make_button, make_check_box, write } from "./page";
+import { element, is_typing, make, make_button, make_check_box, write } from "./page";
 import { fill_choice } from "./panels/change";
 import type { Cameras, View } from "./scene/cameras";
 import { VIEWS } from "./scene/cameras";
@@ -114,9 +114,7 @@ export class Toolbar {
   }
 
   private take_key(event: KeyboardEvent): void {
-    const { target } = event;
-    const is_field = target instanceof HTMLInputElement || target instanceof HTMLSelectElement;
-    if (is_field || event.ctrlKey || event.metaKey) return;
+    if (is_typing(event) || event.ctrlKey || event.metaKey) return;
     if (event.key === "p") this.toggle_pause();
     else if (event.key === ".") this.store.commands.send("step", "", this.step_size);
     else if (event.key === "r") this.store.commands.send("restart");
@@ -147,7 +145,7 @@ export function build_view_tools(
   views.addEventListener("change", () => choose(views.value as View));
   addEventListener("keydown", (event) => {
     const view = VIEWS[Number(event.key) - 1];
-    if (view && !(event.target instanceof HTMLInputElement)) choose(view);
+    if (view && !is_typing(event)) choose(view);
   });
   const plots = icon_button("plots", "Plots", () => {
     plots.setAttribute("aria-pressed", String(toggle_plots()));

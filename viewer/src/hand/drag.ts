@@ -71,6 +71,12 @@ export class Drag {
     return this.key_mode ?? this.chosen_mode;
   }
 
+  // Along which the target moves, null = in a plane or not at all.
+  get axis(): Vec3 | null {
+    const { mode } = this;
+    return this.is_dragging && mode !== "plane" && mode !== "turn" ? AXES[mode] : null;
+  }
+
   get press(): number {
     return this.is_pressing || (this.is_dragging && this.presses_while_dragging) ? 1 : 0;
   }
@@ -146,9 +152,9 @@ export class Drag {
   }
 
   private meet(): Vec3 | null {
-    const { mode } = this;
-    if (mode === "plane") return meet_plane(this.ray(), this.anchor, drag_normal(this.view));
-    return mode === "turn" ? null : meet_axis(this.ray(), this.anchor, AXES[mode]);
+    if (this.mode === "turn") return null;
+    if (this.axis) return meet_axis(this.ray(), this.anchor, this.axis);
+    return meet_plane(this.ray(), this.anchor, drag_normal(this.view));
   }
 
   private get view(): Vec3 {

@@ -1,7 +1,7 @@
 // Keys and buttons of the hand, and the ring that says where the handle is.
 
 import type { Scene } from "../messages";
-import { element, make, make_button, make_check_box, write } from "../page";
+import { element, is_typing, make, make_button, make_check_box, write } from "../page";
 import type { Pixel } from "../scene/stage";
 import type { Drag, DragMode } from "./drag";
 
@@ -18,6 +18,7 @@ const KEYS: Record<string, DragMode> = {
   Alt: "turn",
 };
 
+const OWN_SPACE = "button, summary, input"; // the space bar works them
 const LABEL_FLIPS_AT = 0.7; // share of the scene's width
 
 export function has_lever(scene: Scene): boolean {
@@ -27,14 +28,6 @@ export function has_lever(scene: Scene): boolean {
 export function grip_text(scene: Scene): string {
   if (has_lever(scene)) return "Drag me: push the door open";
   return scene.environment === "excavator" ? "Drag me: dig" : "Drag me";
-}
-
-function is_typing(event: KeyboardEvent): boolean {
-  const { target } = event;
-  return (
-    (target instanceof HTMLInputElement && target.type !== "checkbox") ||
-    target instanceof HTMLSelectElement
-  );
 }
 
 export class HandControls {
@@ -73,7 +66,8 @@ export class HandControls {
     write(element("grip-text"), grip_text(scene));
   }
 
-  show(handle_px: Pixel | null): void {
+  // `force_N`: shown at the handle while it is held.
+  show(handle_px: Pixel | null, force_N: number): void {
     const grip = element("grip");
     grip.hidden = handle_px === null;
     if (handle_px) {
@@ -83,7 +77,10 @@ export class HandControls {
       grip.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     }
     grip.dataset.held = String(this.drag.is_dragging);
-    if (this.drag.is_dragging) grip.dataset.known = "true"; // the label has done its work
+    if (this.drag.is_dragging) {
+      grip.dataset.known = "true"; // the label has done its work
+      write(element("grip-text"), `${force_N.toFixed(0)} N`);
+    }
     this.press_button.setAttribute("aria-pressed", String(this.drag.press > 0));
     for (const [mode, button] of this.buttons) {
       button.setAttribute("aria-pressed", String(this.drag.mode === mode));
@@ -100,7 +97,7 @@ export class HandControls {
 
   private take_key(event: KeyboardEvent, is_down: boolean): void {
     if (is_typing(event)) return;
-    if (event.code === "Space" && !(event.target instanceof HTMLButtonElement)) {
+    if (event.code === "Space" && !(event.target instanceof HTMLElement && event.target.matches(OWN_SPACE))) {
       event.preventDefault();
       this.drag.set_pressing(is_down);
     }

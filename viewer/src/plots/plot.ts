@@ -30,13 +30,13 @@ export interface Card {
 }
 
 export function make_card(id: string, title: string, picture: () => HTMLCanvasElement): Card {
-  const legend = make("span", "legend");
+  const legend = make("div", "legend");
   const save = make_button("", "Save as PNG", () => save_picture(picture(), id));
   save.className = "icon-button small";
   save.append(icon("picture"));
-  const head = make("header", "", make("b", "", title), legend, save);
+  const head = make("header", "", make("b", "", title), save);
   const body = make("div", "plot-body");
-  const card = make("article", "plot", head, body);
+  const card = make("article", "plot", head, legend, body);
   card.dataset.plot = id;
   return { card, legend, body };
 }

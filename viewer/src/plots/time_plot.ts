@@ -71,7 +71,7 @@ export class TimePlot implements Plot {
       width: 320,
       height: 160,
       legend: { show: false },
-      padding: [6, 8, 0, 0],
+      padding: [6, 16, 0, 0],
       cursor: { drag: { x: true, y: false, setScale: false }, sync: { key: "time" }, points: { show: false } },
       scales: { x: { time: false }, y: { range: (_, low, high) => this.span(low, high) } },
       axes: [
@@ -160,5 +160,6 @@ export class TimePlot implements Plot {
 
 function short(value: number): string {
   const size = Math.abs(value);
-  return value.toFixed(size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2);
+  const text = value.toFixed(size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2);
+  return text === "-0.00" ? "0.00" : text;
 }

@@ -34,7 +34,7 @@ export class TopView implements Plot {
     ];
     if (gantry.length === 2) {
       const columns: [string, string] = [`device.${gantry[0]}`, `device.${gantry[1]}`];
-      this.tracks.unshift({ label: "gantry", color: series_color(0), columns });
+      this.tracks.unshift({ label: "gantry", color: series_color(7), columns });
     }
     for (const { label, color } of this.tracks) {
       const swatch = make("i");

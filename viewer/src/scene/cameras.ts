@@ -1,6 +1,6 @@
 // Where one looks from: orbit, follow the handle, from above, through the eyes of the person.
 
-import { type PerspectiveCamera, Vector3 } from "three";
+import { MOUSE, type PerspectiveCamera, TOUCH, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 import type { SceneBox, Vec3 } from "../messages";
@@ -11,6 +11,9 @@ export const VIEWS: View[] = ["orbit", "follow", "top", "first person"];
 const EYE_ABOVE = 1.25; // m, above the middle of the box
 const FOLLOW_SHARE = 0.08; // of the way per picture
 const SMALLEST_AWAY = 2; // m, of the first view from the box
+const NEAR = 0.05; // m
+const CUT_ABOVE = 0.45; // m above the box: what hangs higher is cut off in the view from above
+const FIELD_OF_VIEW = { wide: 40, tall: 56, first_person: 72 }; // degrees
 
 export interface Eyes {
   p_B: Vector3;
@@ -57,11 +60,16 @@ export class Cameras {
   choose(view: View): void {
     this.view = view;
     this.camera.up.set(0, 0, 1);
+    this.camera.near = NEAR;
     this.controls.enabled = view !== "first person";
+    this.controls.enableRotate = view !== "top";
+    this.controls.mouseButtons.LEFT = view === "top" ? MOUSE.PAN : MOUSE.ROTATE;
+    this.controls.touches.ONE = view === "top" ? TOUCH.PAN : TOUCH.ROTATE;
     const center = new Vector3().addVectors(this.low, this.high).multiplyScalar(0.5);
     const size = new Vector3().subVectors(this.high, this.low);
     if (view === "top") {
       const height = 1.25 * Math.max(size.x, size.y) + 1.2;
+      this.camera.near = height - 0.5 * size.z - CUT_ABOVE;
       this.controls.target.copy(center);
       this.camera.position.set(center.x, center.y - 0.01, center.z + height);
     } else if (view !== "first person") {
@@ -69,7 +77,15 @@ export class Cameras {
       this.controls.target.copy(this.seen_first);
       this.camera.position.set(center.x + 0.62 * size.x, this.low.y - away, center.z + EYE_ABOVE);
     }
+    this.resize();
     this.controls.update();
+  }
+
+  resize(): void {
+    const { wide, tall, first_person } = FIELD_OF_VIEW;
+    const all = this.camera.aspect > 1 ? wide : tall;
+    this.camera.fov = this.view === "first person" ? first_person : all;
+    this.camera.updateProjectionMatrix();
   }
 
   update(handle_B: Vec3, eyes: Eyes): void {

@@ -106,7 +106,7 @@ export class Person {
     this.legs[1]!.span(at(-0.09, 0, HIP), at(-0.11, -0.02, 0.06));
     this.hand.position.copy(p_B);
     this.hand.quaternion.copy(attitude);
-    this.eyes.p_B.copy(at(0, 0.12, EYES));
+    this.eyes.p_B.copy(at(0, -0.04, EYES));
     this.eyes.towards_B.copy(p_B);
   }
 

@@ -35,13 +35,14 @@ export interface Pixel {
 
 export class Stage {
   readonly scene = new Scene();
-  readonly camera = new PerspectiveCamera(40, 1, 0.05, 60);
+  readonly camera = new PerspectiveCamera();
   readonly rig = new Group(); // of the camera in a headset
   readonly renderer: WebGLRenderer;
   readonly canvas: HTMLCanvasElement;
   private readonly quality = new Quality(/[?&]quality=best/.test(location.search));
   readonly box_view = new Group();
   floor_z_m = 0;
+  on_resize = (): void => this.camera.updateProjectionMatrix();
   private readonly sun = new DirectionalLight();
   private readonly sky = new HemisphereLight();
   private readonly floor = new Mesh(
@@ -159,8 +160,7 @@ export class Stage {
     this.renderer.setPixelRatio(this.quality.pixel_ratio(devicePixelRatio));
     this.renderer.setSize(width, height);
     this.camera.aspect = width / Math.max(1, height);
-    this.camera.fov = this.camera.aspect > 1 ? 40 : 56;
-    this.camera.updateProjectionMatrix();
+    this.on_resize();
     this.sun.castShadow = this.quality.has_shadows;
   }
 }

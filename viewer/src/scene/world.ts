@@ -84,13 +84,13 @@ export class World {
     this.elbow_trail.add(frame.p_B_elbow_m);
   }
 
-  // `target`: where the handle is dragged to, null = it is not.
-  show(frame: Frame, target: Vec3 | null): void {
+  // `target`: where the handle is dragged to, null = it is not; `axis`: along which only.
+  show(frame: Frame, target: Vec3 | null, axis: Vec3 | null): void {
     this.device.pose(frame.q_device);
     this.twin.pose(frame.q_twin);
     this.show_gauges(frame);
     this.handle.show_wrench(frame.p_B_H_m, frame.force_N, frame.torque_Nm);
-    this.handle.show_target(frame.p_B_H_m, target);
+    this.handle.show_target(frame.p_B_H_m, target, axis);
     const attitude = new Quaternion(...frame.quaternion_B_H).normalize();
     this.person.pose(new Vector3(...frame.p_B_H_m), attitude);
     this.show_ghost(frame);
