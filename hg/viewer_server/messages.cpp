@@ -73,7 +73,9 @@ std::vector<SceneLimitMessage> limit_messages(const LimitCatalogue& limits) {
 }
 
 HandMessage hand_message(const HandTarget& hand) {
-  return {hand.active, vec3(hand.p_B), std::nullopt, hand.press};
+  std::optional<Quaternion> turn;
+  if (hand.turns) turn = quaternion(hand.R_B);
+  return {hand.active, vec3(hand.p_B), turn, hand.press};
 }
 
 std::size_t limit_count(const CycleRecord& record, const LimitCatalogue& limits) {
@@ -135,6 +137,19 @@ BudgetMessage budget_message(const HandBudget& budget) {
           .conflict = wrench(budget.conflict),
           .structure = wrench(budget.structure),
           .rest = wrench(budget.rest)};
+}
+
+HandTarget hand_target(const HandMessage& hand) {
+  HandTarget target;
+  target.active = hand.active;
+  target.p_B = {hand.p_B[0], hand.p_B[1], hand.p_B[2]};
+  target.press = hand.press;
+  target.turns = hand.quaternion_B_H.has_value();
+  if (target.turns) {
+    const Quaternion& q = *hand.quaternion_B_H;
+    target.R_B = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
+  }
+  return target;
 }
 
 bool is_in_range(const HandMessage& hand) {
@@ -231,7 +246,7 @@ DecodeStatus decode(std::string_view text, PageMessage& message) {
   HandMessage hand;
   if (JsonReader(json).read(hand)) {
     if (!is_in_range(hand)) return DecodeStatus::kOutOfRange;
-    message.hand = {hand.active, {hand.p_B[0], hand.p_B[1], hand.p_B[2]}, hand.press};
+    message.hand = hand_target(hand);
     return DecodeStatus::kHand;
   }
   CommandMessage command;

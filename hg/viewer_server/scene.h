@@ -32,6 +32,7 @@ struct SceneJoint {
 
 struct SceneChain {
   std::filesystem::path urdf;      ///< empty: the page draws a plain body at the handle
+  std::string urdf_text;           ///< of a recording; empty: the file is read
   Pose T_B_root;                   ///< root link in B
   std::vector<SceneJoint> joints;  ///< in the order of the coordinates
 };

@@ -120,18 +120,19 @@ double cpu_time_s() {
 
 Text to_text(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
+void add_urdf(const SceneChain& chain, std::string_view address, std::string_view folder,
+              AssetTable& assets) {
+  if (chain.urdf.empty()) return;
+  const std::string text = chain.urdf_text.empty() ? read_file(chain.urdf) : chain.urdf_text;
+  assets[std::string(address)] = {"application/xml", with_meshes(chain.urdf, text, folder, assets)};
+}
+
 // What a scene puts into the table.
 AssetTable assets_of(const Scene& scene, double update_rate_hz) {
   AssetTable assets;
   assets["/scene.json"] = {"application/json", encode_scene(scene, update_rate_hz)};
-  if (!scene.device.urdf.empty()) {
-    assets[std::string(kDeviceAddress)] = {
-        "application/xml", with_meshes(scene.device.urdf, "/models/device/", assets)};
-  }
-  if (!scene.twin.urdf.empty()) {
-    assets[std::string(kTwinAddress)] = {"application/xml",
-                                         with_meshes(scene.twin.urdf, "/models/twin/", assets)};
-  }
+  add_urdf(scene.device, kDeviceAddress, "/models/device/", assets);
+  add_urdf(scene.twin, kTwinAddress, "/models/twin/", assets);
   return assets;
 }
 

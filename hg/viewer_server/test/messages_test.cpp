@@ -323,6 +323,25 @@ TEST(DecodeHand, ReadsWhatThePageSends) {
   EXPECT_EQ(target.press, 1.0);
 }
 
+TEST(DecodeHand, ReadsATurnAndRefusesOneThatIsNoRotation) {
+  Json json = {{"type", "hand"},
+               {"active", true},
+               {"p_B_m", {0, 0, 0}},
+               {"quaternion_B_H", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}},
+               {"press", 0}};
+  HandTarget target;
+  ASSERT_EQ(decode_hand(json.dump(), target), DecodeStatus::kHand);
+  ASSERT_TRUE(target.turns);
+  EXPECT_LT((target.R_B * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  View view;
+  view.hand = target;
+  EXPECT_NEAR(frame_of(view)["hand"]["quaternion_B_H"][2], std::sqrt(0.5), 1e-5);
+  for (const Json& turn : {Json{0, 0, 0, 0}, Json{0, 0, 1, 1}}) {
+    json["quaternion_B_H"] = turn;
+    EXPECT_EQ(decode_hand(json.dump(), target), DecodeStatus::kOutOfRange) << turn;
+  }
+}
+
 TEST(DecodeHand, RefusesEveryMissingWrongOrAdditionalField) {
   const Json good = {{"type", "hand"}, {"active", true}, {"p_B_m", {0, 0, 0}}, {"press", 0}};
   HandTarget target;
