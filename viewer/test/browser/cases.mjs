@@ -1,4 +1,4 @@
-// What the page does, in a browser, with the program. Each case gets {browser, program, restart,
+// What the page does, in a browser, with the program. Each case gets {browser, program, command,
 // expect}; none depends on how fast the machine is.
 import {
   PATIENCE,
@@ -10,6 +10,7 @@ import {
   hide_and_compare,
   open_page,
   scene_of,
+  start_program,
   wear_headset,
 } from "./browser.mjs";
 
@@ -45,7 +46,8 @@ export async function drag_opens_door({ browser, program, expect }) {
     const { q_twin } = await frame_of(page);
     expect(opens, `dragging opens the door: ${q_twin[0]} rad`);
   });
-  expect(!(await page.isVisible("#grip-text")), "the hint goes after the first drag");
+  await page.waitForSelector("#grip-text", { state: "hidden", ...PATIENCE });
+  expect(true, "the hint goes after the first drag");
   expect(await comes_true(page, (f) => !f.hand.active), "the hand lets go");
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
   await close();
@@ -137,5 +139,79 @@ export async function headset_holds_the_handle({ browser, program, expect }) {
     await page.waitForFunction(() => !window.xr_device.activeSession, null, PATIENCE);
   }
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+}
+
+// The demonstration server follows no commands.
+async function follows(page, command) {
+  return (await scene_of(page)).commands.includes(command);
+}
+
+export async function changes_reach_the_program({ browser, program, expect }) {
+  const first = await open_page(browser, program.link);
+  if (!(await follows(first.page, "set"))) return first.close();
+  const second = await open_page(browser, program.link);
+  const { name, value, max } = (await scene_of(first.page)).settings.find((s) => s.value > 0);
+  const box = `[data-setting="${name}"]`;
+  const wanted = String(Number((0.5 * value).toPrecision(3)));
+  await first.page.click("#tab-change");
+  await second.page.click("#tab-change");
+  await first.page.fill(box, wanted);
+  await first.page.press(box, "Enter");
+  const arrives = await second.page
+    .waitForFunction(([b, w]) => document.querySelector(b).value === w, [box, wanted], PATIENCE)
+    .then(() => true, () => false);
+  expect(arrives, `${name} = ${wanted} reaches the program and comes back to another page`);
+
+  await first.page.fill(box, String(10 * max + 1));
+  await first.page.press(box, "Enter");
+  const note = await first.page.locator(".setting .problem:visible").first().textContent();
+  expect(/is expected/.test(note), `out of range is refused: ${note}`);
+  expect((await first.page.inputValue(box)) === wanted, "and put back");
+  await first.close();
+  await second.close();
+}
+
+export async function time_is_controlled({ browser, program, expect }) {
+  const { page, problems, close } = await open_page(browser, program.link);
+  if (!(await follows(page, "pause"))) return close();
+  await page.click("#pause");
+  expect(await comes_true(page, (f) => f.run_state.is_paused), "pause");
+  const { time_s } = await frame_of(page);
+  await page.keyboard.press(".");
+  const steps = await comes_true(page, (f) => f.time_s > time_s);
+  const stepped = (await frame_of(page)).time_s - time_s;
+  expect(steps && stepped < 0.1, `one step is ${stepped.toFixed(3)} s`);
+  await page.click("#pause");
+  expect(await comes_true(page, (f) => !f.run_state.is_paused && f.time_s > time_s + 0.3), "goes on");
+  await page.selectOption("#speed", "0.25");
+  expect(await comes_true(page, (f) => f.run_state.speed === 0.25), "slow motion");
+  const before = await frame_of(page);
+  await page.keyboard.press("r");
+  const again = await comes_true(page, (f) => f.time_s < before.time_s);
+  expect(again, "the run starts again");
+  await drawn(page);
+  await page.selectOption("#scenario", "excavator");
+  const other = await page
+    .waitForFunction(() => window.hapticgiant.scene.environment === "excavator", null, PATIENCE)
+    .then(() => true, () => false);
+  await drawn(page);
+  expect(other, "another scenario, same page");
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+}
+
+export async function program_is_restarted({ browser, program, command, expect }) {
+  const { page, close } = await open_page(browser, program.link);
+  if (!(await follows(page, "restart"))) return close();
+  await program.stop();
+  await page.waitForFunction(() => document.body.dataset.connected === "false", null, PATIENCE);
+  const note = await page.textContent("#connection");
+  expect(/open its new link/.test(note), `the page says what to do: ${note}`);
+  const again = await start_program([...command, "--port", new URL(program.link).port]);
+  await page.goto(again.link);
+  await drawn(page);
+  expect(true, "the new link works in the same tab");
+  await again.stop();
   await close();
 }
