@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 
+#include "hg/model/joint_range.h"
 #include "hg/scaffold/postures.h"
 
 namespace hg::apps {
@@ -14,7 +15,9 @@ double best_dexterity(rendering::DeviceModel& device) {
   std::vector<Interval> ranges = scaffold::joint_ranges(device.chain);
   for (int i = 0; i < device.n_m; ++i) {
     const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
-    ranges[static_cast<std::size_t>(device.n_p + i)] = {limits.q_min, limits.q_max};
+    const auto joint = static_cast<std::size_t>(device.n_p + i);
+    const bool is_angle = device.chain.joints()[joint].type != model::JointType::kPrismatic;
+    ranges[joint] = model::finite_range({limits.q_min, limits.q_max}, is_angle);
   }
   scaffold::PostureSampler sampler(ranges);
   double best = 0.0;

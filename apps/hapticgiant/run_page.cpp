@@ -94,12 +94,9 @@ void RunPage::observe(const Sample& sample, const Note& note) {
 }
 
 void RunPage::show(const Sample& sample) {
-  if (server_.is_due()) {
-    *newest_ = sample;
-    publish();
-  } else {
-    has_news_ = true;
-  }
+  *newest_ = sample;
+  has_news_ = true;
+  if (server_.is_due()) publish();
 }
 
 void RunPage::publish() {

@@ -5,10 +5,9 @@
 #pragma GCC diagnostic ignored "-Wtsan"  // Asio's fences: unknown to the sanitizer, not needed here
 #endif
 
-#include <time.h>
+#include <pthread.h>
 
 #include <algorithm>
-#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -111,13 +110,6 @@ tcp::acceptor listen_on(asio::io_context& context, const Options& options) {
   return acceptor;
 }
 
-// Of the calling thread.
-double cpu_time_s() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 Text to_text(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 void add_urdf(const SceneChain& chain, std::string_view address, std::string_view folder,
@@ -152,6 +144,7 @@ struct ViewerServer::Impl {
     take({scene, assets_of(scene, update_rate_hz)});
     accept();
     thread = std::thread([this] { context.run(); });
+    pthread_setname_np(thread.native_handle(), "page server");
   }
 
   ~Impl() {
@@ -228,7 +221,6 @@ struct ViewerServer::Impl {
       for (const auto& page : hub.pages) page->tell(hub.values);
     }
     if (outbox.view) hub.show(to_text(encode_frame(*outbox.view, limits, hub.pages.size())));
-    cpu_s.store(cpu_time_s());
   }
 
   // With the mutex held.
@@ -243,9 +235,8 @@ struct ViewerServer::Impl {
   std::mutex mutex;       // guards pending and is_posted
   Outbox pending;
   bool is_posted = false;
-  std::uint64_t run = 0;      // of the newest scene; only the caller of set_scene() uses it
-  LimitCatalogue limits;      // of the scene that is shown
-  std::atomic<double> cpu_s;  // of the thread, so far
+  std::uint64_t run = 0;  // of the newest scene; only the caller of set_scene() uses it
+  LimitCatalogue limits;  // of the scene that is shown
 
   Hub hub;
   asio::io_context context{1};
@@ -344,7 +335,7 @@ void ViewerServer::answer(const Command& command, std::string_view refusal) {
 
 Counters ViewerServer::counters() const {
   const Hub& hub = impl_->hub;
-  return {hub.clients, hub.sent, hub.dropped, hub.refused, impl_->cpu_s};
+  return {hub.clients, hub.sent, hub.dropped, hub.refused};
 }
 
 }  // namespace hg::viewer_server

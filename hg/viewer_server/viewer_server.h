@@ -38,7 +38,6 @@ struct Counters {
   std::uint64_t sent = 0;     ///< frames handed to the network
   std::uint64_t dropped = 0;  ///< frames and events that a slow client did not get
   std::uint64_t refused = 0;  ///< requests and messages that were refused
-  double cpu_s = 0.0;         ///< processor time of the server's thread
 };
 
 class ViewerServer {
