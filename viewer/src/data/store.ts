@@ -8,6 +8,7 @@ import { RateMeter } from "./rate_meter";
 import type { Message } from "./read_message";
 
 const RETRY_MS = 1000; // of the scene
+const BACK_S = 0.05; // time that goes back by less has been rounded
 
 export interface Listener {
   on_scene?(scene: Scene): void; // another run has begun, or the first one
@@ -72,12 +73,16 @@ export class Store {
     const problem = mismatch(this.scene, frame);
     if (problem) return this.note_unreadable(problem);
     this.rate.tick(performance.now() / 1000);
-    const is_back = this.frame && frame.time_s < this.frame.time_s - 1e-6; // sought or restarted
-    const is_new = !this.frame || frame.time_s !== this.frame.time_s;
     this.frame = frame;
-    if (is_back) this.history.clear();
-    if (is_new || is_back) this.history.push(row_of(this.scene, frame));
+    this.note(this.scene, frame);
     this.tell((listener) => listener.on_frame?.(frame));
+  }
+
+  // Times of the history rise; a step back is a place that was sought, or a restart.
+  private note(scene: Scene, frame: Frame): void {
+    const step = this.history.length > 0 ? frame.time_s - this.history.last("time_s") : Infinity;
+    if (step < -BACK_S) this.history.clear();
+    if (step > 0 || step < -BACK_S) this.history.push(row_of(scene, frame));
   }
 
   private note_unreadable(reason: string): void {

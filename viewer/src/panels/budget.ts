@@ -13,7 +13,7 @@ export const PARTS: Record<Part, string> = {
   surface: "reference force",
   limits: "limits",
   conflict: "limits in conflict",
-  structure: "carried by the twin's bearings",
+  structure: "bearings of the twin",
   rest: "rest",
 };
 export const PART_NAMES = Object.keys(PARTS) as Part[];

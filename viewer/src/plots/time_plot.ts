@@ -36,6 +36,7 @@ export class TimePlot implements Plot {
   }
 
   draw({ history, range }: PlotInput): void {
+    this.resize();
     const times = history.column("time_s");
     const first = Math.max(0, index_at(times, range.from) - 1);
     const end = Math.min(times.length, index_at(times, range.to) + 1);
@@ -53,7 +54,8 @@ export class TimePlot implements Plot {
 
   resize(): void {
     const { clientWidth: width, clientHeight: height } = this.parts.body;
-    if (width > 0 && height > 0) this.chart.setSize({ width, height });
+    const is_other = width !== this.chart.width || height !== this.chart.height;
+    if (is_other && width > 0 && height > 0) this.chart.setSize({ width, height });
   }
 
   dispose(): void {

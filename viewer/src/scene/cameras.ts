@@ -75,7 +75,7 @@ export class Cameras {
     } else if (view !== "first person") {
       const away = Math.max(SMALLEST_AWAY, 0.62 * size.y);
       this.controls.target.copy(this.seen_first);
-      this.camera.position.set(center.x + 0.62 * size.x, this.low.y - away, center.z + EYE_ABOVE);
+      this.camera.position.set(center.x + 0.6 * size.x, this.low.y - away, center.z + EYE_ABOVE);
     }
     this.resize();
     this.controls.update();

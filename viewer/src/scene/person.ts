@@ -24,6 +24,7 @@ const STAND_BACK = 0.52; // m, from the handle
 const STAND_LEFT = 0.3; // m: the right hand holds
 const UPPER_ARM = 0.31; // m
 const FOREARM = 0.29; // m
+const OPACITY = 0.62; // the device behind stays visible
 const FOLLOW_SHARE = 0.12; // of the way per picture: one does not jump around the handle
 
 class Limb {
@@ -59,6 +60,9 @@ export class Person {
   constructor(private readonly floor_z_m: number) {
     const skin = new MeshStandardMaterial({ roughness: 0.8 });
     const shirt = new MeshStandardMaterial({ roughness: 0.9 });
+    for (const material of [skin, shirt]) {
+      Object.assign(material, { transparent: true, opacity: OPACITY });
+    }
     const limb = (radius: number, length: number, material = skin): Limb => {
       const made = new Limb(radius, length, material);
       this.group.add(made.mesh);

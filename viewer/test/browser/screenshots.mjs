@@ -29,7 +29,6 @@ const at = (time) => async (page, take) => {
 
 const PICTURES = [
   { name: "door", args: ["door", "--user", "mouse"], play: open_door },
-  { name: "start", args: ["door", "--user", "mouse"], play: (_, take) => take() },
   { name: "excavator", args: ["excavator"], plots: true, play: at(13) },
   { name: "free_space", args: ["free_space"], plots: true, play: at(21.2) },
   { name: "dark", args: ["door", "--user", "mouse"], dark: true, plots: true, play: open_door },
