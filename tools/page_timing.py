@@ -78,18 +78,24 @@ def main():
         process.communicate()
 
     from mcap_ros2.reader import read_ros2_messages
-    times = {0: [], 4: [], 1: []}
+    phases = [[] for _ in spans]
     for message in read_ros2_messages(folder / "latest.mcap", topics=["/hapticgiant/sample"]):
-        for count, begin, end in spans:
+        for phase, (_, begin, end) in zip(phases, spans):
             if begin <= message.ros_msg.record.time_s < end:
-                times[count].append(message.ros_msg.cycle_time_us)
+                phase.append(message.ros_msg.cycle_time_us)
     shutil.rmtree(folder)
+    times = {0: [], 4: [], 1: []}
+    for phase, (count, _, _) in zip(phases, spans):
+        phase.sort()
+        times[count] += phase
     print("pages  cycles  median us  99 % us  99.9 % us  server thread, % of a core")
     for count, values in times.items():
         values.sort()
         print(f"{count:5}  {len(values):6}  {quantile(values, .5):9.2f}  "
               f"{quantile(values, .99):7.1f}  {quantile(values, .999):9.1f}  "
               f"{100 * sum(cpu[count]) / len(cpu[count]):8.2f}")
+    alone = [quantile(phase, .5) for phase, span in zip(phases, spans) if span[0] == 0]
+    print(f"median of single phases without pages: {min(alone):.2f} .. {max(alone):.2f} us")
     for name, share in (("median", .5), ("99 %", .99), ("99.9 %", .999)):
         ratio = quantile(times[4], share) / quantile(times[0], share)
         print(f"four pages / none, {name}: {ratio:.3f}")
