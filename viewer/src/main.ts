@@ -110,6 +110,7 @@ class Page {
     this.change.furnish(scene);
     this.plots.furnish(scene);
     this.hand_controls.furnish(scene);
+    document.body.dataset.source = scene.source;
     this.stage.furnish(scene.box, scene.floor_z_m);
     if (is_first) this.cameras.frame(scene.box);
     const world = await World.load(scene, this.stage, this.layers).catch((error: unknown) => {

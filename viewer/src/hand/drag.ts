@@ -29,6 +29,7 @@ export class Drag {
   chosen_mode: DragMode = "plane"; // by button
   key_mode: DragMode | null = null; // by a key that is held
   presses_while_dragging = false;
+  can_hold = true; // false: it is a recording
   private pointer: number | null = null; // that holds the handle
   private target: Vec3 | null = null; // null = the hand is off the handle
   private turn: Quaternion | null = null; // wanted attitude, null = as the hand likes
@@ -83,7 +84,7 @@ export class Drag {
 
   // Pressing alone takes hold of the handle where it is.
   set_pressing(is_pressing: boolean): void {
-    if (this.is_pressing === is_pressing) return;
+    if (this.is_pressing === is_pressing || !this.can_hold) return;
     this.is_pressing = is_pressing;
     if (!this.is_dragging) this.target = is_pressing ? this.handle : null;
     this.tell();
@@ -107,7 +108,7 @@ export class Drag {
   private grab(event: PointerEvent): void {
     const handle = this.handle;
     if (this.is_dragging) return event.stopPropagation(); // a second finger
-    if (!handle || event.button !== 0 || !this.is_near(event, handle)) return;
+    if (!handle || !this.can_hold || event.button !== 0 || !this.is_near(event, handle)) return;
     event.stopPropagation();
     this.pointer = event.pointerId;
     this.cameras.controls.enabled = false;
@@ -121,7 +122,7 @@ export class Drag {
   private move(event: PointerEvent): void {
     const handle = this.handle;
     if (event.pointerId !== this.pointer) {
-      const can_grab = !this.is_dragging && handle && this.is_near(event, handle);
+      const can_grab = this.can_hold && !this.is_dragging && handle && this.is_near(event, handle);
       this.stage.canvas.style.cursor = can_grab ? "grab" : "";
       return;
     }

@@ -62,6 +62,7 @@ export class HandControls {
   furnish(scene: Scene): void {
     const lever = has_lever(scene);
     this.press_part.hidden = !lever;
+    this.drag.can_hold = scene.source === "run";
     this.automatic.checked = this.drag.presses_while_dragging = lever;
     write(element("grip-text"), grip_text(scene));
   }

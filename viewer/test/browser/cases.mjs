@@ -1,5 +1,10 @@
 // What the page does, in a browser, with the program. Each case gets {browser, program, command,
 // expect}; none depends on how fast the machine is.
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
 import {
   PATIENCE,
   arc,
@@ -199,6 +204,30 @@ export async function time_is_controlled({ browser, program, expect }) {
   expect(other, "another scenario, same page");
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
   await close();
+}
+
+export async function recording_is_played({ browser, program, command, expect }) {
+  const live = await open_page(browser, program.link);
+  const can_record = await follows(live.page, "restart");
+  await live.close();
+  if (!can_record) return;
+  const folder = mkdtempSync(join(tmpdir(), "hapticgiant-"));
+  const args = ["run", "door", "--fast", "--duration", "4", "--recordings", folder];
+  execFileSync(command[0], args, { stdio: "ignore" });
+  const file = join(folder, "latest.mcap");
+  const replay = await start_program([command[0], "replay", file, "--view", "--compare", file]);
+  const { page, problems, close } = await open_page(browser, replay.link);
+  expect(await comes_true(page, (f) => f.ghost !== null), "a second recording comes along");
+  expect(!(await page.isVisible("#hand")), "nobody can take the handle");
+  await page.locator("#scrub").evaluate((slider) => {
+    slider.value = "1";
+    for (const name of ["input", "change"]) slider.dispatchEvent(new Event(name));
+  });
+  expect(await comes_true(page, (f) => f.run_state.position_s < 3), "scrubbing goes back");
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+  await replay.stop();
+  rmSync(folder, { recursive: true });
 }
 
 export async function program_is_restarted({ browser, program, command, expect }) {
