@@ -5,10 +5,13 @@ Usage: page_test.py PROGRAM
 
 import contextlib
 import json
+import os
+import pty
 import re
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 
 from program import MODELS, PROGRAM, TemporaryFolder, run
@@ -206,6 +209,54 @@ class PageTest(TemporaryFolder):
         code, out, err = run("replay", file, "--view")
         self.assertEqual(code, 2)
         self.assertIn("must be a recording", err)
+
+    def start_at_terminal(self, *options, **environment):
+        """The link that the program prints there, and the one that a browser is asked to open."""
+        opened = self.folder / "opened"
+        browser = self.folder / "bin/xdg-open"
+        browser.parent.mkdir(exist_ok=True)
+        browser.write_text(f'#!/bin/sh\necho "$1" > {opened}.new && mv {opened}.new {opened}\n')
+        browser.chmod(0o755)
+        primary, secondary = pty.openpty()
+        process = subprocess.Popen(
+            [PROGRAM, "run", "door", "--user", "mouse", "--no-recording", *options],
+            stdout=secondary, cwd=self.folder,
+            env={"PATH": f"{browser.parent}:{os.environ['PATH']}", **environment})
+        os.close(secondary)
+        self.addCleanup(os.close, primary)
+        shown = b""
+        while not (link := re.search(rb"(http://\S+)\s", shown)):
+            shown += os.read(primary, 4096)
+        page = Page(link[1].decode())
+        page.next("frame", lambda frame: frame["mode"] == "running")
+        for _ in range(200 if environment and not options else 1):
+            if opened.exists():
+                break
+            time.sleep(0.05)
+        page.command("stop")
+        page.next("frame", lambda frame: frame["run_state"]["is_over"])
+        page.command("restart")
+        page.next("frame", lambda frame: frame["run"] == 2)
+        page.close()
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=30), 0)
+        result = opened.read_text().strip() if opened.exists() else None
+        opened.unlink(missing_ok=True)
+        return link[1].decode(), result
+
+    def test_a_browser_opens_where_there_is_a_display_and_a_terminal(self):
+        link, opened = self.start_at_terminal(DISPLAY=":0")
+        self.assertEqual(opened, link)
+        self.assertIsNone(self.start_at_terminal()[1])
+        self.assertIsNone(self.start_at_terminal("--no-browser", DISPLAY=":0")[1])
+
+    def test_without_the_built_page_it_says_how_to_get_it(self):
+        shutil.rmtree(self.folder / "viewer")
+        done = subprocess.run([PROGRAM, "run", "door", "--user", "none", "--duration", "0.3",
+                               "--no-recording"], cwd=self.folder, capture_output=True, text=True,
+                              timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+        self.assertIn("npm run build", done.stdout)
 
     def test_another_address_is_warned_of(self):
         with self.program("run", "door", "--user", "mouse", "--no-recording", "--bind",
