@@ -16,7 +16,11 @@ export function joint_text(value: number, joint: Pick<SceneJoint, "type">): stri
 }
 
 // Share of the way between two ends, 0..1; null when there are no two ends.
-export function share_between(value: number, min: number | null, max: number | null): number | null {
+export function share_between(
+  value: number,
+  min: number | null,
+  max: number | null,
+): number | null {
   if (min === null || max === null || max <= min || !Number.isFinite(value)) return null;
   return Math.min(1, Math.max(0, (value - min) / (max - min)));
 }

@@ -59,7 +59,11 @@ export class Toolbar {
   furnish(scene: Scene): void {
     document.title = `${scene.title} - HapticGiant`;
     const { scenario, scenarios } = scene.choices;
-    fill_choice(this.scenario, scenarios.length > 0 ? scenarios : [{ name: scenario, title: scene.title }], scenario);
+    fill_choice(
+      this.scenario,
+      scenarios.length > 0 ? scenarios : [{ name: scenario, title: scene.title }],
+      scenario,
+    );
     const speeds = scene.source === "recording" ? RECORDING_SPEEDS : RUN_SPEEDS;
     this.speed.replaceChildren(...speeds.map((s) => new Option(`${s} \u00d7`, String(s))));
     for (const [commands, part] of this.by_command) {

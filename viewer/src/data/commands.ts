@@ -16,7 +16,7 @@ export interface Refusal {
 export class Commands {
   private next_id = 1;
   private readonly open = new Map<number, Command>();
-  private readonly waiting = new Map<string, number | null>(); // by setting, in a gap; null = nothing
+  private readonly waiting = new Map<string, number | null>(); // by setting in its gap; null: none
 
   constructor(
     private readonly send_message: (command: Command) => boolean,

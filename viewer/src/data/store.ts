@@ -122,7 +122,8 @@ export class Store {
 function mismatch(scene: Scene, frame: Frame): string {
   const count = (joints: Scene["twin"]["joints"]): number =>
     joints.reduce((sum, joint) => sum + (joint.type === "floating" ? 7 : 1), 0);
-  if (frame.q_device.length !== count(scene.device.joints)) return "frame: q_device has other joints";
+  if (frame.q_device.length !== count(scene.device.joints))
+    return "frame: q_device has other joints";
   if (frame.q_twin.length !== count(scene.twin.joints)) return "frame: q_twin has other joints";
   if (frame.limit_position.length !== scene.limits.length) return "frame: other limits";
   return "";

@@ -98,7 +98,10 @@ export class HandControls {
 
   private take_key(event: KeyboardEvent, is_down: boolean): void {
     if (is_typing(event)) return;
-    if (event.code === "Space" && !(event.target instanceof HTMLElement && event.target.matches(OWN_SPACE))) {
+    if (
+      event.code === "Space" &&
+      !(event.target instanceof HTMLElement && event.target.matches(OWN_SPACE))
+    ) {
       event.preventDefault();
       this.drag.set_pressing(is_down);
     }

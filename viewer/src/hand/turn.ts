@@ -6,8 +6,8 @@ import type { Quaternion as Turn, Vec3 } from "../messages";
 
 const RADIANS_PER_PIXEL = 0.008;
 
-// `start`, turned by a move of the pointer: right turns about the vertical, down about the axis that
-// points to the right of the view.
+// `start`, turned by a move of the pointer: right turns about the vertical, down about the axis
+// that points to the right of the view.
 export function turned(start: Turn, right_px: number, down_px: number, view: Vec3): Turn {
   const right = new Vector3(view[1], -view[0], 0);
   if (right.length() < 1e-6) right.set(1, 0, 0);
@@ -19,6 +19,9 @@ export function turned(start: Turn, right_px: number, down_px: number, view: Vec
     right.normalize(),
     RADIANS_PER_PIXEL * down_px,
   );
-  const result = about_up.multiply(about_right).multiply(new Quaternion(...start)).normalize();
+  const result = about_up
+    .multiply(about_right)
+    .multiply(new Quaternion(...start))
+    .normalize();
   return [result.x, result.y, result.z, result.w];
 }

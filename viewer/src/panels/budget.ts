@@ -1,5 +1,5 @@
-// Where the user's force goes, part by part, along the direction in which the user pushes. The parts
-// add up to the force. Pure functions.
+// Where the user's force goes, part by part, along the direction in which the user pushes. The
+// parts add up to the force. Pure functions.
 
 import type { Budget, Vec3, Wrench } from "../messages";
 

@@ -1,4 +1,5 @@
-// What of the run can be changed: twin, law, person, and a form field for each Setting of the scene.
+// What of the run can be changed: twin, law, person, and a form field for each Setting of the
+// scene.
 
 import type { Commands, Refusal } from "../data/commands";
 import type { Choice, Scene, Setting, Values } from "../messages";
@@ -120,7 +121,11 @@ class Field {
   private read_box(): void {
     const value = Number(this.box.value.trim().replace(",", "."));
     const { min, max } = this.setting;
-    if (this.box.value.trim() === "" || !Number.isFinite(value) || value !== limited(value, this.setting)) {
+    if (
+      this.box.value.trim() === "" ||
+      !Number.isFinite(value) ||
+      value !== limited(value, this.setting)
+    ) {
       this.refuse(`a number from ${number_text(min)} to ${number_text(max)} is expected`);
     } else {
       this.send(value);

@@ -1,4 +1,5 @@
-// "Why do I feel this?": the force, the limits that act, those that come next, and the closed budget.
+// "Why do I feel this?": the force, the limits that act, those that come next, the closed budget,
+// and the safety state with its cause.
 
 import {
   distance_text,
@@ -37,6 +38,7 @@ export class FeelPanel {
   private readonly singularity_text = make("output");
   private readonly singularity_part: HTMLElement;
   private readonly sum = make("p", "sum");
+  private readonly safety = make("p", "safety");
   private readonly rows = new Map<Part, BudgetRow>();
   private readonly kind_button: HTMLButtonElement;
   private kind: Kind = "force";
@@ -68,6 +70,8 @@ export class FeelPanel {
       make("h2", "", "What comes next"),
       this.near,
       this.singularity_part,
+      make("h2", "", "Safety"),
+      this.safety,
     );
     section.firstElementChild!.append(this.one("torque", this.torque, "Nm", this.torque_bar));
   }
@@ -86,6 +90,8 @@ export class FeelPanel {
     this.show_near(scene, frame);
     this.show_singularity(scene, frame);
     this.show_budget(frame);
+    write(this.safety, frame.fault === "" ? frame.mode_text : `${frame.mode_text}: ${frame.fault}`);
+    this.safety.dataset.mode = frame.mode;
   }
 
   private one(name: string, value: HTMLElement, unit: string, bar: HTMLElement): HTMLElement {
@@ -134,7 +140,10 @@ export class FeelPanel {
       row.dataset.small = String(Math.abs(value) < 0.05);
     }
     const whole = total(frame.budget, kind);
-    write(this.sum, `together ${whole.toFixed(1)} ${unit}, what you ${kind === "force" ? "push" : "turn"} with`);
+    write(
+      this.sum,
+      `together ${whole.toFixed(1)} ${unit}, what you ${kind === "force" ? "push" : "turn"} with`,
+    );
     write(this.kind_button, unit);
   }
 

@@ -65,7 +65,9 @@ function rows_of(scene: Scene, joints: SceneJoint[], kind: "manipulator" | "twin
     const value = make("output");
     const mark = make("i");
     const torque =
-      kind === "manipulator" && joint.tau_max !== null ? make("div", "bar torque", make("i")) : null;
+      kind === "manipulator" && joint.tau_max !== null
+        ? make("div", "bar torque", make("i"))
+        : null;
     const range = make("div", "range", mark);
     range.title = range_text(joint);
     const row = make("div", "joint", make("span", "", joint.name), value, range);

@@ -32,7 +32,8 @@ export function spans_of(times: ArrayLike<number>, states: ArrayLike<number>): S
       continue;
     }
     if (open) open.to = times[i]!;
-    open = state === 0 || !Number.isFinite(state) ? null : { from: times[i]!, to: times[i]!, state };
+    open =
+      state === 0 || !Number.isFinite(state) ? null : { from: times[i]!, to: times[i]!, state };
     if (open) spans.push(open);
   }
   return spans;

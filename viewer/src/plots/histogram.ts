@@ -14,7 +14,11 @@ export class Histogram implements Plot {
   private readonly legend: HTMLElement;
 
   constructor() {
-    const { card, body, legend } = make_card("cycle-time", "Cycle time (\u00b5s)", () => this.surface.canvas);
+    const { card, body, legend } = make_card(
+      "cycle-time",
+      "Cycle time (\u00b5s)",
+      () => this.surface.canvas,
+    );
     this.card = card;
     this.legend = legend;
     this.surface = new Surface(body);

@@ -2,21 +2,17 @@
 
 import { ACTIVE_COLOR, NEAR_COLOR, TARGET_COLOR } from "../theme";
 import { type Span, spans_of } from "./bins";
-import { type Plot, type PlotInput, Surface, css_color, make_card } from "./plot";
+import { type Plot, type PlotInput, Surface, css_color, hex_color, make_card } from "./plot";
 import { index_at } from "./specs";
 
 const ROW = 18; // px
 const NAMES = 84; // px
 const BOTTOM = 22; // px
 
-function css(color: number): string {
-  return `#${color.toString(16).padStart(6, "0")}`;
-}
-
 const COLORS: Record<number, string> = {
-  [-1]: css(TARGET_COLOR),
-  1: css(NEAR_COLOR),
-  2: css(ACTIVE_COLOR),
+  [-1]: hex_color(TARGET_COLOR),
+  1: hex_color(NEAR_COLOR),
+  2: hex_color(ACTIVE_COLOR),
 };
 
 export class LimitLines implements Plot {
@@ -24,10 +20,18 @@ export class LimitLines implements Plot {
   private readonly surface: Surface;
 
   constructor() {
-    const { card, body, legend } = make_card("limits", "Limits that act", () => this.surface.canvas);
+    const { card, body, legend } = make_card(
+      "limits",
+      "Limits that act",
+      () => this.surface.canvas,
+    );
     this.card = card;
     this.surface = new Surface(body);
-    for (const [state, word] of [[-1, "lower"], [1, "upper"], [2, "violated"]] as const) {
+    for (const [state, word] of [
+      [-1, "lower"],
+      [1, "upper"],
+      [2, "violated"],
+    ] as const) {
       const swatch = document.createElement("i");
       swatch.style.background = COLORS[state]!;
       const item = document.createElement("span");

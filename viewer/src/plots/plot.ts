@@ -57,6 +57,10 @@ export function css_color(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
+export function hex_color(color: number): string {
+  return `#${color.toString(16).padStart(6, "0")}`;
+}
+
 const SERIES_COLORS = 8;
 
 export function series_color(index: number): string {
@@ -84,7 +88,8 @@ export class Surface {
 
   // Empty, ready to draw.
   begin(): CanvasRenderingContext2D {
-    if (this.width !== this.body.clientWidth || this.height !== this.body.clientHeight) this.resize();
+    if (this.width !== this.body.clientWidth || this.height !== this.body.clientHeight)
+      this.resize();
     const context = this.canvas.getContext("2d")!;
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, this.width, this.height);

@@ -41,7 +41,11 @@ export function time_specs(scene: Scene): TimeSpec[] {
 }
 
 function wrench(id: string, title: string, unit: string, smallest_span: number): TimeSpec {
-  const part = (axis: string): Series => ({ label: axis, column: `${id}_${axis}_${unit}`, scale: 1 });
+  const part = (axis: string): Series => ({
+    label: axis,
+    column: `${id}_${axis}_${unit}`,
+    scale: 1,
+  });
   const whole = { label: "size", column: `${id}_${unit}`, scale: 1, is_main: true };
   return {
     id,

@@ -31,7 +31,11 @@ export class TimePlot implements Plot {
   ) {
     this.parts = make_card(spec.id, `${spec.title} (${spec.unit})`, () => this.chart.ctx.canvas);
     this.card = this.parts.card;
-    this.chart = new uPlot(this.options(on_zoom), [[], ...spec.series.map(() => [])], this.parts.body);
+    this.chart = new uPlot(
+      this.options(on_zoom),
+      [[], ...spec.series.map(() => [])],
+      this.parts.body,
+    );
     for (const [i, { label }] of spec.series.entries()) this.add_legend(i, label);
   }
 
@@ -74,7 +78,11 @@ export class TimePlot implements Plot {
       height: 160,
       legend: { show: false },
       padding: [6, 16, 0, 0],
-      cursor: { drag: { x: true, y: false, setScale: false }, sync: { key: "time" }, points: { show: false } },
+      cursor: {
+        drag: { x: true, y: false, setScale: false },
+        sync: { key: "time" },
+        points: { show: false },
+      },
       scales: { x: { time: false }, y: { range: (_, low, high) => this.span(low, high) } },
       axes: [
         { ...axis(), size: AXIS_HEIGHT, values: (_, ticks) => ticks.map((t) => `${t} s`) },

@@ -3,15 +3,19 @@
 
 import { make } from "../page";
 import { ELBOW_COLOR, FORCE_COLOR } from "../theme";
-import { type Plot, type PlotInput, Surface, css_color, make_card, series_color } from "./plot";
+import {
+  type Plot,
+  type PlotInput,
+  Surface,
+  css_color,
+  hex_color,
+  make_card,
+  series_color,
+} from "./plot";
 import { index_at } from "./specs";
 
 const AIR = 0.35; // m around the box
 const TICKS = [-2, -1, 0, 1, 2]; // m
-
-function css(color: number): string {
-  return `#${color.toString(16).padStart(6, "0")}`;
-}
 
 interface Track {
   label: string;
@@ -25,12 +29,16 @@ export class TopView implements Plot {
   private readonly tracks: Track[];
 
   constructor(gantry: string[]) {
-    const { card, body, legend } = make_card("top-view", "From above (m)", () => this.surface.canvas);
+    const { card, body, legend } = make_card(
+      "top-view",
+      "From above (m)",
+      () => this.surface.canvas,
+    );
     this.card = card;
     this.surface = new Surface(body);
     this.tracks = [
-      { label: "elbow", color: css(ELBOW_COLOR), columns: ["elbow_x_m", "elbow_y_m"] },
-      { label: "handle", color: css(FORCE_COLOR), columns: ["handle_x_m", "handle_y_m"] },
+      { label: "elbow", color: hex_color(ELBOW_COLOR), columns: ["elbow_x_m", "elbow_y_m"] },
+      { label: "handle", color: hex_color(FORCE_COLOR), columns: ["handle_x_m", "handle_y_m"] },
     ];
     if (gantry.length === 2) {
       const columns: [string, string] = [`device.${gantry[0]}`, `device.${gantry[1]}`];
@@ -65,7 +73,12 @@ export class TopView implements Plot {
     }
     context.strokeStyle = css_color("--quiet");
     context.setLineDash([2, 4]);
-    context.strokeRect(x_at(low[0]), y_at(high[1]), (high[0] - low[0]) * scale, (high[1] - low[1]) * scale);
+    context.strokeRect(
+      x_at(low[0]),
+      y_at(high[1]),
+      (high[0] - low[0]) * scale,
+      (high[1] - low[1]) * scale,
+    );
     context.setLineDash([]);
 
     const times = history.column("time_s");

@@ -49,7 +49,10 @@ export class HandleView {
     this.rail.mesh.visible = axis !== null;
     if (axis === null) return;
     const reach = new Vector3(...axis).multiplyScalar(RAIL_REACH);
-    const [from, to] = [this.target.position.clone().sub(reach), this.target.position.clone().add(reach)];
+    const [from, to] = [
+      this.target.position.clone().sub(reach),
+      this.target.position.clone().add(reach),
+    ];
     this.rail.span(from, to);
   }
 }

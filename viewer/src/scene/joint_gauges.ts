@@ -37,7 +37,11 @@ export class JointGauge {
   private readonly is_limited: boolean;
 
   // `range` = null: turns without end; `torque_max` = null: unknown.
-  constructor(joint: URDFJoint, range: { min: number; max: number } | null, torque_max: number | null) {
+  constructor(
+    joint: URDFJoint,
+    range: { min: number; max: number } | null,
+    torque_max: number | null,
+  ) {
     this.effort = torque_max ?? STRONGEST_JOINT;
     const radius = 0.06 + 0.075 * Math.sqrt(Math.min(1, this.effort / STRONGEST_JOINT));
     this.is_limited = range !== null;
@@ -45,7 +49,14 @@ export class JointGauge {
     const [start, turn] = range ? [range.min, range.max - range.min] : [0, 2 * Math.PI];
     const is_full = turn >= 2 * Math.PI - 1e-3;
     const steps = Math.max(2, Math.round((Math.min(turn, 2 * Math.PI) / (2 * Math.PI)) * STEPS));
-    const arc = new RingGeometry(radius, radius + WIDTH, steps, 1, start, Math.min(turn, 2 * Math.PI));
+    const arc = new RingGeometry(
+      radius,
+      radius + WIDTH,
+      steps,
+      1,
+      start,
+      Math.min(turn, 2 * Math.PI),
+    );
     this.limit_ring.add(new Mesh(arc, this.range_material));
     if (!is_full) this.add_ends(radius, start, start + turn);
     this.add_needle(radius);
@@ -74,11 +85,7 @@ export class JointGauge {
   private place(joint: URDFJoint): void {
     const axis = joint.axis.clone().normalize();
     const towards = child_direction(joint, axis);
-    const basis = new Matrix4().makeBasis(
-      towards,
-      new Vector3().crossVectors(axis, towards),
-      axis,
-    );
+    const basis = new Matrix4().makeBasis(towards, new Vector3().crossVectors(axis, towards), axis);
     for (const ring of [this.limit_ring, this.torque_ring]) {
       const mount = new Group();
       mount.position.copy(joint.position);

@@ -97,12 +97,19 @@ export class Person {
     const heading = this.heading ?? 0;
     const ahead = new Vector3(Math.cos(heading), Math.sin(heading), 0);
     const right = new Vector3(ahead.y, -ahead.x, 0);
-    const feet = p_B.clone().addScaledVector(ahead, -STAND_BACK).addScaledVector(right, -STAND_LEFT);
+    const feet = p_B
+      .clone()
+      .addScaledVector(ahead, -STAND_BACK)
+      .addScaledVector(right, -STAND_LEFT);
     feet.z = this.floor_z_m;
     this.body.position.copy(feet);
     this.body.rotation.z = heading - Math.PI / 2;
     const at = (x: number, y: number, z: number): Vector3 =>
-      feet.clone().addScaledVector(right, x).addScaledVector(ahead, y).setZ(this.floor_z_m + z);
+      feet
+        .clone()
+        .addScaledVector(right, x)
+        .addScaledVector(ahead, y)
+        .setZ(this.floor_z_m + z);
     const wrist = p_B.clone().addScaledVector(to_user, 0.075);
     this.bend(this.right_arm, at(SHOULDER_OUT, 0, SHOULDER), wrist, at(0.9, -0.6, 0.4));
     this.bend(this.left_arm, at(-SHOULDER_OUT, 0, SHOULDER), at(-0.3, 0.07, 0.86), at(-1, -1, 1));

@@ -37,7 +37,10 @@ function field(from: Vector2, low: Vector2, high: Vector2): Vector2[] {
   for (let i = 0; i <= STEPS; i++) {
     const angle = towards + OPENING * (i / STEPS - 0.5);
     const ray = new Vector2(Math.cos(angle), Math.sin(angle));
-    const inside = Math.min(to_edge(from.x, ray.x, low.x, high.x), to_edge(from.y, ray.y, low.y, high.y));
+    const inside = Math.min(
+      to_edge(from.x, ray.x, low.x, high.x),
+      to_edge(from.y, ray.y, low.y, high.y),
+    );
     points.push(from.clone().addScaledVector(ray, Math.min(REACH, inside)));
   }
   return points;

@@ -1,5 +1,5 @@
-// What stands around the twin: a wall for the door, a site for the excavator, a room for a body that
-// moves freely. None of it can be felt; it says where one is.
+// What stands around the twin: a wall for the door, a site for the excavator, a room for a body
+// that moves freely. None of it can be felt; it says where one is.
 
 import {
   BufferAttribute,
@@ -108,7 +108,12 @@ function site(twin: SceneChain, floor_z: number): Group {
   add(group, lit(new Mesh(heap(0.95, 0.5), earth)), 1.75, 0, foot);
   add(group, lit(new Mesh(heap(0.5, 0.28), earth)), 1.3, 0.95, foot);
   add(group, lit(new Mesh(heap(0.36, 0.2), earth)), 1.25, -0.9, foot);
-  for (const [x, y] of [[-0.9, 1.35], [0.35, 1.95], [-0.9, -1.35], [0.35, -1.95]] as const) {
+  for (const [x, y] of [
+    [-0.9, 1.35],
+    [0.35, 1.95],
+    [-0.9, -1.35],
+    [0.35, -1.95],
+  ] as const) {
     add(group, cone(), x, y, foot);
   }
   return group;
@@ -136,7 +141,12 @@ function heap(radius: number, height: number): ConeGeometry {
     const angle = Math.atan2(z, x);
     const share = 1 + 0.1 * out * ripple(angle, 4);
     const round = height * Math.max(0, Math.cos(0.5 * Math.PI * out)) ** 1.3;
-    places.setXYZ(i, x * share, round * (1 + 0.06 * ripple(angle + 3 * y, 6)) - 0.01 * out, z * share);
+    places.setXYZ(
+      i,
+      x * share,
+      round * (1 + 0.06 * ripple(angle + 3 * y, 6)) - 0.01 * out,
+      z * share,
+    );
   }
   shape.rotateX(Math.PI / 2);
   shape.computeVertexNormals();

@@ -1,5 +1,5 @@
-// Headsets by WebXR: room and twin at true scale, a controller is the hand target. The trigger takes
-// hold of the handle from wherever the controller is and moves it alike.
+// Headsets by WebXR: room and twin at true scale, a controller is the hand target. The trigger
+// takes hold of the handle from wherever the controller is and moves it alike.
 
 import {
   CapsuleGeometry,
@@ -99,7 +99,10 @@ export class Headset {
     controller.visible = false; // until three finds it
     this.stage.rig.add(controller);
     controller.addEventListener("selectstart", () => this.take_hold(controller));
-    controller.addEventListener("selectend", () => this.grip?.controller === controller && this.let_go());
+    controller.addEventListener(
+      "selectend",
+      () => this.grip?.controller === controller && this.let_go(),
+    );
     controller.addEventListener("disconnected", () => this.let_go());
   }
 

@@ -55,7 +55,8 @@ export async function open_page(browser, link, options = {}, prepare = async () 
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("console", (line) => line.type() === "error" && problems.push(line.text()));
   page.on("request", (request) => {
-    const is_own = request.url().startsWith(new URL(link).origin) || /^(blob|data):/.test(request.url());
+    const is_own =
+      request.url().startsWith(new URL(link).origin) || /^(blob|data):/.test(request.url());
     if (!is_own) problems.push(request.url());
   });
   await prepare(page);
@@ -67,13 +68,16 @@ export async function open_page(browser, link, options = {}, prepare = async () 
 // Waits until the scene is drawn and the camera rests.
 export async function drawn(page) {
   await page.waitForFunction(
-    () => window.hapticgiant?.is_connected && window.hapticgiant.is_drawn && window.hapticgiant.frame,
+    () =>
+      window.hapticgiant?.is_connected && window.hapticgiant.is_drawn && window.hapticgiant.frame,
     null,
     PATIENCE,
   );
   const corner = () => page.evaluate(() => window.hapticgiant.on_screen([0, 0, 0]));
-  for (let last = null; ; ) {
-    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  for (let last = null; ;) {
+    await page.evaluate(
+      () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+    );
     const now = await corner();
     if (last && Math.hypot(now.x - last.x, now.y - last.y) < 0.5) return;
     last = now;
@@ -90,7 +94,7 @@ export function scene_of(page) {
 
 // Waits until `test(frame)` holds; false when it does not come.
 export async function comes_true(page, test, patience_ms = PATIENCE.timeout) {
-  for (const end = Date.now() + patience_ms; Date.now() < end; ) {
+  for (const end = Date.now() + patience_ms; Date.now() < end;) {
     const frame = await frame_of(page);
     if (frame && test(frame)) return true;
     await page.waitForTimeout(50);

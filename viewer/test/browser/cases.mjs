@@ -30,7 +30,8 @@ export async function page_is_live({ browser, program, expect }) {
   const hint = await page.isVisible("#grip-text");
   expect(hint, "a hint at the handle says what to do");
 
-  const count = () => page.evaluate(() => [window.hapticgiant.frames, window.hapticgiant.frame.time_s]);
+  const count = () =>
+    page.evaluate(() => [window.hapticgiant.frames, window.hapticgiant.frame.time_s]);
   const [frames, time] = await count();
   const lived = await comes_true(page, (f) => f.time_s > time + 2);
   const [later_frames, later_time] = await count();
@@ -66,7 +67,10 @@ export async function two_pages_share_a_run({ browser, program, expect }) {
   await first.page.mouse.move(start.x, start.y);
   await first.page.mouse.down();
   await first.page.mouse.move(start.x + 30, start.y - 10);
-  expect(await comes_true(second.page, (f) => f.hand.active), "the second sees the first one's hand");
+  expect(
+    await comes_true(second.page, (f) => f.hand.active),
+    "the second sees the first one's hand",
+  );
   await first.page.mouse.up();
   expect(await comes_true(second.page, (f) => !f.hand.active), "and that it lets go");
   await first.close();
@@ -83,10 +87,14 @@ export async function unreadable_messages_are_noted({ browser, program, expect }
       server.onMessage((text) => socket.send(text));
     });
   });
-  for (const text of ["{", '{"type":"frame"}', '{"type":"toString"}', "[]", "null"]) to_page.send(text);
+  for (const text of ["{", '{"type":"frame"}', '{"type":"toString"}', "[]", "null"])
+    to_page.send(text);
   const noted = await page
     .waitForFunction(() => window.hapticgiant.unreadable === 5, null, PATIENCE)
-    .then(() => true, () => false);
+    .then(
+      () => true,
+      () => false,
+    );
   expect(noted, "messages that cannot be read are counted");
   const note = await page.textContent("#notices");
   expect(/could not be read/.test(note), `and noted: ${note}`);
@@ -108,7 +116,10 @@ export async function connection_comes_back({ browser, program, expect }) {
   await cut();
   const lost = await page
     .waitForFunction(() => document.body.dataset.connected === "false", null, PATIENCE)
-    .then(() => true, () => false);
+    .then(
+      () => true,
+      () => false,
+    );
   expect(lost, "the page says that the connection is lost");
   await drawn(page);
   expect(connections === 2, `it comes back by itself (${connections} connections)`);
@@ -123,7 +134,10 @@ export async function headset_holds_the_handle({ browser, program, expect }) {
     await page.click(`#enter-${kind}`);
     const worn = await page
       .waitForFunction(() => window.xr_device.activeSession, null, PATIENCE)
-      .then(() => true, () => false);
+      .then(
+        () => true,
+        () => false,
+      );
     expect(worn, `${kind.toUpperCase()} begins`);
     await page.evaluate(() => {
       const { right } = window.xr_device.controllers;
@@ -165,7 +179,10 @@ export async function changes_reach_the_program({ browser, program, expect }) {
   await first.page.press(box, "Enter");
   const arrives = await second.page
     .waitForFunction(([b, w]) => document.querySelector(b).value === w, [box, wanted], PATIENCE)
-    .then(() => true, () => false);
+    .then(
+      () => true,
+      () => false,
+    );
   expect(arrives, `${name} = ${wanted} reaches the program and comes back to another page`);
 
   await first.page.fill(box, String(10 * max + 1));
@@ -188,7 +205,10 @@ export async function time_is_controlled({ browser, program, expect }) {
   const stepped = (await frame_of(page)).time_s - time_s;
   expect(steps && stepped < 0.1, `one step is ${stepped.toFixed(3)} s`);
   await page.click("#pause");
-  expect(await comes_true(page, (f) => !f.run_state.is_paused && f.time_s > time_s + 0.3), "goes on");
+  expect(
+    await comes_true(page, (f) => !f.run_state.is_paused && f.time_s > time_s + 0.3),
+    "goes on",
+  );
   await page.selectOption("#speed", "0.25");
   expect(await comes_true(page, (f) => f.run_state.speed === 0.25), "slow motion");
   const before = await frame_of(page);
@@ -199,7 +219,10 @@ export async function time_is_controlled({ browser, program, expect }) {
   await page.selectOption("#scenario", "excavator");
   const other = await page
     .waitForFunction(() => window.hapticgiant.scene.environment === "excavator", null, PATIENCE)
-    .then(() => true, () => false);
+    .then(
+      () => true,
+      () => false,
+    );
   await drawn(page);
   expect(other, "another scenario, same page");
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);

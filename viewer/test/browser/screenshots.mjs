@@ -40,7 +40,13 @@ const PICTURES = [
   { name: "door", args: ["door", "--user", "mouse"], play: open_door },
   { name: "viewer_excavator", args: ["excavator"], plots: true, play: at(13) },
   { name: "viewer_free_space", args: ["free_space"], plots: true, play: at(21.2) },
-  { name: "viewer_dark", args: ["door", "--user", "mouse"], dark: true, plots: true, play: open_door },
+  {
+    name: "viewer_dark",
+    args: ["door", "--user", "mouse"],
+    dark: true,
+    plots: true,
+    play: open_door,
+  },
   { name: "viewer_tablet", args: ["excavator"], viewport: tablet, play: at(13) },
 ];
 

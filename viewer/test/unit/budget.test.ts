@@ -13,7 +13,10 @@ const pushed = budget({
 describe("shares", () => {
   it("add up to the user's force", () => {
     const parts = shares(pushed, "force");
-    expect(parts.reduce((sum, { value }) => sum + value, 0)).toBeCloseTo(total(pushed, "force"), 12);
+    expect(parts.reduce((sum, { value }) => sum + value, 0)).toBeCloseTo(
+      total(pushed, "force"),
+      12,
+    );
     expect(parts.find(({ part }) => part === "inertia")!.value).toBe(6);
     expect(parts.find(({ part }) => part === "spring")!.value).toBe(-1);
   });
@@ -27,7 +30,9 @@ describe("shares", () => {
 
 describe("summary", () => {
   it("names the largest parts that resist", () => {
-    expect(summary(shares(pushed, "force"))).toBe("mostly mass of the twin (55 %) and damping (45 %)");
+    expect(summary(shares(pushed, "force"))).toBe(
+      "mostly mass of the twin (55 %) and damping (45 %)",
+    );
     expect(summary(shares(budget(), "force"))).toBe("");
   });
 });

@@ -39,7 +39,9 @@ describe("nearest_limits", () => {
 
 describe("words", () => {
   it("have units", () => {
-    expect(reason_text(scene.limits[1]!, acting)).toBe("cannot move faster \u00b7 wall of the workspace");
+    expect(reason_text(scene.limits[1]!, acting)).toBe(
+      "cannot move faster \u00b7 wall of the workspace",
+    );
     expect(reaction_text(-12.34, "m")).toBe("12 N");
     expect(reaction_text(1.25, "rad")).toBe("1.3 Nm");
     expect(distance_text(0.05, "m")).toBe("5.0 cm");

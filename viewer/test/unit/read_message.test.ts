@@ -10,7 +10,10 @@ describe("read_message", () => {
     expect(read(frame)).toEqual(frame);
     const answer = { type: "answer", id: 4, is_accepted: false, reason: "too large" };
     expect(read(answer)).toEqual(answer);
-    expect(read({ type: "values", values: [1, null] })).toEqual({ type: "values", values: [1, null] });
+    expect(read({ type: "values", values: [1, null] })).toEqual({
+      type: "values",
+      values: [1, null],
+    });
   });
 
   it("says what is wrong with anything else", () => {

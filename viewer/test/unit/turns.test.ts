@@ -33,7 +33,11 @@ describe("grip_target", () => {
 
 describe("placed_rig", () => {
   it("puts the wearer on the floor before the handle, looking at it", () => {
-    const { position, quaternion } = placed_rig(new Vector3(1, 2, -0.8), new Vector3(0, -1, 0.2), -2);
+    const { position, quaternion } = placed_rig(
+      new Vector3(1, 2, -0.8),
+      new Vector3(0, -1, 0.2),
+      -2,
+    );
     expect(position.toArray()).toEqual([1, expect.closeTo(1.45, 12), -2]);
     const ahead = new Vector3(0, 0, -1).applyQuaternion(quaternion);
     expect(ahead.y).toBeCloseTo(1, 12);
@@ -52,7 +56,13 @@ describe("elbow_between", () => {
   });
 
   it("stretches when the wrist is too far away", () => {
-    const elbow = elbow_between(new Vector3(), new Vector3(2, 0, 0), 0.3, 0.3, new Vector3(0, 0, 1));
+    const elbow = elbow_between(
+      new Vector3(),
+      new Vector3(2, 0, 0),
+      0.3,
+      0.3,
+      new Vector3(0, 0, 1),
+    );
     expect(elbow.toArray()).toEqual([1, 0, 0]);
   });
 });
