@@ -142,7 +142,7 @@ void fields(Archive& a, T& budget) {
   a("limits", budget.limits, "all limits that act");
   a("conflict", budget.conflict, "limits that could not be met");
   a("structure", budget.structure, "carried by the bearings of the twin");
-  a("rest", budget.rest, "what is left of the sum: rounding and one period of motion");
+  a("rest", budget.rest, "what is left of the sum: 0 while running, else what nothing explains");
 }
 
 template <typename Archive, Is<SingularityMessage> T>

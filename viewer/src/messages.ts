@@ -166,7 +166,7 @@ export interface Budget {
   limits: Wrench; // all limits that act
   conflict: Wrench; // limits that could not be met
   structure: Wrench; // carried by the bearings of the twin
-  rest: Wrench; // what is left of the sum: rounding and one period of motion
+  rest: Wrench; // what is left of the sum: 0 while running, else what nothing explains
 }
 
 // on the hand, at H, in B
