@@ -11,11 +11,18 @@ import re
 import shutil
 import signal
 import subprocess
+import threading
 import time
 import unittest
 
 from program import MODELS, PROGRAM, TemporaryFolder, run
 from web_socket import Page
+
+
+def drain(terminal):
+    with contextlib.suppress(OSError):  # at its end
+        while os.read(terminal, 4096):
+            pass
 
 
 class PageTest(TemporaryFolder):
@@ -165,13 +172,15 @@ class PageTest(TemporaryFolder):
         self.addCleanup(server.kill)
         while not (address := re.search(r"127\.0\.0\.1:\d+", server.stdout.readline())):
             self.assertIsNone(server.poll())
-        with self.run_of("door", "--device-address", address[0], "--user", "mouse",
-                         "--no-recording") as (process, page):
-            for command in ("pause", "restart"):
-                self.assertIn("keeps its own time", self.refuse(page, command))
-            self.assertEqual(set(page.scene()["commands"]), {"stop", "set"})
-            self.accept(page, "set", "mass_scale", 1.5)
-            self.end(process)
+        # at a terminal the page stays also when a busy machine loses the session
+        process, link = self.at_terminal("--device-address", address[0])
+        page = Page(link)
+        self.addCleanup(page.close)
+        for command in ("pause", "restart"):
+            self.assertIn("keeps its own time", self.refuse(page, command))
+        self.assertEqual(set(page.scene()["commands"]), {"stop", "set"})
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=30)
 
     def record(self, *arguments):
         code, out, err = run("run", "door", "--fast", "--duration", "4", "--recordings",
@@ -210,24 +219,31 @@ class PageTest(TemporaryFolder):
         self.assertEqual(code, 2)
         self.assertIn("must be a recording", err)
 
-    def start_at_terminal(self, *options, **environment):
+    def at_terminal(self, *options, **environment):
+        """A run of the door there, and the link that it prints."""
+        primary, secondary = pty.openpty()
+        process = subprocess.Popen(
+            [PROGRAM, "run", "door", "--user", "mouse", "--no-recording", *options],
+            stdout=secondary, cwd=self.folder, env={"PATH": os.environ["PATH"], **environment})
+        os.close(secondary)
+        self.addCleanup(os.close, primary)
+        self.addCleanup(process.kill)
+        shown = b""
+        while not (link := re.search(rb"(http://\S+)\s", shown)):
+            shown += os.read(primary, 4096)
+        threading.Thread(target=drain, args=[os.dup(primary)], daemon=True).start()
+        return process, link[1].decode()
+
+    def open_at_terminal(self, *options, **environment):
         """The link that the program prints there, and the one that a browser is asked to open."""
         opened = self.folder / "opened"
         browser = self.folder / "bin/xdg-open"
         browser.parent.mkdir(exist_ok=True)
         browser.write_text(f'#!/bin/sh\necho "$1" > {opened}.new && mv {opened}.new {opened}\n')
         browser.chmod(0o755)
-        primary, secondary = pty.openpty()
-        process = subprocess.Popen(
-            [PROGRAM, "run", "door", "--user", "mouse", "--no-recording", *options],
-            stdout=secondary, cwd=self.folder,
-            env={"PATH": f"{browser.parent}:{os.environ['PATH']}", **environment})
-        os.close(secondary)
-        self.addCleanup(os.close, primary)
-        shown = b""
-        while not (link := re.search(rb"(http://\S+)\s", shown)):
-            shown += os.read(primary, 4096)
-        page = Page(link[1].decode())
+        process, link = self.at_terminal(
+            *options, **environment, PATH=f"{browser.parent}:{os.environ['PATH']}")
+        page = Page(link)
         page.next("frame", lambda frame: frame["mode"] == "running")
         for _ in range(200 if environment and not options else 1):
             if opened.exists():
@@ -242,13 +258,13 @@ class PageTest(TemporaryFolder):
         self.assertEqual(process.wait(timeout=30), 0)
         result = opened.read_text().strip() if opened.exists() else None
         opened.unlink(missing_ok=True)
-        return link[1].decode(), result
+        return link, result
 
     def test_a_browser_opens_where_there_is_a_display_and_a_terminal(self):
-        link, opened = self.start_at_terminal(DISPLAY=":0")
+        link, opened = self.open_at_terminal(DISPLAY=":0")
         self.assertEqual(opened, link)
-        self.assertIsNone(self.start_at_terminal()[1])
-        self.assertIsNone(self.start_at_terminal("--no-browser", DISPLAY=":0")[1])
+        self.assertIsNone(self.open_at_terminal()[1])
+        self.assertIsNone(self.open_at_terminal("--no-browser", DISPLAY=":0")[1])
 
     def test_without_the_built_page_it_says_how_to_get_it(self):
         shutil.rmtree(self.folder / "viewer")
