@@ -53,7 +53,7 @@ export class FeelPanel {
     this.singularity_part = make(
       "div",
       "joint",
-      make("span", "", "away from the singularity"),
+      make("span", "", "the singularity"),
       this.singularity_text,
       this.singularity,
     );
@@ -122,8 +122,9 @@ export class FeelPanel {
     const { measure, limit } = frame.singularity;
     fill(this.singularity, measure);
     this.singularity.dataset.state = measure < WORST_MEASURE ? "active" : "far";
-    const guard = limit >= 0 ? `, kept by ${scene.limits[limit]!.name}` : "";
-    write(this.singularity_text, `${Math.round(100 * measure)} %${guard}`);
+    write(this.singularity_text, `${Math.round(100 * measure)} % away`);
+    const guard = limit >= 0 ? `${scene.limits[limit]!.name} keeps away from it` : "";
+    if (this.singularity_part.title !== guard) this.singularity_part.title = guard;
   }
 
   private show_budget(frame: Frame): void {
@@ -131,7 +132,7 @@ export class FeelPanel {
     const unit = kind === "force" ? "N" : "Nm";
     const parts = shares(frame.budget, kind);
     const largest = Math.max(...parts.map(({ value }) => Math.abs(value)), SMALLEST_SCALE[kind]);
-    this.scale = largest > this.scale ? largest : 0.98 * this.scale + 0.02 * largest;
+    this.scale = largest > this.scale ? largest : 0.94 * this.scale + 0.06 * largest;
     for (const { part, value } of parts) {
       const { row, bar, value: text } = this.rows.get(part)!;
       const share = Math.min(1, Math.abs(value) / this.scale);
