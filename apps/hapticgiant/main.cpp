@@ -15,6 +15,7 @@
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/new_command.h"
+#include "apps/hapticgiant/replay_command.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/simulate_command.h"
 #include "apps/hapticgiant/version.h"
@@ -109,7 +110,12 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       ->check(CLI::IsMember({"recoverable", "paper"}));
   command->add_option("--summary", run.summary, "write the closing summary as JSON to this file");
   command->add_flag("!--no-viewer", run.has_viewer, "without the page");
+  command
+      ->add_option("--bind", run.address,
+                   "IP address that the page is served at; 0.0.0.0: all of this machine")
+      ->capture_default_str();
   command->add_option("--port", run.port, "port of the page; default: any free one");
+  command->add_flag("!--no-browser", run.opens_browser, "print the link only");
   command->add_option("--recordings", run.recordings, "folder of the recordings")
       ->capture_default_str();
   command->add_flag("!--no-recording", run.has_recording, "without a recording");
@@ -120,6 +126,27 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       ->check(at_least(1))
       ->capture_default_str();
   command->callback([&run, &exit_code] { exit_code = hg::apps::run(run); });
+}
+
+void add_replay(CLI::App& app, hg::apps::ReplayArguments& replay, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("replay", "What happened in a recording; look at it again.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant replay recordings/latest.mcap --view\n"
+      "  hapticgiant replay one.mcap --compare two.mcap --view --speed 0.5");
+  command->add_option("file", replay.file, "recording of hapticgiant run")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_flag("--view", replay.has_view, "in the page, with play, pause and scrubbing");
+  command->add_option("--compare", replay.compare, "a second recording, shown through the first")
+      ->check(CLI::ExistingFile);
+  command->add_option("--speed", replay.speed, "recorded seconds per second, 0.1..8")
+      ->check(number_that("from 0.1 to 8", [](double v) { return v >= 0.1 && v <= 8.0; }));
+  command->add_option("--bind", replay.address, "as in run")->capture_default_str();
+  command->add_option("--port", replay.port, "as in run");
+  command->add_flag("!--no-browser", replay.opens_browser, "as in run");
+  command->callback([&replay, &exit_code] { exit_code = hg::apps::replay(replay); });
 }
 
 void add_simulate(CLI::App& app, hg::apps::SimulateArguments& simulate, int& exit_code) {
@@ -279,6 +306,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   hg::apps::RunArguments run;
   run.program = argv[0];
+  hg::apps::ReplayArguments replayed;
   hg::apps::SimulateArguments simulate;
   hg::apps::CheckArguments check;
   hg::apps::NewArguments created;
@@ -287,6 +315,7 @@ int main(int argc, char** argv) {
   hg::apps::ExperimentArguments measured;
   hg::apps::BenchArguments compared;
   add_run(app, run, exit_code);
+  add_replay(app, replayed, exit_code);
   add_simulate(app, simulate, exit_code);
   add_check(app, check, exit_code);
   add_new(app, created, exit_code);

@@ -5,18 +5,16 @@
 
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/prepared_run.h"
 #include "apps/hapticgiant/problem_dumps.h"
-#include "apps/hapticgiant/remote_setup.h"
+#include "apps/hapticgiant/run_page.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
@@ -28,7 +26,6 @@
 namespace hg::apps {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kIdle(2);
@@ -42,7 +39,7 @@ struct Observers {
   evaluation::EventDetector detector;
   evaluation::Summary summary;
   StatusLine status_line;
-  std::unique_ptr<viewer_server::ViewerServer> viewer;
+  RunPage* page;  ///< nullptr: there is none
   std::unique_ptr<recording::Recorder> recorder;
   ProblemDumps dumps;
   bool is_fast = false;
@@ -51,26 +48,30 @@ struct Observers {
   TareStatus told_tare = TareStatus::kNone;
 };
 
+// what somebody did to the run
+void tell(Observers& observers, double time_s, std::string_view name, std::string_view what) {
+  observers.status_line.print(fmt::format("{:8.3f} s  {:<18} {}", time_s, name, what));
+  if (observers.recorder) observers.recorder->event(time_s, name, what);
+  if (observers.page != nullptr) observers.page->announce(time_s, name, what);
+}
+
 // how a tare went, once per answer however often it is tried, and what was refused
 void tell_requests(Observers& observers, const CycleRecord& record) {
-  const auto tell = [&](const char* name, std::string_view what) {
-    observers.status_line.print(fmt::format("{:8.3f} s  {:<18} {}", record.time_s, name, what));
-    if (observers.recorder) observers.recorder->event(record.time_s, name, what);
-  };
   const bool has_ended = record.tare != TareStatus::kNone && record.tare != TareStatus::kUnderWay;
   if (has_ended && record.tare != observers.told_tare) {
     observers.told_tare = record.tare;
-    tell("tare", to_string(record.tare));
+    tell(observers, record.time_s, "tare", to_string(record.tare));
   }
-  if (record.refusal != Refusal::kNone) tell("arm", to_string(record.refusal));
+  if (record.refusal != Refusal::kNone) {
+    tell(observers, record.time_s, "arm", to_string(record.refusal));
+  }
 }
 
-void announce(Observers& observers, const evaluation::Event& event) {
-  observers.summary.add(event);
-  observers.status_line.print(
-      fmt::format("{:8.3f} s  {:<18} {}", event.time_s, event.name, event.what));
-  if (observers.recorder) observers.recorder->event(event.time_s, event.name, event.what);
-  if (observers.viewer) observers.viewer->announce_event(event.time_s, event.name, event.what);
+// for what pages change, at the time of `sample`
+RunPage::Note note(Observers& observers, const Sample& sample) {
+  return [&observers, &sample](std::string_view name, const std::string& text) {
+    tell(observers, sample.record.time_s, name, text);
+  };
 }
 
 void observe(Observers& observers, const Sample& sample) {
@@ -82,12 +83,16 @@ void observe(Observers& observers, const Sample& sample) {
   tell_requests(observers, sample.record);
   if (observers.recorder && observers.is_fast) observers.recorder->push_waiting(sample);
   if (observers.recorder && !observers.is_fast) observers.recorder->push(sample);
-  if (const auto event = observers.detector.observe(sample.record)) announce(observers, *event);
+  if (const auto event = observers.detector.observe(sample.record)) {
+    observers.summary.add(*event);
+    tell(observers, event->time_s, event->name, event->what);
+  }
+  if (observers.page != nullptr) observers.page->observe(sample, note(observers, sample));
 }
 
 // as often as people look
 void show(Observers& observers, const Sample& sample) {
-  if (observers.viewer) observers.viewer->publish(sample, observers.scenario.description);
+  if (observers.page != nullptr) observers.page->show(sample);
   const auto now = Clock::now();
   if (now - observers.last_status < kStatusPeriod) return;
   observers.last_status = now;
@@ -116,28 +121,13 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
     look_at_problems(observers, runtime.kept_problems());
     if (is_finished) break;
     if (observers.interrupted.load()) runtime.request_stop();
-    HandTarget target;
-    if (observers.viewer && observers.viewer->take_hand_target(target)) {
-      runtime.set_hand_target(target);
+    if (observers.page != nullptr) {
+      observers.page->follow(&runtime, note(observers, *sample));
+      if (observers.page->has_next()) runtime.request_stop();
     }
     if (!any) std::this_thread::sleep_for(kIdle);
   }
   observers.status_line.clear();
-}
-
-std::unique_ptr<viewer_server::ViewerServer> make_viewer(const config::Scenario& scenario,
-                                                         const RunArguments& arguments) {
-  if (!arguments.has_viewer || arguments.is_fast) return nullptr;
-  const auto page = data_root() / "viewer" / "dist";
-  std::error_code error;
-  if (!fs::is_regular_file(page / "index.html", error)) {
-    print_out("page        not built (it needs node 18 or newer), running without it\n");
-    return nullptr;
-  }
-  viewer_server::Options options;
-  options.port = arguments.port;
-  options.page = page;
-  return std::make_unique<viewer_server::ViewerServer>(options, viewer_scene(scenario));
 }
 
 std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scenario,
@@ -148,20 +138,6 @@ std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scena
     return nullptr;
   }
   return std::make_unique<recording::Recorder>(recording_info(scenario, arguments));
-}
-
-struct AnyDevice {
-  std::unique_ptr<device::Device> device;
-  remote::RemoteDevice* remote = nullptr;  ///< the same; nullptr: it is simulated here
-};
-
-AnyDevice make_device(const config::Scenario& scenario, const RunArguments& arguments) {
-  if (arguments.device_address.empty()) {
-    return {std::make_unique<device::SimulatedDevice>(assembly::make_simulated_device(scenario))};
-  }
-  auto device = connect_device(arguments.device_address, scenario, arguments.is_fast);
-  remote::RemoteDevice* remote = device.get();
-  return {std::move(device), remote};
 }
 
 void close_device(remote::RemoteDevice& device, const Fault& fault) {
@@ -207,67 +183,103 @@ int exit_code(const evaluation::Summary& summary, const std::vector<std::string>
   return missing.empty() && summary.limits_held() ? 0 : 1;
 }
 
-}  // namespace
+// what the summary says besides what was observed
+evaluation::RunFacts facts_of(const PreparedRun& run, const runtime::Options& options,
+                              const runtime::Report& report) {
+  const rendering::Options& law = run.scenario.device.rendering;
+  return {.scenario = run.scenario.title,
+          .version = kVersion,
+          .law = std::string(rendering::to_string(law.law)),
+          .bounds = std::string(rendering::to_string(law.bounds)),
+          .rate_Hz = options.rate_Hz,
+          .is_fast = options.is_fast,
+          .overruns = report.overruns,
+          .dropped = report.dropped,
+          .allocations_in_loop = report.allocations,
+          .is_real_time = report.is_real_time,
+          .is_memory_locked = report.is_memory_locked,
+          .stop_timed_out = report.stop_timed_out,
+          .link = run.remote != nullptr ? run.remote->counts() : LinkCounts{}};
+}
 
-int run(const RunArguments& arguments) {
-  check_writable(arguments.summary);
-  const config::Scenario scenario = make_scenario(arguments);
-  cycle::Cycle cycle = assembly::make_cycle(scenario);
-  auto [device, remote] = make_device(scenario, arguments);
-  const std::atomic<bool>& interrupted = watch_interruption();
-  auto viewer = make_viewer(scenario, arguments);
+// the page of a run that a fault or the page itself has ended offers to start again
+void wait_for_next(Observers& observers, bool goes_on) {
+  RunPage* page = observers.page;
+  if (page == nullptr || page->has_next()) return;
+  const bool has_fault = observers.summary.fault().code != FaultCode::kNone;
+  if (!page->stop_was_asked() && !(goes_on && has_fault)) return;
+  print_out("the run is over; start it again in the page, or end with Ctrl-C\n");
+  const Sample none;
+  while (!observers.interrupted.load() && !page->has_next() && (goes_on || page->clients() > 0)) {
+    page->follow(nullptr, note(observers, none));
+    std::this_thread::sleep_for(10 * kIdle);
+  }
+}
+
+// to its end and its summary; the exit code
+int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) {
+  const RunArguments& arguments = run.arguments;
+  const config::Scenario& scenario = run.scenario;
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
-  const bool goes_on = is_terminal && viewer != nullptr;
+  const bool goes_on = is_terminal && page != nullptr;
   const runtime::Options options = runtime_options(scenario, arguments, goes_on);
   auto recorder = make_recorder(scenario, arguments);  // last: a refused run leaves no file
   auto dumps = problem_dumps(scenario, arguments, recorder.get());
+  if (page != nullptr) page->begin(run, recorder ? recorder->stem() + ".mcap" : "");
   Observers observers{
       .interrupted = interrupted,
       .scenario = scenario,
       .detector = {scenario.events, scenario.limits},
       .summary = assembly::make_summary(scenario),
       .status_line = StatusLine(is_terminal),
-      .viewer = std::move(viewer),
+      .page = page,
       .recorder = std::move(recorder),
       .dumps = std::move(dumps),
       .is_fast = arguments.is_fast,
       .script_end_s = options.duration_s == 0.0 ? assembly::planned_duration_s(scenario) : 0.0};
-
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, scenario.title));
-  if (observers.viewer) print_out(fmt::format("page        {}\n", observers.viewer->url()));
   if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
 
-  runtime::Runtime runtime(options, cycle, *device);
+  runtime::Runtime runtime(options, run.cycle, *run.device);
   const auto begin = Clock::now();
   runtime.start();
   watch(runtime, observers);
   const runtime::Report report = runtime.join();
-  if (remote != nullptr) close_device(*remote, observers.summary.fault());
+  if (run.remote != nullptr) close_device(*run.remote, observers.summary.fault());
 
-  const std::chrono::duration<double> wall_time = Clock::now() - begin;
-  const rendering::Options& law = scenario.device.rendering;
-  const evaluation::RunFacts facts{.scenario = scenario.title,
-                                   .version = kVersion,
-                                   .law = std::string(rendering::to_string(law.law)),
-                                   .bounds = std::string(rendering::to_string(law.bounds)),
-                                   .rate_Hz = options.rate_Hz,
-                                   .is_fast = options.is_fast,
-                                   .overruns = report.overruns,
-                                   .dropped = report.dropped,
-                                   .allocations_in_loop = report.allocations,
-                                   .is_real_time = report.is_real_time,
-                                   .is_memory_locked = report.is_memory_locked,
-                                   .stop_timed_out = report.stop_timed_out,
-                                   .link = remote != nullptr ? remote->counts() : LinkCounts{},
-                                   .recording = close_recording(observers.recorder.get()),
-                                   .wall_time_s = wall_time.count()};
+  evaluation::RunFacts facts = facts_of(run, options, report);
+  facts.recording = close_recording(observers.recorder.get());
+  facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  observers.recorder.reset();
   const std::vector<std::string> missing = observers.detector.missing();
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
                         observers.dumps.summary(runtime.kept_problems())));
   if (!arguments.summary.empty()) {
     write_output(arguments.summary, observers.summary.to_json(facts, missing));
   }
-  return exit_code(observers.summary, missing, interrupted.load());
+  const bool was_ended = page != nullptr && (page->has_next() || page->stop_was_asked());
+  const int code = exit_code(observers.summary, missing, interrupted.load() || was_ended);
+  wait_for_next(observers, goes_on);
+  return code;
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  check_writable(arguments.summary);
+  auto present = std::make_unique<PreparedRun>(arguments);
+  const std::atomic<bool>& interrupted = watch_interruption();
+  const auto page = open_page(*present);
+  if (page) present_page(page->url(), arguments.address, arguments.opens_browser);
+
+  std::unique_ptr<PreparedRun> last;  // until the page shows the next one
+  while (true) {
+    const int code = play(*present, interrupted, page.get());
+    auto next = page && !interrupted.load() ? page->take_next() : nullptr;
+    if (!next) return code;
+    last = std::move(present);
+    present = std::move(next);
+  }
 }
 
 }  // namespace hg::apps

@@ -20,7 +20,9 @@ struct RunArguments {
   std::string bounds;    ///< "recoverable" or "paper"; empty = the device's
   std::string summary;   ///< JSON file; empty = none
   bool has_viewer = true;
-  std::uint16_t port = 0;  ///< of the page; 0 = any free one
+  std::string address = "127.0.0.1";  ///< at which the page is served
+  std::uint16_t port = 0;             ///< of the page; 0 = any free one
+  bool opens_browser = true;          ///< where there is a display
   std::string recordings = "recordings";
   bool has_recording = true;  ///< and problems of the solver that failed or were slow
   int slow_solve = 100;       ///< active sets from which on a problem is slow

@@ -4,34 +4,37 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/assembly/start_posture.h"
 #include "hg/config/describe_script.h"
 #include "hg/config/law_names.h"
 #include "hg/core/error.h"
-#include "hg/inspection/workspace.h"
 #include "hg/recording/recording_folder.h"
 #include "hg/rendering/catalogue.h"
 
 namespace hg::apps {
 namespace {
 
+constexpr char kArguments[] = "arguments";  // attachment of a recording
+
 // what --device, --twin and --user change; expected events belong to the scenario as it stands
-void apply(const ScenarioArguments& arguments, config::Scenario& scenario) {
+void apply(const ScenarioArguments& arguments, config::SourceReader& reader,
+           config::Scenario& scenario) {
   const auto add_sources = [&](const std::vector<config::SourceText>& sources) {
     scenario.sources.insert(scenario.sources.end(), sources.begin(), sources.end());
   };
   if (!arguments.device.empty()) {
-    scenario.device = config::load_device(arguments.device);
+    scenario.device = config::load_device(arguments.device, reader);
     add_sources(scenario.device.sources);
   }
   if (!arguments.twin.empty()) {
-    scenario.twin = config::load_twin(arguments.twin);
+    scenario.twin = config::load_twin(arguments.twin, reader);
     scenario.title = scenario.twin.name;
     scenario.description = "You hold the " + scenario.twin.name + " by the handle of the " +
                            scenario.device.name + ".";
@@ -54,7 +57,7 @@ void apply(const ScenarioArguments& arguments, config::Scenario& scenario) {
     scenario.person = user::PersonKind::kNone;
   } else if (!arguments.user.empty()) {
     scenario.person = user::PersonKind::kScript;
-    scenario.script = config::load_script(arguments.user, scenario.twin.model);
+    scenario.script = config::load_script(arguments.user, scenario.twin.model, reader);
     scenario.duration_s = 0.0;  // as long as this script
     add_sources(scenario.script.sources);
   } else if (!arguments.twin.empty()) {
@@ -116,20 +119,6 @@ std::vector<std::string> joint_names(const rendering::DeviceModel& device, int f
   return names;
 }
 
-viewer_server::SceneJoint scene_joint(const model::Joint& joint) {
-  using viewer_server::JointType;
-  switch (joint.type) {
-    case model::JointType::kRevolute:
-    case model::JointType::kContinuous:
-      return {joint.name, JointType::kRevolute, joint.planar, joint.axis};
-    case model::JointType::kPrismatic:
-      return {joint.name, JointType::kPrismatic, joint.planar, joint.axis};
-    case model::JointType::kFloating:
-      return {joint.name, JointType::kFloating};
-  }
-  return {joint.name, JointType::kRevolute};
-}
-
 std::string recording_name(const std::filesystem::path& scenario) {
   constexpr std::string_view kMarks = "._-";
   std::string name = scenario.stem().string();
@@ -139,6 +128,21 @@ std::string recording_name(const std::filesystem::path& scenario) {
     if (!is_plain && kMarks.find(c) == std::string_view::npos) c = '_';
   }
   return name;
+}
+
+// those of changes() below that say what a page draws
+ScenarioArguments recorded_arguments(const std::string& text) {
+  ScenarioArguments arguments;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t space = line.find(' ');
+    if (space == std::string::npos) continue;
+    const std::string option = line.substr(0, space), value = line.substr(space + 1);
+    if (option == "--device") arguments.device = value;
+    if (option == "--twin") arguments.twin = value;
+    if (option == "--rate-hz") arguments.rate_Hz = std::strtod(value.c_str(), nullptr);
+  }
+  return arguments;
 }
 
 // the options that change what the scenario says, one per line
@@ -162,23 +166,12 @@ std::string changes(const RunArguments& arguments) {
   return text;
 }
 
-// where the handle may be; on axes without limits the page shows 4 m around its start
-Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
-  constexpr double kHalf = 2.0;  // m
-  const Eigen::Vector3d p = assembly::handle_start(scenario.twin.model).p;
-  Eigen::AlignedBox3d box = inspection::handle_box(scenario.device.model);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(box.min()[axis])) box.min()[axis] = p[axis] - kHalf;
-    if (!std::isfinite(box.max()[axis])) box.max()[axis] = p[axis] + kHalf;
-  }
-  return box;
-}
-
 }  // namespace
 
 config::Scenario make_scenario(const ScenarioArguments& arguments) {
   config::Scenario scenario = config::load_scenario(find_scenario(arguments.scenario));
-  apply(arguments, scenario);
+  config::SourceReader reader;
+  apply(arguments, reader, scenario);
   if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
   apply_to_simulation(arguments, scenario);
   return scenario;
@@ -192,6 +185,23 @@ config::Scenario make_scenario(const RunArguments& arguments) {
   choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
          scenario.device.rendering.bounds);
   scenario.device.rendering.slow_solve = arguments.slow_solve;
+  return scenario;
+}
+
+config::Scenario recorded_scenario(const std::vector<recording::NamedText>& configuration) {
+  std::vector<config::SourceText> sources;
+  ScenarioArguments arguments;
+  for (const recording::NamedText& text : configuration) {
+    if (text.name == kArguments) {
+      arguments = recorded_arguments(text.text);
+    } else {
+      sources.push_back({text.name, text.text});
+    }
+  }
+  config::Scenario scenario = config::load_scenario(sources);
+  config::SourceReader reader(std::move(sources));
+  apply(arguments, reader, scenario);
+  if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
   return scenario;
 }
 
@@ -225,30 +235,11 @@ recording::RecordingInfo recording_info(const config::Scenario& scenario,
     info.configuration.push_back({source.name, source.content});
   }
   if (const std::string options = changes(arguments); !options.empty()) {
-    info.configuration.push_back({"arguments", options});
+    info.configuration.push_back({kArguments, options});
   }
   info.version = kVersion;
   info.rate_Hz = scenario.device.rate_Hz;
   return info;
-}
-
-viewer_server::Scene viewer_scene(const config::Scenario& scenario) {
-  viewer_server::Scene scene;
-  scene.title = scenario.title;
-  scene.device.urdf = scenario.device.urdf;
-  for (const model::Joint& joint : scenario.device.model.chain.joints()) {
-    scene.device.joints.push_back(scene_joint(joint));
-  }
-  scene.twin.urdf = scenario.twin.urdf;
-  scene.twin.T_B_root = scenario.twin.T_B_root;
-  for (const model::Joint& joint : scenario.twin.model.chain.joints()) {
-    scene.twin.joints.push_back(scene_joint(joint));
-  }
-  scene.limits = scenario.limits;
-  scene.rate_hz = scenario.device.rate_Hz;
-  scene.box = box_of(scenario);
-  scene.floor_z = scenario.device.floor_z;
-  return scene;
 }
 
 }  // namespace hg::apps

@@ -3,12 +3,12 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "apps/hapticgiant/problem_dumps.h"
 #include "apps/hapticgiant/run_command.h"
 #include "hg/config/scenario.h"
 #include "hg/recording/recorder.h"
-#include "hg/viewer_server/viewer_server.h"
 
 namespace hg::apps {
 
@@ -18,6 +18,10 @@ config::Scenario make_scenario(const ScenarioArguments& arguments);
 /// looks at is refused.
 config::Scenario make_scenario(const RunArguments& arguments);
 
+/// The scenario of a recording, from the files that it holds; the disk is not touched. Throws
+/// SetupError.
+config::Scenario recorded_scenario(const std::vector<recording::NamedText>& configuration);
+
 /// Beside the recording of `recorder`, under its name; nullptr: there is none, it may have been
 /// switched off.
 ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments,
@@ -25,6 +29,5 @@ ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments&
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
                                         const RunArguments& arguments);
-viewer_server::Scene viewer_scene(const config::Scenario& scenario);
 
 }  // namespace hg::apps

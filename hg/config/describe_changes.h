@@ -32,6 +32,20 @@ struct ChangesDraft {
   }
 };
 
+/// Without changes yet, for the joints of `twin`.
+inline ChangesDraft changes_of(const rendering::TwinModel& twin) {
+  ChangesDraft draft;
+  for (const model::Joint& joint : twin.chain.joints()) {
+    const limits::JointLimits& limits = twin.dofs[static_cast<std::size_t>(joint.v_index)].limits;
+    draft.joint_names.push_back(joint.name);
+    draft.joints.push_back({.unit = unit_of(joint.type),
+                            .is_floating = joint.type == model::JointType::kFloating,
+                            .dof = joint.v_index,
+                            .range = {limits.q_min, limits.q_max}});
+  }
+  return draft;
+}
+
 template <class V>
 void describe_change(V& v, ChangesDraft& d, double at_s, ChangeJoint& joint) {
   rendering::TwinDof dof;

@@ -44,19 +44,6 @@ EventNames names_of(const Device& device, const Twin& twin, const LimitCatalogue
   return names;
 }
 
-ChangesDraft changes_of(const rendering::TwinModel& twin) {
-  ChangesDraft draft;
-  for (const model::Joint& joint : twin.chain.joints()) {
-    const limits::JointLimits& limits = twin.dofs[static_cast<std::size_t>(joint.v_index)].limits;
-    draft.joint_names.push_back(joint.name);
-    draft.joints.push_back({.unit = unit_of(joint.type),
-                            .is_floating = joint.type == model::JointType::kFloating,
-                            .dof = joint.v_index,
-                            .range = {limits.q_min, limits.q_max}});
-  }
-  return draft;
-}
-
 Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   ScenarioDraft draft;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 
 #include "hg/core/types.h"
 #include "hg/recording/cdr_writer.h"
@@ -13,7 +14,7 @@
 
 namespace hg::recording {
 
-/// Decodes one message of fixed capacity: a sample. Does not allocate.
+/// Decodes one message. A message of fixed capacity, such as a sample, needs no allocation.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -46,6 +47,15 @@ class CdrReader {
     const std::size_t past = (position_ - kCdrHeader.size()) % sizeof(T);
     if (past != 0) position_ += sizeof(T) - past;
     take(&value, sizeof(T));
+  }
+
+  void get(std::string& text) {
+    const std::size_t length = get_length(bytes_.size());  // with the terminating zero
+    is_ok_ = is_ok_ && length > 0;
+    if (!is_ok_) return;
+    text.resize(length);
+    take(text.data(), length);
+    text.pop_back();
   }
 
   template <IsMessage T>

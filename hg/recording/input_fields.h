@@ -60,6 +60,8 @@ void fields(Archive& a, T& target) {
   a("active", target.active, "false: the simulated person's script decides");
   a("p_b", target.p_B, "target of the handle in the base frame, m");
   a("press", target.press, "how far the hand presses its lever, 0..1");
+  a("turns", target.turns, "false: the hand lets the handle turn as it likes");
+  a("r_b", target.R_B, "target orientation of the handle, if it turns");
 }
 
 template <typename Archive, Is<ParameterChange> T>

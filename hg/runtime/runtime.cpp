@@ -13,12 +13,12 @@
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
 #include "hg/runtime/requests.h"
-#include "hg/runtime/schedule.h"
 
 namespace hg::runtime {
 namespace {
 
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
+constexpr std::int64_t kPausePoll = 2'000'000;  // ns
 constexpr double kLongestStop = 1.0;  // s; a device that is still moving then is left to its brakes
 
 // SCHED_FIFO where the system allows it
@@ -57,6 +57,7 @@ Runtime::Runtime(const Options& options, cycle::Cycle& cycle, device::Device& de
       device_(device),
       samples_(options.ring),
       hand_targets_(256),
+      parameter_changes_(256),
       changes_(options.changes) {}
 
 Runtime::~Runtime() {
@@ -81,8 +82,7 @@ void Runtime::run_cycle(Sample& sample) noexcept {
   const auto begin = std::chrono::steady_clock::now();
   while (hand_targets_.pop(sample.operator_input.hand_target)) {
   }
-  sample.operator_input.change =
-      changes_.due(static_cast<double>(report_.cycles) / options_.rate_Hz);
+  sample.operator_input.change = next_change();
   cycle_.step(sample.sensors, sample.operator_input, sample.command, sample.record);
   const auto end = std::chrono::steady_clock::now();
   device_.write(sample.command);
@@ -91,6 +91,27 @@ void Runtime::run_cycle(Sample& sample) noexcept {
   if (is_slow && (report_.is_real_time || options_.is_fast)) {
     cycle_.keep_problem(sample.cycle_time_us);
   }
+}
+
+ParameterChange Runtime::next_change() noexcept {
+  ParameterChange change = changes_.due(static_cast<double>(report_.cycles) / options_.rate_Hz);
+  if (change.parameter == Parameter::kNone) parameter_changes_.pop(change);
+  return change;
+}
+
+// Until the next cycle is due. Cycles that were not run while paused are not late.
+void Runtime::wait_for_turn(Schedule& schedule) noexcept {
+  report_.overruns += schedule.advance(now_ns());
+  sleep_until(schedule.due_ns());
+  bool was_paused = false;
+  while (!pace_.may_run() && !stop_requested_.load(std::memory_order_relaxed)) {
+    was_paused = true;
+    sleep_until(now_ns() + kPausePoll);
+  }
+  const double speed = pace_.speed();
+  if (!was_paused && speed == speed_) return;
+  speed_ = speed;
+  schedule = Schedule(now_ns(), std::llround(1e9 / (options_.rate_Hz * speed)));
 }
 
 void Runtime::hand_out(const Sample& sample) noexcept {
@@ -135,8 +156,7 @@ void Runtime::loop() noexcept {
         next_request(record, cycle_.is_held(sample->sensors), is_stopping);
 
     if (options_.is_fast || device_.is_clock()) continue;
-    report_.overruns += schedule.advance(now_ns());
-    sleep_until(schedule.due_ns());
+    wait_for_turn(schedule);
   }
   release(sample->command);
   report_.allocations = allocations.count();

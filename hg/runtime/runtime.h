@@ -12,6 +12,8 @@
 #include "hg/core/spsc_ring.h"
 #include "hg/cycle/cycle.h"
 #include "hg/device/device.h"
+#include "hg/runtime/pace.h"
+#include "hg/runtime/schedule.h"
 #include "hg/signals/state.h"
 #include "hg/signals/timed_changes.h"
 
@@ -63,19 +65,32 @@ class Runtime {
   const hqp::KeptProblems& kept_problems() const noexcept { return cycle_.kept_problems(); }
   /// One operator thread: where a simulated hand should go; from the next cycle on.
   void set_hand_target(const HandTarget& target) noexcept { hand_targets_.push(target); }
+  /// The same thread: a value of the twin, taken by one of the next cycles; those of Options come
+  /// first. False when too many are waiting.
+  [[nodiscard]] bool change(const ParameterChange& change) noexcept {
+    return parameter_changes_.push(change);
+  }
+  /// The same thread: slow motion and pause. Not for a device that is a clock of its own, nor for
+  /// a real one: it does not wait.
+  Pace& pace() noexcept { return pace_; }
 
  private:
   void loop() noexcept;
   void run_cycle(Sample& sample) noexcept;
   void hand_out(const Sample& sample) noexcept;
   void release(CommandFrame& command) noexcept;
+  ParameterChange next_change() noexcept;
+  void wait_for_turn(Schedule& schedule) noexcept;
 
   Options options_;
   cycle::Cycle& cycle_;
   device::Device& device_;
   SpscRing<Sample> samples_;
   SpscRing<HandTarget> hand_targets_;
+  SpscRing<ParameterChange> parameter_changes_;
   TimedChanges changes_;
+  Pace pace_;
+  double speed_ = 1.0;  ///< that the schedule was made for
   std::atomic<bool> stop_requested_{false};
   std::atomic<bool> finished_{false};
   Report report_;

@@ -36,6 +36,8 @@ struct HandTarget {
   bool active = false;                            ///< false: the person's own script decides
   Eigen::Vector3d p_B = Eigen::Vector3d::Zero();  ///< target position of the handle in B
   double press = 0.0;  ///< how far the hand presses the lever it holds, 0..1
+  bool turns = false;  ///< false: the hand lets the handle turn as it likes
+  Eigen::Matrix3d R_B = Eigen::Matrix3d::Identity();  ///< target orientation of the handle, if so
 };
 
 /// Numbers are recorded and never change their meaning.

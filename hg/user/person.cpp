@@ -100,7 +100,8 @@ Vector6 Person::wrench(double t, const HandleMotion& handle, const HandTarget& t
   Vector6 push_in_H = Vector6::Zero();
   if (target.active) {
     goal.pose.p = target.p_B;
-    goal.has_orientation = false;
+    goal.pose.R = target.R_B;
+    goal.has_orientation = target.turns;
     goal.height_share = 1.0 - target.press;  // a hand that presses holds no height
   } else {
     goal = script_goal(t, dt, handle.T_B_H);

@@ -1,5 +1,6 @@
 #include "hg/viewer_server/access.h"
 
+#include <arpa/inet.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -48,6 +49,11 @@ std::string_view pair_value(std::string_view pairs, char separator, std::string_
   return {};
 }
 
+bool is_address(const std::string& text, int family) {
+  in6_addr address;  // large enough for both
+  return inet_pton(family, text.c_str(), &address) == 1;
+}
+
 }  // namespace
 
 std::string random_token() {
@@ -74,16 +80,32 @@ bool is_same_secret(std::string_view a, std::string_view b) noexcept {
   return difference == 0;
 }
 
-bool is_own_host(std::string_view host, std::uint16_t port) {
-  for (const char* name : {"127.0.0.1:", "localhost:"}) {
-    if (host == name + std::to_string(port)) return true;
-  }
-  return false;
+std::string host_text(std::string_view address, std::uint16_t port) {
+  const bool has_colons = address.find(':') != std::string_view::npos;
+  std::string host;
+  if (has_colons) host += '[';
+  host += address;
+  if (has_colons) host += ']';
+  host += ':';
+  return host += std::to_string(port);
 }
 
-bool is_own_origin(std::string_view origin, std::uint16_t port) {
+bool is_own_host(std::string_view host, const Listener& listener) {
+  for (const std::string_view name : {"127.0.0.1", "localhost", listener.address.c_str()}) {
+    if (host == host_text(name, listener.port)) return true;
+  }
+  const bool is_open = listener.address == "0.0.0.0" || listener.address == "::";
+  const std::string port = host_text("", listener.port);
+  if (!is_open || !host.ends_with(port)) return false;
+  host.remove_suffix(port.size());
+  const bool has_brackets = host.starts_with('[') && host.ends_with(']');
+  if (has_brackets) host = host.substr(1, host.size() - 2);
+  return is_address(std::string(host), has_brackets ? AF_INET6 : AF_INET);
+}
+
+bool is_own_origin(std::string_view origin, const Listener& listener) {
   constexpr std::string_view kScheme = "http://";
-  return origin.starts_with(kScheme) && is_own_host(origin.substr(kScheme.size()), port);
+  return origin.starts_with(kScheme) && is_own_host(origin.substr(kScheme.size()), listener);
 }
 
 std::string_view path_of(std::string_view target) noexcept {

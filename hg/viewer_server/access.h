@@ -15,11 +15,22 @@ std::string random_token();
 /// True when both are equal; the time taken does not tell where they differ.
 bool is_same_secret(std::string_view a, std::string_view b) noexcept;
 
-/// Host header of this machine: 127.0.0.1 or localhost with exactly this port.
-bool is_own_host(std::string_view host, std::uint16_t port);
+/// Where the server listens.
+struct Listener {
+  std::string address = "127.0.0.1";  ///< IPv4 or IPv6; 0.0.0.0 or :: = all of this machine
+  std::uint16_t port = 0;
+};
+
+/// Address and port as they stand in a link; IPv6 in brackets.
+std::string host_text(std::string_view address, std::uint16_t port);
+
+/// Host header of this machine: 127.0.0.1, localhost or the address that is listened at, with
+/// exactly this port; where all are listened at, any address but no other name, because only names
+/// can be made to point here by somebody else.
+bool is_own_host(std::string_view host, const Listener& listener);
 
 /// Origin header of a page of this server.
-bool is_own_origin(std::string_view origin, std::uint16_t port);
+bool is_own_origin(std::string_view origin, const Listener& listener);
 
 /// The path of a request target, without its query.
 std::string_view path_of(std::string_view target) noexcept;

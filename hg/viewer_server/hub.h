@@ -16,8 +16,10 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hg/viewer_server/access.h"
+#include "hg/viewer_server/commands.h"
 #include "hg/viewer_server/hand_target_box.h"
 
 namespace hg::viewer_server {
@@ -32,7 +34,8 @@ using Text = std::shared_ptr<const std::string>;
 using Request = http::request<http::empty_body>;
 
 constexpr auto kRequestTimeout = std::chrono::seconds(15);
-constexpr std::size_t kMaxEvents = 200;  // kept for pages that connect later, and per page
+constexpr std::size_t kMaxEvents = 200;   // kept for pages that connect later, and per page
+constexpr std::size_t kMaxCommands = 64;  // that wait for the program
 
 inline std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -43,8 +46,7 @@ inline double now_s() {
 
 class Page;
 
-/// Everything but the counters and the hand target belongs to the
-/// server's thread.
+/// Everything but the counters, the hand target and the commands belongs to the server's thread.
 struct Hub {
   explicit Hub(const Eigen::AlignedBox3d& limits) : hand(limits) {}
 
@@ -52,15 +54,19 @@ struct Hub {
   void join(const std::shared_ptr<Page>& page);
   void leave(const std::shared_ptr<Page>& page);
   void put_hand(std::uint64_t page, const HandTarget& target);
+  /// False when too many are waiting.
+  bool put_command(Command command);
   void show(Text frame);
   void announce(Text event);
+  void answer(std::uint64_t page, const Text& answer);
 
-  std::uint16_t port = 0;
+  Listener listener;
   std::string token;
   AssetTable assets;
   std::set<std::shared_ptr<Page>> pages;
   std::deque<Text> events;
   Text newest_frame;
+  Text values;  ///< of the settings
   std::uint64_t next_page = 1;
   std::shared_ptr<int> connections = std::make_shared<int>();  // one more owner per connection
 
@@ -68,8 +74,9 @@ struct Hub {
   std::atomic<std::uint64_t> sent{0};
   std::atomic<std::uint64_t> dropped{0};
   std::atomic<std::uint64_t> refused{0};
-  std::mutex hand_mutex;
+  std::mutex input_mutex;
   HandTargetBox hand;
+  std::vector<Command> commands;  ///< that no one has taken yet
 };
 
 }  // namespace hg::viewer_server

@@ -67,4 +67,26 @@ std::string fault_text(const Fault& fault) {
   return text + ": " + number(fault.value) + ", limit " + number(fault.limit);
 }
 
+std::string mode_text(const CycleRecord& record) {
+  switch (record.mode) {
+    case Mode::kOff:
+      return "off: waiting for the device";
+    case Mode::kReady:
+      if (record.refusal != Refusal::kNone)
+        return "ready: " + std::string(to_string(record.refusal));
+      if (record.is_tared) return "ready: about to arm";
+      if (record.tare == TareStatus::kUnderWay) return "ready: the force sensor is being tared";
+      return "ready: the force sensor needs a tare, " + std::string(to_string(record.tare));
+    case Mode::kArmed:
+      return "armed: starts when the hand closes the dead-man switch";
+    case Mode::kRunning:
+      return "running: the hand holds the dead-man switch";
+    case Mode::kStopping:
+      return "stopping: asked for, or the hand has let go";
+    case Mode::kFault:
+      return "fault: " + fault_text(record.fault);
+  }
+  return {};
+}
+
 }  // namespace hg::viewer_server

@@ -1,10 +1,11 @@
-/// Limits and faults in words for people.
+/// Limits, faults and modes in words for people.
 #pragma once
 
 #include <string>
 
 #include "hg/signals/fault.h"
 #include "hg/signals/limit.h"
+#include "hg/signals/state.h"
 
 namespace hg::viewer_server {
 
@@ -13,5 +14,8 @@ std::string limit_text(const LimitInfo& info, const LimitReport& report);
 
 /// For example "joint too fast (number 3): 2.6, limit 2.5"; empty for kNone.
 std::string fault_text(const Fault& fault);
+
+/// The mode and why, for example "ready: the force/torque sensor is being tared".
+std::string mode_text(const CycleRecord& record);
 
 }  // namespace hg::viewer_server

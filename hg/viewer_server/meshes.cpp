@@ -53,8 +53,8 @@ fs::path find_mesh(const fs::path& urdf, std::string_view name) {
 
 }  // namespace
 
-std::string with_meshes(const fs::path& urdf, std::string_view folder, AssetTable& assets) {
-  const std::string text = read_file(urdf);
+std::string with_meshes(const fs::path& urdf, const std::string& text, std::string_view folder,
+                        AssetTable& assets) {
   std::map<std::string, std::string, std::less<>> addresses;  // by name in the URDF
   std::string served;
   std::size_t copied = 0;

@@ -9,11 +9,11 @@
 
 namespace hg::viewer_server {
 
-/// The text of a URDF in which every mesh that was found has the address `folder`N.stl or .dae, and
-/// those meshes in `assets`. Looked for: relative names beside the URDF; package://NAME/PATH in the
-/// folders above it, and in those of ROS_PACKAGE_PATH. What is not found keeps its name: the page
-/// draws bars in its place. Throws SetupError when the URDF cannot be read.
-std::string with_meshes(const std::filesystem::path& urdf, std::string_view folder,
-                        AssetTable& assets);
+/// `text`, the URDF that is or was the file `urdf`, in which every mesh that was found has the
+/// address `folder`N.stl or .dae, and those meshes in `assets`. Looked for: relative names beside
+/// the URDF; package://NAME/PATH in the folders above it, and in those of ROS_PACKAGE_PATH. What is
+/// not found keeps its name: the page draws bars in its place.
+std::string with_meshes(const std::filesystem::path& urdf, const std::string& text,
+                        std::string_view folder, AssetTable& assets);
 
 }  // namespace hg::viewer_server

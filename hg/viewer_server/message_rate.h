@@ -7,12 +7,12 @@ namespace hg::viewer_server {
 
 class MessageRate {
  public:
-  static constexpr double kRate_Hz = 200.0;  ///< a page sends 60 hand targets per second
-  static constexpr double kBurst = 200.0;    ///< messages that may come at once after a pause
+  /// `rate_Hz` messages per second, and as many at once after a pause of one.
+  explicit MessageRate(double rate_Hz) : rate_Hz_(rate_Hz) {}
 
   /// False when this message is one too many.
   bool admit(double now_s) noexcept {
-    credit_ = std::min(kBurst, credit_ + kRate_Hz * (now_s - last_s_));
+    credit_ = std::min(rate_Hz_, credit_ + rate_Hz_ * (now_s - last_s_));
     last_s_ = now_s;
     if (credit_ < 1.0) return false;
     credit_ -= 1.0;
@@ -20,7 +20,8 @@ class MessageRate {
   }
 
  private:
-  double credit_ = kBurst;
+  double rate_Hz_;
+  double credit_ = rate_Hz_;
   double last_s_ = 0.0;
 };
 

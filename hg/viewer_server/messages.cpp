@@ -4,152 +4,270 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hg/viewer_server/command_message.h"
+#include "hg/viewer_server/frame_message.h"
+#include "hg/viewer_server/json_reader.h"
+#include "hg/viewer_server/json_writer.h"
 #include "hg/viewer_server/limit_text.h"
+#include "hg/viewer_server/scene_message.h"
 
 namespace hg::viewer_server {
 namespace {
 
-using Json = nlohmann::json;
-
-constexpr double kFarthestTarget = 100.0;  // m; beyond any device
-
-std::string to_text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // not UTF-8: replaced
-}
-
-Json number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::round(value * 1e5) / 1e5;
-}
+constexpr double kFarthestTarget = 100.0;        // m; beyond any device
+constexpr double kLargestId = 9007199254740992;  // 2^53: whole numbers of JavaScript
+constexpr std::size_t kLongestName = 200;        // bytes
+constexpr int kFirstPriority = 2;                // 1 is the coupling of hand and twin
 
 template <typename Vector>
-Json numbers(const Vector& values) {
-  Json json = Json::array();
-  for (Eigen::Index i = 0; i < values.size(); ++i) json.push_back(number(values[i]));
-  return json;
+std::vector<double> list(const Vector& vector) {
+  return {vector.data(), vector.data() + vector.size()};
 }
 
-std::string_view name(JointType type) {
-  switch (type) {
-    case JointType::kRevolute:
-      return "revolute";
-    case JointType::kPrismatic:
-      return "prismatic";
-    case JointType::kFloating:
-      return "floating";
-  }
-  return "unknown";
+template <typename First, typename Second>
+std::vector<double> joined(const First& first, const Second& second) {
+  std::vector<double> all = list(first);
+  all.insert(all.end(), second.data(), second.data() + second.size());
+  return all;
 }
 
-Json encode(const SceneChain& chain, std::string_view address) {
-  Json joints = Json::array();
+Vec3 vec3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Quaternion quaternion(const Eigen::Matrix3d& R) {
+  const Eigen::Quaterniond q(R);
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+
+std::optional<double> bounded(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+WrenchMessage wrench(const Vector6& w) { return {vec3(w.head<3>()), vec3(w.tail<3>())}; }
+
+SceneChainMessage chain_message(const SceneChain& chain, std::string_view address) {
+  SceneChainMessage message;
+  if (!chain.urdf.empty()) message.urdf = address;
+  message.p_B_root = vec3(chain.T_B_root.p);
+  message.quaternion_B_root = quaternion(chain.T_B_root.R);
   for (const SceneJoint& joint : chain.joints) {
-    joints.push_back({{"name", joint.name},
-                      {"type", name(joint.type)},
-                      {"planar", joint.planar},
-                      {"axis", numbers(joint.axis)}});
+    message.joints.push_back({joint.name, joint.type, joint.planar, vec3(joint.axis),
+                              bounded(joint.range.lb), bounded(joint.range.ub),
+                              bounded(joint.dq_max), bounded(joint.tau_max)});
   }
-  const Eigen::Quaterniond quaternion(chain.T_B_root.R);
-  return {{"urdf", chain.urdf.empty() ? "" : address},
-          {"p_B_root_m", numbers(chain.T_B_root.p)},
-          {"quaternion_B_root", numbers(quaternion.coeffs())},
-          {"joints", joints}};
+  return message;
 }
 
-Json encode(const LimitInfo& limit) {
-  return {{"name", limit.name},
-          {"kind", to_string(limit.kind)},
-          {"unit", limit.is_angle ? "rad" : "m"},
-          {"min", number(limit.range.lb)},
-          {"max", number(limit.range.ub)}};
+// Task levels as in [HG] Table II: Cartesian frames one after the other, three rows each.
+std::vector<SceneLimitMessage> limit_messages(const LimitCatalogue& limits) {
+  std::vector<SceneLimitMessage> messages;
+  int axes = 0;
+  for (const LimitInfo& limit : limits) {
+    axes += limit.kind == LimitKind::kCartesian ? 1 : 0;
+    int priority = kFirstPriority + static_cast<int>(limit.kind);
+    if (limit.kind == LimitKind::kCartesian) priority += (axes - 1) / 3;
+    if (limit.kind == LimitKind::kTwinJoint) priority += axes / 3 - 1;
+    messages.push_back({limit.name, limit.kind, limit.is_angle ? LimitUnit::kRad : LimitUnit::kM,
+                        bounded(limit.range.lb), bounded(limit.range.ub), priority});
+  }
+  return messages;
 }
 
-Json encode(const HandTarget& hand) {
-  return {{"type", "hand"},
-          {"active", hand.active},
-          {"p_B_m", numbers(hand.p_B)},
-          {"press", number(hand.press)}};
+HandMessage hand_message(const HandTarget& hand) {
+  std::optional<Quaternion> turn;
+  if (hand.turns) turn = quaternion(hand.R_B);
+  return {hand.active, vec3(hand.p_B), turn, hand.press};
 }
 
-Json felt_limit(const CycleRecord& record, const LimitCatalogue& limits) {
+std::size_t limit_count(const CycleRecord& record, const LimitCatalogue& limits) {
+  return std::min(limits.size(), record.limits.size());
+}
+
+std::optional<FeltLimitMessage> felt_message(const CycleRecord& record,
+                                             const LimitCatalogue& limits) {
   const int index = record.felt_limit;
-  const auto count = std::min<std::size_t>(limits.size(), record.limits.size());
-  if (index < 0 || static_cast<std::size_t>(index) >= count) return nullptr;
+  if (index < 0 || static_cast<std::size_t>(index) >= limit_count(record, limits)) return {};
   const auto i = static_cast<std::size_t>(index);
-  return {{"index", index},
-          {"name", limits[i].name},
-          {"text", limit_text(limits[i], record.limits[i])}};
+  return FeltLimitMessage{index, limits[i].name, limit_text(limits[i], record.limits[i]),
+                          vec3(record.w_felt.head<3>()), vec3(record.w_felt.tail<3>())};
 }
 
-bool is_finite_number(const Json& json) {
-  return json.is_number() && std::isfinite(json.get<double>());
+void add_limits(const CycleRecord& record, const LimitCatalogue& limits, FrameMessage& frame) {
+  for (std::size_t i = 0; i < limit_count(record, limits); ++i) {
+    const LimitReport& report = record.limits[i];
+    frame.limit_position.push_back(report.position);
+    frame.limit_distance.push_back(bounded(std::min(report.to_lower, report.to_upper)));
+    if (report.state == LimitState::kInactive) continue;
+    frame.active.push_back({static_cast<int>(i), report.state, report.cause, report.reaction,
+                            report.excess, limit_text(limits[i], report)});
+  }
+}
+
+void add_motion(const CycleRecord& record, FrameMessage& frame) {
+  const RobotState& robot = record.robot;
+  frame.q_device = joined(robot.q_p, record.reference.q_m);
+  frame.q_measured = joined(robot.q_p, robot.q_m);
+  frame.dq_device = joined(robot.dq_p, record.reference.dq_m);
+  frame.dq_measured = joined(robot.dq_p, robot.dq_m);
+  frame.tau_measured = list(robot.tau_m);
+  frame.q_twin = list(record.twin.q_a);
+  frame.dq_twin = list(record.twin.dq_a);
+  frame.q_gantry_target = list(record.q_p_target);
+  frame.tracking_error = list(record.tracking.error);
+  frame.is_clamped = record.tracking.is_clamped;
+  frame.p_B_H = vec3(record.T_B_H.p);
+  frame.quaternion_B_H = quaternion(record.T_B_H.R);
+  frame.v_H = vec3(record.v_H);
+  frame.p_B_E = vec3(record.T_B_E.p);
+  frame.quaternion_B_E = quaternion(record.T_B_E.R);
+  frame.p_B_elbow = vec3(record.p_B_elbow);
+  frame.force = vec3(robot.w_H.head<3>());
+  frame.torque = vec3(robot.w_H.tail<3>());
+  frame.sync_error_mm = 1e3 * record.sync_error;
+  frame.sync_error_deg = record.sync_error_angle * 180.0 / M_PI;
+}
+
+BudgetMessage budget_message(const HandBudget& budget) {
+  return {.user = wrench(budget.user),
+          .inertia = wrench(budget.inertia),
+          .damping = wrench(budget.damping),
+          .spring = wrench(budget.spring),
+          .friction = wrench(budget.friction),
+          .surface = wrench(budget.surface),
+          .limits = wrench(budget.limits),
+          .conflict = wrench(budget.conflict),
+          .structure = wrench(budget.structure),
+          .rest = wrench(budget.rest)};
+}
+
+HandTarget hand_target(const HandMessage& hand) {
+  HandTarget target;
+  target.active = hand.active;
+  target.p_B = {hand.p_B[0], hand.p_B[1], hand.p_B[2]};
+  target.press = hand.press;
+  target.turns = hand.quaternion_B_H.has_value();
+  if (target.turns) {
+    const Quaternion& q = *hand.quaternion_B_H;
+    target.R_B = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
+  }
+  return target;
+}
+
+bool is_in_range(const HandMessage& hand) {
+  const auto is_near = [](double x) { return std::abs(x) <= kFarthestTarget; };
+  if (!std::all_of(hand.p_B.begin(), hand.p_B.end(), is_near)) return false;
+  if (hand.quaternion_B_H) {
+    double square = 0.0;
+    for (const double x : *hand.quaternion_B_H) square += x * x;
+    if (!(std::abs(square - 1.0) < 1e-3)) return false;
+  }
+  return hand.press >= 0.0 && hand.press <= 1.0;
+}
+
+bool is_in_range(const CommandMessage& command) {
+  const bool is_whole = command.id == std::floor(command.id);
+  const bool is_id = is_whole && command.id >= 0.0 && command.id <= kLargestId;
+  return is_id && command.name.size() <= kLongestName;
 }
 
 }  // namespace
 
 std::string encode_scene(const Scene& scene, double update_rate_hz) {
-  Json limits = Json::array();
-  for (const LimitInfo& limit : scene.limits) limits.push_back(encode(limit));
-  return to_text(
-      {{"title", scene.title},
-       {"rate_hz", number(scene.rate_hz)},
-       {"update_rate_hz", number(update_rate_hz)},
-       {"device", encode(scene.device, kDeviceAddress)},
-       {"twin", encode(scene.twin, kTwinAddress)},
-       {"limits", limits},
-       {"floor_z_m", number(scene.floor_z)},
-       {"box", {{"min_m", numbers(scene.box.min())}, {"max_m", numbers(scene.box.max())}}}});
-}
-
-std::string encode_frame(const CycleRecord& record, const HandTarget& hand, double cycle_time_us,
-                         std::string_view status_text, const LimitCatalogue& limits) {
-  Json q_device = numbers(record.robot.q_p);
-  for (const Json& q : numbers(record.reference.q_m)) q_device.push_back(q);
-  return to_text({{"type", "frame"},
-                  {"time_s", number(record.time_s)},
-                  {"mode", to_string(record.mode)},
-                  {"fault", fault_text(record.fault)},
-                  {"status", status_text},
-                  {"q_device", q_device},
-                  {"q_twin", numbers(record.twin.q_a)},
-                  {"p_B_H_m", numbers(record.T_B_H.p)},
-                  {"force_N", numbers(record.robot.w_H.head<3>())},
-                  {"torque_Nm", numbers(record.robot.w_H.tail<3>())},
-                  {"felt", felt_limit(record, limits)},
-                  {"sync_error_mm", number(1e3 * record.sync_error)},
-                  {"sync_error_deg", number(record.sync_error_angle * 180.0 / M_PI)},
-                  {"cycle_time_us", number(cycle_time_us)},
-                  {"hand", encode(hand)}});
-}
-
-std::string encode_event(double time_s, std::string_view name, std::string_view text) {
-  return to_text({{"type", "event"}, {"time_s", number(time_s)}, {"name", name}, {"text", text}});
-}
-
-DecodeStatus decode_hand(std::string_view text, HandTarget& target) {
-  const Json json = Json::parse(text, nullptr, false);  // no exceptions: discarded when malformed
-  if (!json.is_object() || json.size() != 4) return DecodeStatus::kMalformed;
-  for (const char* field : {"type", "active", "p_B_m", "press"}) {
-    if (!json.contains(field)) return DecodeStatus::kMalformed;
+  SceneMessage message{.run = scene.run,
+                       .source = scene.source,
+                       .title = scene.title,
+                       .description = scene.description,
+                       .rate_hz = scene.rate_hz,
+                       .update_rate_hz = update_rate_hz,
+                       .duration_s = scene.duration_s,
+                       .device = chain_message(scene.device, kDeviceAddress),
+                       .twin = chain_message(scene.twin, kTwinAddress),
+                       .gantry_joints = scene.gantry_joints,
+                       .limits = limit_messages(scene.limits),
+                       .floor_z = scene.floor_z,
+                       .box = {vec3(scene.box.min()), vec3(scene.box.max())},
+                       .environment = scene.environment,
+                       .choices = scene.choices,
+                       .settings = {},
+                       .commands = scene.commands,
+                       .refusal = scene.refusal};
+  for (const Setting& s : scene.settings) {
+    message.settings.push_back(
+        {s.name, s.group, s.label, s.unit, s.min, s.max, bounded(s.value), s.step, s.help});
   }
+  return to_json(message);
+}
 
-  const Json& p = json["p_B_m"];
-  const Json& press = json["press"];
-  if (json["type"] != "hand" || !json["active"].is_boolean()) return DecodeStatus::kMalformed;
-  if (!p.is_array() || p.size() != 3 || !press.is_number()) return DecodeStatus::kMalformed;
-  for (const Json& x : p) {
-    if (!x.is_number()) return DecodeStatus::kMalformed;
-    if (!is_finite_number(x)) return DecodeStatus::kOutOfRange;
-    if (std::abs(x.get<double>()) > kFarthestTarget) return DecodeStatus::kOutOfRange;
+std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients) {
+  const CycleRecord& record = view.record;
+  FrameMessage frame;
+  frame.run = view.run;
+  frame.time_s = record.time_s;
+  frame.mode = record.mode;
+  frame.mode_text = mode_text(record);
+  frame.fault = fault_text(record.fault);
+  frame.status = view.status_text;
+  add_motion(record, frame);
+  frame.felt = felt_message(record, limits);
+  add_limits(record, limits, frame);
+  frame.budget = budget_message(view.budget);
+  if (view.singularity) frame.singularity = {view.singularity->measure, view.singularity->limit};
+  frame.cycle_time_us = view.cycle_time_us;
+  frame.cycle_time_max_us = view.cycle_time_max_us;
+  frame.hand = hand_message(view.hand);
+  const RunState& state = view.run_state;
+  frame.run_state = {state.is_paused, state.speed, state.is_over, state.position_s,
+                     state.recording};
+  frame.clients = clients;
+  if (view.ghost) {
+    const Ghost& ghost = *view.ghost;
+    frame.ghost = {ghost.time_s, ghost.q_device, ghost.q_twin, vec3(ghost.p_B_H),
+                   vec3(ghost.force)};
   }
-  if (!is_finite_number(press)) return DecodeStatus::kOutOfRange;
-  const double press_share = press.get<double>();
-  if (press_share < 0.0 || press_share > 1.0) return DecodeStatus::kOutOfRange;
+  return to_json(frame);
+}
 
-  target.active = json["active"].get<bool>();
-  target.p_B = {p[0].get<double>(), p[1].get<double>(), p[2].get<double>()};
-  target.press = press_share;
-  return DecodeStatus::kOk;
+std::string encode_event(std::uint64_t run, double time_s, std::string_view name,
+                         std::string_view text) {
+  return to_json(EventMessage{run, time_s, std::string(name), std::string(text)});
+}
+
+std::string encode_values(const std::vector<double>& values) {
+  ValuesMessage message;
+  for (const double value : values) message.values.push_back(bounded(value));
+  return to_json(message);
+}
+
+std::string encode_answer(double id, std::string_view reason) {
+  return to_json(AnswerMessage{id, reason.empty(), std::string(reason)});
+}
+
+DecodeStatus decode(std::string_view text, PageMessage& message) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);  // no exceptions: discarded
+  HandMessage hand;
+  if (JsonReader(json).read(hand)) {
+    if (!is_in_range(hand)) return DecodeStatus::kOutOfRange;
+    message.hand = hand_target(hand);
+    return DecodeStatus::kHand;
+  }
+  CommandMessage command;
+  if (!JsonReader(json).read(command)) return DecodeStatus::kMalformed;
+  if (!is_in_range(command)) return DecodeStatus::kOutOfRange;
+  message.command = {
+      .id = command.id, .name = command.command, .argument = command.name, .value = command.value};
+  return DecodeStatus::kCommand;
+}
+
+std::string_view refusal_text(DecodeStatus status) noexcept {
+  switch (status) {
+    case DecodeStatus::kHand:
+    case DecodeStatus::kCommand:
+      return "";
+    case DecodeStatus::kMalformed:
+      return "not a message of docs/viewer.md";
+    case DecodeStatus::kOutOfRange:
+      return "a number or name is out of range";
+  }
+  return "";
 }
 
 }  // namespace hg::viewer_server

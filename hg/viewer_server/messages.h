@@ -1,14 +1,17 @@
-/// The JSON messages between program and page; the fields are those of viewer/src/messages.ts.
+/// The JSON messages between program and page, from and to the program's own types.
 ///
-/// Numbers are rounded to 1e-5 of their unit; what is not finite becomes null.
+/// Their fields are described once, in *_message.h; viewer/src/messages.ts is made from the same.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hg/signals/frames.h"
-#include "hg/signals/state.h"
+#include "hg/viewer_server/commands.h"
 #include "hg/viewer_server/scene.h"
+#include "hg/viewer_server/view.h"
 
 namespace hg::viewer_server {
 
@@ -18,15 +21,32 @@ inline constexpr std::string_view kTwinAddress = "/models/twin.urdf";
 
 std::string encode_scene(const Scene& scene, double update_rate_hz);
 
-std::string encode_frame(const CycleRecord& record, const HandTarget& hand, double cycle_time_us,
-                         std::string_view status_text, const LimitCatalogue& limits);
+/// `clients` is the number of pages connected.
+std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients);
 
-std::string encode_event(double time_s, std::string_view name, std::string_view text);
+std::string encode_event(std::uint64_t run, double time_s, std::string_view name,
+                         std::string_view text);
 
-enum class DecodeStatus { kOk, kMalformed, kOutOfRange };
+/// Of Scene::settings; infinite values stand for "unlimited".
+std::string encode_values(const std::vector<double>& values);
 
-/// Reads a message Hand. Refuses anything but exactly its fields (kMalformed), and numbers that
-/// are not finite, positions beyond 100 m and press outside 0..1 (kOutOfRange).
-[[nodiscard]] DecodeStatus decode_hand(std::string_view text, HandTarget& target);
+/// `reason` is empty when the command was accepted.
+std::string encode_answer(double id, std::string_view reason);
+
+enum class DecodeStatus { kHand, kCommand, kMalformed, kOutOfRange };
+
+/// What a page has sent; which of the two counts says the status.
+struct PageMessage {
+  HandTarget hand;
+  Command command;
+};
+
+/// Refuses anything but exactly the fields of Hand or Command and numbers that are not finite
+/// (kMalformed); positions beyond 100 m, press outside 0..1, quaternions that are not of length 1,
+/// names of more than 200 bytes, and ids that are not whole numbers of 0..2^53 (kOutOfRange).
+[[nodiscard]] DecodeStatus decode(std::string_view text, PageMessage& message);
+
+/// For the page, of a message that was refused.
+std::string_view refusal_text(DecodeStatus status) noexcept;
 
 }  // namespace hg::viewer_server

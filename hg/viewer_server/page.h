@@ -1,4 +1,4 @@
-/// One open page: sends it all events and the newest frame, reads its hand targets.
+/// One open page: sends it all events and the newest frame, reads its hand targets and commands.
 #pragma once
 
 #include <boost/asio/buffer.hpp>
@@ -14,6 +14,8 @@
 namespace hg::viewer_server {
 
 constexpr std::size_t kLargestMessage = 4096;  // bytes; a hand target has about 80
+constexpr double kMessageRate_Hz = 200.0;      // a page sends 60 hand targets per second
+constexpr double kCommandRate_Hz = 30.0;       // a slider that is dragged
 
 /// Lives as long as its connection.
 class Page : public std::enable_shared_from_this<Page> {
@@ -67,14 +69,33 @@ class Page : public std::enable_shared_from_this<Page> {
   void listen() {
     const auto bytes = buffer_.cdata();
     const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
-    HandTarget target;
-    if (rate_.admit(now_s()) && socket_.got_text() &&
-        decode_hand(text, target) == DecodeStatus::kOk) {
-      hub_.put_hand(number, target);
+    PageMessage message;
+    if (!rate_.admit(now_s())) {
+      ++hub_.refused;  // without an answer: a flood would only grow by it
+    } else if (!socket_.got_text()) {
+      refuse(-1.0, refusal_text(DecodeStatus::kMalformed));
+    } else if (const DecodeStatus status = decode(text, message); status == DecodeStatus::kHand) {
+      hub_.put_hand(number, message.hand);
+    } else if (status == DecodeStatus::kCommand) {
+      listen(message.command);
     } else {
-      ++hub_.refused;
+      refuse(-1.0, refusal_text(status));
     }
     buffer_.clear();
+  }
+
+  void listen(Command& command) {
+    command.page = number;
+    if (!command_rate_.admit(now_s())) {
+      refuse(command.id, "too many commands");
+    } else if (!hub_.put_command(command)) {
+      refuse(command.id, "too many commands are waiting");
+    }
+  }
+
+  void refuse(double id, std::string_view reason) {
+    ++hub_.refused;
+    tell(std::make_shared<const std::string>(encode_answer(id, reason)));
   }
 
   void write() {
@@ -99,7 +120,8 @@ class Page : public std::enable_shared_from_this<Page> {
   websocket::stream<beast::tcp_stream> socket_;
   std::shared_ptr<int> connection_;
   beast::flat_buffer buffer_;
-  MessageRate rate_;
+  MessageRate rate_{kMessageRate_Hz};
+  MessageRate command_rate_{kCommandRate_Hz};
   std::deque<Text> events_;  // waiting
   Text frame_;               // waiting
   Text current_;             // on its way

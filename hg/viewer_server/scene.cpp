@@ -10,7 +10,8 @@ namespace {
 
 void check_chain(const SceneChain& chain, std::string_view item) {
   const std::string name(item);
-  if (!chain.urdf.empty() && !std::filesystem::is_regular_file(chain.urdf)) {
+  if (!chain.urdf.empty() && chain.urdf_text.empty() &&
+      !std::filesystem::is_regular_file(chain.urdf)) {
     throw SetupError("viewer: " + name + " URDF must be a file, got " + chain.urdf.string());
   }
   if (!chain.T_B_root.p.allFinite() || !chain.T_B_root.R.allFinite()) {

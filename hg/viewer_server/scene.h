@@ -4,11 +4,13 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hg/core/types.h"
 #include "hg/signals/limit.h"
+#include "hg/viewer_server/commands.h"
 
 namespace hg::viewer_server {
 
@@ -23,22 +25,61 @@ struct SceneJoint {
   std::string planar;
   Eigen::Vector3d axis =
       Eigen::Vector3d::UnitX();  ///< of such a part, in the frame of the planar joint
+  Interval range;                ///< rad or m
+  double dq_max = kInfinity;     ///< rad/s or m/s
+  double tau_max = kInfinity;    ///< peak, Nm or N; infinite: unknown
 };
 
 struct SceneChain {
   std::filesystem::path urdf;      ///< empty: the page draws a plain body at the handle
+  std::string urdf_text;           ///< of a recording; empty: the file is read
   Pose T_B_root;                   ///< root link in B
   std::vector<SceneJoint> joints;  ///< in the order of the coordinates
 };
 
+/// What stands around the twin.
+enum class Environment : std::uint8_t { kRoom, kDoor, kExcavator };
+
+enum class Source : std::uint8_t { kRun, kRecording };
+
+struct Choice {
+  std::string name, title;
+};
+
+/// What a page may choose, and the names of what is chosen.
+struct Choices {
+  std::string scenario, twin, law, person;
+  std::vector<Choice> scenarios, twins, laws, people;
+};
+
+/// A value of the twin that a page may change: a field of its form.
+struct Setting {
+  std::string name;   ///< for example "hinge.damping_Nms_per_rad"
+  std::string group;  ///< joint of the twin, or empty
+  std::string label, unit;
+  double min = 0.0, max = 0.0;  ///< of what is accepted
+  double value = 0.0;           ///< at the start; may be infinite
+  double step = 0.0;
+  std::string help;
+};
+
 struct Scene {
-  std::string title;
-  SceneChain device;  ///< gantry joints first, then manipulator: coordinates q_p, then q_m
-  SceneChain twin;    ///< coordinates q_a
+  std::uint64_t run = 1;  ///< counts up when another run begins
+  Source source = Source::kRun;
+  std::string title, description;
+  double duration_s = 0.0;  ///< of a recording, or planned; 0 = open
+  SceneChain device;        ///< gantry joints first, then manipulator: coordinates q_p, then q_m
+  SceneChain twin;          ///< coordinates q_a
   LimitCatalogue limits;
   Eigen::AlignedBox3d box;  ///< Cartesian limits of the handle in B; dragging ends 0.5 m outside
   double floor_z = 0.0;     ///< height of the floor in B, m
   double rate_hz = 1000.0;  ///< of the cycle
+  int gantry_joints = 0;    ///< of the device, its first ones
+  Environment environment = Environment::kRoom;
+  Choices choices;
+  std::vector<Setting> settings;
+  std::vector<CommandName> commands;  ///< that are followed
+  std::string refusal;                ///< why others are not; empty: all are
 };
 
 /// Number of coordinates of all joints.

@@ -5,6 +5,8 @@
 #pragma GCC diagnostic ignored "-Wtsan"  // Asio's fences: unknown to the sanitizer, not needed here
 #endif
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
@@ -12,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -28,7 +31,7 @@ namespace hg::viewer_server {
 
 bool Hub::has_token(const Request& request) const {
   if (is_same_secret(query_value(view(request.target()), "token"), token)) return true;
-  const std::string cookie = "hapticgiant_" + std::to_string(port);
+  const std::string cookie = "hapticgiant_" + std::to_string(listener.port);
   return is_same_secret(cookie_value(view(request[http::field::cookie]), cookie), token);
 }
 
@@ -37,19 +40,33 @@ void Hub::join(const std::shared_ptr<Page>& page) {
   pages.insert(page);
   clients = pages.size();
   for (const Text& event : events) page->tell(event);
+  if (values) page->tell(values);
   if (newest_frame) page->show(newest_frame);
 }
 
 void Hub::leave(const std::shared_ptr<Page>& page) {
   pages.erase(page);
   clients = pages.size();
-  const std::lock_guard lock(hand_mutex);
+  const std::lock_guard lock(input_mutex);
   hand.leave(page->number);
 }
 
 void Hub::put_hand(std::uint64_t page, const HandTarget& target) {
-  const std::lock_guard lock(hand_mutex);
+  const std::lock_guard lock(input_mutex);
   hand.put(page, target, now_s());
+}
+
+bool Hub::put_command(Command command) {
+  const std::lock_guard lock(input_mutex);
+  if (commands.size() == kMaxCommands) return false;
+  commands.push_back(std::move(command));
+  return true;
+}
+
+void Hub::answer(std::uint64_t page, const Text& answer) {
+  for (const auto& candidate : pages) {
+    if (candidate->number == page) candidate->tell(answer);
+  }
 }
 
 void Hub::show(Text frame) {
@@ -70,48 +87,64 @@ using Clock = std::chrono::steady_clock;
 constexpr int kSendBuffer = 64 * 1024;  // bytes; small, so that what arrives is fresh
 constexpr long kMaxConnections = 64;
 
-tcp::acceptor listen_on(asio::io_context& context, std::uint16_t port) {
+tcp::acceptor listen_on(asio::io_context& context, const Options& options) {
   tcp::acceptor acceptor(context);
-  const tcp::endpoint endpoint(asio::ip::address_v4::loopback(), port);
   error_code error;
+  const tcp::endpoint endpoint(asio::ip::make_address(options.address, error), options.port);
+  if (error) {
+    throw SetupError("viewer: address must be an IP address of this machine, got '" +
+                     options.address + "'");
+  }
   acceptor.open(endpoint.protocol(), error);
   if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error == asio::error::address_in_use) {
-    throw SetupError("viewer: port " + std::to_string(port) +
+    throw SetupError("viewer: port " + std::to_string(options.port) +
                      " is taken; choose another one, or 0 for any that is free");
   }
   if (error) {
-    throw SetupError("viewer: port " + std::to_string(port) + ": " + error.message());
+    throw SetupError("viewer: " + host_text(options.address, options.port) + ": " +
+                     error.message());
   }
   return acceptor;
+}
+
+Text to_text(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+
+void add_urdf(const SceneChain& chain, std::string_view address, std::string_view folder,
+              AssetTable& assets) {
+  if (chain.urdf.empty()) return;
+  const std::string text = chain.urdf_text.empty() ? read_file(chain.urdf) : chain.urdf_text;
+  assets[std::string(address)] = {"application/xml", with_meshes(chain.urdf, text, folder, assets)};
+}
+
+// What a scene puts into the table.
+AssetTable assets_of(const Scene& scene, double update_rate_hz) {
+  AssetTable assets;
+  assets["/scene.json"] = {"application/json", encode_scene(scene, update_rate_hz)};
+  add_urdf(scene.device, kDeviceAddress, "/models/device/", assets);
+  add_urdf(scene.twin, kTwinAddress, "/models/twin/", assets);
+  return assets;
 }
 
 }  // namespace
 
 struct ViewerServer::Impl {
   Impl(const Options& options, const Scene& scene)
-      : limits(scene.limits),
+      : update_rate_hz(options.update_rate_hz),
         period(std::chrono::duration_cast<Clock::duration>(
             std::chrono::duration<double>(1.0 / options.update_rate_hz))),
         hub(scene.box),
-        acceptor(listen_on(context, options.port)),
+        acceptor(listen_on(context, options)),
         retry(context) {
-    hub.port = acceptor.local_endpoint().port();
+    hub.listener = {options.address, acceptor.local_endpoint().port()};
     hub.token = options.token.empty() ? random_token() : options.token;
     hub.assets = load_page(options.page);
-    hub.assets["/scene.json"] = {"application/json", encode_scene(scene, options.update_rate_hz)};
-    if (!scene.device.urdf.empty()) {
-      hub.assets[std::string(kDeviceAddress)] = {
-          "application/xml", with_meshes(scene.device.urdf, "/models/device/", hub.assets)};
-    }
-    if (!scene.twin.urdf.empty()) {
-      hub.assets[std::string(kTwinAddress)] = {
-          "application/xml", with_meshes(scene.twin.urdf, "/models/twin/", hub.assets)};
-    }
+    take({scene, assets_of(scene, update_rate_hz)});
     accept();
     thread = std::thread([this] { context.run(); });
+    pthread_setname_np(thread.native_handle(), "page server");
   }
 
   ~Impl() {
@@ -139,22 +172,55 @@ struct ViewerServer::Impl {
     });
   }
 
-  // On the server's thread: takes what publish() left and sends it.
+  struct NewScene {
+    Scene scene;
+    AssetTable assets;
+  };
+
+  struct Answer {
+    std::uint64_t page;
+    std::string text;
+  };
+
+  // What waits for the server's thread, in the order in which it is looked at.
+  struct Outbox {
+    std::unique_ptr<NewScene> scene;
+    std::vector<std::string> events;
+    std::vector<Answer> answers;
+    std::optional<std::string> values;
+    std::unique_ptr<View> view;
+  };
+
+  // On the server's thread, or before it runs.
+  void take(NewScene scene) {
+    std::erase_if(hub.assets,
+                  [](const auto& asset) { return asset.first.starts_with("/models/"); });
+    for (auto& [path, asset] : scene.assets) hub.assets[path] = std::move(asset);
+    limits = scene.scene.limits;
+    hub.events.clear();
+    hub.newest_frame.reset();
+    const std::lock_guard lock(hub.input_mutex);
+    hub.hand = HandTargetBox(scene.scene.box);
+  }
+
+  // On the server's thread: takes what the other functions left and sends it.
   void send_newest() {
     Outbox outbox;
     {
       const std::lock_guard lock(mutex);
-      std::swap(outbox.frame, pending.frame);
-      std::swap(outbox.events, pending.events);
+      std::swap(outbox, pending);
       is_posted = false;
     }
-    for (std::string& event : outbox.events) {
-      hub.announce(std::make_shared<const std::string>(std::move(event)));
+    if (outbox.scene) take(std::move(*outbox.scene));
+    for (std::string& event : outbox.events) hub.announce(to_text(std::move(event)));
+    for (Answer& answer : outbox.answers) {
+      hub.answer(answer.page, to_text(std::move(answer.text)));
     }
-    if (!outbox.frame) return;
-    const NewestFrame& frame = *outbox.frame;
-    hub.show(std::make_shared<const std::string>(
-        encode_frame(frame.record, frame.hand, frame.cycle_time_us, frame.status_text, limits)));
+    if (outbox.values) {
+      hub.values = to_text(std::move(*outbox.values));
+      for (const auto& page : hub.pages) page->tell(hub.values);
+    }
+    if (outbox.view) hub.show(to_text(encode_frame(*outbox.view, limits, hub.pages.size())));
   }
 
   // With the mutex held.
@@ -163,25 +229,14 @@ struct ViewerServer::Impl {
     asio::post(context, [this] { send_newest(); });
   }
 
-  struct NewestFrame {
-    CycleRecord record;
-    HandTarget hand;
-    double cycle_time_us;
-    std::string status_text;
-  };
-
-  // What waits for the server's thread.
-  struct Outbox {
-    std::unique_ptr<NewestFrame> frame;
-    std::vector<std::string> events;
-  };
-
-  const LimitCatalogue limits;
+  const double update_rate_hz;
   const Clock::duration period;
   Clock::time_point due;  // of the next frame; only the caller of publish() uses it
   std::mutex mutex;       // guards pending and is_posted
   Outbox pending;
   bool is_posted = false;
+  std::uint64_t run = 0;  // of the newest scene; only the caller of set_scene() uses it
+  LimitCatalogue limits;  // of the scene that is shown
 
   Hub hub;
   asio::io_context context{1};
@@ -208,38 +263,74 @@ ViewerServer::ViewerServer(const Options& options, const Scene& scene) {
   check(options);
   check(scene);
   impl_ = std::make_unique<Impl>(options, scene);
+  impl_->run = scene.run;
 }
 
 ViewerServer::~ViewerServer() = default;
 
 std::string ViewerServer::url() const {
-  return "http://127.0.0.1:" + std::to_string(impl_->hub.port) + "/?token=" + impl_->hub.token;
+  const Listener& listener = impl_->hub.listener;
+  const bool is_open = listener.address == "0.0.0.0" || listener.address == "::";
+  return "http://" + host_text(is_open ? "127.0.0.1" : listener.address, listener.port) +
+         "/?token=" + impl_->hub.token;
 }
 
-void ViewerServer::publish(const Sample& sample, std::string_view status_text) {
+void ViewerServer::set_scene(const Scene& scene) {
+  check(scene);
+  auto next = std::make_unique<Impl::NewScene>(
+      Impl::NewScene{scene, assets_of(scene, impl_->update_rate_hz)});
+  impl_->run = scene.run;
+  const std::lock_guard lock(impl_->mutex);
+  impl_->pending.scene = std::move(next);
+  impl_->pending.events.clear();
+  impl_->pending.view.reset();
+  impl_->post_once();
+}
+
+bool ViewerServer::is_due() const { return Clock::now() >= impl_->due; }
+
+void ViewerServer::publish(View view) {
   const Clock::time_point now = Clock::now();
   if (now < impl_->due) return;
   // half a period of slack, so that a caller at just this rate loses nothing by jitter
   impl_->due = std::max(impl_->due + impl_->period, now + impl_->period / 2);
 
-  auto frame = std::make_unique<Impl::NewestFrame>(
-      Impl::NewestFrame{sample.record, sample.operator_input.hand_target, sample.cycle_time_us,
-                        std::string(status_text)});
+  auto newest = std::make_unique<View>(std::move(view));
   const std::lock_guard lock(impl_->mutex);
-  impl_->pending.frame = std::move(frame);
+  impl_->pending.view = std::move(newest);
   impl_->post_once();
 }
 
 void ViewerServer::announce_event(double time_s, std::string_view name, std::string_view text) {
-  std::string event = encode_event(time_s, name, text);
+  std::string event = encode_event(impl_->run, time_s, name, text);
   const std::lock_guard lock(impl_->mutex);
   impl_->pending.events.push_back(std::move(event));
   impl_->post_once();
 }
 
+void ViewerServer::set_values(const std::vector<double>& values) {
+  std::string text = encode_values(values);
+  const std::lock_guard lock(impl_->mutex);
+  impl_->pending.values = std::move(text);
+  impl_->post_once();
+}
+
 bool ViewerServer::take_hand_target(HandTarget& target) {
-  const std::lock_guard lock(impl_->hub.hand_mutex);
+  const std::lock_guard lock(impl_->hub.input_mutex);
   return impl_->hub.hand.take(target, now_s());
+}
+
+std::vector<Command> ViewerServer::take_commands() {
+  const std::lock_guard lock(impl_->hub.input_mutex);
+  return std::exchange(impl_->hub.commands, {});
+}
+
+void ViewerServer::answer(const Command& command, std::string_view refusal) {
+  std::string text = encode_answer(command.id, refusal);
+  if (!refusal.empty()) ++impl_->hub.refused;
+  const std::lock_guard lock(impl_->mutex);
+  impl_->pending.answers.push_back({command.page, std::move(text)});
+  impl_->post_once();
 }
 
 Counters ViewerServer::counters() const {

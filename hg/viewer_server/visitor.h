@@ -46,9 +46,9 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     const beast::string_view origin = request[http::field::origin];
     const bool is_upgrade = websocket::is_upgrade(request);
 
-    if (!is_own_host(view(request[http::field::host]), hub_.port)) {
+    if (!is_own_host(view(request[http::field::host]), hub_.listener)) {
       refuse(http::status::forbidden, "wrong host");
-    } else if (!origin.empty() && !is_own_origin(view(origin), hub_.port)) {
+    } else if (!origin.empty() && !is_own_origin(view(origin), hub_.listener)) {
       refuse(http::status::forbidden, "wrong origin");
     } else if (request.method() != http::verb::get) {
       refuse(http::status::method_not_allowed, "only GET");
@@ -95,8 +95,8 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     response_.set("Referrer-Policy", "no-referrer");
     response_.set("X-Content-Type-Options", "nosniff");
     if (status == http::status::ok && path_of(view(request.target())) == "/") {
-      response_.set(http::field::set_cookie, "hapticgiant_" + std::to_string(hub_.port) + "=" +
-                                                 hub_.token +
+      response_.set(http::field::set_cookie, "hapticgiant_" + std::to_string(hub_.listener.port) +
+                                                 "=" + hub_.token +
                                                  "; Path=/; HttpOnly; SameSite=Strict");
     }
     response_.body() = std::move(body);

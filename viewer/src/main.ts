@@ -1,25 +1,40 @@
-// Puts the page together: scene, connection, panel, hand.
+// Puts the page together: store, scene, panels, hand.
 
-import { type ChainView, load_chain } from "./chain_view";
-import { Connection } from "./connection";
-import { Drag } from "./drag";
-import { connect_hand_controls, show_hand } from "./hand_controls";
-import { HandleView } from "./handle_view";
+import { Store } from "./data/store";
+import { Drag } from "./hand/drag";
+import { HandControls } from "./hand/hand_controls";
 import type { Frame, Scene, Vec3 } from "./messages";
-import { Panel, element, show_connection } from "./panel";
-import { Stage } from "./stage";
-import { is_complete } from "./text";
+import { element, write } from "./page";
+import { ChangePanel } from "./panels/change";
+import { EventsPanel } from "./panels/events";
+import { FeelPanel } from "./panels/feel";
+import { JointsPanel } from "./panels/joints";
+import { Notices } from "./panels/notices";
+import { Tabs } from "./panels/tabs";
+import { PlotDrawer } from "./plots/drawer";
+import { ReplayBar } from "./replay_bar";
+import { Cameras } from "./scene/cameras";
+import { Layers } from "./scene/layers";
+import { type Pixel, Stage } from "./scene/stage";
+import { World } from "./scene/world";
+import { connection_text } from "./text";
+import { start_theme } from "./theme";
+import { Toolbar, build_view_tools } from "./toolbar";
+import { Headset } from "./xr/headset";
 
-const TWIN_OPACITY = 0.8; // it is not there: the device shines through
+const PANEL_GAP_MS = 66; // words and bars change 15 times a second
 
 // What tests and the console may look at.
 export interface PageState {
-  readonly scene: Scene;
+  readonly scene: Scene | null;
   readonly frame: Frame | null;
   readonly frames_per_second: number;
+  readonly frames: number; // since the page was loaded
   readonly is_connected: boolean;
-  readonly handle_on_screen: { x: number; y: number } | null;
-  on_screen(p_B: Vec3): { x: number; y: number };
+  readonly is_drawn: boolean; // the scene of the newest run
+  readonly unreadable: number;
+  readonly handle_on_screen: Pixel | null;
+  on_screen(p_B: Vec3): Pixel;
 }
 
 declare global {
@@ -28,67 +43,152 @@ declare global {
   }
 }
 
-async function load_scene(): Promise<Scene> {
-  const response = await fetch("/scene.json");
-  if (!response.ok) throw new Error(`scene: ${await response.text()}`);
-  return response.json();
-}
+class Page {
+  private readonly store = new Store();
+  private readonly stage = new Stage(element("stage"));
+  private readonly cameras = new Cameras(this.stage.camera, this.stage.canvas);
+  private readonly layers = new Layers(() => this.world?.apply_layers());
+  private readonly drag = new Drag(
+    this.stage,
+    this.cameras,
+    () => (this.store.is_connected ? this.store.frame : null),
+    (hand) => this.store.connection.send(hand),
+  );
+  private readonly hand_controls = new HandControls(this.drag);
+  private readonly headset: Headset;
+  private readonly toolbar = new Toolbar(this.store);
+  private readonly replay = new ReplayBar(this.store);
+  private readonly feel = new FeelPanel(element("feel"));
+  private readonly joints = new JointsPanel(element("joints"));
+  private readonly change = new ChangePanel(element("change"), this.store.commands);
+  private readonly events = new EventsPanel(element("events"));
+  private readonly notices = new Notices();
+  private readonly plots = new PlotDrawer(element("plots"), this.store);
+  private world: World | null = null;
+  private has_looked = false; // the first view has turned to the handle
+  private frames = 0;
+  private panels_ms = 0;
 
-async function start(): Promise<void> {
-  const scene = await load_scene();
-  const device = await load_chain(scene.device, 1);
-  const twin = await load_chain(scene.twin, TWIN_OPACITY);
-  const stage = new Stage(element("stage"));
-  const panel = new Panel(scene);
-  const handle_view = new HandleView();
-  stage.frame(scene.box, scene.floor_z_m);
-  stage.scene.add(device.placement, twin.placement, handle_view.group);
+  constructor() {
+    new Tabs();
+    build_view_tools(this.cameras, this.layers, () => this.plots.toggle());
+    this.headset = new Headset(
+      this.stage,
+      () => this.store.frame,
+      (hand) => this.store.connection.send(hand),
+    );
+    this.stage.on_resize = () => this.cameras.resize();
+    this.listen();
+    this.stage.run((now_ms) => this.draw(now_ms));
+  }
 
-  let newest: Frame | null = null;
-  const connection = new Connection({
-    on_frame: (frame) => {
-      if (!is_complete(frame)) return;
-      if (!newest) stage.look_at(frame.p_B_H_m);
-      newest = frame;
-    },
-    on_event: (event) => panel.add_event(event),
-    on_state: (is_connected) => {
-      show_connection(is_connected);
-      if (is_connected) panel.clear_events(); // the program sends them all again
-    },
-  });
-  const handle = (): Vec3 | null => (newest && connection.is_connected ? newest.p_B_H_m : null);
-  const drag = new Drag(stage, handle, (hand) => connection.send(hand));
-  connect_hand_controls(drag, scene);
-  connect_visibility("show-device", device);
-  connect_visibility("show-twin", twin);
+  private listen(): void {
+    this.store.subscribe({
+      on_scene: (scene) => void this.furnish(scene),
+      on_frame: (frame) => this.note(frame),
+      on_event: (event) => this.events.add(event),
+      on_events_cleared: () => this.events.clear(),
+      on_values: (values) => this.change.take(values),
+      on_connection: (is_connected) => show_connection(is_connected),
+      on_refusal: (refusal) => {
+        this.change.refuse(refusal);
+        this.toolbar.refuse();
+        this.notices.show(refusal.command, `${refusal.command}: ${refusal.reason}`);
+      },
+      on_unreadable: (count, reason) => {
+        const times = count === 1 ? "A message" : `${count} messages`;
+        this.notices.show("unreadable", `${times} of the program could not be read (${reason}).`);
+      },
+    });
+  }
 
-  stage.run(() => {
-    if (!newest) return;
-    device.pose(newest.q_device);
-    twin.pose(newest.q_twin);
-    handle_view.show_force(newest.p_B_H_m, newest.force_N);
-    handle_view.show_target(newest.p_B_H_m, drag.target_m ?? seen_target(newest));
-    show_hand(drag, stage.on_screen(newest.p_B_H_m));
-    panel.show(newest, connection.frames_per_second());
-  });
+  private async furnish(scene: Scene): Promise<void> {
+    const is_first = this.world === null;
+    this.toolbar.furnish(scene);
+    this.replay.furnish(scene);
+    this.joints.furnish(scene);
+    this.change.furnish(scene);
+    this.plots.furnish(scene);
+    this.hand_controls.furnish(scene);
+    document.body.dataset.source = scene.source;
+    this.stage.furnish(scene.box, scene.floor_z_m);
+    if (is_first) this.cameras.frame(scene.box);
+    const world = await World.load(scene, this.stage, this.layers).catch((error: unknown) => {
+      this.notices.show("world", error instanceof Error ? error.message : String(error));
+      return null;
+    });
+    if (!world || this.store.scene !== scene) return; // another one has come meanwhile
+    this.world?.dispose();
+    this.world = world;
+    this.stage.scene.add(world.root);
+  }
 
-  window.hapticgiant = Object.freeze({
-    scene,
-    get frame() {
-      return newest;
-    },
-    get frames_per_second() {
-      return connection.frames_per_second();
-    },
-    get is_connected() {
-      return connection.is_connected;
-    },
-    get handle_on_screen() {
-      return newest && stage.on_screen(newest.p_B_H_m);
-    },
-    on_screen: (p_B: Vec3) => stage.on_screen(p_B),
-  });
+  private note(frame: Frame): void {
+    this.frames += 1;
+    this.world?.note(frame);
+    if (this.has_looked) return;
+    this.has_looked = true;
+    this.cameras.look_at(frame.p_B_H_m);
+  }
+
+  private draw(now_ms: number): void {
+    const { scene, frame } = this.store;
+    if (!scene || !frame || this.world?.scene !== scene) return;
+    const target = this.drag.target_m ?? this.headset.target_m ?? seen_target(frame);
+    this.world.show(frame, target, this.drag.axis);
+    const is_first_person = this.cameras.current === "first person" || this.headset.is_worn;
+    this.world.person.hide_body(is_first_person);
+    if (!this.headset.is_worn) this.cameras.update(frame.p_B_H_m, this.world.person.eyes);
+    const handle_px = this.headset.is_worn ? null : this.stage.on_screen(frame.p_B_H_m);
+    this.hand_controls.show(handle_px, Math.hypot(...frame.force_N));
+    if (now_ms - this.panels_ms < PANEL_GAP_MS) return;
+    this.panels_ms = now_ms;
+    this.show_panels(scene, frame);
+  }
+
+  private show_panels(scene: Scene, frame: Frame): void {
+    this.toolbar.show(frame);
+    this.replay.show(scene, frame);
+    if (!element("feel").hidden) this.feel.show(scene, frame);
+    if (!element("joints").hidden) this.joints.show(scene, frame);
+    this.plots.show();
+    write(element("sync"), `hand and twin ${(frame.sync_error_mm ?? 0).toFixed(1)} mm apart`);
+    const cycle = `cycle ${(frame.cycle_time_us ?? 0).toFixed(0)} \u00b5s`;
+    write(element("rates"), `${cycle}, ${this.store.frames_per_second()} frames/s`);
+  }
+
+  state(): PageState {
+    const { store, stage } = this;
+    const is_drawn = (): boolean => this.world !== null && this.world.scene === store.scene;
+    const count = (): number => this.frames;
+    return Object.freeze({
+      get scene() {
+        return store.scene;
+      },
+      get frame() {
+        return store.frame;
+      },
+      get frames_per_second() {
+        return store.frames_per_second();
+      },
+      get frames() {
+        return count();
+      },
+      get is_connected() {
+        return store.is_connected;
+      },
+      get is_drawn() {
+        return is_drawn();
+      },
+      get unreadable() {
+        return store.unreadable;
+      },
+      get handle_on_screen() {
+        return store.frame && stage.on_screen(store.frame.p_B_H_m);
+      },
+      on_screen: (p_B: Vec3) => stage.on_screen(p_B),
+    });
+  }
 }
 
 // Where another page drags the handle to.
@@ -96,13 +196,12 @@ function seen_target(frame: Frame): Vec3 | null {
   return frame.hand.active ? frame.hand.p_B_m : null;
 }
 
-function connect_visibility(id: string, view: ChainView): void {
-  const box = element<HTMLInputElement>(id);
-  box.addEventListener("change", () => (view.placement.visible = box.checked));
+function show_connection(is_connected: boolean): void {
+  const light = element("connection");
+  light.dataset.state = is_connected ? "open" : "lost";
+  document.body.dataset.connected = String(is_connected);
+  write(light, connection_text(is_connected));
 }
 
-start().catch((error: unknown) => {
-  const line = element("connection");
-  line.dataset.state = "lost";
-  line.textContent = error instanceof Error ? error.message : String(error);
-});
+start_theme();
+window.hapticgiant = new Page().state();

@@ -1,83 +1,241 @@
-// The messages between program and page. The C++ side (hg/viewer_server/messages.h) is tested
-// against the field names in this file. Units are part of the names; B is the base frame (z up).
+// Generated from hg/viewer_server/*_message.h; do not edit. Units are part of the names; B is
+// the base frame (z up), H the handle. A number that is not finite arrives as null.
 
 export type Vec3 = [number, number, number];
+export type Quaternion = [number, number, number, number]; // x y z w
 
-// GET /scene.json: fixed during a run
+// GET /scene.json: fixed in a run
 export interface Scene {
+  run: number; // number of the run; a Frame with another one: fetch this again
+  source: "run" | "recording";
   title: string;
-  rate_hz: number;
-  update_rate_hz: number;
+  description: string;
+  rate_hz: number; // of the control cycle
+  update_rate_hz: number; // of frames
+  duration_s: number; // of a recording, or planned; 0 = open
   device: SceneChain;
   twin: SceneChain;
+  gantry_joints: number; // so many of the device's joints come first
   limits: SceneLimit[];
   floor_z_m: number;
   box: SceneBox;
+  environment: "room" | "door" | "excavator"; // of the twin
+  choices: Choices;
+  settings: Setting[];
+  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek")[]; // that are followed
+  refusal: string; // why others are not; empty = all are
 }
 
+// a robot or a twin
 export interface SceneChain {
   urdf: string; // address of the file, empty = none
   p_B_root_m: Vec3;
-  quaternion_B_root: number[]; // x y z w
+  quaternion_B_root: Quaternion;
   joints: SceneJoint[]; // in the order of the coordinates
 }
 
+// a joint of a chain
 export interface SceneJoint {
-  name: string;
+  name: string; // as in the URDF
   type: "revolute" | "prismatic" | "floating"; // floating: x y z qx qy qz qw
   planar: string; // joint of the URDF that this is one of three parts of: slide, slide, turn
   axis: Vec3; // of such a part, in the frame of the planar joint
+  q_min: number | null; // rad or m; null = unbounded
+  q_max: number | null;
+  dq_max: number | null; // rad/s or m/s
+  tau_max: number | null; // Nm or N, peak; null = unknown
 }
 
+// a limited quantity
 export interface SceneLimit {
   name: string;
   kind: "manipulator" | "virtual" | "cartesian" | "twin";
-  unit: "rad" | "m";
+  unit: "rad" | "m"; // of its position; the reaction of a rad is in Nm, of a m in N
   min: number | null; // null = unbounded
   max: number | null;
+  priority: number; // 1 is the coupling of hand and twin, then 2, 3, ...
 }
 
+// Cartesian limits of the handle in B
 export interface SceneBox {
   min_m: Vec3;
   max_m: Vec3;
 }
 
-// program -> page. A number that is not finite arrives as null.
+// what can be chosen, and is
+export interface Choices {
+  scenario: string; // name of the chosen one
+  scenarios: Choice[];
+  twin: string; // empty: the scenario's own
+  twins: Choice[];
+  law: string;
+  laws: Choice[];
+  person: string; // who holds the handle: a script, mouse, none; empty: the scenario's
+  people: Choice[];
+}
+
+// something to choose
+export interface Choice {
+  name: string; // what a command carries
+  title: string; // what people read
+}
+
+// a form field: a value of the twin
+export interface Setting {
+  name: string; // what the command "set" carries
+  group: string; // joint of the twin, or empty
+  label: string;
+  unit: string;
+  min: number; // of what is accepted
+  max: number;
+  value: number | null; // at the start; then message Values. null = unlimited
+  step: number;
+  help: string;
+}
+
+// program -> page, at update_rate
 export interface Frame {
   type: "frame";
+  run: number; // Scene.run that this belongs to
   time_s: number;
-  mode: string;
+  mode: "off" | "ready" | "armed" | "running" | "stopping" | "fault";
+  mode_text: string; // the mode and its cause in words
   fault: string; // empty = none
   status: string; // one line from the program
   q_device: number[]; // rad or m: gantry, then reference of the manipulator
+  q_measured: number[]; // rad or m: gantry, then manipulator
+  dq_device: number[]; // rad/s or m/s, as q_device
+  dq_measured: number[]; // rad/s or m/s, as q_measured; the gantry's speed
+  tau_measured_Nm: number[]; // of the manipulator's joints; empty = no sensors
   q_twin: number[]; // rad or m
-  p_B_H_m: Vec3; // handle
+  dq_twin: number[]; // rad/s or m/s; a floating joint has 6, in its own frame
+  q_gantry_target_m: number[]; // where prepositioning wants the gantry
+  tracking_error: number[]; // rad or m, reference minus measured, manipulator
+  is_clamped: boolean; // tracking was lost: the reference waits for the device
+  p_B_H_m: Vec3; // handle, at the reference
+  quaternion_B_H: Quaternion;
+  v_H_m_per_s: Vec3;
+  p_B_E_m: Vec3; // end effector of the twin
+  quaternion_B_E: Quaternion;
+  p_B_elbow_m: Vec3;
   force_N: Vec3; // of the user on the handle, in B
   torque_Nm: Vec3;
   felt: FeltLimit | null;
-  sync_error_mm: number;
+  active: ActiveLimit[]; // limits that act
+  limit_position: number[]; // rad or m, in the order of Scene.limits
+  limit_distance: (number | null)[]; // to the nearer end, with margin; null = unbounded
+  budget: Budget; // why do I feel this?
+  singularity: Singularity | null;
+  sync_error_mm: number; // between handle and twin
   sync_error_deg: number;
   cycle_time_us: number;
+  cycle_time_max_us: number; // since the frame before
   hand: Hand;
+  run_state: RunState;
+  clients: number; // pages that are connected
+  ghost: Ghost | null;
 }
 
+// what is felt most
 export interface FeltLimit {
   index: number; // in Scene.limits
   name: string;
-  text: string; // "elbow x: upper limit, 23 N"
+  text: string; // elbow x: upper limit, 23 N
+  force_N: Vec3; // of its reaction on the hand; zero for limits of the twin
+  torque_Nm: Vec3;
 }
 
-export interface Event {
-  type: "event";
-  time_s: number;
-  name: string;
+// a limit that acts
+export interface ActiveLimit {
+  index: number; // in Scene.limits
+  state: "inactive" | "lower" | "upper" | "violated";
+  cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction";
+  reaction: number; // Nm or N, in its own coordinate
+  excess: number; // outside its range by this, rad or m
   text: string;
 }
 
-// page -> program (type "hand"), and what the program made of it (inside a frame)
+// user = inertia + damping + ... + structure + rest
+export interface Budget {
+  user: Wrench; // what the user exerts
+  inertia: Wrench; // what the motion of the twin takes, with its weight
+  damping: Wrench;
+  spring: Wrench; // springs and closers
+  friction: Wrench; // while slipping; held joints are limits
+  surface: Wrench; // reference wrench of the twin
+  limits: Wrench; // all limits that act
+  conflict: Wrench; // limits that could not be met
+  structure: Wrench; // carried by the bearings of the twin
+  rest: Wrench; // what is left of the sum: 0 while running, else what nothing explains
+}
+
+// on the hand, at H, in B
+export interface Wrench {
+  force_N: Vec3;
+  torque_Nm: Vec3;
+}
+
+// of the manipulator
+export interface Singularity {
+  measure: number; // 0 = singular, 1 = as far from it as this device gets
+  limit: number; // in Scene.limits, what keeps it away; -1 = none
+}
+
+// what commands have made
+export interface RunState {
+  is_paused: boolean;
+  speed: number; // simulated (or recorded) seconds per second
+  is_over: boolean; // stopped, a fault, or the end of a recording
+  position_s: number; // in the recording that is played; else time_s
+  recording: string; // name of the file that is written or played; empty = none
+}
+
+// a second recording, compared
+export interface Ghost {
+  time_s: number;
+  q_device: number[];
+  q_twin: number[];
+  p_B_H_m: Vec3;
+  force_N: Vec3;
+}
+
+// page -> program, and what the program made of it (inside a frame)
 export interface Hand {
   type: "hand";
   active: boolean;
   p_B_m: Vec3;
-  press: number; // 0..1
+  quaternion_B_H: Quaternion | null; // wanted turn of the handle; null = as the hand likes
+  press: number; // of the lever, 0..1
+}
+
+// page -> program
+export interface Command {
+  type: "command";
+  id: number; // 0..2^53, comes back in the answer
+  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek";
+  name: string; // of what is chosen or set; else empty
+  value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value
+}
+
+// program -> page: one for each Command, and for what was refused
+export interface Answer {
+  type: "answer";
+  id: number; // of the command; -1 = it could not be read
+  is_accepted: boolean;
+  reason: string; // why not; empty = accepted
+}
+
+// program -> page: when it connects and whenever one has changed
+export interface Values {
+  type: "values";
+  values: (number | null)[]; // in the order of Scene.settings; null = unlimited
+}
+
+// program -> page
+export interface Event {
+  type: "event";
+  run: number; // Scene.run that it happened in
+  time_s: number;
+  name: string;
+  text: string;
 }

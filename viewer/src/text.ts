@@ -1,11 +1,11 @@
 // Numbers and states in words. Pure functions.
 
-import type { Frame, SceneJoint, SceneLimit } from "./messages";
+import type { Frame, SceneJoint } from "./messages";
 
 export function time_text(time_s: number): string {
-  const minutes = Math.floor(time_s / 60);
-  const seconds = (time_s - 60 * minutes).toFixed(1).padStart(4, "0");
-  return `${minutes}:${seconds}`;
+  const tenths = Math.round(10 * time_s);
+  const seconds = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");
+  return `${Math.floor(tenths / 600)}:${seconds}`;
 }
 
 export function joint_text(value: number, joint: Pick<SceneJoint, "type">): string {
@@ -15,10 +15,14 @@ export function joint_text(value: number, joint: Pick<SceneJoint, "type">): stri
     : `${((value * 180) / Math.PI).toFixed(1)}\u00b0`;
 }
 
-// Share of the way between the ends of a limit, 0..1; null when it has no two ends.
-export function share_of_range(value: number, limit: SceneLimit | undefined): number | null {
-  if (!limit || limit.min === null || limit.max === null || limit.max <= limit.min) return null;
-  return Math.min(1, Math.max(0, (value - limit.min) / (limit.max - limit.min)));
+// Share of the way between two ends, 0..1; null when there are no two ends.
+export function share_between(
+  value: number,
+  min: number | null,
+  max: number | null,
+): number | null {
+  if (min === null || max === null || max <= min || !Number.isFinite(value)) return null;
+  return Math.min(1, Math.max(0, (value - min) / (max - min)));
 }
 
 export function force_of(frame: Frame): number {
@@ -26,19 +30,14 @@ export function force_of(frame: Frame): number {
   return Number.isFinite(force) ? force : 0;
 }
 
-export function felt_text(frame: Frame): string {
+// `parts`: the largest parts of the budget in words, may be empty.
+export function felt_text(frame: Frame, parts: string): string {
   if (frame.felt) return frame.felt.text;
-  return force_of(frame) < 1 ? "nothing holds you" : "the twin's mass, friction, springs";
+  return force_of(frame) < 1 || parts === "" ? "Nothing holds you." : `No limit: ${parts}.`;
 }
 
-// False while a number is missing: it was not finite in the program.
-export function is_complete(frame: Frame): boolean {
-  return [...frame.q_device, ...frame.q_twin, ...frame.p_B_H_m].every(Number.isFinite);
-}
-
-export function hint_text(has_lever: boolean, is_touch: boolean): string {
-  const grab = has_lever ? "Drag the ringed handle to push the door" : "Drag the ringed handle";
-  const lift = is_touch ? "up / down lifts it" : "with Shift it goes up and down";
-  const press = is_touch ? "press pushes the lever down" : "Space presses the lever";
-  return `${grab}; ${lift}${has_lever ? `; ${press}` : ""}. Drag elsewhere to look around.`;
+export function connection_text(is_connected: boolean): string {
+  return is_connected
+    ? "connected"
+    : "connection lost, trying again; if the program was restarted, open its new link";
 }

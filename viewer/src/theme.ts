@@ -1,53 +1,95 @@
-// Colours of the drawn scene; those of the page around it are in style.css.
+// Light or dark: as the system says, until the user chooses. Colours of the drawn scene; those of
+// the page around it are in style.css.
 
 export interface Theme {
+  is_dark: boolean;
   background: number;
   floor: number;
   grid: number;
-  grid_strong: number;
   box: number;
   link: number; // links that come without a shape
+  person: number;
+  wall: number;
   sky_light: number;
   ground_light: number;
   ambient: number;
   sun: number;
+  reflections: number;
+  exposure: number;
 }
 
 export const FORCE_COLOR = 0xf0643c;
+export const TORQUE_COLOR = 0xa855d8;
 export const TARGET_COLOR = 0x2f7bf6;
+export const ELBOW_COLOR = 0x0f9d8c;
+export const GOOD_COLOR = 0x2fa36b;
+export const NEAR_COLOR = 0xe8a317;
+export const ACTIVE_COLOR = 0xe23d2d;
 
 const LIGHT: Theme = {
-  background: 0xeef1f4,
-  floor: 0xe4e8ec,
-  grid: 0xc6ced6,
-  grid_strong: 0xaab5c0,
-  box: 0x7b8a99,
+  is_dark: false,
+  background: 0xe3e8ed,
+  floor: 0xcfd6dd,
+  grid: 0x8fa0b0,
+  box: 0x5d7fae,
   link: 0x8795a3,
+  person: 0xb9c6d2,
+  wall: 0xf4f1ea,
   sky_light: 0xffffff,
-  ground_light: 0xb9bfc6,
-  ambient: 1.7,
-  sun: 2.2,
+  ground_light: 0xb4bac2,
+  ambient: 0.75,
+  sun: 2.0,
+  reflections: 0.45,
+  exposure: 1.0,
 };
 
 const DARK: Theme = {
-  background: 0x14191f,
-  floor: 0x3d444c,
-  grid: 0x2b333c,
-  grid_strong: 0x4a5661,
-  box: 0x66788a,
+  is_dark: true,
+  background: 0x11161c,
+  floor: 0x2b323a,
+  grid: 0x6d7f90,
+  box: 0x6f9ad6,
   link: 0x8795a3,
-  sky_light: 0xe3e8ee,
-  ground_light: 0x4a525b,
-  ambient: 1.5,
-  sun: 2.0,
+  person: 0x76879a,
+  wall: 0x5a6068,
+  sky_light: 0xdfe7f0,
+  ground_light: 0x3a424b,
+  ambient: 0.65,
+  sun: 1.4,
+  reflections: 0.4,
+  exposure: 1.0,
 };
 
-const query = matchMedia("(prefers-color-scheme: dark)");
+export type ThemeChoice = "system" | "light" | "dark";
+
+const STORED_AS = "hapticgiant.theme";
+const system = matchMedia("(prefers-color-scheme: dark)");
+const listeners: (() => void)[] = [];
+let choice: ThemeChoice = "system";
 
 export function current_theme(): Theme {
-  return query.matches ? DARK : LIGHT;
+  const is_dark = choice === "system" ? system.matches : choice === "dark";
+  return is_dark ? DARK : LIGHT;
 }
 
 export function on_theme_change(listener: () => void): void {
-  query.addEventListener("change", listener);
+  listeners.push(listener);
+}
+
+export function choose_theme(wanted: ThemeChoice): void {
+  choice = wanted;
+  localStorage.setItem(STORED_AS, wanted);
+  apply();
+}
+
+export function start_theme(): void {
+  const stored = localStorage.getItem(STORED_AS);
+  if (stored === "light" || stored === "dark") choice = stored;
+  system.addEventListener("change", apply);
+  apply();
+}
+
+function apply(): void {
+  document.documentElement.dataset.theme = current_theme().is_dark ? "dark" : "light";
+  for (const listener of listeners) listener();
 }

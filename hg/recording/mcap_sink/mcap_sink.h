@@ -1,4 +1,5 @@
-/// C interface of the official MCAP writer (crate `mcap`), the only door to Rust in this program.
+/// C interface of the official MCAP writer and reader (crate `mcap`), the only door to Rust in this
+/// program.
 ///
 /// One handle writes one file and serves one thread. The first error sticks: every later call
 /// returns false and does nothing, mcap_sink_error() says why. Strings are UTF-8, zero-terminated,
@@ -53,6 +54,18 @@ bool mcap_sink_finish(mcap_sink* sink);
 
 /// Closes the file and frees the handle.
 void mcap_sink_free(mcap_sink* sink);
+
+typedef enum { mcap_channel = 0, mcap_message = 1, mcap_attachment = 2 } mcap_item_kind;
+
+/// One thing in a file: a topic with the text of its schema, a message with its topic and log time,
+/// or an attachment with its name. Valid during the call; `name` has no terminating zero.
+typedef void (*mcap_take_item)(void* context, int kind, const char* name, size_t name_size,
+                               uint64_t time_ns, const uint8_t* data, size_t size);
+
+/// Hands out everything in a file, in its order; a file that a crash has cut off ends there. `take`
+/// must not throw. False: `error` (zero-terminated) says why.
+bool mcap_sink_read(const char* path, void* context, mcap_take_item take, char* error,
+                    size_t error_size);
 
 #ifdef __cplusplus
 }

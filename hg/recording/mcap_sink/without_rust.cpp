@@ -1,6 +1,8 @@
 /// Stands in for the Rust library when there is none: recording is off and says so.
 #include "hg/recording/mcap_sink/mcap_sink.h"
 
+#include <cstdio>
+
 struct mcap_sink {};
 
 bool mcap_sink_available() { return false; }
@@ -31,3 +33,8 @@ uint64_t mcap_sink_bytes(const mcap_sink*) { return 0; }
 bool mcap_sink_finish(mcap_sink*) { return false; }
 
 void mcap_sink_free(mcap_sink*) {}
+
+bool mcap_sink_read(const char*, void*, mcap_take_item, char* error, size_t error_size) {
+  std::snprintf(error, error_size, "%s", mcap_sink_error(nullptr));
+  return false;
+}

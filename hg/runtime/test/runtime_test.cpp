@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cmath>
 #include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "hg/core/error.h"
 #include "hg/rendering/test/test_models.h"
@@ -215,6 +220,85 @@ TEST(Runtime, HandsTheHandTargetThrough) {
   runtime.join();
   EXPECT_TRUE(parts.device.last_target.active);
   EXPECT_EQ(parts.device.last_target.p_B.x(), 0.25);
+}
+
+TEST(Runtime, TakesOneChangeOfAParameterPerCycleAfterThoseThatAreDue) {
+  Parts parts;
+  const ParameterChange planned = {Parameter::kMassScale, -1, 2.0};
+  Runtime runtime({.is_fast = true, .duration_s = 0.1, .changes = {{0.0, planned}}}, *parts.cycle,
+                  parts.device);
+  EXPECT_TRUE(runtime.change({Parameter::kMassScale, -1, 3.0}));
+  EXPECT_TRUE(runtime.change({Parameter::kMassScale, -1, 11.0}));  // out of range
+  runtime.start();
+  auto sample = std::make_unique<Sample>();
+  std::vector<std::pair<double, ChangeStatus>> seen;
+  while (true) {
+    const bool is_finished = runtime.is_finished();
+    while (runtime.pop(*sample)) {
+      if (sample->operator_input.change.parameter == Parameter::kNone) continue;
+      seen.emplace_back(sample->operator_input.change.value, sample->record.change);
+    }
+    if (is_finished) break;
+  }
+  runtime.join();
+  const std::vector<std::pair<double, ChangeStatus>> expected = {
+      {2.0, ChangeStatus::kTaken}, {3.0, ChangeStatus::kTaken}, {11.0, ChangeStatus::kRefused}};
+  EXPECT_EQ(seen, expected);
+}
+
+// Waits for the next sample: a loop that never runs again fails by the time limit of the test.
+void wait_for_sample(Runtime& runtime, Sample& sample) {
+  while (!runtime.pop(sample)) std::this_thread::yield();
+}
+
+TEST(Runtime, RunsExactlyTheCyclesThatAreAskedForWhilePaused) {
+  Parts parts;
+  Runtime runtime({}, *parts.cycle, parts.device);
+  runtime.pace().pause();
+  ASSERT_TRUE(runtime.pace().step(3.0));
+  runtime.start();
+  auto sample = std::make_unique<Sample>();
+  for (int i = 0; i < 4; ++i) wait_for_sample(runtime, *sample);  // the first needs no leave
+  const double time_s = sample->record.time_s;
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_FALSE(runtime.pop(*sample));
+  EXPECT_FALSE(runtime.is_finished());
+  runtime.pace().resume();
+  wait_for_sample(runtime, *sample);
+  EXPECT_NEAR(sample->record.time_s, time_s + 1e-3, 1e-12);  // the period stays what it is
+  runtime.pace().pause();
+  runtime.request_stop();  // a paused run comes to rest all the same
+  EXPECT_FALSE(runtime.join().stop_timed_out);
+}
+
+TEST(Runtime, SlowMotionStretchesTheWallClockOnly) {
+  Parts parts;
+  Runtime runtime({.duration_s = 0.05}, *parts.cycle, parts.device);
+  ASSERT_TRUE(runtime.pace().set_speed(0.1));
+  const auto begin = std::chrono::steady_clock::now();
+  runtime.start();
+  const Report report = runtime.join();
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(450));
+  EXPECT_NEAR(static_cast<double>(report.cycles), 51.0, 2.0);
+}
+
+TEST(Pace, RefusesWhatIsOutOfRange) {
+  Pace pace;
+  for (const double speed : {0.0, 0.09, 1.01, -1.0, std::nan("")}) {
+    EXPECT_FALSE(pace.set_speed(speed)) << speed;
+  }
+  EXPECT_EQ(pace.speed(), 1.0);
+  EXPECT_FALSE(pace.step(1.0));  // it is not paused
+  pace.pause();
+  for (const double cycles : {0.0, 1.5, 1001.0, std::nan("")}) {
+    EXPECT_FALSE(pace.step(cycles)) << cycles;
+  }
+  EXPECT_FALSE(pace.may_run());
+  EXPECT_TRUE(pace.step(1000.0));
+  EXPECT_FALSE(pace.step(1.0));  // too many together
+  pace.resume();
+  pace.pause();
+  EXPECT_FALSE(pace.may_run());  // resuming forgets steps
 }
 
 TEST(Runtime, RefusesImpossibleOptions) {

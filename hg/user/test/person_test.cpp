@@ -140,6 +140,17 @@ TEST(Person, TheMouseOverrulesTheScriptAndPressesTheLever) {
   EXPECT_NEAR(hold(person, {start_pose()}, 8.0, 12.0).norm(), 0.0, 1e-6);  // back to the script
 }
 
+TEST(Person, AMouseThatTurnsHoldsTheOrientationToo) {
+  Person person = make(scripted());
+  HandTarget target;
+  target.active = true;
+  target.R_B = start_pose().R * Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ());
+  EXPECT_LT(hold(person, {start_pose()}, 0.0, 4.0, target).tail<3>().norm(), 1e-9);
+  target.turns = true;
+  const Eigen::Vector3d torque = hold(person, {start_pose()}, 4.0, 8.0, target).tail<3>();
+  EXPECT_GT(torque.dot(start_pose().R.col(2)), 0.1);
+}
+
 TEST(Person, BackFromTheMouseTheScriptDoesNotCatchUpAtOnce) {
   Config config = scripted();
   config.hand.stiffness.setZero();  // damper only

@@ -30,21 +30,42 @@ TEST(IsSameSecret, AgreesWithEquality) {
   EXPECT_FALSE(is_same_secret("abc", "ab"));
 }
 
+const Listener kLocal = {"127.0.0.1", 8080};
+
 TEST(IsOwnHost, AcceptsThisMachineWithThisPortOnly) {
-  EXPECT_TRUE(is_own_host("127.0.0.1:8080", 8080));
-  EXPECT_TRUE(is_own_host("localhost:8080", 8080));
-  for (const char* host : {"", "127.0.0.1", "127.0.0.1:8081", "evil.example:8080",
-                           "localhost:8080.evil.example", "localhost.evil.example:8080"}) {
-    EXPECT_FALSE(is_own_host(host, 8080)) << host;
+  EXPECT_TRUE(is_own_host("127.0.0.1:8080", kLocal));
+  EXPECT_TRUE(is_own_host("localhost:8080", kLocal));
+  for (const char* host :
+       {"", "127.0.0.1", "127.0.0.1:8081", "evil.example:8080", "localhost:8080.evil.example",
+        "localhost.evil.example:8080", "192.0.2.7:8080", "[::1]:8080"}) {
+    EXPECT_FALSE(is_own_host(host, kLocal)) << host;
+  }
+}
+
+TEST(IsOwnHost, AcceptsTheAddressThatIsListenedAt) {
+  EXPECT_TRUE(is_own_host("192.0.2.7:8080", {"192.0.2.7", 8080}));
+  EXPECT_FALSE(is_own_host("192.0.2.8:8080", {"192.0.2.7", 8080}));
+  EXPECT_TRUE(is_own_host("[::1]:8080", {"::1", 8080}));
+}
+
+TEST(IsOwnHost, AcceptsAnyAddressButNoNameWhereAllAreListenedAt) {
+  for (const char* address : {"0.0.0.0", "::"}) {
+    const Listener all = {address, 8080};
+    EXPECT_TRUE(is_own_host("192.0.2.7:8080", all));
+    EXPECT_TRUE(is_own_host("[2001:db8::7]:8080", all));
+    for (const char* host : {"evil.example:8080", "192.0.2.7.evil.example:8080", "192.0.2.7",
+                             "192.0.2.7:81", "::1:8080", "[192.0.2.7]:8080", "[]:8080", ":8080"}) {
+      EXPECT_FALSE(is_own_host(host, all)) << host;
+    }
   }
 }
 
 TEST(IsOwnOrigin, AcceptsPlainHttpOfThisServerOnly) {
-  EXPECT_TRUE(is_own_origin("http://127.0.0.1:8080", 8080));
-  EXPECT_TRUE(is_own_origin("http://localhost:8080", 8080));
+  EXPECT_TRUE(is_own_origin("http://127.0.0.1:8080", kLocal));
+  EXPECT_TRUE(is_own_origin("http://localhost:8080", kLocal));
   for (const char* origin : {"", "null", "https://127.0.0.1:8080", "http://evil.example",
                              "http://127.0.0.1:8080.evil.example", "http://127.0.0.1:9"}) {
-    EXPECT_FALSE(is_own_origin(origin, 8080)) << origin;
+    EXPECT_FALSE(is_own_origin(origin, kLocal)) << origin;
   }
 }
 

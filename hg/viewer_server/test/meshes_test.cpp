@@ -18,7 +18,8 @@ class Meshes : public ::testing::Test {
   }
 
   std::string serve(const std::string& urdf) {
-    return with_meshes(folder_.write("robots/arm/urdf/arm.urdf", urdf), "/models/device/", assets_);
+    const std::filesystem::path file = folder_.write("robots/arm/urdf/arm.urdf", urdf);
+    return with_meshes(file, urdf, "/models/device/", assets_);
   }
 
   const TemporaryFolder folder_;
@@ -53,7 +54,7 @@ TEST_F(Meshes, ThatAreMissingOrNoMeshesKeepTheirNames) {
 }
 
 TEST_F(Meshes, OfAUrdfThatIsNotThereAreRefused) {
-  EXPECT_THROW(with_meshes(folder_.path() / "none.urdf", "/models/device/", assets_), SetupError);
+  EXPECT_THROW(read_file(folder_.path() / "none.urdf"), SetupError);
 }
 
 }  // namespace

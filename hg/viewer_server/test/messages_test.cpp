@@ -4,6 +4,8 @@
 #include <rapidcheck.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -11,16 +13,19 @@
 
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/limit_text.h"
+#include "hg/viewer_server/typescript.h"
 
 namespace hg::viewer_server {
 namespace {
 
 using Json = nlohmann::json;
+constexpr char kTypes[] = "viewer/src/messages.ts";
+
 using Fields = std::map<std::string, std::string>;  // name to type, as written in TypeScript
 
 // The interfaces of messages.ts.
 std::map<std::string, Fields> read_interfaces() {
-  const std::string source = read_file("viewer/src/messages.ts");
+  const std::string source = read_file(kTypes);
   const std::regex interface(R"(export interface (\w+) \{([^}]*)\})");
   const std::regex field(R"(\n  (\w+): ([^;]+);)");
   std::map<std::string, Fields> interfaces;
@@ -57,7 +62,12 @@ void expect_type(const Json& json, std::string type, const std::string& item) {
   }
   if (type.ends_with("[]")) {
     ASSERT_TRUE(json.is_array()) << item;
-    for (const Json& part : json) expect_type(part, type.substr(0, type.size() - 2), item + "[]");
+    type.resize(type.size() - 2);
+    if (type.starts_with('(')) type = type.substr(1, type.size() - 2);
+    for (const Json& part : json) expect_type(part, type, item + "[]");
+  } else if (type == "Quaternion") {
+    expect_type(json, "number[]", item);
+    EXPECT_EQ(json.size(), 4u) << item;
   } else if (type == "Vec3") {
     expect_type(json, "number[]", item);
     EXPECT_EQ(json.size(), 3u) << item;
@@ -79,6 +89,11 @@ Scene make_scene() {
   scene.title = "Door";
   scene.device.urdf = "device.urdf";
   scene.device.joints = {{"ppu1", JointType::kPrismatic}, {"m1", JointType::kRevolute}};
+  scene.device.joints[1].range = {-1.0, kInfinity};
+  scene.gantry_joints = 1;
+  scene.choices = {.scenario = "door", .scenarios = {{"door", "Door"}}};
+  scene.settings = {{.name = "hinge.damping", .group = "hinge", .max = 10.0, .value = kInfinity}};
+  scene.commands = {CommandName::kPause, CommandName::kSet};
   scene.twin.joints = {{"free", JointType::kFloating},
                        {"glide x", JointType::kPrismatic, "glide", Eigen::Vector3d::UnitY()}};
   scene.limits = {{LimitKind::kManipulatorJoint, "m1", true, {-kInfinity, 1.0}},
@@ -89,11 +104,16 @@ Scene make_scene() {
   return scene;
 }
 
-CycleRecord make_record() {
-  CycleRecord record;
+View make_view() {
+  View view;
+  view.hand = {true, Eigen::Vector3d(0.1, 0.2, 0.3), 0.5};
+  view.cycle_time_us = 8.0;
+  view.status_text = "status";
+  CycleRecord& record = view.record;
   record.time_s = 1.5;
   record.mode = Mode::kRunning;
   record.robot.q_p = Eigen::Vector2d(0.1, 0.2);
+  record.robot.q_m = Eigen::Vector3d(0.31, 0.41, 0.51);
   record.robot.w_H << 1, 2, 3, 4, 5, 6;
   record.reference.q_m = Eigen::Vector3d(0.3, 0.4, 0.5);
   record.twin.q_a = Eigen::Vector2d(0.6, 0.7);
@@ -102,8 +122,24 @@ CycleRecord make_record() {
   record.limits[2].state = LimitState::kUpper;
   record.limits[2].cause = LimitCause::kPosition;
   record.limits[2].reaction = -23.4;
+  record.limits[2].to_upper = 0.25;
+  record.limits[2].to_lower = 1.75;
   record.sync_error = 0.0015;
-  return record;
+  view.budget.inertia << 1, 0, 0, 0, 0, 2;
+  view.singularity = {0.5, 1};
+  view.ghost = Ghost{.time_s = 1.25, .q_device = {1.0}, .q_twin = {2.0}};
+  return view;
+}
+
+Json frame_of(const View& view, const LimitCatalogue& limits = make_scene().limits) {
+  return Json::parse(encode_frame(view, limits, 2));
+}
+
+// HG_UPDATE_DOCS=1 in the environment writes the file instead of comparing it
+TEST(MessagesTs, IsMadeFromTheDescriptionOfTheMessages) {
+  if (std::getenv("HG_UPDATE_DOCS") != nullptr) std::ofstream(kTypes) << typescript_text();
+  EXPECT_EQ(read_file(kTypes), typescript_text())
+      << "run viewer_server_test with HG_UPDATE_DOCS=1 and commit " << kTypes;
 }
 
 TEST(EncodeScene, HasTheFieldsOfTheTypeScriptSide) {
@@ -114,14 +150,32 @@ TEST(EncodeScene, HasTheFieldsOfTheTypeScriptSide) {
   EXPECT_EQ(json["twin"]["joints"][0]["type"], "floating");
   EXPECT_TRUE(json["limits"][0]["min"].is_null());
   EXPECT_EQ(json["limits"][2]["unit"], "m");
+  EXPECT_EQ(json["device"]["joints"][1]["q_min"], -1.0);
+  EXPECT_TRUE(json["device"]["joints"][1]["q_max"].is_null());
+  EXPECT_EQ(json["commands"], Json({"pause", "set"}));
+  EXPECT_TRUE(json["settings"][0]["value"].is_null());
+}
+
+TEST(EncodeScene, CountsPrioritiesAsTheLevelsOfTheLaw) {
+  Scene scene;
+  const auto add = [&](LimitKind kind, int count) {
+    for (int i = 0; i < count; ++i) scene.limits.push_back({kind, "x", false, {}});
+  };
+  add(LimitKind::kManipulatorJoint, 2);
+  add(LimitKind::kVirtualJoint, 1);
+  add(LimitKind::kCartesian, 6);  // two frames
+  add(LimitKind::kTwinJoint, 1);
+  const Json limits = Json::parse(encode_scene(scene, 60.0))["limits"];
+  std::vector<int> priorities;
+  for (const Json& limit : limits) priorities.push_back(limit["priority"]);
+  EXPECT_EQ(priorities, (std::vector<int>{2, 2, 3, 4, 4, 4, 5, 5, 5, 6}));
 }
 
 TEST(EncodeFrame, HasTheFieldsOfTheTypeScriptSide) {
-  const HandTarget hand = {true, Eigen::Vector3d(0.1, 0.2, 0.3), 0.5};
-  const Json json =
-      Json::parse(encode_frame(make_record(), hand, 8.0, "status", make_scene().limits));
+  const Json json = frame_of(make_view());
   expect_interface(json, "Frame", "frame");
   EXPECT_EQ(json["q_device"], Json({0.1, 0.2, 0.3, 0.4, 0.5}));
+  EXPECT_EQ(json["q_measured"], Json({0.1, 0.2, 0.31, 0.41, 0.51}));
   EXPECT_EQ(json["q_twin"], Json({0.6, 0.7}));
   EXPECT_EQ(json["p_B_H_m"], Json({7.0, 8.0, 9.0}));
   EXPECT_EQ(json["force_N"], Json({1.0, 2.0, 3.0}));
@@ -130,46 +184,168 @@ TEST(EncodeFrame, HasTheFieldsOfTheTypeScriptSide) {
   EXPECT_EQ(json["sync_error_mm"], 1.5);
   EXPECT_EQ(json["mode"], "running");
   EXPECT_EQ(json["fault"], "");
+  EXPECT_EQ(json["clients"], 2);
+  EXPECT_EQ(json["budget"]["inertia"]["torque_Nm"], Json({0.0, 0.0, 2.0}));
+  EXPECT_EQ(json["ghost"]["q_twin"], Json({2.0}));
+}
+
+TEST(EncodeFrame, NamesTheLimitsThatActAndTheDistanceToTheNearerEnd) {
+  const Json json = frame_of(make_view());
+  ASSERT_EQ(json["active"].size(), 1u);
+  EXPECT_EQ(json["active"][0]["index"], 2);
+  EXPECT_EQ(json["active"][0]["state"], "upper");
+  EXPECT_EQ(json["active"][0]["cause"], "position");
+  EXPECT_EQ(json["active"][0]["reaction"], -23.4);
+  EXPECT_EQ(json["limit_distance"], Json({nullptr, nullptr, 0.25, nullptr}));
+}
+
+TEST(EncodeFrame, StaysSmallForADeviceWithSevenJointsAndATwinWithSix) {
+  View view = make_view();
+  LimitCatalogue limits;
+  for (int i = 0; i < 21; ++i) limits.push_back({LimitKind::kCartesian, "elbow x", false, {}});
+  const double digits = -1.23456;
+  view.record.robot.q_m = view.record.robot.dq_m = view.record.robot.tau_m =
+      view.record.reference.q_m = view.record.reference.dq_m = view.record.tracking.error =
+          VectorM::Constant(7, digits);
+  view.record.twin.q_a = ConfigurationA::Constant(7, digits);
+  view.record.twin.dq_a = VectorA::Constant(6, digits);
+  for (LimitReport& report : view.record.limits) {
+    report.position = report.to_lower = digits;
+  }
+  view.budget.user = view.budget.inertia = view.budget.rest = Vector6::Constant(digits);
+  EXPECT_LT(encode_frame(view, limits, 4).size(), 4096u);
 }
 
 TEST(EncodeFrame, SaysNothingIsFeltWhenTheIndexIsOutsideTheCatalogue) {
-  CycleRecord record = make_record();
+  View view = make_view();
   for (const int index : {-1, 4, 1'000'000}) {
-    record.felt_limit = index;
-    EXPECT_TRUE(
-        Json::parse(encode_frame(record, {}, 0.0, "", make_scene().limits))["felt"].is_null());
+    view.record.felt_limit = index;
+    EXPECT_TRUE(frame_of(view)["felt"].is_null());
   }
 }
 
 TEST(EncodeFrame, WritesNullForWhatIsNotFinite) {
-  CycleRecord record = make_record();
-  record.T_B_H.p.x() = std::numeric_limits<double>::quiet_NaN();
-  record.robot.w_H[1] = std::numeric_limits<double>::infinity();
-  const Json json = Json::parse(encode_frame(record, {}, 0.0, "", {}));
+  View view = make_view();
+  view.record.T_B_H.p.x() = std::numeric_limits<double>::quiet_NaN();
+  view.record.robot.w_H[1] = std::numeric_limits<double>::infinity();
+  const Json json = frame_of(view);
   EXPECT_TRUE(json["p_B_H_m"][0].is_null());
   EXPECT_TRUE(json["force_N"][1].is_null());
 }
 
+TEST(EncodeFrame, RoundsToAHundredThousandthAndKeepsWhatIsLarge) {
+  View view = make_view();
+  view.record.T_B_H.p = {0.123456789, -1e-9, 1.5e300};
+  EXPECT_EQ(frame_of(view)["p_B_H_m"], Json({0.12346, 0.0, 1.5e300}));
+}
+
 TEST(EncodeEvent, HasTheFieldsOfTheTypeScriptSideAndSurvivesAnyBytes) {
-  const Json json = Json::parse(encode_event(1.5, "unlocked", "bad \xff byte, \"quote\" <b>"));
+  const Json json = Json::parse(encode_event(3, 1.5, "unlocked", "bad \xff byte, \"quote\" <b>"));
   expect_interface(json, "Event", "event");
   EXPECT_EQ(json["time_s"], 1.5);
+  EXPECT_EQ(json["run"], 3);
+}
+
+TEST(EncodeAnswerAndValues, HaveTheFieldsOfTheTypeScriptSide) {
+  const Json accepted = Json::parse(encode_answer(7, ""));
+  expect_interface(accepted, "Answer", "answer");
+  EXPECT_EQ(accepted["is_accepted"], true);
+  EXPECT_EQ(Json::parse(encode_answer(7, "no"))["is_accepted"], false);
+  const Json values = Json::parse(encode_values({1.5, kInfinity}));
+  expect_interface(values, "Values", "values");
+  EXPECT_EQ(values["values"], Json({1.5, nullptr}));
+}
+
+// The status alone; hands go to `target`.
+DecodeStatus decode_hand(std::string_view text, HandTarget& target) {
+  PageMessage message;
+  const DecodeStatus status = decode(text, message);
+  if (status == DecodeStatus::kHand) target = message.hand;
+  return status;
+}
+
+Json good_command() {
+  return {{"type", "command"}, {"id", 7}, {"command", "set"}, {"name", "x"}, {"value", 1.5}};
+}
+
+TEST(DecodeCommand, ReadsWhatThePageSends) {
+  expect_interface(good_command(), "Command", "command");
+  PageMessage message;
+  ASSERT_EQ(decode(good_command().dump(), message), DecodeStatus::kCommand);
+  EXPECT_EQ(message.command.id, 7.0);
+  EXPECT_EQ(message.command.name, CommandName::kSet);
+  EXPECT_EQ(message.command.argument, "x");
+  EXPECT_EQ(message.command.value, 1.5);
+}
+
+TEST(DecodeCommand, RefusesEveryMissingWrongOrAdditionalField) {
+  const Json good = good_command();
+  PageMessage message;
+  for (const auto& [field, value] : good.items()) {
+    Json missing = good;
+    missing.erase(field);
+    EXPECT_EQ(decode(missing.dump(), message), DecodeStatus::kMalformed) << field;
+    Json wrong = good;
+    wrong[field] = {{"x", 1}};
+    EXPECT_EQ(decode(wrong.dump(), message), DecodeStatus::kMalformed) << field;
+  }
+  Json additional = good;
+  additional["more"] = 1;
+  EXPECT_EQ(decode(additional.dump(), message), DecodeStatus::kMalformed);
+  Json unknown = good;
+  unknown["command"] = "format disk";
+  EXPECT_EQ(decode(unknown.dump(), message), DecodeStatus::kMalformed);
+}
+
+TEST(DecodeCommand, RefusesIdsAndNamesOutOfRange) {
+  PageMessage message;
+  for (const Json& id : {Json(-1), Json(0.5), Json(1e300)}) {
+    Json command = good_command();
+    command["id"] = id;
+    EXPECT_EQ(decode(command.dump(), message), DecodeStatus::kOutOfRange) << id;
+  }
+  Json command = good_command();
+  command["name"] = std::string(201, 'x');
+  EXPECT_EQ(decode(command.dump(), message), DecodeStatus::kOutOfRange);
 }
 
 TEST(DecodeHand, ReadsWhatThePageSends) {
-  const Json json = {{"type", "hand"}, {"active", true}, {"p_B_m", {0.1, 0.2, -1}}, {"press", 1}};
+  const Json json = {{"type", "hand"},
+                     {"active", true},
+                     {"p_B_m", {0.1, 0.2, -1}},
+                     {"quaternion_B_H", nullptr},
+                     {"press", 1}};
   expect_interface(json, "Hand", "hand");
   HandTarget target;
-  ASSERT_EQ(decode_hand(json.dump(), target), DecodeStatus::kOk);
+  ASSERT_EQ(decode_hand(json.dump(), target), DecodeStatus::kHand);
   EXPECT_TRUE(target.active);
   EXPECT_EQ(target.p_B, Eigen::Vector3d(0.1, 0.2, -1.0));
   EXPECT_EQ(target.press, 1.0);
 }
 
+TEST(DecodeHand, ReadsATurnAndRefusesOneThatIsNoRotation) {
+  Json json = {{"type", "hand"},
+               {"active", true},
+               {"p_B_m", {0, 0, 0}},
+               {"quaternion_B_H", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}},
+               {"press", 0}};
+  HandTarget target;
+  ASSERT_EQ(decode_hand(json.dump(), target), DecodeStatus::kHand);
+  ASSERT_TRUE(target.turns);
+  EXPECT_LT((target.R_B * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  View view;
+  view.hand = target;
+  EXPECT_NEAR(frame_of(view)["hand"]["quaternion_B_H"][2], std::sqrt(0.5), 1e-5);
+  for (const Json& turn : {Json{0, 0, 0, 0}, Json{0, 0, 1, 1}}) {
+    json["quaternion_B_H"] = turn;
+    EXPECT_EQ(decode_hand(json.dump(), target), DecodeStatus::kOutOfRange) << turn;
+  }
+}
+
 TEST(DecodeHand, RefusesEveryMissingWrongOrAdditionalField) {
   const Json good = {{"type", "hand"}, {"active", true}, {"p_B_m", {0, 0, 0}}, {"press", 0}};
   HandTarget target;
-  ASSERT_EQ(decode_hand(good.dump(), target), DecodeStatus::kOk);
+  ASSERT_EQ(decode_hand(good.dump(), target), DecodeStatus::kHand);
   for (const auto& [field, value] : good.items()) {
     Json missing = good;
     missing.erase(field);
@@ -193,21 +369,21 @@ TEST(DecodeHand, RefusesNumbersOutOfRange) {
                            R"(,0,0],"press":)" + press + "}",
                        target);
   };
-  EXPECT_EQ(decode("99", "1"), DecodeStatus::kOk);
+  EXPECT_EQ(decode("99", "1"), DecodeStatus::kHand);
   EXPECT_EQ(decode("101", "1"), DecodeStatus::kOutOfRange);
   EXPECT_EQ(decode("-1e300", "1"), DecodeStatus::kOutOfRange);
   EXPECT_EQ(decode("0", "1.01"), DecodeStatus::kOutOfRange);
   EXPECT_EQ(decode("0", "-0.01"), DecodeStatus::kOutOfRange);
-  EXPECT_NE(decode("1e999", "0"), DecodeStatus::kOk);
-  EXPECT_NE(decode("NaN", "0"), DecodeStatus::kOk);
+  EXPECT_NE(decode("1e999", "0"), DecodeStatus::kHand);
+  EXPECT_NE(decode("NaN", "0"), DecodeStatus::kHand);
 }
 
 TEST(DecodeHand, NeverAcceptsATargetThatIsNotFinite) {
   rc::check([](const std::string& text) {
     HandTarget target;
     const std::string almost = R"({"type":"hand","active":true,"p_B_m":[0,0,)" + text + "]}";
-    RC_ASSERT(decode_hand(text, target) != DecodeStatus::kOk);
-    RC_ASSERT(decode_hand(almost, target) != DecodeStatus::kOk || target.p_B.allFinite());
+    RC_ASSERT(decode_hand(text, target) != DecodeStatus::kHand);
+    RC_ASSERT(decode_hand(almost, target) != DecodeStatus::kHand || target.p_B.allFinite());
   });
 }
 

@@ -96,6 +96,9 @@ hg::viewer_server::Scene make_scene(const char* device, const char* door_urdf, c
     const bool is_gantry = name[0] == 'p';
     scene.device.joints.push_back({name, is_gantry ? JointType::kPrismatic : JointType::kRevolute});
   }
+  scene.gantry_joints = 2;
+  scene.environment = hg::viewer_server::Environment::kDoor;
+  scene.refusal = "this demonstration follows no commands";
   scene.twin.urdf = door_urdf;
   scene.twin.T_B_root.p = door.root;
   scene.twin.joints = {{"hinge", JointType::kRevolute}, {"lever", JointType::kRevolute}};
@@ -108,19 +111,22 @@ hg::viewer_server::Scene make_scene(const char* device, const char* door_urdf, c
 
 void run(hg::viewer_server::ViewerServer& server, Door door) {
   using Clock = std::chrono::steady_clock;
-  hg::Sample sample;
-  hg::HandTarget& hand = sample.operator_input.hand_target;
+  hg::viewer_server::View view;
+  view.cycle_time_us = view.cycle_time_max_us = 8.0;
+  view.status_text = "simulated at 1000 Hz";
   auto next = Clock::now();
   for (bool was_locked = true; !is_over; was_locked = door.is_locked) {
-    server.take_hand_target(hand);
-    door.step(hand);
-    report(door, sample.record);
-    pose_device(door, sample.record);
-    sample.record.time_s += kPeriod;
-    sample.cycle_time_us = 8.0;
-    server.publish(sample, "simulated at 1000 Hz");
+    server.take_hand_target(view.hand);
+    for (const auto& command : server.take_commands()) {
+      server.answer(command, "this demonstration follows no commands");
+    }
+    door.step(view.hand);
+    report(door, view.record);
+    pose_device(door, view.record);
+    view.record.time_s += kPeriod;
+    if (server.is_due()) server.publish(view);
     if (was_locked != door.is_locked) {
-      server.announce_event(sample.record.time_s, door.is_locked ? "locked" : "unlocked",
+      server.announce_event(view.record.time_s, door.is_locked ? "locked" : "unlocked",
                             door.is_locked ? "the latch has caught" : "the lever is pressed");
     }
     next += std::chrono::milliseconds(1);

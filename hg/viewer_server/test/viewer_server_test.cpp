@@ -17,6 +17,7 @@ namespace {
 
 using test::RawClient;
 
+constexpr char kPause[] = R"({"type":"command","id":7,"command":"pause","name":"","value":0})";
 constexpr char kHand[] = R"({"type":"hand","active":true,"p_B_m":[0.1,0.2,-1],"press":1})";
 
 // Polls until `is_true`; gives up after a time that no machine needs.
@@ -77,22 +78,32 @@ class ViewerServerTest : public ::testing::Test {
     return client;
   }
 
+  // The next message of this type, skipping others; null when the connection ends.
+  static nlohmann::json next(RawClient& client, const std::string& type) {
+    for (int i = 0; i < 100'000; ++i) {
+      const RawClient::Message message = client.read_message();
+      if (message.opcode != 1) return {};
+      auto json = nlohmann::json::parse(message.text);
+      if (json["type"] == type) return json;
+    }
+    return {};
+  }
+
   // A frame whose time is `time_s`, skipping older ones.
   static bool receives(RawClient& client, double time_s) {
     for (int i = 0; i < 100'000; ++i) {
-      const RawClient::Message message = client.read_message();
-      if (message.opcode != 1) return false;
-      const auto json = nlohmann::json::parse(message.text);
-      if (json["type"] == "frame" && json["time_s"] == time_s) return true;
+      const nlohmann::json frame = next(client, "frame");
+      if (frame.is_null()) return false;
+      if (frame["time_s"] == time_s) return true;
     }
     return false;
   }
 
   void publish(double time_s) {
-    Sample sample;
-    sample.record.time_s = time_s;
-    sample.record.twin.q_a.setZero(1);
-    server_.publish(sample, "fine");
+    View view;
+    view.record.time_s = time_s;
+    view.record.twin.q_a.setZero(1);
+    server_.publish(std::move(view));
   }
 
   const TemporaryFolder folder_;
@@ -217,6 +228,83 @@ TEST_F(ViewerServerTest, AClosedPageLetsGo) {
   EXPECT_FALSE(target.active);
 }
 
+TEST_F(ViewerServerTest, ACommandArrivesAndOnlyItsPageGetsTheAnswer) {
+  const auto page = open_page();
+  const auto other = open_page();
+  page->send_message(kPause);
+  std::vector<Command> commands;
+  ASSERT_TRUE(eventually([&] { return !(commands = server_.take_commands()).empty(); }));
+  ASSERT_EQ(commands.size(), 1u);
+  EXPECT_EQ(commands[0].name, CommandName::kPause);
+  EXPECT_TRUE(server_.take_commands().empty());
+
+  server_.answer(commands[0], "");
+  server_.answer(commands[0], "not now");
+  const nlohmann::json accepted = next(*page, "answer");
+  EXPECT_EQ(accepted["id"], 7);
+  EXPECT_EQ(accepted["is_accepted"], true);
+  EXPECT_EQ(next(*page, "answer")["reason"], "not now");
+  server_.announce_event(1.0, "end", "");
+  const nlohmann::json first = nlohmann::json::parse(other->read_message().text);
+  EXPECT_EQ(first["type"], "event");
+}
+
+TEST_F(ViewerServerTest, TooManyCommandsAreRefusedWithAnAnswer) {
+  const auto page = open_page();
+  for (int i = 0; i < 120; ++i) page->send_message(kPause);
+  EXPECT_TRUE(eventually([&] { return server_.counters().refused > 20; }));
+  EXPECT_EQ(next(*page, "answer")["reason"], "too many commands");
+  EXPECT_LE(server_.take_commands().size(), 64u);
+}
+
+TEST_F(ViewerServerTest, ARefusedMessageIsAnsweredWithItsReason) {
+  const auto page = open_page();
+  page->send_message("{");
+  const nlohmann::json answer = next(*page, "answer");
+  EXPECT_EQ(answer["id"], -1);
+  EXPECT_EQ(answer["is_accepted"], false);
+  EXPECT_NE(answer["reason"], "");
+}
+
+TEST_F(ViewerServerTest, ANewSceneReplacesTheOldOneAndItsEvents) {
+  const auto page = open_page();
+  server_.announce_event(1.0, "of the first run", "");
+  EXPECT_EQ(next(*page, "event")["run"], 1);
+  Scene scene = make_scene();
+  scene.run = 2;
+  scene.title = "Second";
+  scene.twin.urdf.clear();
+  server_.set_scene(scene);
+  View view;
+  view.run = 2;
+  server_.publish(view);
+  EXPECT_EQ(next(*page, "frame")["run"], 2);
+  EXPECT_NE(get(with_token("/scene.json"), host_).find("\"title\":\"Second\""), std::string::npos);
+  EXPECT_TRUE(get(with_token("/models/twin.urdf"), host_).starts_with("HTTP/1.1 404"));
+  server_.announce_event(1.0, "of the second run", "");
+  const auto late = open_page();
+  EXPECT_EQ(next(*late, "event")["name"], "of the second run");
+
+  scene.twin.urdf = "nowhere.urdf";
+  EXPECT_THROW(server_.set_scene(scene), SetupError);
+  EXPECT_NE(get(with_token("/scene.json"), host_).find("Second"), std::string::npos);
+}
+
+TEST_F(ViewerServerTest, ValuesReachAllPagesAlsoLaterOnes) {
+  const auto page = open_page();
+  server_.set_values({1.5});
+  EXPECT_EQ(next(*page, "values")["values"], nlohmann::json({1.5}));
+  const auto late = open_page();
+  EXPECT_EQ(next(*late, "values")["values"], nlohmann::json({1.5}));
+}
+
+TEST_F(ViewerServerTest, FourPagesSeeOneFrameAndHowManyTheyAre) {
+  std::vector<std::unique_ptr<RawClient>> pages;
+  for (int i = 0; i < 4; ++i) pages.push_back(open_page());
+  publish(1.25);
+  for (const auto& page : pages) EXPECT_EQ(next(*page, "frame")["clients"], 4);
+}
+
 TEST_F(ViewerServerTest, MalformedMessagesAreCountedAndTheConnectionLives) {
   const auto page = open_page();
   for (const char* text : {"", "{", "[1,2]", R"({"type":"hand"})", "\"quote"}) {
@@ -299,6 +387,12 @@ TEST_F(ViewerServerTest, SetUpErrorsNameTheItem) {
   options.update_rate_hz = 0.0;
   EXPECT_NE(message(options, make_scene()).find("update_rate_hz"), std::string::npos);
   options = make_options();
+  options.address = "not an address";
+  EXPECT_NE(message(options, make_scene()).find("not an address"), std::string::npos);
+  options = make_options();
+  options.address = "192.0.2.7";  // of documentation: nobody has it
+  EXPECT_NE(message(options, make_scene()).find("192.0.2.7"), std::string::npos);
+  options = make_options();
   options.token = "not a token";
   EXPECT_NE(message(options, make_scene()).find("hexadecimal"), std::string::npos);
 }
@@ -311,14 +405,14 @@ TEST_F(ViewerServerTest, FramesAreThinnedToTheUpdateRate) {
   const std::string own = "127.0.0.1:" + server.url().substr(17, server.url().find("/?") - 17);
   const std::string target = "/ws" + server.url().substr(server.url().find('?'));
   page.upgrade(target, "Host: " + own + "\r\nOrigin: http://" + own + "\r\n");
-  Sample sample;
-  for (sample.record.time_s = 1.0; sample.record.time_s < 100.0; sample.record.time_s += 1.0) {
-    server.publish(sample, "");
+  View view;
+  for (view.record.time_s = 1.0; view.record.time_s < 100.0; view.record.time_s += 1.0) {
+    server.publish(view);
   }
   server.announce_event(0.0, "end", "");
   const std::string first = page.read_message().text;
   const std::string second = page.read_message().text;
-  EXPECT_NE((first + second).find("\"time_s\":1.0"), std::string::npos) << first << second;
+  EXPECT_NE((first + second).find("\"time_s\":1,"), std::string::npos) << first << second;
   EXPECT_NE((first + second).find("\"end\""), std::string::npos);
   EXPECT_EQ(server.counters().sent, 1u);
 }

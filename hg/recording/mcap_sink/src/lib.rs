@@ -1,12 +1,13 @@
-//! The official MCAP writer behind the C interface of `mcap_sink.h`.
+//! The official MCAP writer and reader behind the C interface of `mcap_sink.h`.
 //!
 //! No panic leaves this library: a panic becomes the sticky error of its handle.
 
 mod file;
+mod read;
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::ffi::{c_char, CStr, CString};
+use std::ffi::{c_char, c_void, CStr, CString};
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::path::Path;
 
@@ -15,6 +16,7 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, WriteOptions, Writer};
 
 use file::{FailFastFile, FileHandle};
+use read::{read, Item};
 
 /// Uncompressed size after which a chunk ends, whether it is flushed or not.
 const CHUNK_BYTES: u64 = 1024 * 1024;
@@ -221,4 +223,43 @@ pub unsafe extern "C" fn mcap_sink_finish(sink: *mut mcap_sink) -> bool {
 pub unsafe extern "C" fn mcap_sink_free(sink: *mut mcap_sink) {
     let sink = Box::from_raw(sink);
     let _ = catch_unwind(AssertUnwindSafe(|| drop(sink)));
+}
+
+/// Kind of an item, its topic or name, its time, and its bytes.
+type TakeItem =
+    unsafe extern "C" fn(*mut c_void, i32, *const u8, usize, u64, *const u8, usize);
+
+/// # Safety
+/// `path` is a zero-terminated string; `take` may be called with `context`; `error` points to
+/// `error_size` > 0 bytes.
+#[no_mangle]
+pub unsafe extern "C" fn mcap_sink_read(
+    path: *const c_char,
+    context: *mut c_void,
+    take: TakeItem,
+    error: *mut c_char,
+    error_size: usize,
+) -> bool {
+    let path = text(path);
+    let hand_over = |item: Item| {
+        let (kind, name, time_ns, data) = match item {
+            Item::Channel { topic, schema } => (0, topic, 0, schema),
+            Item::Message { topic, time_ns, data } => (1, topic, time_ns, data),
+            Item::Attachment { name, data } => (2, name, 0, data),
+        };
+        take(context, kind, name.as_ptr(), name.len(), time_ns, data.as_ptr(), data.len());
+    };
+    let result = catch_unwind(AssertUnwindSafe(|| {
+        let file = std::fs::read(Path::new(&*path)).map_err(|failure| failure.to_string())?;
+        read(&file, hand_over).map_err(|failure| root_cause(&*failure))
+    }));
+    let message = match result {
+        Ok(Ok(())) => return true,
+        Ok(Err(message)) => message,
+        Err(_) => "the MCAP library panicked".to_string(),
+    };
+    let size = message.len().min(error_size - 1);
+    std::ptr::copy_nonoverlapping(message.as_ptr(), error.cast(), size);
+    *error.add(size) = 0;
+    false
 }

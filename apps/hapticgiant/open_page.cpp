@@ -1,0 +1,73 @@
+#include <fcntl.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/run_page.h"
+#include "apps/hapticgiant/status_line.h"
+
+namespace hg::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_display() {
+  const auto is_set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr && *value != '\0';
+  };
+  return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY");
+}
+
+// does not wait for it; without xdg-open nothing happens
+void open_browser(const std::string& url) {
+  std::string program = "xdg-open", link = url;
+  char* const arguments[] = {program.data(), link.data(), nullptr};
+  posix_spawn_file_actions_t silent;
+  posix_spawn_file_actions_init(&silent);
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    posix_spawn_file_actions_addopen(&silent, descriptor, "/dev/null", O_RDWR, 0);
+  }
+  pid_t process = 0;
+  posix_spawnp(&process, program.c_str(), &silent, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&silent);
+}
+
+}  // namespace
+
+std::string find_page() {
+  const fs::path page = data_root() / "viewer" / "dist";
+  std::error_code error;
+  if (fs::is_regular_file(page / "index.html", error)) return page.string();
+  print_out(
+      "page        not built, running without it; with node 18 or newer:\n"
+      "            cd viewer && npm ci && npm run build\n");
+  return {};
+}
+
+void present_page(const std::string& url, const std::string& address, bool opens_browser) {
+  print_out("page        " + url + "\n");
+  if (!address.starts_with("127.") && address != "::1") {
+    print_out("            WARNING: listening at " + address +
+              ": whoever reaches it and has the link can move the hand; it is not encrypted\n");
+  }
+  if (opens_browser && has_display() && isatty(STDOUT_FILENO) == 1) open_browser(url);
+}
+
+std::unique_ptr<RunPage> open_page(const PreparedRun& run) {
+  const RunArguments& arguments = run.arguments;
+  if (!arguments.has_viewer || arguments.is_fast) return nullptr;
+  const std::string page = find_page();
+  if (page.empty()) return nullptr;
+  viewer_server::Options options;
+  options.address = arguments.address;
+  options.port = arguments.port;
+  options.page = page;
+  return std::make_unique<RunPage>(options, run);
+}
+
+}  // namespace hg::apps

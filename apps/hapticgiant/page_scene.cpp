@@ -1,0 +1,178 @@
+#include "apps/hapticgiant/page_scene.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "apps/hapticgiant/paths.h"
+#include "hg/assembly/start_posture.h"
+#include "hg/config/law_names.h"
+#include "hg/inspection/workspace.h"
+
+namespace hg::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using viewer_server::Choice;
+using viewer_server::Environment;
+
+viewer_server::SceneJoint scene_joint(const model::Joint& joint) {
+  using viewer_server::JointType;
+  viewer_server::SceneJoint scene{.name = joint.name, .range = joint.position};
+  scene.dq_max = joint.velocity_max;
+  switch (joint.type) {
+    case model::JointType::kRevolute:
+    case model::JointType::kContinuous:
+      break;
+    case model::JointType::kPrismatic:
+      scene.type = JointType::kPrismatic;
+      break;
+    case model::JointType::kFloating:
+      scene.type = JointType::kFloating;
+      return scene;
+  }
+  scene.planar = joint.planar;
+  scene.axis = joint.axis;
+  return scene;
+}
+
+void add_limits(const limits::JointLimits& limits, viewer_server::SceneJoint& joint) {
+  joint.range = {limits.q_min, limits.q_max};
+  joint.dq_max = limits.dq_max;
+}
+
+viewer_server::SceneChain device_chain(const config::Device& device) {
+  viewer_server::SceneChain chain;
+  chain.urdf = device.urdf;
+  for (const model::Joint& joint : device.model.chain.joints()) {
+    chain.joints.push_back(scene_joint(joint));
+  }
+  for (std::size_t i = 0; i < device.model.joint_limits.size(); ++i) {
+    viewer_server::SceneJoint& joint = chain.joints[static_cast<std::size_t>(device.model.n_p) + i];
+    add_limits(device.model.joint_limits[i], joint);
+    if (i < device.control.actuators.size()) {
+      joint.tau_max = device.control.actuators[i].torque_max;
+    }
+  }
+  return chain;
+}
+
+viewer_server::SceneChain twin_chain(const config::Twin& twin) {
+  viewer_server::SceneChain chain;
+  chain.urdf = twin.urdf;
+  chain.T_B_root = twin.T_B_root;
+  for (const model::Joint& joint : twin.model.chain.joints()) {
+    chain.joints.push_back(scene_joint(joint));
+    const rendering::TwinDof& dof = twin.model.dofs[static_cast<std::size_t>(joint.v_index)];
+    if (dof.q_index >= 0) add_limits(dof.limits, chain.joints.back());
+  }
+  return chain;
+}
+
+// where the handle may be; on axes without limits the page shows 4 m around its start
+Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
+  constexpr double kHalf = 2.0;  // m
+  const Eigen::Vector3d p = assembly::handle_start(scenario.twin.model).p;
+  Eigen::AlignedBox3d box = inspection::handle_box(scenario.device.model);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(box.min()[axis])) box.min()[axis] = p[axis] - kHalf;
+    if (!std::isfinite(box.max()[axis])) box.max()[axis] = p[axis] + kHalf;
+  }
+  return box;
+}
+
+// told from the name of the twin's robot
+Environment environment_of(const config::Twin& twin) {
+  std::string name = twin.urdf.stem().string() + " " + twin.name;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (name.find("door") != std::string::npos) return Environment::kDoor;
+  if (name.find("excavator") != std::string::npos) return Environment::kExcavator;
+  return Environment::kRoom;
+}
+
+// "Free space" of free_space
+std::string title_of(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name;
+}
+
+void sort(std::vector<Choice>& choices) {
+  std::sort(choices.begin(), choices.end(),
+            [](const Choice& a, const Choice& b) { return a.name < b.name; });
+}
+
+// what somebody has chosen on the command line
+void add_own(const std::string& name, std::vector<Choice>& choices) {
+  if (!is_choice(choices, name)) choices.push_back({name, fs::path(name).filename().string()});
+}
+
+}  // namespace
+
+viewer_server::Scene page_scene(const config::Scenario& scenario) {
+  viewer_server::Scene scene;
+  scene.title = scenario.title;
+  scene.description = scenario.description;
+  scene.device = device_chain(scenario.device);
+  scene.twin = twin_chain(scenario.twin);
+  scene.gantry_joints = scenario.device.model.n_p;
+  scene.limits = scenario.limits;
+  scene.rate_hz = scenario.device.rate_Hz;
+  scene.box = box_of(scenario);
+  scene.floor_z = scenario.device.floor_z;
+  scene.environment = environment_of(scenario.twin);
+  return scene;
+}
+
+viewer_server::Choices page_choices(const RunArguments& arguments) {
+  viewer_server::Choices choices;
+  const fs::path models = data_root() / "models";
+  for (const auto& entry : fs::directory_iterator(models / "scenarios")) {
+    const std::string stem = entry.path().stem().string();
+    if (entry.path().extension() == ".yaml") choices.scenarios.push_back({stem, title_of(stem)});
+  }
+  for (const auto& entry : fs::directory_iterator(models / "twins")) {
+    const fs::path file = entry.path() / "twin.yaml";
+    if (!fs::is_regular_file(file)) continue;
+    choices.twins.push_back({file.generic_string(), title_of(entry.path().filename().string())});
+  }
+  for (const auto& entry : fs::directory_iterator(models / "scripts")) {
+    if (entry.path().extension() != ".yaml") continue;
+    choices.people.push_back(
+        {entry.path().generic_string(), "Script " + entry.path().stem().string()});
+  }
+  for (auto* list : {&choices.scenarios, &choices.twins, &choices.people}) sort(*list);
+  choices.twins.insert(choices.twins.begin(), {"", "as in the scenario"});
+  choices.people.insert(
+      choices.people.begin(),
+      {{"", "as in the scenario"}, {"mouse", "Only the mouse"}, {"none", "Nobody"}});
+  for (const auto& law : config::kLaws) {
+    choices.laws.push_back({std::string(law.name), title_of(std::string(law.name))});
+  }
+  choices.scenario = arguments.world.scenario;
+  choices.twin = arguments.world.twin;
+  choices.person = arguments.world.user;
+  add_own(choices.scenario, choices.scenarios);
+  add_own(choices.twin, choices.twins);
+  add_own(choices.person, choices.people);
+  return choices;
+}
+
+bool is_choice(const std::vector<Choice>& choices, const std::string& name) {
+  return std::any_of(choices.begin(), choices.end(),
+                     [&](const Choice& choice) { return choice.name == name; });
+}
+
+std::vector<viewer_server::Setting> page_settings(const std::vector<config::FormField>& form) {
+  std::vector<viewer_server::Setting> settings;
+  for (const config::FormField& field : form) {
+    settings.push_back({field.name, field.group, field.label, field.unit, field.min, field.max,
+                        field.value, field.step, field.help});
+  }
+  return settings;
+}
+
+}  // namespace hg::apps

@@ -1,0 +1,25 @@
+/// What a page shows and offers of a scenario, fixed during a run.
+#pragma once
+
+#include <vector>
+
+#include "apps/hapticgiant/run_command.h"
+#include "hg/config/scenario.h"
+#include "hg/config/twin_form.h"
+#include "hg/viewer_server/scene.h"
+
+namespace hg::apps {
+
+/// Chains, limits, box and surroundings: of a run or of a recording.
+viewer_server::Scene page_scene(const config::Scenario& scenario);
+
+/// Scenarios, twins, laws and people that come with the program, and those of `arguments`. Names
+/// are what RunArguments takes; empty twin and person stand for the scenario's own.
+viewer_server::Choices page_choices(const RunArguments& arguments);
+
+/// True when `name` is one of `choices`.
+bool is_choice(const std::vector<viewer_server::Choice>& choices, const std::string& name);
+
+std::vector<viewer_server::Setting> page_settings(const std::vector<config::FormField>& form);
+
+}  // namespace hg::apps

@@ -1,0 +1,190 @@
+#include "apps/hapticgiant/replay_command.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/hapticgiant/hand_analysis.h"
+#include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/page_scene.h"
+#include "apps/hapticgiant/run_page.h"
+#include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/status_line.h"
+#include "hg/core/error.h"
+#include "hg/recording/playback.h"
+#include "hg/recording/recording_reader.h"
+
+namespace hg::apps {
+namespace {
+
+using viewer_server::Command;
+using viewer_server::CommandName;
+
+constexpr double kFrame_s = 1.0 / 60.0;  // of the page
+constexpr std::chrono::milliseconds kIdle(4);
+
+viewer_server::Ghost ghost_of(const Sample& sample, double time_s) {
+  const CycleRecord& record = sample.record;
+  viewer_server::Ghost ghost;
+  ghost.time_s = time_s;
+  const auto append = [](const auto& from, std::vector<double>& to) {
+    to.insert(to.end(), from.data(), from.data() + from.size());
+  };
+  append(record.robot.q_p, ghost.q_device);
+  append(record.reference.q_m, ghost.q_device);
+  append(record.twin.q_a, ghost.q_twin);
+  ghost.p_B_H = record.T_B_H.p;
+  ghost.force = record.robot.w_H.head<3>();
+  return ghost;
+}
+
+/// One recording and, if it is compared, the other.
+class Show {
+ public:
+  explicit Show(const ReplayArguments& arguments)
+      : run_(arguments.file, kFrame_s),
+        scenario_(recorded_scenario(run_.configuration())),
+        playback_(run_.duration_s()),
+        sample_(std::make_unique<Sample>()) {
+    if (!arguments.compare.empty()) other_.emplace(arguments.compare, kFrame_s);
+    if (!playback_.set_speed(arguments.speed)) throw SetupError(speed_rule());
+    name_ = std::filesystem::path(arguments.file).filename().string();
+  }
+
+  const recording::RecordedRun& run() const { return run_; }
+  const config::Scenario& scenario() const { return scenario_; }
+  void advance(double elapsed_s) { playback_.advance(elapsed_s); }
+
+  viewer_server::Scene scene() const {
+    viewer_server::Scene scene = page_scene(scenario_);
+    scene.source = viewer_server::Source::kRecording;
+    scene.duration_s = run_.duration_s();
+    scene.commands = {CommandName::kPause, CommandName::kResume,  CommandName::kStep,
+                      CommandName::kSpeed, CommandName::kRestart, CommandName::kSeek};
+    scene.refusal = kRefusal;
+    scene.device.urdf_text = text_of(scene.device.urdf);
+    scene.twin.urdf_text = text_of(scene.twin.urdf);
+    return scene;
+  }
+
+  // What the page sees now.
+  viewer_server::View view(HandAnalysis& analysis) {
+    const std::size_t index = run_.at(playback_.position_s());
+    viewer_server::View view;
+    if (other_) {
+      const std::size_t shown = other_->at(playback_.position_s());
+      other_->read(shown, *sample_);
+      view.ghost = ghost_of(*sample_, other_->time_s(shown));
+    }
+    run_.read(index, *sample_);
+    view.record = sample_->record;
+    view.hand = sample_->operator_input.hand_target;
+    view.cycle_time_us = view.cycle_time_max_us = sample_->cycle_time_us;
+    view.status_text = scenario_.description;
+    view.budget = analysis.budget(view.record);
+    view.singularity = analysis.singularity(view.record);
+    view.run_state = {playback_.is_paused(), playback_.speed(), playback_.is_over(),
+                      playback_.position_s(), name_};
+    return view;
+  }
+
+  // Why not; empty = followed.
+  std::string obey(const Command& command) {
+    switch (command.name) {
+      case CommandName::kPause:
+        playback_.pause();
+        return {};
+      case CommandName::kResume:
+        playback_.resume();
+        return {};
+      case CommandName::kStep:
+        playback_.pause();
+        playback_.move(command.value * kFrame_s);
+        return {};
+      case CommandName::kSpeed:
+        return playback_.set_speed(command.value) ? "" : speed_rule();
+      case CommandName::kRestart:
+        return playback_.seek(0.0) ? "" : "there is nothing to play";
+      case CommandName::kSeek:
+        if (playback_.seek(command.value)) return {};
+        return fmt::format("the recording has 0 .. {:.3f} s", playback_.duration_s());
+      default:
+        return kRefusal;
+    }
+  }
+
+ private:
+  static constexpr char kRefusal[] = "this is a recording";
+
+  // a file of the configuration; empty if it is not there
+  std::string text_of(const std::filesystem::path& file) const {
+    for (const config::SourceText& source : scenario_.sources) {
+      if (!file.empty() && source.name == file.string()) return source.content;
+    }
+    return {};
+  }
+
+  static std::string speed_rule() {
+    return fmt::format("speed: must be {} .. {}", recording::Playback::kSlowest,
+                       recording::Playback::kFastest);
+  }
+
+  recording::RecordedRun run_;
+  std::optional<recording::RecordedRun> other_;
+  config::Scenario scenario_;
+  recording::Playback playback_;
+  std::string name_;
+  std::unique_ptr<Sample> sample_;
+};
+
+void print_content(const Show& show) {
+  print_out(fmt::format("{}\n{}\n", show.scenario().title, show.scenario().description));
+  print_out(fmt::format("duration    {:.3f} s\n", show.run().duration_s()));
+  for (const recording::Event& event : show.run().events()) {
+    print_out(fmt::format("{:8.3f} s  {:<18} {}\n", event.time_s, event.name, event.text));
+  }
+}
+
+void play(Show& show, viewer_server::ViewerServer& server, const std::atomic<bool>& interrupted) {
+  using Clock = std::chrono::steady_clock;
+  HandAnalysis analysis(show.scenario());
+  for (const recording::Event& event : show.run().events()) {
+    server.announce_event(event.time_s, event.name, event.text);
+  }
+  for (auto last = Clock::now(); !interrupted.load(); std::this_thread::sleep_for(kIdle)) {
+    for (const Command& command : server.take_commands()) {
+      server.answer(command, show.obey(command));
+    }
+    const auto now = Clock::now();
+    show.advance(std::chrono::duration<double>(now - std::exchange(last, now)).count());
+    if (server.is_due()) server.publish(show.view(analysis));
+  }
+}
+
+}  // namespace
+
+int replay(const ReplayArguments& arguments) {
+  Show show(arguments);
+  print_content(show);
+  if (!arguments.has_view) return 0;
+  viewer_server::Options options;
+  options.page = find_page();
+  if (options.page.empty()) return 0;
+  options.address = arguments.address;
+  options.port = arguments.port;
+  const std::atomic<bool>& interrupted = watch_interruption();
+  viewer_server::ViewerServer server(options, show.scene());
+  present_page(server.url(), arguments.address, arguments.opens_browser);
+  print_out("stop        Ctrl-C\n");
+  play(show, server, interrupted);
+  return 0;
+}
+
+}  // namespace hg::apps

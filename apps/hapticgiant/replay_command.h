@@ -1,0 +1,22 @@
+/// Looks at a recording in the page, alone or against another one.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace hg::apps {
+
+struct ReplayArguments {
+  std::string file;
+  std::string compare;    ///< second recording, shown through the first; empty = none
+  bool has_view = false;  ///< false: only say what is in it
+  double speed = 1.0;
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;
+  bool opens_browser = true;
+};
+
+/// Exit code 0. Throws SetupError for bad input.
+int replay(const ReplayArguments& arguments);
+
+}  // namespace hg::apps

@@ -1,0 +1,236 @@
+#include "apps/hapticgiant/run_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "apps/hapticgiant/page_scene.h"
+#include "hg/assembly/assembly.h"
+#include "hg/core/error.h"
+#include "hg/model/urdf.h"
+
+namespace hg::apps {
+namespace {
+
+using viewer_server::Command;
+using viewer_server::CommandName;
+
+std::vector<double> values_of(const std::vector<config::FormField>& form) {
+  std::vector<double> values;
+  for (const config::FormField& field : form) values.push_back(field.value);
+  return values;
+}
+
+// commands that a run follows whatever its device is
+constexpr CommandName kAlways[] = {CommandName::kStop, CommandName::kSet};
+// and those that need a simulated device, which waits and can begin anew
+constexpr CommandName kSimulated[] = {
+    CommandName::kPause, CommandName::kResume,  CommandName::kStep,
+    CommandName::kSpeed, CommandName::kRestart, CommandName::kScenario,
+    CommandName::kTwin,  CommandName::kLaw,     CommandName::kPerson};
+
+std::string refusal_of_device(const PreparedRun& run) {
+  if (run.remote == nullptr) return {};
+  return "the device at " + run.arguments.device_address + " keeps its own time";
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+RunPage::RunPage(const viewer_server::Options& options, const PreparedRun& first)
+    : run_(&first),
+      form_(config::twin_form(first.scenario.twin.model)),
+      values_(values_of(form_)),
+      server_(options, scene_of(first)),
+      newest_(std::make_unique<Sample>()) {}
+
+viewer_server::Scene RunPage::scene_of(const PreparedRun& run) const {
+  viewer_server::Scene scene = page_scene(run.scenario);
+  scene.run = number_;
+  scene.duration_s = assembly::planned_duration_s(run.scenario);
+  scene.choices = page_choices(run.arguments);
+  scene.choices.law = rendering::to_string(run.scenario.device.rendering.law);
+  scene.settings = page_settings(form_);
+  scene.commands.assign(std::begin(kAlways), std::end(kAlways));
+  scene.refusal = refusal_of_device(run);
+  if (scene.refusal.empty()) {
+    scene.commands.insert(scene.commands.end(), std::begin(kSimulated), std::end(kSimulated));
+  }
+  return scene;
+}
+
+void RunPage::begin(const PreparedRun& run, const std::string& recording) {
+  const bool is_first = !analysis_;
+  if (!is_first) {
+    run_ = &run;
+    ++number_;
+    form_ = config::twin_form(run.scenario.twin.model);
+    values_ = values_of(form_);
+    server_.set_scene(scene_of(run));
+  }
+  server_.set_values(values_);
+  analysis_.emplace(run.scenario);
+  view_ = {};
+  view_.run = number_;
+  view_.run_state.recording = recording;
+  stop_was_asked_ = false;
+  has_news_ = false;
+}
+
+void RunPage::observe(const Sample& sample, const Note& note) {
+  view_.cycle_time_max_us = std::max(view_.cycle_time_max_us, sample.cycle_time_us);
+  if (sample.record.change == ChangeStatus::kNone) return;
+  const int field = config::field_of(form_, sample.operator_input.change);
+  if (field < 0) return;
+  const auto index = static_cast<std::size_t>(field);
+  if (sample.record.change == ChangeStatus::kRefused) {
+    note("refused", form_[index].name + " stays as it is");
+  } else {
+    values_[index] = sample.operator_input.change.value;
+  }
+  server_.set_values(values_);
+}
+
+void RunPage::show(const Sample& sample) {
+  *newest_ = sample;
+  has_news_ = true;
+  if (server_.is_due()) publish();
+}
+
+void RunPage::publish() {
+  view_.record = newest_->record;
+  view_.hand = newest_->operator_input.hand_target;
+  view_.cycle_time_us = newest_->cycle_time_us;
+  view_.status_text = run_->scenario.description;
+  view_.budget = analysis_->budget(newest_->record);
+  view_.singularity = analysis_->singularity(newest_->record);
+  view_.run_state.position_s = newest_->record.time_s;
+  server_.publish(view_);
+  view_.cycle_time_max_us = 0.0;
+  has_news_ = false;
+}
+
+void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
+  HandTarget target;
+  if (server_.take_hand_target(target) && runtime != nullptr) runtime->set_hand_target(target);
+  for (const Command& command : server_.take_commands()) {
+    server_.answer(command, obey(command, runtime, note));
+  }
+  viewer_server::RunState& state = view_.run_state;
+  const bool is_paused = runtime != nullptr && runtime->pace().is_paused();
+  const double speed = runtime != nullptr ? runtime->pace().speed() : state.speed;
+  const bool is_over = runtime == nullptr;
+  has_news_ =
+      has_news_ || is_paused != state.is_paused || speed != state.speed || is_over != state.is_over;
+  state.is_paused = is_paused;
+  state.speed = speed;
+  state.is_over = is_over;
+  if (has_news_ && server_.is_due()) publish();
+}
+
+// why not; empty = followed
+std::string RunPage::obey(const Command& command, runtime::Runtime* runtime, const Note& note) {
+  const std::string refusal = refusal_of_device(*run_);
+  const bool needs_simulation =
+      std::find(std::begin(kSimulated), std::end(kSimulated), command.name) != std::end(kSimulated);
+  if (needs_simulation && !refusal.empty()) return refusal;
+  switch (command.name) {
+    case CommandName::kRestart:
+    case CommandName::kScenario:
+    case CommandName::kTwin:
+    case CommandName::kLaw:
+    case CommandName::kPerson: {
+      const std::string why_not = choose(command);
+      if (why_not.empty()) note("restart", command.argument.empty() ? "again" : command.argument);
+      return why_not;
+    }
+    case CommandName::kSeek:
+      return "this is a run, not a recording";
+    default:
+      break;
+  }
+  if (runtime == nullptr) return "the run is over: start it again";
+  if (command.name == CommandName::kSet) return set(command, *runtime, note);
+  if (command.name == CommandName::kStop) {
+    runtime->request_stop();
+    stop_was_asked_ = true;
+    note("stop", "asked for in the page");
+    return {};
+  }
+  return obey_pace(command, runtime->pace(), note);
+}
+
+std::string RunPage::obey_pace(const Command& command, runtime::Pace& pace, const Note& note) {
+  switch (command.name) {
+    case CommandName::kPause:
+      pace.pause();
+      note("pause", "simulated time stands still");
+      return {};
+    case CommandName::kResume:
+      pace.resume();
+      note("resume", "simulated time goes on");
+      return {};
+    case CommandName::kStep:
+      if (!pace.step(command.value)) {
+        return fmt::format("a step is 1 .. {} cycles of a paused run", runtime::Pace::kMostSteps);
+      }
+      note("step", fmt::format("{} cycles", command.value));
+      return {};
+    default:
+      if (!pace.set_speed(command.value)) {
+        return fmt::format("the speed must be {} .. 1", runtime::Pace::kSlowest);
+      }
+      note("speed", fmt::format("{} of real time", command.value));
+      return {};
+  }
+}
+
+// prepares the run that follows; the present one goes on when that fails
+std::string RunPage::choose(const Command& command) {
+  RunArguments arguments = run_->arguments;
+  const viewer_server::Choices choices = page_choices(arguments);
+  const auto take = [&](const std::vector<viewer_server::Choice>& list, std::string& value) {
+    if (!is_choice(list, command.argument)) return false;
+    value = command.argument;
+    return true;
+  };
+  bool is_known = true;
+  if (command.name == CommandName::kScenario) {
+    is_known = take(choices.scenarios, arguments.world.scenario);
+    arguments.world.twin.clear();
+    if (arguments.world.user != "mouse" && arguments.world.user != "none") arguments.world.user.clear();
+  }
+  if (command.name == CommandName::kTwin) {
+    is_known = take(choices.twins, arguments.world.twin);
+    if (arguments.world.user != "mouse" && arguments.world.user != "none") arguments.world.user.clear();
+  }
+  if (command.name == CommandName::kLaw) is_known = take(choices.laws, arguments.law);
+  if (command.name == CommandName::kPerson) is_known = take(choices.people, arguments.world.user);
+  if (!is_known) return "there is no such choice: " + command.argument;
+  try {
+    next_ = std::make_unique<PreparedRun>(arguments);
+    return {};
+  } catch (const SetupError& error) {
+    return first_line(error.what());
+  }
+}
+
+std::string RunPage::set(const Command& command, runtime::Runtime& runtime, const Note& note) {
+  const auto field = std::find_if(
+      form_.begin(), form_.end(),
+      [&](const config::FormField& candidate) { return candidate.name == command.argument; });
+  if (field == form_.end()) return "there is no such setting: " + command.argument;
+  const auto index = static_cast<int>(field - form_.begin());
+  std::string why_not = config::refusal(form_, index, command.value, values_);
+  if (!why_not.empty()) return why_not;
+  for (ParameterChange change : field->changes) {
+    change.value = command.value;
+    if (!runtime.change(change)) return "too many changes are waiting";
+  }
+  note("set", fmt::format("{} = {} {}", field->name, model::to_text(command.value), field->unit));
+  return {};
+}
+
+}  // namespace hg::apps

@@ -1,0 +1,86 @@
+/// The page of a run: what it is shown, and what its commands change. Stays while runs follow each
+/// other.
+///
+/// For the observer thread.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/hapticgiant/hand_analysis.h"
+#include "apps/hapticgiant/prepared_run.h"
+#include "hg/config/twin_form.h"
+#include "hg/runtime/runtime.h"
+#include "hg/viewer_server/viewer_server.h"
+
+namespace hg::apps {
+
+class RunPage {
+ public:
+  /// Called for everything that a command has changed: what, and how in words.
+  using Note = std::function<void(std::string_view name, const std::string& text)>;
+
+  RunPage(const viewer_server::Options& options, const PreparedRun& first);
+
+  std::string url() const { return server_.url(); }
+  /// Number of pages connected.
+  std::uint64_t clients() const { return server_.counters().clients; }
+
+  /// Shows `run` from now on; it outlives the next call. `recording` is the name of its file.
+  void begin(const PreparedRun& run, const std::string& recording);
+
+  /// Every sample, in their order.
+  void observe(const Sample& sample, const Note& note);
+  /// The newest sample, as often as there is one.
+  void show(const Sample& sample);
+  void announce(double time_s, std::string_view name, std::string_view text) {
+    server_.announce_event(time_s, name, text);
+  }
+
+  /// Follows hand and commands. `runtime` is nullptr when the run is over.
+  void follow(runtime::Runtime* runtime, const Note& note);
+
+  bool stop_was_asked() const { return stop_was_asked_; }
+  bool has_next() const { return next_ != nullptr; }
+  /// The run that was chosen to follow, once.
+  std::unique_ptr<PreparedRun> take_next() { return std::move(next_); }
+
+ private:
+  std::string obey(const viewer_server::Command& command, runtime::Runtime* runtime,
+                   const Note& note);
+  std::string obey_pace(const viewer_server::Command& command, runtime::Pace& pace,
+                        const Note& note);
+  std::string choose(const viewer_server::Command& command);
+  std::string set(const viewer_server::Command& command, runtime::Runtime& runtime,
+                  const Note& note);
+  viewer_server::Scene scene_of(const PreparedRun& run) const;
+  void publish();
+
+  const PreparedRun* run_;
+  std::uint64_t number_ = 1;
+  std::vector<config::FormField> form_;
+  std::vector<double> values_;  ///< of the form, as targets
+  viewer_server::ViewerServer server_;
+  std::optional<HandAnalysis> analysis_;
+  viewer_server::View view_;
+  std::unique_ptr<Sample> newest_;
+  bool has_news_ = false;  ///< that no page has seen
+  bool stop_was_asked_ = false;
+  std::unique_ptr<PreparedRun> next_;
+};
+
+/// The page's server for `run`, or nullptr: not wanted, or not built, which is said.
+std::unique_ptr<RunPage> open_page(const PreparedRun& run);
+
+/// Where the built page lies; empty when it is not built, after saying how to get it.
+std::string find_page();
+
+/// Says where the page is, who can reach it, and opens it where there is a display and somebody at
+/// a terminal.
+void present_page(const std::string& url, const std::string& address, bool opens_browser);
+
+}  // namespace hg::apps

@@ -1,0 +1,37 @@
+/// The values of a twin that may change while it runs, as the fields of a form: made from the same
+/// description as the list `changes` of scenario.yaml.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hg/rendering/twin_model.h"
+#include "hg/signals/frames.h"
+
+namespace hg::config {
+
+struct FormField {
+  std::string name;   ///< "hinge.damping_Nms_per_rad": joint, key and for vectors the component
+  std::string group;  ///< the joint; empty for the whole twin
+  std::string label;  ///< "damping"
+  std::string unit;
+  std::string help;
+  double min = 0.0, max = 0.0;  ///< of what a person may choose, both included
+  double value = 0.0;           ///< as the twin is set up; may be infinite
+  double step = 0.0;
+  std::vector<ParameterChange> changes;  ///< that set it, all to the same value
+};
+
+/// Fields of all joints, then those of the whole twin. Where the configuration has no upper end,
+/// ten times the value or a force that a person still likes to hold takes its place.
+std::vector<FormField> twin_form(const rendering::TwinModel& twin);
+
+/// Index of the field that `change` concerns; -1 = none.
+int field_of(const std::vector<FormField>& form, const ParameterChange& change) noexcept;
+
+/// Why `value` may not be set while the others are `values` (one per field); empty: it may.
+std::string refusal(const std::vector<FormField>& form, int field, double value,
+                    const std::vector<double>& values);
+
+}  // namespace hg::config

@@ -1,0 +1,46 @@
+/// A recording back in memory, thinned to what people see. docs/recording.md lists its topics.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "hg/recording/recorder.h"
+#include "hg/recording/sample_fields.h"
+
+namespace hg::recording {
+
+class RecordedRun {
+ public:
+  /// Keeps one sample per `period_s` and the last one. Throws SetupError: no Rust, the file cannot
+  /// be read, it is no recording, has no sample, or is of a version with other samples.
+  RecordedRun(const std::filesystem::path& file, double period_s);
+
+  const std::vector<NamedText>& configuration() const noexcept { return configuration_; }
+  const std::vector<Event>& events() const noexcept { return events_; }
+
+  /// Kept samples, at least one, in their order.
+  std::size_t size() const noexcept { return moments_.size(); }
+  /// Of a kept sample, in s since the first.
+  double time_s(std::size_t index) const;
+  double duration_s() const { return time_s(size() - 1); }
+  /// The last kept sample up to `time_s`; the first before it.
+  std::size_t at(double time_s) const;
+  /// Throws SetupError when its bytes are damaged.
+  void read(std::size_t index, Sample& sample) const;
+
+ private:
+  struct Moment {
+    std::uint64_t time_ns;
+    std::vector<std::byte> bytes;
+  };
+  struct Taker;
+
+  std::filesystem::path file_;
+  std::vector<NamedText> configuration_;
+  std::vector<Event> events_;
+  std::vector<Moment> moments_;
+};
+
+}  // namespace hg::recording

@@ -1,0 +1,105 @@
+/// Everything small that goes either way: the hand, commands and their answers, values, events.
+/// See message.h for the rules.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hg/viewer_server/commands.h"
+#include "hg/viewer_server/message.h"
+
+namespace hg::viewer_server {
+
+template <>
+inline constexpr auto kWords<CommandName> =
+    std::to_array<std::string_view>({"pause", "resume", "step", "speed", "restart", "stop",
+                                     "scenario", "twin", "law", "person", "set", "seek"});
+
+struct HandMessage {
+  bool active = false;
+  Vec3 p_B{};
+  std::optional<Quaternion> quaternion_B_H;
+  double press = 0.0;
+};
+
+struct CommandMessage {
+  double id = 0.0;
+  CommandName command = CommandName::kPause;
+  std::string name;
+  double value = 0.0;
+};
+
+struct AnswerMessage {
+  double id = 0.0;
+  bool is_accepted = false;
+  std::string reason;
+};
+
+struct ValuesMessage {
+  std::vector<std::optional<double>> values;
+};
+
+struct EventMessage {
+  std::uint64_t run = 0;
+  double time_s = 0.0;
+  std::string name, text;
+};
+
+template <>
+inline constexpr Interface kInterface<HandMessage> = {
+    "Hand", "page -> program, and what the program made of it (inside a frame)"};
+template <>
+inline constexpr Interface kInterface<CommandMessage> = {"Command", "page -> program"};
+template <>
+inline constexpr Interface kInterface<AnswerMessage> = {
+    "Answer", "program -> page: one for each Command, and for what was refused"};
+template <>
+inline constexpr Interface kInterface<ValuesMessage> = {
+    "Values", "program -> page: when it connects and whenever one has changed"};
+template <>
+inline constexpr Interface kInterface<EventMessage> = {"Event", "program -> page"};
+
+template <typename Archive, Is<HandMessage> T>
+void fields(Archive& a, T& hand) {
+  a.type("hand");
+  a("active", hand.active);
+  a("p_B_m", hand.p_B);
+  a("quaternion_B_H", hand.quaternion_B_H, "wanted turn of the handle; null = as the hand likes");
+  a("press", hand.press, "of the lever, 0..1");
+}
+
+template <typename Archive, Is<CommandMessage> T>
+void fields(Archive& a, T& command) {
+  a.type("command");
+  a("id", command.id, "0..2^53, comes back in the answer");
+  a("command", command.command);
+  a("name", command.name, "of what is chosen or set; else empty");
+  a("value", command.value, "step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value");
+}
+
+template <typename Archive, Is<AnswerMessage> T>
+void fields(Archive& a, T& answer) {
+  a.type("answer");
+  a("id", answer.id, "of the command; -1 = it could not be read");
+  a("is_accepted", answer.is_accepted);
+  a("reason", answer.reason, "why not; empty = accepted");
+}
+
+template <typename Archive, Is<ValuesMessage> T>
+void fields(Archive& a, T& values) {
+  a.type("values");
+  a("values", values.values, "in the order of Scene.settings; null = unlimited");
+}
+
+template <typename Archive, Is<EventMessage> T>
+void fields(Archive& a, T& event) {
+  a.type("event");
+  a("run", event.run, "Scene.run that it happened in");
+  a("time_s", event.time_s);
+  a("name", event.name);
+  a("text", event.text);
+}
+
+}  // namespace hg::viewer_server

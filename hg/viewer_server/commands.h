@@ -1,0 +1,33 @@
+/// What a page may ask for, and how it is answered.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace hg::viewer_server {
+
+enum class CommandName : std::uint8_t {
+  kPause,     ///< simulated time stands still
+  kResume,    ///< and goes on, with the speed before
+  kStep,      ///< `value` cycles, 1..1000, while paused; of a recording: frames
+  kSpeed,     ///< simulated seconds per second
+  kRestart,   ///< the same run from its start
+  kStop,      ///< controlled stop
+  kScenario,  ///< another run: `name` of Choices
+  kTwin,
+  kLaw,
+  kPerson,
+  kSet,   ///< the setting `name` gets `value`
+  kSeek,  ///< second `value` of a recording
+};
+
+/// One that has been read and whose numbers are finite; `page` and `id` go back with the answer.
+struct Command {
+  std::uint64_t page = 0;
+  double id = 0.0;
+  CommandName name = CommandName::kPause;
+  std::string argument;
+  double value = 0.0;
+};
+
+}  // namespace hg::viewer_server

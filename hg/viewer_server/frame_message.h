@@ -1,0 +1,84 @@
+/// Frame: what happens now, 60 times a second. See message.h for the rules.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hg/viewer_server/command_message.h"
+#include "hg/viewer_server/frame_parts_message.h"
+#include "hg/viewer_server/message.h"
+
+namespace hg::viewer_server {
+
+struct FrameMessage {
+  std::uint64_t run = 0;
+  double time_s = 0.0;
+  Mode mode = Mode::kOff;
+  std::string mode_text, fault, status;
+  std::vector<double> q_device, q_measured, dq_device, dq_measured, tau_measured, q_twin, dq_twin;
+  std::vector<double> q_gantry_target, tracking_error;
+  bool is_clamped = false;
+  Vec3 p_B_H{}, v_H{}, p_B_E{}, p_B_elbow{}, force{}, torque{};
+  Quaternion quaternion_B_H{}, quaternion_B_E{};
+  std::optional<FeltLimitMessage> felt;
+  std::vector<ActiveLimitMessage> active;
+  std::vector<double> limit_position;
+  std::vector<std::optional<double>> limit_distance;
+  BudgetMessage budget;
+  std::optional<SingularityMessage> singularity;
+  double sync_error_mm = 0.0, sync_error_deg = 0.0, cycle_time_us = 0.0, cycle_time_max_us = 0.0;
+  HandMessage hand;
+  RunStateMessage run_state;
+  std::uint64_t clients = 0;
+  std::optional<GhostMessage> ghost;
+};
+
+template <>
+inline constexpr Interface kInterface<FrameMessage> = {"Frame", "program -> page, at update_rate"};
+
+template <typename Archive, Is<FrameMessage> T>
+void fields(Archive& a, T& frame) {
+  a.type("frame");
+  a("run", frame.run, "Scene.run that this belongs to");
+  a("time_s", frame.time_s);
+  a("mode", frame.mode);
+  a("mode_text", frame.mode_text, "the mode and its cause in words");
+  a("fault", frame.fault, "empty = none");
+  a("status", frame.status, "one line from the program");
+  a("q_device", frame.q_device, "rad or m: gantry, then reference of the manipulator");
+  a("q_measured", frame.q_measured, "rad or m: gantry, then manipulator");
+  a("dq_device", frame.dq_device, "rad/s or m/s, as q_device");
+  a("dq_measured", frame.dq_measured, "rad/s or m/s, as q_measured; the gantry's speed");
+  a("tau_measured_Nm", frame.tau_measured, "of the manipulator's joints; empty = no sensors");
+  a("q_twin", frame.q_twin, "rad or m");
+  a("dq_twin", frame.dq_twin, "rad/s or m/s; a floating joint has 6, in its own frame");
+  a("q_gantry_target_m", frame.q_gantry_target, "where prepositioning wants the gantry");
+  a("tracking_error", frame.tracking_error, "rad or m, reference minus measured, manipulator");
+  a("is_clamped", frame.is_clamped, "tracking was lost: the reference waits for the device");
+  a("p_B_H_m", frame.p_B_H, "handle, at the reference");
+  a("quaternion_B_H", frame.quaternion_B_H);
+  a("v_H_m_per_s", frame.v_H);
+  a("p_B_E_m", frame.p_B_E, "end effector of the twin");
+  a("quaternion_B_E", frame.quaternion_B_E);
+  a("p_B_elbow_m", frame.p_B_elbow);
+  a("force_N", frame.force, "of the user on the handle, in B");
+  a("torque_Nm", frame.torque);
+  a("felt", frame.felt);
+  a("active", frame.active, "limits that act");
+  a("limit_position", frame.limit_position, "rad or m, in the order of Scene.limits");
+  a("limit_distance", frame.limit_distance, "to the nearer end, with margin; null = unbounded");
+  a("budget", frame.budget, "why do I feel this?");
+  a("singularity", frame.singularity);
+  a("sync_error_mm", frame.sync_error_mm, "between handle and twin");
+  a("sync_error_deg", frame.sync_error_deg);
+  a("cycle_time_us", frame.cycle_time_us);
+  a("cycle_time_max_us", frame.cycle_time_max_us, "since the frame before");
+  a("hand", frame.hand);
+  a("run_state", frame.run_state);
+  a("clients", frame.clients, "pages that are connected");
+  a("ghost", frame.ghost);
+}
+
+}  // namespace hg::viewer_server

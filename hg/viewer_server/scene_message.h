@@ -1,0 +1,56 @@
+/// Scene: what stays the same during a run. GET /scene.json. See message.h for the rules.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hg/viewer_server/command_message.h"
+#include "hg/viewer_server/message.h"
+#include "hg/viewer_server/scene_parts_message.h"
+
+namespace hg::viewer_server {
+
+struct SceneMessage {
+  std::uint64_t run = 0;
+  Source source = Source::kRun;
+  std::string title, description;
+  double rate_hz = 0.0, update_rate_hz = 0.0, duration_s = 0.0;
+  SceneChainMessage device, twin;
+  int gantry_joints = 0;
+  std::vector<SceneLimitMessage> limits;
+  double floor_z = 0.0;
+  SceneBoxMessage box;
+  Environment environment = Environment::kRoom;
+  Choices choices;
+  std::vector<SettingMessage> settings;
+  std::vector<CommandName> commands;
+  std::string refusal;
+};
+
+template <>
+inline constexpr Interface kInterface<SceneMessage> = {"Scene", "GET /scene.json: fixed in a run"};
+
+template <typename Archive, Is<SceneMessage> T>
+void fields(Archive& a, T& scene) {
+  a("run", scene.run, "number of the run; a Frame with another one: fetch this again");
+  a("source", scene.source);
+  a("title", scene.title);
+  a("description", scene.description);
+  a("rate_hz", scene.rate_hz, "of the control cycle");
+  a("update_rate_hz", scene.update_rate_hz, "of frames");
+  a("duration_s", scene.duration_s, "of a recording, or planned; 0 = open");
+  a("device", scene.device);
+  a("twin", scene.twin);
+  a("gantry_joints", scene.gantry_joints, "so many of the device's joints come first");
+  a("limits", scene.limits);
+  a("floor_z_m", scene.floor_z);
+  a("box", scene.box);
+  a("environment", scene.environment, "of the twin");
+  a("choices", scene.choices);
+  a("settings", scene.settings);
+  a("commands", scene.commands, "that are followed");
+  a("refusal", scene.refusal, "why others are not; empty = all are");
+}
+
+}  // namespace hg::viewer_server

@@ -1,0 +1,150 @@
+/// What a Scene is made of. See message.h for the rules.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hg/signals/limit.h"
+#include "hg/viewer_server/message.h"
+#include "hg/viewer_server/scene.h"
+
+namespace hg::viewer_server {
+
+template <>
+inline constexpr auto kWords<JointType> = std::to_array<std::string_view>({"revolute", "prismatic",
+                                                                           "floating"});
+template <>
+inline constexpr auto kWords<LimitKind> = std::to_array<std::string_view>({"manipulator", "virtual",
+                                                                           "cartesian", "twin"});
+template <>
+inline constexpr auto kWords<Environment> = std::to_array<std::string_view>({"room", "door",
+                                                                             "excavator"});
+template <>
+inline constexpr auto kWords<Source> = std::to_array<std::string_view>({"run", "recording"});
+
+enum class LimitUnit : std::uint8_t { kRad, kM };
+template <>
+inline constexpr auto kWords<LimitUnit> = std::to_array<std::string_view>({"rad", "m"});
+
+struct SceneJointMessage {
+  std::string name;
+  JointType type = JointType::kRevolute;
+  std::string planar;
+  Vec3 axis{};
+  std::optional<double> q_min, q_max, dq_max, tau_max;
+};
+
+struct SceneChainMessage {
+  std::string urdf;
+  Vec3 p_B_root{};
+  Quaternion quaternion_B_root{};
+  std::vector<SceneJointMessage> joints;
+};
+
+struct SceneLimitMessage {
+  std::string name;
+  LimitKind kind = LimitKind::kManipulatorJoint;
+  LimitUnit unit = LimitUnit::kRad;
+  std::optional<double> min, max;
+  int priority = 0;
+};
+
+struct SceneBoxMessage {
+  Vec3 min{}, max{};
+};
+
+struct SettingMessage {
+  std::string name, group, label, unit;
+  double min = 0.0, max = 0.0;
+  std::optional<double> value;
+  double step = 0.0;
+  std::string help;
+};
+
+template <>
+inline constexpr Interface kInterface<SceneJointMessage> = {"SceneJoint", "a joint of a chain"};
+template <>
+inline constexpr Interface kInterface<SceneChainMessage> = {"SceneChain", "a robot or a twin"};
+template <>
+inline constexpr Interface kInterface<SceneLimitMessage> = {"SceneLimit", "a limited quantity"};
+template <>
+inline constexpr Interface kInterface<SceneBoxMessage> = {"SceneBox",
+                                                          "Cartesian limits of the handle in B"};
+template <>
+inline constexpr Interface kInterface<Choice> = {"Choice", "something to choose"};
+template <>
+inline constexpr Interface kInterface<Choices> = {"Choices", "what can be chosen, and is"};
+template <>
+inline constexpr Interface kInterface<SettingMessage> = {"Setting",
+                                                         "a form field: a value of the twin"};
+
+template <typename Archive, Is<SceneJointMessage> T>
+void fields(Archive& a, T& joint) {
+  a("name", joint.name, "as in the URDF");
+  a("type", joint.type, "floating: x y z qx qy qz qw");
+  a("planar", joint.planar,
+    "joint of the URDF that this is one of three parts of: slide, slide, turn");
+  a("axis", joint.axis, "of such a part, in the frame of the planar joint");
+  a("q_min", joint.q_min, "rad or m; null = unbounded");
+  a("q_max", joint.q_max);
+  a("dq_max", joint.dq_max, "rad/s or m/s");
+  a("tau_max", joint.tau_max, "Nm or N, peak; null = unknown");
+}
+
+template <typename Archive, Is<SceneChainMessage> T>
+void fields(Archive& a, T& chain) {
+  a("urdf", chain.urdf, "address of the file, empty = none");
+  a("p_B_root_m", chain.p_B_root);
+  a("quaternion_B_root", chain.quaternion_B_root);
+  a("joints", chain.joints, "in the order of the coordinates");
+}
+
+template <typename Archive, Is<SceneLimitMessage> T>
+void fields(Archive& a, T& limit) {
+  a("name", limit.name);
+  a("kind", limit.kind);
+  a("unit", limit.unit, "of its position; the reaction of a rad is in Nm, of a m in N");
+  a("min", limit.min, "null = unbounded");
+  a("max", limit.max);
+  a("priority", limit.priority, "1 is the coupling of hand and twin, then 2, 3, ...");
+}
+
+template <typename Archive, Is<SceneBoxMessage> T>
+void fields(Archive& a, T& box) {
+  a("min_m", box.min);
+  a("max_m", box.max);
+}
+
+template <typename Archive, Is<Choice> T>
+void fields(Archive& a, T& choice) {
+  a("name", choice.name, "what a command carries");
+  a("title", choice.title, "what people read");
+}
+
+template <typename Archive, Is<Choices> T>
+void fields(Archive& a, T& choices) {
+  a("scenario", choices.scenario, "name of the chosen one");
+  a("scenarios", choices.scenarios);
+  a("twin", choices.twin, "empty: the scenario's own");
+  a("twins", choices.twins);
+  a("law", choices.law);
+  a("laws", choices.laws);
+  a("person", choices.person, "who holds the handle: a script, mouse, none; empty: the scenario's");
+  a("people", choices.people);
+}
+
+template <typename Archive, Is<SettingMessage> T>
+void fields(Archive& a, T& setting) {
+  a("name", setting.name, "what the command \"set\" carries");
+  a("group", setting.group, "joint of the twin, or empty");
+  a("label", setting.label);
+  a("unit", setting.unit);
+  a("min", setting.min, "of what is accepted");
+  a("max", setting.max);
+  a("value", setting.value, "at the start; then message Values. null = unlimited");
+  a("step", setting.step);
+  a("help", setting.help);
+}
+
+}  // namespace hg::viewer_server

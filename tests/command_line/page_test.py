@@ -1,0 +1,291 @@
+"""What a page does to a run, and a recording in the page, without a browser.
+
+Usage: page_test.py PROGRAM
+"""
+
+import contextlib
+import json
+import os
+import pty
+import re
+import shutil
+import signal
+import subprocess
+import threading
+import time
+import unittest
+
+from program import MODELS, PROGRAM, TemporaryFolder, run
+from web_socket import Page
+
+
+def drain(terminal):
+    with contextlib.suppress(OSError):  # at its end
+        while os.read(terminal, 4096):
+            pass
+
+
+class PageTest(TemporaryFolder):
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(MODELS, self.folder / "models")  # the page is looked for beside models
+        page = self.folder / "viewer/dist"
+        page.mkdir(parents=True)
+        (page / "index.html").write_text("the page")
+
+    @contextlib.contextmanager
+    def program(self, *arguments):
+        """The running program and its link."""
+        process = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
+        try:
+            while not (link := re.search(r"http://\S+", process.stdout.readline())):
+                self.assertIsNone(process.poll())
+            yield process, link[0]
+        finally:
+            process.kill()
+            process.communicate()
+
+    @contextlib.contextmanager
+    def run_of(self, *arguments):
+        with self.program("run", *arguments, "--duration", "600") as (process, link):
+            page = Page(link)
+            self.addCleanup(page.close)
+            page.next("frame", lambda frame: frame["mode"] == "running")
+            yield process, page
+
+    def end(self, process):
+        """Everything the program prints to its end."""
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, out)
+        return out
+
+    def recordings(self):
+        return sorted(path for path in (self.folder / "recordings").glob("*.mcap")
+                      if not path.is_symlink())
+
+    def samples(self, path, topic="/hapticgiant/sample"):
+        from mcap_ros2.reader import read_ros2_messages
+        return [message.ros_msg for message in read_ros2_messages(path, topics=[topic])]
+
+    def accept(self, page, *command):
+        answer = page.command(*command)
+        self.assertTrue(answer["is_accepted"], answer)
+
+    def refuse(self, page, *command):
+        answer = page.command(*command)
+        self.assertFalse(answer["is_accepted"], command)
+        self.assertNotEqual(answer["reason"], "")
+        return answer["reason"]
+
+    def test_pause_stops_simulated_time_and_a_step_is_one_cycle(self):
+        with self.run_of("door", "--user", "mouse", "--no-recording") as (process, page):
+            self.accept(page, "pause")
+            page.next("frame", lambda frame: frame["run_state"]["is_paused"])
+            self.accept(page, "step", "", 1)
+            before = page.next("frame")["time_s"]
+            self.accept(page, "step", "", 7)
+            after = page.next("frame", lambda frame: frame["time_s"] >= before + 0.00699)
+            self.assertAlmostEqual(after["time_s"], before + 0.007, places=5)
+            self.refuse(page, "step", "", 0.5)
+            self.refuse(page, "speed", "", 0.01)
+            self.accept(page, "speed", "", 0.5)
+            self.accept(page, "resume")
+            page.next("frame", lambda frame: frame["run_state"]["speed"] == 0.5 and
+                      not frame["run_state"]["is_paused"] and frame["time_s"] > after["time_s"])
+            self.refuse(page, "seek", "", 1)
+            self.end(process)
+
+    def test_a_value_that_is_set_is_felt_and_in_the_recording(self):
+        name = "hinge.damping_Nms_per_rad"
+        with self.run_of("door", "--user", "none") as (process, page):
+            settings = page.scene()["settings"]
+            index = [setting["name"] for setting in settings].index(name)
+            self.accept(page, "set", name, 3.25)
+            values = page.next("values", lambda values: values["values"][index] == 3.25)
+            self.assertEqual(len(values["values"]), len(settings))
+            self.assertIn("must be", self.refuse(page, "set", name, -1))
+            self.assertIn("no such setting", self.refuse(page, "set", "hinge.colour", 1))
+            self.assertIn("cross", self.refuse(page, "set", "hinge.q_max_rad", -2))
+            page.send("not JSON")
+            self.assertEqual(page.next("answer")["id"], -1)
+            page.next("event", lambda event: event["name"] == "set")
+            self.end(process)
+        [recording] = self.recordings()
+        changes = [sample.operator_input.change for sample in self.samples(recording)
+                   if sample.operator_input.change.parameter != 0]
+        self.assertEqual([(change.parameter, change.index, change.value) for change in changes],
+                         [(4, 0, 3.25)])
+        events = {event.name: event.text for event in
+                  self.samples(recording, "/hapticgiant/events")}
+        self.assertEqual(events["set"], f"{name} = 3.25 Nms/rad")
+
+    def test_another_scenario_begins_and_the_page_stays(self):
+        with self.run_of("door", "--user", "mouse") as (process, page):
+            self.assertEqual(page.scene()["environment"], "door")
+            self.assertIn("no such choice", self.refuse(page, "scenario", "/etc/passwd"))
+            self.refuse(page, "twin", "../../secret.yaml")
+            self.accept(page, "scenario", "excavator")
+            page.next("frame", lambda frame: frame["run"] == 2 and frame["mode"] == "running")
+            scene = page.scene()
+            self.assertEqual((scene["run"], scene["environment"]), (2, "excavator"))
+            self.assertEqual(scene["choices"]["scenario"], "excavator")
+            self.accept(page, "law", "paper")
+            page.next("frame", lambda frame: frame["run"] == 3)
+            self.assertEqual(page.scene()["choices"]["law"], "paper")
+            self.accept(page, "restart")
+            page.next("frame", lambda frame: frame["run"] == 4 and frame["time_s"] < 5)
+            self.end(process)
+        self.assertEqual(len(self.recordings()), 4)
+
+    def test_after_a_stop_the_run_can_begin_again(self):
+        with self.run_of("door", "--user", "mouse", "--no-recording") as (process, page):
+            self.accept(page, "stop")
+            page.next("frame", lambda frame: frame["run_state"]["is_over"])
+            self.assertIn("over", self.refuse(page, "pause"))
+            self.accept(page, "restart")
+            page.next("frame", lambda frame: frame["run"] == 2 and frame["mode"] == "running")
+            self.end(process)
+
+    def test_the_parts_of_the_force_add_up_and_frames_are_small(self):
+        with self.run_of("door", "--no-recording") as (process, page):
+            def is_pushed(frame):
+                return sum(x * x for x in frame["force_N"]) > 25 and frame["mode"] == "running"
+            frame = page.next("frame", is_pushed)
+            budget = dict(frame["budget"])
+            user, rest = budget.pop("user"), budget.pop("rest")
+            for kind in ("force_N", "torque_Nm"):
+                for axis in range(3):
+                    parts = sum(part[kind][axis] for part in budget.values())
+                    self.assertAlmostEqual(user[kind][axis], parts + rest[kind][axis], delta=1e-3)
+                    self.assertLess(abs(rest[kind][axis]), 1e-3)
+            self.assertLess(len(json.dumps(frame, separators=(",", ":"))), 4096)
+            self.assertGreater(frame["singularity"]["measure"], 0)
+            self.assertEqual(len(frame["limit_position"]), len(page.scene()["limits"]))
+            self.end(process)
+
+    def test_a_remote_device_keeps_its_own_time(self):
+        server = subprocess.Popen([PROGRAM, "simulate", "door", "--user", "mouse", "--listen",
+                                   "127.0.0.1:0"], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(server.communicate)
+        self.addCleanup(server.kill)
+        while not (address := re.search(r"127\.0\.0\.1:\d+", server.stdout.readline())):
+            self.assertIsNone(server.poll())
+        # at a terminal the page stays also when a busy machine loses the session
+        process, link = self.at_terminal("--device-address", address[0])
+        page = Page(link)
+        self.addCleanup(page.close)
+        for command in ("pause", "restart"):
+            self.assertIn("keeps its own time", self.refuse(page, command))
+        self.assertEqual(set(page.scene()["commands"]), {"stop", "set"})
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=30)
+
+    def record(self, *arguments):
+        code, out, err = run("run", "door", "--fast", "--duration", "4", "--recordings",
+                             self.folder / "recordings", *arguments)
+        self.assertEqual(err, "", out)
+        return max(self.recordings(), key=lambda path: path.stat().st_mtime_ns)
+
+    def test_a_recording_is_played_scrubbed_and_compared(self):
+        first, second = self.record(), self.record("--law", "paper")
+        shutil.rmtree(self.folder / "models/twins")  # all that it needs is in it
+        (self.folder / "models/scenarios/door.yaml").unlink()
+        with self.program("replay", first, "--compare", second, "--view", "--speed",
+                          "2") as (process, link):
+            page = Page(link)
+            self.addCleanup(page.close)
+            scene = page.scene()
+            self.assertEqual((scene["source"], scene["title"]), ("recording", "Door"))
+            self.assertAlmostEqual(scene["duration_s"], 4.0, delta=0.1)
+            self.assertIn("<robot", page.get("/models/twin.urdf"))
+            self.accept(page, "pause")
+            self.accept(page, "seek", "", 2.5)
+            frame = page.next("frame", lambda frame: frame["run_state"]["position_s"] == 2.5)
+            self.assertAlmostEqual(frame["time_s"], 2.5, delta=0.03)
+            self.assertAlmostEqual(frame["ghost"]["time_s"], 2.5, delta=0.03)
+            self.assertIn("4.0", self.refuse(page, "seek", "", 99))
+            self.assertIn("recording", self.refuse(page, "set", "mass_scale", 2))
+            self.accept(page, "restart")
+            self.accept(page, "resume")
+            page.next("frame", lambda frame: frame["run_state"]["is_over"])
+            self.end(process)
+
+    def test_a_file_that_is_no_recording_is_refused(self):
+        file = self.folder / "no.mcap"
+        file.write_text("nothing")
+        code, out, err = run("replay", file, "--view")
+        self.assertEqual(code, 2)
+        self.assertIn("must be a recording", err)
+
+    def at_terminal(self, *options, **environment):
+        """A run of the door there, and the link that it prints."""
+        primary, secondary = pty.openpty()
+        process = subprocess.Popen(
+            [PROGRAM, "run", "door", "--user", "mouse", "--no-recording", *options],
+            stdout=secondary, cwd=self.folder, env={"PATH": os.environ["PATH"], **environment})
+        os.close(secondary)
+        self.addCleanup(os.close, primary)
+        self.addCleanup(process.kill)
+        shown = b""
+        while not (link := re.search(rb"(http://\S+)\s", shown)):
+            shown += os.read(primary, 4096)
+        threading.Thread(target=drain, args=[os.dup(primary)], daemon=True).start()
+        return process, link[1].decode()
+
+    def open_at_terminal(self, *options, **environment):
+        """The link that the program prints there, and the one that a browser is asked to open."""
+        opened = self.folder / "opened"
+        browser = self.folder / "bin/xdg-open"
+        browser.parent.mkdir(exist_ok=True)
+        browser.write_text(f'#!/bin/sh\necho "$1" > {opened}.new && mv {opened}.new {opened}\n')
+        browser.chmod(0o755)
+        process, link = self.at_terminal(
+            *options, **environment, PATH=f"{browser.parent}:{os.environ['PATH']}")
+        page = Page(link)
+        page.next("frame", lambda frame: frame["mode"] == "running")
+        for _ in range(200 if environment and not options else 1):
+            if opened.exists():
+                break
+            time.sleep(0.05)
+        page.command("stop")
+        page.next("frame", lambda frame: frame["run_state"]["is_over"])
+        page.command("restart")
+        page.next("frame", lambda frame: frame["run"] == 2)
+        page.close()
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=30), 0)
+        result = opened.read_text().strip() if opened.exists() else None
+        opened.unlink(missing_ok=True)
+        return link, result
+
+    def test_a_browser_opens_where_there_is_a_display_and_a_terminal(self):
+        link, opened = self.open_at_terminal(DISPLAY=":0")
+        self.assertEqual(opened, link)
+        self.assertIsNone(self.open_at_terminal()[1])
+        self.assertIsNone(self.open_at_terminal("--no-browser", DISPLAY=":0")[1])
+
+    def test_without_the_built_page_it_says_how_to_get_it(self):
+        shutil.rmtree(self.folder / "viewer")
+        done = subprocess.run([PROGRAM, "run", "door", "--user", "none", "--duration", "0.3",
+                               "--no-recording"], cwd=self.folder, capture_output=True, text=True,
+                              timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+        self.assertIn("npm run build", done.stdout)
+
+    def test_another_address_is_warned_of(self):
+        with self.program("run", "door", "--user", "mouse", "--no-recording", "--bind",
+                          "0.0.0.0") as (process, link):
+            self.assertIn("WARNING: listening at 0.0.0.0", process.stdout.readline())
+            page = Page(link)
+            self.addCleanup(page.close)
+            page.next("frame")
+        code, out, err = run("run", "door", "--bind", "nowhere", "--duration", "1",
+                             "--no-recording")
+        self.assertEqual(code, 2, out)
+        self.assertIn("nowhere", err)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,109 @@
+"""A page as far as tests of the program need one: HTTP and a WebSocket on a plain socket."""
+
+import json
+import os
+import re
+import socket
+import struct
+import time
+
+PATIENCE_S = 30.0
+
+
+class Page:
+    """Connected to the page of a program that printed `link`."""
+
+    def __init__(self, link):
+        self.host, self.token = re.match(r"http://([^/]+)/\?token=(\w+)", link).groups()
+        name, _, port = self.host.rpartition(":")
+        self.address = (name, int(port))
+        self.socket = socket.create_connection(self.address, timeout=PATIENCE_S)
+        self.received = b""
+        self.send_text(f"GET /ws?token={self.token} HTTP/1.1\r\nHost: {self.host}\r\n"
+                       f"Origin: http://{self.host}\r\nConnection: Upgrade\r\n"
+                       "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+                       "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n")
+        head = self.read_until(b"\r\n\r\n")
+        assert head.startswith(b"HTTP/1.1 101"), head
+        self.last_id = 0
+        self.skipped = []  # messages other than frames that nobody has asked for yet
+
+    def close(self):
+        self.socket.close()
+
+    def get(self, path):
+        with socket.create_connection(self.address, timeout=PATIENCE_S) as connection:
+            connection.sendall(f"GET {path}?token={self.token} HTTP/1.1\r\nHost: {self.host}\r\n"
+                               "Connection: close\r\n\r\n".encode())
+            answer = b""
+            while chunk := connection.recv(65536):
+                answer += chunk
+        return answer.partition(b"\r\n\r\n")[2].decode()
+
+    def scene(self):
+        return json.loads(self.get("/scene.json"))
+
+    def send_text(self, text):
+        self.socket.sendall(text.encode())
+
+    def read_until(self, end):
+        while end not in self.received:
+            self.receive()
+        head, _, self.received = self.received.partition(end)
+        return head
+
+    def receive(self):
+        chunk = self.socket.recv(65536)
+        if not chunk:
+            raise EOFError("the program has closed the connection")
+        self.received += chunk
+
+    def take(self, size):
+        while len(self.received) < size:
+            self.receive()
+        taken, self.received = self.received[:size], self.received[size:]
+        return taken
+
+    def take_message(self):
+        first, length = self.take(2)
+        size = length & 127
+        if size == 126:
+            size = struct.unpack(">H", self.take(2))[0]
+        return first & 15, self.take(size)
+
+    def send(self, message):
+        """`message` may be a text that is no JSON."""
+        self.send_data((message if isinstance(message, str) else json.dumps(message)).encode())
+
+    def send_data(self, data, opcode=1):
+        mask = os.urandom(4)
+        length = bytes([0x80 | len(data)]) if len(data) < 126 else b"\xfe" + struct.pack(
+            ">H", len(data))
+        self.socket.sendall(bytes([0x80 | opcode]) + length + mask +
+                            bytes(byte ^ mask[i % 4] for i, byte in enumerate(data)))
+
+    def next(self, kind, when=lambda message: True):
+        """The next message of this type for which `when` holds; others but frames are kept."""
+        for i, message in enumerate(self.skipped):
+            if message["type"] == kind and when(message):
+                return self.skipped.pop(i)
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
+            opcode, data = self.take_message()
+            if opcode == 9:
+                self.send_data(data, opcode=10)  # pong
+                continue
+            assert opcode == 1, data
+            message = json.loads(data)
+            if message["type"] == kind and when(message):
+                return message
+            if message["type"] != "frame":
+                self.skipped.append(message)
+        raise TimeoutError(f"no {kind} as expected")
+
+    def command(self, command, name="", value=0):
+        """The answer of the program."""
+        self.last_id += 1
+        self.send({"type": "command", "id": self.last_id, "command": command, "name": name,
+                   "value": value})
+        return self.next("answer", lambda answer: answer["id"] == self.last_id)

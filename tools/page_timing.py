@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""What pages cost: cycle times with four pages and with none, and the server's processor time.
+
+Usage, in the source folder, with the page built: page_timing.py PROGRAM [SECONDS]
+
+One run of the door at rest, so that all cycles have the same work; every SECONDS (default 10) four
+pages come or go, and in the end one page is there alone. Cycle times are those of the recording,
+every cycle counts.
+"""
+
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests/command_line"))
+from web_socket import Page  # noqa: E402
+
+PHASES = (0, 4, 4, 0, 0, 4, 4, 0, 0, 4, 4, 0, 1)
+SETTLE_S = 1.0  # after pages have come or gone
+
+
+def listen(page):
+    """Takes everything that comes, until the page is closed."""
+    try:
+        while True:
+            page.next("none")
+    except (OSError, EOFError, ValueError, TimeoutError):
+        pass
+
+
+def server_ticks(process):
+    """Processor time of the server's thread so far, s."""
+    for task in pathlib.Path(f"/proc/{process.pid}/task").iterdir():
+        if (task / "comm").read_text().strip() == "page server":
+            fields = (task / "stat").read_text().rpartition(")")[2].split()
+            return (int(fields[11]) + int(fields[12])) / 100
+    raise RuntimeError("there is no thread of the page server")
+
+
+def quantile(times, share):
+    return times[min(len(times) - 1, int(share * len(times)))]
+
+
+def main():
+    program, seconds = sys.argv[1], float((sys.argv + ["10"])[2])
+    folder = pathlib.Path(tempfile.mkdtemp())
+    process = subprocess.Popen([program, "run", "door", "--user", "mouse", "--no-browser", "--recordings", folder,
+                                "--duration", "100000"], stdout=subprocess.PIPE, text=True)
+    spans, cpu = [], {}
+    try:
+        while not (link := re.search(r"http://\S+", process.stdout.readline())):
+            pass
+        clock = Page(link[0])
+        offset = None
+        clock.next("frame", lambda frame: frame["mode"] == "running")
+        offset = time.monotonic() - clock.next("frame")["time_s"]
+        clock.close()
+        for count in PHASES:
+            pages = [Page(link[0]) for _ in range(count)]
+            for page in pages:
+                threading.Thread(target=listen, args=[page], daemon=True).start()
+            time.sleep(SETTLE_S)
+            begin, ticks = time.monotonic(), server_ticks(process)
+            time.sleep(seconds)
+            end = time.monotonic()
+            spans.append((count, begin - offset, end - offset))
+            cpu.setdefault(count, []).append((server_ticks(process) - ticks) / (end - begin))
+            for page in pages:
+                page.socket.shutdown(2)
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.communicate()
+
+    from mcap_ros2.reader import read_ros2_messages
+    phases = [[] for _ in spans]
+    for message in read_ros2_messages(folder / "latest.mcap", topics=["/hapticgiant/sample"]):
+        for phase, (_, begin, end) in zip(phases, spans):
+            if begin <= message.ros_msg.record.time_s < end:
+                phase.append(message.ros_msg.cycle_time_us)
+    shutil.rmtree(folder)
+    times = {0: [], 4: [], 1: []}
+    for phase, (count, _, _) in zip(phases, spans):
+        phase.sort()
+        times[count] += phase
+    print("pages  cycles  median us  99 % us  99.9 % us  server thread, % of a core")
+    for count, values in times.items():
+        values.sort()
+        print(f"{count:5}  {len(values):6}  {quantile(values, .5):9.2f}  "
+              f"{quantile(values, .99):7.1f}  {quantile(values, .999):9.1f}  "
+              f"{100 * sum(cpu[count]) / len(cpu[count]):8.2f}")
+    alone = [quantile(phase, .5) for phase, span in zip(phases, spans) if span[0] == 0]
+    print(f"median of single phases without pages: {min(alone):.2f} .. {max(alone):.2f} us")
+    for name, share in (("median", .5), ("99 %", .99), ("99.9 %", .999)):
+        ratio = quantile(times[4], share) / quantile(times[0], share)
+        print(f"four pages / none, {name}: {ratio:.3f}")
+
+
+if __name__ == "__main__":
+    main()

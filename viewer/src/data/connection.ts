@@ -1,0 +1,48 @@
+// The WebSocket to the program: hands messages on, reconnects by itself.
+
+import type { Command, Hand } from "../messages";
+import { type Message, read_message } from "./read_message";
+
+const RETRY_MS = 1000;
+
+export interface Receiver {
+  on_message(message: Message): void;
+  on_refused(reason: string): void; // of a message that cannot be read
+  on_state(is_connected: boolean): void;
+}
+
+export class Connection {
+  private socket: WebSocket | null = null;
+
+  constructor(private readonly receiver: Receiver) {
+    this.open();
+  }
+
+  get is_connected(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  // False when there is nobody to take it.
+  send(message: Hand | Command): boolean {
+    if (!this.is_connected) return false;
+    this.socket!.send(JSON.stringify(message));
+    return true;
+  }
+
+  private open(): void {
+    const token = new URLSearchParams(location.search).get("token");
+    const query = token ? `?token=${encodeURIComponent(token)}` : "";
+    const socket = new WebSocket(`ws://${location.host}/ws${query}`);
+    this.socket = socket;
+    socket.onopen = () => this.receiver.on_state(true);
+    socket.onmessage = ({ data }) => {
+      const message = read_message(data);
+      if (typeof message === "string") this.receiver.on_refused(message);
+      else this.receiver.on_message(message);
+    };
+    socket.onclose = () => {
+      this.receiver.on_state(false);
+      setTimeout(() => this.open(), RETRY_MS);
+    };
+  }
+}

@@ -1,0 +1,130 @@
+// All that the page knows: connection -> store -> views. Views read; only the store changes.
+
+import type { Event, Frame, Scene, Values } from "../messages";
+import { Commands, type Refusal } from "./commands";
+import { Connection } from "./connection";
+import { Table, history_of, row_of } from "./history";
+import { RateMeter } from "./rate_meter";
+import type { Message } from "./read_message";
+
+const RETRY_MS = 1000; // of the scene
+const BACK_S = 0.05; // time that goes back by less has been rounded
+
+export interface Listener {
+  on_scene?(scene: Scene): void; // another run has begun, or the first one
+  on_frame?(frame: Frame): void;
+  on_event?(event: Event): void;
+  on_events_cleared?(): void;
+  on_values?(values: Values): void;
+  on_connection?(is_connected: boolean): void;
+  on_refusal?(refusal: Refusal): void;
+  on_unreadable?(count: number, reason: string): void;
+}
+
+export class Store {
+  scene: Scene | null = null;
+  frame: Frame | null = null; // of the scene's run
+  history = new Table(["time_s"]);
+  unreadable = 0; // messages that were not as expected
+  readonly commands: Commands;
+  readonly connection: Connection;
+  private readonly rate = new RateMeter();
+  private readonly listeners: Listener[] = [];
+  private is_loading = false;
+
+  constructor() {
+    this.connection = new Connection({
+      on_message: (message) => this.take(message),
+      on_refused: (reason) => this.note_unreadable(reason),
+      on_state: (is_connected) => this.note_state(is_connected),
+    });
+    this.commands = new Commands(
+      (command) => this.connection.send(command),
+      (refusal) => this.tell((listener) => listener.on_refusal?.(refusal)),
+    );
+  }
+
+  get is_connected(): boolean {
+    return this.connection.is_connected;
+  }
+
+  frames_per_second(): number {
+    return this.rate.per_second(performance.now() / 1000);
+  }
+
+  subscribe(listener: Listener): void {
+    this.listeners.push(listener);
+    if (this.scene) listener.on_scene?.(this.scene);
+  }
+
+  private tell(what: (listener: Listener) => void): void {
+    for (const listener of this.listeners) what(listener);
+  }
+
+  private take(message: Message): void {
+    if (message.type === "frame") this.take_frame(message);
+    else if (message.type === "event") this.tell((listener) => listener.on_event?.(message));
+    else if (message.type === "values") this.tell((listener) => listener.on_values?.(message));
+    else this.commands.take(message);
+  }
+
+  private take_frame(frame: Frame): void {
+    if (frame.run !== this.scene?.run) return void this.load_scene();
+    const problem = mismatch(this.scene, frame);
+    if (problem) return this.note_unreadable(problem);
+    this.rate.tick(performance.now() / 1000);
+    this.frame = frame;
+    this.note(this.scene, frame);
+    this.tell((listener) => listener.on_frame?.(frame));
+  }
+
+  // Times of the history rise; a step back is a place that was sought, or a restart.
+  private note(scene: Scene, frame: Frame): void {
+    const step = this.history.length > 0 ? frame.time_s - this.history.last("time_s") : Infinity;
+    if (step < -BACK_S) this.history.clear();
+    if (step > 0 || step < -BACK_S) this.history.push(row_of(scene, frame));
+  }
+
+  private note_unreadable(reason: string): void {
+    this.unreadable += 1;
+    this.tell((listener) => listener.on_unreadable?.(this.unreadable, reason));
+  }
+
+  private note_state(is_connected: boolean): void {
+    this.commands.forget();
+    if (is_connected) {
+      this.tell((listener) => listener.on_events_cleared?.()); // all are sent again
+      void this.load_scene(); // the program may be another one now
+    }
+    this.tell((listener) => listener.on_connection?.(is_connected));
+  }
+
+  private async load_scene(): Promise<void> {
+    if (this.is_loading) return;
+    this.is_loading = true;
+    try {
+      const response = await fetch("/scene.json");
+      if (!response.ok) throw new Error(await response.text());
+      const scene = (await response.json()) as Scene;
+      this.frame = null;
+      this.scene = scene;
+      this.history = history_of(scene);
+      this.tell((listener) => listener.on_scene?.(scene));
+    } catch {
+      if (this.is_connected) setTimeout(() => void this.load_scene(), RETRY_MS);
+    } finally {
+      this.is_loading = false;
+    }
+  }
+}
+
+// Why a frame does not fit to the scene; empty = it does.
+function mismatch(scene: Scene, frame: Frame): string {
+  const count = (joints: Scene["twin"]["joints"]): number =>
+    joints.reduce((sum, joint) => sum + (joint.type === "floating" ? 7 : 1), 0);
+  if (frame.q_device.length !== count(scene.device.joints))
+    return "frame: q_device has other joints";
+  if (frame.q_twin.length !== count(scene.twin.joints)) return "frame: q_twin has other joints";
+  if (frame.limit_position.length !== scene.limits.length) return "frame: other limits";
+  return "";
+}

@@ -1,0 +1,124 @@
+// Which time plots there are for a scene. Pure functions.
+
+import { coordinates_of } from "../data/history";
+import type { Scene, SceneJoint } from "../messages";
+
+export interface Series {
+  label: string;
+  column: string; // of the history
+  scale: number; // history's unit to the plot's
+  is_main?: boolean; // drawn thicker
+}
+
+export interface PlotLimit {
+  series: number; // that it belongs to
+  value: number; // in the plot's unit
+}
+
+export interface TimeSpec {
+  id: string;
+  title: string;
+  unit: string;
+  series: Series[];
+  limits: PlotLimit[];
+  smallest_span: number; // of the vertical axis
+}
+
+const DEGREES = 180 / Math.PI;
+
+export function time_specs(scene: Scene): TimeSpec[] {
+  const gantry = scene.device.joints.slice(0, scene.gantry_joints);
+  const manipulator = scene.device.joints.slice(scene.gantry_joints);
+  const specs = [
+    wrench("force", "Force", "N", 4),
+    wrench("torque", "Torque", "Nm", 1),
+    ...twin_specs(scene.twin.joints),
+    joints("device", "Device joints", manipulator, "device"),
+    joints("gantry", "Gantry", gantry, "device"),
+    torques(manipulator),
+  ];
+  return specs.filter(({ series }) => series.length > 0);
+}
+
+function wrench(id: string, title: string, unit: string, smallest_span: number): TimeSpec {
+  const part = (axis: string): Series => ({
+    label: axis,
+    column: `${id}_${axis}_${unit}`,
+    scale: 1,
+  });
+  const whole = { label: "size", column: `${id}_${unit}`, scale: 1, is_main: true };
+  return {
+    id,
+    title,
+    unit,
+    series: [whole, part("x"), part("y"), part("z")],
+    limits: [],
+    smallest_span,
+  };
+}
+
+function twin_specs(all: SceneJoint[]): TimeSpec[] {
+  const angles = all.filter(({ type }) => type === "revolute");
+  const slides = all.filter(({ type }) => type === "prismatic");
+  const free = all.filter(({ type }) => type === "floating");
+  const position: TimeSpec = {
+    id: "twin-position",
+    title: "Twin position",
+    unit: "m",
+    series: free.flatMap((joint) =>
+      coordinates_of([joint])
+        .slice(0, 3)
+        .map((name) => ({ label: name.split(".").at(-1)!, column: `twin.${name}`, scale: 1 })),
+    ),
+    limits: [],
+    smallest_span: 0.1,
+  };
+  return [
+    joints("twin", "Twin joints", angles, "twin"),
+    joints("twin-slides", "Twin slides", slides, "twin"),
+    position,
+  ];
+}
+
+// All of them turn, or all of them slide.
+function joints(id: string, title: string, all: SceneJoint[], chain: string): TimeSpec {
+  const slides = all[0]?.type === "prismatic";
+  const scale = slides ? 1 : DEGREES;
+  const limits = all.flatMap(({ q_min, q_max }, series) =>
+    [q_min, q_max].flatMap((q) => (q === null ? [] : [{ series, value: q * scale }])),
+  );
+  return {
+    id,
+    title,
+    unit: slides ? "m" : "\u00b0",
+    series: all.map(({ name }) => ({ label: name, column: `${chain}.${name}`, scale })),
+    limits,
+    smallest_span: slides ? 0.05 : 5,
+  };
+}
+
+function torques(manipulator: SceneJoint[]): TimeSpec {
+  return {
+    id: "joint-torques",
+    title: "Joint torques",
+    unit: "Nm",
+    series: manipulator.map(({ name }) => ({
+      label: name,
+      column: `torque.${name}_Nm`,
+      scale: 1,
+    })),
+    limits: [],
+    smallest_span: 10,
+  };
+}
+
+// First index whose time is not before `time`; times rise.
+export function index_at(times: Float64Array, time: number): number {
+  let [low, high] = [0, times.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle]! < time) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}

@@ -1,0 +1,136 @@
+// A chain on the stage: its URDF, placed in B and posed by coordinates.
+
+import {
+  type Object3D,
+  BoxGeometry,
+  Group,
+  Mesh,
+  MeshStandardMaterial,
+  Quaternion,
+  Vector3,
+} from "three";
+import URDFLoader, { type URDFJoint, type URDFRobot } from "urdf-loader";
+
+import type { SceneChain, SceneJoint } from "../messages";
+import { current_theme } from "../theme";
+import { paint_shapes } from "./materials";
+import { add_skeleton, has_shapes } from "./skeleton";
+
+const MESHES = "/models/"; // where the program puts mesh files
+
+interface Rest {
+  position: Vector3;
+  quaternion: Quaternion;
+}
+
+export class ChainView {
+  readonly placement = new Group();
+  private readonly robot: URDFRobot | null;
+  private readonly rests = new Map<Object3D, Rest>();
+
+  constructor(
+    private readonly chain: SceneChain,
+    urdf: string,
+    opacity: number,
+  ) {
+    this.robot = urdf === "" ? null : parse(urdf, opacity);
+    const [x, y, z, w] = chain.quaternion_B_root as [number, number, number, number];
+    this.placement.position.set(...chain.p_B_root_m);
+    this.placement.quaternion.set(x, y, z, w);
+    this.placement.add(this.robot ?? plain_body());
+    const is_shown = has_shapes(this.robot) || urdf.includes(`filename="${MESHES}`);
+    if (this.robot && !is_shown) add_skeleton(this.robot, current_theme().link);
+    paint_shapes(this.placement, opacity);
+    for (const joint of Object.values(this.robot?.joints ?? {})) joint.ignoreLimits = true;
+  }
+
+  joint(name: string): URDFJoint | null {
+    return this.robot?.joints[name] ?? null;
+  }
+
+  link(name: string): Object3D | null {
+    return this.robot?.links[name] ?? null;
+  }
+
+  // `q` holds the coordinates of all joints in the order of the scene.
+  pose(q: number[]): void {
+    let first = 0;
+    for (const [index, joint] of this.chain.joints.entries()) {
+      if (joint.type === "floating") {
+        this.pose_floating(joint.name, q.slice(first, first + 7));
+        first += 7;
+      } else if (joint.planar !== "") {
+        const is_first = this.chain.joints[index - 1]?.planar !== joint.planar;
+        if (is_first) this.pose_planar(this.chain.joints.slice(index, index + 3), q.slice(first));
+        first += 1;
+      } else {
+        this.robot?.setJointValue(joint.name, q[first] ?? 0);
+        first += 1;
+      }
+    }
+  }
+
+  // The urdf library describes floating joints by angles; here they come as x y z qx qy qz qw.
+  private pose_floating(name: string, q: number[]): void {
+    const [x, y, z, qx, qy, qz, qw] = q as [number, number, number, number, number, number, number];
+    const part = this.robot?.joints[name] ?? this.placement.children[0]!;
+    this.move(part, new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw).normalize());
+  }
+
+  // The urdf library slides planar joints along axes of the parent; here their axes come along.
+  private pose_planar(parts: SceneJoint[], q: number[]): void {
+    const part = this.robot?.joints[parts[0]!.planar];
+    if (!part) return;
+    const shift = new Vector3();
+    const turn = new Quaternion();
+    for (const [i, { type, axis }] of parts.entries()) {
+      if (type === "prismatic") shift.addScaledVector(new Vector3(...axis), q[i] ?? 0);
+      else turn.setFromAxisAngle(new Vector3(...axis), q[i] ?? 0);
+    }
+    this.move(part, shift, turn);
+  }
+
+  // Moves a part by `shift` and `turn` from where it is when its coordinates are zero.
+  private move(part: Object3D, shift: Vector3, turn: Quaternion): void {
+    const rest = this.rest(part);
+    part.position.copy(shift).applyQuaternion(rest.quaternion).add(rest.position);
+    part.quaternion.multiplyQuaternions(rest.quaternion, turn);
+  }
+
+  // Where a part is when its coordinates are zero.
+  private rest(part: Object3D): Rest {
+    const known = this.rests.get(part);
+    if (known) return known;
+    const rest = { position: part.position.clone(), quaternion: part.quaternion.clone() };
+    this.rests.set(part, rest);
+    return rest;
+  }
+}
+
+// Below opacity 1 the chain is drawn so that solid things behind it stay visible.
+export async function load_chain(chain: SceneChain, opacity: number): Promise<ChainView> {
+  if (chain.urdf === "") return new ChainView(chain, "", opacity);
+  const response = await fetch(chain.urdf);
+  if (!response.ok) throw new Error(`${chain.urdf}: ${response.statusText}`);
+  return new ChainView(chain, await response.text(), opacity);
+}
+
+// Mesh files arrive later; those that the program has not found stay away.
+function parse(urdf: string, opacity: number): URDFRobot {
+  const loader = new URDFLoader();
+  loader.loadMeshCb = (address, manager, material, done) => {
+    if (!address.startsWith(MESHES)) return;
+    loader.defaultMeshLoader(address, manager, material, (mesh, error) => {
+      if (mesh) paint_shapes(mesh, opacity);
+      done(mesh, error);
+    });
+  };
+  return loader.parse(urdf);
+}
+
+function plain_body(): Group {
+  const body = new Group();
+  const material = new MeshStandardMaterial({ color: 0x4a90a4 });
+  body.add(new Mesh(new BoxGeometry(0.14, 0.14, 0.14), material));
+  return body;
+}

@@ -1,0 +1,57 @@
+// What things are made of: materials by the name that the URDF gives them.
+
+import { type Material, Color, Mesh, MeshStandardMaterial, type Object3D } from "three";
+
+import { current_theme } from "../theme";
+
+interface Surface {
+  roughness: number;
+  metalness: number;
+}
+
+const SURFACES: [RegExp, Surface][] = [
+  [/chrome|mirror/i, { roughness: 0.18, metalness: 0.95 }],
+  [/steel|metal|iron/i, { roughness: 0.38, metalness: 0.75 }],
+  [/alu/i, { roughness: 0.42, metalness: 0.55 }],
+  [/carbon/i, { roughness: 0.34, metalness: 0.25 }],
+  [/rubber|tyre|tire/i, { roughness: 0.92, metalness: 0 }],
+  [/glass/i, { roughness: 0.08, metalness: 0.1 }],
+  [/wood|leaf|panel|wall|step/i, { roughness: 0.78, metalness: 0 }],
+];
+const PAINTED: Surface = { roughness: 0.5, metalness: 0.05 };
+
+export function surface_of(name: string): Surface {
+  return SURFACES.find(([names]) => names.test(name))?.[1] ?? PAINTED;
+}
+
+// Gives all shapes under `root` their material; below opacity 1 solid things behind stay visible.
+export function paint_shapes(root: Object3D, opacity: number): void {
+  root.traverse((part) => {
+    if (!(part instanceof Mesh)) return;
+    part.castShadow = true;
+    part.receiveShadow = true;
+    const materials = [part.material].flat() as Material[];
+    const painted = materials.map((material) => paint(material, opacity));
+    part.material = Array.isArray(part.material) ? painted : painted[0]!;
+  });
+}
+
+function paint(material: Material, opacity: number): Material {
+  const color = "color" in material ? (material.color as Color) : new Color(current_theme().link);
+  const share = opacity * material.opacity;
+  return new MeshStandardMaterial({
+    name: material.name,
+    color,
+    ...surface_of(material.name),
+    opacity: share,
+    transparent: share < 1,
+  });
+}
+
+// Drawn over everything else: what must be seen inside solid parts.
+export function glowing(color: number): MeshStandardMaterial {
+  const material = new MeshStandardMaterial({ color, emissive: color, emissiveIntensity: 0.45 });
+  material.depthTest = false;
+  material.transparent = true; // drawn after the solid parts
+  return material;
+}

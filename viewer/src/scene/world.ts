@@ -1,0 +1,160 @@
+// Everything that is drawn of one run: made from its Scene, moved by its Frames.
+
+import { Group, type Object3D, Quaternion, Vector3 } from "three";
+
+import { limit_closeness } from "../limit_words";
+import type { Frame, Scene, Vec3 } from "../messages";
+import { ELBOW_COLOR, FORCE_COLOR } from "../theme";
+import { type ChainView, load_chain } from "./chain_view";
+import { HandleView } from "./handle_view";
+import { JointGauge } from "./joint_gauges";
+import type { Layer, Layers } from "./layers";
+import { Person } from "./person";
+import { scanner_zone } from "./scanner_zone";
+import type { Stage } from "./stage";
+import { surroundings_of } from "./surroundings";
+import { Trail } from "./trail";
+
+const TWIN_OPACITY = 0.85; // it is not there: the device shines through
+const GHOST_OPACITY = 0.25;
+
+interface Gauge {
+  view: JointGauge;
+  coordinate: number; // in q_device
+  limit: number; // in Scene.limits, -1 = none
+}
+
+export class World {
+  readonly root = new Group();
+  readonly person: Person;
+  private readonly handle = new HandleView();
+  private readonly handle_trail = new Trail(FORCE_COLOR);
+  private readonly elbow_trail = new Trail(ELBOW_COLOR);
+  private readonly trails = new Group();
+  private readonly gauges: Gauge[];
+  private readonly surroundings: Group;
+  private readonly scanner: Group;
+  private ghost: { device: ChainView; twin: ChainView } | "loading" | null = null;
+
+  private constructor(
+    readonly scene: Scene,
+    private readonly device: ChainView,
+    private readonly twin: ChainView,
+    private readonly stage: Stage,
+    private readonly layers: Layers,
+  ) {
+    this.person = new Person(scene.floor_z_m);
+    this.surroundings = surroundings_of(scene);
+    this.scanner = scanner_zone(scene.box, scene.floor_z_m);
+    this.gauges = gauges_of(scene, device);
+    this.trails.add(this.handle_trail.line, this.elbow_trail.line);
+    this.root.add(device.placement, twin.placement, this.surroundings, this.person.group);
+    this.root.add(this.trails, this.scanner, this.handle.pull, this.handle.arrows);
+    this.apply_layers();
+  }
+
+  static async load(scene: Scene, stage: Stage, layers: Layers): Promise<World> {
+    const [device, twin] = await Promise.all([
+      load_chain(scene.device, 1),
+      load_chain(scene.twin, TWIN_OPACITY),
+    ]);
+    return new World(scene, device, twin, stage, layers);
+  }
+
+  apply_layers(): void {
+    const parts: [Layer, Object3D[]][] = [
+      ["device", [this.device.placement]],
+      ["twin", [this.twin.placement]],
+      ["surroundings", [this.surroundings]],
+      ["person", [this.person.group]],
+      ["arrows", [this.handle.arrows]],
+      ["limits", this.gauges.map((gauge) => gauge.view.limit_ring)],
+      ["torques", this.gauges.map((gauge) => gauge.view.torque_ring)],
+      ["trails", [this.trails]],
+      ["box", [this.stage.box_view]],
+      ["scanner", [this.scanner]],
+    ];
+    for (const [layer, objects] of parts) {
+      for (const object of objects) object.visible = this.layers.is_shown(layer);
+    }
+  }
+
+  note(frame: Frame): void {
+    this.handle_trail.add(frame.p_B_H_m);
+    this.elbow_trail.add(frame.p_B_elbow_m);
+  }
+
+  // `target`: where the handle is dragged to, null = it is not; `axis`: along which only.
+  show(frame: Frame, target: Vec3 | null, axis: Vec3 | null): void {
+    this.device.pose(frame.q_device);
+    this.twin.pose(frame.q_twin);
+    this.show_gauges(frame);
+    this.handle.show_wrench(frame.p_B_H_m, frame.force_N, frame.torque_Nm);
+    this.handle.show_target(frame.p_B_H_m, target, axis);
+    const attitude = new Quaternion(...frame.quaternion_B_H).normalize();
+    this.person.pose(new Vector3(...frame.p_B_H_m), attitude);
+    this.show_ghost(frame);
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    this.root.traverse((part) => {
+      const { geometry } = part as { geometry?: { dispose(): void } };
+      geometry?.dispose();
+    });
+  }
+
+  private show_gauges(frame: Frame): void {
+    for (const { view, coordinate, limit } of this.gauges) {
+      const q = frame.q_device[coordinate] ?? 0;
+      const torque = frame.tau_measured_Nm[coordinate - this.scene.gantry_joints] ?? 0;
+      view.show(q, limit < 0 ? "far" : limit_closeness(this.scene, frame, limit));
+      view.show_torque(q, torque);
+    }
+  }
+
+  private show_ghost(frame: Frame): void {
+    if (!frame.ghost) {
+      if (this.ghost && this.ghost !== "loading") this.set_ghost_visible(false);
+      return;
+    }
+    if (this.ghost === null) {
+      this.ghost = "loading";
+      void this.load_ghost();
+    } else if (this.ghost !== "loading") {
+      this.set_ghost_visible(true);
+      this.ghost.device.pose(frame.ghost.q_device);
+      this.ghost.twin.pose(frame.ghost.q_twin);
+    }
+  }
+
+  private async load_ghost(): Promise<void> {
+    const { device, twin } = this.scene;
+    const [ghost_device, ghost_twin] = await Promise.all([
+      load_chain(device, GHOST_OPACITY),
+      load_chain(twin, GHOST_OPACITY),
+    ]);
+    this.root.add(ghost_device.placement, ghost_twin.placement);
+    this.ghost = { device: ghost_device, twin: ghost_twin };
+  }
+
+  private set_ghost_visible(is_visible: boolean): void {
+    if (this.ghost === null || this.ghost === "loading") return;
+    this.ghost.device.placement.visible = this.ghost.twin.placement.visible = is_visible;
+  }
+}
+
+function gauges_of(scene: Scene, device: ChainView): Gauge[] {
+  const gauges: Gauge[] = [];
+  for (const [coordinate, joint] of scene.device.joints.entries()) {
+    const drawn = device.joint(joint.name);
+    if (!drawn || joint.type !== "revolute") continue;
+    const { q_min, q_max } = joint;
+    const range = q_min !== null && q_max !== null ? { min: q_min, max: q_max } : null;
+    const limit = scene.limits.findIndex(
+      ({ kind, name }) => kind === "manipulator" && name === joint.name,
+    );
+    gauges.push({ view: new JointGauge(drawn, range, joint.tau_max), coordinate, limit });
+  }
+  return gauges;
+}

@@ -1,0 +1,187 @@
+// The bar at the top: scenario, time, state, and how the scene is seen.
+
+import type { CommandName } from "./data/commands";
+import type { Store } from "./data/store";
+import { type Icon, icon } from "./icons";
+import type { Frame, Scene } from "./messages";
+import { element, is_typing, make, make_button, make_check_box, write } from "./page";
+import { fill_choice } from "./panels/change";
+import type { Cameras, View } from "./scene/cameras";
+import { VIEWS } from "./scene/cameras";
+import { LAYERS, LAYER_NAMES, type Layers } from "./scene/layers";
+import { time_text } from "./text";
+import { choose_theme, current_theme, on_theme_change } from "./theme";
+
+const RUN_SPEEDS = [0.1, 0.25, 0.5, 1];
+const RECORDING_SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
+const STEP_CYCLES = 10; // of a run; a recording steps by one frame
+
+function icon_button(name: Icon, title: string, on_click: () => void): HTMLButtonElement {
+  const button = make_button("", title, on_click);
+  button.setAttribute("aria-label", title);
+  button.className = "icon-button";
+  button.replaceChildren(icon(name));
+  return button;
+}
+
+export class Toolbar {
+  private readonly scenario = element<HTMLSelectElement>("scenario");
+  private readonly speed = make("select");
+  private readonly pause: HTMLButtonElement;
+  private readonly by_command: [CommandName[], HTMLButtonElement | HTMLSelectElement][];
+  private is_paused = false;
+
+  constructor(private readonly store: Store) {
+    const send = (command: CommandName, value = 0): void => store.commands.send(command, "", value);
+    this.pause = icon_button("pause", "Pause (P)", () => this.toggle_pause());
+    this.pause.id = "pause";
+    const step = icon_button("step", "One step (.)", () => send("step", this.step_size));
+    const restart = icon_button("restart", "From the start (R)", () => send("restart"));
+    const stop = icon_button("stop", "Controlled stop", () => send("stop"));
+    this.speed.id = "speed";
+    this.speed.title = "Speed of time";
+    this.speed.addEventListener("change", () => send("speed", Number(this.speed.value)));
+    element("transport").append(this.pause, step, restart, stop, this.speed);
+    this.by_command = [
+      [["pause", "resume"], this.pause],
+      [["step"], step],
+      [["restart"], restart],
+      [["stop"], stop],
+      [["speed"], this.speed],
+      [["scenario"], this.scenario],
+    ];
+    this.scenario.addEventListener("change", () => {
+      store.commands.send("scenario", this.scenario.value);
+    });
+    addEventListener("keydown", (event) => this.take_key(event));
+  }
+
+  furnish(scene: Scene): void {
+    document.title = `${scene.title} - HapticGiant`;
+    const { scenario, scenarios } = scene.choices;
+    fill_choice(
+      this.scenario,
+      scenarios.length > 0 ? scenarios : [{ name: scenario, title: scene.title }],
+      scenario,
+    );
+    const speeds = scene.source === "recording" ? RECORDING_SPEEDS : RUN_SPEEDS;
+    this.speed.replaceChildren(...speeds.map((s) => new Option(`${s} \u00d7`, String(s))));
+    for (const [commands, part] of this.by_command) {
+      part.disabled = !commands.some((command) => scene.commands.includes(command));
+      if (part.disabled && scene.refusal !== "") part.title = scene.refusal;
+    }
+    write(element("story"), scene.description);
+  }
+
+  // Puts back a choice that was refused.
+  refuse(): void {
+    if (this.store.scene) this.scenario.value = this.store.scene.choices.scenario;
+    if (this.store.frame) this.show_speed(this.store.frame.run_state.speed);
+  }
+
+  show(frame: Frame): void {
+    const { run_state } = frame;
+    const mode = element("mode");
+    const text = run_state.is_over ? "over" : run_state.is_paused ? "paused" : frame.mode;
+    write(mode, text);
+    mode.dataset.mode = text;
+    if (mode.title !== frame.mode_text) mode.title = frame.mode_text;
+    write(element("time"), time_text(frame.time_s));
+    write(element("fault"), fault_text(frame));
+    element("fault").hidden = element("fault").textContent === "";
+    if (this.is_paused !== run_state.is_paused) this.show_pause(run_state.is_paused);
+    if (document.activeElement !== this.speed) this.show_speed(run_state.speed);
+  }
+
+  private get step_size(): number {
+    return this.store.scene?.source === "recording" ? 1 : STEP_CYCLES;
+  }
+
+  private toggle_pause(): void {
+    this.store.commands.send(this.is_paused ? "resume" : "pause");
+  }
+
+  private show_pause(is_paused: boolean): void {
+    this.is_paused = is_paused;
+    this.pause.replaceChildren(icon(is_paused ? "play" : "pause"));
+    this.pause.title = is_paused ? "Go on (P)" : "Pause (P)";
+    this.pause.setAttribute("aria-pressed", String(is_paused));
+  }
+
+  private show_speed(speed: number): void {
+    const text = String(speed);
+    if (this.speed.value === text) return;
+    if (![...this.speed.options].some(({ value }) => value === text)) {
+      this.speed.add(new Option(`${Number(speed.toPrecision(3))} \u00d7`, text));
+    }
+    this.speed.value = text;
+  }
+
+  private take_key(event: KeyboardEvent): void {
+    if (is_typing(event) || event.ctrlKey || event.metaKey) return;
+    if (event.key === "p") this.toggle_pause();
+    else if (event.key === ".") this.store.commands.send("step", "", this.step_size);
+    else if (event.key === "r") this.store.commands.send("restart");
+  }
+}
+
+// A fault, or why the device does not follow the hand.
+function fault_text(frame: Frame): string {
+  if (frame.fault !== "") return frame.fault;
+  if (frame.is_clamped) return "The device lost track of its reference and catches up.";
+  return "";
+}
+
+// Buttons at the right: camera, layers, plots, theme.
+export function build_view_tools(
+  cameras: Cameras,
+  layers: Layers,
+  toggle_plots: () => boolean,
+): void {
+  const views = make("select");
+  views.id = "view";
+  views.title = "Camera (1 to 4)";
+  views.append(...VIEWS.map((view) => new Option(view, view)));
+  const choose = (view: View): void => {
+    views.value = view;
+    cameras.choose(view);
+  };
+  views.addEventListener("change", () => choose(views.value as View));
+  addEventListener("keydown", (event) => {
+    const view = VIEWS[Number(event.key) - 1];
+    if (view && !is_typing(event)) choose(view);
+  });
+  const plots = icon_button("plots", "Plots", () => {
+    plots.setAttribute("aria-pressed", String(toggle_plots()));
+  });
+  plots.id = "show-plots";
+  const theme = icon_button("dark", "Light or dark", () => {
+    choose_theme(current_theme().is_dark ? "light" : "dark");
+  });
+  theme.id = "theme";
+  const paint = (): void => theme.replaceChildren(icon(current_theme().is_dark ? "light" : "dark"));
+  on_theme_change(paint);
+  paint();
+  element("view-tools").append(views, layers_menu(layers), plots, theme);
+}
+
+function layers_menu(layers: Layers): HTMLElement {
+  const list = make("div", "menu");
+  for (const name of LAYER_NAMES) {
+    const box = make_check_box(LAYERS[name].title, layers.is_shown(name), (is_shown) =>
+      layers.show(name, is_shown),
+    );
+    box.querySelector("input")!.id = `show-${name}`;
+    list.append(box);
+  }
+  const head = make("summary", "icon-button");
+  head.title = "What is shown";
+  head.setAttribute("aria-label", head.title);
+  head.append(icon("layers"));
+  const menu = make("details", "menu-box", head, list);
+  menu.id = "layers";
+  addEventListener("pointerdown", (event) => {
+    if (!menu.contains(event.target as Node)) menu.open = false;
+  });
+  return menu;
+}

@@ -1,0 +1,150 @@
+// Headsets by WebXR: room and twin at true scale, a controller is the hand target. The trigger
+// takes hold of the handle from wherever the controller is and moves it alike.
+
+import {
+  CapsuleGeometry,
+  Mesh,
+  MeshStandardMaterial,
+  Quaternion,
+  Vector3,
+  type XRTargetRaySpace,
+} from "three";
+
+import { icon } from "../icons";
+import type { Frame, Hand, Quaternion as Turn, Vec3 } from "../messages";
+import { element, make_button } from "../page";
+import type { Stage } from "../scene/stage";
+import { TARGET_COLOR } from "../theme";
+import { grip_target, placed_rig } from "./grip";
+
+const RESEND_MS = 33;
+
+const SESSIONS = [
+  ["immersive-vr", "VR", "Room and twin at true scale in a headset"],
+  ["immersive-ar", "AR", "The twin in your own room, seen through a headset"],
+] as const;
+
+interface Grip {
+  controller: XRTargetRaySpace;
+  from: Vector3; // controller when it took hold, in B
+  attitude: Quaternion;
+  handle: Vector3;
+  handle_attitude: Quaternion;
+}
+
+export class Headset {
+  private grip: Grip | null = null;
+  private target: Vec3 | null = null;
+  private turn: Turn | null = null;
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly frame: () => Frame | null,
+    private readonly send: (hand: Hand) => void,
+  ) {
+    const { xr } = stage.renderer;
+    xr.enabled = true;
+    xr.setReferenceSpaceType("local-floor");
+    for (const index of [0, 1]) this.connect(xr.getController(index));
+    xr.addEventListener("sessionend", () => this.take_off());
+    setInterval(() => this.tell_where(), RESEND_MS);
+    void this.offer();
+  }
+
+  get is_worn(): boolean {
+    return this.stage.renderer.xr.isPresenting;
+  }
+
+  get target_m(): Vec3 | null {
+    return this.target;
+  }
+
+  // Buttons for what browser and headset can do.
+  private async offer(): Promise<void> {
+    for (const [mode, text, title] of SESSIONS) {
+      const is_there = await navigator.xr?.isSessionSupported(mode).catch(() => false);
+      if (!is_there) continue;
+      const button = make_button(text, title, () => void this.put_on(mode));
+      button.id = `enter-${text.toLowerCase()}`;
+      button.className = "with-icon";
+      button.prepend(icon("headset"));
+      element("view-tools").append(button);
+    }
+  }
+
+  private async put_on(mode: XRSessionMode): Promise<void> {
+    const session = await navigator.xr!.requestSession(mode, { requiredFeatures: ["local-floor"] });
+    const frame = this.frame();
+    if (frame) {
+      const floor_z = this.stage.floor_z_m;
+      const place = placed_rig(new Vector3(...frame.p_B_H_m), to_user(frame), floor_z);
+      this.stage.rig.position.copy(place.position);
+      this.stage.rig.quaternion.copy(place.quaternion);
+    }
+    this.stage.set_see_through(mode === "immersive-ar");
+    await this.stage.renderer.xr.setSession(session);
+  }
+
+  private take_off(): void {
+    this.let_go();
+    this.stage.set_see_through(false);
+    this.stage.rig.position.set(0, 0, 0);
+    this.stage.rig.quaternion.identity();
+    this.stage.reset_view();
+  }
+
+  private connect(controller: XRTargetRaySpace): void {
+    const shape = new CapsuleGeometry(0.02, 0.09, 6, 16).rotateX(Math.PI / 2);
+    controller.add(new Mesh(shape, new MeshStandardMaterial({ color: TARGET_COLOR })));
+    controller.visible = false; // until three finds it
+    this.stage.rig.add(controller);
+    controller.addEventListener("selectstart", () => this.take_hold(controller));
+    controller.addEventListener(
+      "selectend",
+      () => this.grip?.controller === controller && this.let_go(),
+    );
+    controller.addEventListener("disconnected", () => this.let_go());
+  }
+
+  private take_hold(controller: XRTargetRaySpace): void {
+    const frame = this.frame();
+    if (!frame || this.grip) return;
+    this.grip = {
+      controller,
+      from: controller.getWorldPosition(new Vector3()),
+      attitude: controller.getWorldQuaternion(new Quaternion()),
+      handle: new Vector3(...frame.p_B_H_m),
+      handle_attitude: new Quaternion(...frame.quaternion_B_H),
+    };
+    this.tell_where();
+  }
+
+  private let_go(): void {
+    if (!this.grip) return;
+    this.grip = null;
+    this.target = null;
+    this.tell(false);
+  }
+
+  private tell_where(): void {
+    if (!this.grip) return;
+    const { controller } = this.grip;
+    const now = controller.getWorldPosition(new Vector3());
+    const attitude = controller.getWorldQuaternion(new Quaternion());
+    const { p_B, turn } = grip_target(this.grip, now, attitude);
+    this.target = p_B;
+    this.turn = turn;
+    this.tell(true);
+  }
+
+  // Who holds the handle presses its lever.
+  private tell(active: boolean): void {
+    const p_B_m = this.target ?? this.frame()?.p_B_H_m ?? [0, 0, 0];
+    const quaternion_B_H = active ? this.turn : null;
+    this.send({ type: "hand", active, p_B_m, quaternion_B_H, press: active ? 1 : 0 });
+  }
+}
+
+function to_user(frame: Frame): Vector3 {
+  return new Vector3(0, 0, 1).applyQuaternion(new Quaternion(...frame.quaternion_B_H));
+}

@@ -1,0 +1,170 @@
+// Helpers of the browser tests: the program, a headless Chromium, the mouse, pictures.
+import { spawn } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { chromium } from "playwright-core";
+
+const FLAGS = [
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-quic",
+  "--disable-sync",
+  "--no-first-run",
+  "--use-gl=angle",
+  "--use-angle=swiftshader", // WebGL without graphics hardware
+  "--enable-unsafe-swiftshader",
+];
+export const PATIENCE = { timeout: 60_000 }; // a machine may be slow; nothing is timed
+
+// Starts `command` and waits for the link of its page.
+export function start_program(command) {
+  const program = spawn(command[0], command.slice(1), { stdio: ["ignore", "pipe", "inherit"] });
+  const stop = () =>
+    new Promise((done) => {
+      if (program.exitCode !== null || program.signalCode !== null) return done();
+      program.once("exit", done);
+      program.kill("SIGINT");
+      setTimeout(() => program.kill("SIGKILL"), 5000).unref();
+    });
+  return new Promise((found, failed) => {
+    let output = "";
+    program.stdout.on("data", (text) => {
+      output += text;
+      const link = /http:\/\/127\.0\.0\.1:\d+\/\?token=[0-9a-f]+/.exec(output);
+      if (link) found({ link: link[0], stop });
+    });
+    program.once("error", failed);
+    program.once("exit", (code) => failed(new Error(`${command[0]} ended (${code}): ${output}`)));
+  });
+}
+
+export function start_browser() {
+  const is_root = process.getuid?.() === 0;
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: is_root ? [...FLAGS, "--no-sandbox"] : FLAGS,
+  });
+}
+
+// Opens `link`, after `prepare`, and waits until the scene is drawn; `problems` collects errors of
+// the page and requests to other machines.
+export async function open_page(browser, link, options = {}, prepare = async () => {}) {
+  const context = await browser.newContext({ viewport: { width: 1366, height: 768 }, ...options });
+  const page = await context.newPage();
+  const problems = [];
+  page.on("pageerror", (error) => problems.push(String(error)));
+  page.on("console", (line) => line.type() === "error" && problems.push(line.text()));
+  page.on("request", (request) => {
+    const is_own =
+      request.url().startsWith(new URL(link).origin) || /^(blob|data):/.test(request.url());
+    if (!is_own) problems.push(request.url());
+  });
+  await prepare(page);
+  await page.goto(link);
+  await drawn(page);
+  return { page, problems, close: () => context.close() };
+}
+
+// Waits until the scene is drawn and the camera rests.
+export async function drawn(page) {
+  await page.waitForFunction(
+    () =>
+      window.hapticgiant?.is_connected && window.hapticgiant.is_drawn && window.hapticgiant.frame,
+    null,
+    PATIENCE,
+  );
+  const corner = () => page.evaluate(() => window.hapticgiant.on_screen([0, 0, 0]));
+  for (let last = null; ;) {
+    await page.evaluate(
+      () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+    );
+    const now = await corner();
+    if (last && Math.hypot(now.x - last.x, now.y - last.y) < 0.5) return;
+    last = now;
+  }
+}
+
+export function frame_of(page) {
+  return page.evaluate(() => window.hapticgiant.frame);
+}
+
+export function scene_of(page) {
+  return page.evaluate(() => window.hapticgiant.scene);
+}
+
+// Waits until `test(frame)` holds; false when it does not come.
+export async function comes_true(page, test, patience_ms = PATIENCE.timeout) {
+  for (const end = Date.now() + patience_ms; Date.now() < end;) {
+    const frame = await frame_of(page);
+    if (frame && test(frame)) return true;
+    await page.waitForTimeout(50);
+  }
+  return false;
+}
+
+// Grabs the handle, moves the mouse over the points (in B), and lets go after `at_end`.
+export async function drag_along(page, points, at_end) {
+  const start = await page.evaluate(() => window.hapticgiant.handle_on_screen);
+  await page.mouse.move(start.x, start.y);
+  await page.mouse.down();
+  await page.waitForTimeout(600); // the lever goes down first
+  for (const point of points) {
+    const { x, y } = await page.evaluate((p) => window.hapticgiant.on_screen(p), point);
+    await page.mouse.move(x, y);
+    await page.waitForTimeout(80);
+  }
+  await at_end();
+  await page.mouse.up();
+}
+
+// Points on the arc of the handle about the hinge, by `angles` from where the handle is.
+export function arc(handle, hinge, angles) {
+  const [x, y] = [handle[0] - hinge[0], handle[1] - hinge[1]];
+  return angles.map((a) => [
+    hinge[0] + x * Math.cos(a) - y * Math.sin(a),
+    hinge[1] + x * Math.sin(a) + y * Math.cos(a),
+    handle[2],
+  ]);
+}
+
+// Number of pixels of the scene that change when `layer` is switched off (and on again).
+export async function hide_and_compare(page, layer) {
+  const { x, y, width, height } = await page.locator("#stage").boundingBox();
+  const clip = { x, y: y + 70, width, height: height - 140 }; // without what lies over it
+  await page.click("#layers summary");
+  const shown = await page.screenshot({ clip });
+  await page.uncheck(`#show-${layer}`);
+  await page.waitForTimeout(500);
+  const hidden = await page.screenshot({ clip });
+  await page.check(`#show-${layer}`);
+  await page.click("#layers summary");
+  return page.evaluate(count_different, [shown.toString("base64"), hidden.toString("base64")]);
+}
+
+async function count_different(pictures) {
+  const [a, b] = await Promise.all(
+    pictures.map(async (base64) => {
+      const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+      const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+      context.drawImage(bitmap, 0, 0);
+      return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+    }),
+  );
+  let count = 0;
+  for (let i = 0; i < a.length; i += 4) {
+    const change = [0, 1, 2].reduce((sum, c) => sum + Math.abs(a[i + c] - b[i + c]), 0);
+    if (change > 30) count += 1;
+  }
+  return count;
+}
+
+// Puts an emulated headset into the page before it loads; the page's script gets `xr_device`.
+export async function wear_headset(page) {
+  const file = createRequire(import.meta.url).resolve("iwer/build/iwer.min.js");
+  await page.addInitScript(readFileSync(file, "utf8"));
+  await page.addInitScript(() => {
+    window.xr_device = new window.IWER.XRDevice(window.IWER.metaQuest3);
+    window.xr_device.installRuntime({ forceInstall: true });
+  });
+}

@@ -1,0 +1,269 @@
+// What the page does, in a browser, with the program. Each case gets {browser, program, command,
+// expect}; none depends on how fast the machine is.
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+import {
+  PATIENCE,
+  arc,
+  comes_true,
+  drag_along,
+  drawn,
+  frame_of,
+  hide_and_compare,
+  open_page,
+  scene_of,
+  start_program,
+  wear_headset,
+} from "./browser.mjs";
+
+const SMALLEST_DEVICE = 3000; // pixels that the device covers
+const LIVE_FRAMES = 30; // at least so many arrive for each second of the program's time
+const OPEN = 0.5; // rad
+
+export async function page_is_live({ browser, program, expect }) {
+  const { page, problems, close } = await open_page(browser, program.link);
+  const pixels = await hide_and_compare(page, "device");
+  expect(pixels >= SMALLEST_DEVICE, `the device covers ${pixels} pixels`);
+  const hint = await page.isVisible("#grip-text");
+  expect(hint, "a hint at the handle says what to do");
+
+  const count = () =>
+    page.evaluate(() => [window.hapticgiant.frames, window.hapticgiant.frame.time_s]);
+  const [frames, time] = await count();
+  const lived = await comes_true(page, (f) => f.time_s > time + 2);
+  const [later_frames, later_time] = await count();
+  const rate = (later_frames - frames) / (later_time - time);
+  expect(lived && rate >= LIVE_FRAMES, `${rate.toFixed(1)} frames for each second of the program`);
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+}
+
+export async function drag_opens_door({ browser, program, expect }) {
+  const { page, problems, close } = await open_page(browser, program.link);
+  const frame = await frame_of(page);
+  const { twin } = await scene_of(page);
+  expect(Math.abs(frame.q_twin[0]) < 0.05, `the door is closed at first: ${frame.q_twin[0]} rad`);
+  const angles = Array.from({ length: 25 }, (_, i) => 0.05 * (i + 1));
+  await drag_along(page, arc(frame.p_B_H_m, twin.p_B_root_m, angles), async () => {
+    const opens = await comes_true(page, (f) => f.q_twin[0] > OPEN);
+    const { q_twin } = await frame_of(page);
+    expect(opens, `dragging opens the door: ${q_twin[0]} rad`);
+  });
+  await page.waitForSelector("#grip-text", { state: "hidden", ...PATIENCE });
+  expect(true, "the hint goes after the first drag");
+  expect(await comes_true(page, (f) => !f.hand.active), "the hand lets go");
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+}
+
+export async function two_pages_share_a_run({ browser, program, expect }) {
+  const first = await open_page(browser, program.link);
+  const second = await open_page(browser, program.link);
+  expect(await comes_true(first.page, (f) => f.clients >= 2), "both pages are counted");
+  const start = await first.page.evaluate(() => window.hapticgiant.handle_on_screen);
+  await first.page.mouse.move(start.x, start.y);
+  await first.page.mouse.down();
+  await first.page.mouse.move(start.x + 30, start.y - 10);
+  expect(
+    await comes_true(second.page, (f) => f.hand.active),
+    "the second sees the first one's hand",
+  );
+  await first.page.mouse.up();
+  expect(await comes_true(second.page, (f) => !f.hand.active), "and that it lets go");
+  await first.close();
+  expect(await comes_true(second.page, (f) => f.clients === 1), "the second stays alone");
+  await second.close();
+}
+
+export async function unreadable_messages_are_noted({ browser, program, expect }) {
+  let to_page = null;
+  const { page, close } = await open_page(browser, program.link, {}, async (opened) => {
+    await opened.routeWebSocket(/\/ws/, (socket) => {
+      to_page = socket;
+      const server = socket.connectToServer();
+      server.onMessage((text) => socket.send(text));
+    });
+  });
+  for (const text of ["{", '{"type":"frame"}', '{"type":"toString"}', "[]", "null"])
+    to_page.send(text);
+  const noted = await page
+    .waitForFunction(() => window.hapticgiant.unreadable === 5, null, PATIENCE)
+    .then(
+      () => true,
+      () => false,
+    );
+  expect(noted, "messages that cannot be read are counted");
+  const note = await page.textContent("#notices");
+  expect(/could not be read/.test(note), `and noted: ${note}`);
+  const { time_s } = await frame_of(page);
+  expect(await comes_true(page, (f) => f.time_s > time_s), "frames go on");
+  await close();
+}
+
+export async function connection_comes_back({ browser, program, expect }) {
+  let cut = null;
+  let connections = 0;
+  const { page, close } = await open_page(browser, program.link, {}, async (opened) => {
+    await opened.routeWebSocket(/\/ws/, (socket) => {
+      connections += 1;
+      const server = socket.connectToServer();
+      cut = () => Promise.all([socket.close(), server.close()]);
+    });
+  });
+  await cut();
+  const lost = await page
+    .waitForFunction(() => document.body.dataset.connected === "false", null, PATIENCE)
+    .then(
+      () => true,
+      () => false,
+    );
+  expect(lost, "the page says that the connection is lost");
+  await drawn(page);
+  expect(connections === 2, `it comes back by itself (${connections} connections)`);
+  const { time_s } = await frame_of(page);
+  expect(await comes_true(page, (f) => f.time_s > time_s), "frames go on");
+  await close();
+}
+
+export async function headset_holds_the_handle({ browser, program, expect }) {
+  const { page, problems, close } = await open_page(browser, program.link, {}, wear_headset);
+  for (const kind of ["vr", "ar"]) {
+    await page.click(`#enter-${kind}`);
+    const worn = await page
+      .waitForFunction(() => window.xr_device.activeSession, null, PATIENCE)
+      .then(
+        () => true,
+        () => false,
+      );
+    expect(worn, `${kind.toUpperCase()} begins`);
+    await page.evaluate(() => {
+      const { right } = window.xr_device.controllers;
+      right.position.set(0.2, 1.2, -0.4);
+      right.updateButtonValue("trigger", 1);
+    });
+    expect(await comes_true(page, (f) => f.hand.active), "the trigger takes hold of the handle");
+    const { hand } = await frame_of(page);
+    await page.evaluate(() => window.xr_device.controllers.right.position.set(0.2, 1.2, -0.5));
+    const follows = await comes_true(
+      page,
+      (f) => Math.hypot(...f.hand.p_B_m.map((x, i) => x - hand.p_B_m[i])) > 0.05,
+    );
+    expect(follows, "its target follows the controller");
+    await page.evaluate(() => window.xr_device.controllers.right.updateButtonValue("trigger", 0));
+    expect(await comes_true(page, (f) => !f.hand.active), "letting go of the trigger lets go");
+    await page.evaluate(() => window.xr_device.activeSession?.end());
+    await page.waitForFunction(() => !window.xr_device.activeSession, null, PATIENCE);
+  }
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+}
+
+// The demonstration server follows no commands.
+async function follows(page, command) {
+  return (await scene_of(page)).commands.includes(command);
+}
+
+export async function changes_reach_the_program({ browser, program, expect }) {
+  const first = await open_page(browser, program.link);
+  if (!(await follows(first.page, "set"))) return first.close();
+  const second = await open_page(browser, program.link);
+  const { name, value, max } = (await scene_of(first.page)).settings.find((s) => s.value > 0);
+  const box = `[data-setting="${name}"]`;
+  const wanted = String(Number((0.5 * value).toPrecision(3)));
+  await first.page.click("#tab-change");
+  await second.page.click("#tab-change");
+  await first.page.fill(box, wanted);
+  await first.page.press(box, "Enter");
+  const arrives = await second.page
+    .waitForFunction(([b, w]) => document.querySelector(b).value === w, [box, wanted], PATIENCE)
+    .then(
+      () => true,
+      () => false,
+    );
+  expect(arrives, `${name} = ${wanted} reaches the program and comes back to another page`);
+
+  await first.page.fill(box, String(10 * max + 1));
+  await first.page.press(box, "Enter");
+  const note = await first.page.locator(".setting .problem:visible").first().textContent();
+  expect(/is expected/.test(note), `out of range is refused: ${note}`);
+  expect((await first.page.inputValue(box)) === wanted, "and put back");
+  await first.close();
+  await second.close();
+}
+
+export async function time_is_controlled({ browser, program, expect }) {
+  const { page, problems, close } = await open_page(browser, program.link);
+  if (!(await follows(page, "pause"))) return close();
+  await page.click("#pause");
+  expect(await comes_true(page, (f) => f.run_state.is_paused), "pause");
+  const { time_s } = await frame_of(page);
+  await page.keyboard.press(".");
+  const steps = await comes_true(page, (f) => f.time_s > time_s);
+  const stepped = (await frame_of(page)).time_s - time_s;
+  expect(steps && stepped < 0.1, `one step is ${stepped.toFixed(3)} s`);
+  await page.click("#pause");
+  expect(
+    await comes_true(page, (f) => !f.run_state.is_paused && f.time_s > time_s + 0.3),
+    "goes on",
+  );
+  await page.selectOption("#speed", "0.25");
+  expect(await comes_true(page, (f) => f.run_state.speed === 0.25), "slow motion");
+  const before = await frame_of(page);
+  await page.keyboard.press("r");
+  const again = await comes_true(page, (f) => f.time_s < before.time_s);
+  expect(again, "the run starts again");
+  await drawn(page);
+  await page.selectOption("#scenario", "excavator");
+  const other = await page
+    .waitForFunction(() => window.hapticgiant.scene.environment === "excavator", null, PATIENCE)
+    .then(
+      () => true,
+      () => false,
+    );
+  await drawn(page);
+  expect(other, "another scenario, same page");
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+}
+
+export async function recording_is_played({ browser, program, command, expect }) {
+  const live = await open_page(browser, program.link);
+  const can_record = await follows(live.page, "restart");
+  await live.close();
+  if (!can_record) return;
+  const folder = mkdtempSync(join(tmpdir(), "hapticgiant-"));
+  const args = ["run", "door", "--fast", "--duration", "4", "--recordings", folder];
+  spawnSync(command[0], args); // its exit code says that events are missing: it is short
+  const file = join(folder, "latest.mcap");
+  const replay = await start_program([command[0], "replay", file, "--view", "--compare", file]);
+  const { page, problems, close } = await open_page(browser, replay.link);
+  expect(await comes_true(page, (f) => f.ghost !== null), "a second recording comes along");
+  expect(!(await page.isVisible("#hand")), "nobody can take the handle");
+  await page.locator("#scrub").evaluate((slider) => {
+    slider.value = "1";
+    for (const name of ["input", "change"]) slider.dispatchEvent(new Event(name));
+  });
+  expect(await comes_true(page, (f) => f.run_state.position_s < 3), "scrubbing goes back");
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+  await replay.stop();
+  rmSync(folder, { recursive: true });
+}
+
+export async function program_is_restarted({ browser, program, command, expect }) {
+  const { page, close } = await open_page(browser, program.link);
+  if (!(await follows(page, "restart"))) return close();
+  await program.stop();
+  await page.waitForFunction(() => document.body.dataset.connected === "false", null, PATIENCE);
+  const note = await page.textContent("#connection");
+  expect(/open its new link/.test(note), `the page says what to do: ${note}`);
+  const again = await start_program([...command, "--port", new URL(program.link).port]);
+  await page.goto(again.link);
+  await drawn(page);
+  expect(true, "the new link works in the same tab");
+  await again.stop();
+  await close();
+}

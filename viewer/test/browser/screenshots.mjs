@@ -1,0 +1,65 @@
+// Makes the pictures of the page in docs/images: door.png and viewer_*.png.
+//
+//   npm run screenshots [-- PROGRAM]      default: ../build/release/hapticgiant
+import { dirname, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+import {
+  arc,
+  comes_true,
+  drag_along,
+  frame_of,
+  open_page,
+  scene_of,
+  start_browser,
+  start_program,
+} from "./browser.mjs";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const root = resolve(here, "../../..");
+const program = resolve(process.argv[2] ?? resolve(root, "build/release/hapticgiant"));
+const laptop = { width: 1366, height: 768 };
+const tablet = { width: 820, height: 1180 };
+
+async function open_door(page, take) {
+  const { p_B_H_m } = await frame_of(page);
+  const { twin } = await scene_of(page);
+  const angles = Array.from({ length: 24 }, (_, i) => 0.05 * (i + 1));
+  await drag_along(page, arc(p_B_H_m, twin.p_B_root_m, angles), async () => {
+    await comes_true(page, (f) => f.q_twin[0] > 0.95);
+    await take();
+  });
+}
+
+const at = (time) => async (page, take) => {
+  await comes_true(page, (f) => f.time_s > time);
+  await take();
+};
+
+const PICTURES = [
+  { name: "door", args: ["door", "--user", "mouse"], play: open_door },
+  { name: "viewer_excavator", args: ["excavator"], plots: true, play: at(13) },
+  { name: "viewer_free_space", args: ["free_space"], plots: true, play: at(21.2) },
+  {
+    name: "viewer_dark",
+    args: ["door", "--user", "mouse"],
+    dark: true,
+    plots: true,
+    play: open_door,
+  },
+  { name: "viewer_tablet", args: ["excavator"], viewport: tablet, play: at(13) },
+];
+
+const browser = await start_browser();
+for (const { name, args, viewport = laptop, dark, plots, play } of PICTURES) {
+  const running = await start_program([program, "run", ...args, "--no-recording"]);
+  const options = { viewport, colorScheme: dark ? "dark" : "light" };
+  const { page, close } = await open_page(browser, `${running.link}&quality=best`, options);
+  if (plots) await page.click("#show-plots");
+  const path = resolve(root, `docs/images/${name}.png`);
+  await play(page, () => page.screenshot({ path }));
+  console.log(path);
+  await close();
+  await running.stop();
+}
+await browser.close();
