@@ -60,7 +60,7 @@ export async function open_page(browser, link, options = {}, prepare = async () 
     if (!is_own) problems.push(request.url());
   });
   await prepare(page);
-  await page.goto(link);
+  await page.goto(link, PATIENCE);
   await drawn(page);
   return { page, problems, close: () => context.close() };
 }

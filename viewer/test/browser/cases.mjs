@@ -261,7 +261,7 @@ export async function program_is_restarted({ browser, program, command, expect }
   const note = await page.textContent("#connection");
   expect(/open its new link/.test(note), `the page says what to do: ${note}`);
   const again = await start_program([...command, "--port", new URL(program.link).port]);
-  await page.goto(again.link);
+  await page.goto(again.link, PATIENCE);
   await drawn(page);
   expect(true, "the new link works in the same tab");
   await again.stop();
