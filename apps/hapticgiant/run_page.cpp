@@ -200,11 +200,13 @@ std::string RunPage::choose(const Command& command) {
   if (command.name == CommandName::kScenario) {
     is_known = take(choices.scenarios, arguments.world.scenario);
     arguments.world.twin.clear();
-    if (arguments.world.user != "mouse" && arguments.world.user != "none") arguments.world.user.clear();
+    if (arguments.world.user != "mouse" && arguments.world.user != "none")
+      arguments.world.user.clear();
   }
   if (command.name == CommandName::kTwin) {
     is_known = take(choices.twins, arguments.world.twin);
-    if (arguments.world.user != "mouse" && arguments.world.user != "none") arguments.world.user.clear();
+    if (arguments.world.user != "mouse" && arguments.world.user != "none")
+      arguments.world.user.clear();
   }
   if (command.name == CommandName::kLaw) is_known = take(choices.laws, arguments.law);
   if (command.name == CommandName::kPerson) is_known = take(choices.people, arguments.world.user);
