@@ -97,9 +97,9 @@ TEST(Runtime, ADeviceThatIsTheClockIsNotWaitedFor) {
   Parts parts;
   parts.device.keeps_time = true;
   std::uint64_t seen = 0;
-  // ten minutes, were the runtime to keep time as well
-  const Report report = run(parts, {.rate_Hz = 100.0, .duration_s = 600.0}, seen);
-  EXPECT_GE(report.cycles, 60001u);
+  // a minute, were the runtime to keep time as well
+  const Report report = run(parts, {.rate_Hz = 100.0, .duration_s = 60.0}, seen);
+  EXPECT_GE(report.cycles, 6001u);
   EXPECT_EQ(report.overruns, 0u);
 }
 
