@@ -33,6 +33,7 @@ export interface PageState {
   readonly is_connected: boolean;
   readonly is_drawn: boolean; // the scene of the newest run
   readonly unreadable: number;
+  readonly is_hand_tracked: boolean; // by a headset
   readonly handle_on_screen: Pixel | null;
   on_screen(p_B: Vec3): Pixel;
 }
@@ -158,7 +159,7 @@ class Page {
   }
 
   state(): PageState {
-    const { store, stage } = this;
+    const { store, stage, headset } = this;
     const is_drawn = (): boolean => this.world !== null && this.world.scene === store.scene;
     const count = (): number => this.frames;
     return Object.freeze({
@@ -182,6 +183,9 @@ class Page {
       },
       get unreadable() {
         return store.unreadable;
+      },
+      get is_hand_tracked() {
+        return headset.is_tracked;
       },
       get handle_on_screen() {
         return store.frame && stage.on_screen(store.frame.p_B_H_m);

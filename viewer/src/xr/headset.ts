@@ -36,6 +36,7 @@ export class Headset {
   private grip: Grip | null = null;
   private target: Vec3 | null = null;
   private turn: Turn | null = null;
+  private readonly controllers: XRTargetRaySpace[];
 
   constructor(
     private readonly stage: Stage,
@@ -45,7 +46,8 @@ export class Headset {
     const { xr } = stage.renderer;
     xr.enabled = true;
     xr.setReferenceSpaceType("local-floor");
-    for (const index of [0, 1]) this.connect(xr.getController(index));
+    this.controllers = [0, 1].map((index) => xr.getController(index));
+    for (const controller of this.controllers) this.connect(controller);
     xr.addEventListener("sessionend", () => this.take_off());
     setInterval(() => this.tell_where(), RESEND_MS);
     void this.offer();
@@ -53,6 +55,11 @@ export class Headset {
 
   get is_worn(): boolean {
     return this.stage.renderer.xr.isPresenting;
+  }
+
+  // A controller is seen: its trigger counts from now on.
+  get is_tracked(): boolean {
+    return this.is_worn && this.controllers.some((controller) => controller.visible);
   }
 
   get target_m(): Vec3 | null {

@@ -102,16 +102,23 @@ export async function comes_true(page, test, patience_ms = PATIENCE.timeout) {
   return false;
 }
 
+// Waits until the run is `duration_s` older.
+async function lives(page, duration_s) {
+  const { time_s } = await frame_of(page);
+  await comes_true(page, (f) => f.time_s >= time_s + duration_s);
+}
+
 // Grabs the handle, moves the mouse over the points (in B), and lets go after `at_end`.
 export async function drag_along(page, points, at_end) {
   const start = await page.evaluate(() => window.hapticgiant.handle_on_screen);
   await page.mouse.move(start.x, start.y);
   await page.mouse.down();
-  await page.waitForTimeout(600); // the lever goes down first
+  await comes_true(page, (f) => f.hand.active);
+  await lives(page, 0.6); // the lever goes down first
   for (const point of points) {
     const { x, y } = await page.evaluate((p) => window.hapticgiant.on_screen(p), point);
     await page.mouse.move(x, y);
-    await page.waitForTimeout(80);
+    await lives(page, 0.06);
   }
   await at_end();
   await page.mouse.up();

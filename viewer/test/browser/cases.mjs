@@ -133,12 +133,12 @@ export async function headset_holds_the_handle({ browser, program, expect }) {
   for (const kind of ["vr", "ar"]) {
     await page.click(`#enter-${kind}`);
     const worn = await page
-      .waitForFunction(() => window.xr_device.activeSession, null, PATIENCE)
+      .waitForFunction(() => window.hapticgiant.is_hand_tracked, null, PATIENCE)
       .then(
         () => true,
         () => false,
       );
-    expect(worn, `${kind.toUpperCase()} begins`);
+    expect(worn, `${kind.toUpperCase()} begins and sees a controller`);
     await page.evaluate(() => {
       const { right } = window.xr_device.controllers;
       right.position.set(0.2, 1.2, -0.4);
