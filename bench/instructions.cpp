@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-#include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/bench_command.h"
 #include "bench/player.h"
 #include "bench/problem_source.h"
 #include "hg/core/error.h"
@@ -43,8 +43,7 @@ extern "C" [[gnu::noipa]] void counted(const Work& work) {
 namespace {
 
 config::Scenario load(const std::string& name, rendering::Law law, rendering::Bounds bounds) {
-  return bench::with_law(
-      apps::make_scenario({.scenario = name, .plant = "ideal", .sensors = "ideal"}), law, bounds);
+  return bench::with_law(apps::bench_scenario(name), law, bounds);
 }
 
 std::size_t run_cycles(const std::string& name) {

@@ -48,16 +48,6 @@ struct NamedScenario {
   bool takes(Law law) const { return law != Law::kPaper || scenario.device.model.n_m == 6; }
 };
 
-NamedScenario load(const std::string& name) {
-  // solver and law are compared without what an elastic machine adds
-  config::Scenario scenario =
-      make_scenario({.scenario = name, .plant = "ideal", .sensors = "ideal"});
-  if (assembly::planned_duration_s(scenario) == 0.0) {
-    throw SetupError(name + ": bench needs a scenario with a script");
-  }
-  return {name, std::move(scenario)};
-}
-
 void show(const std::string& text) {
   fmt::print("{}", text);
   std::fflush(stdout);
@@ -173,10 +163,20 @@ bool play_laws(const std::vector<NamedScenario>& scenarios, BenchResults& result
 
 }  // namespace
 
+config::Scenario bench_scenario(const std::string& name) {
+  config::Scenario scenario =
+      make_scenario({.scenario = name, .plant = "ideal", .sensors = "ideal"});
+  if (assembly::planned_duration_s(scenario) == 0.0) {
+    throw SetupError(name + ": bench needs a scenario with a script");
+  }
+  return scenario;
+}
+
 int bench(const BenchArguments& arguments) {
   BenchResults results;
   std::vector<NamedScenario> scenarios;
-  for (const std::string& name : arguments.scenarios) scenarios.push_back(load(name));
+  for (const std::string& name : arguments.scenarios)
+    scenarios.push_back({name, bench_scenario(name)});
   const Effort& effort = arguments.is_quick ? kQuick : kFull;
   std::vector<bench::ProblemSource> reference;
   for (const auto& file : bench::reference_files(data_root())) {

@@ -4,7 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "hg/config/scenario.h"
+
 namespace hg::apps {
+
+/// The scenario `name` as benchmarks play it: solver and law are compared without what an elastic
+/// machine adds. Throws SetupError, also for a scenario without a script.
+config::Scenario bench_scenario(const std::string& name);
 
 struct BenchArguments {
   std::vector<std::string> scenarios = {"door", "free_space", "excavator"};

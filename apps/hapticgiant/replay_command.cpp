@@ -30,21 +30,6 @@ using viewer_server::CommandName;
 constexpr double kFrame_s = 1.0 / 60.0;  // of the page
 constexpr std::chrono::milliseconds kIdle(4);
 
-viewer_server::Ghost ghost_of(const Sample& sample, double time_s) {
-  const CycleRecord& record = sample.record;
-  viewer_server::Ghost ghost;
-  ghost.time_s = time_s;
-  const auto append = [](const auto& from, std::vector<double>& to) {
-    to.insert(to.end(), from.data(), from.data() + from.size());
-  };
-  append(record.robot.q_p, ghost.q_device);
-  append(record.reference.q_m, ghost.q_device);
-  append(record.twin.q_a, ghost.q_twin);
-  ghost.p_B_H = record.T_B_H.p;
-  ghost.force = record.robot.w_H.head<3>();
-  return ghost;
-}
-
 /// One recording and, if it is compared, the other.
 class Show {
  public:
@@ -81,7 +66,7 @@ class Show {
     if (other_) {
       const std::size_t shown = other_->at(playback_.position_s());
       other_->read(shown, *sample_);
-      view.ghost = ghost_of(*sample_, other_->time_s(shown));
+      view.ghost = viewer_server::Ghost{other_->time_s(shown), sample_->record};
     }
     run_.read(index, *sample_);
     view.record = sample_->record;

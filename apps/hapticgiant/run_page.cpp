@@ -196,20 +196,19 @@ std::string RunPage::choose(const Command& command) {
     value = command.argument;
     return true;
   };
+  ScenarioArguments& world = arguments.world;
   bool is_known = true;
   if (command.name == CommandName::kScenario) {
-    is_known = take(choices.scenarios, arguments.world.scenario);
-    arguments.world.twin.clear();
-    if (arguments.world.user != "mouse" && arguments.world.user != "none")
-      arguments.world.user.clear();
+    is_known = take(choices.scenarios, world.scenario);
+    world.twin.clear();
   }
-  if (command.name == CommandName::kTwin) {
-    is_known = take(choices.twins, arguments.world.twin);
-    if (arguments.world.user != "mouse" && arguments.world.user != "none")
-      arguments.world.user.clear();
-  }
+  if (command.name == CommandName::kTwin) is_known = take(choices.twins, world.twin);
+  const bool is_other_twin =
+      command.name == CommandName::kScenario || command.name == CommandName::kTwin;
+  // a script is made for one twin
+  if (is_other_twin && world.user != "mouse" && world.user != "none") world.user.clear();
   if (command.name == CommandName::kLaw) is_known = take(choices.laws, arguments.law);
-  if (command.name == CommandName::kPerson) is_known = take(choices.people, arguments.world.user);
+  if (command.name == CommandName::kPerson) is_known = take(choices.people, world.user);
   if (!is_known) return "there is no such choice: " + command.argument;
   try {
     next_ = std::make_unique<PreparedRun>(arguments);

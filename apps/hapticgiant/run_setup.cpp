@@ -23,7 +23,8 @@ namespace {
 
 constexpr char kArguments[] = "arguments";  // attachment of a recording
 
-// what --device, --twin and --user change; expected events belong to the scenario as it stands
+// what --device, --twin, --user and --rate-hz change; expected events belong to the scenario as it
+// stands
 void apply(const ScenarioArguments& arguments, config::SourceReader& reader,
            config::Scenario& scenario) {
   const auto add_sources = [&](const std::vector<config::SourceText>& sources) {
@@ -63,6 +64,7 @@ void apply(const ScenarioArguments& arguments, config::SourceReader& reader,
   } else if (!arguments.twin.empty()) {
     scenario.person = user::PersonKind::kMouse;  // a script is made for one twin
   }
+  if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
 }
 
 // `text` is one of the names of `choices`; empty leaves the value alone
@@ -172,7 +174,6 @@ config::Scenario make_scenario(const ScenarioArguments& arguments) {
   config::Scenario scenario = config::load_scenario(find_scenario(arguments.scenario));
   config::SourceReader reader;
   apply(arguments, reader, scenario);
-  if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
   apply_to_simulation(arguments, scenario);
   return scenario;
 }
@@ -201,7 +202,6 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
   config::Scenario scenario = config::load_scenario(sources);
   config::SourceReader reader(std::move(sources));
   apply(arguments, reader, scenario);
-  if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
   return scenario;
 }
 

@@ -43,6 +43,14 @@ void fill_in_start(const config::Scenario& scenario, const Start& start, user::S
   }
 }
 
+// Ends of travel of a joint with these limits.
+Interval end_stops(const config::Simulation& reality, const model::Joint& joint, double q_min,
+                   double q_max) {
+  const bool is_slide = joint.type == model::JointType::kPrismatic;
+  const double beyond = is_slide ? reality.stop_distance_length : reality.stop_distance_angle;
+  return {q_min - beyond, q_max + beyond};
+}
+
 simulation::PlantConfig elastic_plant(const config::Device& device, const Start& start,
                                       double step) {
   const config::Simulation& reality = device.simulation;
@@ -61,20 +69,17 @@ simulation::PlantConfig elastic_plant(const config::Device& device, const Start&
     for (int i = 0; i < device.model.n_p; ++i) plant.gantry.push_back(i);
     for (int i = 0; i < device.model.n_m; ++i) plant.manipulator.push_back(device.model.n_p + i);
   }
-  for (int i = 0; i < device.model.n_p; ++i) {
-    const auto axis = static_cast<std::size_t>(i);
-    const Interval& travel = device.prepositioning.q_limits[axis];
-    const bool is_slide = device.model.chain.joints()[axis].type == model::JointType::kPrismatic;
-    const double beyond = is_slide ? reality.stop_distance_length : reality.stop_distance_angle;
-    plant.gantry_stops.push_back({travel.lb - beyond, travel.ub + beyond});
+  const std::vector<model::Joint>& joints = device.model.chain.joints();
+  const auto n_p = static_cast<std::size_t>(device.model.n_p);
+  for (std::size_t axis = 0; axis < n_p; ++axis) {
+    const Interval& limits = device.prepositioning.q_limits[axis];
+    plant.gantry_stops.push_back(end_stops(reality, joints[axis], limits.lb, limits.ub));
   }
   for (int i = 0; i < device.model.n_m; ++i) {
     const auto joint = static_cast<std::size_t>(i);
     plant.actuators.push_back(actual(device.control.actuators[joint], reality.factors));
     const limits::JointLimits& limits = device.model.joint_limits[joint];
-    const bool is_slide = !device.monitor.is_slide.empty() && device.monitor.is_slide[joint];
-    const double beyond = is_slide ? reality.stop_distance_length : reality.stop_distance_angle;
-    plant.end_stops.push_back({limits.q_min - beyond, limits.q_max + beyond});
+    plant.end_stops.push_back(end_stops(reality, joints[n_p + joint], limits.q_min, limits.q_max));
   }
   return plant;
 }

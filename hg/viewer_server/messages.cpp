@@ -102,9 +102,14 @@ void add_limits(const CycleRecord& record, const LimitCatalogue& limits, FrameMe
   }
 }
 
+// what the page draws the device at
+std::vector<double> q_device(const CycleRecord& record) {
+  return joined(record.robot.q_p, record.reference.q_m);
+}
+
 void add_motion(const CycleRecord& record, FrameMessage& frame) {
   const RobotState& robot = record.robot;
-  frame.q_device = joined(robot.q_p, record.reference.q_m);
+  frame.q_device = q_device(record);
   frame.q_measured = joined(robot.q_p, robot.q_m);
   frame.dq_device = joined(robot.dq_p, record.reference.dq_m);
   frame.dq_measured = joined(robot.dq_p, robot.dq_m);
@@ -219,9 +224,9 @@ std::string encode_frame(const View& view, const LimitCatalogue& limits, std::ui
                      state.recording};
   frame.clients = clients;
   if (view.ghost) {
-    const Ghost& ghost = *view.ghost;
-    frame.ghost = {ghost.time_s, ghost.q_device, ghost.q_twin, vec3(ghost.p_B_H),
-                   vec3(ghost.force)};
+    const CycleRecord& other = view.ghost->record;
+    frame.ghost = {view.ghost->time_s, q_device(other), list(other.twin.q_a), vec3(other.T_B_H.p),
+                   vec3(other.robot.w_H.head<3>())};
   }
   return to_json(frame);
 }

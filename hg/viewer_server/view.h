@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "hg/signals/frames.h"
 #include "hg/signals/state.h"
@@ -36,9 +35,8 @@ struct RunState {
 
 /// A second run, shown through the first.
 struct Ghost {
-  double time_s = 0.0;
-  std::vector<double> q_device, q_twin;
-  Eigen::Vector3d p_B_H = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero();
+  double time_s = 0.0;  ///< in its recording
+  CycleRecord record;
 };
 
 struct View {

@@ -127,7 +127,8 @@ View make_view() {
   record.sync_error = 0.0015;
   view.budget.inertia << 1, 0, 0, 0, 0, 2;
   view.singularity = {0.5, 1};
-  view.ghost = Ghost{.time_s = 1.25, .q_device = {1.0}, .q_twin = {2.0}};
+  view.ghost = Ghost{.time_s = 1.25};
+  view.ghost->record.twin.q_a = ConfigurationA::Constant(1, 2.0);
   return view;
 }
 
