@@ -15,15 +15,15 @@ import time
 import zlib
 
 HELLO, WELCOME, READY, SENSORS, COMMAND, GOODBYE = range(1, 7)
-MAGIC, VERSION = 0x50444748, 1
+MAGIC, VERSION = 0x50444748, 2
 HEADER = struct.Struct("<IHHIIQQ")  # magic, version, type, length, session, number, time_ns
 DESCRIPTION = "64sIIdII"  # device, n_p, n_m, rate_Hz, interface, is_lock_step
 FIELDS = {
     HELLO: struct.Struct("<Q" + DESCRIPTION + "64s"),
     WELCOME: struct.Struct("<QII" + DESCRIPTION + "d64s192s"),
     READY: struct.Struct("<"),
-    SENSORS: struct.Struct("<QdQIIII" + 4 * "II7d" + "II2d" + "6d3d3d"),
-    COMMAND: struct.Struct("<QII3dd" + 4 * "II7d" + "II2d"),
+    SENSORS: struct.Struct("<QdQ8I" + 4 * "II7d" + "II2d" + "6d3d3d" + "II7d"),
+    COMMAND: struct.Struct("<QII3dd6I" + 4 * "II7d" + "II2d"),
     GOODBYE: struct.Struct("<II64s"),
 }
 
@@ -73,23 +73,29 @@ def take_vectors(fields, **rooms):
 
 def unpack_sensors(fields):
     """The fields of a sensors message by name; None if it is malformed."""
-    names = ["sequence", "time_s", "answered_sequence", "dead_man", "emergency_stop", "driver_fault"]
+    flags = ["dead_man", "emergency_stop", "operator_enable", "override_key", "is_field_clear",
+             "has_disagreement"]
+    names = ["sequence", "time_s", "answered_sequence", *flags, "driver_fault", "bus_errors"]
     sensors = dict(zip(names, fields))
-    vectors, size, is_good = take_vectors(fields[7:], q_m=7, dq_m=7, theta_m=7, tau_m=7, q_p=2)
-    rest = fields[7 + size:]
-    flags = (sensors["dead_man"], sensors["emergency_stop"])
-    if not is_good or max(flags) > 1 or fields[6] != 0 or not all(map(math.isfinite, fields)):
+    at = len(names)
+    vectors, size, is_good = take_vectors(fields[at:], q_m=7, dq_m=7, theta_m=7, tau_m=7, q_p=2)
+    rest = fields[at + size:]
+    heat, _, is_heat_good = take_vectors(rest[12:], temperature_m=7)
+    is_good = is_good and is_heat_good and max(sensors[flag] for flag in flags) <= 1
+    if not is_good or not all(map(math.isfinite, fields)):
         return None
-    return sensors | vectors | {"w_S": rest[:6], "a_S": rest[6:9], "omega_S": rest[9:]}
+    return sensors | vectors | {"w_S": rest[:6], "a_S": rest[6:9], "omega_S": rest[9:12]} | heat
 
 
 def unpack_command(fields, n_m, n_p, interface):
     """The fields of a command message by name; None if it is malformed for such a device."""
     sequence, enable, hand_active, *hand_p_B, hand_press = fields[:7]
-    vectors, _, is_good = take_vectors(fields[7:], q_m=7, dq_m=7, ddq_m=7, tau_m=7, dq_p=2)
+    panel = fields[7:12]  # of a simulated operator: stop, enabling switch, key, scanner, reset
+    vectors, _, is_good = take_vectors(fields[13:], q_m=7, dq_m=7, ddq_m=7, tau_m=7, dq_p=2)
     sizes = {"q_m": n_m, "dq_m": n_m, "ddq_m": n_m, "tau_m": n_m if interface == 2 else 0, "dq_p": n_p}
     is_good = is_good and sizes == {name: len(values) for name, values in vectors.items()}
-    if not is_good or max(enable, hand_active) > 1 or not all(map(math.isfinite, fields)):
+    is_good = is_good and max(enable, hand_active, *panel) <= 1 and fields[12] == 0
+    if not is_good or not all(map(math.isfinite, fields)):
         return None
     if not 0.0 <= hand_press <= 1.0:
         return None
@@ -99,8 +105,8 @@ def unpack_command(fields, n_m, n_p, interface):
 
 def pack_command(sequence, enable, q_m, dq_m, ddq_m, tau_m, dq_p):
     """The fields of a command message; a hand that is nowhere."""
-    return [sequence, enable, 0, 0.0, 0.0, 0.0, 0.0, *vector(q_m), *vector(dq_m), *vector(ddq_m),
-            *vector(tau_m), *vector(dq_p, 2)]
+    return [sequence, enable, 0, 0.0, 0.0, 0.0, 0.0, 0, 1, 0, 0, 0, 0, *vector(q_m), *vector(dq_m),
+            *vector(ddq_m), *vector(tau_m), *vector(dq_p, 2)]
 
 
 class Client:

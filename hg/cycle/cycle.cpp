@@ -1,5 +1,7 @@
 #include "hg/cycle/cycle.h"
 
+#include <algorithm>
+
 #include "hg/cycle/state_hash.h"
 
 namespace hg::cycle {
@@ -7,6 +9,7 @@ namespace {
 
 constexpr double kBrakingRate = 20.0;  // 1/s: stopping takes about 0.2 s
 constexpr double kStandstill = 1e-3;   // rad/s and m/s
+constexpr double kRamp = 0.3;          // s in which the forces of a run come in
 
 bool stands_still(const CycleRecord& record) noexcept {
   return record.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
@@ -155,13 +158,15 @@ void Cycle::hold(CycleRecord& record) noexcept {
   record.twin = rendering.twin;
   state_.dq_p.setZero();
   state_.is_blocked = false;
+  state_.force_share = 0.0;
 }
 
 void Cycle::render(CycleRecord& record) noexcept {
   const bool is_stopping = state_.supervisor.mode == Mode::kStopping;
   const bool has_left =
       rendering_.stay_near(record.robot, config_.control.error_max, state_.rendering);
-  rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record);
+  rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record, state_.force_share);
+  state_.force_share = std::min(1.0, state_.force_share + config_.rendering.dt / kRamp);
 
   const Fault fault = safety::check_reference(config_.monitor, record);
   if (fault.code != FaultCode::kNone) {
@@ -201,6 +206,7 @@ void Cycle::write_command(const SensorFrame& sensors, const OperatorFrame& opera
     command.dq_p.setZero();
   }
   command.hand_target = operator_input.hand_target;
+  command.panel = operator_input.panel;
 }
 
 }  // namespace hg::cycle

@@ -35,8 +35,9 @@ struct State {
   rendering::State rendering;
   control::State control;
   prepositioning::TargetState gantry_target;
-  VectorP dq_p;             ///< gantry command of the last cycle
-  bool is_blocked = false;  ///< a device limit could not be met in the last cycle
+  VectorP dq_p;              ///< gantry command of the last cycle
+  bool is_blocked = false;   ///< a device limit could not be met in the last cycle
+  double force_share = 0.0;  ///< of the forces that act on the twin, 0..1: they come in with a ramp
 };
 
 class Cycle {

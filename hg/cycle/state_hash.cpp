@@ -119,6 +119,7 @@ std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noe
   hash.mix(state.gantry_target.q);
   hash.mix(state.dq_p);
   hash.mix(std::uint64_t{state.is_blocked});
+  hash.mix(state.force_share);
   hash.mix(state.next_sequence);
   hash.mix(static_cast<std::uint64_t>(state.supervisor.mode));
   hash.mix(static_cast<std::uint64_t>(state.supervisor.last_request));

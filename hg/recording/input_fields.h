@@ -14,6 +14,10 @@ inline constexpr std::string_view kMessageName<Pose> = "hapticgiant_msgs/Pose";
 template <>
 inline constexpr std::string_view kMessageName<SensorFrame> = "hapticgiant_msgs/SensorFrame";
 template <>
+inline constexpr std::string_view kMessageName<SafetyInputs> = "hapticgiant_msgs/SafetyInputs";
+template <>
+inline constexpr std::string_view kMessageName<SafetyPanel> = "hapticgiant_msgs/SafetyPanel";
+template <>
 inline constexpr std::string_view kMessageName<HandTarget> = "hapticgiant_msgs/HandTarget";
 template <>
 inline constexpr std::string_view kMessageName<ParameterChange> =
@@ -37,6 +41,24 @@ void fields(Archive& a, T& pose) {
   a("r", pose.R, "rotation matrix, row by row");
 }
 
+template <typename Archive, Is<SafetyInputs> T>
+void fields(Archive& a, T& safety) {
+  a("emergency_stop", safety.emergency_stop, "a stop is asked for");
+  a("operator_enable", safety.operator_enable, "the operator holds the enabling switch");
+  a("override_key", safety.override_key, "may move slowly with nobody at the handle");
+  a("is_field_clear", safety.is_field_clear, "nobody stands in the scanner's field");
+  a("has_disagreement", safety.has_disagreement, "channels of an input differed for too long");
+}
+
+template <typename Archive, Is<SafetyPanel> T>
+void fields(Archive& a, T& panel) {
+  a("emergency_stop", panel.emergency_stop, "button is pressed");
+  a("operator_enable", panel.operator_enable, "enabling switch is held");
+  a("override_key", panel.override_key, "key is turned");
+  a("person_in_field", panel.person_in_field, "somebody besides the user");
+  a("reset", panel.reset, "of the safety controller; acts when it is pressed");
+}
+
 template <typename Archive, Is<SensorFrame> T>
 void fields(Archive& a, T& sensors) {
   a("sequence", sensors.sequence, "counts up by one per sample");
@@ -51,7 +73,9 @@ void fields(Archive& a, T& sensors) {
   a("omega_s", sensors.omega_S, "gyroscope in the sensor, rad/s");
   a("answered_sequence", sensors.answered_sequence, "of the newest command at work");
   a("dead_man", sensors.dead_man, "the dead-man switch is closed");
-  a("emergency_stop", sensors.emergency_stop, "the safety inputs ask for a stop");
+  a("safety", sensors.safety, "inputs of the safety controller");
+  a("temperature_m", sensors.temperature_m, "of the motors, degrees Celsius");
+  a("bus_errors", sensors.bus_errors, "fieldbus answers missing in this sample");
   a("driver_fault", sensors.driver_fault, "0 none; numbers are listed in hg/signals/fault.h");
 }
 
@@ -73,9 +97,11 @@ void fields(Archive& a, T& change) {
 
 template <typename Archive, Is<OperatorFrame> T>
 void fields(Archive& a, T& input) {
-  a("request", input.request, "0 none, 1 arm, 2 run, 3 stop, 4 reset, 5 tare");
+  a("request", input.request, "0 none, 1 arm, 2 run, 3 stop, 4 reset, 5 tare, 6 autonomous");
   a("hand_target", input.hand_target);
+  a("panel", input.panel, "of a simulated operator");
   a("change", input.change, "of a parameter of the twin");
+  a("late_cycles", input.late_cycles, "missed since the last cycle");
 }
 
 template <typename Archive, Is<CommandFrame> T>
@@ -88,6 +114,7 @@ void fields(Archive& a, T& command) {
   a("tau_m", command.tau_m, "motor torques, Nm; empty: the drives follow the reference");
   a("dq_p", command.dq_p, "gantry, m/s");
   a("hand_target", command.hand_target);
+  a("panel", command.panel);
 }
 
 template <typename Archive, Is<Fault> T>

@@ -24,6 +24,12 @@ inline constexpr std::string_view kMessageName<LimitReport> = "hapticgiant_msgs/
 template <>
 inline constexpr std::string_view kMessageName<TrackingReport> = "hapticgiant_msgs/TrackingReport";
 template <>
+inline constexpr std::string_view kMessageName<CollisionReport> =
+    "hapticgiant_msgs/CollisionReport";
+template <>
+inline constexpr std::string_view kMessageName<PassivityReport> =
+    "hapticgiant_msgs/PassivityReport";
+template <>
 inline constexpr std::string_view kMessageName<CycleRecord> = "hapticgiant_msgs/CycleRecord";
 template <>
 inline constexpr std::string_view kMessageName<Truth> = "hapticgiant_msgs/Truth";
@@ -66,12 +72,30 @@ void fields(Archive& a, T& tracking) {
   a("is_clamped", tracking.is_clamped, "the reference was brought back to the device");
 }
 
+template <typename Archive, Is<CollisionReport> T>
+void fields(Archive& a, T& collision) {
+  a("distance", collision.distance, "smallest while braking from now on, m");
+  a("pair", collision.pair, "in the order of metadata \"collision_pairs\"; -1 none");
+}
+
+template <typename Archive, Is<PassivityReport> T>
+void fields(Archive& a, T& passivity) {
+  a("tank", passivity.tank, "energy that the rendering may still give, J");
+  a("energy", passivity.energy, "given through the handle and not got back, J");
+  a("oscillation", passivity.oscillation, "index; 1 = detected");
+  a("scale", passivity.scale, "factor on inertia and damping of the twin in effect");
+}
+
 template <typename Archive, Is<CycleRecord> T>
 void fields(Archive& a, T& record) {
   a("cycle", record.cycle);
   a("time_s", record.time_s, "nominal time; the log time is this plus the start of the run");
   a("mode", record.mode, "0 off, 1 ready, 2 armed, 3 running, 4 stopping, 5 fault");
+  a("is_autonomous", record.is_autonomous, "runs with nobody at the handle");
+  a("stop", record.stop, "0 none, 1 SS2, 2 SS1, 3 STO");
   a("fault", record.fault);
+  a("warning", record.warning, "the rule nearest to its threshold, beyond its warning");
+  a("sanitised", record.sanitised, "bit i: command of joint i was changed; from bit 16: gantry");
   a("change", record.change, "of a parameter: 0 none, 1 taken, 2 refused");
   a("tare", record.tare,
     "0 none, 1 under way, 2 done, 3 refused: held, 4 moving, 5 unsteady, 6 running");
@@ -95,6 +119,8 @@ void fields(Archive& a, T& record) {
   a("felt_limit", record.felt_limit, "the limit that the user feels most, -1 none");
   a("w_felt", record.w_felt, "its reaction as a wrench on the handle");
   a("tracking", record.tracking, "how well the device follows");
+  a("collision", record.collision);
+  a("passivity", record.passivity);
   a("q_p_target", record.q_p_target, "where prepositioning wants the gantry, m");
   a("solver_status", record.solver_status, "0 not run, 1 solved, 2 iteration limit, 3 failed");
   a("solver_iterations", record.solver_iterations);

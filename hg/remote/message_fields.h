@@ -19,7 +19,7 @@ concept Is = std::same_as<std::remove_const_t<T>, Message>;
 template <typename Archive, Is<Header> T>
 void fields(Archive& a, T& header) {
   a("magic", header.magic, "48 47 44 50, \"HGDP\"");
-  a("version", header.version, "of this protocol: 1");
+  a("version", header.version, "of this protocol: 2");
   a("type", header.type, "of the message");
   a("length", header.length, "of the datagram, header and checksum included");
   a("session", header.session, "as the welcome says; 0 in hello and in a refusal");
@@ -67,9 +67,16 @@ void fields(Archive& a, T& sensors) {
     "of the newest command at work; 0 = none yet. A torque loop needs it, see "
     "[control.md](control.md)");
   a("dead_man", sensors.dead_man, "1: the dead-man switch is closed");
-  a("emergency_stop", sensors.emergency_stop, "1: the safety inputs ask for a stop");
+  a("emergency_stop", sensors.safety.emergency_stop, "1: the safety inputs ask for a stop");
+  a("operator_enable", sensors.safety.operator_enable,
+    "1: the operator holds the enabling switch, or there is none");
+  a("override_key", sensors.safety.override_key, "1: it may move slowly with nobody at the handle");
+  a("is_field_clear", sensors.safety.is_field_clear,
+    "1: nobody stands in the scanner's field, or there is no scanner");
+  a("has_disagreement", sensors.safety.has_disagreement,
+    "1: channels of a safety input differed for too long");
   a("driver_fault", sensors.driver_fault, "0, or a number of hg/signals/fault.h");
-  a.zeros("zero");
+  a("bus_errors", sensors.bus_errors, "fieldbus answers missing in this sample");
   a("q_m", sensors.q_m, "link-side encoders, rad; unlimited joints in [-pi, pi)");
   a("dq_m", sensors.dq_m, "link-side velocities, rad/s");
   a("theta_m", sensors.theta_m,
@@ -79,6 +86,7 @@ void fields(Archive& a, T& sensors) {
   a("w_S", sensors.w_S, "wrench on the handle at the sensor S, in S: force N, torque Nm");
   a("a_S", sensors.a_S, "accelerometer in S: acceleration minus gravity, m/s^2");
   a("omega_S", sensors.omega_S, "gyroscope in S, rad/s");
+  a("temperature_m", sensors.temperature_m, "of the motors, degrees Celsius; may be none");
 }
 
 template <typename Archive, Is<CommandFrame> T>
@@ -88,6 +96,12 @@ void fields(Archive& a, T& command) {
   a("hand_active", command.hand_target.active, "1: a simulated person follows hand_p_B");
   a("hand_p_B", command.hand_target.p_B, "target of the handle in the base frame, m");
   a("hand_press", command.hand_target.press, "how far the hand presses its lever, 0..1");
+  a("panel_emergency_stop", command.panel.emergency_stop, "1: for a simulated safety controller");
+  a("panel_operator_enable", command.panel.operator_enable, "the same");
+  a("panel_override_key", command.panel.override_key, "the same");
+  a("panel_person_in_field", command.panel.person_in_field, "the same");
+  a("panel_reset", command.panel.reset, "the same");
+  a.zeros("zero");
   a("q_m", command.q_m, "reference positions, rad");
   a("dq_m", command.dq_m, "reference velocities, rad/s");
   a("ddq_m", command.ddq_m, "reference accelerations, rad/s^2");

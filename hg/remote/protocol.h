@@ -18,7 +18,7 @@
 namespace hg::remote {
 
 inline constexpr std::uint32_t kMagic = 0x50444748;  ///< "HGDP"
-inline constexpr std::uint16_t kVersion = 1;
+inline constexpr std::uint16_t kVersion = 2;
 /// A datagram that no network divides.
 inline constexpr std::size_t kLargestDatagram = 1400;
 

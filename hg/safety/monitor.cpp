@@ -47,7 +47,7 @@ bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept
 
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
                     std::uint64_t expected_sequence) noexcept {
-  if (sensors.emergency_stop) return make_fault(FaultCode::kEmergencyStop, -1, 1.0, 0.0);
+  if (sensors.safety.emergency_stop) return make_fault(FaultCode::kEmergencyStop, -1, 1.0, 0.0);
   if (sensors.driver_fault != FaultCode::kNone) {
     return make_fault(sensors.driver_fault, -1, 0.0, 0.0);
   }

@@ -16,6 +16,46 @@ std::string_view to_string(FaultCode code) noexcept {
       return "remote device is silent";
     case FaultCode::kDeviceGone:
       return "remote device has ended the session";
+    case FaultCode::kSensorFrozen:
+      return "measured value is frozen";
+    case FaultCode::kSensorImplausible:
+      return "sensors of a joint contradict each other";
+    case FaultCode::kSensorJump:
+      return "measured position jumped";
+    case FaultCode::kClockWrong:
+      return "clock of the device is wrong";
+    case FaultCode::kBusErrors:
+      return "fieldbus answers are missing";
+    case FaultCode::kJointTorqueExceeded:
+      return "joint torque exceeds its peak";
+    case FaultCode::kTooHot:
+      return "motor is too hot";
+    case FaultCode::kDriveFault:
+      return "drive reports a fault";
+    case FaultCode::kOperatorReleased:
+      return "operator released the enabling switch";
+    case FaultCode::kScannerField:
+      return "somebody is in the scanner's field";
+    case FaultCode::kSafetyInputsDisagree:
+      return "channels of a safety input disagree";
+    case FaultCode::kSafeSpeedExceeded:
+      return "safely limited speed exceeded";
+    case FaultCode::kCycleOverrun:
+      return "cycles came too late too often";
+    case FaultCode::kCollisionAhead:
+      return "collision ahead";
+    case FaultCode::kGantryExceeded:
+      return "gantry exceeds its range or speed";
+    case FaultCode::kGantryDeviates:
+      return "gantry does not move as commanded";
+    case FaultCode::kOscillation:
+      return "hand and device shake each other";
+    case FaultCode::kEnergy:
+      return "device has given more energy than allowed";
+    case FaultCode::kStopTooSlow:
+      return "controlled stop took too long";
+    case FaultCode::kAccelerationExceeded:
+      return "acceleration rating exceeded";
     case FaultCode::kWrenchTooLarge:
       return "user wrench exceeds the sensor's range";
     case FaultCode::kSolverFailed:

@@ -8,20 +8,40 @@ namespace hg {
 
 enum class FaultCode : std::uint16_t {
   kNone = 0,
-  kSensorNotFinite = 100,     ///< a measured value is NaN or infinite
-  kSequenceGap = 101,         ///< the device skipped or repeated a sample
-  kEmergencyStop = 102,       ///< the safety inputs asked for a stop
-  kDeviceSilent = 103,        ///< nothing was heard from a remote device for too long
-  kDeviceGone = 104,          ///< a remote device has ended the session
-  kWrenchTooLarge = 110,      ///< the user's force or torque exceeds the sensor's range
-  kSolverFailed = 200,        ///< the rendering problem was not solved
-  kReferenceNotFinite = 201,  ///< the rendering gave NaN or infinity
-  kCommandNotFinite = 202,    ///< the control gave NaN or infinity
-  kLimitExceeded = 300,       ///< a joint or frame left its limit by more than the tolerance
-  kSpeedExceeded = 301,       ///< a joint is faster than its rating allows
-  kTrackingLost = 302,        ///< the device is too far from its reference
-  kSyncLost = 303,            ///< handle and twin are too far apart
-  kLatencyGrew = 304,         ///< commands reach the drives later than the torque loop can bear
+  kSensorNotFinite = 100,      ///< a measured value is NaN or infinite
+  kSequenceGap = 101,          ///< the device skipped or repeated a sample
+  kEmergencyStop = 102,        ///< the safety inputs asked for a stop
+  kDeviceSilent = 103,         ///< nothing was heard from a remote device for too long
+  kDeviceGone = 104,           ///< a remote device has ended the session
+  kSensorFrozen = 105,         ///< a measured value shows the same bits for too long
+  kSensorImplausible = 106,    ///< motor, spring and link of a joint contradict each other
+  kSensorJump = 107,           ///< a joint moved farther in one sample than it can
+  kClockWrong = 108,           ///< the device's clock does not keep step with its samples
+  kBusErrors = 109,            ///< too many samples in a row with missing fieldbus answers
+  kWrenchTooLarge = 110,       ///< the user's force or torque exceeds the sensor's range
+  kJointTorqueExceeded = 111,  ///< a joint carries more than its peak torque
+  kTooHot = 112,               ///< a motor is hotter than allowed
+  kDriveFault = 113,           ///< a drive says that it has a fault
+  kOperatorReleased = 130,     ///< the operator let go of the enabling switch
+  kScannerField = 131,         ///< somebody is in the scanner's field while nobody holds the handle
+  kSafetyInputsDisagree = 132,  ///< the two channels of a safety input differ for too long
+  kSafeSpeedExceeded = 133,     ///< faster than the safely limited speed
+  kSolverFailed = 200,          ///< the rendering problem was not solved
+  kReferenceNotFinite = 201,    ///< the rendering gave NaN or infinity
+  kCommandNotFinite = 202,      ///< the control gave NaN or infinity
+  kCycleOverrun = 203,          ///< cycles came too late too often
+  kLimitExceeded = 300,         ///< a joint or frame left its limit by more than the tolerance
+  kSpeedExceeded = 301,         ///< a joint is faster than its rating allows
+  kTrackingLost = 302,          ///< the device is too far from its reference
+  kSyncLost = 303,              ///< handle and twin are too far apart
+  kLatencyGrew = 304,           ///< commands reach the drives later than the torque loop can bear
+  kCollisionAhead = 305,  ///< the device would hit itself or its surroundings if it braked later
+  kGantryExceeded = 306,  ///< a gantry axis is beyond its range or its speed rating
+  kGantryDeviates = 307,  ///< a gantry axis does not move as commanded
+  kOscillation = 308,     ///< hand and device shake each other and adaptation did not end it
+  kEnergy = 309,          ///< the device has given more energy than its tank holds
+  kStopTooSlow = 310,     ///< a controlled stop did not come to rest in time
+  kAccelerationExceeded = 311,  ///< a joint is asked to accelerate more than its rating allows
 };
 
 /// One line for humans, for example "measured value is not finite".

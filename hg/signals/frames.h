@@ -11,6 +11,15 @@
 
 namespace hg {
 
+/// What the safety controller of a device (its PLC) says, DESIGN.md section 8, [HANDBOOK] 6.8.
+struct SafetyInputs {
+  bool emergency_stop = false;    ///< a stop is asked for: button, or the controller's own fault
+  bool operator_enable = true;    ///< the operator holds the enabling switch
+  bool override_key = false;      ///< the device may move with nobody at the handle, slowly
+  bool is_field_clear = true;     ///< nobody stands in the scanner's field
+  bool has_disagreement = false;  ///< channels of one input differed longer than allowed
+};
+
 /// What a device measured in one sample, as its sensors give it.
 struct SensorFrame {
   std::uint64_t sequence = 0;     ///< counts up by one per sample
@@ -26,8 +35,10 @@ struct SensorFrame {
   Eigen::Vector3d omega_S = Eigen::Vector3d::Zero();  ///< gyroscope in S; zero without one
   /// CommandFrame::sequence of the newest command at work: tells the latency of the loop.
   std::uint64_t answered_sequence = 0;
-  bool dead_man = false;        ///< the user's hand closes the dead-man switch of the handle
-  bool emergency_stop = false;  ///< the safety inputs ask for a stop
+  bool dead_man = false;  ///< the user's hand closes the dead-man switch of the handle
+  SafetyInputs safety;
+  VectorM temperature_m;         ///< of the motors, degrees Celsius; empty = not measured
+  std::uint32_t bus_errors = 0;  ///< fieldbus answers that are missing in this sample
   FaultCode driver_fault = FaultCode::kNone;  ///< why the driver has no (good) values
 };
 
@@ -40,6 +51,15 @@ struct HandTarget {
   Eigen::Matrix3d R_B = Eigen::Matrix3d::Identity();  ///< target orientation of the handle, if so
 };
 
+/// Buttons and keys of a simulated operator's panel. Only simulated devices look at it.
+struct SafetyPanel {
+  bool emergency_stop = false;
+  bool operator_enable = true;
+  bool override_key = false;
+  bool person_in_field = false;  ///< besides whoever holds the handle
+  bool reset = false;            ///< of the safety controller; acts when it is pressed
+};
+
 /// Numbers are recorded and never change their meaning.
 enum class ModeRequest : std::uint8_t {
   kNone = 0,
@@ -47,7 +67,8 @@ enum class ModeRequest : std::uint8_t {
   kRun = 2,
   kStop = 3,
   kReset = 4,
-  kTare = 5,  ///< what the force/torque sensor shows of a free handle at rest is its zero
+  kTare = 5,        ///< what the force/torque sensor shows of a free handle at rest is its zero
+  kAutonomous = 6,  ///< run with nobody at the handle, slowly, with the override key
 };
 
 /// What of a twin may change while it runs. Numbers are recorded and never change their meaning.
@@ -78,7 +99,9 @@ struct ParameterChange {
 struct OperatorFrame {
   ModeRequest request = ModeRequest::kNone;
   HandTarget hand_target;
+  SafetyPanel panel;
   ParameterChange change;
+  std::uint32_t late_cycles = 0;  ///< missed by this run since the last cycle: late or left out
 };
 
 /// What the device is asked to do until the next sample.
@@ -91,6 +114,7 @@ struct CommandFrame {
   VectorM tau_m;               ///< motor torques; empty: the drives follow the reference
   VectorP dq_p;                ///< gantry velocities
   HandTarget hand_target;      ///< handed through to a simulated person
+  SafetyPanel panel;           ///< handed through to a simulated safety controller
 };
 
 }  // namespace hg

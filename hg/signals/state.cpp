@@ -20,6 +20,20 @@ std::string_view to_string(Mode mode) noexcept {
   return "unknown";
 }
 
+std::string_view to_string(Stop stop) noexcept {
+  switch (stop) {
+    case Stop::kNone:
+      return "none";
+    case Stop::kSs2:
+      return "SS2";
+    case Stop::kSs1:
+      return "SS1";
+    case Stop::kSto:
+      return "STO";
+  }
+  return "unknown";
+}
+
 std::string_view to_string(SolverStatus status) noexcept {
   switch (status) {
     case SolverStatus::kNotRun:
@@ -65,6 +79,26 @@ std::string_view to_string(Refusal refusal) noexcept {
     case Refusal::kLatencyUnknown:
       return "not armed: the latency of the torque loop is unknown, the device has not answered "
              "100 commands (answered_sequence of its samples)";
+    case Refusal::kNotReady:
+      return "not armed: the device is not ready, only a device at rest with its drives off is";
+    case Refusal::kNotArmed:
+      return "not started: the device is not armed";
+    case Refusal::kFaultPresent:
+      return "refused: there is a fault, reset it first";
+    case Refusal::kCauseRemains:
+      return "not reset: the cause of the fault is still there";
+    case Refusal::kNoFault:
+      return "not reset: there is no fault";
+    case Refusal::kOperatorReleased:
+      return "not armed: the operator does not hold the enabling switch";
+    case Refusal::kNobodyHolds:
+      return "not started: nobody holds the handle";
+    case Refusal::kSomebodyHolds:
+      return "not started: somebody holds the handle, let go of it to run without a hand";
+    case Refusal::kNoOverride:
+      return "not started: to run without a hand the override key must be turned";
+    case Refusal::kFieldOccupied:
+      return "not started: somebody is in the scanner's field";
   }
   return "unknown";
 }

@@ -29,6 +29,30 @@ enum class Mode : std::uint8_t {
 
 std::string_view to_string(Mode mode) noexcept;
 
+/// How the device is being stopped, as in IEC 61800-5-2.
+enum class Stop : std::uint8_t {
+  kNone = 0,
+  kSs2 = 1,  ///< controlled, then held under power
+  kSs1 = 2,  ///< controlled, then drives off and brakes closed
+  kSto = 3,  ///< drives off and brakes closed at once
+};
+
+std::string_view to_string(Stop stop) noexcept;
+
+/// What of the device comes nearest to itself or its surroundings when it brakes now.
+struct CollisionReport {
+  double distance = kInfinity;  ///< smallest while braking, m
+  int pair = -1;                ///< index in the list of pairs; -1 = none is watched
+};
+
+/// Energy at the handle, and whether hand and device shake each other.
+struct PassivityReport {
+  double tank = 0.0;         ///< energy that the rendering may still give, J
+  double energy = 0.0;       ///< given through the handle and not got back, J
+  double oscillation = 0.0;  ///< index of oscillation; 1 = detected
+  double scale = 1.0;        ///< factor on inertia and damping of the twin in effect
+};
+
 /// What estimation knows about the device.
 struct RobotState {
   VectorM q_m, dq_m;              ///< link side, unlimited joints unwrapped
@@ -103,9 +127,19 @@ std::string_view to_string(TareStatus status) noexcept;
 /// Why a request of the operator was not followed.
 enum class Refusal : std::uint8_t {
   kNone = 0,
-  kNotTared = 1,        ///< arming a device that needs a tare and has none
-  kLatencyTooLong = 2,  ///< arming a torque loop that would not be stable
-  kLatencyUnknown = 3,  ///< arming a torque loop before enough commands were answered
+  kNotTared = 1,          ///< arming a device that needs a tare and has none
+  kLatencyTooLong = 2,    ///< arming a torque loop that would not be stable
+  kLatencyUnknown = 3,    ///< arming a torque loop before enough commands were answered
+  kNotReady = 4,          ///< arming a device that is not ready: off, on already, or stopping
+  kNotArmed = 5,          ///< running a device whose drives are off, or that runs or stops
+  kFaultPresent = 6,      ///< anything but a reset after a fault
+  kCauseRemains = 7,      ///< a reset while the cause of the fault is still there
+  kNoFault = 8,           ///< a reset without a fault
+  kOperatorReleased = 9,  ///< arming while the operator does not hold the enabling switch
+  kNobodyHolds = 10,      ///< running by hand with nobody at the handle
+  kSomebodyHolds = 11,    ///< running autonomously with somebody at the handle
+  kNoOverride = 12,       ///< running autonomously without the override key
+  kFieldOccupied = 13,    ///< running autonomously with somebody in the scanner's field
 };
 
 std::string_view to_string(Refusal refusal) noexcept;
@@ -115,7 +149,11 @@ struct CycleRecord {
   std::uint64_t cycle = 0;
   double time_s = 0.0;  ///< nominal time since the cycle was created
   Mode mode = Mode::kOff;
+  bool is_autonomous = false;  ///< runs with nobody at the handle
+  Stop stop = Stop::kNone;     ///< how it is being stopped, or was
   Fault fault;
+  Fault warning;                ///< the rule nearest to its threshold, once beyond its warning
+  std::uint32_t sanitised = 0;  ///< bit i: command of joint i was changed; from bit 16: gantry
   ChangeStatus change = ChangeStatus::kNone;
   TareStatus tare = TareStatus::kNone;
   bool is_tared = false;             ///< a tare is there, or this device needs none
@@ -138,6 +176,8 @@ struct CycleRecord {
   int felt_limit = -1;               ///< index of the limit that the user feels most; -1 = none
   Vector6 w_felt = Vector6::Zero();  ///< its reaction as a wrench on the handle (device rows only)
   TrackingReport tracking;
+  CollisionReport collision;
+  PassivityReport passivity;
   VectorP q_p_target;  ///< where prepositioning wants the gantry
   SolverStatus solver_status = SolverStatus::kNotRun;
   int solver_iterations = 0;

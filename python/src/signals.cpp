@@ -26,7 +26,13 @@ void bind_modes(nb::module_& module) {
       .value("RUN", ModeRequest::kRun)
       .value("STOP", ModeRequest::kStop)
       .value("RESET", ModeRequest::kReset)
-      .value("TARE", ModeRequest::kTare);
+      .value("TARE", ModeRequest::kTare)
+      .value("AUTONOMOUS", ModeRequest::kAutonomous);
+  nb::enum_<Stop>(module, "Stop", nb::is_arithmetic(), "How the device is being stopped.")
+      .value("NONE", Stop::kNone)
+      .value("SS2", Stop::kSs2)
+      .value("SS1", Stop::kSs1)
+      .value("STO", Stop::kSto);
   nb::enum_<TareStatus>(module, "TareStatus", nb::is_arithmetic(), "How the last tare went.")
       .value("NONE", TareStatus::kNone)
       .value("UNDER_WAY", TareStatus::kUnderWay)
@@ -39,7 +45,17 @@ void bind_modes(nb::module_& module) {
       .value("NONE", Refusal::kNone)
       .value("NOT_TARED", Refusal::kNotTared)
       .value("LATENCY_TOO_LONG", Refusal::kLatencyTooLong)
-      .value("LATENCY_UNKNOWN", Refusal::kLatencyUnknown);
+      .value("LATENCY_UNKNOWN", Refusal::kLatencyUnknown)
+      .value("NOT_READY", Refusal::kNotReady)
+      .value("NOT_ARMED", Refusal::kNotArmed)
+      .value("FAULT_PRESENT", Refusal::kFaultPresent)
+      .value("CAUSE_REMAINS", Refusal::kCauseRemains)
+      .value("NO_FAULT", Refusal::kNoFault)
+      .value("OPERATOR_RELEASED", Refusal::kOperatorReleased)
+      .value("NOBODY_HOLDS", Refusal::kNobodyHolds)
+      .value("SOMEBODY_HOLDS", Refusal::kSomebodyHolds)
+      .value("NO_OVERRIDE", Refusal::kNoOverride)
+      .value("FIELD_OCCUPIED", Refusal::kFieldOccupied);
   nb::enum_<SolverStatus>(module, "SolverStatus", nb::is_arithmetic())
       .value("NOT_RUN", SolverStatus::kNotRun)
       .value("SOLVED", SolverStatus::kSolved)
@@ -55,15 +71,35 @@ void bind_fault_codes(nb::module_& module) {
       .value("EMERGENCY_STOP", FaultCode::kEmergencyStop)
       .value("DEVICE_SILENT", FaultCode::kDeviceSilent)
       .value("DEVICE_GONE", FaultCode::kDeviceGone)
+      .value("SENSOR_FROZEN", FaultCode::kSensorFrozen)
+      .value("SENSOR_IMPLAUSIBLE", FaultCode::kSensorImplausible)
+      .value("SENSOR_JUMP", FaultCode::kSensorJump)
+      .value("CLOCK_WRONG", FaultCode::kClockWrong)
+      .value("BUS_ERRORS", FaultCode::kBusErrors)
       .value("WRENCH_TOO_LARGE", FaultCode::kWrenchTooLarge)
+      .value("JOINT_TORQUE_EXCEEDED", FaultCode::kJointTorqueExceeded)
+      .value("TOO_HOT", FaultCode::kTooHot)
+      .value("DRIVE_FAULT", FaultCode::kDriveFault)
+      .value("OPERATOR_RELEASED", FaultCode::kOperatorReleased)
+      .value("SCANNER_FIELD", FaultCode::kScannerField)
+      .value("SAFETY_INPUTS_DISAGREE", FaultCode::kSafetyInputsDisagree)
+      .value("SAFE_SPEED_EXCEEDED", FaultCode::kSafeSpeedExceeded)
       .value("SOLVER_FAILED", FaultCode::kSolverFailed)
       .value("REFERENCE_NOT_FINITE", FaultCode::kReferenceNotFinite)
       .value("COMMAND_NOT_FINITE", FaultCode::kCommandNotFinite)
+      .value("CYCLE_OVERRUN", FaultCode::kCycleOverrun)
       .value("LIMIT_EXCEEDED", FaultCode::kLimitExceeded)
       .value("SPEED_EXCEEDED", FaultCode::kSpeedExceeded)
       .value("TRACKING_LOST", FaultCode::kTrackingLost)
       .value("SYNC_LOST", FaultCode::kSyncLost)
-      .value("LATENCY_GREW", FaultCode::kLatencyGrew);
+      .value("LATENCY_GREW", FaultCode::kLatencyGrew)
+      .value("COLLISION_AHEAD", FaultCode::kCollisionAhead)
+      .value("GANTRY_EXCEEDED", FaultCode::kGantryExceeded)
+      .value("GANTRY_DEVIATES", FaultCode::kGantryDeviates)
+      .value("OSCILLATION", FaultCode::kOscillation)
+      .value("ENERGY", FaultCode::kEnergy)
+      .value("STOP_TOO_SLOW", FaultCode::kStopTooSlow)
+      .value("ACCELERATION_EXCEEDED", FaultCode::kAccelerationExceeded);
 }
 
 void bind_limit_words(nb::module_& module) {
@@ -129,6 +165,8 @@ void bind_signals(nb::module_& module) {
           nb::arg("p"), nb::arg("r"), "Position (3, m) and rotation matrix (3, 3).")
       .def("__matmul__", [](const Pose& a, const Pose& b) { return a * b; })
       .def("inverse", [](const Pose& pose) { return inverse(pose); });
+  bind_fields<SafetyInputs>(module, "SafetyInputs", "What the safety controller says.");
+  bind_fields<SafetyPanel>(module, "SafetyPanel", "Buttons and keys of a simulated operator.");
   bind_fields<HandTarget>(module, "HandTarget", "Where a simulated person wants the handle.");
   bind_fields<ParameterChange>(module, "ParameterChange", "A parameter of the twin and its value.");
   bind_fields<SensorFrame>(module, "SensorFrame", "What a device measured in one sample.");
@@ -142,6 +180,8 @@ void bind_signals(nb::module_& module) {
   bind_fields<Truth>(module, "Truth", "What is really the case; only a simulation knows.");
   bind_fields<Budget>(module, "Budget", "Where the user's wrench goes.");
   bind_fields<LimitReport>(module, "LimitReport", "One limit in one cycle.");
+  bind_fields<CollisionReport>(module, "CollisionReport", "How near the device comes to itself.");
+  bind_fields<PassivityReport>(module, "PassivityReport", "Energy and oscillation at the handle.");
   bind_fields<CycleRecord>(module, "CycleRecord", "Everything that a cycle has to say.");
 }
 

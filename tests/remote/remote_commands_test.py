@@ -185,17 +185,18 @@ class PythonCodec(unittest.TestCase):
         self.assertIsNone(unpack(command, 7, 2, 2))
         self.assertIsNone(unpack(command, 6, 1, 2))
         self.assertIsNone(unpack(command, 6, 2, 1))  # torques for drives that follow q_m
-        for at, value in [(1, 2), (2, 2), (3, math.nan), (6, -0.1), (6, 1.1), (6, math.nan), (7, 5),
-                          (7, 8), (8, 1), (9, math.inf), (15, 0.1), (34, 0), (36, math.nan),
-                          (43, 3), (45, -math.inf)]:
+        for at, value in [(1, 2), (2, 2), (3, math.nan), (6, -0.1), (6, 1.1), (6, math.nan), (7, 2),
+                          (11, 2), (12, 1), (13, 5), (13, 8), (14, 1), (15, math.inf), (21, 0.1),
+                          (40, 0), (42, math.nan), (49, 3), (51, -math.inf)]:
             with self.subTest(at=at, value=value):
                 self.assertIsNone(unpack([*command[:at], value, *command[at + 1:]], 6, 2, 2))
 
-        sensors = [7, 0.1, 6, 1, 0, 0, 0, *4 * device_client.vector([0.1] * 6),
-                   *device_client.vector([0.2] * 2, 2), *[0.3] * 12]
+        sensors = [7, 0.1, 6, 1, 0, 1, 0, 1, 0, 0, 0, *4 * device_client.vector([0.1] * 6),
+                   *device_client.vector([0.2] * 2, 2), *[0.3] * 12, *device_client.vector([40.0] * 6)]
         self.assertEqual(device_client.unpack_sensors(sensors)["omega_S"], [0.3] * 3)
-        for at, value in [(1, math.nan), (3, 2), (4, 2), (6, 1), (7, 8), (8, 1), (15, 0.1),
-                          (27, math.inf), (36, math.nan), (43, 3), (46, math.nan), (58, math.nan)]:
+        for at, value in [(1, math.nan), (3, 2), (4, 2), (8, 2), (11, 8), (12, 1), (19, 0.1),
+                          (31, math.inf), (40, math.nan), (47, 3), (50, math.nan), (62, math.nan),
+                          (63, 8), (65, math.nan)]:
             with self.subTest(at=at, value=value):
                 self.assertIsNone(
                     device_client.unpack_sensors([*sensors[:at], value, *sensors[at + 1:]]))

@@ -175,9 +175,9 @@ TEST(Cycle, ALostSampleStopsTheDevice) {
 TEST(Cycle, AFaultLastsUntilItIsResetAndThenRunsAgain) {
   Loop loop;
   loop.start_running();
-  loop.sensors.emergency_stop = true;
+  loop.sensors.safety.emergency_stop = true;
   expect_safe_stop(loop, FaultCode::kEmergencyStop);
-  loop.sensors.emergency_stop = false;
+  loop.sensors.safety.emergency_stop = false;
   loop.run(10);
   EXPECT_EQ(loop.record.mode, Mode::kFault);
   loop.operator_input.request = ModeRequest::kReset;
@@ -192,7 +192,7 @@ TEST(Cycle, AnEmergencyStopThatCutsTheSensorsOffDoesNotSpoilTheEstimation) {
   loop.start_running();
   loop.run(20);
   const SensorFrame good = loop.sensors;
-  loop.sensors.emergency_stop = true;
+  loop.sensors.safety.emergency_stop = true;
   loop.sensors.q_p[0] = loop.sensors.q_m[0] = std::numeric_limits<double>::quiet_NaN();
   expect_safe_stop(loop, FaultCode::kEmergencyStop);
   const std::uint64_t sequence = loop.sensors.sequence;
@@ -308,9 +308,9 @@ TEST(Cycle, ALatencyThatGrowsWhileTheDrivesAreOnStopsTheDevice) {
 TEST(Cycle, TheTwinMeetsTheHandleAgainAfterAFaultInMotion) {
   Loop loop;
   loop.start_running();
-  loop.sensors.emergency_stop = true;
+  loop.sensors.safety.emergency_stop = true;
   loop.step();
-  loop.sensors.emergency_stop = false;
+  loop.sensors.safety.emergency_stop = false;
   loop.sensors.q_p[0] += 0.3;  // the gantry has coasted
   loop.operator_input.request = ModeRequest::kReset;
   loop.run(1000);

@@ -38,7 +38,7 @@ def check_sample(sample, cycle):
     assert len(values) == 1 + 3 * 6 + 2 + 6 + 4
     assert values == [scrambled(100 * cycle + i) for i in range(len(values))]
     assert sensors.sequence == sample.record.cycle == cycle
-    assert sensors.dead_man is True and sensors.emergency_stop is False
+    assert sensors.dead_man is True and sensors.safety.emergency_stop is False
     assert sample.operator_input.request == (2 if cycle == 0 else 0)
     assert sample.record.time_s == cycle / RATE_HZ
     assert len(sample.record.limits) == LIMIT_COUNT

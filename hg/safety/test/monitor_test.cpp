@@ -92,7 +92,7 @@ TEST(CheckSensors, AFaultThatTheDriverReportsComesFirst) {
 TEST(CheckSensors, SeesGapsEmergencyStopsAndWrenchesBeyondTheSensor) {
   EXPECT_EQ(check_sensors(config(), good_sensors(), 6).code, FaultCode::kSequenceGap);
   SensorFrame sensors = good_sensors();
-  sensors.emergency_stop = true;
+  sensors.safety.emergency_stop = true;
   EXPECT_EQ(check_sensors(config(), sensors, 7).code, FaultCode::kEmergencyStop);
   sensors = good_sensors();
   sensors.w_S[0] = 151.0;
