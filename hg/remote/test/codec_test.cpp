@@ -144,7 +144,7 @@ TEST(ReadHeader, SaysWhatIsWrong) {
   EXPECT_EQ(header.number, 3U);
   EXPECT_EQ(header.time_ns, 5U);
   EXPECT_EQ(verdict_of(with(whole, 0, std::uint8_t{0x49}).view()), Verdict::kForeign);
-  EXPECT_EQ(verdict_of(with(whole, 4, std::uint16_t{2}).view()), Verdict::kWrongVersion);
+  EXPECT_EQ(verdict_of(with(whole, 4, std::uint16_t{kVersion + 1}).view()), Verdict::kWrongVersion);
   EXPECT_EQ(verdict_of(with(whole, 6, std::uint16_t{99}).view()), Verdict::kForeign);
   EXPECT_EQ(verdict_of(with(whole, 6, std::uint16_t{5}).view()), Verdict::kTruncated);
   Datagram corrupted = whole;
@@ -158,10 +158,11 @@ TEST(Decode, RefusesImpossibleCountsTruthValuesAndRoomInUse) {
   SensorFrame sensors;
   EXPECT_TRUE(decode(whole.view(), sensors));
   EXPECT_FALSE(decode(with(whole, kFields + 24, std::uint32_t{2}).view(), sensors));  // dead_man
-  EXPECT_FALSE(decode(with(whole, kFields + 32, std::uint32_t{70000}).view(), sensors));  // fault
-  EXPECT_FALSE(decode(with(whole, kFields + 36, std::uint32_t{1}).view(), sensors));      // zero
-  EXPECT_FALSE(decode(with(whole, kFields + 40, std::uint32_t{8}).view(), sensors));      // count
-  EXPECT_FALSE(decode(with(whole, kFields + 48 + 6 * 8, 1.0).view(), sensors));  // seventh of six
+  EXPECT_FALSE(decode(with(whole, kFields + 40, std::uint32_t{2}).view(), sensors));  // field
+  EXPECT_FALSE(decode(with(whole, kFields + 48, std::uint32_t{70000}).view(), sensors));  // fault
+  EXPECT_FALSE(decode(with(whole, kFields + 60, std::uint32_t{1}).view(), sensors));      // zero
+  EXPECT_FALSE(decode(with(whole, kFields + 56, std::uint32_t{8}).view(), sensors));      // count
+  EXPECT_FALSE(decode(with(whole, kFields + 64 + 6 * 8, 1.0).view(), sensors));  // seventh of six
 }
 
 TEST(Decode, RandomBytesDoNoHarm) {

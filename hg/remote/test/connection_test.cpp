@@ -178,7 +178,7 @@ TEST(Connection, WhatDoesNotBelongIsCountedAndIgnored) {
     const SensorFrame wrong_size = example_sensors(random, 5);  // two gantry axes
     server.send(wrong_size, {.session = 7, .number = 2});
     server.send(good, {.session = 8, .number = 3});
-    server.send(good, {.version = 2, .session = 7, .number = 4});
+    server.send(good, {.version = kVersion + 1, .session = 7, .number = 4});
     server.send(good, {.magic = 1, .session = 7, .number = 5});
     server.send(Ready{}, {.session = 7, .number = 6});
     Datagram bytes;
@@ -256,7 +256,7 @@ TEST(Connection, AnotherVersionIsNamedOnBothSides) {
   const std::string message =
       message_of([&] { RemoteDevice there(server.address(), client(true)); });
   thread.join();
-  EXPECT_NE(message.find("speaks version 9 of the protocol, this program 1"), std::string::npos);
+  EXPECT_NE(message.find("speaks version 9 of the protocol, this program 2"), std::string::npos);
 
   Serving serving(true);
   UdpSocket old = UdpSocket::talking_to(serving.address());
@@ -268,7 +268,7 @@ TEST(Connection, AnotherVersionIsNamedOnBothSides) {
   Welcome welcome;
   ASSERT_TRUE(decode(datagram.view(), welcome));
   EXPECT_EQ(welcome.refusal, Refusal::kProtocol);
-  EXPECT_EQ(welcome.reason.view(), "protocol: version 1, expected 9");
+  EXPECT_EQ(welcome.reason.view(), "protocol: version 2, expected 9");
 }
 
 TEST(Connection, NobodyThereIsOneClearSentence) {
