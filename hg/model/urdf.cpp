@@ -151,13 +151,46 @@ class Reader {
     return result;
   }
 
+  UrdfCollision collision(const XMLElement& e, const std::string& item) const {
+    UrdfCollision result;
+    if (e.Attribute("name") != nullptr) result.name = e.Attribute("name");
+    result.T_link_shape = origin(e, item);
+    const XMLElement& geometry = child(e, "geometry", item);
+    if (const XMLElement* sphere = geometry.FirstChildElement("sphere")) {
+      result.shape = UrdfShape::kSphere;
+      result.size.x() = length(*sphere, "radius", item);
+    } else if (const XMLElement* cylinder = geometry.FirstChildElement("cylinder")) {
+      result.shape = UrdfShape::kCylinder;
+      result.size.x() = length(*cylinder, "radius", item);
+      result.size.y() = length(*cylinder, "length", item);
+    } else if (const XMLElement* box = geometry.FirstChildElement("box")) {
+      result.shape = UrdfShape::kBox;
+      result.size = vector3(*box, "size", item);
+      if (!(result.size.minCoeff() >= 0.0)) {
+        fail(urdf_, box->GetLineNum(),
+             item + ": size must not be negative, got " + in_quotes(box->Attribute("size")));
+      }
+    }
+    return result;
+  }
+
+  double length(const XMLElement& e, const char* key, const std::string& item) const {
+    const double value = number(e, key, item);
+    if (value >= 0.0) return value;
+    fail(urdf_, e.GetLineNum(), item + ": " + key + " must not be negative, got " + to_text(value));
+  }
+
   UrdfLink link(const XMLElement& e) const {
     UrdfLink result = {.name = attribute(e, "name", "link"),
                        .line = e.GetLineNum(),
                        .inertial = {},
-                       .inertial_fault = {}};
+                       .inertial_fault = {},
+                       .collisions = {}};
     if (const XMLElement* i = e.FirstChildElement("inertial")) {
       result.inertial = inertial(*i, "link " + result.name, result.inertial_fault);
+    }
+    for (auto* c = e.FirstChildElement("collision"); c; c = c->NextSiblingElement("collision")) {
+      result.collisions.push_back(collision(*c, "collision of link " + result.name));
     }
     return result;
   }

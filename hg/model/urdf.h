@@ -1,8 +1,7 @@
 /// Reads a URDF into plain structs and checks what can be checked link by link and joint by joint.
 ///
-/// Visual and collision elements, transmissions and other extensions are skipped. Every fault
-/// throws SetupError that starts with `file:line:`. The shape of the chain is checked where it is
-/// built.
+/// Visual elements, transmissions and other extensions are skipped. Every fault throws SetupError
+/// that starts with `file:line:`. The shape of the chain is checked where it is built.
 #pragma once
 
 #include <filesystem>
@@ -23,11 +22,23 @@ struct Inertial {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about the COM
 };
 
+enum class UrdfShape { kSphere, kCylinder, kBox, kOther };
+
+/// What of a link may touch something.
+struct UrdfCollision {
+  std::string name;  ///< may be empty
+  Pose T_link_shape;
+  UrdfShape shape = UrdfShape::kOther;  ///< kOther: a mesh, or what URDF does not know
+  /// m; sphere: (radius, -, -), cylinder along z: (radius, length, -), box: its edges
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+};
+
 struct UrdfLink {
   std::string name;
   int line = 0;
   std::optional<Inertial> inertial;
   std::string inertial_fault;  ///< what no body has; only matters for links that move
+  std::vector<UrdfCollision> collisions;
 };
 
 enum class UrdfJointType { kFixed, kRevolute, kContinuous, kPrismatic, kFloating, kPlanar };
