@@ -143,7 +143,8 @@ void Rendering::update_device(const RobotState& robot, const ReferenceState& ref
                                   stacked(robot.dq_p, reference.dq_m));
 }
 
-SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record) noexcept {
+SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record,
+                             double share) noexcept {
   update_device(record.robot, state.reference);
   advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
@@ -167,11 +168,12 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
     budget.friction = VectorA::Zero(n_a);
     budget.surface = VectorA::Zero(n_a);
   } else {
-    record.tau_a = J_a_.transpose() * record.robot.w_H;
-    budget.spring = spring_torque(twin_, state.twin.q_a, state.inner.parameters);
+    record.tau_a = J_a_.transpose() * (share * record.robot.w_H);
+    budget.spring = share * spring_torque(twin_, state.twin.q_a, state.inner.parameters);
+    if (share < 1.0) budget.spring -= (1.0 - share) * twin_.chain.gravity();
     budget.damping = damping_torque(L_, state.twin.dq_a, options_.dt, values);
     budget.friction = slip_torque(state.twin.dq_a, state.inner);
-    budget.surface = J_a_.transpose() * values.w_ref;
+    budget.surface = J_a_.transpose() * (share * values.w_ref);
   }
 
   const hqp::ActiveSet previous = state.active_set;

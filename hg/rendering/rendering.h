@@ -50,8 +50,11 @@ class Rendering {
   /// Solves for the accelerations of this sample and reports why they are what they are. Needs
   /// record.robot; fills the rest that concerns device, twin, limits and solver. Does not move the
   /// state: integrate() does. `braking_rate` > 0 (1/s) brings the twin to rest: it is then a body
-  /// without springs, friction and weight that nobody touches, under the same limits.
-  SolverStatus step(State& state, double braking_rate, CycleRecord& record) noexcept;
+  /// without springs, friction and weight that nobody touches, under the same limits. `share`
+  /// (0..1) of the user's wrench, the twin's springs, its weight and its reference wrench counts,
+  /// so that a run that begins against a leaning hand begins without a bump.
+  SolverStatus step(State& state, double braking_rate, CycleRecord& record,
+                    double share = 1.0) noexcept;
 
   /// Moves the twin at rest to where its end effector meets the handle, as far as its joints allow.
   void align(const RobotState& robot, State& state) noexcept;
