@@ -1,6 +1,7 @@
 #include "hg/cycle/cycle.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hg/cycle/state_hash.h"
 
@@ -17,8 +18,17 @@ bool stands_still(const CycleRecord& record) noexcept {
          record.robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
 }
 
-bool is_enabled(Mode mode) noexcept {
-  return mode == Mode::kArmed || mode == Mode::kRunning || mode == Mode::kStopping;
+bool is_moving(Mode mode) noexcept { return mode == Mode::kRunning || mode == Mode::kStopping; }
+
+// With which joints brake that the law does not brake.
+VectorM braking_of(const rendering::DeviceModel& device) {
+  constexpr double kWithoutRating = 10.0;  // rad/s^2 or m/s^2
+  VectorM ddq(device.n_m);
+  for (int i = 0; i < device.n_m; ++i) {
+    const double rating = device.joint_limits[static_cast<std::size_t>(i)].ddq_max;
+    ddq[i] = std::isfinite(rating) ? rating : kWithoutRating;
+  }
+  return ddq;
 }
 
 prepositioning::TargetConfig target_of(const prepositioning::Config& gantry,
@@ -43,8 +53,11 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
       estimation_(config.estimation, device.chain, device.n_p, device.n_m, device.handle),
       rendering_(device, twin, config.rendering),
       control_(config.control, device.chain, device.n_p, device.n_m, device.handle),
-      gantry_target_(target_of(config.prepositioning, device), device.chain) {
+      gantry_target_(target_of(config.prepositioning, device), device.chain),
+      guard_(config.collision, device.chain) {
   config_.monitor.has_imu = config.estimation.wrench.has_imu;
+  ddq_max_ = braking_of(device);
+  longest_stop_ = static_cast<int>(std::lround(config.monitor.stop_time / config.rendering.dt));
   prepositioning::check(config_.prepositioning);
   state_.rendering = rendering_.start(VectorM::Zero(device.n_m));
   state_.control = control_.start();
@@ -69,8 +82,8 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
     record.robot =
         estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
     ended_(Stage::kEstimation);
-    const Mode mode = state_.supervisor.mode;
-    if (mode == Mode::kRunning || mode == Mode::kStopping) {
+    look_ahead(record);
+    if (is_moving(state_.supervisor.mode())) {
       render(record);
     } else {
       hold(record);
@@ -81,14 +94,17 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   write_command(sensors, operator_input, command, record);
   ended_(Stage::kControl);
   const Fault fault = safety::sanitise(config_.monitor, command);
-  if (fault.code != FaultCode::kNone) stop_with(fault);
+  if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
   ended_(Stage::kSafety);
 
   state_.dq_p = command.dq_p;
   state_.next_sequence = sensors.sequence + 1;
   ++state_.cycle;
-  record.mode = state_.supervisor.mode;
-  record.fault = state_.supervisor.fault;
+  const safety::SupervisorState& supervisor = state_.supervisor;
+  record.mode = supervisor.mode();
+  record.is_autonomous = supervisor.state == safety::State::kAutonomous;
+  record.stop = supervisor.stop;
+  record.fault = supervisor.fault;
   record.tare = state_.estimation.wrench.tare.status;
   record.is_tared = estimation_.is_tared(state_.estimation);
   record.is_latency_known = control_.is_latency_known(state_.control);
@@ -105,24 +121,29 @@ void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
                       CycleRecord& record) noexcept {
   safety::SupervisorState& supervisor = state_.supervisor;
   const bool is_new = request != supervisor.last_request;
+  const bool was_fault = supervisor.state == safety::State::kFault;
+  const bool is_arming = is_new && request == ModeRequest::kArm;
   const Fault fault = check(sensors);
-  const bool is_arming = is_new && request == ModeRequest::kArm && supervisor.mode == Mode::kReady;
-  if (is_arming) record.refusal = refusal_to_arm();
+  safety::SupervisorInput input = {
+      .request = request,
+      .is_held = is_held(sensors),
+      .safety = sensors.safety,
+      .to_arm = is_arming ? refusal_to_arm() : Refusal::kNone,
+      .fault = safety::check_safety_inputs(sensors.safety, supervisor),
+      .reaction = fault.code != FaultCode::kNone ? safety::rule_of(fault.code).reaction
+                                                 : Stop::kNone};
+  if (input.fault.code == FaultCode::kNone) input.fault = fault;
+  record.refusal = safety::advance(input, supervisor);
+  if (was_fault && supervisor.state != safety::State::kFault) begin_anew();
 
-  const bool is_refused = record.refusal != Refusal::kNone;
-  const bool was_fault = supervisor.mode == Mode::kFault;
-  safety::advance(supervisor, is_refused ? ModeRequest::kNone : request, is_held(sensors), fault);
-  supervisor.last_request = request;
-  if (was_fault && supervisor.mode != Mode::kFault) begin_anew();
-
-  const bool is_at_rest = supervisor.mode != Mode::kRunning && supervisor.mode != Mode::kStopping;
-  estimation_.tare(is_new && request == ModeRequest::kTare, is_at_rest, state_.estimation);
+  estimation_.tare(is_new && request == ModeRequest::kTare, !is_moving(supervisor.mode()),
+                   state_.estimation);
 }
 
 Fault Cycle::check(const SensorFrame& sensors) noexcept {
   const Fault fault = safety::check_sensors(config_.monitor, sensors, state_.next_sequence);
   if (fault.code != FaultCode::kNone) return fault;
-  const bool is_on = is_enabled(state_.supervisor.mode);
+  const bool is_on = safety::is_powered(state_.supervisor.state);
   control_.listen(sensors, is_on, state_.control);
   return is_on ? control_.check_latency(sensors, state_.control) : Fault{};
 }
@@ -142,10 +163,26 @@ void Cycle::begin_anew() noexcept {
   control_.restart(state_.control);
 }
 
+// Whether braking now still keeps all parts of the device apart.
+void Cycle::look_ahead(CycleRecord& record) noexcept {
+  const RobotState& robot = record.robot;
+  const safety::State state = state_.supervisor.state;
+  const collision::Prediction ahead =
+      guard_.step(stacked(robot.q_p, robot.q_m), stacked(robot.dq_p, robot.dq_m),
+                  safety::is_powered(state), state_.collision);
+  record.collision = ahead.report;
+  if (!ahead.must_brake || safety::mode_of(state) != Mode::kRunning) return;
+  safety::break_rule({.code = FaultCode::kCollisionAhead,
+                      .index = static_cast<std::int16_t>(ahead.report.pair),
+                      .value = ahead.report.distance,
+                      .limit = ahead.allowed},
+                     state_.supervisor);
+}
+
 // Nothing moves. Before it is armed the device may be moved by others: the twin goes along.
 void Cycle::hold(CycleRecord& record) noexcept {
   rendering::State& rendering = state_.rendering;
-  if (state_.supervisor.mode != Mode::kArmed) {
+  if (state_.supervisor.state != safety::State::kArmed) {
     rendering.reference.q_m = record.robot.q_m;
     rendering_.align(record.robot, rendering);
   }
@@ -157,21 +194,21 @@ void Cycle::hold(CycleRecord& record) noexcept {
   record.reference = rendering.reference;
   record.twin = rendering.twin;
   state_.dq_p.setZero();
-  state_.is_blocked = false;
+  state_.is_blocked = state_.brakes_joints = false;
   state_.force_share = 0.0;
 }
 
 void Cycle::render(CycleRecord& record) noexcept {
-  const bool is_stopping = state_.supervisor.mode == Mode::kStopping;
+  const bool is_stopping = state_.supervisor.mode() == Mode::kStopping;
   const bool has_left =
       rendering_.stay_near(record.robot, config_.control.error_max, state_.rendering);
   rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record, state_.force_share);
   state_.force_share = std::min(1.0, state_.force_share + config_.rendering.dt / kRamp);
 
-  const Fault fault = safety::check_reference(config_.monitor, record);
-  if (fault.code != FaultCode::kNone) {
-    stop_with(fault);
-    return;
+  const Fault unsolved = safety::check_solution(record);
+  if (unsolved.code != FaultCode::kNone) {
+    safety::break_rule(unsolved, state_.supervisor);
+    state_.brakes_joints = true;
   }
   const VectorP q_p_target =
       gantry_target_.step(record.robot, state_.rendering.reference.q_m, state_.gantry_target);
@@ -181,21 +218,38 @@ void Cycle::render(CycleRecord& record) noexcept {
   state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
   state_.is_blocked = rendering_.is_blocked();
   record.tracking.is_clamped = has_left;
+  if (state_.brakes_joints) brake_joints(record);
   ended_(Stage::kPrepositioning);
+  const Fault fault = safety::check_reference(config_.monitor, record);
+  if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
   rendering_.integrate(state_.rendering);
-  if (is_stopping && stands_still(record)) safety::has_stopped(state_.supervisor);
+  if (is_stopping) {
+    safety::go_on_stopping(stands_still(record), longest_stop_, config_.monitor.stop_time,
+                           state_.supervisor);
+  }
   ended_(Stage::kIntegration);
 }
 
-void Cycle::stop_with(const Fault& fault) noexcept {
-  safety::advance(state_.supervisor, state_.supervisor.last_request, false, fault);
+// The law has no solution, so it cannot brake either: each joint goes to rest with its own rating,
+// which its position limits leave room for, and twin and gantry are left behind. [HANDBOOK] 6.2 has
+// a ramp of 50 ms, for which the motors of a stretched arm have not got the torque.
+void Cycle::brake_joints(CycleRecord& record) noexcept {
+  rendering::State& rendering = state_.rendering;
+  ReferenceState& reference = rendering.reference;
+  const double rate = 1.0 / config_.rendering.dt;
+  reference.ddq_m = (-rate * reference.dq_m).cwiseMin(ddq_max_).cwiseMax(-ddq_max_);
+  rendering.twin.dq_a.setZero();
+  rendering.twin.ddq_a.setZero();
+  record.reference = reference;
+  record.twin = rendering.twin;
+  record.sync_error = 0.0;
+  state_.dq_p.setZero();
 }
 
 void Cycle::write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
                           CommandFrame& command, CycleRecord& record) noexcept {
-  const Mode mode = state_.supervisor.mode;
   command.sequence = sensors.sequence;
-  command.enable = is_enabled(mode);
+  command.enable = safety::is_powered(state_.supervisor.state);
   command.dq_p = state_.dq_p;
   const ReferenceState& reference = state_.rendering.reference;
   if (command.enable) {

@@ -4,6 +4,7 @@
 /// construction.
 #pragma once
 
+#include "hg/collision/guard.h"
 #include "hg/control/joint_control.h"
 #include "hg/core/stage_probe.h"
 #include "hg/estimation/estimation.h"
@@ -23,6 +24,7 @@ struct Config {
   rendering::Options rendering;
   control::Config control;
   safety::MonitorConfig monitor;
+  collision::Config collision;
 };
 
 /// All that a cycle remembers. Copy it to take a snapshot, assign it to go back. What is added here
@@ -35,8 +37,10 @@ struct State {
   rendering::State rendering;
   control::State control;
   prepositioning::TargetState gantry_target;
-  VectorP dq_p;              ///< gantry command of the last cycle
-  bool is_blocked = false;   ///< a device limit could not be met in the last cycle
+  collision::State collision;
+  VectorP dq_p;                ///< gantry command of the last cycle
+  bool is_blocked = false;     ///< a device limit could not be met in the last cycle
+  bool brakes_joints = false;  ///< the law gave no solution: each joint brakes by itself
   double force_share = 0.0;  ///< of the forces that act on the twin, 0..1: they come in with a ramp
 };
 
@@ -74,17 +78,21 @@ class Cycle {
   Fault check(const SensorFrame& sensors) noexcept;
   Refusal refusal_to_arm() const noexcept;
   void begin_anew() noexcept;
+  void look_ahead(CycleRecord& record) noexcept;
   void hold(CycleRecord& record) noexcept;
   void render(CycleRecord& record) noexcept;
+  void brake_joints(CycleRecord& record) noexcept;
   void write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
                      CommandFrame& command, CycleRecord& record) noexcept;
-  void stop_with(const Fault& fault) noexcept;
 
   Config config_;
+  VectorM ddq_max_;   ///< of the joints, with which they brake by themselves
+  int longest_stop_;  ///< cycles
   estimation::Estimation estimation_;
   rendering::Rendering rendering_;
   control::JointControl control_;
   prepositioning::GantryTarget gantry_target_;
+  collision::Guard guard_;
   State state_;
   StageProbe ended_;
 };

@@ -110,6 +110,25 @@ void mix(const estimation::State& state, Hash& hash) noexcept {
   mix(state.wrench.tare, hash);
 }
 
+void mix(const collision::State& state, Hash& hash) noexcept {
+  hash.mix(static_cast<std::uint64_t>(state.count));
+  hash.mix(state.q);
+  hash.mix(state.stop);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(state.count); ++i) {
+    hash.mix(state.left[i]);
+    hash.mix(state.allowed[i]);
+  }
+}
+
+void mix(const safety::SupervisorState& state, Hash& hash) noexcept {
+  hash.mix(static_cast<std::uint64_t>(state.state) |
+           static_cast<std::uint64_t>(state.last_request) << 8U |
+           static_cast<std::uint64_t>(state.stop) << 16U |
+           static_cast<std::uint64_t>(state.fault.code) << 32U |
+           static_cast<std::uint64_t>(state.also.code) << 48U);
+  hash.mix(static_cast<std::uint64_t>(state.stop_samples));
+}
+
 }  // namespace
 
 std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noexcept {
@@ -118,12 +137,11 @@ std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noe
   hash.mix(std::uint64_t{state.gantry_target.is_started});
   hash.mix(state.gantry_target.q);
   hash.mix(state.dq_p);
-  hash.mix(std::uint64_t{state.is_blocked});
+  hash.mix(std::uint64_t{state.is_blocked} | std::uint64_t{state.brakes_joints} << 1U);
   hash.mix(state.force_share);
   hash.mix(state.next_sequence);
-  hash.mix(static_cast<std::uint64_t>(state.supervisor.mode));
-  hash.mix(static_cast<std::uint64_t>(state.supervisor.last_request));
-  hash.mix(static_cast<std::uint64_t>(state.supervisor.fault.code));
+  mix(state.supervisor, hash);
+  mix(state.collision, hash);
   mix(state.estimation, hash);
   const control::State& control = state.control;
   hash.mix(std::uint64_t{control.is_started} | std::uint64_t{control.is_saturated} << 1U);

@@ -47,7 +47,6 @@ bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept
 
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
                     std::uint64_t expected_sequence) noexcept {
-  if (sensors.safety.emergency_stop) return make_fault(FaultCode::kEmergencyStop, -1, 1.0, 0.0);
   if (sensors.driver_fault != FaultCode::kNone) {
     return make_fault(sensors.driver_fault, -1, 0.0, 0.0);
   }
@@ -70,7 +69,7 @@ Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
   return {};
 }
 
-Fault check_reference(const MonitorConfig& config, const CycleRecord& record) noexcept {
+Fault check_solution(const CycleRecord& record) noexcept {
   if (record.solver_status != SolverStatus::kSolved) {
     return make_fault(FaultCode::kSolverFailed, -1, static_cast<double>(record.solver_status), 0.0);
   }
@@ -78,7 +77,11 @@ Fault check_reference(const MonitorConfig& config, const CycleRecord& record) no
   int index = first_not_finite(reference.ddq_m);
   if (index < 0) index = first_not_finite(record.twin.ddq_a);
   if (index >= 0) return make_fault(FaultCode::kReferenceNotFinite, index, NAN, 0.0);
+  return {};
+}
 
+Fault check_reference(const MonitorConfig& config, const CycleRecord& record) noexcept {
+  const ReferenceState& reference = record.reference;
   for (int i = 0; i < reference.q_m.size(); ++i) {
     const auto joint = static_cast<std::size_t>(i);
     const Interval range = config.joint_range[joint];

@@ -27,6 +27,7 @@ struct MonitorConfig {
   double gantry_speed_max = 1.5;           ///< m/s or rad/s
   std::vector<Interval> joint_range;       ///< of the manipulator joints
   std::vector<bool> is_slide;              ///< manipulator joints that are prismatic; empty = none
+  double stop_time = 1.0;                  ///< that a controlled stop may take, s
   int first_cartesian = 0;  ///< Cartesian limits in the catalogue: first and one past the last
   int end_cartesian = 0;
   std::vector<double> joint_speed_max;  ///< rad/s or m/s
@@ -43,6 +44,9 @@ bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept
 /// The first thing wrong with what was measured, or kNone.
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
                     std::uint64_t expected_sequence) noexcept;
+
+/// Whether the rendering gave a solution that may be integrated; the fault, or kNone.
+Fault check_solution(const CycleRecord& record) noexcept;
 
 /// The first thing wrong with the reference or the state behind it, or kNone.
 Fault check_reference(const MonitorConfig& config, const CycleRecord& record) noexcept;

@@ -1,24 +1,51 @@
-/// Operating states and what may follow what. Source: DESIGN.md section 8, [HANDBOOK] 6.5.
+/// Decides in which state the device is: first in the line of a cycle, and asked again whenever a
+/// rule is found broken. What may follow what stands in transitions.h.
+///
+/// Stops act on levels, starts on edges: no switch that is closed again starts anything. The cause
+/// of a stop is kept until its reset. No allocation, noexcept.
 #pragma once
 
+#include "hg/safety/rules.h"
+#include "hg/safety/transitions.h"
 #include "hg/signals/state.h"
 
 namespace hg::safety {
 
+/// Part of the copyable state of a cycle.
 struct SupervisorState {
-  Mode mode = Mode::kOff;
+  State state = State::kOff;
   ModeRequest last_request = ModeRequest::kNone;  ///< requests act on their edge
-  Fault fault;                                    ///< why the device stopped; kept until reset
+  Stop stop = Stop::kNone;                        ///< how it is being stopped, or was by a fault
+  Fault fault;           ///< why it is being stopped, or has stopped; kept until reset
+  Fault also;            ///< what made an end of a controlled stop before it was over
+  int stop_samples = 0;  ///< that the present stop has taken
+
+  Mode mode() const noexcept { return mode_of(state); }
 };
 
-/// Takes one request and the fault of this cycle, if any.
-///   off -> ready (first good sample) -> armed (arm) -> running (run, with the dead-man closed)
-///   armed -> ready (stop);  running -> stopping (stop, or the dead-man opens)
-///   any state -> fault (fault) -> ready (reset, once the cause is gone)
-void advance(SupervisorState& state, ModeRequest request, bool dead_man,
-             const Fault& fault) noexcept;
+/// What the supervisor looks at once per cycle.
+struct SupervisorInput {
+  ModeRequest request = ModeRequest::kNone;
+  bool is_held = false;             ///< somebody holds the handle
+  SafetyInputs safety;              ///< of the safety controller
+  Refusal to_arm = Refusal::kNone;  ///< what else forbids arming
+  Fault fault;                      ///< a broken rule; kNone: there is none
+  Stop reaction = Stop::kNone;      ///< of it, or of a worse one that is broken at once
+};
 
-/// stopping -> armed: the reference stands still.
-void has_stopped(SupervisorState& state) noexcept;
+/// Takes all that is new in this cycle. Returns why the request was not followed, or kNone.
+Refusal advance(const SupervisorInput& input, SupervisorState& state) noexcept;
+
+/// A rule is broken, with the reaction of its row, or `at_least` where that is harder.
+void break_rule(const Fault& fault, SupervisorState& state, Stop at_least = Stop::kNone) noexcept;
+
+/// One more sample of a stop: at its end when the device `is_at_rest`, and broken off with
+/// kStopTooSlow once it has taken longer than `longest_s`, which is `longest` samples. Nothing in
+/// other states.
+void go_on_stopping(bool is_at_rest, int longest, double longest_s,
+                    SupervisorState& state) noexcept;
+
+/// What the safety controller's inputs mean as a broken rule, in the state of `state`.
+Fault check_safety_inputs(const SafetyInputs& safety, const SupervisorState& state) noexcept;
 
 }  // namespace hg::safety

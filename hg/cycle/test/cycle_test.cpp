@@ -127,13 +127,42 @@ TEST(Cycle, AStopBringsEverythingToRestAgainstAPushingHand) {
   EXPECT_EQ(loop.command.q_m, q_m);
 }
 
+// in this very cycle: drives off, brakes closed
 void expect_safe_stop(Loop& loop, FaultCode code) {
   loop.step();
   EXPECT_EQ(loop.record.mode, Mode::kFault);
+  EXPECT_EQ(loop.record.stop, Stop::kSto);
   EXPECT_EQ(loop.record.fault.code, code);
   EXPECT_FALSE(loop.command.enable);
   EXPECT_TRUE(loop.command.dq_p.isZero());
   EXPECT_TRUE(loop.command.q_m.allFinite() && loop.command.dq_m.allFinite());
+}
+
+// braked first, under power all the time; returns the cycles that it took
+int expect_controlled_stop(Loop& loop, FaultCode code, Stop stop) {
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kStopping);
+  int cycles = 1;
+  for (; loop.record.mode == Mode::kStopping && cycles < 2000; ++cycles) {
+    EXPECT_TRUE(loop.command.enable);
+    EXPECT_EQ(loop.record.fault.code, code);
+    EXPECT_EQ(loop.record.stop, stop);
+    EXPECT_TRUE(loop.command.q_m.allFinite() && loop.command.ddq_m.allFinite());
+    loop.step();
+  }
+  EXPECT_EQ(loop.record.mode, Mode::kFault);
+  EXPECT_EQ(loop.record.fault.code, code);
+  EXPECT_EQ(loop.record.stop, stop);
+  EXPECT_FALSE(loop.command.enable);
+  return cycles;
+}
+
+void reset(Loop& loop) {
+  loop.operator_input.request = ModeRequest::kReset;
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kReady);
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kNone);
+  EXPECT_EQ(loop.record.stop, Stop::kNone);
 }
 
 TEST(Cycle, ANanInTheWrenchEndsInASafeCommandWithItsCause) {
@@ -175,14 +204,23 @@ TEST(Cycle, ALostSampleStopsTheDevice) {
 TEST(Cycle, AFaultLastsUntilItIsResetAndThenRunsAgain) {
   Loop loop;
   loop.start_running();
+  loop.sensors.w_S[0] = 5.0;
+  loop.run(300);
+  const double speed = loop.record.v_H.norm();
+  ASSERT_GT(speed, 0.1);
   loop.sensors.safety.emergency_stop = true;
-  expect_safe_stop(loop, FaultCode::kEmergencyStop);
+  const int cycles = expect_controlled_stop(loop, FaultCode::kEmergencyStop, Stop::kSs1);
+  EXPECT_GT(cycles, 100);
+  EXPECT_LT(cycles, 1000);
+  loop.operator_input.request = ModeRequest::kReset;
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kFault);
+  EXPECT_EQ(loop.record.refusal, Refusal::kCauseRemains);
+  loop.operator_input.request = ModeRequest::kNone;
   loop.sensors.safety.emergency_stop = false;
   loop.run(10);
   EXPECT_EQ(loop.record.mode, Mode::kFault);
-  loop.operator_input.request = ModeRequest::kReset;
-  loop.step();
-  EXPECT_EQ(loop.record.mode, Mode::kReady);
+  reset(loop);
   loop.start_running();
   EXPECT_EQ(loop.record.fault.code, FaultCode::kNone);
 }
@@ -309,7 +347,7 @@ TEST(Cycle, TheTwinMeetsTheHandleAgainAfterAFaultInMotion) {
   Loop loop;
   loop.start_running();
   loop.sensors.safety.emergency_stop = true;
-  loop.step();
+  expect_controlled_stop(loop, FaultCode::kEmergencyStop, Stop::kSs1);
   loop.sensors.safety.emergency_stop = false;
   loop.sensors.q_p[0] += 0.3;  // the gantry has coasted
   loop.operator_input.request = ModeRequest::kReset;
@@ -326,7 +364,7 @@ TEST(Cycle, HandleAndTwinApartIsAFault) {
   State state = loop.cycle->state();
   state.rendering.twin.q_a[0] += 0.03;
   loop.cycle->restore(state);
-  expect_safe_stop(loop, FaultCode::kSyncLost);
+  expect_controlled_stop(loop, FaultCode::kSyncLost, Stop::kSs2);
 }
 
 TEST(Cycle, ASnapshotContinuesBitForBit) {
