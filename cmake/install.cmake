@@ -3,7 +3,7 @@
 #
 # Everything but what only the program needs.
 set(HG_PACKAGE core signals model collision limits hqp estimation rendering prepositioning control safety
-  cycle user simulation device runtime evaluation config assembly)
+  cycle user simulation injection device runtime evaluation config assembly)
 # headers that only their own module includes; Eigen or YAML show in them
 set(HG_PRIVATE_HEADERS
   "/hqp/(cone|dense_least_squares|direct_elimination|elimination|primal|rows|sweep|workspace)[.]h$"

@@ -1,12 +1,12 @@
 #include "apps/hapticgiant/experiment_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/config/scenario.h"
@@ -16,14 +16,6 @@
 
 namespace hg::apps {
 namespace {
-
-// "12 of 180" in place, for those who watch
-experiments::Progress progress_of(const std::string& what) {
-  if (isatty(STDERR_FILENO) == 0) return {};
-  return [what](std::size_t done, std::size_t total) {
-    fmt::print(stderr, "{}: {} of {}{}", what, done, total, done < total ? " \r" : "\r\033[K");
-  };
-}
 
 config::Scenario walk_scenario() { return config::load_scenario(find_scenario("walk")); }
 

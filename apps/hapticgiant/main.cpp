@@ -11,7 +11,10 @@
 
 #include "apps/hapticgiant/bench_command.h"
 #include "apps/hapticgiant/check_command.h"
+#include "apps/hapticgiant/doctor_command.h"
 #include "apps/hapticgiant/experiment_command.h"
+#include "apps/hapticgiant/explain_command.h"
+#include "apps/hapticgiant/faults_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/new_command.h"
@@ -120,12 +123,42 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       ->capture_default_str();
   command->add_flag("!--no-recording", run.has_recording, "without a recording");
   command
+      ->add_option("--flight-recorder", run.flight_recorder,
+                   "when the last 10 s are written to a file of their own: fault, always or off")
+      ->check(CLI::IsMember({"fault", "always", "off"}))
+      ->capture_default_str();
+  command
       ->add_option(
           "--slow-solve", run.slow_solve,
           "keep problems of the solver that take this many active sets, beside the recording")
       ->check(at_least(1))
       ->capture_default_str();
+  command
+      ->add_option("--priority", run.priority,
+                   "SCHED_FIFO priority of the control thread, 1..99; 0: an ordinary thread")
+      ->check(number_that("from 0 to 99", [](double v) { return v >= 0.0 && v <= 99.0; }))
+      ->capture_default_str();
+  command->add_option("--cpu", run.cpu, "the only processor of the control thread; default: any")
+      ->check(at_least(0));
   command->callback([&run, &exit_code] { exit_code = hg::apps::run(run); });
+}
+
+void add_doctor(CLI::App& app, hg::apps::DoctorArguments& doctor, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "doctor", "How ready this computer is for a control loop, and what to change.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant doctor                       a quarter of a minute\n"
+      "  hapticgiant doctor --seconds 600 --cpu 3 --json doctor.json");
+  command->add_option("--seconds", doctor.seconds, "of each of the four measurements")
+      ->check(number_that("from 0.1 to 100000", [](double v) { return v >= 0.1 && v <= 1e5; }))
+      ->capture_default_str();
+  command->add_option("--priority", doctor.priority, "as in run")
+      ->check(number_that("from 1 to 99", [](double v) { return v >= 1.0 && v <= 99.0; }))
+      ->capture_default_str();
+  command->add_option("--cpu", doctor.cpu, "as in run")->check(at_least(0));
+  command->add_option("--json", doctor.json, "write everything as JSON to this file");
+  command->callback([&doctor, &exit_code] { exit_code = hg::apps::doctor(doctor); });
 }
 
 void add_replay(CLI::App& app, hg::apps::ReplayArguments& replay, int& exit_code) {
@@ -147,6 +180,16 @@ void add_replay(CLI::App& app, hg::apps::ReplayArguments& replay, int& exit_code
   command->add_option("--port", replay.port, "as in run");
   command->add_flag("!--no-browser", replay.opens_browser, "as in run");
   command->callback([&replay, &exit_code] { exit_code = hg::apps::replay(replay); });
+}
+
+void add_explain(CLI::App& app, std::string& file, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("explain", "Tells in words what happened in a recording, in order.");
+  command->footer("Example:\n  hapticgiant explain recordings/latest.mcap");
+  command->add_option("file", file, "recording, also one that a crash has cut off")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->callback([&file, &exit_code] { exit_code = hg::apps::explain_recording(file); });
 }
 
 void add_simulate(CLI::App& app, hg::apps::SimulateArguments& simulate, int& exit_code) {
@@ -295,6 +338,22 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments, int
       hg::apps::experiment_impedance);
 }
 
+void add_faults(CLI::App& app, hg::apps::FaultsArguments& arguments, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "faults", "Breaks the simulated machine on purpose, hundreds of times (docs/safety.md).");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant faults\n"
+      "  hapticgiant faults --cases 60 --seed 7 --scenario door --json faults.json");
+  const auto is_count = [](double value) { return value >= 1 && value == std::floor(value); };
+  command->add_option("--cases", arguments.campaign.cases, "number of runs")
+      ->check(number_that("a whole number, at least 1", is_count));
+  command->add_option("--seed", arguments.campaign.seed, "of scenarios, times and sizes");
+  command->add_option("--scenario", arguments.scenarios, "scenarios with a script");
+  command->add_option("--json", arguments.json, "write all cases as JSON to this file");
+  command->callback([&arguments, &exit_code] { exit_code = hg::apps::faults(arguments); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -306,7 +365,9 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   hg::apps::RunArguments run;
   run.program = argv[0];
+  hg::apps::DoctorArguments examined;
   hg::apps::ReplayArguments replayed;
+  std::string explained;
   hg::apps::SimulateArguments simulate;
   hg::apps::CheckArguments check;
   hg::apps::NewArguments created;
@@ -314,8 +375,11 @@ int main(int argc, char** argv) {
   hg::apps::IdentifyArguments identified;
   hg::apps::ExperimentArguments measured;
   hg::apps::BenchArguments compared;
+  hg::apps::FaultsArguments broken;
   add_run(app, run, exit_code);
+  add_doctor(app, examined, exit_code);
   add_replay(app, replayed, exit_code);
+  add_explain(app, explained, exit_code);
   add_simulate(app, simulate, exit_code);
   add_check(app, check, exit_code);
   add_new(app, created, exit_code);
@@ -323,6 +387,7 @@ int main(int argc, char** argv) {
   add_identify(app, identified, exit_code);
   add_experiment(app, measured, exit_code);
   add_bench(app, compared, exit_code);
+  add_faults(app, broken, exit_code);
 
   try {
     app.parse(argc, argv);

@@ -194,7 +194,8 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
                        .prepositioning = device.prepositioning,
                        .rendering = device.rendering,
                        .control = checked_control(device),
-                       .monitor = device.monitor},
+                       .monitor = device.monitor,
+                       .collision = device.collision},
                       device.model, scenario.twin.model);
 }
 
@@ -218,7 +219,7 @@ simulation::Simulation make_unheld_simulation(const config::Device& device, cons
 }
 
 device::SimulatedDevice make_simulated_device(const config::Scenario& scenario) {
-  return device::SimulatedDevice(make_simulation(scenario));
+  return device::SimulatedDevice(make_simulation(scenario), injection::Injector(scenario.faults));
 }
 
 evaluation::Summary make_summary(const config::Scenario& scenario) {

@@ -1,6 +1,7 @@
 #include "hg/config/reference_page.h"
 
 #include "hg/config/describe_changes.h"
+#include "hg/config/describe_injections.h"
 #include "hg/config/describe_control.h"
 #include "hg/config/describe_device.h"
 #include "hg/config/describe_device_behaviour.h"
@@ -101,6 +102,8 @@ std::string scenario_table() {
   ChangesDraft changes;
   changes.joints.emplace_back();  // stands for every joint
   describe_changes(writer, changes);
+  InjectionsDraft injections = injections_of({}, {});
+  describe_injections(writer, injections);
   return writer.table();
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hg/config/describe_changes.h"
+#include "hg/config/describe_injections.h"
 #include "hg/config/describe_scenario.h"
 #include "hg/config/loader.h"
 #include "hg/core/error.h"
@@ -48,6 +49,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   ScenarioDraft draft;
   ChangesDraft changes;
+  InjectionsDraft injections;
   std::optional<Device> device;
   std::optional<Twin> twin;
   std::optional<Script> script = Script{};
@@ -70,6 +72,8 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
     describe_events(loader, draft);
     changes = changes_of(twin->model);
     describe_changes(loader, changes);
+    injections = injections_of(draft.names.manipulator, draft.names.gantry);
+    describe_injections(loader, injections);
   });
 
   return {.title = draft.title,
@@ -82,6 +86,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
           .limits = std::move(catalogue),
           .events = std::move(draft.events),
           .changes = std::move(changes.changes),
+          .faults = std::move(injections.injections),
           .sources = reader.texts(),
           .places = std::move(file.places)};
 }

@@ -11,6 +11,7 @@
 #include "hg/config/sources.h"
 #include "hg/config/twin.h"
 #include "hg/evaluation/events.h"
+#include "hg/injection/injection.h"
 #include "hg/signals/limit.h"
 #include "hg/signals/timed_changes.h"
 #include "hg/user/person.h"
@@ -28,6 +29,7 @@ struct Scenario {
   LimitCatalogue limits;
   std::vector<evaluation::EventRule> events;  ///< expected, in this order
   std::vector<TimedChange> changes;           ///< of the twin, in the order of their times
+  std::vector<injection::Injection> faults;   ///< on purpose
   std::vector<SourceText> sources;            ///< of all files, the scenario first
   Places places;                              ///< of the keys of the YAML file
 };

@@ -1,24 +1,36 @@
-/// The simulation behind the device boundary.
+/// The simulation behind the device boundary, and faults on purpose between the two.
 #pragma once
 
 #include <utility>
 
 #include "hg/device/device.h"
+#include "hg/injection/injector.h"
 #include "hg/simulation/simulation.h"
 
 namespace hg::device {
 
 class SimulatedDevice final : public Device {
  public:
-  explicit SimulatedDevice(simulation::Simulation simulation)
-      : simulation_(std::move(simulation)) {}
+  explicit SimulatedDevice(simulation::Simulation simulation, injection::Injector injector = {})
+      : simulation_(std::move(simulation)), injector_(std::move(injector)) {}
 
-  void read(SensorFrame& sensors) noexcept override { sensors = simulation_.sensors(); }
-  void write(const CommandFrame& command) noexcept override { simulation_.step(command); }
+  void read(SensorFrame& sensors) noexcept override {
+    sensors = simulation_.sensors();
+    injector_.spoil(sensors);
+  }
+  void write(const CommandFrame& command) noexcept override {
+    arrived_ = command;
+    injector_.spoil(arrived_);
+    simulation_.step(arrived_);
+  }
   const Truth* truth() const noexcept override { return &simulation_.truth(); }
+  /// For OperatorFrame::late_cycles of the sample that was read last: injected ones.
+  std::uint32_t late_cycles() const noexcept { return injector_.late_cycles(); }
 
  private:
   simulation::Simulation simulation_;
+  injection::Injector injector_;  ///< faults on purpose
+  CommandFrame arrived_;
 };
 
 }  // namespace hg::device

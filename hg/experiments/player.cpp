@@ -14,6 +14,7 @@ Player::Player(const config::Scenario& scenario)
 
 void Player::begin() {
   device_.read(sample_->sensors);
+  sample_->operator_input.late_cycles = device_.late_cycles();
   sample_->operator_input.change =
       changes_.due(static_cast<double>(played_++) / scenario_.device.rate_Hz);
 }

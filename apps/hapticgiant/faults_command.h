@@ -1,0 +1,21 @@
+/// `hapticgiant faults`: faults on purpose in many simulated runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hg/experiments/fault_campaign.h"
+
+namespace hg::apps {
+
+struct FaultsArguments {
+  std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
+  experiments::CampaignConfig campaign;
+  std::string json;  ///< file for all cases; empty = none
+};
+
+/// Prints a table. Returns the exit code: 1 when a fault was unnoticed or went beyond the bounds;
+/// bad input is thrown as SetupError.
+int faults(const FaultsArguments& arguments);
+
+}  // namespace hg::apps

@@ -1,0 +1,83 @@
+/// Description of scenario.yaml, third part: faults on purpose.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "hg/config/range.h"
+#include "hg/injection/injection.h"
+
+namespace hg::config {
+
+/// What stands in the list `faults`.
+struct InjectionsDraft {
+  std::vector<std::string> manipulator, gantry;  ///< joints by name
+  std::vector<std::string> names;                ///< all that a fault may concern
+  std::vector<std::string> kinds;
+  std::vector<injection::Injection> injections;
+};
+
+/// Without faults yet.
+inline InjectionsDraft injections_of(const std::vector<std::string>& manipulator,
+                                     const std::vector<std::string>& gantry) {
+  InjectionsDraft draft = {.manipulator = manipulator, .gantry = gantry};
+  for (const auto* joints : {&manipulator, &gantry}) {
+    draft.names.insert(draft.names.end(), joints->begin(), joints->end());
+  }
+  for (const char* name : {"x", "y", "z", "torque x", "torque y", "torque z"}) {
+    draft.names.emplace_back(name);
+  }
+  for (const injection::Kind& kind : injection::kinds()) draft.kinds.emplace_back(kind.name);
+  return draft;
+}
+
+/// Index of what `name` (in InjectionsDraft::names) is among the parts of `kind`; -1 = none of
+/// them.
+inline int part_index(const InjectionsDraft& d, const injection::Kind& kind, int name) {
+  const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());
+  const int count = injection::parts_of(kind.part, n_m, n_p);
+  int first = n_m + n_p;  // components
+  if (kind.part == injection::Part::kGantryEncoder) first = n_m;
+  if (kind.part == injection::Part::kGantryDrive) first = n_m;
+  const bool is_component = kind.part == injection::Part::kForceSensor ||
+                            kind.part == injection::Part::kAccelerometer ||
+                            kind.part == injection::Part::kGyroscope;
+  if (first == n_m + n_p && !is_component) first = 0;
+  return name >= first && name < first + count ? name - first : -1;
+}
+
+template <class V>
+void describe(V& v, InjectionsDraft& d) {
+  injection::Injection& fault = d.injections.emplace_back();
+  int kind = 0, name = -1;
+  double magnitude = kNoDefault;
+  v.number("at_s", fault.from_s, kNotNegative, "when the fault begins, on the device's clock",
+           Need::kRequired);
+  v.number("for_s", fault.for_s, kNotNegative, "how long it lasts; 0: until the end");
+  v.name("fault", kind, d.kinds, "a fault", "what goes wrong, see the table in docs/safety.md",
+         Need::kRequired);
+  v.name("of", name, d.names, "a joint or a component",
+         "a joint, or x, y, z, torque x, torque y, torque z of the sensor at the handle");
+  v.number("magnitude", magnitude, kAnyNumber, "in the unit of the fault");
+
+  fault.kind = &injection::kinds()[static_cast<std::size_t>(kind)];
+  const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());
+  const bool has_parts = injection::parts_of(fault.kind->part, n_m, n_p) > 0;
+  if (has_parts) fault.index = part_index(d, *fault.kind, name);
+  v.rule(!has_parts || fault.index >= 0, "of", "this fault needs one of its joints or components");
+  v.rule(has_parts || name < 0, "of", "this fault concerns no single joint or component");
+  const bool has_magnitude = !fault.kind->unit.empty();
+  v.rule(has_magnitude == !std::isnan(magnitude), "magnitude",
+         has_magnitude ? "this fault needs a magnitude" : "this fault has no magnitude");
+  if (has_magnitude) fault.magnitude = magnitude;
+}
+
+template <class V>
+void describe_injections(V& v, InjectionsDraft& d) {
+  v.list(
+      "faults", [&](auto& child) { describe(child, d); },
+      "faults on purpose, which only a simulated device plays");
+}
+
+}  // namespace hg::config

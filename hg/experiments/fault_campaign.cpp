@@ -1,0 +1,324 @@
+#include "hg/experiments/fault_campaign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "hg/assembly/assembly.h"
+#include "hg/experiments/player.h"
+#include "hg/rendering/catalogue.h"
+
+namespace hg::experiments {
+namespace {
+
+constexpr double kStandstill = 0.02;  // rad/s and m/s, of the truth
+constexpr double kSettling = 1.0;     // s after the grasp: no fault before
+constexpr double kLatest = 8.0;       // s: later faults would tell nothing new
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+
+// Worst of all limits of the device, from the truth.
+class TrueLimits {
+ public:
+  explicit TrueLimits(const config::Scenario& scenario)
+      : device_(scenario.device.model), limits_(scenario.limits) {}
+
+  double excess(const Truth& truth) {
+    rendering::limit_positions(device_, truth.q_p, truth.q_m, positions_);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+      const Interval& range = limits_[i].range;
+      const double nearest = std::clamp(positions_[i], range.lb, range.ub);
+      worst = std::max(worst, std::abs(positions_[i] - nearest));
+    }
+    return worst;
+  }
+
+ private:
+  rendering::DeviceModel device_;
+  LimitCatalogue limits_;
+  std::vector<double> positions_;
+};
+
+bool stands_still(const Truth& truth) {
+  const double gantry = truth.dq_p.size() > 0 ? truth.dq_p.lpNorm<Eigen::Infinity>() : 0.0;
+  return truth.dq_m.lpNorm<Eigen::Infinity>() < kStandstill && gantry < kStandstill;
+}
+
+// Whether the machine no longer does what was asked for.
+bool has_reacted(const CycleRecord& record) {
+  return record.fault.code != FaultCode::kNone || record.mode == Mode::kStopping ||
+         record.mode == Mode::kReady || record.mode == Mode::kFault;
+}
+
+// Peaks of the person's force in a run without faults, one per tenth of a second.
+class CleanRun {
+ public:
+  explicit CleanRun(const config::Scenario& scenario) {
+    Player player(scenario);
+    for (bool goes_on = true; goes_on; goes_on = player.end()) {
+      player.begin();
+      player.run();
+      const auto slot = static_cast<std::size_t>(player.record().time_s / kSlot);
+      peaks_.resize(std::max(peaks_.size(), slot + 1), 0.0);
+      peaks_[slot] = std::max(peaks_[slot], player.truth().w_H.head<3>().norm());
+    }
+  }
+
+  double peak(double from_s, double to_s) const {
+    double peak = 0.0;
+    for (std::size_t i = 0; i < peaks_.size(); ++i) {
+      const double time_s = static_cast<double>(i) * kSlot;
+      if (time_s >= from_s - kSlot && time_s < to_s) peak = std::max(peak, peaks_[i]);
+    }
+    return peak;
+  }
+
+ private:
+  static constexpr double kSlot = 0.1;
+  std::vector<double> peaks_;
+};
+
+injection::Injection draw(const injection::Kind& kind, const config::Scenario& scenario,
+                          std::mt19937_64& random) {
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  injection::Injection drawn = {.kind = &kind};
+  const rendering::DeviceModel& device = scenario.device.model;
+  const int parts = injection::parts_of(kind.part, device.n_m, device.n_p);
+  if (parts > 0) drawn.index = std::uniform_int_distribution<int>(0, parts - 1)(random);
+  if (!kind.unit.empty()) {
+    drawn.magnitude = std::exp(uniform(std::log(kind.magnitude.lb), std::log(kind.magnitude.ub)));
+    if (kind.has_sign && uniform(-1.0, 1.0) < 0.0) drawn.magnitude *= -1.0;
+    const bool is_count =
+        kind.effect == injection::Effect::kLost || kind.effect == injection::Effect::kLate ||
+        kind.part == injection::Part::kBus || kind.part == injection::Part::kCycles;
+    if (is_count) drawn.magnitude = std::round(drawn.magnitude);
+    const bool is_torque = kind.part == injection::Part::kForceSensor && drawn.index >= 3;
+    if (is_torque) drawn.magnitude *= 0.1;
+  }
+  const double grasp_s = scenario.script.script.grasp_s;
+  const double last_s = assembly::planned_duration_s(scenario) - 1.0;
+  drawn.from_s = uniform(grasp_s + kSettling, std::min(last_s, grasp_s + kLatest));
+  return drawn;
+}
+
+}  // namespace
+
+FaultCase play_fault(const config::Scenario& scenario, const injection::Injection& injection,
+                     const CampaignConfig& config, double clean_force) {
+  FaultCase result = {.injection = injection};
+  config::Scenario played = scenario;
+  played.faults = {injection};
+  Player player(played);
+  TrueLimits limits(scenario);
+  const double end_s = injection.from_s + config.watched_s;
+  double noticed_at_s = kNever;
+  std::uint64_t cycle = 0;
+  result.stopped_s = kNever;
+  for (bool goes_on = true; goes_on;) {
+    player.begin();
+    player.run();
+    const CycleRecord& record = player.record();
+    const Truth truth = player.truth();
+    player.end();
+    goes_on = record.time_s < end_s;
+    result.is_complete = result.is_complete && record.cycle == cycle++;
+    if (record.time_s < injection.from_s) continue;
+
+    result.peak_force = std::max(result.peak_force, truth.w_H.head<3>().norm());
+    result.worst_excess = std::max(result.worst_excess, limits.excess(truth));
+    if (record.mode == Mode::kRunning) {
+      const double distance = (truth.T_B_H.p - record.T_B_E.p).norm();
+      result.worst_distance = std::max(result.worst_distance, distance);
+    }
+    if (std::isnan(noticed_at_s) && has_reacted(record)) {
+      noticed_at_s = record.time_s;
+      result.outcome = Outcome::kNoticed;
+      result.noticed_s = record.time_s - injection.from_s;
+      result.fault = record.fault.code;
+    }
+    result.stop = std::max(result.stop, record.stop);
+    if (std::isnan(noticed_at_s) || !stands_still(truth)) {
+      result.stopped_s = kNever;
+    } else if (std::isnan(result.stopped_s)) {
+      result.stopped_s = record.time_s - noticed_at_s;
+    }
+  }
+  const bool is_worse = result.worst_excess > config.harmless_excess ||
+                        result.peak_force > clean_force + config.harmless_force ||
+                        result.worst_distance > config.harmless_distance;
+  if (result.outcome != Outcome::kNoticed && is_worse) result.outcome = Outcome::kUnnoticed;
+  return result;
+}
+
+Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const CampaignConfig& config,
+                      const Progress& progress) {
+  Campaign campaign = {.config = config};
+  for (const config::Scenario& scenario : scenarios) campaign.scenarios.push_back(scenario.title);
+  std::vector<std::unique_ptr<CleanRun>> clean(scenarios.size());
+  do_all(scenarios.size(),
+         [&](std::size_t i) { clean[i] = std::make_unique<CleanRun>(scenarios[i]); }, {});
+
+  campaign.cases.resize(static_cast<std::size_t>(config.cases));
+  const auto kinds = injection::kinds();
+  do_all(
+      campaign.cases.size(),
+      [&](std::size_t i) {
+        std::mt19937_64 random(config.seed * 1'000'003 + i);
+        const std::size_t which = random() % scenarios.size();
+        const injection::Injection injection =
+            draw(kinds[i % kinds.size()], scenarios[which], random);
+        const double clean_force =
+            clean[which]->peak(injection.from_s, injection.from_s + config.watched_s);
+        campaign.cases[i] = play_fault(scenarios[which], injection, config, clean_force);
+        campaign.cases[i].scenario = which;
+      },
+      progress);
+  return campaign;
+}
+
+namespace {
+
+bool is_within_bounds(const CampaignConfig& config, const FaultCase& result) {
+  return result.worst_excess <= config.excess_bound && result.peak_force <= config.force_bound &&
+         result.is_complete;
+}
+
+bool is_good(const CampaignConfig& config, const FaultCase& result) {
+  return result.outcome != Outcome::kUnnoticed && is_within_bounds(config, result);
+}
+
+std::string_view to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kNoticed:
+      return "noticed";
+    case Outcome::kHarmless:
+      return "harmless";
+    case Outcome::kUnnoticed:
+      return "unnoticed";
+  }
+  return "unknown";
+}
+
+std::string case_text(const Campaign& campaign, std::size_t index) {
+  const FaultCase& result = campaign.cases[index];
+  const injection::Injection& injection = result.injection;
+  return fmt::format(
+      "case {}: {} of {} by {:.4g} {} at {:.3f} s in {}: {}, {:.0f} N, {:.3f} outside, {:.3f} m\n",
+      index, injection.kind->name, injection.index, injection.magnitude, injection.kind->unit,
+      injection.from_s, campaign.scenarios[result.scenario], to_string(result.outcome),
+      result.peak_force, result.worst_excess, result.worst_distance);
+}
+
+// What became of all cases of one kind.
+struct Row {
+  int cases = 0, noticed = 0, harmless = 0, unnoticed = 0;
+  std::vector<double> noticed_ms, stopped_ms;
+  std::map<FaultCode, int> faults;
+  std::map<Stop, int> stops;
+  double peak_force = 0.0, worst_excess = 0.0;
+};
+
+Row row_of(const Campaign& campaign, const injection::Kind& kind) {
+  Row row;
+  for (const FaultCase& result : campaign.cases) {
+    if (result.injection.kind != &kind) continue;
+    ++row.cases;
+    row.peak_force = std::max(row.peak_force, result.peak_force);
+    row.worst_excess = std::max(row.worst_excess, result.worst_excess);
+    if (result.outcome == Outcome::kHarmless) ++row.harmless;
+    if (result.outcome == Outcome::kUnnoticed) ++row.unnoticed;
+    if (result.outcome != Outcome::kNoticed) continue;
+    ++row.noticed;
+    ++row.faults[result.fault];
+    ++row.stops[result.stop];
+    row.noticed_ms.push_back(1e3 * result.noticed_s);
+    if (!std::isnan(result.stopped_s)) row.stopped_ms.push_back(1e3 * result.stopped_s);
+  }
+  std::ranges::sort(row.noticed_ms);
+  std::ranges::sort(row.stopped_ms);
+  return row;
+}
+
+template <typename Key>
+Key most_frequent(const std::map<Key, int>& counts) {
+  const auto most =
+      std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+  return most == counts.end() ? Key{} : most->first;
+}
+
+std::string range_text(const std::vector<double>& sorted) {
+  if (sorted.empty()) return "-";
+  return fmt::format("{:.0f} / {:.0f}", sorted[sorted.size() / 2], sorted.back());
+}
+
+}  // namespace
+
+bool is_passed(const Campaign& campaign) {
+  return std::ranges::all_of(
+      campaign.cases, [&](const FaultCase& result) { return is_good(campaign.config, result); });
+}
+
+std::string to_text(const Campaign& campaign) {
+  std::string text =
+      fmt::format("{:24} {:>5} {:>7} {:>8} {:>9}  {:>14} {:>14}  {:>5} {:>6} {:>8}  {}\n", "fault",
+                  "cases", "noticed", "harmless", "unnoticed", "noticed ms", "at rest ms", "stop",
+                  "N", "outside", "most often");
+  for (const injection::Kind& kind : injection::kinds()) {
+    const Row row = row_of(campaign, kind);
+    if (row.cases == 0) continue;
+    const FaultCode fault = most_frequent(row.faults);
+    text += fmt::format(
+        "{:24} {:>5} {:>7} {:>8} {:>9}  {:>14} {:>14}  {:>5} {:>6.0f} {:>8.4f}  {}\n", kind.name,
+        row.cases, row.noticed, row.harmless, row.unnoticed, range_text(row.noticed_ms),
+        range_text(row.stopped_ms), hg::to_string(most_frequent(row.stops)), row.peak_force,
+        row.worst_excess,
+        row.noticed == 0 ? ""
+                         : fmt::format("{} {}", static_cast<int>(fault), hg::to_string(fault)));
+  }
+  text +=
+      "\nnoticed and at rest: median / longest, in ms after the fault began and after it was "
+      "noticed; N: largest force of the person;\noutside: furthest true position outside a "
+      "limit of the device, rad or m\n\n";
+  std::size_t bad = 0;
+  for (std::size_t i = 0; i < campaign.cases.size(); ++i) {
+    if (is_good(campaign.config, campaign.cases[i])) continue;
+    text += case_text(campaign, i);
+    ++bad;
+  }
+  text +=
+      fmt::format("{} of {} faults unnoticed or beyond {:g} rad or m outside, {:g} N\n", bad,
+                  campaign.cases.size(), campaign.config.excess_bound, campaign.config.force_bound);
+  return text;
+}
+
+nlohmann::ordered_json to_json(const Campaign& campaign) {
+  nlohmann::ordered_json json = {{"seed", campaign.config.seed}, {"passed", is_passed(campaign)}};
+  for (const FaultCase& result : campaign.cases) {
+    const injection::Injection& injection = result.injection;
+    nlohmann::ordered_json entry = {{"scenario", campaign.scenarios[result.scenario]},
+                                    {"fault", injection.kind->name},
+                                    {"index", injection.index},
+                                    {"magnitude", injection.magnitude},
+                                    {"at_s", injection.from_s},
+                                    {"outcome", to_string(result.outcome)}};
+    if (result.outcome == Outcome::kNoticed) {
+      entry["code"] = static_cast<int>(result.fault);
+      entry["stop"] = hg::to_string(result.stop);
+      entry["noticed_s"] = result.noticed_s;
+      if (!std::isnan(result.stopped_s)) entry["at_rest_after_s"] = result.stopped_s;
+    }
+    entry["peak_force_N"] = result.peak_force;
+    entry["worst_excess"] = result.worst_excess;
+    entry["worst_distance_m"] = result.worst_distance;
+    json["cases"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+}  // namespace hg::experiments

@@ -1,0 +1,71 @@
+/// Faults on purpose in many runs: is each one noticed, how soon, what does the machine do, and
+/// what does the person at the handle get to feel. Source: [HANDBOOK] 6.2.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "hg/config/scenario.h"
+#include "hg/experiments/workers.h"
+#include "hg/injection/injection.h"
+
+namespace hg::experiments {
+
+struct CampaignConfig {
+  int cases = 530;
+  std::uint64_t seed = 1;
+  double watched_s = 2.0;  ///< after a fault begins
+  /// A run without a reaction is harmless while the truth stays within these.
+  double harmless_excess = 0.01;    ///< outside any limit of the device, rad or m
+  double harmless_force = 30.0;     ///< more than without the fault, N
+  double harmless_distance = 0.02;  ///< of true handle and twin, m
+  /// No run, with or without a reaction, may go beyond these.
+  double excess_bound = 0.10;  ///< outside any limit of the device, rad or m
+  double force_bound = 280.0;  ///< on the person; twice what a hand bears at rest, N
+};
+
+enum class Outcome : std::uint8_t {
+  kNoticed = 0,    ///< the device stopped
+  kHarmless = 1,   ///< it went on, and nothing became worse
+  kUnnoticed = 2,  ///< it went on, and something became worse
+};
+
+/// What became of one fault.
+struct FaultCase {
+  std::size_t scenario = 0;  ///< index
+  injection::Injection injection;
+  Outcome outcome = Outcome::kHarmless;
+  FaultCode fault = FaultCode::kNone;  ///< that was noticed; a released switch is none
+  Stop stop = Stop::kNone;
+  double noticed_s = 0.0;   ///< after it began
+  double stopped_s = 0.0;   ///< after it was noticed, until the truth stood still; NaN: it did not
+  double peak_force = 0.0;  ///< of the person, true, from the begin of the fault on, N
+  double worst_excess = 0.0;    ///< true, outside any limit of the device, rad or m
+  double worst_distance = 0.0;  ///< of true handle and twin while running, m
+  bool is_complete = true;      ///< the records have every cycle, in order, once
+};
+
+struct Campaign {
+  CampaignConfig config;
+  std::vector<std::string> scenarios;
+  std::vector<FaultCase> cases;
+};
+
+/// One run. `scenario` has a script; `clean_force` is the person's peak without the fault.
+FaultCase play_fault(const config::Scenario& scenario, const injection::Injection& injection,
+                     const CampaignConfig& config, double clean_force);
+
+/// All kinds in turn, in random scenarios, at random times, of random sizes; on all cores. The
+/// scenarios are played on their own simulated machines.
+Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const CampaignConfig& config,
+                      const Progress& progress);
+
+/// Whether no fault was unnoticed and no bound exceeded.
+bool is_passed(const Campaign& campaign);
+/// A row per kind of fault, and what went wrong.
+std::string to_text(const Campaign& campaign);
+nlohmann::ordered_json to_json(const Campaign& campaign);
+
+}  // namespace hg::experiments

@@ -1,0 +1,82 @@
+/// Faults on purpose: what of a machine, its link and its computer may go wrong, as data.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "hg/core/interval.h"
+
+namespace hg::injection {
+
+/// What is spoilt.
+enum class Part : std::uint8_t {
+  kLinkEncoder,
+  kLinkSpeed,
+  kMotorEncoder,
+  kTorqueSensor,
+  kGantryEncoder,
+  kForceSensor,
+  kAccelerometer,
+  kGyroscope,
+  kTemperature,
+  kDeadMan,
+  kEmergencyStop,
+  kOperatorEnable,
+  kSafetyChannels,
+  kClock,
+  kSamples,
+  kBus,
+  kDrive,
+  kAnswers,
+  kMotor,
+  kGantryDrive,
+  kPower,
+  kCommands,
+  kCycles,
+};
+
+/// What becomes of it.
+enum class Effect : std::uint8_t {
+  kNotFinite,  ///< NaN
+  kFrozen,     ///< as it was when the fault began
+  kZero,
+  kOffset,   ///< plus the magnitude
+  kDrift,    ///< plus the magnitude for each second
+  kFactor,   ///< times the magnitude
+  kSet,      ///< is the magnitude
+  kRaised,   ///< a truth value: true
+  kDropped,  ///< a truth value: false
+  kLost,     ///< so many do not arrive
+  kLate,     ///< arrives so many periods later
+};
+
+/// One thing that can go wrong.
+struct Kind {
+  std::string_view name;  ///< as in scenario.yaml
+  std::string_view what;  ///< one line for people
+  Part part;
+  Effect effect;
+  Interval magnitude{};   ///< from the least that is worth trying to the largest
+  std::string_view unit;  ///< of the magnitude; of a force sensor: of its forces, a tenth as torque
+  bool has_sign = false;  ///< the magnitude may be negative, too
+};
+
+/// All of them.
+std::span<const Kind> kinds() noexcept;
+/// Null: there is no such kind.
+const Kind* find_kind(std::string_view name) noexcept;
+/// Joint, axis or component that is spoilt; 0 = it has no parts.
+int parts_of(Part part, int n_m, int n_p) noexcept;
+
+/// One fault of a run.
+struct Injection {
+  const Kind* kind = nullptr;
+  int index = 0;           ///< joint, axis or component, from 0
+  double magnitude = 0.0;  ///< in the unit of its kind
+  double from_s = 0.0;     ///< on the device's clock since its first sample
+  double for_s = 0.0;      ///< 0 = until the end
+};
+
+}  // namespace hg::injection

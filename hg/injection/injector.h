@@ -1,0 +1,56 @@
+/// Puts faults between a device and whoever controls it. No allocation after construction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "hg/injection/injection.h"
+#include "hg/signals/frames.h"
+
+namespace hg::injection {
+
+class Injector {
+ public:
+  static constexpr int kMostLate = 16;  ///< periods that a command may be late
+
+  Injector() = default;
+  /// Throws SetupError for a command that is later than kMostLate.
+  explicit Injector(const std::vector<Injection>& injections);
+
+  /// Makes of this sample what arrives. Once a period, before spoil() of the command.
+  void spoil(SensorFrame& sensors) noexcept;
+  /// Makes of this command what arrives.
+  void spoil(CommandFrame& command) noexcept;
+  /// For OperatorFrame::late_cycles of the sample that was spoilt last.
+  std::uint32_t late_cycles() const noexcept { return late_cycles_; }
+
+ private:
+  /// One fault, and what it holds on to.
+  struct Fault {
+    Injection injection;
+    bool has_begun = false;
+    std::uint32_t periods = 0;  ///< that it has lasted
+    double held = 0.0;          ///< value of its component when it began
+    SensorFrame sensors;        ///< when it began
+    CommandFrame command;       ///< when it began
+  };
+
+  bool is_active(const Fault& fault) const noexcept;
+  double spoilt(const Fault& fault, double value) const noexcept;
+  template <typename Vector>
+  void spoil_component(Fault& fault, Vector& v) const noexcept;
+  void spoil_sensors(Fault& fault, SensorFrame& sensors) noexcept;
+  void spoil_inputs(const Fault& fault, SensorFrame& sensors) const noexcept;
+  void spoil_samples(const Fault& fault, SensorFrame& sensors) const noexcept;
+  void spoil_command(Fault& fault, CommandFrame& command) const noexcept;
+
+  std::vector<Fault> faults_;
+  std::array<CommandFrame, kMostLate + 1> past_;  ///< a ring of commands, the newest at newest_
+  std::size_t newest_ = 0;
+  double start_s_ = 0.0, now_s_ = 0.0;
+  bool has_started_ = false, has_commanded_ = false;
+  std::uint32_t late_cycles_ = 0;
+};
+
+}  // namespace hg::injection
