@@ -165,7 +165,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
   if (count == 0) return prediction;
   const Path path(config_, q, dq);
   int budget = kMaxDistances;
-  if (state.is_started) {
+  if (state.count == count) {
     fade(q, path.stop, state);
   } else {
     fading_ = {};
@@ -177,7 +177,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
       prediction.distances += kMaxDistances - first_budget;
     }
   }
-  state.is_started = true;
+  state.count = count;
   state.q = q;
   state.stop = path.stop;
 

@@ -44,7 +44,7 @@ struct Config {
 std::vector<std::string> pair_names(const Config& config);
 
 struct State {
-  bool is_started = false;
+  int count = 0;                            ///< pairs that are watched; 0 = not started
   VectorPM q, stop;                         ///< of the last cycle
   std::array<double, kMaxPairs> left{};     ///< bound on the distance minus `allowed`, m
   std::array<double, kMaxPairs> allowed{};  ///< the safe distance, less where it began too near, m

@@ -48,6 +48,9 @@ struct DeviceDraft {
   prepositioning::Config prepositioning;
   estimation::Config estimation;
   safety::MonitorConfig monitor;
+  bool watches_collisions = true;
+  bool has_floor = false;
+  double safe_distance = collision::Config{}.safe_distance;
 };
 
 inline constexpr std::array<Choice<Kinematics>, 2> kKinematics = {
@@ -90,7 +93,9 @@ void describe_structure(V& v, DeviceDraft& d) {
   v.name("handle", d.handle, d.frame_names, "a link of the URDF",
          "frame H, held by the user; with a tool it has the name 'handle'");
   v.name("elbow", d.elbow, d.frame_names, "a link of the URDF", "frame to be recorded and shown");
-  v.number("floor_z_m", d.floor_z, kAnyNumber, "height of the floor in B, drawn on the page");
+  v.number("floor_z_m", d.floor_z, kAnyNumber,
+           "height of the floor in B: drawn on the page and, if given, not to be hit");
+  d.has_floor = v.is_given("floor_z_m");
   v.group(
       "sensor", [&](auto& child) { describe(child, d.sensor); },
       "force/torque sensor S in the handle frame H");

@@ -100,6 +100,15 @@ void describe_behaviour(V& v, DeviceDraft& d) {
   describe_prepositioning(v, d);
   describe_estimation(v, d);
   v.group(
+      "collision",
+      [&](auto& child) {
+        child.flag("is_watched", d.watches_collisions,
+                   "stop before the device hits itself, its frame or the floor");
+        child.number("safe_distance_m", d.safe_distance, kPositive,
+                     "between any two parts while the device brakes");
+      },
+      "self-collision, from the collision elements of the URDF; docs/collision.md");
+  v.group(
       "monitor", [&](auto& child) { describe(child, d.monitor); },
       "when the device is stopped by a fault");
 }

@@ -7,6 +7,7 @@
 #include "hg/config/describe_control.h"
 #include "hg/config/describe_device.h"
 #include "hg/config/describe_device_behaviour.h"
+#include "hg/config/device_collision.h"
 #include "hg/config/loader.h"
 #include "hg/config/read_chain.h"
 #include "hg/config/tool.h"
@@ -260,6 +261,7 @@ void set_rate(Device& device, double rate_Hz) {
   device.estimation.dt = dt;
   device.control.dt = dt;
   device.prepositioning.drive.tau = device.drive.dead_time + device.drive.lag + dt;
+  set_reaction(device, dt);
 }
 
 Device load_device(const std::filesystem::path& file) {
@@ -273,15 +275,17 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
   DeviceDraft draft;
   std::optional<model::Chain> chain;
   std::optional<Tool> tool;
+  std::optional<UrdfText> urdf;
+  model::ChainOptions options;
   std::optional<Simulation> simulation;
   load_file(file, [&](Loader& loader) {
     describe_chain(loader, draft);
-    const std::optional<UrdfText> urdf = read_urdf(file, draft.urdf);
+    urdf = read_urdf(file, draft.urdf);
     if (urdf) draft.link_names = urdf->link_names;
     describe(loader, draft.part, draft.link_names);
     describe_tool(loader, draft);
     tool = read_tool(file, draft);
-    const model::ChainOptions options = chain_options(draft, tool);
+    options = chain_options(draft, tool);
     chain = make_chain(file, draft, urdf, options);
     if (chain) take_joints(*chain, draft);
     describe_structure(loader, draft);
@@ -315,6 +319,8 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .prepositioning = draft.prepositioning,
                    .estimation = draft.estimation,
                    .monitor = draft.monitor,
+                   .collision = {.safe_distance = draft.safe_distance},
+                   .unknown_links = {},
                    .simulation = simulation.value_or(ideal_simulation(draft)),
                    .sources = reader.since(first_source),
                    .places = std::move(file.places)};
@@ -323,6 +329,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
     device.monitor.has_dead_man = tool->has_dead_man;
   }
   derive(device, draft);
+  if (draft.watches_collisions) watch_collisions(*urdf, options, draft, device);
   return device;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/collision/guard.h"
 #include "hg/config/faults.h"
 #include "hg/config/simulation.h"
 #include "hg/config/sources.h"
@@ -29,7 +30,7 @@ struct Device {
   std::string name;
   std::filesystem::path urdf;
   double rate_Hz = 1000.0;
-  double floor_z = 0.0;  ///< height of the floor in B, m; for the page only
+  double floor_z = 0.0;  ///< height of the floor in B, m
   Kinematics kinematics = Kinematics::kGeneric;
   DriveModel drive;
   control::Config control;  ///< its method is kDrives for a device without actuators
@@ -39,9 +40,11 @@ struct Device {
   prepositioning::Config prepositioning;
   estimation::Config estimation;
   safety::MonitorConfig monitor;
-  Simulation simulation;            ///< of this device; without a file its defaults
-  std::vector<SourceText> sources;  ///< the YAML file first
-  Places places;                    ///< of the keys of the YAML file
+  collision::Config collision;             ///< no shapes: not watched
+  std::vector<std::string> unknown_links;  ///< moving, whose shape nobody knows
+  Simulation simulation;                   ///< of this device; without a file its defaults
+  std::vector<SourceText> sources;         ///< the YAML file first
+  Places places;                           ///< of the keys of the YAML file
 };
 
 /// Changes the rate and all that follows from it. Throws SetupError when the drive's dead time

@@ -156,7 +156,7 @@ TEST(Guard, RemembersBoundsThatHold) {
   constexpr int kCycles = 20000;
   for (int n = 0; n < kCycles; ++n) {
     wanderer.move();
-    const bool is_first = !state.is_started;
+    const bool is_first = state.count == 0;
     const Prediction prediction = guard.step(wanderer.q, wanderer.dq, true, state);
     if (!is_first) {
       distances += prediction.distances;
