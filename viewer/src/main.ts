@@ -18,7 +18,7 @@ import { Layers } from "./scene/layers";
 import { type Pixel, Stage } from "./scene/stage";
 import { World } from "./scene/world";
 import { connection_text } from "./text";
-import { start_theme } from "./theme";
+import { current_theme, on_theme_change, start_theme } from "./theme";
 import { Toolbar, build_view_tools } from "./toolbar";
 import { Headset } from "./xr/headset";
 
@@ -52,7 +52,7 @@ class Page {
   private readonly drag = new Drag(
     this.stage,
     this.cameras,
-    () => (this.store.is_connected ? this.store.frame : null),
+    () => this.live_frame,
     (hand) => this.store.connection.send(hand),
   );
   private readonly hand_controls = new HandControls(this.drag);
@@ -75,9 +75,11 @@ class Page {
     build_view_tools(this.cameras, this.layers, () => this.plots.toggle());
     this.headset = new Headset(
       this.stage,
-      () => this.store.frame,
+      () => this.live_frame,
       (hand) => this.store.connection.send(hand),
+      (problem) => this.notices.show("headset", problem),
     );
+    on_theme_change(() => this.world?.paint(current_theme()));
     this.stage.on_resize = () => this.cameras.resize();
     this.listen();
     this.stage.run((now_ms) => this.draw(now_ms));
@@ -90,7 +92,10 @@ class Page {
       on_event: (event) => this.events.add(event),
       on_events_cleared: () => this.events.clear(),
       on_values: (values) => this.change.take(values),
-      on_connection: (is_connected) => show_connection(is_connected),
+      on_connection: (is_connected) => {
+        if (!is_connected) this.let_go();
+        show_connection(is_connected);
+      },
       on_refusal: (refusal) => {
         this.change.refuse(refusal);
         this.toolbar.refuse();
@@ -103,7 +108,18 @@ class Page {
     });
   }
 
+  // What the hand acts upon.
+  private get live_frame(): Frame | null {
+    return this.store.is_connected ? this.store.frame : null;
+  }
+
+  private let_go(): void {
+    this.drag.let_go();
+    this.headset.let_go();
+  }
+
   private async furnish(scene: Scene): Promise<void> {
+    this.let_go(); // the handle is elsewhere now
     const is_first = this.world === null;
     this.toolbar.furnish(scene);
     this.replay.furnish(scene);
@@ -118,9 +134,11 @@ class Page {
       this.notices.show("world", error instanceof Error ? error.message : String(error));
       return null;
     });
-    if (!world || this.store.scene !== scene) return; // another one has come meanwhile
+    if (this.store.scene !== scene) return world?.dispose(); // another one has come meanwhile
+    if (!world) return;
     this.world?.dispose();
     this.world = world;
+    world.paint(current_theme());
     this.stage.scene.add(world.root);
   }
 

@@ -52,7 +52,7 @@ export function fill(bar: HTMLElement, share: number): void {
 
 // Keys belong to the field that one writes into, not to the page.
 export function is_typing({ target }: Event): boolean {
-  const is_text = target instanceof HTMLInputElement && target.type !== "checkbox";
+  const is_text = target instanceof HTMLInputElement && target.type === "text";
   return is_text || target instanceof HTMLSelectElement;
 }
 

@@ -3,7 +3,9 @@
 import type { Store } from "./data/store";
 import type { Frame, Scene } from "./messages";
 import { element, make, write } from "./page";
+import { hex_color } from "./plots/plot";
 import { time_text } from "./text";
+import { GHOST_COLOR } from "./theme";
 
 const SEEK_GAP_MS = 60;
 
@@ -12,7 +14,7 @@ export class ReplayBar {
   private readonly slider = make("input");
   private readonly time = make("output");
   private readonly name = make("span", "quiet");
-  private readonly ghost = make("span", "ghost", "compared with a second recording");
+  private readonly ghost = make("span", "ghost", make("i"), "second recording");
   private last_seek_ms = 0;
   private is_scrubbing = false;
 
@@ -22,15 +24,16 @@ export class ReplayBar {
     this.slider.min = "0";
     this.slider.step = "any";
     this.slider.setAttribute("aria-label", "Place in the recording");
+    (this.ghost.firstElementChild as HTMLElement).style.background = hex_color(GHOST_COLOR);
     this.part.append(this.time, this.slider, this.name, this.ghost);
     this.slider.addEventListener("input", () => {
       this.is_scrubbing = true;
       if (performance.now() - this.last_seek_ms > SEEK_GAP_MS) this.seek();
     });
-    this.slider.addEventListener("change", () => {
-      this.seek();
-      this.is_scrubbing = false;
-    });
+    this.slider.addEventListener("change", () => this.seek());
+    for (const end of ["change", "pointerup", "pointercancel", "keyup", "blur"]) {
+      this.slider.addEventListener(end, () => (this.is_scrubbing = false));
+    }
   }
 
   furnish(scene: Scene): void {

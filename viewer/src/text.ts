@@ -15,6 +15,14 @@ export function joint_text(value: number, joint: Pick<SceneJoint, "type">): stri
     : `${((value * 180) / Math.PI).toFixed(1)}\u00b0`;
 }
 
+// "12.0 Nm of 176 Nm"
+export function effort_text(effort: number, joint: Pick<SceneJoint, "type" | "tau_max">): string {
+  if (!Number.isFinite(effort)) return "not measured";
+  const unit = joint.type === "prismatic" ? "N" : "Nm";
+  const most = joint.tau_max === null ? "" : ` of ${joint.tau_max} ${unit}`;
+  return `${effort.toFixed(1)} ${unit}${most}`;
+}
+
 // Share of the way between two ends, 0..1; null when there are no two ends.
 export function share_between(
   value: number,
@@ -30,10 +38,24 @@ export function force_of(frame: Frame): number {
   return Number.isFinite(force) ? force : 0;
 }
 
+// Nms^2/rad^2 as it is written by hand.
+export function unit_text(unit: string): string {
+  return unit.replaceAll("^2", "\u00b2").replaceAll("^3", "\u00b3");
+}
+
+const SMALLEST_FORCE = 1; // N; below both, hands feel nothing
+const SMALLEST_TORQUE = 0.2; // Nm
+
+// Whether the user pushes or turns at all: limits also hold what pushes against them by itself.
+export function is_pushing(frame: Frame): boolean {
+  return force_of(frame) >= SMALLEST_FORCE || Math.hypot(...frame.torque_Nm) >= SMALLEST_TORQUE;
+}
+
 // `parts`: the largest parts of the budget in words, may be empty.
 export function felt_text(frame: Frame, parts: string): string {
+  if (!is_pushing(frame)) return "You do not push, so nothing pushes back.";
   if (frame.felt) return frame.felt.text;
-  return force_of(frame) < 1 || parts === "" ? "Nothing holds you." : `No limit: ${parts}.`;
+  return parts === "" ? "Nothing holds you." : `No limit: ${parts}.`;
 }
 
 export function connection_text(is_connected: boolean): string {

@@ -22,6 +22,7 @@ export const FORCE_COLOR = 0xf0643c;
 export const TORQUE_COLOR = 0xa855d8;
 export const TARGET_COLOR = 0x2f7bf6;
 export const ELBOW_COLOR = 0x0f9d8c;
+export const GHOST_COLOR = 0xd6409f;
 export const GOOD_COLOR = 0x2fa36b;
 export const NEAR_COLOR = 0xe8a317;
 export const ACTIVE_COLOR = 0xe23d2d;

@@ -98,7 +98,8 @@ export class Toolbar {
   }
 
   private toggle_pause(): void {
-    this.store.commands.send(this.is_paused ? "resume" : "pause");
+    const is_paused = this.store.frame?.run_state.is_paused ?? false;
+    this.store.commands.send(is_paused ? "resume" : "pause");
   }
 
   private show_pause(is_paused: boolean): void {
@@ -119,6 +120,7 @@ export class Toolbar {
 
   private take_key(event: KeyboardEvent): void {
     if (is_typing(event) || event.ctrlKey || event.metaKey) return;
+    if (event.repeat && event.key !== ".") return;
     if (event.key === "p") this.toggle_pause();
     else if (event.key === ".") this.store.commands.send("step", "", this.step_size);
     else if (event.key === "r") this.store.commands.send("restart");

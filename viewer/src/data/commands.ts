@@ -8,7 +8,7 @@ export type CommandName = Command["command"];
 const LEAST_GAP_MS = 100;
 
 export interface Refusal {
-  command: CommandName;
+  command: CommandName | "message"; // message: one that could not be read
   name: string;
   reason: string;
 }
@@ -44,8 +44,8 @@ export class Commands {
     const command = this.open.get(answer.id);
     this.open.delete(answer.id);
     if (answer.is_accepted) return;
-    const { command: name, name: argument } = command ?? { command: "set" as const, name: "" };
-    this.on_refusal({ command: name, name: argument, reason: answer.reason });
+    const { command: kind, name } = command ?? { command: "message" as const, name: "" };
+    this.on_refusal({ command: kind, name, reason: answer.reason });
   }
 
   forget(): void {

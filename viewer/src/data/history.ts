@@ -9,6 +9,7 @@ export class Table {
   private readonly columns: Float64Array[];
   private start = 0;
   private end = 0;
+  first_row = 0; // so many have been forgotten
 
   constructor(
     readonly names: string[],
@@ -29,7 +30,10 @@ export class Table {
     }
     for (const [i, column] of this.columns.entries()) column[this.end] = row[i] ?? NaN;
     this.end += 1;
-    this.start = Math.max(this.start, this.end - this.rows);
+    if (this.length > this.rows) {
+      this.start += 1;
+      this.first_row += 1;
+    }
   }
 
   column(name: string): Float64Array {
@@ -43,7 +47,7 @@ export class Table {
   }
 
   clear(): void {
-    this.start = this.end = 0;
+    this.start = this.end = this.first_row = 0;
   }
 
   csv(): string {
@@ -71,6 +75,11 @@ export function coordinates_of(joints: SceneJoint[]): string[] {
 
 const AXES = ["x", "y", "z"];
 
+// Joints of device and twin may have the same name.
+export function limit_column({ kind, name }: Scene["limits"][number]): string {
+  return `active.${kind}.${name}`;
+}
+
 export function history_of(scene: Scene): Table {
   const manipulator = scene.device.joints.slice(scene.gantry_joints);
   return new Table([
@@ -86,7 +95,7 @@ export function history_of(scene: Scene): Table {
     ...AXES.map((a) => `elbow_${a}_m`),
     "cycle_time_us",
     "cycle_time_max_us",
-    ...scene.limits.map((limit) => `active.${limit.name}`),
+    ...scene.limits.map(limit_column),
   ]);
 }
 

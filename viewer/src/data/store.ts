@@ -25,6 +25,7 @@ export class Store {
   scene: Scene | null = null;
   frame: Frame | null = null; // of the scene's run
   history = new Table(["time_s"]);
+  private values: Values | null = null; // may come before their scene
   unreadable = 0; // messages that were not as expected
   readonly commands: Commands;
   readonly connection: Connection;
@@ -64,8 +65,14 @@ export class Store {
   private take(message: Message): void {
     if (message.type === "frame") this.take_frame(message);
     else if (message.type === "event") this.tell((listener) => listener.on_event?.(message));
-    else if (message.type === "values") this.tell((listener) => listener.on_values?.(message));
+    else if (message.type === "values") this.take_values(message);
     else this.commands.take(message);
+  }
+
+  private take_values(values: Values): void {
+    this.values = values;
+    if (values.values.length !== this.scene?.settings.length) return;
+    this.tell((listener) => listener.on_values?.(values));
   }
 
   private take_frame(frame: Frame): void {
@@ -110,6 +117,7 @@ export class Store {
       this.scene = scene;
       this.history = history_of(scene);
       this.tell((listener) => listener.on_scene?.(scene));
+      if (this.values) this.take_values(this.values);
     } catch {
       if (this.is_connected) setTimeout(() => void this.load_scene(), RETRY_MS);
     } finally {

@@ -31,6 +31,7 @@ export class Drag {
   presses_while_dragging = false;
   can_hold = true; // false: it is a recording
   private pointer: number | null = null; // that holds the handle
+  private readonly others = new Set<number>(); // pointers that move the camera
   private target: Vec3 | null = null; // null = the hand is off the handle
   private turn: Quaternion | null = null; // wanted attitude, null = as the hand likes
   private anchor: Vec3 = [0, 0, 0]; // plane or axis of the drag go through it
@@ -52,9 +53,12 @@ export class Drag {
     area.addEventListener("pointerdown", (event) => this.grab(event), { capture: true });
     area.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"] as const) {
-      area.addEventListener(name, (event) => this.release(event.pointerId), { capture: true });
+      addEventListener(name, (event) => this.release(event.pointerId), { capture: true });
     }
-    addEventListener("blur", () => this.let_go());
+    addEventListener("blur", () => {
+      this.key_mode = null; // the key is released elsewhere
+      this.let_go();
+    });
     document.addEventListener("visibilitychange", () => document.hidden && this.let_go());
     addEventListener("pagehide", () => this.let_go());
     setInterval(() => this.target && this.tell(), RESEND_MS);
@@ -108,7 +112,11 @@ export class Drag {
   private grab(event: PointerEvent): void {
     const handle = this.handle;
     if (this.is_dragging) return event.stopPropagation(); // a second finger
-    if (!handle || !this.can_hold || event.button !== 0 || !this.is_near(event, handle)) return;
+    const is_free = handle !== null && this.can_hold && this.others.size === 0;
+    if (!is_free || event.button !== 0 || !this.is_near(event, handle)) {
+      this.others.add(event.pointerId); // also the second finger of two that pinch
+      return;
+    }
     event.stopPropagation();
     this.pointer = event.pointerId;
     this.cameras.controls.enabled = false;
@@ -139,6 +147,7 @@ export class Drag {
   }
 
   private release(pointer: number): void {
+    this.others.delete(pointer);
     if (pointer === this.pointer) this.let_go();
   }
 

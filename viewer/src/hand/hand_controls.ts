@@ -97,7 +97,7 @@ export class HandControls {
   }
 
   private take_key(event: KeyboardEvent, is_down: boolean): void {
-    if (is_typing(event)) return;
+    if (is_down && is_typing(event)) return;
     if (
       event.code === "Space" &&
       !(event.target instanceof HTMLElement && event.target.matches(OWN_SPACE))

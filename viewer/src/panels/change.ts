@@ -4,6 +4,7 @@
 import type { Commands, Refusal } from "../data/commands";
 import type { Choice, Scene, Setting, Values } from "../messages";
 import { make } from "../page";
+import { unit_text } from "../text";
 import { limited, number_text, place_of, value_at } from "./slider";
 
 const CHOICES = [
@@ -12,6 +13,7 @@ const CHOICES = [
   ["person", "Who holds the handle", "people"],
 ] as const;
 const SLIDER_STEPS = 1000;
+const PLAYED = "A recording is played: its twin, law and person cannot be changed.";
 
 export function fill_choice(select: HTMLSelectElement, choices: Choice[], chosen: string): void {
   const options = choices.map(({ name, title }) => new Option(title, name));
@@ -32,7 +34,8 @@ export class ChangePanel {
   furnish(scene: Scene): void {
     this.scene = scene;
     this.section.replaceChildren();
-    if (scene.refusal !== "") this.section.append(make("p", "quiet", scene.refusal));
+    const refusal = scene.source === "recording" ? PLAYED : scene.refusal;
+    if (refusal !== "") this.section.append(make("p", "quiet", refusal));
     for (const [command, title, list] of CHOICES) {
       const choices = scene.choices[list];
       if (choices.length === 0 || !scene.commands.includes(command)) continue;
@@ -94,7 +97,7 @@ class Field {
     this.box.dataset.setting = setting.name;
     this.slider.disabled = this.box.disabled = !can_set;
     this.value = setting.value;
-    const unit = make("span", "unit", setting.unit);
+    const unit = make("span", "unit", unit_text(setting.unit));
     const head = make("label", "", make("span", "", setting.label), this.box, unit);
     this.part = make("div", "setting", head, this.slider, this.note);
     this.part.title = setting.help;
@@ -103,6 +106,7 @@ class Field {
       this.send(value_at(Number(this.slider.value) / SLIDER_STEPS, setting));
     });
     this.box.addEventListener("change", () => this.read_box());
+    this.part.addEventListener("focusout", () => this.show()); // what came meanwhile
     this.show();
   }
 

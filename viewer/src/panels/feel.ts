@@ -11,7 +11,7 @@ import {
 } from "../limit_words";
 import type { ActiveLimit, Frame, Scene } from "../messages";
 import { fill, make, make_button, write } from "../page";
-import { felt_text } from "../text";
+import { felt_text, is_pushing } from "../text";
 import { type Kind, PARTS, PART_NAMES, type Part, shares, summary, total } from "./budget";
 
 const FULL_FORCE = 80; // N, of a full bar
@@ -85,7 +85,7 @@ export class FeelPanel {
     fill(this.torque_bar, torque / FULL_TORQUE);
     const parts = shares(frame.budget, "force");
     write(this.reason, felt_text(frame, summary(parts)));
-    this.reason.dataset.held = String(frame.felt !== null);
+    this.reason.dataset.held = String(frame.felt !== null && is_pushing(frame));
     this.show_acting(scene, frame);
     this.show_near(scene, frame);
     this.show_singularity(scene, frame);

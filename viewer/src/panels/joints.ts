@@ -4,7 +4,7 @@ import { coordinates_of } from "../data/history";
 import { limit_closeness } from "../limit_words";
 import type { Frame, Scene, SceneJoint } from "../messages";
 import { fill, make, write } from "../page";
-import { joint_text, share_between } from "../text";
+import { effort_text, joint_text, share_between } from "../text";
 
 interface Row {
   joint: SceneJoint;
@@ -39,10 +39,7 @@ export class JointsPanel {
     for (const row of this.device) {
       this.show_row(row, scene, frame, frame.q_device);
       const torque = frame.tau_measured_Nm[row.coordinate - scene.gantry_joints];
-      if (row.torque && row.joint.tau_max && torque !== undefined) {
-        fill(row.torque, Math.abs(torque) / row.joint.tau_max);
-        row.torque.title = `${torque.toFixed(1)} Nm of ${row.joint.tau_max} Nm`;
-      }
+      if (row.torque) show_torque(row.torque, row.joint, torque ?? NaN);
     }
   }
 
@@ -54,6 +51,11 @@ export class JointsPanel {
     if (share !== null) row.mark.style.left = `${(100 * share).toFixed(1)}%`;
     row.row.dataset.state = row.limit < 0 ? "far" : limit_closeness(scene, frame, row.limit);
   }
+}
+
+function show_torque(bar: HTMLElement, joint: SceneJoint, torque: number): void {
+  fill(bar, Number.isFinite(torque) ? Math.abs(torque) / (joint.tau_max ?? Infinity) : 0);
+  bar.title = effort_text(torque, joint);
 }
 
 function rows_of(scene: Scene, joints: SceneJoint[], kind: "manipulator" | "twin"): Row[] {

@@ -21,6 +21,22 @@ export interface Span {
   state: number; // of the limit: -1 lower, 1 upper, 2 violated
 }
 
+// At most about `most` of the rows from `first` to before `end`, and always the same ones while time
+// goes on: `first_row` rows have been forgotten. A line through others every time would shiver.
+export function thinned_rows(
+  first: number,
+  end: number,
+  first_row: number,
+  most: number,
+): number[] {
+  const every = 2 ** Math.max(0, Math.ceil(Math.log2((end - first) / most)));
+  const rows: number[] = [];
+  const start = first + ((every - ((first_row + first) % every)) % every);
+  for (let row = start; row < end; row += every) rows.push(row);
+  if (end > first && rows.at(-1) !== end - 1) rows.push(end - 1); // the newest
+  return rows;
+}
+
 // The times during which a limit acts.
 export function spans_of(times: ArrayLike<number>, states: ArrayLike<number>): Span[] {
   const spans: Span[] = [];

@@ -16,6 +16,7 @@ const STORED_AS = "hapticgiant.plots";
 const FIRST_SHOWN = ["force", "twin", "twin-position", "limits", "top-view"];
 const LIVE_S = 20;
 const [SHORTEST_S, LONGEST_S] = [1, 120];
+const SHORTEST_HELD_S = 0.02;
 const [LOWEST_PX, HIGHEST_SHARE] = [140, 0.75];
 
 interface Offer {
@@ -63,7 +64,6 @@ export class PlotDrawer {
   }
 
   furnish(scene: Scene): void {
-    const gantry = scene.device.joints.slice(0, scene.gantry_joints).map(({ name }) => name);
     const zoom = (range: TimeRange): void => this.hold(range);
     this.offers = [
       ...time_specs(scene).map((spec) => ({
@@ -72,7 +72,7 @@ export class PlotDrawer {
         make: () => new TimePlot(spec, zoom),
       })),
       { id: "limits", title: "Limits", make: () => new LimitLines() },
-      { id: "top-view", title: "From above", make: () => new TopView(gantry) },
+      { id: "top-view", title: "From above", make: () => new TopView(scene) },
       { id: "cycle-time", title: "Cycle time", make: () => new Histogram() },
     ];
     this.chips.replaceChildren(...this.offers.map((offer) => this.chip(offer)));
@@ -107,9 +107,11 @@ export class PlotDrawer {
       this.live_s = Math.min(LONGEST_S, Math.max(SHORTEST_S, this.live_s * factor));
     } else {
       const { from, to } = this.held;
+      const span = Math.min(LONGEST_S, Math.max(SHORTEST_HELD_S, (to - from) * factor));
       const area = event.target.getBoundingClientRect();
-      const at = from + ((event.clientX - area.left) / area.width) * (to - from);
-      this.hold({ from: at + (from - at) * factor, to: at + (to - at) * factor });
+      const share = (event.clientX - area.left) / area.width;
+      const start = from + share * (to - from - span);
+      this.hold({ from: start, to: start + span });
     }
     this.show();
   }

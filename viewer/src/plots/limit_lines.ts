@@ -1,5 +1,6 @@
 // When which limit acts: one row for each that did during the shown time.
 
+import { limit_column } from "../data/history";
 import { ACTIVE_COLOR, NEAR_COLOR, TARGET_COLOR } from "../theme";
 import { type Span, spans_of } from "./bins";
 import { type Plot, type PlotInput, Surface, css_color, hex_color, make_card } from "./plot";
@@ -45,9 +46,9 @@ export class LimitLines implements Plot {
     const [from, to] = [index_at(times, range.from), index_at(times, range.to)];
     const part = times.subarray(from, to);
     const rows = scene.limits
-      .map(({ name }) => {
-        const states = history.column(`active.${name}`).subarray(from, to);
-        return { name, spans: spans_of(part, states) };
+      .map((limit) => {
+        const states = history.column(limit_column(limit)).subarray(from, to);
+        return { name: limit.name, spans: spans_of(part, states) };
       })
       .filter(({ spans }) => spans.length > 0);
     const context = this.surface.begin();

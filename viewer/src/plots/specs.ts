@@ -32,9 +32,10 @@ export function time_specs(scene: Scene): TimeSpec[] {
   const specs = [
     wrench("force", "Force", "N", 4),
     wrench("torque", "Torque", "Nm", 1),
-    ...twin_specs(scene.twin.joints),
-    joints("device", "Device joints", manipulator, "device"),
-    joints("gantry", "Gantry", gantry, "device"),
+    ...joints("twin", "Twin joints", "twin", scene.twin.joints),
+    twin_position(scene.twin.joints),
+    ...joints("device", "Device joints", "device", manipulator),
+    ...joints("gantry", "Gantry", "device", gantry),
     torques(manipulator),
   ];
   return specs.filter(({ series }) => series.length > 0);
@@ -57,11 +58,9 @@ function wrench(id: string, title: string, unit: string, smallest_span: number):
   };
 }
 
-function twin_specs(all: SceneJoint[]): TimeSpec[] {
-  const angles = all.filter(({ type }) => type === "revolute");
-  const slides = all.filter(({ type }) => type === "prismatic");
+function twin_position(all: SceneJoint[]): TimeSpec {
   const free = all.filter(({ type }) => type === "floating");
-  const position: TimeSpec = {
+  return {
     id: "twin-position",
     title: "Twin position",
     unit: "m",
@@ -73,28 +72,33 @@ function twin_specs(all: SceneJoint[]): TimeSpec[] {
     limits: [],
     smallest_span: 0.1,
   };
+}
+
+// Those that turn and those that slide have a plot each.
+function joints(id: string, title: string, chain: string, all: SceneJoint[]): TimeSpec[] {
+  const part = (type: SceneJoint["type"], more: Omit<Part, "joints">): TimeSpec =>
+    joints_of_one_kind(chain, { ...more, joints: all.filter((joint) => joint.type === type) });
   return [
-    joints("twin", "Twin joints", angles, "twin"),
-    joints("twin-slides", "Twin slides", slides, "twin"),
-    position,
+    part("revolute", { id, title, unit: "\u00b0", scale: DEGREES, smallest_span: 5 }),
+    part("prismatic", { id: `${id}-slides`, title: `${title}, slides`, unit: "m", scale: 1, smallest_span: 0.05 }),
   ];
 }
 
-// All of them turn, or all of them slide.
-function joints(id: string, title: string, all: SceneJoint[], chain: string): TimeSpec {
-  const slides = all[0]?.type === "prismatic";
-  const scale = slides ? 1 : DEGREES;
+interface Part {
+  id: string;
+  title: string;
+  unit: string;
+  scale: number;
+  smallest_span: number;
+  joints: SceneJoint[];
+}
+
+function joints_of_one_kind(chain: string, { joints: all, scale, ...part }: Part): TimeSpec {
   const limits = all.flatMap(({ q_min, q_max }, series) =>
     [q_min, q_max].flatMap((q) => (q === null ? [] : [{ series, value: q * scale }])),
   );
-  return {
-    id,
-    title,
-    unit: slides ? "m" : "\u00b0",
-    series: all.map(({ name }) => ({ label: name, column: `${chain}.${name}`, scale })),
-    limits,
-    smallest_span: slides ? 0.05 : 5,
-  };
+  const series = all.map(({ name }) => ({ label: name, column: `${chain}.${name}`, scale }));
+  return { ...part, series, limits };
 }
 
 function torques(manipulator: SceneJoint[]): TimeSpec {

@@ -13,6 +13,7 @@ import {
   make_card,
   series_color,
 } from "./plot";
+import { thinned_rows } from "./bins";
 import { type TimeSpec, index_at } from "./specs";
 
 const AXIS_WIDTH = 46; // px
@@ -44,14 +45,11 @@ export class TimePlot implements Plot {
     const times = history.column("time_s");
     const first = Math.max(0, index_at(times, range.from) - 1);
     const end = Math.min(times.length, index_at(times, range.to) + 1);
-    const every = Math.max(1, Math.ceil((end - first) / MOST_POINTS));
-    const thin = (column: Float64Array, scale: number): number[] => {
-      const values: number[] = [];
-      for (let i = first; i < end; i += every) values.push(column[i]! * scale);
-      return values;
-    };
-    const lines = this.spec.series.map(({ column, scale }) => thin(history.column(column), scale));
-    this.chart.setData([thin(times, 1), ...lines], false);
+    const rows = thinned_rows(first, end, history.first_row, MOST_POINTS);
+    const pick = (column: Float64Array, scale: number): number[] =>
+      rows.map((row) => column[row]! * scale);
+    const lines = this.spec.series.map(({ column, scale }) => pick(history.column(column), scale));
+    this.chart.setData([pick(times, 1), ...lines], false);
     this.chart.setScale("x", { min: range.from, max: range.to });
     this.show_values(lines);
   }

@@ -1,6 +1,7 @@
 // Handle, elbow and gantry from above, with the box that limits handle and elbow, as Fig. 6(d) of
 // the paper: x to the right, y up.
 
+import type { Scene } from "../messages";
 import { make } from "../page";
 import { ELBOW_COLOR, FORCE_COLOR } from "../theme";
 import {
@@ -28,7 +29,7 @@ export class TopView implements Plot {
   private readonly surface: Surface;
   private readonly tracks: Track[];
 
-  constructor(gantry: string[]) {
+  constructor(scene: Scene) {
     const { card, body, legend } = make_card(
       "top-view",
       "From above (m)",
@@ -40,8 +41,9 @@ export class TopView implements Plot {
       { label: "elbow", color: hex_color(ELBOW_COLOR), columns: ["elbow_x_m", "elbow_y_m"] },
       { label: "handle", color: hex_color(FORCE_COLOR), columns: ["handle_x_m", "handle_y_m"] },
     ];
-    if (gantry.length === 2) {
-      const columns: [string, string] = [`device.${gantry[0]}`, `device.${gantry[1]}`];
+    const gantry = scene.device.joints.slice(0, scene.gantry_joints);
+    if (gantry.length === 2 && gantry.every(({ type }) => type === "prismatic")) {
+      const columns: [string, string] = [`device.${gantry[0]!.name}`, `device.${gantry[1]!.name}`];
       this.tracks.unshift({ label: "gantry", color: series_color(7), columns });
     }
     for (const { label, color } of this.tracks) {

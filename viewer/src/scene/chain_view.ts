@@ -13,10 +13,11 @@ import URDFLoader, { type URDFJoint, type URDFRobot } from "urdf-loader";
 
 import type { SceneChain, SceneJoint } from "../messages";
 import { current_theme } from "../theme";
-import { paint_shapes } from "./materials";
 import { add_skeleton, has_shapes } from "./skeleton";
 
 const MESHES = "/models/"; // where the program puts mesh files
+
+type Paint = (root: Object3D) => void; // gives all shapes their material
 
 interface Rest {
   position: Vector3;
@@ -31,16 +32,16 @@ export class ChainView {
   constructor(
     private readonly chain: SceneChain,
     urdf: string,
-    opacity: number,
+    paint: Paint,
   ) {
-    this.robot = urdf === "" ? null : parse(urdf, opacity);
+    this.robot = urdf === "" ? null : parse(urdf, paint);
     const [x, y, z, w] = chain.quaternion_B_root as [number, number, number, number];
     this.placement.position.set(...chain.p_B_root_m);
     this.placement.quaternion.set(x, y, z, w);
     this.placement.add(this.robot ?? plain_body());
     const is_shown = has_shapes(this.robot) || urdf.includes(`filename="${MESHES}`);
     if (this.robot && !is_shown) add_skeleton(this.robot, current_theme().link);
-    paint_shapes(this.placement, opacity);
+    paint(this.placement);
     for (const joint of Object.values(this.robot?.joints ?? {})) joint.ignoreLimits = true;
   }
 
@@ -107,21 +108,20 @@ export class ChainView {
   }
 }
 
-// Below opacity 1 the chain is drawn so that solid things behind it stay visible.
-export async function load_chain(chain: SceneChain, opacity: number): Promise<ChainView> {
-  if (chain.urdf === "") return new ChainView(chain, "", opacity);
+export async function load_chain(chain: SceneChain, paint: Paint): Promise<ChainView> {
+  if (chain.urdf === "") return new ChainView(chain, "", paint);
   const response = await fetch(chain.urdf);
   if (!response.ok) throw new Error(`${chain.urdf}: ${response.statusText}`);
-  return new ChainView(chain, await response.text(), opacity);
+  return new ChainView(chain, await response.text(), paint);
 }
 
 // Mesh files arrive later; those that the program has not found stay away.
-function parse(urdf: string, opacity: number): URDFRobot {
+function parse(urdf: string, paint: Paint): URDFRobot {
   const loader = new URDFLoader();
   loader.loadMeshCb = (address, manager, material, done) => {
     if (!address.startsWith(MESHES)) return;
     loader.defaultMeshLoader(address, manager, material, (mesh, error) => {
-      if (mesh) paint_shapes(mesh, opacity);
+      if (mesh) paint(mesh);
       done(mesh, error);
     });
   };

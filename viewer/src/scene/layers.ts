@@ -3,6 +3,7 @@
 export const LAYERS = {
   device: { title: "Device", is_on: true },
   twin: { title: "Twin", is_on: true },
+  ghost: { title: "Second recording", is_on: true },
   surroundings: { title: "Surroundings", is_on: true },
   person: { title: "Person", is_on: true },
   arrows: { title: "Force and torque", is_on: true },
@@ -10,7 +11,7 @@ export const LAYERS = {
   torques: { title: "Joint torques", is_on: true },
   trails: { title: "Trails of handle and elbow", is_on: true },
   box: { title: "Box of the handle", is_on: true },
-  scanner: { title: "Laser scanner zone", is_on: false },
+  scanner: { title: "Scanner zone (only drawn)", is_on: false },
 } as const;
 
 export type Layer = keyof typeof LAYERS;

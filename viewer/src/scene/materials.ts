@@ -2,7 +2,7 @@
 
 import { type Material, Color, Mesh, MeshStandardMaterial, type Object3D } from "three";
 
-import { current_theme } from "../theme";
+import { GHOST_COLOR, current_theme } from "../theme";
 
 interface Surface {
   roughness: number;
@@ -35,6 +35,23 @@ export function paint_shapes(root: Object3D, opacity: number): void {
     part.material = Array.isArray(part.material) ? painted : painted[0]!;
   });
 }
+
+// One colour that shines through, behind what is at the same place, and without shadows.
+export function paint_ghost(root: Object3D): void {
+  root.traverse((part) => {
+    if (part instanceof Mesh) part.material = GHOST;
+  });
+}
+
+const GHOST = new MeshStandardMaterial({
+  color: GHOST_COLOR,
+  roughness: 0.7,
+  transparent: true,
+  opacity: 0.42,
+  polygonOffset: true,
+  polygonOffsetFactor: 1,
+  polygonOffsetUnits: 4,
+});
 
 function paint(material: Material, opacity: number): Material {
   const color = "color" in material ? (material.color as Color) : new Color(current_theme().link);

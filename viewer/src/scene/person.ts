@@ -11,7 +11,7 @@ import {
   Vector3,
 } from "three";
 
-import { current_theme, on_theme_change } from "../theme";
+import type { Theme } from "../theme";
 import type { Eyes } from "./cameras";
 import { elbow_between } from "./reach";
 
@@ -56,10 +56,11 @@ export class Person {
   private readonly left_arm: [Limb, Limb];
   private readonly legs: Limb[];
   private heading: number | null = null; // of the look, about z_B
+  private readonly skin = new MeshStandardMaterial({ roughness: 0.8 });
+  private readonly shirt = new MeshStandardMaterial({ roughness: 0.9 });
 
   constructor(private readonly floor_z_m: number) {
-    const skin = new MeshStandardMaterial({ roughness: 0.8 });
-    const shirt = new MeshStandardMaterial({ roughness: 0.9 });
+    const { skin, shirt } = this;
     for (const material of [skin, shirt]) {
       Object.assign(material, { transparent: true, opacity: OPACITY });
     }
@@ -81,13 +82,11 @@ export class Person {
     this.build_hand(skin);
     this.group.add(this.body, this.hand);
     this.group.traverse((part) => (part.castShadow = part.receiveShadow = true));
-    const paint = (): void => {
-      const theme = current_theme();
-      skin.color.set(theme.person);
-      shirt.color.set(theme.person).offsetHSL(0.0, 0.12, -0.14);
-    };
-    on_theme_change(paint);
-    paint();
+  }
+
+  paint(theme: Theme): void {
+    this.skin.color.set(theme.person);
+    this.shirt.color.set(theme.person).offsetHSL(0.0, 0.12, -0.14);
   }
 
   // Follows the handle at `p_B` with its attitude.

@@ -5,13 +5,23 @@ const SLOW_MS = 45; // slower than 22 pictures per second
 const PATIENCE_MS = 700;
 const PAUSE_MS = 1500; // a hidden tab is not a slow one
 
+const LOWEST = 3; // level
+
+export type Wish = "best" | "fast" | null;
+
 export class Quality {
-  private level = 0;
+  private level: number;
   private slow_ms = 0; // how long it has been slow
   private last_ms: number | null = null;
 
-  // `is_fixed`: the best picture, however long it takes.
-  constructor(private readonly is_fixed = false) {}
+  // `best`: the best picture, however long it takes; `fast`: the cheapest one from the start.
+  constructor(private readonly wish: Wish = null) {
+    this.level = wish === "fast" ? LOWEST : 0;
+  }
+
+  get smooths_edges(): boolean {
+    return this.wish !== "fast";
+  }
 
   get has_shadows(): boolean {
     return this.level < 2;
@@ -19,7 +29,7 @@ export class Quality {
 
   pixel_ratio(of_screen: number): number {
     if (this.level === 0) return Math.min(2, of_screen);
-    return this.level < 3 ? 1 : 0.6;
+    return this.level < LOWEST ? 1 : 0.6;
   }
 
   // Notes the time of a picture; true when the quality has changed.
@@ -28,7 +38,7 @@ export class Quality {
     this.last_ms = now_ms;
     const is_slow = elapsed_ms > SLOW_MS && elapsed_ms < PAUSE_MS;
     this.slow_ms = is_slow ? this.slow_ms + elapsed_ms : 0;
-    if (this.is_fixed || this.slow_ms < PATIENCE_MS || this.level === 3) return false;
+    if (this.wish === "best" || this.slow_ms < PATIENCE_MS || this.level === LOWEST) return false;
     this.level += 1;
     this.slow_ms = 0;
     return true;

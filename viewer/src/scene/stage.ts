@@ -25,8 +25,9 @@ import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment
 
 import type { SceneBox, Vec3 } from "../messages";
 import { current_theme, on_theme_change } from "../theme";
+import { dispose_of } from "./dispose";
 import { Grid } from "./grid";
-import { Quality } from "./quality";
+import { Quality, type Wish } from "./quality";
 
 export interface Pixel {
   x: number;
@@ -39,7 +40,7 @@ export class Stage {
   readonly rig = new Group(); // of the camera in a headset
   readonly renderer: WebGLRenderer;
   readonly canvas: HTMLCanvasElement;
-  private readonly quality = new Quality(/[?&]quality=best/.test(location.search));
+  private readonly quality = new Quality(wished_quality());
   readonly box_view = new Group();
   floor_z_m = 0;
   on_resize = (): void => this.camera.updateProjectionMatrix();
@@ -55,7 +56,7 @@ export class Stage {
 
   constructor(private readonly parent: HTMLElement) {
     this.renderer = new WebGLRenderer({
-      antialias: true,
+      antialias: this.quality.smooths_edges,
       alpha: true, // the room behind shows through in augmented reality
       powerPreference: "high-performance",
     });
@@ -83,7 +84,11 @@ export class Stage {
     this.renderer.setAnimationLoop((now_ms: number) => {
       const is_in_headset = this.renderer.xr.isPresenting;
       if (!is_in_headset && this.quality.observe(now_ms)) this.resize();
-      prepare(now_ms);
+      try {
+        prepare(now_ms);
+      } catch (error) {
+        reportError(error); // three would never draw again
+      }
       this.renderer.render(this.scene, this.camera);
     });
   }
@@ -93,10 +98,12 @@ export class Stage {
     this.grid.mesh.position.z = floor_z_m + 0.002;
     const lines = new Box3Helper(new Box3(new Vector3(...box.min_m), new Vector3(...box.max_m)));
     lines.material = this.box_lines;
+    dispose_of(this.box_view);
     this.box_view.clear();
     this.box_view.add(lines);
-    this.sun.target.position.set(0, 0, floor_z_m);
-    this.sun.position.set(1.8, -2.6, floor_z_m + 9);
+    const [x, y] = [0, 1].map((axis) => 0.5 * (box.min_m[axis]! + box.max_m[axis]!));
+    this.sun.target.position.set(x!, y!, floor_z_m);
+    this.sun.position.set(x! + 1.8, y! - 2.6, floor_z_m + 9);
   }
 
   on_screen(p_B: Vec3): Pixel {
@@ -163,4 +170,9 @@ export class Stage {
     this.on_resize();
     this.sun.castShadow = this.quality.has_shadows;
   }
+}
+
+function wished_quality(): Wish {
+  const wish = new URLSearchParams(location.search).get("quality");
+  return wish === "best" || wish === "fast" ? wish : null;
 }

@@ -4,7 +4,6 @@
 import {
   BufferAttribute,
   CircleGeometry,
-  Color,
   ConeGeometry,
   CylinderGeometry,
   BoxGeometry,
@@ -19,12 +18,17 @@ import {
 } from "three";
 
 import type { Scene, SceneChain } from "../messages";
-import { current_theme, on_theme_change } from "../theme";
+import type { Theme } from "../theme";
 
 // Height of things that lie flat on the floor above it, m: what lies higher is drawn over the rest.
 const FLAT = 0.004;
 
-export function surroundings_of(scene: Scene): Group {
+export interface Surroundings {
+  group: Group;
+  paint(theme: Theme): void;
+}
+
+export function surroundings_of(scene: Scene): Surroundings {
   if (scene.environment === "door") return wall(scene.twin, scene.floor_z_m);
   if (scene.environment === "excavator") return site(scene.twin, scene.floor_z_m);
   return room(scene.floor_z_m);
@@ -56,7 +60,7 @@ function lit<T extends Object3D>(shape: T): T {
 
 // A wall left, right and above the frame that fades out to its sides, so that the device behind
 // it stays visible. Frame of the door: models/twins/door/door.urdf.
-function wall(twin: SceneChain, floor_z: number): Group {
+function wall(twin: SceneChain, floor_z: number): Surroundings {
   const group = at_twin(twin);
   const foot = floor_z - twin.p_B_root_m[2];
   const [left, right, lintel, top, reach] = [-0.08, 1.0, 1.025, 1.3, 1.15];
@@ -84,10 +88,7 @@ function wall(twin: SceneChain, floor_z: number): Group {
       add(group, new Mesh(shape, material), x, y, z).receiveShadow = true;
     }
   }
-  const paint = (): void => void material.color.set(current_theme().wall);
-  on_theme_change(paint);
-  paint();
-  return group;
+  return { group, paint: (theme) => void material.color.set(theme.wall) };
 }
 
 // Gives the points of `shape` an opacity by their x.
@@ -99,7 +100,7 @@ function fade(shape: PlaneGeometry, opacity: (x: number) => number): void {
 }
 
 // Earth under the tracks, a heap to dig in, cones and a barrier.
-function site(twin: SceneChain, floor_z: number): Group {
+function site(twin: SceneChain, floor_z: number): Surroundings {
   const group = at_twin(twin);
   const foot = floor_z - twin.p_B_root_m[2];
   const earth = matt(0x8a6a48);
@@ -116,7 +117,7 @@ function site(twin: SceneChain, floor_z: number): Group {
   ] as const) {
     add(group, cone(), x, y, foot);
   }
-  return group;
+  return { group, paint: () => {} };
 }
 
 // A disc with an uneven rim.
@@ -176,7 +177,7 @@ function cone(): Group {
 }
 
 // Rings on the floor to walk on.
-function room(floor_z: number): Group {
+function room(floor_z: number): Surroundings {
   const group = new Group();
   const material = matt(0x3f86c6, { opacity: 0.35 });
   material.depthWrite = false;
@@ -193,10 +194,5 @@ function room(floor_z: number): Group {
   const carpet = new Mesh(new CircleGeometry(1.35, 96), matt(0x3f86c6, { opacity: 0.08 }));
   (carpet.material as Material).depthWrite = false;
   add(group, carpet, 0, 0, floor_z + 0.5 * FLAT).receiveShadow = true;
-  const paint = (): void => {
-    material.color = new Color(current_theme().is_dark ? 0x76b4ec : 0x3f86c6);
-  };
-  on_theme_change(paint);
-  paint();
-  return group;
+  return { group, paint: (theme) => void material.color.set(theme.is_dark ? 0x76b4ec : 0x3f86c6) };
 }

@@ -4,19 +4,21 @@ import { Group, type Object3D, Quaternion, Vector3 } from "three";
 
 import { limit_closeness } from "../limit_words";
 import type { Frame, Scene, Vec3 } from "../messages";
-import { ELBOW_COLOR, FORCE_COLOR } from "../theme";
+import { ELBOW_COLOR, FORCE_COLOR, type Theme } from "../theme";
 import { type ChainView, load_chain } from "./chain_view";
+import { dispose_of } from "./dispose";
+import { Ghost } from "./ghost";
 import { HandleView } from "./handle_view";
 import { JointGauge } from "./joint_gauges";
 import type { Layer, Layers } from "./layers";
+import { paint_shapes } from "./materials";
 import { Person } from "./person";
 import { scanner_zone } from "./scanner_zone";
 import type { Stage } from "./stage";
-import { surroundings_of } from "./surroundings";
+import { type Surroundings, surroundings_of } from "./surroundings";
 import { Trail } from "./trail";
 
 const TWIN_OPACITY = 0.85; // it is not there: the device shines through
-const GHOST_OPACITY = 0.25;
 
 interface Gauge {
   view: JointGauge;
@@ -32,9 +34,9 @@ export class World {
   private readonly elbow_trail = new Trail(ELBOW_COLOR);
   private readonly trails = new Group();
   private readonly gauges: Gauge[];
-  private readonly surroundings: Group;
+  private readonly surroundings: Surroundings;
   private readonly scanner: Group;
-  private ghost: { device: ChainView; twin: ChainView } | "loading" | null = null;
+  private readonly ghost: Ghost;
 
   private constructor(
     readonly scene: Scene,
@@ -46,17 +48,19 @@ export class World {
     this.person = new Person(scene.floor_z_m);
     this.surroundings = surroundings_of(scene);
     this.scanner = scanner_zone(scene.box, scene.floor_z_m);
+    this.ghost = new Ghost(scene);
     this.gauges = gauges_of(scene, device);
     this.trails.add(this.handle_trail.line, this.elbow_trail.line);
-    this.root.add(device.placement, twin.placement, this.surroundings, this.person.group);
-    this.root.add(this.trails, this.scanner, this.handle.pull, this.handle.arrows);
+    this.root.add(device.placement, twin.placement, this.surroundings.group, this.ghost.group);
+    this.root.add(this.person.group, this.trails, this.scanner);
+    this.root.add(this.handle.pull, this.handle.arrows);
     this.apply_layers();
   }
 
   static async load(scene: Scene, stage: Stage, layers: Layers): Promise<World> {
     const [device, twin] = await Promise.all([
-      load_chain(scene.device, 1),
-      load_chain(scene.twin, TWIN_OPACITY),
+      load_chain(scene.device, (root) => paint_shapes(root, 1)),
+      load_chain(scene.twin, (root) => paint_shapes(root, TWIN_OPACITY)),
     ]);
     return new World(scene, device, twin, stage, layers);
   }
@@ -65,7 +69,8 @@ export class World {
     const parts: [Layer, Object3D[]][] = [
       ["device", [this.device.placement]],
       ["twin", [this.twin.placement]],
-      ["surroundings", [this.surroundings]],
+      ["ghost", [this.ghost.group]],
+      ["surroundings", [this.surroundings.group]],
       ["person", [this.person.group]],
       ["arrows", [this.handle.arrows]],
       ["limits", this.gauges.map((gauge) => gauge.view.limit_ring)],
@@ -77,6 +82,11 @@ export class World {
     for (const [layer, objects] of parts) {
       for (const object of objects) object.visible = this.layers.is_shown(layer);
     }
+  }
+
+  paint(theme: Theme): void {
+    this.surroundings.paint(theme);
+    this.person.paint(theme);
   }
 
   note(frame: Frame): void {
@@ -93,15 +103,12 @@ export class World {
     this.handle.show_target(frame.p_B_H_m, target, axis);
     const attitude = new Quaternion(...frame.quaternion_B_H).normalize();
     this.person.pose(new Vector3(...frame.p_B_H_m), attitude);
-    this.show_ghost(frame);
+    this.ghost.show(frame.ghost);
   }
 
   dispose(): void {
     this.root.removeFromParent();
-    this.root.traverse((part) => {
-      const { geometry } = part as { geometry?: { dispose(): void } };
-      geometry?.dispose();
-    });
+    dispose_of(this.root);
   }
 
   private show_gauges(frame: Frame): void {
@@ -111,36 +118,6 @@ export class World {
       view.show(q, limit < 0 ? "far" : limit_closeness(this.scene, frame, limit));
       view.show_torque(q, torque);
     }
-  }
-
-  private show_ghost(frame: Frame): void {
-    if (!frame.ghost) {
-      if (this.ghost && this.ghost !== "loading") this.set_ghost_visible(false);
-      return;
-    }
-    if (this.ghost === null) {
-      this.ghost = "loading";
-      void this.load_ghost();
-    } else if (this.ghost !== "loading") {
-      this.set_ghost_visible(true);
-      this.ghost.device.pose(frame.ghost.q_device);
-      this.ghost.twin.pose(frame.ghost.q_twin);
-    }
-  }
-
-  private async load_ghost(): Promise<void> {
-    const { device, twin } = this.scene;
-    const [ghost_device, ghost_twin] = await Promise.all([
-      load_chain(device, GHOST_OPACITY),
-      load_chain(twin, GHOST_OPACITY),
-    ]);
-    this.root.add(ghost_device.placement, ghost_twin.placement);
-    this.ghost = { device: ghost_device, twin: ghost_twin };
-  }
-
-  private set_ghost_visible(is_visible: boolean): void {
-    if (this.ghost === null || this.ghost === "loading") return;
-    this.ghost.device.placement.visible = this.ghost.twin.placement.visible = is_visible;
   }
 }
 

@@ -5,6 +5,7 @@ import {
   CapsuleGeometry,
   Mesh,
   MeshStandardMaterial,
+  type PerspectiveCamera,
   Quaternion,
   Vector3,
   type XRTargetRaySpace,
@@ -36,12 +37,14 @@ export class Headset {
   private grip: Grip | null = null;
   private target: Vec3 | null = null;
   private turn: Turn | null = null;
+  private view_before: PerspectiveCamera | null = null; // three moves the camera with the head
   private readonly controllers: XRTargetRaySpace[];
 
   constructor(
     private readonly stage: Stage,
     private readonly frame: () => Frame | null,
     private readonly send: (hand: Hand) => void,
+    private readonly on_problem: (text: string) => void,
   ) {
     const { xr } = stage.renderer;
     xr.enabled = true;
@@ -71,7 +74,9 @@ export class Headset {
     for (const [mode, text, title] of SESSIONS) {
       const is_there = await navigator.xr?.isSessionSupported(mode).catch(() => false);
       if (!is_there) continue;
-      const button = make_button(text, title, () => void this.put_on(mode));
+      const button = make_button(text, title, () => {
+        this.put_on(mode).catch((error: unknown) => this.on_problem(`${text}: ${String(error)}`));
+      });
       button.id = `enter-${text.toLowerCase()}`;
       button.className = "with-icon";
       button.prepend(icon("headset"));
@@ -88,6 +93,7 @@ export class Headset {
       this.stage.rig.position.copy(place.position);
       this.stage.rig.quaternion.copy(place.quaternion);
     }
+    this.view_before = this.stage.camera.clone();
     this.stage.set_see_through(mode === "immersive-ar");
     await this.stage.renderer.xr.setSession(session);
   }
@@ -97,6 +103,8 @@ export class Headset {
     this.stage.set_see_through(false);
     this.stage.rig.position.set(0, 0, 0);
     this.stage.rig.quaternion.identity();
+    const { camera } = this.stage;
+    if (this.view_before) camera.copy(this.view_before);
     this.stage.reset_view();
   }
 
@@ -106,11 +114,9 @@ export class Headset {
     controller.visible = false; // until three finds it
     this.stage.rig.add(controller);
     controller.addEventListener("selectstart", () => this.take_hold(controller));
-    controller.addEventListener(
-      "selectend",
-      () => this.grip?.controller === controller && this.let_go(),
-    );
-    controller.addEventListener("disconnected", () => this.let_go());
+    for (const end of ["selectend", "disconnected"] as const) {
+      controller.addEventListener(end, () => this.grip?.controller === controller && this.let_go());
+    }
   }
 
   private take_hold(controller: XRTargetRaySpace): void {
@@ -126,7 +132,7 @@ export class Headset {
     this.tell_where();
   }
 
-  private let_go(): void {
+  let_go(): void {
     if (!this.grip) return;
     this.grip = null;
     this.target = null;

@@ -46,10 +46,12 @@ export function start_browser() {
   });
 }
 
+const VIEWPORT = { width: 1000, height: 600 }; // small: it is drawn without graphics hardware
+
 // Opens `link`, after `prepare`, and waits until the scene is drawn; `problems` collects errors of
 // the page and requests to other machines.
 export async function open_page(browser, link, options = {}, prepare = async () => {}) {
-  const context = await browser.newContext({ viewport: { width: 1366, height: 768 }, ...options });
+  const context = await browser.newContext({ viewport: VIEWPORT, ...options });
   const page = await context.newPage();
   const problems = [];
   page.on("pageerror", (error) => problems.push(String(error)));
@@ -74,14 +76,34 @@ export async function drawn(page) {
     PATIENCE,
   );
   const corner = () => page.evaluate(() => window.hapticgiant.on_screen([0, 0, 0]));
-  for (let last = null; ;) {
-    await page.evaluate(
-      () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
-    );
+  let last = null;
+  for (const end = Date.now() + PATIENCE.timeout; Date.now() < end;) {
+    await pictures(page);
     const now = await corner();
     if (last && Math.hypot(now.x - last.x, now.y - last.y) < 0.5) return;
     last = now;
   }
+  throw new Error("the camera does not come to rest");
+}
+
+// The link of a page that is drawn as cheaply as it can be.
+export function cheap(link) {
+  return `${link}&quality=fast`;
+}
+
+// Waits until what the page knows now has been drawn.
+export async function pictures(page) {
+  await page.evaluate(async () => {
+    for (let i = 0; i < 3; i++) await new Promise(requestAnimationFrame);
+  });
+}
+
+// Whether the page comes to `test(argument)`.
+export function page_comes_to(page, test, argument = null) {
+  return page.waitForFunction(test, argument, PATIENCE).then(
+    () => true,
+    () => false,
+  );
 }
 
 export function frame_of(page) {
@@ -141,7 +163,7 @@ export async function hide_and_compare(page, layer) {
   await page.click("#layers summary");
   const shown = await page.screenshot({ clip });
   await page.uncheck(`#show-${layer}`);
-  await page.waitForTimeout(500);
+  await pictures(page);
   const hidden = await page.screenshot({ clip });
   await page.check(`#show-${layer}`);
   await page.click("#layers summary");

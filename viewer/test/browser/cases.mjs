@@ -8,20 +8,26 @@ import { join } from "node:path";
 import {
   PATIENCE,
   arc,
+  cheap,
   comes_true,
   drag_along,
   drawn,
   frame_of,
   hide_and_compare,
   open_page,
+  page_comes_to,
+  pictures,
   scene_of,
   start_program,
   wear_headset,
 } from "./browser.mjs";
 
-const SMALLEST_DEVICE = 3000; // pixels that the device covers
+const SMALLEST_DEVICE = 1500; // pixels that the device covers
+const SMALLEST_GHOST = 300;
 const LIVE_FRAMES = 30; // at least so many arrive for each second of the program's time
+const SPELLS = 20; // of a second; a machine that does other work may be slow in most of them
 const OPEN = 0.5; // rad
+const DOOR_OPEN = "11.5"; // s, when the script has opened the door
 
 export async function page_is_live({ browser, program, expect }) {
   const { page, problems, close } = await open_page(browser, program.link);
@@ -32,17 +38,20 @@ export async function page_is_live({ browser, program, expect }) {
 
   const count = () =>
     page.evaluate(() => [window.hapticgiant.frames, window.hapticgiant.frame.time_s]);
-  const [frames, time] = await count();
-  const lived = await comes_true(page, (f) => f.time_s > time + 2);
-  const [later_frames, later_time] = await count();
-  const rate = (later_frames - frames) / (later_time - time);
-  expect(lived && rate >= LIVE_FRAMES, `${rate.toFixed(1)} frames for each second of the program`);
+  let rate = 0;
+  for (let spell = 0; spell < SPELLS && rate < LIVE_FRAMES; spell++) {
+    const [frames, time] = await count();
+    await comes_true(page, (f) => f.time_s > time + 1);
+    const [later_frames, later_time] = await count();
+    rate = (later_frames - frames) / (later_time - time);
+  }
+  expect(rate >= LIVE_FRAMES, `${rate.toFixed(1)} frames for each second of the program`);
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
   await close();
 }
 
 export async function drag_opens_door({ browser, program, expect }) {
-  const { page, problems, close } = await open_page(browser, program.link);
+  const { page, problems, close } = await open_page(browser, cheap(program.link));
   const frame = await frame_of(page);
   const { twin } = await scene_of(page);
   expect(Math.abs(frame.q_twin[0]) < 0.05, `the door is closed at first: ${frame.q_twin[0]} rad`);
@@ -60,8 +69,8 @@ export async function drag_opens_door({ browser, program, expect }) {
 }
 
 export async function two_pages_share_a_run({ browser, program, expect }) {
-  const first = await open_page(browser, program.link);
-  const second = await open_page(browser, program.link);
+  const first = await open_page(browser, cheap(program.link));
+  const second = await open_page(browser, cheap(program.link));
   expect(await comes_true(first.page, (f) => f.clients >= 2), "both pages are counted");
   const start = await first.page.evaluate(() => window.hapticgiant.handle_on_screen);
   await first.page.mouse.move(start.x, start.y);
@@ -80,7 +89,7 @@ export async function two_pages_share_a_run({ browser, program, expect }) {
 
 export async function unreadable_messages_are_noted({ browser, program, expect }) {
   let to_page = null;
-  const { page, close } = await open_page(browser, program.link, {}, async (opened) => {
+  const { page, close } = await open_page(browser, cheap(program.link), {}, async (opened) => {
     await opened.routeWebSocket(/\/ws/, (socket) => {
       to_page = socket;
       const server = socket.connectToServer();
@@ -89,12 +98,7 @@ export async function unreadable_messages_are_noted({ browser, program, expect }
   });
   for (const text of ["{", '{"type":"frame"}', '{"type":"toString"}', "[]", "null"])
     to_page.send(text);
-  const noted = await page
-    .waitForFunction(() => window.hapticgiant.unreadable === 5, null, PATIENCE)
-    .then(
-      () => true,
-      () => false,
-    );
+  const noted = await page_comes_to(page, () => window.hapticgiant.unreadable === 5);
   expect(noted, "messages that cannot be read are counted");
   const note = await page.textContent("#notices");
   expect(/could not be read/.test(note), `and noted: ${note}`);
@@ -106,7 +110,7 @@ export async function unreadable_messages_are_noted({ browser, program, expect }
 export async function connection_comes_back({ browser, program, expect }) {
   let cut = null;
   let connections = 0;
-  const { page, close } = await open_page(browser, program.link, {}, async (opened) => {
+  const { page, close } = await open_page(browser, cheap(program.link), {}, async (opened) => {
     await opened.routeWebSocket(/\/ws/, (socket) => {
       connections += 1;
       const server = socket.connectToServer();
@@ -114,36 +118,25 @@ export async function connection_comes_back({ browser, program, expect }) {
     });
   });
   await cut();
-  const lost = await page
-    .waitForFunction(() => document.body.dataset.connected === "false", null, PATIENCE)
-    .then(
-      () => true,
-      () => false,
-    );
+  const lost = await page_comes_to(page, () => document.body.dataset.connected === "false");
   expect(lost, "the page says that the connection is lost");
   await drawn(page);
-  expect(connections === 2, `it comes back by itself (${connections} connections)`);
+  expect(connections >= 2, `it comes back by itself (${connections} connections)`);
   const { time_s } = await frame_of(page);
   expect(await comes_true(page, (f) => f.time_s > time_s), "frames go on");
   await close();
 }
 
 export async function headset_holds_the_handle({ browser, program, expect }) {
-  const { page, problems, close } = await open_page(browser, program.link, {}, wear_headset);
+  const { page, problems, close } = await open_page(browser, cheap(program.link), {}, wear_headset);
+  const view = await page.evaluate(() => window.hapticgiant.on_screen([0, 0, 0]));
   for (const kind of ["vr", "ar"]) {
     await page.click(`#enter-${kind}`);
-    const worn = await page
-      .waitForFunction(() => window.hapticgiant.is_hand_tracked, null, PATIENCE)
-      .then(
-        () => true,
-        () => false,
-      );
+    const worn = await page_comes_to(page, () => window.hapticgiant.is_hand_tracked);
     expect(worn, `${kind.toUpperCase()} begins and sees a controller`);
-    await page.evaluate(() => {
-      const { right } = window.xr_device.controllers;
-      right.position.set(0.2, 1.2, -0.4);
-      right.updateButtonValue("trigger", 1);
-    });
+    await page.evaluate(() => window.xr_device.controllers.right.position.set(0.2, 1.2, -0.4));
+    await pictures(page); // until three knows where it is
+    await page.evaluate(() => window.xr_device.controllers.right.updateButtonValue("trigger", 1));
     expect(await comes_true(page, (f) => f.hand.active), "the trigger takes hold of the handle");
     const { hand } = await frame_of(page);
     await page.evaluate(() => window.xr_device.controllers.right.position.set(0.2, 1.2, -0.5));
@@ -156,6 +149,10 @@ export async function headset_holds_the_handle({ browser, program, expect }) {
     expect(await comes_true(page, (f) => !f.hand.active), "letting go of the trigger lets go");
     await page.evaluate(() => window.xr_device.activeSession?.end());
     await page.waitForFunction(() => !window.xr_device.activeSession, null, PATIENCE);
+    await pictures(page);
+    const now = await page.evaluate(() => window.hapticgiant.on_screen([0, 0, 0]));
+    const moved = Math.hypot(now.x - view.x, now.y - view.y);
+    expect(moved < 1, `the page looks from where it did before: ${moved.toFixed(1)} px`);
   }
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
   await close();
@@ -167,9 +164,9 @@ async function follows(page, command) {
 }
 
 export async function changes_reach_the_program({ browser, program, expect }) {
-  const first = await open_page(browser, program.link);
+  const first = await open_page(browser, cheap(program.link));
   if (!(await follows(first.page, "set"))) return first.close();
-  const second = await open_page(browser, program.link);
+  const second = await open_page(browser, cheap(program.link));
   const { name, value, max } = (await scene_of(first.page)).settings.find((s) => s.value > 0);
   const box = `[data-setting="${name}"]`;
   const wanted = String(Number((0.5 * value).toPrecision(3)));
@@ -177,13 +174,13 @@ export async function changes_reach_the_program({ browser, program, expect }) {
   await second.page.click("#tab-change");
   await first.page.fill(box, wanted);
   await first.page.press(box, "Enter");
-  const arrives = await second.page
-    .waitForFunction(([b, w]) => document.querySelector(b).value === w, [box, wanted], PATIENCE)
-    .then(
-      () => true,
-      () => false,
-    );
+  const arrives = await page_comes_to(second.page, ([b, w]) => document.querySelector(b).value === w, [box, wanted]);
   expect(arrives, `${name} = ${wanted} reaches the program and comes back to another page`);
+
+  await second.page.reload(PATIENCE);
+  await drawn(second.page);
+  const known = await second.page.inputValue(box);
+  expect(known === wanted, `a page that is opened later knows it: ${known}`);
 
   await first.page.fill(box, String(10 * max + 1));
   await first.page.press(box, "Enter");
@@ -195,7 +192,7 @@ export async function changes_reach_the_program({ browser, program, expect }) {
 }
 
 export async function time_is_controlled({ browser, program, expect }) {
-  const { page, problems, close } = await open_page(browser, program.link);
+  const { page, problems, close } = await open_page(browser, cheap(program.link));
   if (!(await follows(page, "pause"))) return close();
   await page.click("#pause");
   expect(await comes_true(page, (f) => f.run_state.is_paused), "pause");
@@ -217,12 +214,7 @@ export async function time_is_controlled({ browser, program, expect }) {
   expect(again, "the run starts again");
   await drawn(page);
   await page.selectOption("#scenario", "excavator");
-  const other = await page
-    .waitForFunction(() => window.hapticgiant.scene.environment === "excavator", null, PATIENCE)
-    .then(
-      () => true,
-      () => false,
-    );
+  const other = await page_comes_to(page, () => window.hapticgiant.scene.environment === "excavator");
   await drawn(page);
   expect(other, "another scenario, same page");
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
@@ -230,23 +222,35 @@ export async function time_is_controlled({ browser, program, expect }) {
 }
 
 export async function recording_is_played({ browser, program, command, expect }) {
-  const live = await open_page(browser, program.link);
+  const live = await open_page(browser, cheap(program.link));
   const can_record = await follows(live.page, "restart");
   await live.close();
   if (!can_record) return;
   const folder = mkdtempSync(join(tmpdir(), "hapticgiant-"));
-  const args = ["run", "door", "--fast", "--duration", "4", "--recordings", folder];
-  spawnSync(command[0], args); // its exit code says that events are missing: it is short
-  const file = join(folder, "latest.mcap");
-  const replay = await start_program([command[0], "replay", file, "--view", "--compare", file]);
-  const { page, problems, close } = await open_page(browser, replay.link);
+  const record = (name, ...more) => {
+    const to = join(folder, name);
+    // its exit code says that events are missing: it is short
+    spawnSync(command[0], ["run", "door", "--fast", "--duration", DOOR_OPEN, ...more, "--recordings", to]);
+    return join(to, "latest.mcap");
+  };
+  const file = record("script");
+  const other = record("nobody", "--user", "none");
+  const replay = await start_program([command[0], "replay", file, "--view", "--compare", other]);
+  const { page, problems, close } = await open_page(browser, cheap(replay.link));
   expect(await comes_true(page, (f) => f.ghost !== null), "a second recording comes along");
   expect(!(await page.isVisible("#hand")), "nobody can take the handle");
-  await page.locator("#scrub").evaluate((slider) => {
-    slider.value = "1";
-    for (const name of ["input", "change"]) slider.dispatchEvent(new Event(name));
-  });
-  expect(await comes_true(page, (f) => f.run_state.position_s < 3), "scrubbing goes back");
+  await page.click("#pause");
+  expect(await comes_true(page, (f) => f.run_state.is_paused), "it pauses");
+  for (const place of [1, Number(DOOR_OPEN) - 0.5]) {
+    await page.locator("#scrub").evaluate((slider, value) => {
+      slider.value = String(value);
+      for (const name of ["input", "change"]) slider.dispatchEvent(new Event(name));
+    }, place);
+    const is_there = await comes_true(page, (f) => Math.abs(f.run_state.position_s - place) < 0.05);
+    expect(is_there, `scrubbing goes to ${place} s`);
+  }
+  const pixels = await hide_and_compare(page, "ghost");
+  expect(pixels >= SMALLEST_GHOST, `the second recording covers ${pixels} pixels`);
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
   await close();
   await replay.stop();
@@ -254,7 +258,7 @@ export async function recording_is_played({ browser, program, command, expect })
 }
 
 export async function program_is_restarted({ browser, program, command, expect }) {
-  const { page, close } = await open_page(browser, program.link);
+  const { page, close } = await open_page(browser, cheap(program.link));
   if (!(await follows(page, "restart"))) return close();
   await program.stop();
   await page.waitForFunction(() => document.body.dataset.connected === "false", null, PATIENCE);

@@ -32,6 +32,7 @@ function expect(is_true, text) {
 }
 
 const browser = await start_browser();
+const stopping = [];
 for (const [name, run] of Object.entries(cases)) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   console.log(`-- ${name.replaceAll("_", " ")}`);
@@ -42,7 +43,8 @@ for (const [name, run] of Object.entries(cases)) {
     expect(false, String(error));
   }
   for (const context of browser.contexts()) await context.close();
-  await program.stop();
+  stopping.push(program.stop());
 }
+await Promise.all(stopping);
 await browser.close();
 process.exit(failures === 0 ? 0 : 1);

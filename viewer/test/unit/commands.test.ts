@@ -29,6 +29,11 @@ describe("Commands", () => {
     expect(refused).toEqual([{ command: "scenario", name: "walk", reason: "unknown" }]);
   });
 
+  it("tells a refused message from a refused command", () => {
+    commands.take({ type: "answer", id: -1, is_accepted: false, reason: "too long" });
+    expect(refused).toEqual([{ command: "message", name: "", reason: "too long" }]);
+  });
+
   it("refuses while nobody is there", () => {
     is_connected = false;
     commands.send("pause");

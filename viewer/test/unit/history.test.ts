@@ -10,6 +10,7 @@ describe("Table", () => {
       table.push([i, -i]);
       expect(table.length).toBe(Math.min(5, i + 1));
       expect(table.last("a")).toBe(i);
+      expect(table.first_row).toBe(Math.max(0, i - 4));
     }
     expect([...table.column("a")]).toEqual([18, 19, 20, 21, 22]);
     expect([...table.column("b")]).toEqual([-18, -19, -20, -21, -22]);
@@ -43,9 +44,15 @@ describe("history of a scene", () => {
     expect(table.last("twin.hinge")).toBe(0.4);
     expect(table.last("torque.m2_Nm")).toBe(6);
     expect(table.last("elbow_y_m")).toBe(5);
-    expect(table.last("active.m2")).toBe(0);
-    expect(table.last("active.hand x")).toBe(1);
-    expect(table.last("active.hinge")).toBe(-1);
+    expect(table.last("active.manipulator.m2")).toBe(0);
+    expect(table.last("active.cartesian.hand x")).toBe(1);
+    expect(table.last("active.twin.hinge")).toBe(-1);
+  });
+
+  it("keeps joints of device and twin with the same name apart", () => {
+    const limits = scene.limits.map((limit) => ({ ...limit, name: "same" }));
+    const { names } = history_of({ ...scene, limits });
+    expect(new Set(names).size).toBe(names.length);
   });
 
   it("counts seven coordinates for a floating joint", () => {

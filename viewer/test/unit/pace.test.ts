@@ -33,6 +33,14 @@ describe("Quality", () => {
     expect(after(1000, 100).pixel_ratio(2)).toBeLessThan(1);
   });
 
+  it("follows the wish of the link", () => {
+    const best = new Quality("best");
+    for (let i = 0; i < 100; i++) best.observe(100 * i);
+    expect(best.pixel_ratio(2)).toBe(2);
+    expect(new Quality("fast").has_shadows).toBe(false);
+    expect(new Quality("fast").pixel_ratio(2)).toBeLessThan(1);
+  });
+
   it("does not take a hidden tab for a slow one", () => {
     expect(after(100, 5000).pixel_ratio(2)).toBe(2);
   });

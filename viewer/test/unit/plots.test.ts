@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { history_of } from "../../src/data/history";
-import { bins_of, quantile, spans_of } from "../../src/plots/bins";
+import { bins_of, quantile, spans_of, thinned_rows } from "../../src/plots/bins";
 import { index_at, time_specs } from "../../src/plots/specs";
 import { joint, scene } from "./examples";
 
@@ -22,6 +22,26 @@ describe("time_specs", () => {
     expect(twin.limits.map(({ value }) => Math.round(value))).toEqual([0, 86]);
   });
 
+  it("shows joints that turn in degrees and those that slide in metres, in any order", () => {
+    const slide = joint("rail", { type: "prismatic", q_max: 2 });
+    const turn = joint("table", { q_max: Math.PI });
+    for (const joints of [
+      [slide, turn],
+      [turn, slide],
+    ]) {
+      const device = { ...scene.device, joints };
+      const specs = time_specs({ ...scene, device, gantry_joints: 2 });
+      const values = (id: string): unknown => specs.find((spec) => spec.id === id)?.limits;
+      expect(values("gantry")).toEqual([{ series: 0, value: 180 }]);
+      expect(values("gantry-slides")).toEqual([{ series: 0, value: 2 }]);
+    }
+  });
+
+  it("needs no gantry", () => {
+    const ids = time_specs({ ...scene, gantry_joints: 0 }).map(({ id }) => id);
+    expect(ids.filter((id) => id.startsWith("gantry"))).toEqual([]);
+  });
+
   it("leaves out plots without lines", () => {
     expect(time_specs(scene).map(({ id }) => id)).not.toContain("twin-position");
   });
@@ -31,6 +51,25 @@ describe("index_at", () => {
   it("finds the first time that is not before", () => {
     const times = Float64Array.from([1, 2, 3]);
     expect([0, 1, 1.5, 3, 4].map((time) => index_at(times, time))).toEqual([0, 0, 1, 2, 3]);
+  });
+});
+
+describe("thinned_rows", () => {
+  it("has all rows when there are few, and the newest one always", () => {
+    expect(thinned_rows(2, 6, 0, 10)).toEqual([2, 3, 4, 5]);
+    expect(thinned_rows(0, 100, 0, 10).at(-1)).toBe(99);
+    expect(thinned_rows(0, 100, 0, 10).length).toBeLessThanOrEqual(11);
+    expect(thinned_rows(3, 3, 0, 10)).toEqual([]);
+  });
+
+  it("takes the same rows while time goes on and old rows are forgotten", () => {
+    const seen = (forgotten: number): number[] =>
+      thinned_rows(0, 100, forgotten, 10)
+        .slice(0, -1)
+        .map((row) => row + forgotten);
+    for (let forgotten = 1; forgotten < 40; forgotten++) {
+      for (const row of seen(forgotten)) expect(row % 16).toBe(0);
+    }
   });
 });
 

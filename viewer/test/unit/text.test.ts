@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { felt_text, joint_text, share_between, time_text } from "../../src/text";
+import { effort_text, felt_text, is_pushing, joint_text, share_between, time_text, unit_text } from "../../src/text";
 import { frame } from "./examples";
 
 describe("time_text", () => {
@@ -36,6 +36,25 @@ describe("share_between", () => {
   });
 });
 
+describe("effort_text", () => {
+  const joint = { type: "revolute", tau_max: 176 } as const;
+
+  it("has the joint's unit and its largest", () => {
+    expect(effort_text(12, joint)).toBe("12.0 Nm of 176 Nm");
+    expect(effort_text(-3, { type: "prismatic", tau_max: null })).toBe("-3.0 N");
+  });
+
+  it("does without a measurement", () => {
+    expect(effort_text(NaN, joint)).toBe("not measured");
+  });
+});
+
+describe("unit_text", () => {
+  it("raises powers", () => {
+    expect(unit_text("Nms^2/rad^2")).toBe("Nms\u00b2/rad\u00b2");
+  });
+});
+
 describe("felt_text", () => {
   const zero: [number, number, number] = [0, 0, 0];
 
@@ -43,6 +62,14 @@ describe("felt_text", () => {
     const felt = { index: 0, name: "m4", text: "m4: upper limit", force_N: zero, torque_Nm: zero };
     expect(felt_text({ ...frame, felt }, "")).toBe("m4: upper limit");
     expect(felt_text(frame, "mostly damping (60 %)")).toContain("mostly damping");
-    expect(felt_text({ ...frame, force_N: [0, 0, 0.2] }, "mostly damping")).toContain("Nothing");
+    expect(felt_text(frame, "")).toContain("Nothing");
+  });
+
+  it("does not blame a limit while nobody pushes", () => {
+    const felt = { index: 0, name: "m4", text: "m4: lower limit", force_N: zero, torque_Nm: zero };
+    const free = { ...frame, force_N: zero, torque_Nm: zero, felt };
+    expect(is_pushing(free)).toBe(false);
+    expect(felt_text(free, "")).toContain("do not push");
+    expect(is_pushing({ ...free, torque_Nm: [0, 0, 1] })).toBe(true);
   });
 });
