@@ -128,8 +128,11 @@ TEST(Transitions, PowerComesOnlyByRequestsAndMotionOnlyFromArmed) {
       if (moves && !is_powered(next)) {
         EXPECT_TRUE(event == Event::kHardRule || event == Event::kStandstill);
       }
-      if (event == Event::kHardRule) EXPECT_EQ(next, State::kFault);
-      if (event == Event::kRule) EXPECT_TRUE(next == State::kFault || next == State::kToFault);
+      if (event == Event::kHardRule) {
+        EXPECT_EQ(next, State::kFault);
+      } else if (event == Event::kRule) {
+        EXPECT_TRUE(next == State::kFault || next == State::kToFault);
+      }
     }
   }
 }
