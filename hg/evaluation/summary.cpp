@@ -16,15 +16,7 @@ constexpr double kToleranceRadians = 5e-3;
 constexpr double kTrueToleranceMetres = 1e-3;
 constexpr double kTrueToleranceRadians = 2e-3;
 
-// bins of histograms; the first takes what is smaller
-constexpr double kLowest = 1e-9;
-const double kLogWidth = std::log(1.01);
-
-nlohmann::ordered_json to_json(const Distribution& d) {
-  return {{"median", d.median}, {"p99_9", d.p99_9}, {"max", d.max}};
-}
-
-nlohmann::ordered_json to_json(const LinkCounts& counts) {
+nlohmann::ordered_json link_json(const LinkCounts& counts) {
   nlohmann::ordered_json json = {{"sent", counts.sent}, {"received", counts.received}};
   for (const LinkCount& count : kLinkTroubles) json[count.name] = counts.*count.value;
   return json;
@@ -38,38 +30,7 @@ double mean(double sum, std::uint64_t count) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-std::string priority_of(const RunFacts& facts) {
-  if (facts.is_fast) return "normal (fast)";
-  if (!facts.is_real_time) return "normal (SCHED_FIFO refused)";
-  return facts.is_memory_locked ? "real time" : "real time (memory not locked)";
-}
-
 }  // namespace
-
-void Histogram::add(double value) noexcept {
-  std::size_t bin = 0;
-  if (value > kLowest) {
-    const double position = 1.0 + std::log(value / kLowest) / kLogWidth;
-    bin = static_cast<std::size_t>(std::min(position, static_cast<double>(kBins - 1)));
-  }
-  ++counts_[bin];
-  ++count_;
-  max_ = std::max(max_, value);
-}
-
-double Histogram::at(double share) const noexcept {
-  const auto rank = static_cast<std::uint64_t>(share * static_cast<double>(count_ - 1));
-  std::size_t bin = 0;
-  for (std::uint64_t below = counts_[0]; below <= rank; below += counts_[bin]) ++bin;
-  if (bin == 0) return 0.0;
-  const double middle = static_cast<double>(bin) - 0.5;
-  return std::min(kLowest * std::exp(middle * kLogWidth), max_);
-}
-
-Distribution Histogram::distribution() const noexcept {
-  if (count_ == 0) return {};
-  return {at(0.5), at(0.999), max_};
-}
 
 std::string link_text(const LinkCounts& counts) {
   std::string text = fmt::format("{} sent, {} received", counts.sent, counts.received);
@@ -142,7 +103,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["law"] = facts.law;
   json["bounds"] = facts.bounds;
   json["rate_Hz"] = facts.rate_Hz;
-  json["fast"] = facts.is_fast;
+  json["fast"] = facts.timing.is_fast;
   json["duration_s"] = duration_s_;
   json["wall_time_s"] = facts.wall_time_s;
   json["cycles"] = cycles_;
@@ -173,15 +134,13 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["acceleration_change_per_cycle"] = evaluation::to_json(acceleration_change_.distribution());
   json["acceleration_change_per_cycle"]["mean"] = mean(sum_acceleration_change_, running_cycles_);
   json["acceleration_change_per_cycle"]["unit"] = "m/s^2";
-  json["cycle_time_us"] = evaluation::to_json(cycle_time_us_.distribution());
+  json["cycle_time_us"] = evaluation::to_json(cycle_time_us_);
   json["state_hash"] = fmt::format("{:016x}", last_hash_);
-  json["overruns"] = facts.overruns;
+  add_to(json, facts.timing);
   json["dropped_samples"] = facts.dropped;
   json["allocations_in_loop"] = facts.allocations_in_loop;
-  json["real_time"] = facts.is_real_time;
-  json["memory_locked"] = facts.is_memory_locked;
   json["stop_timed_out"] = facts.stop_timed_out;
-  if (facts.link.sent > 0) json["link"] = evaluation::to_json(facts.link);
+  if (facts.link.sent > 0) json["link"] = link_json(facts.link);
   json["recording"] = facts.recording;
   json["fault"] = {{"code", static_cast<int>(fault_.code)},
                    {"what", std::string(to_string(fault_.code))},
@@ -285,8 +244,9 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("smoothness", fmt::format("acceleration changes by {:.4f} m/s^2 per cycle on average",
                                  mean(sum_acceleration_change_, running_cycles_)));
   line("cycle time", fmt::format("median {:.1f} us, 99.9 % {:.1f} us, max {:.1f} us; {} late",
-                                 time.median, time.p99_9, time.max, facts.overruns));
-  line("priority", priority_of(facts));
+                                 time.median, time.p99_9, time.max, facts.timing.overruns));
+  text += timing_lines(facts.timing);
+  line("priority", priority_text(facts.timing));
   line("allocations", fmt::format("{} in the loop", facts.allocations_in_loop));
   if (facts.link.sent > 0) line("link", link_text(facts.link));
   line("state",

@@ -13,32 +13,11 @@
 
 #include "hg/evaluation/events.h"
 #include "hg/evaluation/reality.h"
+#include "hg/evaluation/timing.h"
 #include "hg/signals/link_counts.h"
 #include "hg/signals/state.h"
 
 namespace hg::evaluation {
-
-/// Median, 99.9th percentile and maximum of a quantity.
-struct Distribution {
-  double median = 0.0, p99_9 = 0.0, max = 0.0;
-};
-
-/// Counts values in bins 1 % wide, so that hours of samples need no more memory than seconds.
-class Histogram {
- public:
-  /// Values below 1e-9, which count as zero, and above 1e9 are not told apart.
-  void add(double value) noexcept;
-  /// Median and percentile to 1 %, the maximum exactly; zeros when there are no values.
-  Distribution distribution() const noexcept;
-
- private:
-  static constexpr std::size_t kBins = 4168;
-  double at(double share) const noexcept;
-
-  std::vector<std::uint64_t> counts_ = std::vector<std::uint64_t>(kBins);
-  std::uint64_t count_ = 0;
-  double max_ = 0.0;
-};
 
 /// What the runtime alone knows.
 struct RunFacts {
@@ -47,15 +26,12 @@ struct RunFacts {
   std::string law;     ///< of the rendering
   std::string bounds;  ///< of its limits
   double rate_Hz = 0.0;
-  bool is_fast = false;
-  std::uint64_t overruns = 0;
+  Timing timing;
   std::uint64_t dropped = 0;
   std::uint64_t allocations_in_loop = 0;
-  bool is_real_time = false;      ///< SCHED_FIFO
-  bool is_memory_locked = false;  ///< mlockall
-  bool stop_timed_out = false;    ///< drives were disabled while the device was moving
-  LinkCounts link;                ///< to a remote device; nothing was sent: there is none
-  std::string recording;          ///< file, empty when off
+  bool stop_timed_out = false;  ///< drives were disabled while the device was moving
+  LinkCounts link;              ///< to a remote device; nothing was sent: there is none
+  std::string recording;        ///< file, empty when off
   double wall_time_s = 0.0;
 };
 

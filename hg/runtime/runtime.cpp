@@ -1,11 +1,8 @@
 #include "hg/runtime/runtime.h"
 
-#include <pthread.h>
-#include <sched.h>
-#include <sys/mman.h>
 #include <time.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -20,19 +17,33 @@ namespace {
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
 constexpr std::int64_t kPausePoll = 2'000'000;  // ns
 constexpr double kLongestStop = 1.0;  // s; a device that is still moving then is left to its brakes
-
-// SCHED_FIFO where the system allows it
-bool become_real_time() noexcept {
-  sched_param priority{};
-  priority.sched_priority = 80;
-  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0;
-}
+constexpr double kStandstill = 2e-2;  // rad/s and m/s; measured, so above the noise of encoders
+constexpr double kRest = 0.1;         // s at rest; an arm whose brakes close late sags within it
 
 std::int64_t now_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   return now.tv_sec * kNanoseconds + now.tv_nsec;
 }
+
+// A device after a fault: the way to its rest belongs into the recording.
+class WayToRest {
+ public:
+  /// After each cycle in mode fault: whether nothing is left to be seen.
+  bool is_over(const Sample& sample) noexcept {
+    const double now_s = sample.record.time_s;
+    if (since_s_ < 0.0) since_s_ = moved_s_ = now_s;
+    // what cannot be measured counts as being at rest
+    if (sample.sensors.dq_m.lpNorm<Eigen::Infinity>() > kStandstill ||
+        sample.record.robot.dq_p.lpNorm<Eigen::Infinity>() > kStandstill) {
+      moved_s_ = now_s;
+    }
+    return now_s > moved_s_ + kRest || now_s > since_s_ + kLongestStop;
+  }
+
+ private:
+  double since_s_ = -1.0, moved_s_ = -1.0;
+};
 
 void sleep_until(std::int64_t time_ns) noexcept {
   const timespec time{.tv_sec = time_ns / kNanoseconds, .tv_nsec = time_ns % kNanoseconds};
@@ -49,6 +60,7 @@ void check(const Options& options) {
           options.rate_Hz);
   require(std::isfinite(options.duration_s) && options.duration_s >= 0.0,
           "duration_s must not be negative", options.duration_s);
+  check(options.thread);
 }
 
 Runtime::Runtime(const Options& options, cycle::Cycle& cycle, device::Device& device)
@@ -79,17 +91,33 @@ void Runtime::run_cycle(Sample& sample) noexcept {
   device_.read(sample.sensors);
   const Truth* truth = device_.truth();
   sample.truth = truth != nullptr ? *truth : Truth{};
-  const auto begin = std::chrono::steady_clock::now();
+  read_ns_ = stage_ns_ = now_ns();
   while (hand_targets_.pop(sample.operator_input.hand_target)) {
   }
   sample.operator_input.change = next_change();
   cycle_.step(sample.sensors, sample.operator_input, sample.command, sample.record);
-  const auto end = std::chrono::steady_clock::now();
+  const std::int64_t end_ns = now_ns();
   device_.write(sample.command);
-  sample.cycle_time_us = std::chrono::duration<double, std::micro>(end - begin).count();
+  sample.cycle_time_us = 1e-3 * static_cast<double>(end_ns - read_ns_);
+  if (!options_.is_fast) count_stages();
   const bool is_slow = sample.cycle_time_us > options_.slow_cycle_us;
-  if (is_slow && (report_.is_real_time || options_.is_fast)) {
+  if (is_slow && (report_.thread.priority > 0 || options_.is_fast)) {
     cycle_.keep_problem(sample.cycle_time_us);
+  }
+}
+
+void Runtime::stage_ended(void* runtime, Stage stage) noexcept {
+  auto& self = *static_cast<Runtime*>(runtime);
+  const std::int64_t now = now_ns();
+  self.stage_time_ns_[static_cast<std::size_t>(stage)] += now - self.stage_ns_;
+  self.stage_ns_ = now;
+}
+
+void Runtime::count_stages() noexcept {
+  for (std::size_t i = 0; i < stage_time_ns_.size(); ++i) {
+    std::int64_t& time_ns = stage_time_ns_[i];
+    if (time_ns > 0) report_.stage_us[i].add(1e-3 * static_cast<double>(time_ns));
+    time_ns = 0;
   }
 }
 
@@ -99,10 +127,15 @@ ParameterChange Runtime::next_change() noexcept {
   return change;
 }
 
+Schedule Runtime::new_schedule() const noexcept {
+  return Schedule(now_ns(), std::llround(1e9 / (options_.rate_Hz * speed_)),
+                  report_.told_late_cycles ? 0 : Schedule::kMostToMakeUp);
+}
+
 // Until the next cycle is due. Cycles that were not run while paused are not late.
 void Runtime::wait_for_turn(Schedule& schedule) noexcept {
-  report_.overruns += schedule.advance(now_ns());
   sleep_until(schedule.due_ns());
+  report_.wake_up_us.add(1e-3 * static_cast<double>(now_ns() - schedule.due_ns()));
   bool was_paused = false;
   while (!pace_.may_run() && !stop_requested_.load(std::memory_order_relaxed)) {
     was_paused = true;
@@ -111,7 +144,20 @@ void Runtime::wait_for_turn(Schedule& schedule) noexcept {
   const double speed = pace_.speed();
   if (!was_paused && speed == speed_) return;
   speed_ = speed;
-  schedule = Schedule(now_ns(), std::llround(1e9 / (options_.rate_Hz * speed)));
+  schedule = new_schedule();
+}
+
+// Cycles that a device which is the clock had to do without, because this one took so long.
+std::uint32_t Runtime::late_for_device() const noexcept {
+  const double periods = 1e-9 * static_cast<double>(now_ns() - read_ns_) * options_.rate_Hz;
+  return periods > 1.0 ? static_cast<std::uint32_t>(std::min(periods, 1e9)) : 0;
+}
+
+void Runtime::count_late(std::uint32_t cycles, OperatorFrame& input) noexcept {
+  report_.overruns += cycles;
+  overruns_in_a_row_ = cycles == 0 ? 0 : overruns_in_a_row_ + cycles;
+  report_.most_overruns_in_a_row = std::max(report_.most_overruns_in_a_row, overruns_in_a_row_);
+  input.late_cycles = report_.told_late_cycles ? cycles : 0;
 }
 
 void Runtime::hand_out(const Sample& sample) noexcept {
@@ -129,16 +175,22 @@ void Runtime::release(CommandFrame& command) noexcept {
   device_.write(command);
 }
 
+void Runtime::prepare_thread() noexcept {
+  if (options_.is_fast) return;
+  report_.thread = become_real_time(options_.thread);
+  report_.told_late_cycles = options_.tells_late_cycles && report_.thread.priority > 0;
+  cycle_.watch({.ended = &Runtime::stage_ended, .listener = this});
+}
+
 void Runtime::loop() noexcept {
-  if (!options_.is_fast) {
-    report_.is_real_time = become_real_time();
-    report_.is_memory_locked = report_.is_real_time && mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
-  }
+  prepare_thread();
   const auto sample = std::make_unique<Sample>();
-  Schedule schedule(now_ns(), std::llround(1e9 / options_.rate_Hz));
+  Schedule schedule = new_schedule();
+  const long faults_before = page_faults();
 
   AllocationCounter allocations;
   double stop_since_s = -1.0;
+  WayToRest way_to_rest;
   while (true) {
     run_cycle(*sample);
     const CycleRecord& record = sample->record;
@@ -148,17 +200,23 @@ void Runtime::loop() noexcept {
     const bool is_over = options_.duration_s > 0.0 && record.time_s >= options_.duration_s;
     const bool is_stopping = is_over || stop_requested_.load(std::memory_order_relaxed);
     if (is_stopping && stop_since_s < 0.0) stop_since_s = record.time_s;
+    if (record.mode == Mode::kFault && way_to_rest.is_over(*sample)) break;
     const bool is_at_rest = record.mode != Mode::kRunning && record.mode != Mode::kStopping;
-    if (record.mode == Mode::kFault || (is_stopping && is_at_rest)) break;
-    report_.stop_timed_out = is_stopping && record.time_s > stop_since_s + kLongestStop;
-    if (report_.stop_timed_out) break;
+    if (is_stopping && is_at_rest && record.mode != Mode::kFault) break;
+    const bool has_waited = is_stopping && record.time_s > stop_since_s + kLongestStop;
+    report_.stop_timed_out = has_waited && record.mode != Mode::kFault;
+    if (has_waited) break;
     sample->operator_input.request =
         next_request(record, cycle_.is_held(sample->sensors), is_stopping);
 
-    if (options_.is_fast || device_.is_clock()) continue;
-    wait_for_turn(schedule);
+    if (options_.is_fast) continue;
+    const std::uint32_t late = device_.is_clock() ? late_for_device() : schedule.advance(now_ns());
+    count_late(late, sample->operator_input);
+    if (!device_.is_clock()) wait_for_turn(schedule);
   }
   release(sample->command);
+  cycle_.watch({});
+  report_.page_faults = page_faults() - faults_before;
   report_.allocations = allocations.count();
   finished_.store(true);
 }

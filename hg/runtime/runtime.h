@@ -4,14 +4,19 @@
 /// counted. Only in fast mode, where there is no real time to keep, does it wait.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <thread>
 #include <vector>
 
+#include "hg/core/histogram.h"
 #include "hg/core/spsc_ring.h"
+#include "hg/core/stage_probe.h"
 #include "hg/cycle/cycle.h"
 #include "hg/device/device.h"
+#include "hg/runtime/control_thread.h"
 #include "hg/runtime/pace.h"
 #include "hg/runtime/schedule.h"
 #include "hg/signals/state.h"
@@ -29,6 +34,11 @@ struct Options {
   /// A cycle that takes longer is slow: its problem is kept. In real time only with a priority for
   /// it; otherwise the time says more about other programs.
   double slow_cycle_us = kInfinity;
+  ThreadOptions thread;  ///< of the control thread, in real time
+  /// For a machine that does not wait for its controller: the cycle is told how many cycles were
+  /// late, so that too many of them stop the device, and none is made up for. Only where the
+  /// thread is real time; of an ordinary one, and with a device that waits, they are counted.
+  bool tells_late_cycles = false;
 };
 
 /// Throws SetupError naming the option that is out of range.
@@ -37,12 +47,16 @@ void check(const Options& options);
 /// Known after join().
 struct Report {
   std::uint64_t cycles = 0;
-  std::uint64_t overruns = 0;     ///< cycles that ended after the next one was due, or were skipped
+  std::uint64_t overruns = 0;  ///< cycles that ended after the next one was due, or were left out
+  std::uint64_t most_overruns_in_a_row = 0;
   std::uint64_t dropped = 0;      ///< samples that no observer saw
   std::uint64_t allocations = 0;  ///< heap allocations inside the loop
-  bool is_real_time = false;      ///< the thread ran with SCHED_FIFO
-  bool is_memory_locked = false;  ///< and could not be paged out
+  long page_faults = 0;           ///< inside the loop
+  ThreadReport thread;            ///< in real time
+  bool told_late_cycles = false;  ///< the cycle was told about them: too many were a fault
   bool stop_timed_out = false;    ///< the device was still moving when it was left to its brakes
+  Histogram wake_up_us;           ///< after a cycle was due, in real time
+  std::array<Histogram, kStageCount> stage_us;  ///< of the cycle, in real time
 };
 
 class Runtime {
@@ -80,7 +94,13 @@ class Runtime {
   void hand_out(const Sample& sample) noexcept;
   void release(CommandFrame& command) noexcept;
   ParameterChange next_change() noexcept;
+  void prepare_thread() noexcept;
+  Schedule new_schedule() const noexcept;
   void wait_for_turn(Schedule& schedule) noexcept;
+  std::uint32_t late_for_device() const noexcept;
+  void count_late(std::uint32_t cycles, OperatorFrame& input) noexcept;
+  static void stage_ended(void* runtime, Stage stage) noexcept;
+  void count_stages() noexcept;
 
   Options options_;
   cycle::Cycle& cycle_;
@@ -90,7 +110,10 @@ class Runtime {
   SpscRing<ParameterChange> parameter_changes_;
   TimedChanges changes_;
   Pace pace_;
-  double speed_ = 1.0;  ///< that the schedule was made for
+  double speed_ = 1.0;                       ///< that the schedule was made for
+  std::int64_t read_ns_ = 0, stage_ns_ = 0;  ///< end of the last read() and of the last stage
+  std::array<std::int64_t, kStageCount> stage_time_ns_{};  ///< in this cycle
+  std::uint64_t overruns_in_a_row_ = 0;
   std::atomic<bool> stop_requested_{false};
   std::atomic<bool> finished_{false};
   Report report_;

@@ -27,20 +27,27 @@ class StillDevice final : public device::Device {
     sensors_.q_p = VectorP::Zero(2);
     sensors_.dead_man = true;
   }
-  void read(SensorFrame& sensors) noexcept override { sensors = sensors_; }
+  void read(SensorFrame& sensors) noexcept override {
+    sensors_.dq_m[0] = speed;
+    sensors = sensors_;
+  }
   void write(const CommandFrame& command) noexcept override {
     ++sensors_.sequence;
     if (sensors_.sequence == lost_sample) ++sensors_.sequence;
     sensors_.dead_man = !(sensors_.sequence >= opens_at && sensors_.sequence < closes_at);
+    if (sensors_.sequence == stalls_at) stall();
     last_target = command.hand_target;
     last_command = command;
     was_enabled |= command.enable;
   }
 
   bool is_clock() const noexcept override { return keeps_time; }
+  void stall() const noexcept { std::this_thread::sleep_for(std::chrono::milliseconds(25)); }
 
   bool keeps_time = false;
   std::uint64_t lost_sample = 0;
+  double speed = 0.0;                         ///< that is measured, whatever it is told
+  std::uint64_t stalls_at = 0;                ///< sample during which write() takes 25 ms
   std::uint64_t opens_at = 0, closes_at = 0;  ///< samples with an open dead-man
   CommandFrame last_command;
   bool was_enabled = false;
@@ -131,12 +138,18 @@ TEST(Runtime, RealTimeModePlaysTheWholeDuration) {
   EXPECT_EQ(report.allocations, 0u);
 }
 
-TEST(Runtime, EndsAtAFault) {
+TEST(Runtime, EndsAtAFaultOnceTheDeviceRests) {
   Parts parts;
   parts.device.lost_sample = 50;
   std::uint64_t seen = 0;
-  const Report report = run(parts, {.is_fast = true, .duration_s = 10.0}, seen);
-  EXPECT_LE(report.cycles, 60u);
+  EXPECT_NEAR(static_cast<double>(run(parts, {.is_fast = true, .duration_s = 10.0}, seen).cycles),
+              50.0 + 100.0, 5.0);
+  // one that never comes to rest is left after a second
+  Parts others;
+  others.device.lost_sample = 50;
+  others.device.speed = 0.5;
+  EXPECT_NEAR(static_cast<double>(run(others, {.is_fast = true, .duration_s = 10.0}, seen).cycles),
+              50.0 + 1000.0, 5.0);
 }
 
 // The last mode of a run of one second in which the dead-man is open for a while.
@@ -192,8 +205,18 @@ TEST(Schedule, MakesUpForAShortDelayAndGivesUpALongOne) {
   EXPECT_EQ(schedule.advance(450), 0u);
   EXPECT_EQ(schedule.due_ns(), 500);
   EXPECT_EQ(schedule.advance(5600), 51u);  // 5000 behind 600
-  EXPECT_EQ(schedule.due_ns(), 5600);
-  EXPECT_EQ(schedule.advance(5650), 0u);
+  EXPECT_EQ(schedule.due_ns(), 5700);      // at a whole period again
+  EXPECT_EQ(schedule.advance(5750), 0u);
+}
+
+TEST(Schedule, LeavesOutWhatItMayNotMakeUpFor) {
+  Schedule schedule(0, 100, 0);
+  EXPECT_EQ(schedule.advance(100), 0u);
+  EXPECT_EQ(schedule.advance(201), 1u);  // the cycle due at 200 is left out
+  EXPECT_EQ(schedule.due_ns(), 300);
+  EXPECT_EQ(schedule.advance(650), 3u);  // those due at 400, 500 and 600
+  EXPECT_EQ(schedule.due_ns(), 700);
+  EXPECT_EQ(schedule.advance(800), 0u);
 }
 
 TEST(SpscRing, TellsThatItIsFullWithoutCounting) {
@@ -301,7 +324,76 @@ TEST(Pace, RefusesWhatIsOutOfRange) {
   EXPECT_FALSE(pace.may_run());  // resuming forgets steps
 }
 
+// Late cycles that the cycle was told about, by sample; the run is over before the device moves.
+std::vector<std::uint32_t> told(const Options& options, bool keeps_time, Report& report) {
+  Parts parts;
+  parts.device.stalls_at = 20;
+  parts.device.keeps_time = keeps_time;
+  Runtime runtime(options, *parts.cycle, parts.device);
+  runtime.start();
+  report = runtime.join();
+  std::vector<std::uint32_t> late;
+  auto sample = std::make_unique<Sample>();
+  while (runtime.pop(*sample)) late.push_back(sample->operator_input.late_cycles);
+  return late;
+}
+
+TEST(Runtime, TellsTheCycleWhatWasMissedWhereTheThreadIsRealTime) {
+  for (const bool keeps_time : {false, true}) {
+    Report report;
+    const auto late =
+        told({.rate_Hz = 200.0, .duration_s = 0.2, .tells_late_cycles = true}, keeps_time, report);
+    EXPECT_GE(report.overruns, 4u);
+    ASSERT_GT(late.size(), 20u);
+    EXPECT_EQ(report.told_late_cycles, report.thread.priority > 0);
+    // 25 ms at 200 Hz: at least four periods were missed by then
+    EXPECT_EQ(late[20] >= 4, report.told_late_cycles) << late[20];
+  }
+}
+
+TEST(Runtime, TellsNobodyAboutLateCyclesOfADeviceThatWaits) {
+  Report report;
+  const auto late = told({.rate_Hz = 200.0, .duration_s = 0.2}, false, report);
+  EXPECT_GE(report.overruns, 4u);
+  for (const std::uint32_t cycles : late) EXPECT_EQ(cycles, 0u);
+}
+
+TEST(Runtime, AnOrdinaryThreadIsNotToldEither) {
+  Report report;
+  const auto late = told(
+      {.rate_Hz = 200.0, .duration_s = 0.2, .thread = {.priority = 0}, .tells_late_cycles = true},
+      false, report);
+  EXPECT_EQ(report.thread.priority, 0);
+  EXPECT_EQ(report.thread.priority_error, 0);  // it was not asked for
+  EXPECT_FALSE(report.told_late_cycles);
+  for (const std::uint32_t cycles : late) EXPECT_EQ(cycles, 0u);
+}
+
+TEST(Runtime, MeasuresWakeUpsAndStagesInRealTimeOnly) {
+  for (const bool is_fast : {false, true}) {
+    Parts parts;
+    std::uint64_t seen = 0;
+    const Report report = run(parts, {.is_fast = is_fast, .duration_s = 0.05}, seen);
+    EXPECT_EQ(report.wake_up_us.count() > 40, !is_fast);
+    const Histogram& solver = report.stage_us[static_cast<std::size_t>(Stage::kSolver)];
+    EXPECT_EQ(solver.count() > 0, !is_fast);
+    EXPECT_EQ(report.allocations, 0u);
+  }
+}
+
+TEST(Runtime, RunsOnTheProcessorThatIsAskedFor) {
+  Parts parts;
+  std::uint64_t seen = 0;
+  EXPECT_EQ(run(parts, {.duration_s = 0.01, .thread = {.cpu = 0}}, seen).thread.cpu, 0);
+  Parts others;
+  const Report report = run(others, {.duration_s = 0.01, .thread = {.cpu = 1023}}, seen);
+  EXPECT_EQ(report.thread.cpu, -1);
+  EXPECT_NE(report.thread.cpu_error, 0);
+}
+
 TEST(Runtime, RefusesImpossibleOptions) {
+  EXPECT_THROW(check({.thread = {.priority = 100}}), SetupError);
+  EXPECT_THROW(check({.thread = {.cpu = -2}}), SetupError);
   EXPECT_THROW(check({.rate_Hz = 0.0}), SetupError);
   EXPECT_THROW(check({.rate_Hz = kInfinity}), SetupError);
   EXPECT_THROW(check({.duration_s = -1.0}), SetupError);
