@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
+#include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -18,7 +21,70 @@ namespace {
 constexpr std::string_view kSamples = "/hapticgiant/sample";
 constexpr std::string_view kEvents = "/hapticgiant/events";
 
+[[noreturn]] void refuse(const std::filesystem::path& file, std::string_view what) {
+  throw SetupError(file.string() + ": must be a recording of this program: " + std::string(what));
+}
+
+/// Stands between the C interface and a listener: nothing that is thrown may leave it.
+struct Teller {
+  RecordingListener& listener;
+  bool has_samples = false, is_complete = false;
+  std::uint64_t samples = 0;
+  std::string error;
+  std::exception_ptr thrown;
+  Sample sample = {};
+
+  void tell(int kind, std::string_view name, std::span<const std::byte> bytes) {
+    const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (kind == mcap_end) is_complete = true;
+    if (kind == mcap_attachment) {
+      listener.configuration({std::string(name), std::string(content)});
+    }
+    if (kind == mcap_channel && name == kSamples) {
+      has_samples = true;
+      if (content != schema_text<Sample>()) error = "its samples are of another version";
+    }
+    if (kind != mcap_message || !error.empty()) return;
+    if (name == kEvents) {
+      Event event;
+      if (CdrReader(bytes).decode(event)) listener.event(event);
+    }
+    if (name != kSamples) return;
+    if (CdrReader(bytes).decode(sample)) {
+      listener.sample(sample);
+    } else {
+      error = "sample " + std::to_string(samples) + " is damaged";
+    }
+    ++samples;
+  }
+
+  static void take(void* context, int kind, const char* name, std::size_t name_size, std::uint64_t,
+                   const std::uint8_t* data, std::size_t size) {
+    Teller& teller = *static_cast<Teller*>(context);
+    if (teller.thrown) return;
+    try {
+      teller.tell(kind, std::string_view(name, name_size),
+                  {reinterpret_cast<const std::byte*>(data), size});
+    } catch (...) {
+      teller.thrown = std::current_exception();
+    }
+  }
+};
+
 }  // namespace
+
+bool read_recording(const std::filesystem::path& file, RecordingListener& listener) {
+  const auto teller = std::make_unique<Teller>(Teller{.listener = listener});
+  std::array<char, 256> error{};
+  const bool is_read =
+      mcap_sink_read(file.c_str(), teller.get(), &Teller::take, error.data(), error.size());
+  if (teller->thrown) std::rethrow_exception(teller->thrown);
+  if (!is_read) refuse(file, error.data());
+  if (!teller->has_samples) refuse(file, "it has no topic /hapticgiant/sample");
+  if (!teller->error.empty()) refuse(file, teller->error);
+  if (teller->samples == 0) refuse(file, "it has no sample");
+  return teller->is_complete;
+}
 
 // What the reader calls back; remembers the first thing that is wrong.
 struct RecordedRun::Taker {
@@ -58,25 +124,25 @@ struct RecordedRun::Taker {
         return taker.channel(text, content);
       case mcap_message:
         return taker.message(text, time_ns, {reinterpret_cast<const std::byte*>(data), size});
-      default:
+      case mcap_attachment:
         taker.run.configuration_.push_back({std::string(text), std::string(content)});
+        return;
+      default:
+        return;
     }
   }
 };
 
 RecordedRun::RecordedRun(const std::filesystem::path& file, double period_s) : file_(file) {
-  const auto fail = [&](std::string_view what) {
-    throw SetupError(file.string() + ": must be a recording of this program: " + std::string(what));
-  };
   Taker taker{*this, static_cast<std::uint64_t>(std::llround(1e9 * period_s))};
   std::array<char, 256> error{};
   if (!mcap_sink_read(file.c_str(), &taker, &Taker::take, error.data(), error.size())) {
-    fail(error.data());
+    refuse(file, error.data());
   }
-  if (!taker.has_samples) fail("it has no topic /hapticgiant/sample");
-  if (*taker.error != '\0') fail(taker.error);
+  if (!taker.has_samples) refuse(file, "it has no topic /hapticgiant/sample");
+  if (*taker.error != '\0') refuse(file, taker.error);
   if (!taker.last.bytes.empty()) moments_.push_back(std::move(taker.last));
-  if (moments_.empty()) fail("it has no sample");
+  if (moments_.empty()) refuse(file, "it has no sample");
 }
 
 double RecordedRun::time_s(std::size_t index) const {

@@ -11,6 +11,21 @@
 
 namespace hg::recording {
 
+/// Who is told what a recording holds. All are called in the order of the file.
+class RecordingListener {
+ public:
+  virtual ~RecordingListener() = default;
+  /// A file that describes the run; before the first sample.
+  virtual void configuration(const NamedText& text) = 0;
+  virtual void event(const Event& event) = 0;
+  virtual void sample(const Sample& sample) = 0;
+};
+
+/// Hands out all of a recording and keeps nothing. False: it was not completed, a crash has cut it
+/// off. Throws SetupError as RecordedRun, and for a damaged sample; passes on what `listener`
+/// throws.
+bool read_recording(const std::filesystem::path& file, RecordingListener& listener);
+
 class RecordedRun {
  public:
   /// Keeps one sample per `period_s` and the last one. Throws SetupError: no Rust, the file cannot

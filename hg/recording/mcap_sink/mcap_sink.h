@@ -55,10 +55,16 @@ bool mcap_sink_finish(mcap_sink* sink);
 /// Closes the file and frees the handle.
 void mcap_sink_free(mcap_sink* sink);
 
-typedef enum { mcap_channel = 0, mcap_message = 1, mcap_attachment = 2 } mcap_item_kind;
+typedef enum {
+  mcap_channel = 0,
+  mcap_message = 1,
+  mcap_attachment = 2,
+  mcap_end = 3
+} mcap_item_kind;
 
 /// One thing in a file: a topic with the text of its schema, a message with its topic and log time,
-/// or an attachment with its name. Valid during the call; `name` has no terminating zero.
+/// an attachment with its name, or the end of a file that was completed. Valid during the call;
+/// `name` has no terminating zero.
 typedef void (*mcap_take_item)(void* context, int kind, const char* name, size_t name_size,
                                uint64_t time_ns, const uint8_t* data, size_t size);
 

@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "hg/core/error.h"
 #include "hg/core/test/temporary_folder.h"
@@ -85,6 +90,64 @@ TEST_F(RecordedRunTest, ReadsAFileThatACrashHasCutOff) {
   const RecordedRun run(file, 0.01);
   EXPECT_GT(run.duration_s(), 0.5);
   EXPECT_LT(run.duration_s(), 2.999);
+}
+
+struct Counts final : RecordingListener {
+  void configuration(const NamedText& text) override {
+    EXPECT_EQ(samples, 0u);
+    names.push_back(text.name);
+  }
+  void event(const Event& event) override { events.push_back(event.name); }
+  void sample(const Sample& sample) override {
+    EXPECT_EQ(sample.record.cycle, samples);
+    ++samples;
+    if (samples == throws_at) throw std::runtime_error("enough");
+  }
+  std::uint64_t samples = 0, throws_at = 0;
+  std::vector<std::string> names, events;
+};
+
+TEST_F(RecordedRunTest, IsHandedOutWholeAndInOrder) {
+  const std::filesystem::path file = record(1005);
+  Counts counts;
+  EXPECT_TRUE(read_recording(file, counts));
+  EXPECT_EQ(counts.samples, 1005u);
+  EXPECT_EQ(counts.names, (std::vector<std::string>{"door.yaml", "arguments"}));
+  EXPECT_EQ(counts.events, std::vector<std::string>{"unlocked"});
+  Counts impatient;
+  impatient.throws_at = 10;
+  EXPECT_THROW(read_recording(file, impatient), std::runtime_error);
+  EXPECT_EQ(impatient.samples, 10u);
+}
+
+// wherever a crash cuts it: everything before is there, in whole samples
+TEST_F(RecordedRunTest, IsReadableWhereverItIsCutOff) {
+  const std::filesystem::path file = record(3000);
+  const auto size = std::filesystem::file_size(file);
+  Counts whole;
+  ASSERT_TRUE(read_recording(file, whole));
+  std::uint64_t last = 0;
+  std::uint64_t readable = 0;
+  std::mt19937 random(7);
+  std::vector<std::uintmax_t> cuts;
+  for (int i = 0; i < 200; ++i) cuts.push_back(1 + random() % (size - 1));
+  std::sort(cuts.begin(), cuts.end());
+  std::ifstream stream(file, std::ios::binary);
+  const std::string good{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  for (const std::uintmax_t cut : cuts) {
+    const auto part = temporary_.write("cut.mcap", good.substr(0, cut));
+    Counts counts;
+    try {
+      read_recording(part, counts);
+      ++readable;
+    } catch (const SetupError& error) {
+      // only before the first chunk is whole
+      EXPECT_EQ(counts.samples, 0u) << cut << " of " << size << ": " << error.what();
+    }
+    EXPECT_GE(counts.samples, last) << cut << " of " << size;
+    last = counts.samples;
+  }
+  EXPECT_GT(readable, 100u);
 }
 
 TEST_F(RecordedRunTest, RefusesWhatIsNoRecordingAndSaysWhich) {

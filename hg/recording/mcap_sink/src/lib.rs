@@ -242,10 +242,11 @@ pub unsafe extern "C" fn mcap_sink_read(
 ) -> bool {
     let path = text(path);
     let hand_over = |item: Item| {
-        let (kind, name, time_ns, data) = match item {
+        let (kind, name, time_ns, data): (_, _, _, &[u8]) = match item {
             Item::Channel { topic, schema } => (0, topic, 0, schema),
             Item::Message { topic, time_ns, data } => (1, topic, time_ns, data),
             Item::Attachment { name, data } => (2, name, 0, data),
+            Item::End => (3, "", 0, &[]),
         };
         take(context, kind, name.as_ptr(), name.len(), time_ns, data.as_ptr(), data.len());
     };

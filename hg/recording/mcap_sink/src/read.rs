@@ -17,6 +17,8 @@ pub enum Item<'a> {
     Channel { topic: &'a str, schema: &'a [u8] },
     Message { topic: &'a str, time_ns: u64, data: &'a [u8] },
     Attachment { name: &'a str, data: &'a [u8] },
+    /// Only a file that was completed has it.
+    End,
 }
 
 /// Remembers schemas and topics, which messages name by number.
@@ -46,6 +48,7 @@ impl Directory {
             Record::Attachment { header, data, .. } => {
                 take(Item::Attachment { name: &header.name, data: &data });
             }
+            Record::Footer(_) => take(Item::End),
             _ => {}
         }
     }

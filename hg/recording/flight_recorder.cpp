@@ -1,0 +1,95 @@
+#include "hg/recording/flight_recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "hg/core/error.h"
+#include "hg/recording/cdr_reader.h"
+
+namespace hg::recording {
+namespace {
+
+// the budget of the folder is kept by the recordings of runs: what tells a fault deletes nothing
+constexpr double kNoBudget = 1e18;
+constexpr std::size_t kMostEvents = 1000;
+
+std::size_t slot_count(const RecordingInfo& info, double seconds) {
+  if (!(seconds > 0.0 && info.rate_Hz > 0.0 && std::isfinite(seconds * info.rate_Hz))) {
+    throw SetupError("flight recorder: seconds and rate must be positive");
+  }
+  return static_cast<std::size_t>(std::ceil(seconds * info.rate_Hz));
+}
+
+}  // namespace
+
+FlightRecorder::FlightRecorder(RecordingInfo info, double seconds)
+    : info_(std::move(info)), slots_(slot_count(info_, seconds)) {
+  info_.disk_budget_bytes = kNoBudget;
+  // as long as one of these joints and limits
+  Sample sample;
+  const auto n_m = static_cast<Eigen::Index>(info_.manipulator_joints.size());
+  sample.record.robot.q_m = VectorM::Zero(n_m);
+  sample.record.limit_count = static_cast<int>(info_.limits.size());
+  const std::size_t bytes = 2 * cdr_.encode(sample).size();
+  for (std::vector<std::byte>& slot : slots_) slot.reserve(bytes);
+  events_.reserve(kMostEvents);
+}
+
+FlightRecorder::~FlightRecorder() { close(); }
+
+void FlightRecorder::push(const Sample& sample) {
+  if (is_writing_.load(std::memory_order_acquire)) return;
+  const auto bytes = cdr_.encode(sample);
+  slots_[pushed_ % slots_.size()].assign(bytes.begin(), bytes.end());
+  ++pushed_;
+}
+
+void FlightRecorder::event(double time_s, std::string_view name, std::string_view text) {
+  if (is_writing_.load(std::memory_order_acquire)) return;
+  if (events_.size() == kMostEvents) events_.erase(events_.begin());
+  events_.push_back({time_s, std::string(name), std::string(text)});
+}
+
+void FlightRecorder::write(const std::string& cause) {
+  if (thread_.joinable()) thread_.join();
+  is_writing_.store(true);
+  thread_ = std::thread([this, cause] {
+    try {
+      write_file(cause);
+    } catch (const std::exception& exception) {
+      result_.error = exception.what();
+    }
+    pushed_ = 0;
+    is_writing_.store(false, std::memory_order_release);
+  });
+}
+
+void FlightRecorder::write_file(const std::string& cause) {
+  const std::uint64_t kept = std::min<std::uint64_t>(pushed_, slots_.size());
+  if (kept == 0) return;
+  RecordingInfo info = info_;
+  info.name += "_" + cause;
+  Recorder recorder(info);
+  const auto sample = std::make_unique<Sample>();
+  double first_s = 0.0;
+  for (std::uint64_t i = pushed_ - kept; i < pushed_; ++i) {
+    if (!CdrReader(slots_[i % slots_.size()]).decode(*sample)) continue;
+    if (i == pushed_ - kept) first_s = sample->record.time_s;
+    recorder.push_waiting(*sample);
+  }
+  for (const Event& event : events_) {
+    if (event.time_s >= first_s) recorder.event(event.time_s, event.name, event.text);
+  }
+  const RecordingSummary summary = recorder.close();
+  result_.files.push_back(summary.file);
+  if (!summary.error.empty()) result_.error = summary.error;
+}
+
+FlightRecorder::Result FlightRecorder::close() {
+  if (thread_.joinable()) thread_.join();
+  return result_;
+}
+
+}  // namespace hg::recording

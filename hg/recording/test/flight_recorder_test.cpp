@@ -1,0 +1,85 @@
+#include "hg/recording/flight_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "hg/core/error.h"
+#include "hg/core/test/temporary_folder.h"
+#include "hg/recording/recording_reader.h"
+#include "hg/recording/test/example_run.h"
+
+namespace hg::recording {
+namespace {
+
+constexpr double kRate_Hz = 1000.0;
+
+class FlightRecorderTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!recording_available()) GTEST_SKIP() << "built without Rust";
+  }
+  // pushes samples first .. last - 1
+  static void push(FlightRecorder& recorder, std::uint64_t first, std::uint64_t last) {
+    for (std::uint64_t cycle = first; cycle < last; ++cycle) {
+      recorder.push(example_sample(cycle, kRate_Hz));
+    }
+  }
+
+  const TemporaryFolder temporary_;
+};
+
+TEST_F(FlightRecorderTest, WritesTheLastSecondsAtFullRateWithTheirEvents) {
+  FlightRecorder recorder(example_info(temporary_.path()), 0.5);
+  recorder.event(0.1, "early", "too early");
+  push(recorder, 0, 1234);
+  recorder.event(1.2, "fault", "302 tracking lost");
+  recorder.write("fault302");
+  const FlightRecorder::Result result = recorder.close();
+  EXPECT_EQ(result.error, "");
+  ASSERT_EQ(result.files.size(), 1u);
+  EXPECT_TRUE(result.files[0].filename().string().starts_with("door_fault302_")) << result.files[0];
+
+  const RecordedRun run(result.files[0], 0.0);
+  ASSERT_EQ(run.size(), 500u);
+  auto sample = std::make_unique<Sample>();
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    run.read(i, *sample);
+    const Sample expected = example_sample(734 + i, kRate_Hz);
+    ASSERT_EQ(sample->record.cycle, 734 + i);
+    ASSERT_EQ(sample->sensors.w_S, expected.sensors.w_S);
+    ASSERT_EQ(sample->record.state_hash, expected.record.state_hash);
+  }
+  ASSERT_EQ(run.events().size(), 1u);
+  EXPECT_EQ(run.events()[0].name, "fault");
+  EXPECT_EQ(run.configuration().size(), 2u);
+}
+
+TEST_F(FlightRecorderTest, BeginsAnewAfterItHasWritten) {
+  FlightRecorder recorder(example_info(temporary_.path()), 0.5);
+  push(recorder, 0, 100);
+  recorder.write("one");
+  ASSERT_EQ(recorder.close().files.size(), 1u);
+  push(recorder, 100, 150);
+  recorder.write("two");
+  const FlightRecorder::Result result = recorder.close();
+  ASSERT_EQ(result.files.size(), 2u);
+  EXPECT_EQ(RecordedRun(result.files[0], 0.0).size(), 100u);
+  EXPECT_EQ(RecordedRun(result.files[1], 0.0).size(), 50u);
+}
+
+TEST_F(FlightRecorderTest, WritesNothingOfNothingAndSaysWhyItCannotWrite) {
+  RecordingInfo info = example_info(temporary_.path());
+  FlightRecorder empty(info, 0.5);
+  empty.write("nothing");
+  EXPECT_TRUE(empty.close().files.empty());
+  EXPECT_THROW(FlightRecorder(info, 0.0), SetupError);
+  info.folder = temporary_.write("file", "no folder");
+  FlightRecorder recorder(info, 0.5);
+  push(recorder, 0, 10);
+  recorder.write("fault");
+  EXPECT_NE(recorder.close().error, "");
+}
+
+}  // namespace
+}  // namespace hg::recording
