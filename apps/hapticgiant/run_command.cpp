@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <thread>
@@ -15,6 +16,7 @@
 #include "apps/hapticgiant/prepared_run.h"
 #include "apps/hapticgiant/problem_dumps.h"
 #include "apps/hapticgiant/run_page.h"
+#include "apps/hapticgiant/run_recording.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
@@ -40,18 +42,19 @@ struct Observers {
   evaluation::Summary summary;
   StatusLine status_line;
   RunPage* page;  ///< nullptr: there is none
-  std::unique_ptr<recording::Recorder> recorder;
+  RunRecording recording;
   ProblemDumps dumps;
   bool is_fast = false;
   Clock::time_point last_status = {};
   double script_end_s = 0.0;  ///< > 0: the run goes on after the script, tell so
   TareStatus told_tare = TareStatus::kNone;
+  FaultCode told_fault = FaultCode::kNone;
 };
 
 // what somebody did to the run
 void tell(Observers& observers, double time_s, std::string_view name, std::string_view what) {
   observers.status_line.print(fmt::format("{:8.3f} s  {:<18} {}", time_s, name, what));
-  if (observers.recorder) observers.recorder->event(time_s, name, what);
+  observers.recording.event(time_s, name, what);
   if (observers.page != nullptr) observers.page->announce(time_s, name, what);
 }
 
@@ -65,6 +68,13 @@ void tell_requests(Observers& observers, const CycleRecord& record) {
   if (record.refusal != Refusal::kNone) {
     tell(observers, record.time_s, "arm", to_string(record.refusal));
   }
+}
+
+void tell_fault(Observers& observers, const CycleRecord& record) {
+  const FaultCode code = record.fault.code;
+  if (std::exchange(observers.told_fault, code) == code || code == FaultCode::kNone) return;
+  tell(observers, record.time_s, "fault",
+       fmt::format("{} {}", static_cast<int>(code), to_string(code)));
 }
 
 // for what pages change, at the time of `sample`
@@ -81,8 +91,8 @@ void observe(Observers& observers, const Sample& sample) {
   }
   observers.summary.add(sample);
   tell_requests(observers, sample.record);
-  if (observers.recorder && observers.is_fast) observers.recorder->push_waiting(sample);
-  if (observers.recorder && !observers.is_fast) observers.recorder->push(sample);
+  tell_fault(observers, sample.record);
+  observers.recording.push(sample);
   if (const auto event = observers.detector.observe(sample.record)) {
     observers.summary.add(*event);
     tell(observers, event->time_s, event->name, event->what);
@@ -130,16 +140,6 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
   observers.status_line.clear();
 }
 
-std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scenario,
-                                                   const RunArguments& arguments) {
-  if (!arguments.has_recording) return nullptr;
-  if (!recording::recording_available()) {
-    print_out("recording   off (the program was built without Rust)\n");
-    return nullptr;
-  }
-  return std::make_unique<recording::Recorder>(recording_info(scenario, arguments));
-}
-
 void close_device(remote::RemoteDevice& device, const Fault& fault) {
   device.close(fault.code);
   if (!device.farewell().empty()) {
@@ -155,6 +155,9 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   options.is_fast = arguments.is_fast;
   options.changes = scenario.changes;
   if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / options.rate_Hz;
+  options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};
+  // a simulated device waits for its controller: late cycles hurt nobody
+  options.tells_late_cycles = !arguments.device_address.empty();
   options.duration_s =
       arguments.duration_s.value_or(goes_on ? 0.0 : assembly::planned_duration_s(scenario));
   if (arguments.is_fast && options.duration_s == 0.0) {
@@ -164,23 +167,33 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   return options;
 }
 
-// completes the recording; its file name, or empty
-std::string close_recording(recording::Recorder* recorder) {
-  if (recorder == nullptr) return {};
-  const recording::RecordingSummary recorded = recorder->close();
-  if (!recorded.error.empty())
-    std::fputs(fmt::format("recording ended early: {}\n", recorded.error).c_str(), stderr);
-  for (const auto& name : recorded.deleted) {
-    print_out(fmt::format("recording {} deleted to keep within the disk budget\n", name));
-  }
-  return recorded.file.string();
-}
-
 int exit_code(const evaluation::Summary& summary, const std::vector<std::string>& missing,
               bool was_interrupted) {
   if (summary.fault().code != FaultCode::kNone) return 3;
   if (was_interrupted) return 0;
   return missing.empty() && summary.limits_held() ? 0 : 1;
+}
+
+evaluation::Timing timing_of(const runtime::Options& options, const runtime::Report& report) {
+  const runtime::ThreadReport& thread = report.thread;
+  const auto text_of = [](int error) { return error == 0 ? "" : std::strerror(error); };
+  evaluation::Timing timing = {.is_fast = options.is_fast,
+                               .priority = thread.priority,
+                               .priority_refusal = text_of(thread.priority_error),
+                               .cpu = thread.cpu,
+                               .cpu_refusal = text_of(thread.cpu_error),
+                               .is_memory_locked = thread.is_memory_locked,
+                               .page_faults = report.page_faults,
+                               .overruns = report.overruns,
+                               .most_overruns_in_a_row = report.most_overruns_in_a_row,
+                               .overruns_stop = report.told_late_cycles,
+                               .wake_up_us = report.wake_up_us};
+  for (int i = 0; i < kStageCount; ++i) {
+    const Histogram& times = report.stage_us[static_cast<std::size_t>(i)];
+    if (times.count() == 0) continue;
+    timing.stages.push_back({to_string(static_cast<Stage>(i)), times.distribution()});
+  }
+  return timing;
 }
 
 // what the summary says besides what was observed
@@ -192,12 +205,9 @@ evaluation::RunFacts facts_of(const PreparedRun& run, const runtime::Options& op
           .law = std::string(rendering::to_string(law.law)),
           .bounds = std::string(rendering::to_string(law.bounds)),
           .rate_Hz = options.rate_Hz,
-          .is_fast = options.is_fast,
-          .overruns = report.overruns,
+          .timing = timing_of(options, report),
           .dropped = report.dropped,
           .allocations_in_loop = report.allocations,
-          .is_real_time = report.is_real_time,
-          .is_memory_locked = report.is_memory_locked,
           .stop_timed_out = report.stop_timed_out,
           .link = run.remote != nullptr ? run.remote->counts() : LinkCounts{}};
 }
@@ -223,9 +233,10 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) 
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && page != nullptr;
   const runtime::Options options = runtime_options(scenario, arguments, goes_on);
-  auto recorder = make_recorder(scenario, arguments);  // last: a refused run leaves no file
-  auto dumps = problem_dumps(scenario, arguments, recorder.get());
-  if (page != nullptr) page->begin(run, recorder ? recorder->stem() + ".mcap" : "");
+  RunRecording recording(scenario, arguments);  // last: a refused run leaves no file
+  const recording::Recorder* recorder = recording.recorder();
+  auto dumps = problem_dumps(scenario, arguments, recorder);
+  if (page != nullptr) page->begin(run, recorder != nullptr ? recorder->stem() + ".mcap" : "");
   Observers observers{
       .interrupted = interrupted,
       .scenario = scenario,
@@ -233,7 +244,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) 
       .summary = assembly::make_summary(scenario),
       .status_line = StatusLine(is_terminal),
       .page = page,
-      .recorder = std::move(recorder),
+      .recording = std::move(recording),
       .dumps = std::move(dumps),
       .is_fast = arguments.is_fast,
       .script_end_s = options.duration_s == 0.0 ? assembly::planned_duration_s(scenario) : 0.0};
@@ -248,9 +259,8 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) 
   if (run.remote != nullptr) close_device(*run.remote, observers.summary.fault());
 
   evaluation::RunFacts facts = facts_of(run, options, report);
-  facts.recording = close_recording(observers.recorder.get());
+  facts.recording = observers.recording.close();
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
-  observers.recorder.reset();
   const std::vector<std::string> missing = observers.detector.missing();
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
                         observers.dumps.summary(runtime.kept_problems())));

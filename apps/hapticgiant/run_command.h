@@ -24,8 +24,11 @@ struct RunArguments {
   std::uint16_t port = 0;             ///< of the page; 0 = any free one
   bool opens_browser = true;          ///< where there is a display
   std::string recordings = "recordings";
-  bool has_recording = true;  ///< and problems of the solver that failed or were slow
-  int slow_solve = 100;       ///< active sets from which on a problem is slow
+  bool has_recording = true;              ///< and problems of the solver that failed or were slow
+  std::string flight_recorder = "fault";  ///< when the last seconds are written: fault, always, off
+  int slow_solve = 100;                   ///< active sets from which on a problem is slow
+  int priority = 80;  ///< of the control thread, SCHED_FIFO; 0 = an ordinary thread
+  int cpu = -1;       ///< the only processor of the control thread; -1 = any
 };
 
 /// Exit code: 0 fine, 1 an expected event is missing or a limit was exceeded, 3 a fault stopped the

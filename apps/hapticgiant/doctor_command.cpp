@@ -1,0 +1,102 @@
+#include "apps/hapticgiant/doctor_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/status_line.h"
+#include "apps/hapticgiant/version.h"
+#include "hg/evaluation/timing.h"
+#include "hg/readiness/jitter.h"
+#include "hg/readiness/readings.h"
+#include "hg/readiness/verdict.h"
+
+namespace hg::apps {
+namespace {
+
+using readiness::Jitter;
+using readiness::Level;
+using readiness::Line;
+
+constexpr double kRates_Hz[] = {1000.0, 10000.0};
+
+/// At one rate; the ordinary thread first: the other one locks the memory.
+struct Measured {
+  Jitter ordinary, real_time;
+};
+
+Measured measure(double rate_Hz, const DoctorArguments& arguments) {
+  return {.ordinary = readiness::measure_jitter(rate_Hz, arguments.seconds,
+                                                {.priority = 0, .cpu = arguments.cpu}),
+          .real_time = readiness::measure_jitter(
+              rate_Hz, arguments.seconds, {.priority = arguments.priority, .cpu = arguments.cpu})};
+}
+
+void print(const Line& line) {
+  print_out(
+      fmt::format("  {:<5} {:<11} {}\n", readiness::to_string(line.level), line.item, line.found));
+  if (!line.mend.empty()) print_out(fmt::format("  {:<17} -> {}\n", "", line.mend));
+}
+
+nlohmann::ordered_json to_json(const std::vector<Line>& lines,
+                               const std::vector<Measured>& measured) {
+  nlohmann::ordered_json json;
+  json["version"] = kVersion;
+  json["exit_code"] = readiness::exit_code(lines);
+  for (const Line& line : lines) {
+    json["lines"].push_back({{"level", readiness::to_string(line.level)},
+                             {"item", line.item},
+                             {"found", line.found},
+                             {"mend", line.mend}});
+  }
+  for (const Measured& pair : measured) {
+    for (const Jitter* jitter : {&pair.ordinary, &pair.real_time}) {
+      json["jitter"].push_back({{"rate_Hz", jitter->rate_Hz},
+                                {"priority", jitter->thread.priority},
+                                {"late_us", evaluation::to_json(jitter->wake_up_us)}});
+    }
+  }
+  return json;
+}
+
+}  // namespace
+
+int doctor(const DoctorArguments& arguments) {
+  check_writable(arguments.json);
+  runtime::check({.priority = arguments.priority, .cpu = arguments.cpu});
+  print_out(
+      fmt::format("HapticGiant {}: is this computer ready for a control loop?\n\n", kVersion));
+  std::vector<Line> lines = readiness::judge(readiness::read());
+  for (const Line& line : lines) print(line);
+
+  print_out(
+      fmt::format("\nhow late threads wake up, measured for {:.0f} s:\n", 4.0 * arguments.seconds));
+  std::vector<Measured> measured;
+  for (const double rate_Hz : kRates_Hz) {
+    measured.push_back(measure(rate_Hz, arguments));
+    const Measured& last = measured.back();
+    // 1 kHz is what devices need; faster is a choice
+    lines.push_back(readiness::judge(last.ordinary, last.real_time, rate_Hz == kRates_Hz[0]));
+    print(lines.back());
+  }
+
+  const auto count = [&](Level level) {
+    return std::ranges::count_if(lines, [=](const Line& line) { return line.level == level; });
+  };
+  print_out(fmt::format("\n{} ok, {} to look at, {} bad: {}\n", count(Level::kOk),
+                        count(Level::kWarn), count(Level::kBad),
+                        count(Level::kBad) > 0
+                            ? "simulate here, but do not drive a device from here"
+                            : (count(Level::kWarn) > 0 ? "a device can be driven, see above"
+                                                       : "a device can be driven")));
+  if (!arguments.json.empty()) {
+    write_output(arguments.json, to_json(lines, measured).dump(2) + "\n");
+  }
+  return readiness::exit_code(lines);
+}
+
+}  // namespace hg::apps

@@ -1,0 +1,96 @@
+#include "apps/hapticgiant/explain_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/status_line.h"
+#include "hg/core/error.h"
+#include "hg/explanation/explainer.h"
+#include "hg/recording/recording_reader.h"
+
+namespace hg::apps {
+namespace {
+
+// Collects the configuration until the first sample, which needs its names.
+class Reader final : public recording::RecordingListener {
+ public:
+  void configuration(const recording::NamedText& text) override {
+    if (!explainer_) configuration_.push_back(text);
+  }
+  void event(const recording::Event& event) override { events_.push_back(event); }
+  void sample(const Sample& sample) override {
+    if (!explainer_) explainer_ = std::make_unique<explanation::Explainer>(names());
+    explainer_->add(sample);
+    ++samples_;
+  }
+
+  const std::string& title() const { return title_; }
+  std::uint64_t samples() const { return samples_; }
+  double first_s() const { return explainer_->first_s(); }
+  double last_s() const { return explainer_->last_s(); }
+  std::vector<explanation::Entry> entries() {
+    for (const recording::Event& event : events_) {
+      explainer_->add_event(event.time_s, event.name, event.text);
+    }
+    return explainer_->finish();
+  }
+
+ private:
+  explanation::Names names() {
+    explanation::Names names;
+    try {
+      const config::Scenario scenario = recorded_scenario(configuration_);
+      title_ = scenario.title;
+      names.limits = scenario.limits;
+      const rendering::DeviceModel& device = scenario.device.model;
+      for (std::size_t i = 0; i < device.chain.joints().size(); ++i) {
+        auto& list = static_cast<int>(i) < device.n_p ? names.gantry : names.joints;
+        list.push_back(device.chain.joints()[i].name);
+      }
+    } catch (const SetupError& error) {
+      const std::string why = error.what();
+      title_ = "its configuration is not understood, parts are numbered: " +
+               why.substr(0, why.find('\n'));
+    }
+    return names;
+  }
+
+  std::vector<recording::NamedText> configuration_;
+  std::vector<recording::Event> events_;
+  std::unique_ptr<explanation::Explainer> explainer_;
+  std::string title_;
+  std::uint64_t samples_ = 0;
+};
+
+void print(const explanation::Entry& entry) {
+  print_out(fmt::format("{:9.3f} s  {:<8} {}\n", entry.time_s, entry.kind, entry.text));
+  for (const std::string& detail : entry.details) {
+    print_out(fmt::format("{:>21}{}\n", "", detail));
+  }
+}
+
+}  // namespace
+
+int explain_recording(const std::string& file) {
+  Reader reader;
+  const bool is_complete = recording::read_recording(file, reader);
+  print_out(fmt::format("{}\n{:.3f} .. {:.3f} s of the run, {} samples{}\n\n", reader.title(),
+                        reader.first_s(), reader.last_s(), reader.samples(),
+                        is_complete ? ""
+                                    : "; CUT OFF: the program ended before it could complete the "
+                                      "file, at most its last second is missing"));
+  const std::vector<explanation::Entry> entries = reader.entries();
+  for (const explanation::Entry& entry : entries) print(entry);
+  const bool has_fault = std::ranges::any_of(
+      entries, [](const explanation::Entry& entry) { return entry.kind == "FAULT"; });
+  if (!has_fault) print_out("\nno fault\n");
+  return 0;
+}
+
+}  // namespace hg::apps

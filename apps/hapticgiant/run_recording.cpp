@@ -1,0 +1,87 @@
+#include "apps/hapticgiant/run_recording.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <utility>
+
+#include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/status_line.h"
+
+namespace hg::apps {
+namespace {
+
+constexpr double kAfterFault_s = 2.0;  // belong to it: how the device came to rest
+
+}  // namespace
+
+RunRecording::RunRecording(const config::Scenario& scenario, const RunArguments& arguments)
+    : is_fast_(arguments.is_fast),
+      writes_always_(arguments.flight_recorder == "always"),
+      program_(arguments.program) {
+  if (!recording::recording_available()) {
+    if (arguments.has_recording) {
+      print_out("recording   off (the program was built without Rust)\n");
+    }
+    return;
+  }
+  const recording::RecordingInfo info = recording_info(scenario, arguments);
+  if (arguments.has_recording) recorder_ = std::make_unique<recording::Recorder>(info);
+  if (arguments.flight_recorder != "off") {
+    flight_ = std::make_unique<recording::FlightRecorder>(info);
+  }
+}
+
+void RunRecording::push(const Sample& sample) {
+  if (recorder_ && is_fast_) recorder_->push_waiting(sample);
+  if (recorder_ && !is_fast_) recorder_->push(sample);
+  if (flight_) keep_last_seconds(sample);
+}
+
+void RunRecording::keep_last_seconds(const Sample& sample) {
+  const CycleRecord& record = sample.record;
+  flight_->push(sample);
+  if (!cause_.empty() && record.time_s >= write_at_s_) flight_->write(std::exchange(cause_, ""));
+  const FaultCode last = std::exchange(fault_, record.fault.code);
+  if (fault_ == FaultCode::kNone || fault_ == last) return;
+  // what follows from the first fault belongs to it
+  if (cause_.empty()) cause_ = fmt::format("fault{}", static_cast<int>(fault_));
+  write_at_s_ = record.time_s + kAfterFault_s;
+}
+
+void RunRecording::event(double time_s, std::string_view name, std::string_view text) {
+  if (recorder_) recorder_->event(time_s, name, text);
+  if (flight_) flight_->event(time_s, name, text);
+}
+
+std::string RunRecording::close() {
+  std::string file;
+  if (flight_) {
+    if (cause_.empty() && writes_always_) cause_ = "stop";
+    if (!cause_.empty()) flight_->write(std::exchange(cause_, ""));
+    const recording::FlightRecorder::Result result = flight_->close();
+    for (const auto& written : result.files) {
+      print_out(fmt::format("the last seconds are kept; what happened:\n  {} explain {}\n",
+                            program_, written.string()));
+    }
+    if (!result.error.empty()) {
+      std::fputs(fmt::format("the last seconds could not be written: {}\n", result.error).c_str(),
+                 stderr);
+    }
+    flight_.reset();
+  }
+  if (recorder_) {
+    const recording::RecordingSummary recorded = recorder_->close();
+    if (!recorded.error.empty()) {
+      std::fputs(fmt::format("recording ended early: {}\n", recorded.error).c_str(), stderr);
+    }
+    for (const auto& name : recorded.deleted) {
+      print_out(fmt::format("recording {} deleted to keep within the disk budget\n", name));
+    }
+    file = recorded.file.string();
+    recorder_.reset();
+  }
+  return file;
+}
+
+}  // namespace hg::apps

@@ -1,0 +1,304 @@
+#include "hg/explanation/explainer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hg/safety/rules.h"
+
+namespace hg::explanation {
+namespace {
+
+constexpr double kGap_s = 0.5;          // interruptions of a span up to this are not told
+constexpr double kShortest_s = 0.02;    // limits that act for less are not told
+constexpr double kMoving = 2e-2;        // rad/s or m/s, measured
+constexpr double kForceWindow_s = 0.5;  // the largest force is known of this one and the last
+
+double speed_of(const Sample& sample) {
+  double speed = 0.0;
+  for (const double dq : sample.sensors.dq_m) speed = std::max(speed, std::abs(dq));
+  for (const double dq : sample.record.robot.dq_p) speed = std::max(speed, std::abs(dq));
+  return speed;
+}
+
+// of the user: the true one, where the device is simulated
+double force_of(const Sample& sample) {
+  const Vector6& w = sample.truth.is_known ? sample.truth.w_H : sample.record.robot.w_H;
+  return w.head<3>().norm();
+}
+
+std::string side_text(LimitState state) {
+  switch (state) {
+    case LimitState::kLower:
+      return "lower ";
+    case LimitState::kUpper:
+      return "upper ";
+    case LimitState::kViolated:
+      return "overruled ";
+    case LimitState::kInactive:
+      return "";
+  }
+  return "";
+}
+
+std::string_view reaction_text(Stop stop) {
+  switch (stop) {
+    case Stop::kNone:
+      return "nothing was to be stopped";
+    case Stop::kSs2:
+      return "SS2: brought to rest under control, then held under power";
+    case Stop::kSs1:
+      return "SS1: brought to rest under control, then drives off and brakes closed";
+    case Stop::kSto:
+      return "STO: drives off and brakes closed at once";
+  }
+  return "unknown";
+}
+
+std::string why_it_stops(const Sample& sample) {
+  if (sample.record.fault.code != FaultCode::kNone) return ": a fault, see there";
+  if (sample.operator_input.request == ModeRequest::kStop) return ": a stop was asked for";
+  if (!sample.sensors.dead_man) return ": the user let go of the handle (dead-man open)";
+  return "";
+}
+
+std::string detail(const char* label, const std::string& text) {
+  return fmt::format("{:<12} {}", label, text);
+}
+
+}  // namespace
+
+Explainer::Explainer(Names names) : names_(std::move(names)) {}
+
+void Explainer::add(const Sample& sample) {
+  const CycleRecord& record = sample.record;
+  if (first_s_ < 0.0) first_s_ = last_.time_s = record.time_s;
+  period_s_ = record.time_s - last_.time_s;
+  if (record.time_s >= force_until_s_) {
+    force_before_ = std::exchange(force_now_, 0.0);
+    force_until_s_ = record.time_s + kForceWindow_s;
+  }
+  force_now_ = std::max(force_now_, force_of(sample));
+
+  add_modes(sample);
+  add_requests(record);
+  add_limits(record);
+  add_others(sample);
+  add_fault(sample);
+  if (has_aftermath_) follow(sample);
+  close_spans(record.time_s, false);
+  last_ = {record.time_s, record.mode, record.fault.code, record.tare, sample.command.enable};
+}
+
+void Explainer::add_event(double time_s, const std::string& name, const std::string& text) {
+  entries_.push_back({time_s, "event", name + ": " + text, {}});
+}
+
+void Explainer::add_modes(const Sample& sample) {
+  const CycleRecord& record = sample.record;
+  if (record.mode == last_.mode) return;
+  std::string text = fmt::format("{} -> {}", to_string(last_.mode), to_string(record.mode));
+  if (record.mode == Mode::kRunning) {
+    text += record.is_autonomous ? ": by itself, with nobody at the handle"
+                                 : ": the user holds the handle (dead-man closed)";
+  }
+  if (record.mode == Mode::kStopping) text += why_it_stops(sample);
+  entries_.push_back({record.time_s, "mode", text, {}});
+}
+
+void Explainer::add_requests(const CycleRecord& record) {
+  if (record.refusal != Refusal::kNone) {
+    entries_.push_back({record.time_s, "refused", std::string(to_string(record.refusal)), {}});
+  }
+  const bool is_told = record.tare == TareStatus::kNone || record.tare == TareStatus::kUnderWay;
+  if (record.tare != last_.tare && !is_told) {
+    entries_.push_back({record.time_s, "tare", std::string(to_string(record.tare)), {}});
+  }
+  if (record.change == ChangeStatus::kRefused) {
+    entries_.push_back({record.time_s, "refused", "a change of a parameter of the twin", {}});
+  }
+}
+
+void Explainer::extend(const char* kind, const std::string& text, double time_s, double value) {
+  const auto [found, is_new] = spans_.try_emplace({kind, text});
+  Span& span = found->second;
+  if (is_new) span.begin_s = time_s;
+  span.end_s = time_s;
+  span.active_s += period_s_;
+  if (std::abs(value) >= std::abs(span.peak)) span.peak = value;
+}
+
+void Explainer::add_limits(const CycleRecord& record) {
+  if (record.mode != Mode::kRunning && record.mode != Mode::kStopping) return;
+  const int count = std::min(record.limit_count, static_cast<int>(names_.limits.size()));
+  for (int i = 0; i < count; ++i) {
+    const LimitReport& report = record.limits[static_cast<std::size_t>(i)];
+    const bool is_plain =
+        report.state != LimitState::kViolated &&
+        (report.cause == LimitCause::kAcceleration || report.cause == LimitCause::kFriction);
+    if (report.state == LimitState::kInactive || is_plain) continue;
+    const LimitInfo& info = names_.limits[static_cast<std::size_t>(i)];
+    const std::string text =
+        fmt::format("{}: {}{} limit, {} that it takes", info.name, side_text(report.state),
+                    to_string(report.cause), info.is_angle ? "Nm" : "N");
+    extend("limit", text, record.time_s, report.reaction);
+  }
+}
+
+void Explainer::add_others(const Sample& sample) {
+  const CycleRecord& record = sample.record;
+  if (record.warning.code != FaultCode::kNone) {
+    const safety::Rule& rule = safety::rule_of(record.warning.code);
+    extend("warning",
+           fmt::format("{}{}, stops at {:.4g}", rule.name, name_of(record.warning),
+                       record.warning.limit),
+           record.time_s, record.warning.value);
+  }
+  for (int i = 0; i < 32; ++i) {
+    if (((record.sanitised >> i) & 1U) == 0) continue;
+    const std::string which = i < 16 ? joint(i)
+                                     : (i - 16 < static_cast<int>(names_.gantry.size())
+                                            ? names_.gantry[static_cast<std::size_t>(i - 16)]
+                                            : fmt::format("gantry {}", i - 16));
+    extend("command", which + ": the sanitiser changed it before it left", record.time_s);
+  }
+  if (record.solver_status == SolverStatus::kIterationLimit ||
+      record.solver_status == SolverStatus::kFailed) {
+    extend("solver", fmt::format("not solved: {}", to_string(record.solver_status)), record.time_s);
+  }
+  if (sample.operator_input.late_cycles > 0) {
+    extend("late", "cycles that were missed at once", record.time_s,
+           static_cast<double>(sample.operator_input.late_cycles));
+  }
+  if (record.tracking.is_clamped) {
+    extend("tracking", "the device was left behind: its reference was brought back to it",
+           record.time_s);
+  }
+}
+
+void Explainer::close_spans(double now_s, bool all) {
+  for (auto it = spans_.begin(); it != spans_.end();) {
+    const Span& span = it->second;
+    if (!all && now_s < span.end_s + kGap_s) {
+      ++it;
+      continue;
+    }
+    const auto& [kind, text] = it->first;
+    if (kind != "limit" || span.active_s >= kShortest_s) {
+      const std::string peak = span.peak != 0.0 ? fmt::format(", up to {:.4g}", span.peak) : "";
+      entries_.push_back(
+          {span.begin_s,
+           kind,
+           fmt::format("{}{}, for {:.3f} s until {:.3f} s", text, peak, span.active_s, span.end_s),
+           {}});
+    }
+    it = spans_.erase(it);
+  }
+}
+
+std::string Explainer::joint(int index) const {
+  const bool is_known = index >= 0 && index < static_cast<int>(names_.joints.size());
+  return is_known ? names_.joints[static_cast<std::size_t>(index)]
+                  : fmt::format("number {}", index);
+}
+
+// " of m4", empty where a fault concerns no part
+std::string Explainer::name_of(const Fault& fault) const {
+  if (fault.index < 0) return {};
+  const auto index = static_cast<std::size_t>(fault.index);
+  switch (fault.code) {
+    case FaultCode::kWrenchTooLarge:
+      return fault.index == 0 ? " (force, N)" : " (torque, Nm)";
+    case FaultCode::kLimitExceeded:
+      return index < names_.limits.size() ? " of " + names_.limits[index].name : "";
+    case FaultCode::kGantryExceeded:
+    case FaultCode::kGantryDeviates:
+      return " of " +
+             (index < names_.gantry.size() ? names_.gantry[index] : fmt::format("axis {}", index));
+    case FaultCode::kSensorImplausible:
+    case FaultCode::kSensorJump:
+    case FaultCode::kJointTorqueExceeded:
+    case FaultCode::kTooHot:
+    case FaultCode::kSpeedExceeded:
+    case FaultCode::kTrackingLost:
+      return " of " + joint(fault.index);
+    default:
+      return fmt::format(" (number {})", fault.index);
+  }
+}
+
+std::string Explainer::quantity(const Fault& fault) const {
+  if (!std::isfinite(fault.value)) return ", value not finite";
+  if (fault.value == 0.0 && fault.limit == 0.0) return {};
+  return fmt::format(": {:.6g}, limit {:.6g}", fault.value, fault.limit);
+}
+
+void Explainer::add_fault(const Sample& sample) {
+  const CycleRecord& record = sample.record;
+  const Fault& fault = record.fault;
+  if (fault.code == last_.fault) return;
+  end_aftermath();
+  if (fault.code == FaultCode::kNone) {
+    entries_.push_back({record.time_s, "reset", "the fault is gone and was reset", {}});
+    return;
+  }
+  const safety::Rule& rule = safety::rule_of(fault.code);
+  Entry entry{record.time_s,
+              "FAULT",
+              fmt::format("{} {}{}{}", static_cast<int>(fault.code), rule.name, name_of(fault),
+                          quantity(fault)),
+              {}};
+  entry.details.push_back(detail("meaning", std::string(rule.meaning)));
+  entry.details.push_back(detail("released by", std::string(rule.release) + ", then a reset"));
+  has_aftermath_ = true;
+  aftermath_ = {.entry = entries_.size(),
+                .fault_s = record.time_s,
+                .force = std::max(force_before_, force_now_)};
+  entries_.push_back(std::move(entry));
+}
+
+void Explainer::follow(const Sample& sample) {
+  const CycleRecord& record = sample.record;
+  aftermath_.force = std::max(aftermath_.force, force_of(sample));
+  aftermath_.speed = speed_of(sample);
+  if (aftermath_.speed > kMoving) aftermath_.moved_s = record.time_s;
+  if (!sample.command.enable && aftermath_.off_s < 0.0) aftermath_.off_s = record.time_s;
+  if (record.stop != Stop::kNone) aftermath_.stop = record.stop;
+}
+
+void Explainer::end_aftermath() {
+  if (!std::exchange(has_aftermath_, false)) return;
+  std::vector<std::string>& details = entries_[aftermath_.entry].details;
+  const auto after_ms = [&](double time_s) { return 1e3 * (time_s - aftermath_.fault_s); };
+  std::string what = aftermath_.stop != Stop::kNone ? std::string(reaction_text(aftermath_.stop))
+                                                    : "the machine was stopped";
+  if (aftermath_.off_s >= 0.0) {
+    what += fmt::format("; drives off {:.0f} ms after the fault", after_ms(aftermath_.off_s));
+  }
+  details.push_back(detail("reaction", what));
+  std::string rest = "the device was at rest already";
+  if (aftermath_.moved_s >= last_.time_s && aftermath_.speed > kMoving) {
+    rest = fmt::format(
+        "not seen: {:.0f} ms later the recording ends, or the fault, at {:.3f} rad/s or "
+        "m/s",
+        after_ms(last_.time_s), aftermath_.speed);
+  } else if (aftermath_.moved_s >= 0.0) {
+    rest = fmt::format("{:.0f} ms after the fault", after_ms(aftermath_.moved_s));
+  }
+  details.push_back(detail("at rest", rest));
+  details.push_back(
+      detail("peak force",
+             fmt::format("{:.1f} N between user and handle, from half a second or more before",
+                         aftermath_.force)));
+}
+
+std::vector<Entry> Explainer::finish() {
+  end_aftermath();
+  close_spans(last_.time_s, true);
+  std::ranges::stable_sort(entries_, {}, &Entry::time_s);
+  return std::exchange(entries_, {});
+}
+
+}  // namespace hg::explanation
