@@ -1,0 +1,67 @@
+// Faults on purpose, as a scenario lists them.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "hg/config/scenario.h"
+#include "hg/core/test/message_of.h"
+
+namespace hg::config {
+namespace {
+
+Scenario load_faults(const std::string& faults) {
+  SourceReader shipped;
+  std::vector<SourceText> texts = {
+      {"models/scenarios/run.yaml",
+       "title: a\ndescription: b\ndevice: ../haptic_giant/device.yaml\n"
+       "twin: ../twins/door/twin.yaml\nperson: mouse\nduration_s: 3\nfaults:\n" +
+           faults}};
+  for (const SourceText& source : load_scenario("models/scenarios/door.yaml").sources) {
+    if (source.name != "models/scenarios/door.yaml") texts.push_back(source);
+  }
+  return load_scenario(texts);
+}
+
+std::string message(const std::string& fault) {
+  return message_of([&] { load_faults("  - " + fault + "\n"); });
+}
+
+TEST(ScenarioFaults, NameJointsAxesAndComponents) {
+  const auto faults = load_faults(
+                          "  - {at_s: 1, fault: link_encoder_jump, of: m3, magnitude: -0.2}\n"
+                          "  - {at_s: 2, for_s: 0.5, fault: gantry_dead, of: ppu2}\n"
+                          "  - {at_s: 3, fault: force_sensor_offset, of: torque y, magnitude: 2}\n"
+                          "  - {at_s: 4, fault: drive_fault}\n")
+                          .faults;
+  ASSERT_EQ(faults.size(), 4U);
+  EXPECT_EQ(faults[0].kind->name, "link_encoder_jump");
+  EXPECT_EQ(faults[0].index, 2);
+  EXPECT_EQ(faults[0].magnitude, -0.2);
+  EXPECT_EQ(faults[0].from_s, 1.0);
+  EXPECT_EQ(faults[0].for_s, 0.0);
+  EXPECT_EQ(faults[1].index, 1);
+  EXPECT_EQ(faults[1].for_s, 0.5);
+  EXPECT_EQ(faults[2].index, 4);
+  EXPECT_EQ(faults[3].index, 0);
+}
+
+TEST(ScenarioFaults, AreRefusedWithTheirPlace) {
+  const std::string at = "models/scenarios/run.yaml:8:";
+  EXPECT_EQ(message("{at_s: 1, fault: drive_fautl}"),
+            at + "22: faults[0].fault: must be a fault, got 'drive_fautl', did you mean "
+                 "'drive_fault'?");
+  EXPECT_EQ(message("{at_s: 1, fault: gantry_dead}"),
+            at + "5: faults[0]: this fault needs one of its joints or components");
+  EXPECT_EQ(message("{at_s: 1, fault: gantry_dead, of: m1}"),
+            at + "39: faults[0].of: this fault needs one of its joints or components");
+  EXPECT_EQ(message("{at_s: 1, fault: drive_fault, of: m1}"),
+            at + "39: faults[0].of: this fault concerns no single joint or component");
+  EXPECT_EQ(message("{at_s: 1, fault: motor_hot, of: m1}"),
+            at + "5: faults[0]: this fault needs a magnitude");
+  EXPECT_EQ(message("{at_s: 1, fault: drive_fault, magnitude: 2}"),
+            at + "46: faults[0].magnitude: this fault has no magnitude");
+}
+
+}  // namespace
+}  // namespace hg::config
