@@ -19,7 +19,8 @@ export class Quality {
     this.level = wish === "fast" ? LOWEST : 0;
   }
 
-  get smooths_edges(): boolean {
+  // Smooth edges and reflections: they are there from the start, or never.
+  get is_fine(): boolean {
     return this.wish !== "fast";
   }
 

@@ -34,6 +34,8 @@ export interface Pixel {
   y: number;
 }
 
+const MORE_SKY = 2.5; // when nothing reflects the room
+
 export class Stage {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera();
@@ -56,7 +58,7 @@ export class Stage {
 
   constructor(private readonly parent: HTMLElement) {
     this.renderer = new WebGLRenderer({
-      antialias: this.quality.smooths_edges,
+      antialias: this.quality.is_fine,
       alpha: true, // the room behind shows through in augmented reality
       powerPreference: "high-performance",
     });
@@ -71,7 +73,7 @@ export class Stage {
 
     this.floor.receiveShadow = true;
     this.add_sun();
-    this.reflect_room();
+    if (this.quality.is_fine) this.reflect_room();
     this.scene.add(this.rig, this.sky, this.floor, this.grid.mesh, this.box_view);
     this.paint();
     on_theme_change(() => this.paint());
@@ -156,7 +158,7 @@ export class Stage {
     this.grid.paint(theme.grid);
     this.sky.color.set(theme.sky_light);
     this.sky.groundColor.set(theme.ground_light);
-    this.sky.intensity = theme.ambient;
+    this.sky.intensity = (this.quality.is_fine ? 1 : MORE_SKY) * theme.ambient;
     this.sun.intensity = theme.sun;
     this.box_lines.color.set(theme.box);
   }

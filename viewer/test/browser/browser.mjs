@@ -14,7 +14,7 @@ const FLAGS = [
   "--use-angle=swiftshader", // WebGL without graphics hardware
   "--enable-unsafe-swiftshader",
 ];
-export const PATIENCE = { timeout: 60_000 }; // a machine may be slow; nothing is timed
+export const PATIENCE = { timeout: 180_000 }; // a machine may be slow; nothing is timed
 
 // Starts `command` and waits for the link of its page.
 export function start_program(command) {
@@ -53,6 +53,7 @@ const VIEWPORT = { width: 1000, height: 600 }; // small: it is drawn without gra
 export async function open_page(browser, link, options = {}, prepare = async () => {}) {
   const context = await browser.newContext({ viewport: VIEWPORT, ...options });
   const page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE.timeout);
   const problems = [];
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("console", (line) => line.type() === "error" && problems.push(line.text()));
@@ -62,7 +63,7 @@ export async function open_page(browser, link, options = {}, prepare = async () 
     if (!is_own) problems.push(request.url());
   });
   await prepare(page);
-  await page.goto(link, PATIENCE);
+  await page.goto(link, { ...PATIENCE, waitUntil: "commit" });
   await drawn(page);
   return { page, problems, close: () => context.close() };
 }
