@@ -195,6 +195,7 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
                        .rendering = device.rendering,
                        .control = checked_control(device),
                        .monitor = device.monitor,
+                       .sanitiser = device.sanitiser,
                        .collision = device.collision},
                       device.model, scenario.twin.model);
 }

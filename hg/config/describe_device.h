@@ -48,6 +48,7 @@ struct DeviceDraft {
   prepositioning::Config prepositioning;
   estimation::Config estimation;
   safety::MonitorConfig monitor;
+  safety::SanitiserConfig sanitiser;
   bool watches_collisions = true;
   bool has_floor = false;
   double safe_distance = collision::Config{}.safe_distance;

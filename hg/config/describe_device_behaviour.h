@@ -21,11 +21,53 @@ void describe(V& v, safety::MonitorConfig& monitor) {
   v.number("cartesian_tolerance_m", monitor.cartesian_tolerance, kPositive,
            "outside a Cartesian limit");
   v.number("speed_tolerance", monitor.speed_tolerance, {.lb = 1.0}, "times the largest speed");
+  v.number("virtual_tolerance_rad", monitor.virtual_tolerance, kPositive,
+           "beyond the limit of a virtual joint; m where its joints are prismatic");
+  v.number("acceleration_tolerance", monitor.acceleration_tolerance, {.lb = 1.0},
+           "times the largest acceleration of a joint, of its reference");
+  v.number("torque_tolerance", monitor.torque_tolerance, kPositive,
+           "times the peak torque of a joint");
   v.number("sync_tolerance_m", monitor.sync_tolerance, kPositive, "between handle and twin");
   v.number("tracking_tolerance_rad", monitor.tracking_tolerance, kPositive,
            "between reference and measured position of a revolute joint");
   v.number("tracking_tolerance_m", monitor.slide_tracking_tolerance, kPositive,
            "the same of a prismatic joint");
+  v.number("plausibility_rad", monitor.plausibility, kPositive,
+           "motor side minus twist of the spring minus link side of a joint; m where prismatic");
+  v.number("jump_factor", monitor.jump_factor, {.lb = 1.0},
+           "times what the largest speed allows in a sample, of a measured position");
+  v.number("frozen_samples", monitor.frozen_samples, kNotNegative,
+           "in a row with the same bits of wrench, inertial unit or a joint torque; 0: these "
+           "sensors have no noise, nobody can tell");
+  v.number("clock_tolerance", monitor.clock_tolerance, kPositive,
+           "mean error of the device's clock, periods per sample");
+  v.number("temperature_max_C", monitor.temperature_max, kPositive, "of a motor");
+  v.number("gantry_tolerance_m", monitor.gantry_tolerance, kPositive,
+           "beyond the range of a prismatic axis of the gantry");
+  v.number("gantry_tolerance_rad", monitor.turn_tolerance, kPositive,
+           "beyond the range of a revolute axis of the gantry");
+  v.number("gantry_deviation_m_per_s", monitor.gantry_deviation, kPositive,
+           "speed of a prismatic axis of the gantry from what its drive should do");
+  v.number("gantry_deviation_rad_per_s", monitor.turn_deviation, kPositive,
+           "the same of a revolute axis");
+  v.number("safe_speed_m_per_s", monitor.safe_speed, kPositive,
+           "of handle and gantry while nobody holds the handle");
+  v.number("overruns_in_a_row", monitor.overruns_in_a_row, kNotNegative,
+           "cycles that may be late one after the other");
+  v.number("overruns_per_s", monitor.overruns_per_s, kNotNegative,
+           "cycles that may be late again and again");
+  v.number("stop_time_s", monitor.stop_time, kPositive,
+           "that a controlled stop may take before the drives are switched off");
+}
+
+template <class V>
+void describe(V& v, safety::SanitiserConfig& sanitiser) {
+  v.flag("strict", sanitiser.is_strict,
+         "cut torques to 0 instead of to the torque that holds the joint");
+  v.number("margin_rad", sanitiser.margin, kNotNegative, "beyond the limit of a revolute joint");
+  v.number("margin_m", sanitiser.slide_margin, kNotNegative,
+           "beyond the limit of a prismatic joint");
+  v.number("torque_rise_s", sanitiser.torque_rise, kPositive, "from no torque to the peak torque");
 }
 
 template <class V>
@@ -110,7 +152,10 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       "self-collision, from the collision elements of the URDF; docs/collision.md");
   v.group(
       "monitor", [&](auto& child) { describe(child, d.monitor); },
-      "when the device is stopped by a fault");
+      "when the device is stopped by a fault, docs/safety.md");
+  v.group(
+      "sanitiser", [&](auto& child) { describe(child, d.sanitiser); },
+      "what is taken out of commands near and beyond limits, docs/safety.md");
 }
 
 }  // namespace hg::config

@@ -229,6 +229,16 @@ void derive(Device& device, const DeviceDraft& draft) {
   }
 
   device.monitor.gantry_speed_max = device.prepositioning.dq_max;
+  device.monitor.drive = device.drive;
+  device.monitor.is_gantry_slide = draft.gantry_unit != JointUnit::kAngle;
+  for (std::size_t i = 0; i < draft.gantry.size(); ++i) {
+    device.monitor.gantry_range.push_back(device.prepositioning.q_limits[i]);
+  }
+  for (const ActuatorModel& actuator : device.control.actuators) {
+    device.monitor.joint_torque_max.push_back(actuator.torque_max);
+    device.monitor.joint_stiffness.push_back(actuator.stiffness);
+    device.monitor.joint_rotor_inertia.push_back(actuator.rotor_inertia);
+  }
   for (int i : draft.manipulator) {
     device.monitor.is_slide.push_back(draft.joints[static_cast<std::size_t>(i)].unit ==
                                       JointUnit::kLength);
@@ -236,6 +246,7 @@ void derive(Device& device, const DeviceDraft& draft) {
   for (const limits::JointLimits& joint : device.model.joint_limits) {
     device.monitor.joint_range.push_back({joint.q_min, joint.q_max});
     device.monitor.joint_speed_max.push_back(joint.dq_max);
+    device.monitor.joint_acceleration.push_back(joint.ddq_max);
   }
   device.monitor.first_cartesian =
       device.model.n_m + static_cast<int>(device.model.virtual_joints.size());
@@ -319,6 +330,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .prepositioning = draft.prepositioning,
                    .estimation = draft.estimation,
                    .monitor = draft.monitor,
+                   .sanitiser = draft.sanitiser,
                    .collision = {.safe_distance = draft.safe_distance},
                    .unknown_links = {},
                    .simulation = simulation.value_or(ideal_simulation(draft)),

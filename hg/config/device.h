@@ -16,6 +16,7 @@
 #include "hg/rendering/device_model.h"
 #include "hg/rendering/options.h"
 #include "hg/safety/monitor.h"
+#include "hg/safety/sanitiser.h"
 #include "hg/signals/drive_model.h"
 
 namespace hg::config {
@@ -40,6 +41,7 @@ struct Device {
   prepositioning::Config prepositioning;
   estimation::Config estimation;
   safety::MonitorConfig monitor;
+  safety::SanitiserConfig sanitiser;
   collision::Config collision;             ///< no shapes: not watched
   std::vector<std::string> unknown_links;  ///< moving, whose shape nobody knows
   Simulation simulation;                   ///< of this device; without a file its defaults

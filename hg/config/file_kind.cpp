@@ -20,7 +20,8 @@ const std::array<Signature, 6>& signatures() {
   static const std::array<Signature, 6> all = {{
       {FileKind::kDevice,
        {"manipulator", "gantry", "flange", "kinematics", "rate_Hz", "virtual_joints",
-        "cartesian_limits", "drive", "synchronisation", "prepositioning", "estimation", "monitor"}},
+        "cartesian_limits", "drive", "synchronisation", "prepositioning", "estimation", "monitor",
+        "sanitiser"}},
       {FileKind::kTwin,
        {"end_effector", "placement", "free_body", "gravity", "floating_root", "locks"}},
       {FileKind::kScenario, {"twin", "device", "person", "title", "description", "events"}},

@@ -31,6 +31,13 @@ VectorM braking_of(const rendering::DeviceModel& device) {
   return ddq;
 }
 
+safety::MonitorConfig monitor_config(const Config& config) {
+  safety::MonitorConfig monitor = config.monitor;
+  monitor.has_imu = config.estimation.wrench.has_imu;
+  monitor.dt = config.rendering.dt;
+  return monitor;
+}
+
 prepositioning::TargetConfig target_of(const prepositioning::Config& gantry,
                                        const rendering::DeviceModel& device) {
   prepositioning::TargetConfig target = {.has_closed_form = gantry.has_closed_form,
@@ -54,8 +61,9 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
       rendering_(device, twin, config.rendering),
       control_(config.control, device.chain, device.n_p, device.n_m, device.handle),
       gantry_target_(target_of(config.prepositioning, device), device.chain),
-      guard_(config.collision, device.chain) {
-  config_.monitor.has_imu = config.estimation.wrench.has_imu;
+      guard_(config.collision, device.chain),
+      monitor_(monitor_config(config), device.n_p, device.n_m),
+      sanitiser_(config.sanitiser, monitor_.config()) {
   ddq_max_ = braking_of(device);
   longest_stop_ = static_cast<int>(std::lround(config.monitor.stop_time / config.rendering.dt));
   prepositioning::check(config_.prepositioning);
@@ -65,7 +73,7 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
 }
 
 void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input,
-                 CommandFrame& command, CycleRecord& record) noexcept {
+                 CommandFrame& command, CycleRecord& record) noexcept HG_NONBLOCKING {
   record = {};
   record.cycle = state_.cycle;
   record.time_s = static_cast<double>(state_.cycle) * config_.rendering.dt;
@@ -78,7 +86,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   ended_(Stage::kSupervision);
 
   // estimation -> rendering -> prepositioning
-  if (safety::is_finite(config_.monitor, sensors)) {
+  if (safety::is_finite(monitor_.config(), sensors)) {
     record.robot =
         estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
     ended_(Stage::kEstimation);
@@ -88,16 +96,21 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
     } else {
       hold(record);
     }
+    monitor(sensors, operator_input.late_cycles, record);
+  } else {
+    safety::Monitor::forget(state_.monitor);
   }
 
   // control -> sanitiser
   write_command(sensors, operator_input, command, record);
   ended_(Stage::kControl);
-  const Fault fault = safety::sanitise(config_.monitor, command);
-  if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
+  sanitise(command, record);
   ended_(Stage::kSafety);
 
   state_.dq_p = command.dq_p;
+  state_.q_m = command.q_m;
+  state_.tau_m = command.tau_m;
+  state_.was_on = command.enable;
   state_.next_sequence = sensors.sequence + 1;
   ++state_.cycle;
   const safety::SupervisorState& supervisor = state_.supervisor;
@@ -105,6 +118,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   record.is_autonomous = supervisor.state == safety::State::kAutonomous;
   record.stop = supervisor.stop;
   record.fault = supervisor.fault;
+  if (supervisor.also.code != FaultCode::kNone) record.warning = supervisor.also;
   record.tare = state_.estimation.wrench.tare.status;
   record.is_tared = estimation_.is_tared(state_.estimation);
   record.is_latency_known = control_.is_latency_known(state_.control);
@@ -124,14 +138,15 @@ void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
   const bool was_fault = supervisor.state == safety::State::kFault;
   const bool is_arming = is_new && request == ModeRequest::kArm;
   const Fault fault = check(sensors);
-  safety::SupervisorInput input = {
-      .request = request,
-      .is_held = is_held(sensors),
-      .safety = sensors.safety,
-      .to_arm = is_arming ? refusal_to_arm() : Refusal::kNone,
-      .fault = safety::check_safety_inputs(sensors.safety, supervisor),
-      .reaction = fault.code != FaultCode::kNone ? safety::rule_of(fault.code).reaction
-                                                 : Stop::kNone};
+  safety::SupervisorInput input = {.request = request,
+                                   .is_held = is_held(sensors),
+                                   .safety = sensors.safety,
+                                   .to_arm = is_arming ? refusal_to_arm() : Refusal::kNone,
+                                   .is_broken = state_.monitor.is_broken,
+                                   .fault = safety::check_safety_inputs(sensors.safety, supervisor),
+                                   .reaction = fault.code != FaultCode::kNone
+                                                   ? safety::rule_of(fault.code).reaction
+                                                   : Stop::kNone};
   if (input.fault.code == FaultCode::kNone) input.fault = fault;
   record.refusal = safety::advance(input, supervisor);
   if (was_fault && supervisor.state != safety::State::kFault) begin_anew();
@@ -141,7 +156,7 @@ void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
 }
 
 Fault Cycle::check(const SensorFrame& sensors) noexcept {
-  const Fault fault = safety::check_sensors(config_.monitor, sensors, state_.next_sequence);
+  const Fault fault = safety::check_sensors(monitor_.config(), sensors, state_.next_sequence);
   if (fault.code != FaultCode::kNone) return fault;
   const bool is_on = safety::is_powered(state_.supervisor.state);
   control_.listen(sensors, is_on, state_.control);
@@ -195,13 +210,17 @@ void Cycle::hold(CycleRecord& record) noexcept {
   record.twin = rendering.twin;
   state_.dq_p.setZero();
   state_.is_blocked = state_.brakes_joints = false;
+  pulled_back_.resize(0);
   state_.force_share = 0.0;
 }
 
 void Cycle::render(CycleRecord& record) noexcept {
   const bool is_stopping = state_.supervisor.mode() == Mode::kStopping;
+  pulled_back_ = state_.rendering.reference.q_m;
   const bool has_left =
       rendering_.stay_near(record.robot, config_.control.error_max, state_.rendering);
+  if (has_left) pulled_back_ -= state_.rendering.reference.q_m;
+  if (!has_left) pulled_back_.resize(0);
   rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record, state_.force_share);
   state_.force_share = std::min(1.0, state_.force_share + config_.rendering.dt / kRamp);
 
@@ -220,8 +239,6 @@ void Cycle::render(CycleRecord& record) noexcept {
   record.tracking.is_clamped = has_left;
   if (state_.brakes_joints) brake_joints(record);
   ended_(Stage::kPrepositioning);
-  const Fault fault = safety::check_reference(config_.monitor, record);
-  if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
   rendering_.integrate(state_.rendering);
   if (is_stopping) {
     safety::go_on_stopping(stands_still(record), longest_stop_, config_.monitor.stop_time,
@@ -244,6 +261,29 @@ void Cycle::brake_joints(CycleRecord& record) noexcept {
   record.twin = rendering.twin;
   record.sync_error = 0.0;
   state_.dq_p.setZero();
+}
+
+void Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
+                    CycleRecord& record) noexcept {
+  const safety::Verdict verdict = monitor_.watch(sensors, record,
+                                                 {.state = state_.supervisor.state,
+                                                  .late_cycles = late_cycles,
+                                                  .dq_p_command = state_.dq_p,
+                                                  .pulled_back = pulled_back_},
+                                                 state_.monitor);
+  record.warning = verdict.warning;
+  if (state_.monitor.is_broken) safety::break_rule(verdict.fault, state_.supervisor);
+}
+
+void Cycle::sanitise(CommandFrame& command, CycleRecord& record) noexcept {
+  const safety::Sanitised sanitised = sanitiser_.step({.robot = record.robot,
+                                                       .was_on = state_.was_on,
+                                                       .q_before = state_.q_m,
+                                                       .tau_before = state_.tau_m},
+                                                      command);
+  record.sanitised = sanitised.changed;
+  if (sanitised.fault.code == FaultCode::kNone) return;
+  safety::break_rule(sanitised.fault, state_.supervisor);
 }
 
 void Cycle::write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,

@@ -6,12 +6,14 @@
 
 #include "hg/collision/guard.h"
 #include "hg/control/joint_control.h"
+#include "hg/core/nonblocking.h"
 #include "hg/core/stage_probe.h"
 #include "hg/estimation/estimation.h"
 #include "hg/prepositioning/gantry_target.h"
 #include "hg/prepositioning/prepositioning.h"
 #include "hg/rendering/rendering.h"
 #include "hg/safety/monitor.h"
+#include "hg/safety/sanitiser.h"
 #include "hg/safety/supervisor.h"
 #include "hg/signals/state.h"
 
@@ -24,6 +26,7 @@ struct Config {
   rendering::Options rendering;
   control::Config control;
   safety::MonitorConfig monitor;
+  safety::SanitiserConfig sanitiser;
   collision::Config collision;
 };
 
@@ -33,12 +36,15 @@ struct State {
   std::uint64_t cycle = 0;
   std::uint64_t next_sequence = 0;
   safety::SupervisorState supervisor;
+  safety::MonitorState monitor;
   estimation::State estimation;
   rendering::State rendering;
   control::State control;
   prepositioning::TargetState gantry_target;
   collision::State collision;
   VectorP dq_p;                ///< gantry command of the last cycle
+  VectorM q_m, tau_m;          ///< positions and torques of the last command
+  bool was_on = false;         ///< the last command had the drives on
   bool is_blocked = false;     ///< a device limit could not be met in the last cycle
   bool brakes_joints = false;  ///< the law gave no solution: each joint brakes by itself
   double force_share = 0.0;  ///< of the forces that act on the twin, 0..1: they come in with a ramp
@@ -51,11 +57,11 @@ class Cycle {
         const rendering::TwinModel& twin);
 
   void step(const SensorFrame& sensors, const OperatorFrame& operator_input, CommandFrame& command,
-            CycleRecord& record) noexcept;
+            CycleRecord& record) noexcept HG_NONBLOCKING;
 
   /// Whether somebody holds the handle, as far as the device can tell.
   bool is_held(const SensorFrame& sensors) const noexcept {
-    return safety::is_held(config_.monitor, sensors);
+    return safety::is_held(monitor_.config(), sensors);
   }
 
   /// Who is told from now on how far a step has come; the default probe tells nobody.
@@ -81,6 +87,8 @@ class Cycle {
   void look_ahead(CycleRecord& record) noexcept;
   void hold(CycleRecord& record) noexcept;
   void render(CycleRecord& record) noexcept;
+  void monitor(const SensorFrame& sensors, std::uint32_t late_cycles, CycleRecord& record) noexcept;
+  void sanitise(CommandFrame& command, CycleRecord& record) noexcept;
   void brake_joints(CycleRecord& record) noexcept;
   void write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
                      CommandFrame& command, CycleRecord& record) noexcept;
@@ -93,6 +101,9 @@ class Cycle {
   control::JointControl control_;
   prepositioning::GantryTarget gantry_target_;
   collision::Guard guard_;
+  safety::Monitor monitor_;
+  safety::Sanitiser sanitiser_;
+  VectorM pulled_back_;  ///< this cycle: by how much the reference came back; empty = it did not
   State state_;
   StageProbe ended_;
 };

@@ -129,6 +129,31 @@ void mix(const safety::SupervisorState& state, Hash& hash) noexcept {
   hash.mix(static_cast<std::uint64_t>(state.stop_samples));
 }
 
+void mix(const safety::MonitorState& state, Hash& hash) noexcept {
+  std::uint64_t counts = 0;  // all but a few are zero
+  for (std::size_t i = 0; i < state.broken.size(); ++i) {
+    counts += state.broken[i] * (2 * i + 1);
+  }
+  for (std::size_t i = 0; i < state.same_torque.size(); ++i) {
+    counts += state.same_torque[i] * ((2 * i + 1) << 32U);
+  }
+  hash.mix(counts);
+  hash.mix(static_cast<std::uint64_t>(state.same_wrench) |
+           static_cast<std::uint64_t>(state.same_imu) << 24U |
+           static_cast<std::uint64_t>(state.late_in_a_row) << 40U |
+           std::uint64_t{state.has_sample} << 62U | std::uint64_t{state.is_broken} << 63U);
+  for (const double value : {state.time_s, state.clock_error, state.late}) hash.mix(value);
+  hash.mix(state.w_S);
+  hash.mix(state.imu);
+  for (const VectorM* v :
+       {&state.q_m, &state.tau_m, &state.pulled_back, &state.lowest, &state.highest}) {
+    hash.mix(*v);
+  }
+  for (const VectorP* v : {&state.q_p, &state.dq_p_model, &state.lowest_p, &state.highest_p}) {
+    hash.mix(*v);
+  }
+}
+
 }  // namespace
 
 std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noexcept {
@@ -137,10 +162,14 @@ std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noe
   hash.mix(std::uint64_t{state.gantry_target.is_started});
   hash.mix(state.gantry_target.q);
   hash.mix(state.dq_p);
-  hash.mix(std::uint64_t{state.is_blocked} | std::uint64_t{state.brakes_joints} << 1U);
+  hash.mix(std::uint64_t{state.is_blocked} | std::uint64_t{state.brakes_joints} << 1U |
+           std::uint64_t{state.was_on} << 2U);
   hash.mix(state.force_share);
   hash.mix(state.next_sequence);
   mix(state.supervisor, hash);
+  mix(state.monitor, hash);
+  hash.mix(state.q_m);
+  hash.mix(state.tau_m);
   mix(state.collision, hash);
   mix(state.estimation, hash);
   const control::State& control = state.control;

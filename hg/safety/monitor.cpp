@@ -2,9 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <string>
+
+#include "hg/core/error.h"
 
 namespace hg::safety {
 namespace {
+
+constexpr double kClockMemory = 0.02;  // share of the newest sample in the clock's mean error
+constexpr double kPullMemory_s = 0.2;  // after which a reference that came back is forgotten
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 template <typename Vector>
 int first_not_finite(const Vector& v) noexcept {
@@ -31,12 +41,27 @@ int first_of_all(const Vectors&... vectors) noexcept {
   return found;
 }
 
-// joints, joint speeds, gantry, wrench, motors, joint torques, accelerometer, gyroscope
+// joints, joint speeds, gantry, wrench, motors, joint torques, accelerometer, gyroscope, motor
+// temperatures
 int first_not_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
   const Eigen::Vector3d kNone = Eigen::Vector3d::Zero();
   return first_of_all(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
                       sensors.tau_m, config.has_imu ? sensors.a_S : kNone,
-                      config.has_imu ? sensors.omega_S : kNone);
+                      config.has_imu ? sensors.omega_S : kNone, sensors.temperature_m);
+}
+
+// the nearest of all turns: joints without limits are wrapped
+double turned(double angle) noexcept { return angle - kTurn * std::nearbyint(angle / kTurn); }
+
+// A range that holds `q` as well, and shrinks back to `range` with it.
+void follow(const Interval& range, double q, bool is_powered, double& lowest,
+            double& highest) noexcept {
+  lowest = std::min(range.lb, is_powered ? std::max(lowest, q) : q);
+  highest = std::max(range.ub, is_powered ? std::min(highest, q) : q);
+}
+
+std::uint16_t count_up(std::uint16_t count) noexcept {
+  return count < UINT16_MAX ? static_cast<std::uint16_t>(count + 1) : count;
 }
 
 }  // namespace
@@ -54,18 +79,8 @@ Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
     return make_fault(FaultCode::kSequenceGap, -1, static_cast<double>(sensors.sequence),
                       static_cast<double>(expected_sequence));
   }
-
   const int index = first_not_finite(config, sensors);
   if (index >= 0) return make_fault(FaultCode::kSensorNotFinite, index, NAN, 0.0);
-
-  const double force = sensors.w_S.head<3>().norm();
-  if (force > config.force_max) {
-    return make_fault(FaultCode::kWrenchTooLarge, 0, force, config.force_max);
-  }
-  const double torque = sensors.w_S.tail<3>().norm();
-  if (torque > config.torque_max) {
-    return make_fault(FaultCode::kWrenchTooLarge, 1, torque, config.torque_max);
-  }
   return {};
 }
 
@@ -73,60 +88,243 @@ Fault check_solution(const CycleRecord& record) noexcept {
   if (record.solver_status != SolverStatus::kSolved) {
     return make_fault(FaultCode::kSolverFailed, -1, static_cast<double>(record.solver_status), 0.0);
   }
-  const ReferenceState& reference = record.reference;
-  int index = first_not_finite(reference.ddq_m);
+  int index = first_not_finite(record.reference.ddq_m);
   if (index < 0) index = first_not_finite(record.twin.ddq_a);
   if (index >= 0) return make_fault(FaultCode::kReferenceNotFinite, index, NAN, 0.0);
   return {};
 }
 
-Fault check_reference(const MonitorConfig& config, const CycleRecord& record) noexcept {
-  const ReferenceState& reference = record.reference;
-  for (int i = 0; i < reference.q_m.size(); ++i) {
-    const auto joint = static_cast<std::size_t>(i);
-    const Interval range = config.joint_range[joint];
-    const bool is_slide = !config.is_slide.empty() && config.is_slide[joint];
-    const double beyond = is_slide ? config.slide_tolerance : config.position_tolerance;
-    const double apart = is_slide ? config.slide_tracking_tolerance : config.tracking_tolerance;
-    const double nearest = std::clamp(reference.q_m[i], range.lb, range.ub);
-    if (std::abs(reference.q_m[i] - nearest) > beyond) {
-      return make_fault(FaultCode::kLimitExceeded, i, reference.q_m[i], nearest);
-    }
-    const double fastest = config.speed_tolerance * config.joint_speed_max[joint];
-    if (std::abs(reference.dq_m[i]) > fastest) {
-      return make_fault(FaultCode::kSpeedExceeded, i, reference.dq_m[i], fastest);
-    }
-    const double error = std::abs(reference.q_m[i] - record.robot.q_m[i]);
-    if (error > apart) return make_fault(FaultCode::kTrackingLost, i, error, apart);
+Monitor::Monitor(const MonitorConfig& config, int n_p, int n_m)
+    : config_(config), n_p_(n_p), n_m_(n_m) {
+  const auto require = [](bool ok, const std::string& text) {
+    if (!ok) throw SetupError("monitor: " + text);
+  };
+  const auto fits = [](const auto& list, int n) {
+    return list.empty() || list.size() == static_cast<std::size_t>(n);
+  };
+  require(config.dt > 0.0, "the period must be positive");
+  if (config_.gantry_range.empty()) config_.gantry_range.resize(at(n_p));
+  if (config_.joint_range.empty()) config_.joint_range.resize(at(n_m));
+  if (config_.is_slide.empty()) config_.is_slide.resize(at(n_m));
+  if (config_.joint_speed_max.empty()) config_.joint_speed_max.resize(at(n_m), kInfinity);
+  if (config_.joint_acceleration.empty()) config_.joint_acceleration.resize(at(n_m), kInfinity);
+  if (config_.joint_torque_max.empty()) config_.joint_torque_max.resize(at(n_m), kInfinity);
+  require(config_.gantry_range.size() == at(n_p), "one range per gantry axis is needed");
+  for (const auto* list :
+       {&config_.joint_speed_max, &config_.joint_acceleration, &config_.joint_torque_max}) {
+    require(list->size() == at(n_m), "one rating per joint is needed");
   }
-  for (int i = config.first_cartesian; i < config.end_cartesian; ++i) {
-    const double excess = record.limits[static_cast<std::size_t>(i)].excess;
-    if (excess > config.cartesian_tolerance) {
-      return make_fault(FaultCode::kLimitExceeded, i, excess, config.cartesian_tolerance);
-    }
+  require(config_.joint_range.size() == at(n_m) && config_.is_slide.size() == at(n_m),
+          "one range per joint is needed");
+  require(fits(config_.joint_stiffness, n_m) && fits(config_.joint_rotor_inertia, n_m),
+          "one stiffness and one rotor inertia per joint are needed, or none");
+  for (std::size_t i = 0; i < kRuleCount; ++i) {
+    const Debounce& debounce = kRules[i].debounce;
+    const int samples = static_cast<int>(std::ceil(debounce.seconds / config.dt - 1e-9));
+    debounce_[i] = std::min(std::max(debounce.samples, samples), int{UINT16_MAX});
+    fresh_[i] = {kRules[i].warn_from, 0.0, 0.0, -1};
   }
-  if (record.sync_error > config.sync_tolerance) {
-    return make_fault(FaultCode::kSyncLost, -1, record.sync_error, config.sync_tolerance);
-  }
-  return {};
 }
 
-Fault sanitise(const MonitorConfig& config, CommandFrame& command) noexcept {
-  const int index =
-      first_of_all(command.q_m, command.dq_m, command.ddq_m, command.tau_m, command.dq_p);
-  if (index >= 0) {
-    command.enable = false;
-    command.dq_m.setZero();
-    command.ddq_m.setZero();
-    command.tau_m.setZero();
-    command.dq_p.setZero();
-    for (double& q : command.q_m) q = std::isfinite(q) ? q : 0.0;
-    return make_fault(FaultCode::kCommandNotFinite, index, NAN, 0.0);
+// A threshold of zero is passed by any value above it.
+template <FaultCode code>
+void Monitor::look(int index, double value, double limit) noexcept {
+  constexpr std::size_t kRule = rule_index(code);
+  static_assert(kRule < kRuleCount);
+  Worst& worst = worst_[kRule];
+  if (!(value > worst.share * limit)) return;
+  worst = {limit > 0.0 ? value / limit : kInfinity, value, limit, index};
+}
+
+Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
+                       const Watched& watched, MonitorState& state) noexcept {
+  worst_ = fresh_;
+  if (state.lowest.size() != n_m_) {
+    state.lowest = state.highest = record.robot.q_m;
+    state.lowest_p = state.highest_p = record.robot.q_p;
+    state.pulled_back = VectorM::Zero(n_m_);
+    state.dq_p_model = VectorP::Zero(n_p_);
   }
-  for (double& dq : command.dq_p) {
-    dq = std::clamp(dq, -config.gantry_speed_max, config.gantry_speed_max);
+  for (int i = 0; i < n_m_; ++i) look_at_joint(i, record, watched, state);
+  look_at_gantry(record, watched, state);
+  look_at_frames(record, watched);
+  look_at_clocks(sensors, watched, state);
+  look_at_sensors(sensors, state);
+  const Verdict verdict = judge(state);
+  state.is_broken = verdict.fault.code != FaultCode::kNone;
+  return verdict;
+}
+
+void Monitor::look_at_joint(int joint, const CycleRecord& record, const Watched& watched,
+                            MonitorState& state) noexcept {
+  const std::size_t i = at(joint);
+  const double q = record.robot.q_m[joint], dq = record.robot.dq_m[joint];
+  const bool is_on = is_powered(watched.state);
+  follow(config_.joint_range[i], q, is_on, state.lowest[joint], state.highest[joint]);
+  double& pulled = state.pulled_back[joint];
+  const bool is_pulled = watched.pulled_back.size() > 0 && watched.pulled_back[joint] != 0.0;
+  pulled =
+      is_pulled ? pulled + watched.pulled_back[joint] : pulled * (1.0 - config_.dt / kPullMemory_s);
+  if (!is_on) {
+    pulled = 0.0;
+    return;
   }
-  return {};
+  const bool is_slide = config_.is_slide[i];
+  const double beyond = is_slide ? config_.slide_tolerance : config_.position_tolerance;
+  const double apart = is_slide ? config_.slide_tracking_tolerance : config_.tracking_tolerance;
+  const double fastest = config_.speed_tolerance * config_.joint_speed_max[i];
+  const ReferenceState& reference = record.reference;
+  const double q_r = reference.q_m[joint];
+  look<FaultCode::kLimitExceeded>(joint,
+                                  std::max({q - state.highest[joint], state.lowest[joint] - q,
+                                            q_r - state.highest[joint], state.lowest[joint] - q_r}),
+                                  beyond);
+  look<FaultCode::kSpeedExceeded>(joint, std::abs(dq), fastest);
+  look<FaultCode::kSpeedExceeded>(joint, std::abs(reference.dq_m[joint]), fastest);
+  look<FaultCode::kAccelerationExceeded>(
+      joint, std::abs(reference.ddq_m[joint]),
+      config_.acceleration_tolerance * config_.joint_acceleration[i]);
+  look<FaultCode::kTrackingLost>(joint, std::abs(q_r - q + pulled), apart);
+}
+
+void Monitor::look_at_gantry(const CycleRecord& record, const Watched& watched,
+                             MonitorState& state) noexcept {
+  const RobotState& robot = record.robot;
+  const bool is_on = is_powered(watched.state);
+  const double beyond = config_.is_gantry_slide ? config_.gantry_tolerance : config_.turn_tolerance;
+  const double off = config_.is_gantry_slide ? config_.gantry_deviation : config_.turn_deviation;
+  const double while_dead = config_.drive.dead_time * config_.drive.ddq_max;
+  for (int axis = 0; axis < n_p_; ++axis) {
+    const double q = robot.q_p[axis], dq = robot.dq_p[axis];
+    double& model = state.dq_p_model[axis];
+    follow(config_.gantry_range[at(axis)], q, is_on, state.lowest_p[axis], state.highest_p[axis]);
+    if (!is_on) {
+      model = dq;
+      continue;
+    }
+    look<FaultCode::kGantryExceeded>(
+        axis, std::max(q - state.highest_p[axis], state.lowest_p[axis] - q), beyond);
+    look<FaultCode::kGantryExceeded>(axis, std::abs(dq),
+                                     config_.speed_tolerance * config_.drive.dq_max);
+    look<FaultCode::kGantryDeviates>(axis, std::abs(dq - model), off + while_dead);
+    model += config_.dt * drive_acceleration(config_.drive, model, watched.dq_p_command[axis]);
+  }
+}
+
+void Monitor::look_at_frames(const CycleRecord& record, const Watched& watched) noexcept {
+  const Mode mode = mode_of(watched.state);
+  if (mode != Mode::kRunning && mode != Mode::kStopping) return;
+  for (int i = n_m_; i < config_.end_cartesian; ++i) {
+    const bool is_sum = i < config_.first_cartesian;
+    look<FaultCode::kLimitExceeded>(
+        i, record.limits[at(i)].excess,
+        is_sum ? config_.virtual_tolerance : config_.cartesian_tolerance);
+  }
+  look<FaultCode::kSyncLost>(-1, record.sync_error, config_.sync_tolerance);
+  if (watched.state != State::kAutonomous) return;
+  look<FaultCode::kSafeSpeedExceeded>(0, record.v_H.norm(), config_.safe_speed);
+  if (!config_.is_gantry_slide) return;
+  look<FaultCode::kSafeSpeedExceeded>(1, record.robot.dq_p.norm(), config_.safe_speed);
+}
+
+void Monitor::look_at_clocks(const SensorFrame& sensors, const Watched& watched,
+                             MonitorState& state) noexcept {
+  if (state.has_sample) {
+    const double error = (sensors.time_s - state.time_s) / config_.dt - 1.0;
+    state.clock_error += kClockMemory * (error - state.clock_error);
+    look<FaultCode::kClockWrong>(-1, std::abs(state.clock_error), config_.clock_tolerance);
+  }
+  state.time_s = sensors.time_s;
+
+  const auto late = static_cast<double>(watched.late_cycles);
+  const bool is_on = is_powered(watched.state);
+  state.late = is_on ? std::max(0.0, state.late - config_.dt * config_.overruns_per_s) + late : 0.0;
+  state.late_in_a_row = is_on && watched.late_cycles > 0
+                            ? state.late_in_a_row + static_cast<int>(std::min(late, 1e6))
+                            : 0;
+  look<FaultCode::kCycleOverrun>(0, state.late_in_a_row, config_.overruns_in_a_row);
+  look<FaultCode::kCycleOverrun>(1, state.late, config_.overruns_per_s);
+}
+
+void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept {
+  look<FaultCode::kWrenchTooLarge>(0, sensors.w_S.head<3>().norm(), config_.force_max);
+  look<FaultCode::kWrenchTooLarge>(1, sensors.w_S.tail<3>().norm(), config_.torque_max);
+  look<FaultCode::kBusErrors>(-1, sensors.bus_errors, 0.0);
+  for (int i = 0; i < sensors.temperature_m.size(); ++i) {
+    look<FaultCode::kTooHot>(i, sensors.temperature_m[i], config_.temperature_max);
+  }
+  for (int i = 0; i < sensors.tau_m.size(); ++i) {
+    const double tau = sensors.tau_m[i];
+    look<FaultCode::kJointTorqueExceeded>(
+        i, std::abs(tau), config_.torque_tolerance * config_.joint_torque_max[at(i)]);
+    if (config_.joint_stiffness.empty() || sensors.theta_m.size() == 0) continue;
+    const double twist = turned(sensors.theta_m[i] - sensors.q_m[i]);
+    look<FaultCode::kSensorImplausible>(i, std::abs(twist - tau / config_.joint_stiffness[at(i)]),
+                                        config_.plausibility);
+  }
+  if (state.has_sample) {
+    const double far = config_.jump_factor * config_.dt;
+    for (int i = 0; i < n_m_; ++i) {
+      look<FaultCode::kSensorJump>(i, std::abs(turned(sensors.q_m[i] - state.q_m[i])),
+                                   far * config_.joint_speed_max[at(i)]);
+    }
+    for (int i = 0; i < n_p_; ++i) {
+      look<FaultCode::kSensorJump>(n_m_ + i, std::abs(sensors.q_p[i] - state.q_p[i]),
+                                   far * config_.drive.dq_max);
+    }
+  }
+  if (config_.frozen_samples > 0.0) look_at_noise(sensors, state);
+  state.q_m = sensors.q_m;
+  state.q_p = sensors.q_p;
+  state.has_sample = true;
+}
+
+// joint torques by joint, then wrench and inertial unit
+void Monitor::look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept {
+  const double most = config_.frozen_samples;
+  const bool can_compare = state.has_sample;
+  const bool has_torques = sensors.tau_m.size() == state.tau_m.size() && can_compare;
+  for (int i = 0; i < sensors.tau_m.size(); ++i) {
+    std::uint16_t& same = state.same_torque[at(i)];
+    same = has_torques && sensors.tau_m[i] == state.tau_m[i] ? count_up(same) : std::uint16_t{0};
+    look<FaultCode::kSensorFrozen>(i, same, most);
+  }
+  state.same_wrench = can_compare && sensors.w_S == state.w_S ? state.same_wrench + 1 : 0;
+  look<FaultCode::kSensorFrozen>(n_m_, state.same_wrench, most);
+  if (config_.has_imu) {
+    Vector6 imu;
+    imu << sensors.a_S, sensors.omega_S;
+    state.same_imu = can_compare && imu == state.imu ? state.same_imu + 1 : 0;
+    look<FaultCode::kSensorFrozen>(n_m_ + 1, state.same_imu, most);
+    state.imu = imu;
+  }
+  state.tau_m = sensors.tau_m;
+  state.w_S = sensors.w_S;
+}
+
+// Of several rules that are broken the one with the hardest reaction, then the smallest number.
+Verdict Monitor::judge(MonitorState& state) const noexcept {
+  Verdict verdict;
+  Stop hardest = Stop::kNone;
+  double nearest = 0.0;
+  for (std::size_t i = 0; i < kRuleCount; ++i) {
+    const Worst& worst = worst_[i];
+    if (!(worst.value > 0.0)) {  // nobody was even near
+      state.broken[i] = 0;
+      continue;
+    }
+    const Fault fault = make_fault(kRules[i].code, worst.index, worst.value, worst.limit);
+    state.broken[i] = worst.share > 1.0 ? count_up(state.broken[i]) : std::uint16_t{0};
+    if (state.broken[i] >= debounce_[i] && kRules[i].reaction > hardest) {
+      verdict.fault = fault;
+      hardest = kRules[i].reaction;
+    }
+    if (worst.share > nearest && kRules[i].warn_from < 1.0) {
+      verdict.warning = fault;
+      nearest = worst.share;
+    }
+  }
+  return verdict;
 }
 
 }  // namespace hg::safety

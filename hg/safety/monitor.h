@@ -1,36 +1,67 @@
-/// First and last in the line: refuses sensor values that cannot be used, and commands that must
-/// not leave. Not a certified safety function.
+/// Watches what was measured and what the law wants, in every cycle, against the rules of rules.h.
 ///
-/// No allocation, noexcept after set-up.
+/// Two parts: check_sensors() and check_solution() say at once what must not be used, watch() looks
+/// at everything that has a threshold. Not a certified safety function. No allocation, noexcept
+/// after set-up.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "hg/core/interval.h"
+#include "hg/safety/rules.h"
+#include "hg/safety/transitions.h"
+#include "hg/signals/drive_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::safety {
 
-/// Set-up data.
+/// Set-up data. [HANDBOOK] 6.2 where nothing else is said; docs/safety.md says where it differs.
 struct MonitorConfig {
-  double force_max = 150.0;                ///< [HANDBOOK] 6.2, N
+  double force_max = 150.0;                ///< of the user, N
   double torque_max = 14.0;                ///< Nm; the sensor ends at 15
   bool has_dead_man = true;                ///< false: the handle counts as held all the time
   bool has_imu = true;                     ///< false: nobody looks at what its fields hold
   double position_tolerance = 0.03;        ///< beyond the limit of a revolute joint, rad
   double slide_tolerance = 0.03;           ///< beyond the limit of a prismatic joint, m
+  double virtual_tolerance = 0.05;         ///< beyond the limit of a sum of joints, rad or m
   double cartesian_tolerance = 0.03;       ///< outside a Cartesian limit, m
   double speed_tolerance = 1.1;            ///< times the rating
+  double acceleration_tolerance = 2.0;     ///< times the rating; bounds may take 1.5 of it
+  double torque_tolerance = 1.0;           ///< times the peak torque
   double tracking_tolerance = 0.08;        ///< reference minus measured joint, rad
   double slide_tracking_tolerance = 0.02;  ///< the same of a prismatic joint, m
   double sync_tolerance = 0.02;            ///< between handle and twin, m
-  double gantry_speed_max = 1.5;           ///< m/s or rad/s
-  std::vector<Interval> joint_range;       ///< of the manipulator joints
-  std::vector<bool> is_slide;              ///< manipulator joints that are prismatic; empty = none
+  double plausibility = 0.02;              ///< motor side minus spring minus link side, rad or m
+  double jump_factor = 3.0;                ///< times what the speed rating allows in a sample
+  double clock_tolerance = 0.2;            ///< mean error of the clock, periods per sample
+  double temperature_max = 90.0;           ///< of a motor, degrees Celsius
+  double gantry_tolerance = 0.02;          ///< beyond the range of a prismatic axis, m
+  double turn_tolerance = 0.03;            ///< beyond the range of a revolute axis, rad
+  double gantry_deviation = 0.25;          ///< from the speed of the drive model, m/s
+  double turn_deviation = 0.25;            ///< the same of a revolute axis, rad/s
+  double safe_speed = 0.25;                ///< of handle and gantry with nobody at it, m/s
   double stop_time = 1.0;                  ///< that a controlled stop may take, s
-  int first_cartesian = 0;  ///< Cartesian limits in the catalogue: first and one past the last
-  int end_cartesian = 0;
-  std::vector<double> joint_speed_max;  ///< rad/s or m/s
+  double frozen_samples = 0;               ///< with the same bits; 0: sensors have no noise
+  double overruns_in_a_row = 2;            ///< late cycles that may follow each other
+  double overruns_per_s = 5;               ///< late cycles that may come again and again
+
+  // what the device is
+  double dt = 1e-3;                         ///< period, s
+  double gantry_speed_max = 1.5;            ///< of commands, m/s or rad/s
+  DriveModel drive;                         ///< of every gantry axis
+  bool is_gantry_slide = true;              ///< its axes are prismatic
+  std::vector<Interval> gantry_range;       ///< of the axes
+  std::vector<Interval> joint_range;        ///< of the manipulator joints
+  std::vector<bool> is_slide;               ///< joints that are prismatic; empty = none
+  std::vector<double> joint_speed_max;      ///< rad/s or m/s
+  std::vector<double> joint_acceleration;   ///< ratings; empty = none
+  std::vector<double> joint_torque_max;     ///< peak torques; empty = none
+  std::vector<double> joint_stiffness;      ///< of the springs; empty: joints are rigid
+  std::vector<double> joint_rotor_inertia;  ///< at the output of the gear; as joint_stiffness
+  int first_cartesian = 0;  ///< Cartesian limits in the catalogue: first and one past the last;
+  int end_cartesian = 0;    ///< sums of joints stand between them and the joints
 };
 
 /// Whether somebody holds the handle, as far as the device can tell.
@@ -41,19 +72,85 @@ inline bool is_held(const MonitorConfig& config, const SensorFrame& sensors) noe
 /// Whether every measured value is a number: others must not reach the estimation.
 bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept;
 
-/// The first thing wrong with what was measured, or kNone.
+/// The first thing that makes a sample unusable, or kNone.
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
                     std::uint64_t expected_sequence) noexcept;
 
 /// Whether the rendering gave a solution that may be integrated; the fault, or kNone.
 Fault check_solution(const CycleRecord& record) noexcept;
 
-/// The first thing wrong with the reference or the state behind it, or kNone.
-Fault check_reference(const MonitorConfig& config, const CycleRecord& record) noexcept;
+/// What of a cycle is watched, besides sensors and record.
+struct Watched {
+  State state = State::kOff;      ///< of the supervisor
+  std::uint32_t late_cycles = 0;  ///< since the last cycle
+  VectorP dq_p_command;           ///< that the gantry follows now
+  VectorM pulled_back;  ///< by how much the reference had to come back to the device; empty = not
+};
 
-/// Last hand on the command: non-finite values become safe ones and disable the drives, speeds are
-/// clamped. Leaves a command that is fine untouched, bit for bit. Returns kCommandNotFinite, with
-/// the index of the component, when it had to disable.
-Fault sanitise(const MonitorConfig& config, CommandFrame& command) noexcept;
+/// Part of the copyable state of a cycle.
+struct MonitorState {
+  std::array<std::uint16_t, kRuleCount> broken{};  ///< samples in a row
+  bool is_broken = false;                          ///< a rule was, in the last cycle
+  bool has_sample = false;                         ///< what follows is the last one
+  VectorM q_m, tau_m;
+  VectorP q_p;
+  Vector6 w_S = Vector6::Zero(), imu = Vector6::Zero();
+  double time_s = 0.0;
+  int same_wrench = 0, same_imu = 0;  ///< samples with the same bits
+  std::array<std::uint16_t, kMaxManipulator> same_torque{};
+  double clock_error = 0.0;  ///< mean, periods per sample
+  double late = 0.0;         ///< late cycles, less what may come
+  int late_in_a_row = 0;
+  VectorP dq_p_model;       ///< of the gantry by its drive model
+  VectorM pulled_back;      ///< in all, while it lasts
+  VectorM lowest, highest;  ///< where joints may be: limits, or where they stood when armed
+  VectorP lowest_p, highest_p;
+};
+
+struct Verdict {
+  Fault fault;    ///< a broken rule, the one with the hardest reaction
+  Fault warning;  ///< the rule nearest to its threshold, once beyond its warning
+};
+
+class Monitor {
+ public:
+  /// Throws SetupError when a list has not one entry per joint, or a value is out of range.
+  Monitor(const MonitorConfig& config, int n_p, int n_m);
+
+  const MonitorConfig& config() const noexcept { return config_; }
+
+  /// Once per cycle with usable sensors, after the rendering. Without them call forget().
+  Verdict watch(const SensorFrame& sensors, const CycleRecord& record, const Watched& watched,
+                MonitorState& state) noexcept;
+
+  /// A sample could not be used: the next one is not compared with one before.
+  static void forget(MonitorState& state) noexcept { state.has_sample = false; }
+
+ private:
+  // The largest share of its threshold that a rule has reached in this cycle.
+  struct Worst {
+    double share, value, limit;
+    int index;
+  };
+
+  template <FaultCode code>
+  void look(int index, double value, double limit) noexcept;
+  void look_at_joint(int joint, const CycleRecord& record, const Watched& watched,
+                     MonitorState& state) noexcept;
+  void look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept;
+  void look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept;
+  void look_at_gantry(const CycleRecord& record, const Watched& watched,
+                      MonitorState& state) noexcept;
+  void look_at_frames(const CycleRecord& record, const Watched& watched) noexcept;
+  void look_at_clocks(const SensorFrame& sensors, const Watched& watched,
+                      MonitorState& state) noexcept;
+  Verdict judge(MonitorState& state) const noexcept;
+
+  MonitorConfig config_;
+  int n_p_, n_m_;
+  std::array<int, kRuleCount> debounce_{};  // samples
+  std::array<Worst, kRuleCount> fresh_{};   // before a cycle
+  std::array<Worst, kRuleCount> worst_{};
+};
 
 }  // namespace hg::safety

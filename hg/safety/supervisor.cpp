@@ -65,7 +65,8 @@ Refusal guard(Event event, const SupervisorInput& input) noexcept {
       if (!input.safety.is_field_clear) return Refusal::kFieldOccupied;
       return input.is_held ? Refusal::kSomebodyHolds : Refusal::kNone;
     case Event::kReset:
-      return input.fault.code != FaultCode::kNone ? Refusal::kCauseRemains : Refusal::kNone;
+      return input.is_broken || input.fault.code != FaultCode::kNone ? Refusal::kCauseRemains
+                                                                     : Refusal::kNone;
     default:
       return Refusal::kNone;
   }

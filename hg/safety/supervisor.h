@@ -29,6 +29,7 @@ struct SupervisorInput {
   bool is_held = false;             ///< somebody holds the handle
   SafetyInputs safety;              ///< of the safety controller
   Refusal to_arm = Refusal::kNone;  ///< what else forbids arming
+  bool is_broken = false;           ///< the monitor has seen a broken rule in the last cycle
   Fault fault;                      ///< a broken rule; kNone: there is none
   Stop reaction = Stop::kNone;      ///< of it, or of a worse one that is broken at once
 };

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -96,6 +98,30 @@ TEST(Cycle, ArmsRunsAndMovesTheTwinWithTheHand) {
   EXPECT_EQ(loop.record.mode, Mode::kRunning);
   EXPECT_GT(loop.record.v_H.norm(), 0.05);
   EXPECT_LT(loop.record.sync_error, 1e-4);
+}
+
+TEST(Cycle, ForcesComeInWithARampWhenRenderingBegins) {
+  Loop loop;
+  loop.sensors.w_S[0] = 20.0;
+  loop.run(50);  // somebody leans on the handle before it runs
+  loop.start_running();
+  double last = loop.record.a_H.norm(), largest_change = last;
+  for (int k = 0; k < 320; ++k) {
+    loop.step();
+    const double a_H = loop.record.a_H.norm();
+    largest_change = std::max(largest_change, std::abs(a_H - last));
+    last = a_H;
+  }
+  EXPECT_LT(largest_change, 1.5 * 20.0 / 6.0 / 300.0);  // F / m in 0.3 s
+  EXPECT_GT(last, 0.5);
+  // and again with the next run
+  loop.operator_input.request = ModeRequest::kStop;
+  loop.run(1000);
+  ASSERT_EQ(loop.record.mode, Mode::kArmed);
+  loop.operator_input.request = ModeRequest::kRun;
+  loop.step();
+  ASSERT_EQ(loop.record.mode, Mode::kRunning);
+  EXPECT_LT(loop.record.a_H.norm(), 0.02);
 }
 
 TEST(Cycle, BeforeRunningNothingMoves) {
