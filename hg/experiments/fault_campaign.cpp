@@ -43,9 +43,11 @@ class TrueLimits {
   std::vector<double> positions_;
 };
 
+// The drives: a person who pulls goes on to bend the springs behind them.
 bool stands_still(const Truth& truth) {
+  const VectorM& motors = truth.dtheta_m.size() > 0 ? truth.dtheta_m : truth.dq_m;
   const double gantry = truth.dq_p.size() > 0 ? truth.dq_p.lpNorm<Eigen::Infinity>() : 0.0;
-  return truth.dq_m.lpNorm<Eigen::Infinity>() < kStandstill && gantry < kStandstill;
+  return motors.lpNorm<Eigen::Infinity>() < kStandstill && gantry < kStandstill;
 }
 
 // Whether the machine no longer does what was asked for.

@@ -39,9 +39,10 @@ struct FaultCase {
   Outcome outcome = Outcome::kHarmless;
   FaultCode fault = FaultCode::kNone;  ///< that was noticed; a released switch is none
   Stop stop = Stop::kNone;
-  double noticed_s = 0.0;   ///< after it began
-  double stopped_s = 0.0;   ///< after it was noticed, until the truth stood still; NaN: it did not
-  double peak_force = 0.0;  ///< of the person, true, from the begin of the fault on, N
+  double noticed_s = 0.0;  ///< after it began
+  double stopped_s =
+      0.0;  ///< after it was noticed, until its drives stood still; NaN: they did not
+  double peak_force = 0.0;      ///< of the person, true, from the begin of the fault on, N
   double worst_excess = 0.0;    ///< true, outside any limit of the device, rad or m
   double worst_distance = 0.0;  ///< of true handle and twin while running, m
   bool is_complete = true;      ///< the records have every cycle, in order, once
