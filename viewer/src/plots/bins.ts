@@ -21,8 +21,8 @@ export interface Span {
   state: number; // of the limit: -1 lower, 1 upper, 2 violated
 }
 
-// At most about `most` of the rows from `first` to before `end`, and always the same ones while time
-// goes on: `first_row` rows have been forgotten. A line through others every time would shiver.
+// At most about `most` of the rows from `first` to before `end`, and always the same ones while
+// time goes on: `first_row` rows have been forgotten. A line through others would shiver.
 export function thinned_rows(
   first: number,
   end: number,

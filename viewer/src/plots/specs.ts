@@ -80,7 +80,13 @@ function joints(id: string, title: string, chain: string, all: SceneJoint[]): Ti
     joints_of_one_kind(chain, { ...more, joints: all.filter((joint) => joint.type === type) });
   return [
     part("revolute", { id, title, unit: "\u00b0", scale: DEGREES, smallest_span: 5 }),
-    part("prismatic", { id: `${id}-slides`, title: `${title}, slides`, unit: "m", scale: 1, smallest_span: 0.05 }),
+    part("prismatic", {
+      id: `${id}-slides`,
+      title: `${title}, slides`,
+      unit: "m",
+      scale: 1,
+      smallest_span: 0.05,
+    }),
   ];
 }
 

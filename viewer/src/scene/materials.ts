@@ -47,7 +47,7 @@ const GHOST = new MeshStandardMaterial({
   color: GHOST_COLOR,
   roughness: 0.7,
   transparent: true,
-  opacity: 0.42,
+  opacity: 0.32,
   polygonOffset: true,
   polygonOffsetFactor: 1,
   polygonOffsetUnits: 4,

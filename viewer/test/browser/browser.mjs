@@ -157,22 +157,27 @@ export function arc(handle, hinge, angles) {
   ]);
 }
 
-// Number of pixels of the scene that change when `layer` is switched off (and on again).
+// Number of pixels of the scene that change when `layer` is switched off, and come back with it; what
+// moves by itself does not count.
 export async function hide_and_compare(page, layer) {
   const { x, y, width, height } = await page.locator("#stage").boundingBox();
   const clip = { x, y: y + 70, width, height: height - 140 }; // without what lies over it
   await page.click("#layers summary");
-  const shown = await page.screenshot({ clip });
+  const take = async () => {
+    await pictures(page);
+    return (await page.screenshot({ clip })).toString("base64");
+  };
+  const shown = await take();
   await page.uncheck(`#show-${layer}`);
-  await pictures(page);
-  const hidden = await page.screenshot({ clip });
+  const hidden = await take();
   await page.check(`#show-${layer}`);
+  const again = await take();
   await page.click("#layers summary");
-  return page.evaluate(count_different, [shown.toString("base64"), hidden.toString("base64")]);
+  return page.evaluate(count_different, [shown, hidden, again]);
 }
 
 async function count_different(pictures) {
-  const [a, b] = await Promise.all(
+  const [shown, hidden, again] = await Promise.all(
     pictures.map(async (base64) => {
       const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
       const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
@@ -182,9 +187,10 @@ async function count_different(pictures) {
     }),
   );
   let count = 0;
-  for (let i = 0; i < a.length; i += 4) {
-    const change = [0, 1, 2].reduce((sum, c) => sum + Math.abs(a[i + c] - b[i + c]), 0);
-    if (change > 30) count += 1;
+  const differ = (a, b, i) =>
+    [0, 1, 2].reduce((sum, c) => sum + Math.abs(a[i + c] - b[i + c]), 0) > 30;
+  for (let i = 0; i < shown.length; i += 4) {
+    if (differ(shown, hidden, i) && differ(again, hidden, i) && !differ(shown, again, i)) count += 1;
   }
   return count;
 }

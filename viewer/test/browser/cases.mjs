@@ -174,7 +174,8 @@ export async function changes_reach_the_program({ browser, program, expect }) {
   await second.page.click("#tab-change");
   await first.page.fill(box, wanted);
   await first.page.press(box, "Enter");
-  const arrives = await page_comes_to(second.page, ([b, w]) => document.querySelector(b).value === w, [box, wanted]);
+  const has_value = ([field, text]) => document.querySelector(field).value === text;
+  const arrives = await page_comes_to(second.page, has_value, [box, wanted]);
   expect(arrives, `${name} = ${wanted} reaches the program and comes back to another page`);
 
   await second.page.reload(PATIENCE);
@@ -214,7 +215,8 @@ export async function time_is_controlled({ browser, program, expect }) {
   expect(again, "the run starts again");
   await drawn(page);
   await page.selectOption("#scenario", "excavator");
-  const other = await page_comes_to(page, () => window.hapticgiant.scene.environment === "excavator");
+  const is_site = () => window.hapticgiant.scene.environment === "excavator";
+  const other = await page_comes_to(page, is_site);
   await drawn(page);
   expect(other, "another scenario, same page");
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
@@ -230,7 +232,8 @@ export async function recording_is_played({ browser, program, command, expect })
   const record = (name, ...more) => {
     const to = join(folder, name);
     // its exit code says that events are missing: it is short
-    spawnSync(command[0], ["run", "door", "--fast", "--duration", DOOR_OPEN, ...more, "--recordings", to]);
+    const args = ["run", "door", "--fast", "--duration", DOOR_OPEN, ...more, "--recordings", to];
+    spawnSync(command[0], args);
     return join(to, "latest.mcap");
   };
   const file = record("script");

@@ -5,7 +5,8 @@ import { dispose_of } from "../../src/scene/dispose";
 
 it("gives back shapes, materials and pictures at any depth", () => {
   const freed: string[] = [];
-  const noted = <T extends Texture | MeshBasicMaterial | BoxGeometry>(thing: T, name: string): T => {
+  type Thing = Texture | MeshBasicMaterial | BoxGeometry;
+  const noted = <T extends Thing>(thing: T, name: string): T => {
     (thing as Texture).addEventListener("dispose", () => freed.push(name));
     return thing;
   };

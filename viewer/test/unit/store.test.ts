@@ -58,7 +58,7 @@ describe("Store", () => {
   const rest = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
   const newest = (): FakeSocket => FakeSocket.all.at(-1)!;
 
-  it("tells values that came before their scene, as they do for every page but the first", async () => {
+  it("tells values that came before their scene, as on every page but the first", async () => {
     const store = new Store();
     const told: string[] = [];
     store.subscribe({

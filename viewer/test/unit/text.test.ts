@@ -1,6 +1,14 @@
 import { describe, expect, it } from "vitest";
 
-import { effort_text, felt_text, is_pushing, joint_text, share_between, time_text, unit_text } from "../../src/text";
+import {
+  effort_text,
+  felt_text,
+  is_pushing,
+  joint_text,
+  share_between,
+  time_text,
+  unit_text,
+} from "../../src/text";
 import { frame } from "./examples";
 
 describe("time_text", () => {
