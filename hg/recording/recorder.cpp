@@ -25,8 +25,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kRingSeconds = 1.0;    // outlasts the pauses of a busy disk
-constexpr double kFlushSeconds = 0.25;  // of nominal time; what a crash may cost
+constexpr double kRingSeconds = 0.7;    // outlasts the pauses of a busy disk
+constexpr double kFlushSeconds = 0.25;  // of nominal time; with the ring: what a crash may cost
+static_assert(kRingSeconds + kFlushSeconds < 1.0, "the promise of docs/recording.md");
 constexpr double kToolRate_Hz = 100.0;  // of the messages for other tools
 constexpr auto kPollPeriod = 5ms;       // the loop may not wake the thread: that is a system call
 constexpr int kIdlePolls = 50;          // then a loop that stands still is flushed, too
@@ -127,6 +128,7 @@ class Recorder::Writer {
 
   const std::uint64_t start_ns_;
   const double disk_budget_bytes_;
+  const bool is_reproducible_;
   const std::uint64_t flush_samples_, tool_samples_;
   SpscRing<Sample> ring_;
   std::atomic<std::uint64_t> dropped_{0};
@@ -158,6 +160,7 @@ class Recorder::Writer {
 Recorder::Writer::Writer(const RecordingInfo& info)
     : start_ns_(start_ns(info)),
       disk_budget_bytes_(info.disk_budget_bytes),
+      is_reproducible_(info.is_reproducible),
       flush_samples_(static_cast<std::uint64_t>(std::ceil(kFlushSeconds * info.rate_Hz))),
       tool_samples_(std::max(1LL, std::llround(info.rate_Hz / kToolRate_Hz))),
       ring_(static_cast<std::size_t>(std::ceil(kRingSeconds * info.rate_Hz))),
@@ -232,9 +235,9 @@ void Recorder::Writer::run() {
   try {
     while (!is_closing_) {
       const bool has_written = write_waiting_samples();
-      write_events();
+      if (!is_reproducible_) write_events();
       idle_polls = has_written ? 0 : std::min(idle_polls + 1, kIdlePolls + 1);
-      if (idle_polls == kIdlePolls) flush();
+      if (idle_polls == kIdlePolls && !is_reproducible_) flush();
       if (!has_written) std::this_thread::sleep_for(kPollPeriod);
     }
     write_waiting_samples();

@@ -42,6 +42,9 @@ struct RecordingInfo {
   double rate_Hz = 1000.0;               ///< samples per second, > 0
   double disk_budget_bytes = 5e9;        ///< for all recordings in the folder, > 0
   std::chrono::system_clock::time_point start = std::chrono::system_clock::now();
+  /// The same samples and events give the same bytes: events come after the samples, and how fast
+  /// samples come decides nothing.
+  bool is_reproducible = false;
 };
 
 struct RecordingSummary {
@@ -67,7 +70,7 @@ class Recorder {
   const std::string& stem() const;
 
   /// From the control loop: no allocation, lock or system call. False when the sample is dropped
-  /// because the ring, which holds one second, is full.
+  /// because the ring, which holds 0.7 s, is full.
   bool push(const Sample& sample) noexcept;
 
   /// The same for a loop that runs as fast as it can: waits for a place instead of dropping.

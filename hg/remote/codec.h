@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <type_traits>
@@ -105,7 +106,7 @@ class Decoder {
       if (i < v.size()) {
         v[i] = value;
       } else {
-        require(value == 0.0);
+        require(std::bit_cast<std::uint64_t>(value) == 0);  // not -0.0 either
       }
     }
   }

@@ -131,7 +131,7 @@ TEST_F(RecorderTest, DeletesTheOldestRecordingsForTheBudget) {
   for (std::uint64_t cycle = 0; cycle < 2000; ++cycle) {
     recorder.push_waiting(example_sample(cycle, kRate_Hz));
   }
-  // at most 1000 samples wait in the ring: enough of the others are in the file already
+  // at most 700 samples wait in the ring: enough of the others are in the file already
   EXPECT_FALSE(std::filesystem::exists(temporary_.path() / "door_20260101_000000.mcap"));
   const RecordingSummary summary = recorder.close();
   EXPECT_EQ(summary.deleted, std::vector<std::string>{"door_20260101_000000.mcap"});
