@@ -104,16 +104,21 @@ simulation::Config device_simulation(const config::Device& device, const Start& 
   simulation::SensedDevice& sensed = config.sensed;
   sensed.step = period / config.steps;
   sensed.period = period;
+  config.safety = device.simulation.safety;
+  config.safety.period = period;
   sensed.gear_ratio = reality.gear_ratio;
   sensed.T_H_S = device.T_H_S;
   sensed.payload = actual(device.estimation.wrench.payload, reality.factors);
   sensed.torque_full_scale = VectorM::Ones(device.model.n_m);
+  sensed.torque_rated = VectorM::Zero(is_elastic ? device.model.n_m : 0);
   for (int i = 0; i < device.model.n_m; ++i) {
     const auto joint = static_cast<std::size_t>(i);
     const auto in_chain = static_cast<std::size_t>(device.model.n_p + i);
     sensed.is_endless[joint] =
         device.model.chain.joints()[in_chain].type == model::JointType::kContinuous;
-    if (is_elastic) sensed.torque_full_scale[i] = device.control.actuators[joint].torque_max;
+    if (!is_elastic) continue;
+    sensed.torque_full_scale[i] = device.control.actuators[joint].torque_max;
+    sensed.torque_rated[i] = device.control.actuators[joint].torque_rated;
   }
   return config;
 }

@@ -55,6 +55,21 @@ void describe_end_stops(V& v, Simulation& simulation) {
 }
 
 template <class V>
+void describe(V& v, simulation::SafetyPlcConfig& safety) {
+  v.number("discrepancy_s", safety.discrepancy, kPositive,
+           "that the two channels of an input may differ");
+  v.number("response_s", safety.response, kNotNegative, "to switches");
+  v.number("scanner_response_s", safety.scanner_response, kNotNegative, "to somebody in a field");
+  v.number("stop_time_s", safety.stop_time, kPositive,
+           "that a controlled stop may take before the power goes");
+  v.number("safe_speed_m_per_s", safety.safe_speed, kPositive,
+           "of handle and gantry while nobody holds the handle; beyond it the scanner's large "
+           "field counts");
+  v.number("standstill_m_per_s", safety.standstill, kPositive,
+           "of handle and gantry while motion is not permitted");
+}
+
+template <class V>
 void describe(V& v, FlexibleDraft& joint) {
   v.joint_number({"stiffness_Nm_per_rad", "stiffness_N_per_m"}, joint.unit, joint.stiffness,
                  kNotNegative, "towards position 0; 0 = it moves freely");
@@ -92,6 +107,9 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
   v.group(
       "factors", [&](auto& child) { describe(child, draft.simulation.factors); },
       "true values over those of the device file and its URDF");
+  v.group(
+      "safety", [&](auto& child) { describe(child, draft.simulation.safety); },
+      "the safety controller, docs/safety.md");
   v.group(
       "end_stops", [&](auto& child) { describe_end_stops(child, draft.simulation); },
       "buffers at the ends of all joints");

@@ -28,7 +28,7 @@ const std::array<Signature, 6>& signatures() {
       {FileKind::kScript, {"segments", "frame", "hand", "walk", "grasp_s"}},
       {FileKind::kTool, {"mass_kg", "centre_of_mass_m", "inertia_kg_m2", "dead_man"}},
       {FileKind::kSimulation,
-       {"sensors", "seed", "step_s", "factors", "end_stops", "gear_ratio", "flexible"}},
+       {"sensors", "seed", "step_s", "factors", "safety", "end_stops", "gear_ratio", "flexible"}},
   }};
   return all;
 }

@@ -15,6 +15,7 @@
 #include "hg/signals/drive_model.h"
 #include "hg/signals/payload.h"
 #include "hg/simulation/plant_config.h"
+#include "hg/simulation/safety_plc.h"
 #include "hg/simulation/sensors.h"
 
 namespace hg::config {
@@ -46,7 +47,8 @@ struct Simulation {
   double stop_distance_length = 0.02;  ///< the same of prismatic joints, m
   simulation::EndStopModel end_stop;
   simulation::SensorsConfig sensors;  ///< with `seed`
-  VectorM gear_ratio;                 ///< of the manipulator joints
+  simulation::SafetyPlcConfig safety;
+  VectorM gear_ratio;  ///< of the manipulator joints
 
   /// A plant with more joints than the controller's model; without it the chain of the device.
   std::optional<model::Chain> chain;

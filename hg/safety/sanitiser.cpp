@@ -111,6 +111,7 @@ Sanitised Sanitiser::step(const SanitiserInput& input, CommandFrame& command) co
 double Sanitiser::torque(const Joint& joint, double q, double dq, double hold, double before,
                          bool was_on, double tau) const noexcept {
   const double brake = joint.rotor_inertia * joint.braking;
+  hold = std::clamp(hold, -joint.peak, joint.peak);
   double most = joint.peak, least = -joint.peak;
   const auto needs_braking = [&](double distance) {
     return dq * dq > 2.0 * joint.braking * std::max(0.0, distance);
@@ -124,7 +125,7 @@ double Sanitiser::torque(const Joint& joint, double q, double dq, double hold, d
   const double limited = std::max(std::min(tau, most), least);
   if (!was_on) return limited;
   const double reach = joint.peak * dt_ / config_.torque_rise;
-  return within_reach(limited, before, reach, std::clamp(hold, -joint.peak, joint.peak));
+  return within_reach(limited, before, reach, hold);
 }
 
 // Where the joint is may always be asked for, and everything between there and its range.

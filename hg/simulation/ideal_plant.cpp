@@ -20,16 +20,16 @@ IdealPlant::IdealPlant(const IdealPlantConfig& config, const model::Chain& chain
   observe(VectorM::Zero(n_m));
 }
 
-void IdealPlant::step(const CommandFrame& command) noexcept {
+void IdealPlant::step(const CommandFrame& command, bool is_on) noexcept {
   const double dt = config_.period;
-  if (command.enable) {
+  if (is_on) {
     truth_.q_m = command.q_m;
     truth_.dq_m = command.dq_m;
   } else {
     truth_.dq_m.setZero();
   }
   for (int i = 0; i < truth_.q_p.size(); ++i) {
-    const double dq_cmd = command.enable ? command.dq_p[i] : 0.0;
+    const double dq_cmd = is_on ? command.dq_p[i] : 0.0;
     CommandDelay& delay = delays_[static_cast<std::size_t>(i)];
     truth_.ddq_p[i] =
         drive_acceleration(config_.drive, truth_.dq_p[i], delay.shift(dq_cmd, dead_periods_));
@@ -37,7 +37,7 @@ void IdealPlant::step(const CommandFrame& command) noexcept {
     truth_.dq_p[i] += dt * truth_.ddq_p[i];
   }
   const VectorM at_rest = VectorM::Zero(truth_.q_m.size());
-  observe(command.enable ? command.ddq_m : at_rest);
+  observe(is_on ? command.ddq_m : at_rest);
 }
 
 void IdealPlant::observe(const VectorM& ddq_m) noexcept {

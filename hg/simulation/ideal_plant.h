@@ -27,8 +27,8 @@ class IdealPlant {
   /// `chain` holds the gantry joints first; `handle` is its frame H.
   IdealPlant(const IdealPlantConfig& config, const model::Chain& chain, int handle);
 
-  /// Lives one period.
-  void step(const CommandFrame& command) noexcept;
+  /// Lives one period with drives that are on, or off and held by their brakes.
+  void step(const CommandFrame& command, bool is_on) noexcept;
   const Truth& truth() const noexcept { return truth_; }
 
  private:

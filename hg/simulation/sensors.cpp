@@ -68,6 +68,9 @@ Sensors::Sensors(const SensorsConfig& config, const SensedDevice& device)
                                           RandomStream(seed, RandomEffect::kTorqueErrors, joint),
                                           RandomStream(seed, RandomEffect::kTorqueNoise, joint));
   }
+  for (Eigen::Index i = 0; i < device.torque_rated.size(); ++i) {
+    motor_heat_[at(i)] = MotorHeat(config.motor_heat, device.torque_rated[i], device.period);
+  }
   for (int axis = 0; axis < kMaxGantry; ++axis)
     gantry_encoders_[at(axis)] =
         Encoder(config.gantry_encoder, 1.0, RandomStream(seed, RandomEffect::kGantryEncoder, axis));
@@ -127,6 +130,11 @@ void Sensors::sample_joints(const Truth& truth, SensorFrame& frame) noexcept {
     if (i < truth.tau_J.size())
       frame.tau_m[i] = torque_sensors_[at(i)].sample(
           truth.tau_J[i], i < truth.theta_m.size() ? truth.theta_m[i] : truth.q_m[i]);
+  }
+  const bool has_heat = device_.torque_rated.size() == truth.tau_motor.size();
+  frame.temperature_m.resize(has_heat ? truth.tau_motor.size() : 0);
+  for (Eigen::Index i = 0; i < frame.temperature_m.size(); ++i) {
+    frame.temperature_m[i] = motor_heat_[at(i)].next(truth.tau_motor[i]);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "hg/signals/truth.h"
 #include "hg/simulation/encoder.h"
 #include "hg/simulation/imu.h"
+#include "hg/simulation/motor_heat.h"
 #include "hg/simulation/temperature.h"
 #include "hg/simulation/torque_sensor.h"
 #include "hg/simulation/wrench_sensor.h"
@@ -41,6 +42,7 @@ struct SensorsConfig {
   InertialSensorConfig gyroscope = mems_gyroscope();
   SensorFilterConfig imu_filter;
   TemperatureConfig temperature;  ///< of the force/torque sensor with the IMU inside
+  MotorHeatConfig motor_heat;
 };
 
 /// No errors, no noise, no delays: what is true.
@@ -53,8 +55,9 @@ struct SensedDevice {
   std::array<bool, kMaxManipulator> is_endless{};  ///< manipulator joints without limits
   VectorM gear_ratio;                              ///< motor turns per turn of the joint
   VectorM torque_full_scale;                       ///< of the joint torque sensors, Nm
-  Pose T_H_S;                                      ///< force/torque sensor in the handle frame
-  Payload payload;                                 ///< beyond the force/torque sensor
+  VectorM torque_rated;  ///< of the motors, Nm; empty: their heat is unknown
+  Pose T_H_S;            ///< force/torque sensor in the handle frame
+  Payload payload;       ///< beyond the force/torque sensor
 };
 
 class Sensors {
@@ -65,8 +68,8 @@ class Sensors {
   /// After every step of the plant; the first call counts as a device at rest there for ever.
   void observe(const Truth& truth) noexcept;
   /// At the end of a period, after observe() of the same `truth`: fills q_m, dq_m, theta_m, tau_m,
-  /// q_p, w_S, a_S, omega_S and time_s of `frame`. theta_m and tau_m stay empty where the truth has
-  /// none. time_s counts periods from 0 at the first call.
+  /// q_p, w_S, a_S, omega_S, temperature_m and time_s of `frame`. theta_m, tau_m and temperature_m
+  /// stay empty where the truth has no motors. time_s counts periods from 0 at the first call.
   void sample(const Truth& truth, SensorFrame& frame) noexcept;
 
  private:
@@ -77,6 +80,7 @@ class Sensors {
   std::array<Encoder, kMaxManipulator> link_encoders_, motor_encoders_;
   std::array<Encoder, kMaxGantry> gantry_encoders_;
   std::array<TorqueSensor, kMaxManipulator> torque_sensors_;
+  std::array<MotorHeat, kMaxManipulator> motor_heat_;
   WrenchSensor wrench_sensor_;
   InertialSensor accelerometer_, gyroscope_;
   Temperature temperature_;

@@ -35,6 +35,7 @@ Simulation::Simulation(const Config& config, const model::Chain& chain, int hand
       plant_(make_plant(config, chain, handle)),
       latency_steps_(static_cast<std::uint64_t>(std::llround(config.latency / config.sensed.step))),
       sensors_(config.sensors, config.sensed),
+      safety_plc_(config.safety),
       person_(std::move(person)) {
   if (latency_steps_ > static_cast<std::uint64_t>(kMaxLatency * config_.steps)) {
     throw SetupError("simulation: latency must be at most " + std::to_string(kMaxLatency) +
@@ -55,8 +56,25 @@ void Simulation::step(const CommandFrame& command) noexcept {
     ++steps_;
     look(command.hand_target);
   }
+  watch_over(command.panel);
   ++frame_.sequence;
   sample();
+}
+
+// The safety controller sees its own switches and speeds, not those that the program is told.
+void Simulation::watch_over(const SafetyPanel& panel) noexcept {
+  const double time_s = static_cast<double>(steps_) * config_.sensed.step;
+  safety_plc_.step(
+      {.stop_free = TwoChannels::both(!panel.emergency_stop),
+       .operator_enable = TwoChannels::both(panel.operator_enable),
+       .user_hold = TwoChannels::both(!config_.has_dead_man || person_.is_holding(time_s)),
+       .override_key = TwoChannels::both(panel.override_key),
+       .field = panel.person_in_field ? ScannerField::kSmall : ScannerField::kNone,
+       .hand_speed = truth_.twist.head<3>().norm(),
+       .gantry_speed = truth_.dq_p.norm(),
+       .drives_on = at_work_.enable,
+       .reset = panel.reset});
+  frame_.safety = safety_plc_.outputs();
 }
 
 void Simulation::take_due_command() noexcept {
@@ -68,15 +86,19 @@ void Simulation::take_due_command() noexcept {
 }
 
 void Simulation::move(const CommandFrame& command) noexcept {
+  const bool is_on = command.enable && safety_plc_.has_power();
   if (auto* ideal = std::get_if<IdealPlant>(&plant_)) {
-    ideal->step(command);
+    ideal->step(command, is_on);
     return;
   }
   PlantInput input = {.tau_command = command.tau_m,
-                      .brakes_closed = !command.enable,
+                      .brakes_closed = !is_on,
                       .dq_p_command = command.dq_p,
                       .w_H = w_H_};
-  if (!command.enable) input.dq_p_command.setZero();
+  if (!is_on) {
+    input.tau_command.setZero();
+    input.dq_p_command.setZero();
+  }
   std::get<Plant>(plant_).step(input);
 }
 

@@ -14,6 +14,7 @@
 #include "hg/signals/truth.h"
 #include "hg/simulation/ideal_plant.h"
 #include "hg/simulation/plant.h"
+#include "hg/simulation/safety_plc.h"
 #include "hg/simulation/sensors.h"
 #include "hg/user/person.h"
 
@@ -28,6 +29,7 @@ struct Config {
   SensorsConfig sensors = ideal_sensors();
   SensedDevice sensed;  ///< with the step of the plant and the period
   bool has_dead_man = true;
+  SafetyPlcConfig safety;  ///< with the period
 };
 
 class Simulation {
@@ -43,6 +45,7 @@ class Simulation {
   /// What is the case now.
   const Truth& truth() const noexcept { return truth_; }
   const user::Person& person() const noexcept { return person_; }
+  const SafetyPlc& safety_plc() const noexcept { return safety_plc_; }
   /// Lives one period under `command`, which has come as answer to sensors().
   void step(const CommandFrame& command) noexcept;
 
@@ -56,12 +59,14 @@ class Simulation {
   void take_due_command() noexcept;
   void move(const CommandFrame& command) noexcept;
   void look(const HandTarget& target) noexcept;
+  void watch_over(const SafetyPanel& panel) noexcept;
   void sample() noexcept;
 
   Config config_;
   std::variant<IdealPlant, Plant> plant_;
   std::uint64_t latency_steps_;
   Sensors sensors_;
+  SafetyPlc safety_plc_;
   user::Person person_;
   std::uint64_t steps_ = 0;  ///< of the plant so far
   std::array<Waiting, kMaxLatency + 1> waiting_;

@@ -72,6 +72,7 @@ struct Loop {
       gantry_speed[axis] += 1e-3 * ddq;
     }
     ++sensors.sequence;
+    sensors.time_s += 1e-3;
     const bool answers = latency > 0 && sensors.sequence > latency;
     sensors.answered_sequence = answers ? sensors.sequence - latency : 0;
   }

@@ -23,20 +23,15 @@ SensorFrame good_sensors() {
 MonitorConfig config() {
   MonitorConfig monitor;
   monitor.joint_range.assign(6, {-2.0, 2.0});
+  monitor.gantry_range.assign(2, {-1.4, 1.4});
   monitor.joint_speed_max.assign(6, 3.0);
-  monitor.first_cartesian = 6;
-  monitor.end_cartesian = 9;
+  monitor.joint_acceleration.assign(6, 20.0);
+  monitor.joint_torque_max.assign(6, 100.0);
+  monitor.joint_stiffness.assign(6, 10000.0);
+  monitor.first_cartesian = 7;
+  monitor.end_cartesian = 10;
+  monitor.frozen_samples = 20;
   return monitor;
-}
-
-CycleRecord good_record() {
-  CycleRecord record;
-  record.solver_status = SolverStatus::kSolved;
-  record.robot.q_m = VectorM::Zero(6);
-  record.reference = {VectorM::Zero(6), VectorM::Zero(6), VectorM::Zero(6)};
-  record.twin.ddq_a = VectorA::Zero(2);
-  record.limit_count = 9;
-  return record;
 }
 
 TEST(CheckSensors, GoodOnesPass) {
@@ -89,75 +84,343 @@ TEST(CheckSensors, AFaultThatTheDriverReportsComesFirst) {
   EXPECT_EQ(check_sensors(config(), sensors, 6).code, FaultCode::kDeviceSilent);
 }
 
-TEST(CheckSensors, SeesGapsAndWrenchesBeyondTheSensor) {
+TEST(CheckSensors, SeesGaps) {
   EXPECT_EQ(check_sensors(config(), good_sensors(), 6).code, FaultCode::kSequenceGap);
-  SensorFrame sensors = good_sensors();
-  sensors.w_S[0] = 151.0;
-  EXPECT_EQ(check_sensors(config(), sensors, 7).code, FaultCode::kWrenchTooLarge);
-  sensors = good_sensors();
-  sensors.w_S[4] = -14.5;
-  EXPECT_EQ(check_sensors(config(), sensors, 7).code, FaultCode::kWrenchTooLarge);
 }
 
-TEST(CheckReference, FindsEachKindOfFault) {
-  EXPECT_EQ(check_reference(config(), good_record()).code, FaultCode::kNone);
-  CycleRecord record = good_record();
+TEST(CheckSolution, FindsWhatMustNotBeIntegrated) {
+  CycleRecord good;
+  good.solver_status = SolverStatus::kSolved;
+  good.reference.ddq_m = VectorM::Zero(6);
+  good.twin.ddq_a = VectorA::Zero(2);
+  EXPECT_EQ(check_solution(good).code, FaultCode::kNone);
+  CycleRecord record = good;
   record.solver_status = SolverStatus::kIterationLimit;
   EXPECT_EQ(check_solution(record).code, FaultCode::kSolverFailed);
-  record = good_record();
+  record = good;
   record.twin.ddq_a[1] = kNan;
   EXPECT_EQ(check_solution(record).code, FaultCode::kReferenceNotFinite);
-  record = good_record();
-  record.reference.q_m[2] = record.robot.q_m[2] = 2.031;
-  EXPECT_EQ(check_reference(config(), record).code, FaultCode::kLimitExceeded);
-  record = good_record();
-  record.reference.dq_m[4] = -3.31;
-  EXPECT_EQ(check_reference(config(), record).code, FaultCode::kSpeedExceeded);
-  record = good_record();
-  record.robot.q_m[5] = 0.081;
-  EXPECT_EQ(check_reference(config(), record).code, FaultCode::kTrackingLost);
-  record = good_record();
-  record.limits[7].excess = 0.031;
-  EXPECT_EQ(check_reference(config(), record).code, FaultCode::kLimitExceeded);
-  EXPECT_EQ(check_reference(config(), record).index, 7);
-  record = good_record();
-  record.sync_error = 0.021;
-  EXPECT_EQ(check_reference(config(), record).code, FaultCode::kSyncLost);
+  record = good;
+  record.reference.ddq_m[4] = kInfinity;
+  EXPECT_EQ(check_solution(record).code, FaultCode::kReferenceNotFinite);
 }
 
-CommandFrame good_command() {
-  CommandFrame command;
-  command.enable = true;
-  command.q_m = VectorM::Constant(6, 0.1);
-  command.dq_m = VectorM::Constant(6, -0.2);
-  command.ddq_m = VectorM::Constant(6, 3.0);
-  command.dq_p = VectorP::Constant(2, 1.0);
-  return command;
+// A device that runs and does as it is told, with noise on what has noise.
+struct Bench {
+  Monitor monitor;
+  MonitorState state;
+  SensorFrame sensors = good_sensors();
+  CycleRecord record;
+  Watched watched = {.state = State::kByHand, .dq_p_command = VectorP::Zero(2)};
+  Verdict verdict;
+  int cycles = 0;
+  double torque = 0.0;  ///< of joint 0
+
+  explicit Bench(const MonitorConfig& monitor_config = config()) : monitor(monitor_config, 2, 6) {
+    sensors.theta_m = sensors.tau_m = VectorM::Zero(6);
+    sensors.temperature_m = VectorM::Constant(6, 40.0);
+    record.robot.q_m = record.robot.dq_m = VectorM::Zero(6);
+    record.robot.q_p = record.robot.dq_p = VectorP::Zero(2);
+    record.reference = {VectorM::Zero(6), VectorM::Zero(6), VectorM::Zero(6)};
+    watched.state = State::kReady;
+    step();
+    watched.state = State::kByHand;
+    run(3);
+    EXPECT_EQ(verdict.fault.code, FaultCode::kNone);
+    EXPECT_EQ(verdict.warning.code, FaultCode::kNone);
+  }
+
+  void step(bool has_noise = true) {
+    sensors.time_s += 1e-3;
+    if (has_noise) {
+      ++cycles;
+      sensors.w_S[2] = 1e-3 * cycles;
+      sensors.a_S[0] = 1e-3 * cycles;
+      for (int i = 0; i < 6; ++i) sensors.tau_m[i] = 1e-4 * cycles + (i == 0 ? torque : 0.0);
+    }
+    verdict = monitor.watch(sensors, record, watched, state);
+  }
+  void run(int samples) {
+    for (int k = 0; k < samples; ++k) step();
+  }
+  // samples until the fault; -1: none within 2000
+  template <typename Change>
+  int until_fault(FaultCode code, Change change) {
+    for (int k = 1; k <= 2000; ++k) {
+      change();
+      step();
+      if (verdict.fault.code == FaultCode::kNone) continue;
+      EXPECT_EQ(verdict.fault.code, code) << to_string(verdict.fault.code);
+      return k;
+    }
+    return -1;
+  }
+};
+
+// A value that breaks a rule, one that does not, and how many samples it takes.
+struct Case {
+  FaultCode code;
+  const char* name;
+  int samples;
+  int index;
+  double over, under;
+  void (*put)(Bench&, double);
+  bool warns = true;
+};
+
+const Case kCases[] = {
+    {FaultCode::kLimitExceeded, "measured joint", 1, 3, 2.031, 2.029,
+     [](Bench& b, double x) { b.record.robot.q_m[3] = b.record.reference.q_m[3] = x; }},
+    {FaultCode::kLimitExceeded, "reference of a joint", 1, 2, -2.031, -2.029,
+     [](Bench& b, double x) {
+       b.record.reference.q_m[2] = x;
+       b.record.robot.q_m[2] = -2.0;
+     }},
+    {FaultCode::kLimitExceeded, "sum of joints", 1, 6, 0.051, 0.049,
+     [](Bench& b, double x) { b.record.limits[6].excess = x; }},
+    {FaultCode::kLimitExceeded, "frame", 1, 8, 0.031, 0.029,
+     [](Bench& b, double x) { b.record.limits[8].excess = x; }},
+    {FaultCode::kSpeedExceeded, "measured speed", 3, 4, -3.31, -3.29,
+     [](Bench& b, double x) { b.record.robot.dq_m[4] = x; }},
+    {FaultCode::kSpeedExceeded, "speed of the reference", 3, 4, 3.31, 3.29,
+     [](Bench& b, double x) { b.record.reference.dq_m[4] = x; }},
+    {FaultCode::kAccelerationExceeded, "acceleration", 3, 1, 41.0, 39.0,
+     [](Bench& b, double x) { b.record.reference.ddq_m[1] = x; }},
+    {FaultCode::kTrackingLost, "tracking", 20, 5, 0.081, 0.079,
+     [](Bench& b, double x) { b.record.robot.q_m[5] = -x; }},
+    {FaultCode::kSyncLost, "handle and twin", 3, -1, 0.021, 0.019,
+     [](Bench& b, double x) { b.record.sync_error = x; }},
+    {FaultCode::kJointTorqueExceeded, "torque", 3, 0, 101.0, 99.0,
+     [](Bench& b, double x) {
+       b.torque = x;
+       b.sensors.theta_m[0] = x / 10000.0;
+     }},
+    {FaultCode::kSensorImplausible, "contradiction", 3, 2, 0.0202, 0.0198,
+     [](Bench& b, double x) { b.sensors.theta_m[2] = x; }},
+    {FaultCode::kWrenchTooLarge, "force", 5, 0, 151.0, 149.0,
+     [](Bench& b, double x) { b.sensors.w_S[0] = x; }},
+    {FaultCode::kWrenchTooLarge, "torque of the user", 5, 1, -14.1, -13.9,
+     [](Bench& b, double x) { b.sensors.w_S[4] = x; }},
+    {FaultCode::kTooHot, "temperature", 100, 3, 90.1, 89.9,
+     [](Bench& b, double x) { b.sensors.temperature_m[3] = x; }},
+    {FaultCode::kBusErrors, "bus", 3, -1, 1.0, 0.0,
+     [](Bench& b, double x) { b.sensors.bus_errors = static_cast<std::uint32_t>(x); }, false},
+    {FaultCode::kGantryExceeded, "gantry range", 3, 1, -1.4201, -1.4199,
+     [](Bench& b, double x) { b.record.robot.q_p[1] = x; }},
+    {FaultCode::kGantryExceeded, "gantry speed", 3, 0, 1.66, 1.64,
+     [](Bench& b, double x) { b.record.robot.dq_p[0] = b.state.dq_p_model[0] = x; }},
+    {FaultCode::kGantryDeviates, "gantry deviation", 100, 0, 0.27, 0.25,
+     [](Bench& b, double x) { b.record.robot.dq_p[0] = x; }},
+};
+
+TEST(Monitor, EveryRuleActsBeyondItsThresholdAfterItsDebounceAndNotBelow) {
+  for (const Case& c : kCases) {
+    Bench over;
+    EXPECT_EQ(over.until_fault(c.code, [&] { c.put(over, c.over); }), c.samples) << c.name;
+    EXPECT_EQ(over.verdict.fault.index, c.index) << c.name;
+    EXPECT_GT(over.verdict.fault.value, over.verdict.fault.limit) << c.name;
+    Bench under;
+    EXPECT_EQ(under.until_fault(c.code, [&] { c.put(under, c.under); }), -1) << c.name;
+    EXPECT_EQ(under.verdict.warning.code, c.warns ? c.code : FaultCode::kNone) << c.name;
+    EXPECT_FALSE(under.state.is_broken);
+  }
 }
 
-TEST(Sanitise, LeavesAGoodCommandUntouched) {
-  CommandFrame command = good_command();
-  EXPECT_EQ(sanitise(config(), command).code, FaultCode::kNone);
-  const CommandFrame expected = good_command();
-  EXPECT_TRUE(command.enable);
-  EXPECT_EQ(command.q_m, expected.q_m);
-  EXPECT_EQ(command.dq_m, expected.dq_m);
-  EXPECT_EQ(command.ddq_m, expected.ddq_m);
-  EXPECT_EQ(command.dq_p, expected.dq_p);
+TEST(Monitor, ABreakInBetweenBeginsTheDebounceAnew) {
+  for (const Case& c : kCases) {
+    if (c.samples == 1) continue;
+    Bench bench;
+    for (int k = 0; k < 5; ++k) {
+      for (int sample = 1; sample < c.samples; ++sample) {
+        c.put(bench, c.over);
+        bench.step();
+        EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone) << c.name;
+      }
+      c.put(bench, c.under);
+      bench.step();
+      EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone) << c.name;
+    }
+  }
 }
 
-TEST(Sanitise, ClampsTheGantryAndDisablesWhatIsNotFinite) {
-  CommandFrame command = good_command();
-  command.dq_p[1] = -9.0;
-  EXPECT_EQ(sanitise(config(), command).code, FaultCode::kNone);
-  EXPECT_EQ(command.dq_p[1], -1.5);
-  EXPECT_TRUE(command.enable);
-  command.ddq_m[0] = kNan;
-  const Fault fault = sanitise(config(), command);
-  EXPECT_EQ(fault.code, FaultCode::kCommandNotFinite);
-  EXPECT_EQ(fault.index, 12);
-  EXPECT_FALSE(command.enable);
-  EXPECT_TRUE(command.q_m.allFinite() && command.dq_m.isZero() && command.dq_p.isZero());
+TEST(Monitor, NoDebounceIsLongerAtAHigherRateInTime) {
+  MonitorConfig fast = config();
+  fast.dt = 0.5e-3;
+  fast.clock_tolerance = kInfinity;
+  Bench bench(fast);
+  EXPECT_EQ(bench.until_fault(FaultCode::kTrackingLost, [&] { bench.record.robot.q_m[5] = 0.081; }),
+            40);
+}
+
+TEST(Monitor, AJumpIsMoreThanThreeTimesTheSpeedAndATurnOfAnEndlessJointIsNone) {
+  Bench bench;
+  bench.sensors.q_m[1] += 8.9e-3;
+  bench.sensors.theta_m[1] += 8.9e-3;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.sensors.q_m[1] += 6.28318530717958;
+  bench.sensors.theta_m[1] += 8.9e-3;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.sensors.q_m[1] += 9.1e-3;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSensorJump);
+  EXPECT_EQ(bench.verdict.fault.index, 1);
+  bench.sensors.q_p[1] += 4.6e-3;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.index, 7);
+  Monitor::forget(bench.state);
+  bench.sensors.q_p[1] += 1.0;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone) << "there is nothing to compare with";
+}
+
+TEST(Monitor, SeesFrozenSensorsOnlyWhereTheyHaveNoise) {
+  const auto freeze = [](Bench& bench, int samples, auto&& spare) {
+    for (int k = 0; k < samples; ++k) {
+      spare(k);
+      bench.step(false);
+      if (bench.verdict.fault.code != FaultCode::kNone) return k + 1;
+    }
+    return -1;
+  };
+  Bench all;
+  EXPECT_EQ(freeze(all, 100, [](int) {}), 21);
+  EXPECT_EQ(all.verdict.fault.code, FaultCode::kSensorFrozen);
+  Bench one;
+  EXPECT_EQ(freeze(one, 100,
+                   [&](int k) {
+                     one.sensors.w_S[3] = one.sensors.omega_S[1] = 1e-3 * k;
+                     for (int i = 0; i < 5; ++i) one.sensors.tau_m[i] = 1e-3 * k;
+                   }),
+            21);
+  EXPECT_EQ(one.verdict.fault.index, 5);
+  MonitorConfig without = config();
+  without.frozen_samples = 0;
+  Bench ideal(without);
+  EXPECT_EQ(freeze(ideal, 1000, [](int) {}), -1);
+}
+
+TEST(Monitor, AClockThatStopsJumpsOrRunsWrongIsSeenAndOneThatJittersIsNot) {
+  Bench stops;
+  EXPECT_LT(stops.until_fault(FaultCode::kClockWrong, [&] { stops.sensors.time_s -= 1e-3; }), 20);
+  Bench jumps;
+  jumps.sensors.time_s += 1.0;
+  EXPECT_EQ(jumps.until_fault(FaultCode::kClockWrong, [] {}), 3);
+  Bench fast;
+  EXPECT_GT(fast.until_fault(FaultCode::kClockWrong, [&] { fast.sensors.time_s += 0.3e-3; }), 0);
+  Bench jitters;
+  int k = 0;
+  EXPECT_EQ(jitters.until_fault(FaultCode::kClockWrong,
+                                [&] { jitters.sensors.time_s += ++k % 2 == 0 ? 0.3e-3 : -0.3e-3; }),
+            -1);
+}
+
+TEST(Monitor, LateCyclesAreForgivenWhenTheyAreFewAndFarBetween) {
+  Bench rare;
+  int k = 0;
+  EXPECT_EQ(rare.until_fault(FaultCode::kCycleOverrun,
+                             [&] { rare.watched.late_cycles = ++k % 250 == 0 ? 1 : 0; }),
+            -1);
+  Bench often;
+  k = 0;
+  const int until = often.until_fault(FaultCode::kCycleOverrun,
+                                      [&] { often.watched.late_cycles = ++k % 50 == 0 ? 1 : 0; });
+  EXPECT_GT(until, 250);
+  EXPECT_LT(until, 500);
+  EXPECT_EQ(often.verdict.fault.index, 1);
+  Bench row;
+  EXPECT_EQ(row.until_fault(FaultCode::kCycleOverrun, [&] { row.watched.late_cycles = 1; }), 3);
+  Bench many;
+  EXPECT_EQ(many.until_fault(FaultCode::kCycleOverrun, [&] { many.watched.late_cycles = 3; }), 1);
+}
+
+TEST(Monitor, AReferenceThatHasToComeBackAgainAndAgainIsLostToo) {
+  Bench bench;
+  bench.record.robot.q_m[4] = -0.007;
+  bench.watched.pulled_back = VectorM::Zero(6);
+  bench.watched.pulled_back[4] = 0.001;  // 1 rad/s that the joint does not follow
+  EXPECT_NEAR(bench.until_fault(FaultCode::kTrackingLost, [] {}), 73 + 20, 2);
+  Bench brief;
+  int k = 0;
+  EXPECT_EQ(brief.until_fault(FaultCode::kTrackingLost,
+                              [&] {
+                                brief.watched.pulled_back = VectorM::Zero(6);
+                                if (++k < 50) brief.watched.pulled_back[4] = 0.001;
+                              }),
+            -1);
+}
+
+TEST(Monitor, WithoutPowerADeviceMayBeAnywhereAndFromThereItMayOnlyMoveBack) {
+  Bench bench;
+  bench.watched.state = State::kFault;
+  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.5;
+  bench.record.robot.dq_m[1] = 5.0;
+  bench.record.robot.q_p[0] = 1.6;
+  bench.record.robot.dq_p[1] = 3.0;
+  bench.run(200);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.record.robot.dq_m[1] = bench.record.robot.dq_p[1] = 0.0;
+  bench.step();
+  bench.watched.state = State::kByHand;
+  bench.run(200);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.3;
+  bench.record.robot.q_p[0] = 1.5;
+  bench.run(2);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.34;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kLimitExceeded);
+  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.3;
+  bench.record.robot.q_p[0] = 1.53;
+  bench.run(3);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kGantryExceeded);
+}
+
+TEST(Monitor, TheSafeSpeedHoldsOnlyWithNobodyAtTheHandle) {
+  Bench bench;
+  bench.record.v_H = {0.2, 0.16, 0.0};
+  bench.run(10);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.watched.state = State::kAutonomous;
+  EXPECT_EQ(bench.until_fault(FaultCode::kSafeSpeedExceeded, [] {}), 3);
+  bench.record.v_H.setZero();
+  bench.step();
+  bench.record.robot.dq_p << 0.2, -0.16;
+  EXPECT_EQ(bench.until_fault(FaultCode::kSafeSpeedExceeded,
+                              [&] { bench.state.dq_p_model = bench.record.robot.dq_p; }),
+            3);
+}
+
+TEST(Monitor, TheGantryFollowsItsDriveModel) {
+  Bench bench;
+  double speed = 0.0;
+  bench.watched.dq_p_command[0] = 1.2;
+  EXPECT_EQ(bench.until_fault(FaultCode::kGantryDeviates,
+                              [&] {
+                                speed +=
+                                    1e-3 * drive_acceleration(DriveModel{.lag = 0.06}, speed, 1.2);
+                                bench.record.robot.dq_p[0] = speed;
+                              }),
+            -1);
+  Bench stuck;
+  stuck.watched.dq_p_command[0] = 1.2;
+  const int until = stuck.until_fault(FaultCode::kGantryDeviates, [] {});
+  EXPECT_GT(until, 100);
+  EXPECT_LT(until, 220);
+}
+
+TEST(Monitor, OfSeveralBrokenRulesTheHardestReactionCounts) {
+  Bench bench;
+  bench.sensors.w_S[0] = 200.0;
+  bench.record.robot.dq_m[2] = 9.0;
+  bench.run(5);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSpeedExceeded);  // SS1 before SS2
+  bench.sensors.q_m[0] += 0.1;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSensorJump);  // STO before both
+  EXPECT_EQ(bench.verdict.warning.code, FaultCode::kSensorImplausible) << "the farthest beyond";
 }
 
 }  // namespace

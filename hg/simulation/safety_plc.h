@@ -1,0 +1,125 @@
+/// The safety controller of the simulated device: it watches switches, scanner and speeds by itself
+/// and takes the power away, whatever the program does.
+///
+/// Source: [HG] III-D layers 1 and 4, [HANDBOOK] 6.5, 6.8:
+///   motion = stop buttons free and operator holds and
+///            (user holds or (override key and scanner field clear and speed <= SLS))
+/// Every input has two channels, which must agree within the discrepancy time. The field of the
+/// scanner that counts follows from the speed. What the controller trips on is latched until its
+/// reset button is pressed (an edge) with the cause gone. Where motion is not permitted the device
+/// has the time of a controlled stop before its power goes; after it, standstill is watched.
+///
+/// A model of a Pilz PNOZmulti with motion monitoring as far as the program meets it; nothing about
+/// it is certified. No allocation, noexcept. Copyable.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hg/signals/frames.h"
+
+namespace hg::simulation {
+
+/// Set-up data.
+struct SafetyPlcConfig {
+  double period = 1e-3;           ///< of step(), s
+  double discrepancy = 0.5;       ///< that channels of an input may differ, s
+  double response = 0.01;         ///< of the controller to its switches, s
+  double scanner_response = 0.1;  ///< [HANDBOOK] 6.8: 67 to 134 ms at 15 Hz, s
+  double stop_time = 1.0;         ///< SS1: until the power goes, s
+  double safe_speed = 0.25;       ///< SLS, m/s; from here on the large field counts
+  double standstill = 0.1;        ///< SOS: of handle and gantry without permitted motion, m/s
+};
+
+/// Which of the scanner's two fields somebody stands in: the small one is part of the large one.
+enum class ScannerField : std::uint8_t { kNone = 0, kLarge = 1, kSmall = 2 };
+
+/// One input, two wires.
+struct TwoChannels {
+  std::array<bool, 2> is_on{};
+
+  static TwoChannels both(bool on) noexcept { return {{on, on}}; }
+};
+
+/// What the controller sees in one period.
+struct SafetyPlcInput {
+  TwoChannels stop_free = TwoChannels::both(true);  ///< all stop buttons are out
+  TwoChannels operator_enable = TwoChannels::both(true);
+  TwoChannels user_hold = TwoChannels::both(false);  ///< dead-man switch at the handle
+  TwoChannels override_key = TwoChannels::both(false);
+  ScannerField field = ScannerField::kNone;
+  double hand_speed = 0.0;    ///< m/s
+  double gantry_speed = 0.0;  ///< m/s
+  bool drives_on = false;     ///< the program has switched them on
+  bool reset = false;
+};
+
+/// The inputs of the formula, after filtering.
+struct MotionPermit {
+  bool stop_free = true, operator_enable = true, user_hold = false;
+  bool override_key = false, is_field_clear = true, is_slow = true;
+
+  bool has_power() const noexcept { return stop_free && operator_enable; }
+  bool is_given() const noexcept {
+    return has_power() && (user_hold || (override_key && is_field_clear && is_slow));
+  }
+};
+
+/// What made the controller trip, for people who look at the simulation.
+enum class PlcTrip : std::uint8_t {
+  kNone = 0,
+  kStopButton = 1,
+  kScanner = 2,
+  kSafeSpeed = 3,
+  kStandstill = 4,
+};
+
+class SafetyPlc {
+ public:
+  SafetyPlc() : SafetyPlc(SafetyPlcConfig{}) {}
+  explicit SafetyPlc(const SafetyPlcConfig& config);
+
+  /// Lives one period.
+  void step(const SafetyPlcInput& input) noexcept;
+
+  /// What the program is told.
+  const SafetyInputs& outputs() const noexcept { return outputs_; }
+  /// False: safe torque off, the brakes are closed.
+  bool has_power() const noexcept { return has_power_; }
+  const MotionPermit& permit() const noexcept { return permit_; }
+  PlcTrip trip() const noexcept { return trip_; }
+
+ private:
+  static constexpr int kMaxDelay = 512;  // periods
+  static constexpr int kInputs = 4;
+
+  // An input as it was some periods ago.
+  struct Delay {
+    std::array<std::uint8_t, kMaxDelay> values{};
+    int next = 0, periods = 0;
+
+    std::uint8_t shift(std::uint8_t value) noexcept;
+  };
+
+  bool evaluate(int input, const TwoChannels& channels) noexcept;
+  void evaluate_all(const SafetyPlcInput& input) noexcept;
+  void watch_motion(const SafetyPlcInput& input) noexcept;
+  void trip(PlcTrip cause) noexcept;
+  void reset(const SafetyPlcInput& input) noexcept;
+
+  SafetyPlcConfig config_;
+  int discrepancy_, stop_time_;  // periods
+  std::array<Delay, kInputs> inputs_;
+  Delay field_;
+  std::array<int, kInputs> differing_{};  // periods
+  bool differs_now_ = false, has_disagreement_ = false;
+  PlcTrip trip_ = PlcTrip::kNone;
+  bool was_reset_ = false;                // the button was pressed before
+  bool moved_alone_ = false;              // motion was permitted by the key before
+  int not_permitted_ = 0, no_power_ = 0;  // periods
+  bool has_power_ = true;
+  MotionPermit permit_;
+  SafetyInputs outputs_;
+};
+
+}  // namespace hg::simulation
