@@ -1,0 +1,40 @@
+/// How warm the winding of a motor is, and what its sensor says. Copper losses heat it, the frame
+/// cools it: first order, so that the rated torque for ever ends at the rated temperature.
+///   T' = (T_room + rise (tau / tau_rated)^2 - T) / time_constant
+#pragma once
+
+#include <cmath>
+
+namespace hg::simulation {
+
+/// Set-up data. [A]: typical of frameless motors on a robot's joint, datasheets give no more.
+struct MotorHeatConfig {
+  double room = 22.0;            ///< degrees Celsius
+  double rise = 50.0;            ///< at rated torque for ever, K
+  double time_constant = 900.0;  ///< s, > 0
+  double start = 40.0;           ///< degrees Celsius: it has been in use
+  double resolution = 1.0;       ///< of the sensor, K; 0: none
+};
+
+class MotorHeat {
+ public:
+  MotorHeat() = default;
+  /// `torque_rated` in Nm, > 0; 0: the motor stays as warm as it is.
+  MotorHeat(const MotorHeatConfig& config, double torque_rated, double period) noexcept
+      : room_(config.room),
+        resolution_(config.resolution),
+        value_(config.start),
+        gain_(torque_rated > 0.0 ? config.rise / (torque_rated * torque_rated) : 0.0),
+        share_(torque_rated > 0.0 ? -std::expm1(-period / config.time_constant) : 0.0) {}
+
+  /// A period with the torque `tau` of the motor, Nm, later: degrees Celsius.
+  double next(double tau) noexcept {
+    value_ += share_ * (room_ + gain_ * tau * tau - value_);
+    return resolution_ > 0.0 ? resolution_ * std::round(value_ / resolution_) : value_;
+  }
+
+ private:
+  double room_ = 0.0, resolution_ = 0.0, value_ = 0.0, gain_ = 0.0, share_ = 0.0;
+};
+
+}  // namespace hg::simulation
