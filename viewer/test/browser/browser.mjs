@@ -162,17 +162,16 @@ export function arc(handle, hinge, angles) {
 export async function hide_and_compare(page, layer) {
   const { x, y, width, height } = await page.locator("#stage").boundingBox();
   const clip = { x, y: y + 70, width, height: height - 140 }; // without what lies over it
-  await page.click("#layers summary");
   const take = async () => {
     await pictures(page);
     return (await page.screenshot({ clip })).toString("base64");
   };
   const shown = await take();
-  await page.uncheck(`#show-${layer}`);
+  const box = page.locator(`#show-${layer}`); // its menu is shut, so that it is not in the pictures
+  await box.evaluate((found) => found.click());
   const hidden = await take();
-  await page.check(`#show-${layer}`);
+  await box.evaluate((found) => found.click());
   const again = await take();
-  await page.click("#layers summary");
   return page.evaluate(count_different, [shown, hidden, again]);
 }
 

@@ -22,8 +22,8 @@ import {
   wear_headset,
 } from "./browser.mjs";
 
-const SMALLEST_DEVICE = 1500; // pixels that the device covers
-const SMALLEST_GHOST = 300;
+const SMALLEST_DEVICE = 3000; // pixels that the device covers
+const SMALLEST_GHOST = 3000;
 const LIVE_FRAMES = 30; // at least so many arrive for each second of the program's time
 const SPELLS = 20; // of a second; a machine that does other work may be slow in most of them
 const OPEN = 0.5; // rad
