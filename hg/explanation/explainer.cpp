@@ -64,6 +64,36 @@ std::string why_it_stops(const Sample& sample) {
   return "";
 }
 
+// which value of a sample is meant, counted as safety::check_sensors counts
+std::string sensor_name(const SensorFrame& sensors, const Names& names, int index) {
+  const auto of = [](const std::vector<std::string>& list, int i) {
+    return i < static_cast<int>(list.size()) ? list[static_cast<std::size_t>(i)]
+                                             : fmt::format("{}", i);
+  };
+  const struct {
+    const char* what;
+    Eigen::Index size;
+    const std::vector<std::string>* parts;
+  } kGroups[] = {{"link encoder", sensors.q_m.size(), &names.joints},
+                 {"speed", sensors.dq_m.size(), &names.joints},
+                 {"gantry encoder", sensors.q_p.size(), &names.gantry},
+                 {"force/torque sensor, component", 6, nullptr},
+                 {"motor encoder", sensors.theta_m.size(), &names.joints},
+                 {"torque sensor", sensors.tau_m.size(), &names.joints},
+                 {"accelerometer, component", 3, nullptr},
+                 {"gyroscope, component", 3, nullptr},
+                 {"temperature", sensors.temperature_m.size(), &names.joints}};
+  for (const auto& group : kGroups) {
+    if (index < group.size) {
+      return fmt::format(
+          " of {} {}", group.what,
+          group.parts != nullptr ? of(*group.parts, index) : fmt::format("{}", index + 1));
+    }
+    index -= static_cast<int>(group.size);
+  }
+  return {};
+}
+
 std::string detail(const char* label, const std::string& text) {
   return fmt::format("{:<12} {}", label, text);
 }
@@ -121,13 +151,15 @@ void Explainer::add_requests(const CycleRecord& record) {
   }
 }
 
-void Explainer::extend(const char* kind, const std::string& text, double time_s, double value) {
+void Explainer::extend(const char* kind, const std::string& text, double time_s, double value,
+                       const char* unit) {
   const auto [found, is_new] = spans_.try_emplace({kind, text});
   Span& span = found->second;
   if (is_new) span.begin_s = time_s;
   span.end_s = time_s;
   span.active_s += period_s_;
   if (std::abs(value) >= std::abs(span.peak)) span.peak = value;
+  span.unit = unit;
 }
 
 void Explainer::add_limits(const CycleRecord& record) {
@@ -140,10 +172,10 @@ void Explainer::add_limits(const CycleRecord& record) {
         (report.cause == LimitCause::kAcceleration || report.cause == LimitCause::kFriction);
     if (report.state == LimitState::kInactive || is_plain) continue;
     const LimitInfo& info = names_.limits[static_cast<std::size_t>(i)];
-    const std::string text =
-        fmt::format("{}: {}{} limit, {} that it takes", info.name, side_text(report.state),
-                    to_string(report.cause), info.is_angle ? "Nm" : "N");
-    extend("limit", text, record.time_s, report.reaction);
+    extend(
+        "limit",
+        fmt::format("{}: {}{} limit", info.name, side_text(report.state), to_string(report.cause)),
+        record.time_s, report.reaction, info.is_angle ? " Nm" : " N");
   }
 }
 
@@ -187,7 +219,8 @@ void Explainer::close_spans(double now_s, bool all) {
     }
     const auto& [kind, text] = it->first;
     if (kind != "limit" || span.active_s >= kShortest_s) {
-      const std::string peak = span.peak != 0.0 ? fmt::format(", up to {:.4g}", span.peak) : "";
+      const std::string peak =
+          span.peak != 0.0 ? fmt::format(", up to {:.3g}{}", span.peak, span.unit) : "";
       entries_.push_back(
           {span.begin_s,
            kind,
@@ -231,7 +264,8 @@ std::string Explainer::name_of(const Fault& fault) const {
 
 std::string Explainer::quantity(const Fault& fault) const {
   if (!std::isfinite(fault.value)) return ", value not finite";
-  if (fault.value == 0.0 && fault.limit == 0.0) return {};
+  const bool is_yes_or_no = fault.limit == 0.0 && (fault.value == 0.0 || fault.value == 1.0);
+  if (is_yes_or_no) return {};
   return fmt::format(": {:.6g}, limit {:.6g}", fault.value, fault.limit);
 }
 
@@ -247,7 +281,10 @@ void Explainer::add_fault(const Sample& sample) {
   const safety::Rule& rule = safety::rule_of(fault.code);
   Entry entry{record.time_s,
               "FAULT",
-              fmt::format("{} {}{}{}", static_cast<int>(fault.code), rule.name, name_of(fault),
+              fmt::format("{} {}{}{}", static_cast<int>(fault.code), rule.name,
+                          fault.code == FaultCode::kSensorNotFinite
+                              ? sensor_name(sample.sensors, names_, fault.index)
+                              : name_of(fault),
                           quantity(fault)),
               {}};
   entry.details.push_back(detail("meaning", std::string(rule.meaning)));

@@ -48,6 +48,7 @@ class Explainer {
     double begin_s = 0.0, end_s = 0.0;
     double active_s = 0.0;
     double peak = 0.0;
+    const char* unit = "";  ///< of peak
   };
   /// What of the last sample is compared with the next.
   struct Last {
@@ -74,7 +75,8 @@ class Explainer {
   void add_fault(const Sample& sample);
   void follow(const Sample& sample);
   void end_aftermath();
-  void extend(const char* kind, const std::string& text, double time_s, double value = 0.0);
+  void extend(const char* kind, const std::string& text, double time_s, double value = 0.0,
+              const char* unit = "");
   void close_spans(double now_s, bool all);
   std::string name_of(const Fault& fault) const;
   std::string quantity(const Fault& fault) const;

@@ -33,7 +33,8 @@ FlightRecorder::FlightRecorder(RecordingInfo info, double seconds)
   sample.record.robot.q_m = VectorM::Zero(n_m);
   sample.record.limit_count = static_cast<int>(info_.limits.size());
   const std::size_t bytes = 2 * cdr_.encode(sample).size();
-  for (std::vector<std::byte>& slot : slots_) slot.reserve(bytes);
+  // touched, not only reserved: the memory of a run does not grow later
+  for (std::vector<std::byte>& slot : slots_) slot.resize(bytes);
   events_.reserve(kMostEvents);
 }
 

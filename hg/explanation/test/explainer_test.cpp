@@ -98,7 +98,7 @@ TEST(Explainer, JoinsWhatALimitDoesAcrossShortInterruptions) {
               "limit");
   ASSERT_EQ(entries.size(), 2u);
   EXPECT_TRUE(has(entries[0].text, "hinge {}: upper position limit")) << entries[0].text;
-  EXPECT_TRUE(has(entries[0].text, "up to -12.5, for 0.298 s until 0.699 s")) << entries[0].text;
+  EXPECT_TRUE(has(entries[0].text, "up to -12.5 Nm, for 0.298 s until 0.699 s")) << entries[0].text;
   EXPECT_NEAR(entries[1].time_s, 1.501, 1e-9);
 }
 
@@ -130,12 +130,14 @@ TEST(Explainer, SaysWhenTheEndIsNotSeen) {
   const auto entries = explained(0.45, [](double t, Sample& sample) {
     if (t < 0.4) return;
     sample.record.mode = Mode::kFault;
-    sample.record.fault = {FaultCode::kSensorNotFinite, 7, std::nan(""), 0.0};
+    sample.record.fault = {FaultCode::kSensorNotFinite, 13, std::nan(""), 0.0};
     sample.sensors.dq_m[1] = -0.7;
+    sample.sensors.q_m = sample.sensors.theta_m = sample.sensors.tau_m = VectorM::Zero(2);
   });
   const auto faults = of_kind(entries, "FAULT");
   ASSERT_EQ(faults.size(), 1u);
-  EXPECT_TRUE(has(faults[0].text, "not finite"));
+  // link encoders 0, 1, speeds 2, 3, wrench 4 .. 9, motors 10, 11, torques 12, 13
+  EXPECT_TRUE(has(faults[0].text, "of torque sensor m2, value not finite")) << faults[0].text;
   EXPECT_TRUE(has_detail(faults[0], "not seen: 49 ms later"));
   EXPECT_TRUE(has_detail(faults[0], "0.700"));
 }
