@@ -133,6 +133,11 @@ simulation::Simulation simulation_of(const config::Device& device, const Start& 
                                 std::move(person));
 }
 
+bool has_noise(const simulation::SensorsConfig& sensors) {
+  return sensors.wrench.force_noise > 0.0 && sensors.torque.noise > 0.0 &&
+         sensors.accelerometer.noise > 0.0;
+}
+
 constexpr int kStabilityPostures = 32;
 constexpr int kMostDraws = 1'000'000;  // of a posture; takes less than a second
 constexpr int kFurtherLatency = 4;     // periods beyond what is expected
@@ -195,11 +200,16 @@ control::Config checked_control(const config::Device& device) {
 
 cycle::Cycle make_cycle(const config::Scenario& scenario) {
   const config::Device& device = scenario.device;
+  // sensors that are simulated without noise show the same bits for ever at rest
+  safety::MonitorConfig monitor = device.monitor;
+  if (device.simulation.is_from_file && !has_noise(device.simulation.sensors)) {
+    monitor.frozen_samples = 0.0;
+  }
   return cycle::Cycle({.estimation = device.estimation,
                        .prepositioning = device.prepositioning,
                        .rendering = device.rendering,
                        .control = checked_control(device),
-                       .monitor = device.monitor,
+                       .monitor = monitor,
                        .sanitiser = device.sanitiser,
                        .collision = device.collision},
                       device.model, scenario.twin.model);

@@ -118,6 +118,7 @@ Simulation load_simulation(const std::filesystem::path& path, SourceReader& read
       take_plant(loader, device, draft, *draft.simulation.chain);
     }
   });
+  draft.simulation.is_from_file = true;
   draft.simulation.seed = static_cast<std::uint64_t>(draft.seed);
   draft.simulation.sensors.seed = draft.simulation.seed;
   return std::move(draft.simulation);

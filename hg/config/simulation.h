@@ -40,7 +40,8 @@ DriveModel actual(DriveModel told, const RealityFactors& factors);
 Payload actual(Payload told, const RealityFactors& factors);
 
 struct Simulation {
-  double step_s = 0.25e-3;  ///< largest step of the plant; a period is a whole number of steps
+  bool is_from_file = false;  ///< false: there is none, all is as the device file says
+  double step_s = 0.25e-3;    ///< largest step of the plant; a period is a whole number of steps
   std::uint64_t seed = 1;
   RealityFactors factors;
   double stop_distance_angle = 0.05;   ///< of the end stops beyond the limits, rad

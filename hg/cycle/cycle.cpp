@@ -9,6 +9,7 @@ namespace hg::cycle {
 namespace {
 
 constexpr double kBrakingRate = 20.0;  // 1/s: stopping takes about 0.2 s
+constexpr double kSafeShare = 0.9;     // of the safe speed, which is watched
 constexpr double kStandstill = 1e-3;   // rad/s and m/s
 constexpr double kRamp = 0.3;          // s in which the forces of a run come in
 
@@ -178,7 +179,8 @@ void Cycle::begin_anew() noexcept {
   control_.restart(state_.control);
 }
 
-// Whether braking now still keeps all parts of the device apart.
+// Whether braking now still keeps all parts of the device apart. What is foreseen is that all joints
+// brake at once, so that is what is done then: the law's own way to rest may lead elsewhere.
 void Cycle::look_ahead(CycleRecord& record) noexcept {
   const RobotState& robot = record.robot;
   const safety::State state = state_.supervisor.state;
@@ -186,7 +188,9 @@ void Cycle::look_ahead(CycleRecord& record) noexcept {
       guard_.step(stacked(robot.q_p, robot.q_m), stacked(robot.dq_p, robot.dq_m),
                   safety::is_powered(state), state_.collision);
   record.collision = ahead.report;
-  if (!ahead.must_brake || safety::mode_of(state) != Mode::kRunning) return;
+  if (!ahead.must_brake || !is_moving(safety::mode_of(state))) return;
+  state_.brakes_joints = true;
+  if (safety::mode_of(state) == Mode::kStopping) return;
   safety::break_rule({.code = FaultCode::kCollisionAhead,
                       .index = static_cast<std::int16_t>(ahead.report.pair),
                       .value = ahead.report.distance,
@@ -221,7 +225,10 @@ void Cycle::render(CycleRecord& record) noexcept {
       rendering_.stay_near(record.robot, config_.control.error_max, state_.rendering);
   if (has_left) pulled_back_ -= state_.rendering.reference.q_m;
   if (!has_left) pulled_back_.resize(0);
-  rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record, state_.force_share);
+  const bool is_alone = state_.supervisor.state == safety::State::kAutonomous;
+  const double speed = is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
+  rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record, state_.force_share,
+                  speed / std::sqrt(3.0));
   state_.force_share = std::min(1.0, state_.force_share + config_.rendering.dt / kRamp);
 
   const Fault unsolved = safety::check_solution(record);
@@ -232,7 +239,8 @@ void Cycle::render(CycleRecord& record) noexcept {
   const VectorP q_p_target =
       gantry_target_.step(record.robot, state_.rendering.reference.q_m, state_.gantry_target);
   const prepositioning::Command gantry =
-      prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked);
+      prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked,
+                           speed / std::sqrt(2.0));
   record.q_p_target = gantry.q_target;
   state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
   state_.is_blocked = rendering_.is_blocked();
@@ -247,7 +255,7 @@ void Cycle::render(CycleRecord& record) noexcept {
   ended_(Stage::kIntegration);
 }
 
-// The law has no solution, so it cannot brake either: each joint goes to rest with its own rating,
+// Where the law has no solution it cannot brake either: each joint goes to rest with its own rating,
 // which its position limits leave room for, and twin and gantry are left behind. [HANDBOOK] 6.2 has
 // a ramp of 50 ms, for which the motors of a stretched arm have not got the torque.
 void Cycle::brake_joints(CycleRecord& record) noexcept {

@@ -149,7 +149,8 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
        {&state.q_m, &state.tau_m, &state.pulled_back, &state.lowest, &state.highest}) {
     hash.mix(*v);
   }
-  for (const VectorP* v : {&state.q_p, &state.dq_p_model, &state.lowest_p, &state.highest_p}) {
+  for (const VectorP* v :
+       {&state.q_p, &state.dq_p_model, &state.gantry_gap, &state.lowest_p, &state.highest_p}) {
     hash.mix(*v);
   }
 }

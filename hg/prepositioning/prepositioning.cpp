@@ -21,7 +21,8 @@ void check(const Config& config) {
 }
 
 Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked) noexcept {
+             bool device_blocked, double dq_max) noexcept {
+  const double fastest = std::min(config.dq_max, dq_max);
   Command command = {q_target, VectorP::Zero(config.n_p)};
   if (device_blocked) return command;
   for (int i = 0; i < config.n_p; ++i) {
@@ -29,7 +30,7 @@ Command step(const Config& config, const RobotState& robot, const VectorP& q_tar
     command.q_target[i] = std::clamp(command.q_target[i], q_limits.lb, q_limits.ub);
     const Interval bounds = limits::braking_velocity_bounds(q_limits, config.drive, robot.q_p[i]);
     const double dq = config.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
-    command.dq[i] = std::clamp(std::clamp(dq, bounds.lb, bounds.ub), -config.dq_max, config.dq_max);
+    command.dq[i] = std::clamp(std::clamp(dq, bounds.lb, bounds.ub), -fastest, fastest);
   }
   return command;
 }

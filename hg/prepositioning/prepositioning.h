@@ -32,8 +32,8 @@ struct Command {
 };
 
 /// `robot` gives the gantry. `device_blocked` (a manipulator row could not be met) scales the
-/// command to zero: a gantry that drags a blocked arm is a fault.
+/// command to zero: a gantry that drags a blocked arm is a fault. No axis is faster than `dq_max`.
 Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked) noexcept;
+             bool device_blocked, double dq_max = kInfinity) noexcept;
 
 }  // namespace hg::prepositioning

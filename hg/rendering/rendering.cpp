@@ -143,8 +143,8 @@ void Rendering::update_device(const RobotState& robot, const ReferenceState& ref
                                   stacked(robot.dq_p, reference.dq_m));
 }
 
-SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record,
-                             double share) noexcept {
+SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record, double share,
+                             double handle_speed) noexcept {
   update_device(record.robot, state.reference);
   advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
@@ -177,7 +177,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   }
 
   const hqp::ActiveSet previous = state.active_set;
-  solve(state, record);
+  solve(state, handle_speed, record);
   record.active_set_changes =
       changed_rows(previous, state.active_set, tasks_.first_limit_row(), tasks_.limit_row_count());
   if (!is_braking) catch_reversals(state.twin, options_.dt, state.inner);
@@ -228,7 +228,7 @@ bool Rendering::stay_near(const RobotState& robot, double largest, State& state)
 }
 
 // Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
-void Rendering::solve(State& state, CycleRecord& record) noexcept {
+void Rendering::solve(State& state, double handle_speed, CycleRecord& record) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
   const int first_twin_limit = static_cast<int>(tasks_.limit_rows().size()) - n_a;
   record.solver_iterations = 0;
@@ -246,7 +246,8 @@ void Rendering::solve(State& state, CycleRecord& record) noexcept {
                  .J_H = J_H_,
                  .J_a = J_a_,
                  .directions = reactions_.directions(),
-                 .tau = tau});
+                 .tau = tau,
+                 .handle_speed = handle_speed});
     ended_(Stage::kRenderingSetUp);
     guess_ = state.active_set;
     solved_cycle_ = record.cycle;

@@ -52,9 +52,11 @@ class Rendering {
   /// state: integrate() does. `braking_rate` > 0 (1/s) brings the twin to rest: it is then a body
   /// without springs, friction and weight that nobody touches, under the same limits. `share`
   /// (0..1) of the user's wrench, the twin's springs, its weight and its reference wrench counts,
-  /// so that a run that begins against a leaning hand begins without a bump.
-  SolverStatus step(State& state, double braking_rate, CycleRecord& record,
-                    double share = 1.0) noexcept;
+  /// so that a run that begins against a leaning hand begins without a bump. The handle moves no
+  /// faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian limits
+  /// for it.
+  SolverStatus step(State& state, double braking_rate, CycleRecord& record, double share = 1.0,
+                    double handle_speed = kInfinity) noexcept;
 
   /// Moves the twin at rest to where its end effector meets the handle, as far as its joints allow.
   void align(const RobotState& robot, State& state) noexcept;
@@ -86,7 +88,7 @@ class Rendering {
 
  private:
   void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
-  void solve(State& state, CycleRecord& record) noexcept;
+  void solve(State& state, double handle_speed, CycleRecord& record) noexcept;
   void report_kinematics(const State& state, CycleRecord& record) const noexcept;
 
   DeviceModel device_;

@@ -208,8 +208,10 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
     for (int axis = 0; axis < 3; ++axis) {
       row.head(n_m_) = J.row(axis).segment(device.n_p, n_m_);
       problem_.set_row(first_limit_row() + limit, coefficients_);
-      set_limit(limit, limit_rows_[static_cast<std::size_t>(limit)].limits, position[axis],
-                twist[axis], known[axis]);
+      limits::JointLimits limits = limit_rows_[static_cast<std::size_t>(limit)].limits;
+      limits.dq_max = frame.axes[static_cast<std::size_t>(axis)].dq_max;
+      if (frame.frame == device.handle) limits.dq_max = std::min(limits.dq_max, input.handle_speed);
+      set_limit(limit, limits, position[axis], twist[axis], known[axis]);
       ++limit;
     }
   }

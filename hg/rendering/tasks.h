@@ -59,6 +59,8 @@ struct TaskInput {
   const model::Jacobian& J_a;        ///< of the twin's end effector
   ConstraintDirections& directions;  ///< of J_H and J_a; found by law paper
   VectorA tau;  ///< all torques on the twin that are not constraints, without c_a
+  /// Largest speed of H along each axis of B, where the device limits H, m/s.
+  double handle_speed = kInfinity;
 };
 
 class Tasks {
