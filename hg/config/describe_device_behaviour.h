@@ -50,6 +50,10 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "speed of a prismatic axis of the gantry from what its drive should do");
   v.number("gantry_deviation_rad_per_s", monitor.turn_deviation, kPositive,
            "the same of a revolute axis");
+  v.number("gantry_gap_m", monitor.gantry_gap, kPositive,
+           "of a prismatic axis of the gantry from where its drive should have taken it; an error "
+           "is forgotten within two seconds");
+  v.number("gantry_gap_rad", monitor.turn_gap, kPositive, "the same of a revolute axis");
   v.number("safe_speed_m_per_s", monitor.safe_speed, kPositive,
            "of handle and gantry while nobody holds the handle");
   v.number("overruns_in_a_row", monitor.overruns_in_a_row, kNotNegative,
@@ -141,6 +145,18 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       "the law, see docs/law.md");
   describe_prepositioning(v, d);
   describe_estimation(v, d);
+  v.group(
+      "passivity",
+      [&](auto& child) {
+        child.choice("reaction", d.passivity.reaction, kPassivityReactions,
+                     "to hand and device shaking each other: nothing, a note in the record, or "
+                     "more inertia and damping of the twin until they are calm");
+        child.number("damping_Ns_per_m", d.passivity.damping, kPositive,
+                     "of the handle while it is calmed, besides that of the twin");
+        child.number("least_mass_kg", d.passivity.least_mass, kPositive,
+                     "that is felt at the handle while it is calmed");
+      },
+      "energy and oscillation at the handle, docs/passivity.md");
   v.group(
       "collision",
       [&](auto& child) {

@@ -155,6 +155,16 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
   }
 }
 
+void mix(const passivity::State& state, Hash& hash) noexcept {
+  hash.mix(std::uint64_t{state.is_started});
+  for (const Eigen::Vector3d* x : {&state.x1, &state.x2, &state.x3}) hash.mix(*x);
+  for (const double value :
+       {state.high, state.low, state.oscillates_s, state.since_pushed_s, state.hold_s,
+        state.restless_s, state.tank, state.energy, state.calming.damping, state.calming.inertia}) {
+    hash.mix(value);
+  }
+}
+
 }  // namespace
 
 std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noexcept {
@@ -172,6 +182,7 @@ std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noe
   hash.mix(state.q_m);
   hash.mix(state.tau_m);
   mix(state.collision, hash);
+  mix(state.passivity, hash);
   mix(state.estimation, hash);
   const control::State& control = state.control;
   hash.mix(std::uint64_t{control.is_started} | std::uint64_t{control.is_saturated} << 1U);

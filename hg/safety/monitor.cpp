@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kClockMemory = 0.02;  // share of the newest sample in the clock's mean error
 constexpr double kPullMemory_s = 0.2;  // after which a reference that came back is forgotten
+constexpr double kGapMemory_s = 2.0;   // after which an error of the drive model is forgotten
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -143,10 +144,10 @@ Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
     state.lowest = state.highest = record.robot.q_m;
     state.lowest_p = state.highest_p = record.robot.q_p;
     state.pulled_back = VectorM::Zero(n_m_);
-    state.dq_p_model = VectorP::Zero(n_p_);
+    state.dq_p_model = state.gantry_gap = VectorP::Zero(n_p_);
   }
   for (int i = 0; i < n_m_; ++i) look_at_joint(i, record, watched, state);
-  look_at_gantry(record, watched, state);
+  look_at_gantry(sensors, record, watched, state);
   look_at_frames(record, watched);
   look_at_clocks(sensors, watched, state);
   look_at_sensors(sensors, state);
@@ -187,12 +188,14 @@ void Monitor::look_at_joint(int joint, const CycleRecord& record, const Watched&
   look<FaultCode::kTrackingLost>(joint, std::abs(q_r - q + pulled), apart);
 }
 
-void Monitor::look_at_gantry(const CycleRecord& record, const Watched& watched,
-                             MonitorState& state) noexcept {
+void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& record,
+                             const Watched& watched, MonitorState& state) noexcept {
   const RobotState& robot = record.robot;
   const bool is_on = is_powered(watched.state);
   const double beyond = config_.is_gantry_slide ? config_.gantry_tolerance : config_.turn_tolerance;
   const double off = config_.is_gantry_slide ? config_.gantry_deviation : config_.turn_deviation;
+  const double gap = config_.is_gantry_slide ? config_.gantry_gap : config_.turn_gap;
+  const double kept = 1.0 - config_.dt / kGapMemory_s;
   const double while_dead = config_.drive.dead_time * config_.drive.ddq_max;
   for (int axis = 0; axis < n_p_; ++axis) {
     const double q = robot.q_p[axis], dq = robot.dq_p[axis];
@@ -200,7 +203,13 @@ void Monitor::look_at_gantry(const CycleRecord& record, const Watched& watched,
     follow(config_.gantry_range[at(axis)], q, is_on, state.lowest_p[axis], state.highest_p[axis]);
     if (!is_on) {
       model = dq;
+      state.gantry_gap[axis] = 0.0;
       continue;
+    }
+    if (state.has_sample) {
+      const double moved = sensors.q_p[axis] - state.q_p[axis];
+      state.gantry_gap[axis] = kept * state.gantry_gap[axis] + moved - config_.dt * model;
+      look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_gap[axis]), gap);
     }
     look<FaultCode::kGantryExceeded>(
         axis, std::max(q - state.highest_p[axis], state.lowest_p[axis] - q), beyond);

@@ -41,6 +41,8 @@ struct MonitorConfig {
   double turn_tolerance = 0.03;            ///< beyond the range of a revolute axis, rad
   double gantry_deviation = 0.25;          ///< from the speed of the drive model, m/s
   double turn_deviation = 0.25;            ///< the same of a revolute axis, rad/s
+  double gantry_gap = 0.03;                ///< from where its drive model takes it, m
+  double turn_gap = 0.03;                  ///< the same of a revolute axis, rad
   double safe_speed = 0.25;                ///< of handle and gantry with nobody at it, m/s
   double stop_time = 1.0;                  ///< that a controlled stop may take, s
   double frozen_samples = 0;               ///< with the same bits; 0: sensors have no noise
@@ -102,6 +104,7 @@ struct MonitorState {
   double late = 0.0;         ///< late cycles, less what may come
   int late_in_a_row = 0;
   VectorP dq_p_model;       ///< of the gantry by its drive model
+  VectorP gantry_gap;       ///< how far it is from where the model takes it; forgotten slowly
   VectorM pulled_back;      ///< in all, while it lasts
   VectorM lowest, highest;  ///< where joints may be: limits, or where they stood when armed
   VectorP lowest_p, highest_p;
@@ -139,7 +142,7 @@ class Monitor {
                      MonitorState& state) noexcept;
   void look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept;
   void look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept;
-  void look_at_gantry(const CycleRecord& record, const Watched& watched,
+  void look_at_gantry(const SensorFrame& sensors, const CycleRecord& record, const Watched& watched,
                       MonitorState& state) noexcept;
   void look_at_frames(const CycleRecord& record, const Watched& watched) noexcept;
   void look_at_clocks(const SensorFrame& sensors, const Watched& watched,

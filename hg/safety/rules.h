@@ -222,7 +222,7 @@ inline constexpr Rule kRules[] = {
     {.code = FaultCode::kCollisionAhead,
      .name = "collision ahead",
      .meaning = "The device would hit itself or its surroundings if it braked any later.",
-     .threshold = "monitor of collisions",
+     .threshold = "collision.safe_distance_m",
      .reaction = Stop::kSs2,
      .release = "at once; from where it stands it may only move apart"},
     {.code = FaultCode::kGantryExceeded,
@@ -237,7 +237,8 @@ inline constexpr Rule kRules[] = {
     {.code = FaultCode::kGantryDeviates,
      .name = "gantry deviates",
      .meaning = "An axis of the gantry does not move as commanded.",
-     .threshold = "monitor.gantry_deviation_m_per_s, monitor.gantry_deviation_rad_per_s",
+     .threshold = "monitor.gantry_deviation_m_per_s, monitor.gantry_deviation_rad_per_s, "
+                  "monitor.gantry_gap_m, monitor.gantry_gap_rad",
      .warn_from = 0.6,
      .debounce = {.seconds = 0.1},
      .reaction = Stop::kSs1,

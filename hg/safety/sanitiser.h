@@ -28,7 +28,7 @@ struct SanitiserConfig {
   bool is_strict = false;      ///< cut to 0 instead of to the torque that holds
   double margin = 5e-3;        ///< beyond the limit of a revolute joint, rad
   double slide_margin = 5e-3;  ///< beyond the limit of a prismatic joint, m
-  double torque_rise = 2e-3;   ///< from none to peak torque, s
+  double torque_rise = 3e-4;   ///< from none to peak torque, s; slower would touch what is fine
 };
 
 /// What the sanitiser compares a command with.

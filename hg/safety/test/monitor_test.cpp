@@ -132,6 +132,7 @@ struct Bench {
 
   void step(bool has_noise = true) {
     sensors.time_s += 1e-3;
+    if (state.dq_p_model.size() > 0) sensors.q_p += 1e-3 * state.dq_p_model;
     if (has_noise) {
       ++cycles;
       sensors.w_S[2] = 1e-3 * cycles;
@@ -391,6 +392,17 @@ TEST(Monitor, TheSafeSpeedHoldsOnlyWithNobodyAtTheHandle) {
   EXPECT_EQ(bench.until_fault(FaultCode::kSafeSpeedExceeded,
                               [&] { bench.state.dq_p_model = bench.record.robot.dq_p; }),
             3);
+}
+
+TEST(Monitor, AGantryThatSlowlyComesAwayFromItsDriveModelDeviates) {
+  Bench bench;  // its encoder counts 0.1 m/s while it should stand
+  const int until =
+      bench.until_fault(FaultCode::kGantryDeviates, [&] { bench.sensors.q_p[0] += 1e-3 * 0.1; });
+  EXPECT_NEAR(until, 100 + 300 + 25, 10);  // debounce, and 0.03 m of which some is forgotten
+  Bench slow;
+  EXPECT_EQ(
+      slow.until_fault(FaultCode::kGantryDeviates, [&] { slow.sensors.q_p[0] += 1e-3 * 0.01; }),
+      -1);
 }
 
 TEST(Monitor, TheGantryFollowsItsDriveModel) {

@@ -28,7 +28,7 @@ MonitorConfig ratings() {
 
 // A torque-controlled device at rest in the middle of everything.
 struct Bench {
-  Sanitiser sanitiser{{}, ratings()};
+  Sanitiser sanitiser;
   RobotState robot;
   VectorM q_before = VectorM::Zero(6), tau_before = VectorM::Zero(6);
   bool was_on = true;
@@ -36,7 +36,7 @@ struct Bench {
   Sanitised result;
 
   explicit Bench(bool has_torques = true, bool is_strict = false)
-      : sanitiser({.is_strict = is_strict}, ratings()) {
+      : sanitiser({.is_strict = is_strict, .torque_rise = 2e-3}, ratings()) {
     robot.q_m = robot.dq_m = VectorM::Zero(6);
     robot.q_p = robot.dq_p = VectorP::Zero(2);
     command.enable = true;
