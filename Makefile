@@ -5,13 +5,22 @@
 #   make build   sets up and builds the program: build/release/hapticgiant
 #   make bench   measures solver, cycle and laws beside the paper's solver into $(RESULTS); minutes;
 #                ARGS="door --quick" for a first look
+#   make experiments
+#                runs the paper's experiments with both laws into build/experiments and refreshes the
+#                pages of docs/experiments; minutes
 #   make bench-instructions
 #                counts their instructions (callgrind), into the same folder
 #   make sanitize
 #                builds and runs the tests that pay off under sanitizers: address and undefined
 #                behaviour for the control cycle and what it calls, threads for what has threads
-#   make fuzz    feeds problem reader and solver with FUZZ_SECONDS=600 of random bytes each, under
-#                sanitizers; needs clang. What it finds is in build/fuzz/
+#   make rtsan   builds with RealtimeSanitizer and runs the control loop: what allocates, locks or
+#                waits in it ends the program; needs clang 20 or newer (Debian: clang-22
+#                libclang-rt-22-dev libomp-22-dev)
+#   make fuzz    feeds everything that reads what others have written, and the solver, with
+#                FUZZ_SECONDS=600 of random bytes each, under sanitizers; needs clang and its libomp.
+#                What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
+#   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
+#                memory, faults and limits; begun again it goes on where it was (tools/soak.py)
 
 ARGS ?=
 PRESET ?= release
@@ -19,10 +28,15 @@ BUILD := build/$(PRESET)
 RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
   head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering prepositioning control safety \
-  cycle user simulation remote identification evaluation fuzz_replay)
-TSAN_TESTS := $(addsuffix _test, core runtime viewer_server)
+  cycle user simulation remote identification evaluation explanation readiness recording fuzz_replay)
+TSAN_TESTS := $(addsuffix _test, core runtime recording viewer_server)
+RTSAN_TESTS := $(addsuffix _test, cycle runtime)
 FUZZ_SECONDS ?= 600
-FUZZ_CXX ?= $(firstword $(foreach name,clang++ clang++-19 clang++-16 clang++-14,$(shell command -v $(name))) clang++)
+FUZZ_TARGETS ?= hqp_reader hqp_solver config urdf protocol commands recording
+SOAK_HOURS ?= 30
+first_of = $(firstword $(foreach name,$(1),$(shell command -v $(name))) $(firstword $(1)))
+FUZZ_CXX ?= $(call first_of,clang++-22 clang++-19 clang++ clang++-16 clang++-14)
+RTSAN_CXX ?= $(call first_of,clang++-22 clang++-21 clang++-20 clang++)
 empty :=
 space := $(empty) $(empty)
 # run_tests,PRESET,NAMES: builds these tests and runs them
@@ -33,7 +47,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build test bench bench-instructions sanitize fuzz format check clean
+.PHONY: demo build test experiments bench bench-instructions sanitize rtsan fuzz soak format check clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -56,6 +70,10 @@ bench:
 	@cmake --build $(BUILD) --target hapticgiant
 	@$(BUILD)/hapticgiant bench --out $(RESULTS) $(ARGS)
 
+experiments: build
+	@$(BUILD)/hapticgiant experiment all --law both --out build/experiments --docs docs/experiments
+	@$(BUILD)/hapticgiant experiment timing --out build/experiments --docs docs/experiments
+
 bench-instructions:
 	@tools/setup.sh count
 	@tools/configure.sh $(PRESET) build
@@ -68,15 +86,28 @@ sanitize:
 	$(call run_tests,asan,$(ASAN_TESTS))
 	$(call run_tests,tsan,$(TSAN_TESTS))
 
+rtsan:
+	@tools/setup.sh test
+	@CC=$(subst clang++,clang,$(RTSAN_CXX)) CXX=$(RTSAN_CXX) tools/configure.sh rtsan build
+	@cmake --build build/rtsan --target $(RTSAN_TESTS) hapticgiant
+	@set -e; for name in $(RTSAN_TESTS); do build/rtsan/$$name --gtest_brief=1; done
+	@set -e; for scenario in door excavator free_space; do \
+	  build/rtsan/hapticgiant run $$scenario --fast --no-viewer --no-recording; \
+	done
+
 fuzz:
-	@cmake -S tests/fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=$(FUZZ_CXX)
-	@cmake --build build/fuzz
-	@set -e; for name in reader solver; do \
+	@tools/setup.sh build
+	@CC=$(subst clang++,clang,$(FUZZ_CXX)) CXX=$(FUZZ_CXX) tools/configure.sh fuzz build
+	@cmake --build build/fuzz --target $(addprefix fuzz_,$(FUZZ_TARGETS))
+	@set -e; for name in $(FUZZ_TARGETS); do \
 	  mkdir -p build/fuzz/inputs/$$name; \
-	  build/fuzz/fuzz_hqp_$$name -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=2048 \
-	    -print_final_stats=1 -artifact_prefix=build/fuzz/$$name- \
+	  build/fuzz/fuzz_$$name -max_total_time=$(FUZZ_SECONDS) -timeout=10 -max_len=65536 \
+	    -rss_limit_mb=4096 -print_final_stats=1 -artifact_prefix=build/fuzz/$$name- \
 	    build/fuzz/inputs/$$name tests/fuzz/corpus/$$name; \
 	done
+
+soak: build
+	@.venv/bin/python tools/soak.py $(BUILD)/hapticgiant --hours $(SOAK_HOURS)
 
 format:
 	@git ls-files '*.h' '*.cpp' | xargs clang-format -i

@@ -87,7 +87,7 @@ Report Runtime::join() {
   return report_;
 }
 
-void Runtime::run_cycle(Sample& sample) noexcept {
+void Runtime::run_cycle(Sample& sample) noexcept HG_NONBLOCKING {
   device_.read(sample.sensors);
   const Truth* truth = device_.truth();
   sample.truth = truth != nullptr ? *truth : Truth{};

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hg/core/histogram.h"
+#include "hg/core/nonblocking.h"
 #include "hg/core/spsc_ring.h"
 #include "hg/core/stage_probe.h"
 #include "hg/cycle/cycle.h"
@@ -90,7 +91,7 @@ class Runtime {
 
  private:
   void loop() noexcept;
-  void run_cycle(Sample& sample) noexcept;
+  void run_cycle(Sample& sample) noexcept HG_NONBLOCKING;
   void hand_out(const Sample& sample) noexcept;
   void release(CommandFrame& command) noexcept;
   ParameterChange next_change() noexcept;

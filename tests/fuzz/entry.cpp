@@ -20,6 +20,6 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  hg::hqp::HG_FUZZ_TARGET({data, size});
+  hg::fuzz::HG_FUZZ_TARGET({data, size});
   return 0;
 }

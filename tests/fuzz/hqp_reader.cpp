@@ -8,8 +8,10 @@
 #include "hg/hqp/text.h"
 #include "tests/fuzz/targets.h"
 
-namespace hg::hqp {
+namespace hg::fuzz {
 namespace {
+
+using namespace hqp;
 
 [[noreturn]] void fail(const char* what, const std::string& text) {
   std::fprintf(stderr, "%s\n%s\n", what, text.c_str());
@@ -24,7 +26,7 @@ std::string written(const std::vector<RecordedProblem>& problems) {
 
 }  // namespace
 
-void fuzz_reader(std::span<const std::uint8_t> bytes) {
+void hqp_reader(Bytes bytes) {
   const std::string text(bytes.begin(), bytes.end());
   std::vector<RecordedProblem> problems;
   try {
@@ -43,4 +45,4 @@ void fuzz_reader(std::span<const std::uint8_t> bytes) {
   }
 }
 
-}  // namespace hg::hqp
+}  // namespace hg::fuzz

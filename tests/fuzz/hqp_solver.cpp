@@ -12,8 +12,10 @@
 #include "hg/hqp/text.h"
 #include "tests/fuzz/targets.h"
 
-namespace hg::hqp {
+namespace hg::fuzz {
 namespace {
+
+using namespace hqp;
 
 [[noreturn]] void fail(const std::string& what, const ByteProblem& made, const ActiveSet& guess) {
   std::ostringstream text;
@@ -46,7 +48,7 @@ std::string fault_of_solve(const ByteProblem& made, ActiveSet& active) {
 
 }  // namespace
 
-void fuzz_solver(std::span<const std::uint8_t> bytes) {
+void hqp_solver(Bytes bytes) {
   ByteProblem made(bytes, ByteProblem::Numbers::kSpecial);
   ActiveSet active = made.guess;
   for (int step = 0; step <= ByteProblem::kChanges; ++step) {
@@ -57,4 +59,4 @@ void fuzz_solver(std::span<const std::uint8_t> bytes) {
   }
 }
 
-}  // namespace hg::hqp
+}  // namespace hg::fuzz

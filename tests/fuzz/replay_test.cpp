@@ -8,11 +8,11 @@
 
 #include "tests/fuzz/targets.h"
 
-namespace hg::hqp {
+namespace hg::fuzz {
 namespace {
 
 // Runs a target on the files of a folder; returns their number.
-int replay(const std::filesystem::path& folder, void (*target)(std::span<const std::uint8_t>)) {
+int replay(const std::filesystem::path& folder, void (*target)(Bytes)) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     SCOPED_TRACE(entry.path());
@@ -25,9 +25,15 @@ int replay(const std::filesystem::path& folder, void (*target)(std::span<const s
   return count;
 }
 
-TEST(Fuzz, ReaderTakesItsCorpus) { EXPECT_GT(replay("tests/fuzz/corpus/reader", fuzz_reader), 10); }
-
-TEST(Fuzz, SolverTakesItsCorpus) { EXPECT_GT(replay("tests/fuzz/corpus/solver", fuzz_solver), 10); }
+TEST(Fuzz, EveryTargetTakesItsCorpus) {
+  EXPECT_GT(replay("tests/fuzz/corpus/hqp_reader", hqp_reader), 10);
+  EXPECT_GT(replay("tests/fuzz/corpus/hqp_solver", hqp_solver), 10);
+  EXPECT_GT(replay("tests/fuzz/corpus/config", config), 5);
+  EXPECT_GT(replay("tests/fuzz/corpus/urdf", urdf), 3);
+  EXPECT_GT(replay("tests/fuzz/corpus/protocol", protocol), 5);
+  EXPECT_GT(replay("tests/fuzz/corpus/commands", commands), 5);
+  EXPECT_GT(replay("tests/fuzz/corpus/recording", recording), 3);
+}
 
 }  // namespace
-}  // namespace hg::hqp
+}  // namespace hg::fuzz

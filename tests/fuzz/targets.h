@@ -7,13 +7,32 @@
 #include <cstdint>
 #include <span>
 
-namespace hg::hqp {
+namespace hg::fuzz {
+
+using Bytes = std::span<const std::uint8_t>;
 
 /// Problem files: refused with a place, or read, written, and read again the same.
-void fuzz_reader(std::span<const std::uint8_t> bytes);
+void hqp_reader(Bytes bytes);
 
 /// A sequence of warm solves of a ByteProblem: finite and certified, without allocation, same bits
 /// when repeated.
-void fuzz_solver(std::span<const std::uint8_t> bytes);
+void hqp_solver(Bytes bytes);
 
-}  // namespace hg::hqp
+/// A device, twin, scenario or tool file beside the shipped ones (the first byte says which):
+/// refused with SetupError, or loaded.
+void config(Bytes bytes);
+
+/// A URDF: refused with its name, or a chain whose kinematics can be computed.
+void urdf(Bytes bytes);
+
+/// A datagram, its checksum mended where the first byte is odd: refused, or decoded, and what is
+/// encoded from that is decoded to the same again.
+void protocol(Bytes bytes);
+
+/// What a page may send: refused, or within the ranges that messages.h promises.
+void commands(Bytes bytes);
+
+/// A recording (first byte even), or the bytes of one sample or event: refused, or handed out.
+void recording(Bytes bytes);
+
+}  // namespace hg::fuzz

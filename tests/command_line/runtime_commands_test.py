@@ -1,0 +1,114 @@
+"""`hapticgiant doctor`, `explain` and the flight recorder, as their user meets them.
+
+Usage: runtime_commands_test.py PROGRAM   (from the repository root)
+"""
+
+import json
+import unittest
+
+from program import MODELS, TemporaryFolder, run
+
+
+class Doctor(TemporaryFolder):
+    def test_says_line_by_line_what_is_and_writes_it_as_json(self):
+        file = self.folder / "doctor.json"
+        code, out, err = run("doctor", "--seconds", "0.1", "--json", file)
+        told = json.loads(file.read_text())
+        self.assertEqual((code, err), (told["exit_code"], ""))
+        self.assertIn(code, (0, 1))
+        items = [line["item"] for line in told["lines"]]
+        for item in ("kernel", "priority", "memory", "processors", "clock", "1 kHz", "10 kHz"):
+            self.assertIn(item, items)
+            self.assertIn(f" {item} ", out)
+        is_bad = any(line["level"] == "bad" for line in told["lines"])
+        self.assertEqual(code, 1 if is_bad else 0)
+        for line in told["lines"]:
+            self.assertEqual(bool(line["mend"]), line["level"] != "ok", line)
+        self.assertEqual(len(told["jitter"]), 4)
+        for jitter in told["jitter"]:
+            counted = sum(bin["count"] for bin in jitter["late_us"]["histogram"])
+            self.assertEqual(counted, round(0.1 * jitter["rate_Hz"]))
+
+    def test_refuses_what_is_out_of_range(self):
+        for option in (("--seconds", "0"), ("--priority", "0"), ("--priority", "100")):
+            code, out, err = run("doctor", *option)
+            self.assertEqual(code, 2, option)
+            self.assertIn("must be from", err)
+
+
+class FlightRecorder(TemporaryFolder):
+    def spoilt(self):
+        """A door scenario in which somebody presses the emergency stop at 3 s."""
+        text = (MODELS / "scenarios" / "door.yaml").read_text()
+        text = text.replace("../", f"{MODELS}/")
+        head = text[: text.index("events:")]
+        file = self.folder / "spoilt.yaml"
+        file.write_text(head + "faults:\n  - {at_s: 3.0, fault: emergency_stop}\n")
+        return file
+
+    def play(self, *options):
+        code, out, err = run("run", self.spoilt(), "--fast", "--no-viewer", "--recordings",
+                             self.folder / "new", *options)
+        self.assertEqual(err, "")
+        return code, out, sorted(self.folder.glob("new/spoilt_*.mcap"))
+
+    def test_a_fault_is_kept_and_explained_although_nothing_is_recorded(self):
+        code, out, files = self.play("--no-recording")
+        self.assertEqual(code, 3)
+        self.assertEqual(len(files), 1)
+        self.assertTrue(files[0].name.startswith("spoilt_fault102_"))
+        self.assertIn(f"explain {files[0]}", out)
+
+        code, out, err = run("explain", files[0])
+        self.assertEqual((code, err), (0, ""))
+        for part in ("ready -> armed", "armed -> running", "FAULT    102 emergency stop",
+                     "meaning", "released by", "reaction", "at rest", "peak force"):
+            self.assertIn(part, out)
+        self.assertNotIn("CUT OFF", out)
+        code, out, _ = run("replay", files[0])
+        self.assertEqual(code, 0)
+
+    def test_stands_beside_the_recording_or_is_off(self):
+        _, _, files = self.play()
+        self.assertEqual(len(files), 2)
+        for file in files:
+            file.unlink()
+        _, _, files = self.play("--no-recording", "--flight-recorder", "off")
+        self.assertEqual(files, [])
+
+    def test_a_file_that_is_cut_off_is_explained_up_to_there(self):
+        _, _, files = self.play("--no-recording")
+        whole = files[0].read_bytes()
+        part = self.folder / "part.mcap"
+        part.write_bytes(whole[: len(whole) // 2])
+        code, out, err = run("explain", part)
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn("CUT OFF", out)
+        self.assertIn("armed -> running", out)
+        part.write_bytes(b"no recording")
+        code, _, err = run("explain", part)
+        self.assertEqual(code, 2)
+        self.assertIn("must be a recording of this program", err)
+
+
+class Priority(TemporaryFolder):
+    def summary(self, *options):
+        file = self.folder / "summary.json"
+        code, out, err = run("run", "door", "--duration", "0.3", "--no-viewer", "--no-recording",
+                             "--summary", file, *options)
+        self.assertEqual(err, "")
+        return json.loads(file.read_text()), out
+
+    def test_an_ordinary_thread_is_asked_for_and_told(self):
+        told, out = self.summary("--priority", "0", "--cpu", "0")
+        self.assertEqual((told["real_time"], told["cpu"]), (False, 0))
+        self.assertIn("priority     normal", out)
+        self.assertIn("wake-up", out)
+        self.assertIn("stages", out)
+        bins = told["wake_up_us"]["histogram"]
+        self.assertEqual(sum(bin["count"] for bin in bins), told["cycles"] - 1)
+        self.assertIn("solver", told["stage_time_us"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,87 @@
+// Rendering begins and ends without a bump, also when somebody leans on the handle.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "tests/scenarios/scenario_run.h"
+
+namespace hg {
+namespace {
+
+constexpr double kPush = 20.0;  // N
+
+/// A simulated device whose requests the test makes, with a hand that leans on the handle.
+class Leaning {
+ public:
+  Leaning() : Leaning(shipped("free_space")) {}
+
+  Sample& step(ModeRequest request) {
+    device_->read(sample_->sensors);
+    sample_->truth = *device_->truth();
+    sample_->operator_input.request = request;
+    sample_->operator_input.hand_target = target_;
+    cycle_.step(sample_->sensors, sample_->operator_input, sample_->command, sample_->record);
+    device_->write(sample_->command);
+    return *sample_;
+  }
+
+  // Tared, armed and held, with a hand that pushes with kPush.
+  void prepare() {
+    while (step(runtime::next_request(sample_->record, false, false)).record.mode != Mode::kArmed) {
+    }
+    while (!sample_->sensors.dead_man) step(ModeRequest::kNone);
+    target_.active = true;
+    Eigen::Vector3d offset(0.1, 0.0, 0.0);
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      target_.p_B = sample_->record.T_B_H.p + offset;
+      for (int k = 0; k < 1000; ++k) step(ModeRequest::kNone);
+      offset *= kPush / force();
+    }
+    ASSERT_NEAR(force(), kPush, 1.5);
+  }
+
+  double force() const { return sample_->truth.w_H.head<3>().norm(); }
+  const Sample& sample() const { return *sample_; }
+
+ private:
+  explicit Leaning(config::Scenario scenario)
+      : scenario_((scenario.person = user::PersonKind::kMouse, std::move(scenario))),
+        cycle_(assembly::make_cycle(scenario_)),
+        device_(
+            std::make_unique<device::SimulatedDevice>(assembly::make_simulated_device(scenario_))),
+        sample_(std::make_unique<Sample>()) {}
+
+  config::Scenario scenario_;
+  cycle::Cycle cycle_;
+  std::unique_ptr<device::SimulatedDevice> device_;
+  std::unique_ptr<Sample> sample_;
+  HandTarget target_;
+};
+
+TEST(Bumpless, ALeaningHandMakesNoJerkWhenRenderingBegins) {
+  Leaning run;
+  run.prepare();
+  Eigen::Vector3d last = Eigen::Vector3d::Zero();
+  double largest_change = 0.0, after_50_ms = 0.0, largest = 0.0;
+  for (int k = 0; k < 400; ++k) {
+    const Sample& sample = run.step(k < 5 ? ModeRequest::kRun : ModeRequest::kNone);
+    if (sample.record.mode != Mode::kRunning) {
+      ASSERT_LT(k, 5);
+      continue;
+    }
+    const Eigen::Vector3d a_H = sample.record.a_H;
+    largest_change = std::max(largest_change, (a_H - last).norm());
+    last = a_H;
+    largest = std::max(largest, a_H.norm());
+    if (k < 50) after_50_ms = std::max(after_50_ms, a_H.norm());
+  }
+  RecordProperty("largest_change", std::to_string(largest_change));
+  // the hand moves off, but it takes its time: 0.1 m/s^2 in a millisecond, a quarter in 50 ms
+  EXPECT_GT(largest, 0.5);
+  EXPECT_LT(largest_change, 0.1);
+  EXPECT_LT(after_50_ms, 1.0);
+}
+
+}  // namespace
+}  // namespace hg
