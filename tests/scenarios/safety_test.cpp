@@ -1,0 +1,254 @@
+// Stops of the whole machine: simulated person, plant, sensors and safety controller around the
+// same cycle as in the program.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "hg/assembly/assembly.h"
+#include "hg/config/scenario.h"
+#include "hg/safety/rules.h"
+
+namespace hg {
+namespace {
+
+config::Scenario scenario(const std::string& name) {
+  return config::load_scenario("models/scenarios/" + name + ".yaml");
+}
+
+// An operator who tares, arms and runs, and a panel for the test's hands.
+struct Machine {
+  config::Scenario scenario;
+  cycle::Cycle cycle;
+  device::SimulatedDevice device;
+  SensorFrame sensors;
+  OperatorFrame input;
+  CommandFrame command;
+  CycleRecord record;
+  bool is_alone = false;  // runs autonomously instead of by hand
+  bool asks = true;       // for what comes next; false: `input.request` is the test's
+  double handle_speed = 0.0, gantry_speed = 0.0, last_lateness = 0.0;
+  int sanitised = 0;
+
+  explicit Machine(config::Scenario s)
+      : scenario(std::move(s)),
+        cycle(assembly::make_cycle(scenario)),
+        device(assembly::make_simulated_device(scenario)) {}
+  explicit Machine(const std::string& name) : Machine(hg::scenario(name)) {}
+
+  void step() {
+    device.read(sensors);
+    cycle.step(sensors, input, command, record);
+    device.write(command);
+    handle_speed = device.truth()->twist.head<3>().norm();
+    gantry_speed = device.truth()->dq_p.norm();
+    if (record.sanitised != 0) ++sanitised;
+    if (asks) input.request = next();
+  }
+  ModeRequest next() const {
+    if (record.mode == Mode::kReady && !record.is_tared) {
+      return record.tare == TareStatus::kUnderWay ? ModeRequest::kNone : ModeRequest::kTare;
+    }
+    if (record.mode == Mode::kReady) {
+      return record.is_latency_known ? ModeRequest::kArm : ModeRequest::kNone;
+    }
+    if (record.mode != Mode::kArmed) return ModeRequest::kNone;
+    if (is_alone) return ModeRequest::kAutonomous;
+    return cycle.is_held(sensors) ? ModeRequest::kRun : ModeRequest::kNone;
+  }
+  // until `condition` holds; false when it does not within `seconds`
+  template <typename Condition>
+  bool run_until(Condition condition, double seconds) {
+    const auto cycles = static_cast<int>(seconds * scenario.device.rate_Hz);
+    for (int k = 0; k < cycles; ++k) {
+      step();
+      if (condition()) return true;
+    }
+    return false;
+  }
+  void run(double seconds) {
+    run_until([] { return false; }, seconds);
+  }
+  bool run_until_fast(double speed) {
+    return run_until([&] { return record.mode == Mode::kRunning && handle_speed > speed; }, 20.0);
+  }
+  void ask(ModeRequest request) {
+    asks = false;
+    input.request = ModeRequest::kNone;
+    step();
+    input.request = request;
+    step();
+  }
+};
+
+TEST(Safety, NoShippedScenarioIsStoppedOrTouchedByARuleWithAllSensorErrors) {
+  struct Case {
+    const char* name;
+    double rate_Hz;
+    user::HandPreset hand;
+    unsigned seed;
+  };
+  using enum user::HandPreset;
+  const Case cases[] = {{"door", 1000, kNormal, 2},        {"door", 2000, kStiff, 3},
+                        {"excavator", 1000, kStiff, 4},    {"excavator", 2000, kRelaxed, 5},
+                        {"free_space", 1000, kRelaxed, 6}, {"free_space", 2000, kNormal, 7},
+                        {"path", 1000, kStiff, 8},         {"walk", 1000, kNormal, 9},
+                        {"walk", 2000, kRelaxed, 10}};
+  for (const Case& c : cases) {
+    config::Scenario s = scenario(c.name);
+    config::set_rate(s.device, c.rate_Hz);
+    s.script.hand = user::hand(c.hand);
+    s.device.simulation.seed = s.device.simulation.sensors.seed = c.seed;
+    Machine machine(std::move(s));
+    const double seconds = assembly::planned_duration_s(machine.scenario);
+    const bool has_stopped =
+        machine.run_until([&] { return machine.record.fault.code != FaultCode::kNone; }, seconds);
+    EXPECT_FALSE(has_stopped) << c.name << " " << c.rate_Hz << " Hz at " << machine.record.time_s
+                              << " s: " << to_string(machine.record.fault.code) << " "
+                              << machine.record.fault.index << " " << machine.record.fault.value;
+    EXPECT_EQ(machine.sanitised, 0) << c.name << " " << c.rate_Hz;
+  }
+}
+
+TEST(Safety, AnEmergencyStopBrakesAndSwitchesOffAndAResetLeadsBackToRunning) {
+  Machine machine("path");
+  ASSERT_TRUE(machine.run_until_fast(0.6));
+  machine.input.panel.emergency_stop = true;
+  const double pressed = machine.record.time_s;
+  ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kStopping; }, 0.05));
+  EXPECT_EQ(machine.record.stop, Stop::kSs1);
+  EXPECT_EQ(machine.record.fault.code, FaultCode::kEmergencyStop);
+  ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kFault; }, 2.0));
+  EXPECT_EQ(machine.record.stop, Stop::kSs1) << "it came to rest by itself";
+  EXPECT_LT(machine.record.time_s - pressed, 1.0);
+  EXPECT_LT(machine.handle_speed, 0.1);
+  EXPECT_FALSE(machine.command.enable);
+
+  machine.ask(ModeRequest::kReset);
+  EXPECT_EQ(machine.record.refusal, Refusal::kCauseRemains);
+  machine.input.panel.emergency_stop = false;
+  machine.run(0.1);
+  machine.ask(ModeRequest::kReset);
+  EXPECT_EQ(machine.record.refusal, Refusal::kCauseRemains) << "the safety controller has latched";
+  machine.input.panel.reset = true;
+  machine.step();
+  machine.input.panel.reset = false;
+  machine.step();
+  machine.ask(ModeRequest::kReset);
+  EXPECT_EQ(machine.record.mode, Mode::kReady);
+  machine.asks = true;
+  EXPECT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kRunning; }, 5.0));
+}
+
+TEST(Safety, AnOperatorWhoLetsGoStopsItAndHoldingAgainStartsNothing) {
+  Machine machine("path");
+  ASSERT_TRUE(machine.run_until_fast(0.6));
+  machine.asks = false;
+  machine.input.panel.operator_enable = false;
+  ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kReady; }, 2.0));
+  EXPECT_EQ(machine.record.fault.code, FaultCode::kNone);
+  EXPECT_FALSE(machine.command.enable);
+  machine.ask(ModeRequest::kArm);
+  EXPECT_EQ(machine.record.refusal, Refusal::kOperatorReleased);
+  machine.input.panel.operator_enable = true;
+  machine.run(0.2);
+  EXPECT_EQ(machine.record.mode, Mode::kReady);
+  machine.ask(ModeRequest::kArm);
+  EXPECT_EQ(machine.record.mode, Mode::kArmed);
+}
+
+// A program that has gone mad keeps its drives on and moves: the power goes all the same.
+TEST(Safety, TheSafetyControllerTakesThePowerAwayWhateverTheProgramDoes) {
+  Machine machine("path");
+  ASSERT_TRUE(machine.run_until_fast(0.6));
+  CommandFrame mad = machine.command;
+  mad.panel.emergency_stop = true;
+  for (int k = 0; k < 2500; ++k) {
+    machine.device.read(machine.sensors);
+    mad.sequence = machine.sensors.sequence;
+    machine.device.write(mad);
+  }
+  EXPECT_TRUE(mad.enable);
+  EXPECT_LT(machine.device.truth()->dtheta_m.lpNorm<Eigen::Infinity>(), 1e-9);
+  EXPECT_LT(machine.device.truth()->dq_p.norm(), 1e-3);
+}
+
+// pushed by its twin's own force, with nobody there
+Machine pushed() {
+  config::Scenario s = scenario("free_space");
+  s.person = user::PersonKind::kNone;
+  s.script.script.grasp_s = kInfinity;  // nor does anybody close the dead-man switch
+  Machine machine(std::move(s));
+  machine.is_alone = true;
+  machine.input.panel.override_key = true;
+  machine.run_until([&] { return machine.record.mode == Mode::kRunning; }, 5.0);
+  EXPECT_TRUE(machine.record.is_autonomous);
+  machine.input.change = {Parameter::kReferenceWrench, 0, 15.0};
+  machine.step();
+  machine.input.change = {Parameter::kReferenceWrench, 1, -15.0};
+  machine.step();
+  machine.input.change = {};
+  return machine;
+}
+
+TEST(Safety, WithNobodyAtTheHandleItNeverMovesFasterThanTheSafeSpeed) {
+  Machine machine = pushed();
+  double handle = 0.0, gantry = 0.0;
+  machine.run_until(
+      [&] {
+        handle = std::max(handle, machine.handle_speed);
+        gantry = std::max(gantry, machine.gantry_speed);
+        return machine.record.mode != Mode::kRunning;
+      },
+      4.0);
+  EXPECT_EQ(machine.record.mode, Mode::kRunning) << to_string(machine.record.fault.code);
+  EXPECT_GT(handle, 0.15);
+  EXPECT_LE(handle, 0.25);
+  EXPECT_LE(gantry, 0.25);
+}
+
+TEST(Safety, SomebodyInTheFieldStopsADeviceThatMovesAlone) {
+  Machine machine = pushed();
+  machine.run(1.0);
+  ASSERT_GT(machine.handle_speed, 0.1);
+  machine.input.panel.person_in_field = true;
+  ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kStopping; }, 0.15));
+  EXPECT_EQ(machine.record.fault.code, FaultCode::kScannerField);
+  ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kFault; }, 2.0));
+  machine.ask(ModeRequest::kReset);
+  EXPECT_EQ(machine.record.refusal, Refusal::kCauseRemains);
+  machine.input.panel.person_in_field = false;
+  machine.run(0.2);
+  machine.input.panel.reset = true;
+  machine.step();
+  machine.input.panel.reset = false;
+  machine.step();
+  machine.ask(ModeRequest::kReset);
+  EXPECT_EQ(machine.record.mode, Mode::kReady);
+}
+
+TEST(Safety, TurningTheKeyBackHoldsADeviceThatMovesAlone) {
+  Machine machine = pushed();
+  machine.run(1.0);
+  machine.asks = false;
+  machine.input.panel.override_key = false;
+  ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kArmed; }, 2.0));
+  EXPECT_EQ(machine.record.fault.code, FaultCode::kNone);
+  machine.ask(ModeRequest::kAutonomous);
+  EXPECT_EQ(machine.record.refusal, Refusal::kNoOverride);
+}
+
+TEST(Safety, AStopFromFullSpeedIsOverWithinItsTime) {
+  Machine machine("path");
+  ASSERT_TRUE(machine.run_until([&] { return machine.gantry_speed > 1.2; }, 43.0));
+  machine.input.panel.emergency_stop = true;
+  const double pressed = machine.record.time_s;
+  ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kFault; }, 2.0));
+  EXPECT_EQ(machine.record.stop, Stop::kSs1) << to_string(machine.record.warning.code);
+  RecordProperty("stop_ms", static_cast<int>(1e3 * (machine.record.time_s - pressed)));
+}
+
+}  // namespace
+}  // namespace hg
