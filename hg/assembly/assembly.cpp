@@ -211,7 +211,8 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
                        .control = checked_control(device),
                        .monitor = monitor,
                        .sanitiser = device.sanitiser,
-                       .collision = device.collision},
+                       .collision = device.collision,
+                       .passivity = device.passivity},
                       device.model, scenario.twin.model);
 }
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kApproach = 5e-3;  // m: how much nearer a pair may come that began too near
 constexpr double kAhead = 20.0;     // cycles: what may fade away so soon is computed anew
+constexpr double kClose = 0.05;     // m: what has less left is computed anew in every cycle
 constexpr int kHalvings = 16;       // of a path
 
 void check(const Config& config, const model::Chain& chain) {
@@ -187,7 +188,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
     double least = 0.0;
     for (int i = 0; i < count; ++i) {
       const auto index = static_cast<std::size_t>(i);
-      const double soon = state.left[index] - kAhead * fading_[index];
+      const double soon = state.left[index] - kAhead * fading_[index] - kClose;
       if (is_done[index] || soon > least) continue;
       least = soon;
       next = i;

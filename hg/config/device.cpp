@@ -272,6 +272,7 @@ void set_rate(Device& device, double rate_Hz) {
   device.estimation.dt = dt;
   device.control.dt = dt;
   device.prepositioning.drive.tau = device.drive.dead_time + device.drive.lag + dt;
+  device.passivity.dt = dt;
   set_reaction(device, dt);
 }
 
@@ -331,6 +332,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .estimation = draft.estimation,
                    .monitor = draft.monitor,
                    .sanitiser = draft.sanitiser,
+                   .passivity = draft.passivity,
                    .collision = {.safe_distance = draft.safe_distance},
                    .unknown_links = {},
                    .simulation = simulation.value_or(ideal_simulation(draft)),

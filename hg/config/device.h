@@ -12,6 +12,7 @@
 #include "hg/control/joint_control.h"
 #include "hg/core/types.h"
 #include "hg/estimation/estimation.h"
+#include "hg/passivity/passivity.h"
 #include "hg/prepositioning/prepositioning.h"
 #include "hg/rendering/device_model.h"
 #include "hg/rendering/options.h"
@@ -42,6 +43,7 @@ struct Device {
   estimation::Config estimation;
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
+  passivity::Config passivity;
   collision::Config collision;             ///< no shapes: not watched
   std::vector<std::string> unknown_links;  ///< moving, whose shape nobody knows
   Simulation simulation;                   ///< of this device; without a file its defaults

@@ -179,8 +179,8 @@ void Cycle::begin_anew() noexcept {
   control_.restart(state_.control);
 }
 
-// Whether braking now still keeps all parts of the device apart. What is foreseen is that all joints
-// brake at once, so that is what is done then: the law's own way to rest may lead elsewhere.
+// Whether braking now still keeps all parts of the device apart. What is foreseen is that all
+// joints brake at once, so that is what is done then: the law's own way to rest may lead elsewhere.
 void Cycle::look_ahead(CycleRecord& record) noexcept {
   const RobotState& robot = record.robot;
   const safety::State state = state_.supervisor.state;
@@ -196,6 +196,31 @@ void Cycle::look_ahead(CycleRecord& record) noexcept {
                       .value = ahead.report.distance,
                       .limit = ahead.allowed},
                      state_.supervisor);
+}
+
+// Energy and oscillation at the handle; what calms the twin acts from the next cycle on.
+void Cycle::watch_energy(CycleRecord& record) noexcept {
+  if (config_.passivity.reaction == passivity::Reaction::kOff) return;
+  const rendering::State& rendering = state_.rendering;
+  const Vector6 twist_E = rendering_.end_effector_twist(rendering);
+  const Vector6& w = record.robot.w_H;
+  const Budget& budget = record.budget;
+  constexpr double kPush = 0.5;  // N or Nm of any limit
+  record.passivity = passivity::step(
+      config_.passivity,
+      {.f = w.head<3>(),
+       .power_measured = w.dot(rendering_.handle_twist(record.robot)),
+       .power_rendered = w.dot(twist_E),
+       .dissipation = (budget.damping + budget.friction).dot(rendering.twin.dq_a),
+       .mass = rendering_.apparent_mass(rendering),
+       .speed = twist_E.head<3>().norm(),
+       .is_pushed_back = std::max(budget.limits.lpNorm<Eigen::Infinity>(),
+                                  budget.surface.lpNorm<Eigen::Infinity>()) > kPush},
+      state_.passivity);
+  const passivity::Calming& calming = state_.passivity.calming;
+  state_.rendering.calming = {calming.damping, calming.inertia};
+  const Fault fault = passivity::check(config_.passivity, record.passivity, state_.passivity);
+  if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
 }
 
 // Nothing moves. Before it is armed the device may be moved by others: the twin goes along.
@@ -216,6 +241,8 @@ void Cycle::hold(CycleRecord& record) noexcept {
   state_.is_blocked = state_.brakes_joints = false;
   pulled_back_.resize(0);
   state_.force_share = 0.0;
+  state_.passivity = {};
+  rendering.calming = {};
 }
 
 void Cycle::render(CycleRecord& record) noexcept {
@@ -231,6 +258,8 @@ void Cycle::render(CycleRecord& record) noexcept {
                   speed / std::sqrt(3.0));
   state_.force_share = std::min(1.0, state_.force_share + config_.rendering.dt / kRamp);
 
+  if (!is_stopping) watch_energy(record);
+
   const Fault unsolved = safety::check_solution(record);
   if (unsolved.code != FaultCode::kNone) {
     safety::break_rule(unsolved, state_.supervisor);
@@ -238,9 +267,8 @@ void Cycle::render(CycleRecord& record) noexcept {
   }
   const VectorP q_p_target =
       gantry_target_.step(record.robot, state_.rendering.reference.q_m, state_.gantry_target);
-  const prepositioning::Command gantry =
-      prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked,
-                           speed / std::sqrt(2.0));
+  const prepositioning::Command gantry = prepositioning::step(
+      config_.prepositioning, record.robot, q_p_target, state_.is_blocked, speed / std::sqrt(2.0));
   record.q_p_target = gantry.q_target;
   state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
   state_.is_blocked = rendering_.is_blocked();
@@ -255,9 +283,10 @@ void Cycle::render(CycleRecord& record) noexcept {
   ended_(Stage::kIntegration);
 }
 
-// Where the law has no solution it cannot brake either: each joint goes to rest with its own rating,
-// which its position limits leave room for, and twin and gantry are left behind. [HANDBOOK] 6.2 has
-// a ramp of 50 ms, for which the motors of a stretched arm have not got the torque.
+// Where the law has no solution it cannot brake either: each joint goes to rest with its own
+// rating, which its position limits leave room for, and twin and gantry are left behind.
+// [HANDBOOK] 6.2 has a ramp of 50 ms, for which the motors of a stretched arm have not got the
+// torque.
 void Cycle::brake_joints(CycleRecord& record) noexcept {
   rendering::State& rendering = state_.rendering;
   ReferenceState& reference = rendering.reference;

@@ -9,6 +9,7 @@
 #include "hg/core/nonblocking.h"
 #include "hg/core/stage_probe.h"
 #include "hg/estimation/estimation.h"
+#include "hg/passivity/passivity.h"
 #include "hg/prepositioning/gantry_target.h"
 #include "hg/prepositioning/prepositioning.h"
 #include "hg/rendering/rendering.h"
@@ -28,6 +29,7 @@ struct Config {
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
   collision::Config collision;
+  passivity::Config passivity;
 };
 
 /// All that a cycle remembers. Copy it to take a snapshot, assign it to go back. What is added here
@@ -42,6 +44,7 @@ struct State {
   control::State control;
   prepositioning::TargetState gantry_target;
   collision::State collision;
+  passivity::State passivity;
   VectorP dq_p;                ///< gantry command of the last cycle
   VectorM q_m, tau_m;          ///< positions and torques of the last command
   bool was_on = false;         ///< the last command had the drives on
@@ -85,6 +88,7 @@ class Cycle {
   Refusal refusal_to_arm() const noexcept;
   void begin_anew() noexcept;
   void look_ahead(CycleRecord& record) noexcept;
+  void watch_energy(CycleRecord& record) noexcept;
   void hold(CycleRecord& record) noexcept;
   void render(CycleRecord& record) noexcept;
   void monitor(const SensorFrame& sensors, std::uint32_t late_cycles, CycleRecord& record) noexcept;

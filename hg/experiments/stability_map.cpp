@@ -82,8 +82,10 @@ std::string mass_text(const StabilityMap& map, double mass) {
 KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) {
   Player player(kicked);
   const double rate_Hz = kicked.device.rate_Hz;
-  const double begin_s = kicked.script.script.grasp_s + config.kick.settling + config.kick.duration;
+  const double kick_s = kicked.script.script.grasp_s + config.kick.settling;
+  const double begin_s = kick_s + config.kick.duration;
   const double last_window_s = begin_s + config.kick.watched - config.calm.window;
+  KickOutcome outcome;
   std::vector<double> speed;
   bool was_lost = false;  // in the last window
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
@@ -91,9 +93,12 @@ KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) 
     player.run();
     const CycleRecord& record = player.record();
     if (record.time_s >= begin_s) speed.push_back(player.truth().twist.head<3>().norm());
+    if (record.time_s >= kick_s && record.passivity.oscillation >= 1.0) {
+      outcome.detected_s = std::min(outcome.detected_s, record.time_s - kick_s);
+    }
     if (record.time_s > last_window_s && record.tracking.is_clamped) was_lost = true;
   }
-  KickOutcome outcome = {.fault = player.record().fault.code};
+  outcome.fault = player.record().fault.code;
   if (!player.is_running()) {
     outcome.was_lost = true;
     outcome.verdict = Verdict::kDiverges;
@@ -129,6 +134,7 @@ KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config
   set_free_twin(kicked, {.mass = mass, .damping = damping});
   kicked.twin.model.q_start.head<3>() = config.position;
   kicked.person = user::PersonKind::kScript;
+  kicked.device.passivity.reaction = config.reaction;
   kicked.script.hand = hand;
   set_kick(config.kick, kicked);
   KickOutcome outcome = play(kicked, config);

@@ -10,6 +10,7 @@
 #include "hg/config/scenario.h"
 #include "hg/experiments/motion_analysis.h"
 #include "hg/experiments/workers.h"
+#include "hg/passivity/passivity.h"
 #include "hg/user/hand.h"
 
 namespace hg::experiments {
@@ -38,6 +39,8 @@ struct StabilityConfig {
   SpringHand hand;
   Kick kick;
   CalmRule calm;
+  /// Off: what is asked for is where contact becomes unstable, not what is done about it.
+  passivity::Reaction reaction = passivity::Reaction::kOff;
   double least_mass = 0.1;                     ///< no lighter twin is tried, kg
   double mass_tolerance = 0.05;                ///< of the smallest stable mass, relative
   Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
@@ -49,6 +52,7 @@ struct KickOutcome {
   double last_speed = 0.0;  ///< largest of the handle in the last window, m/s
   bool was_lost = false;    ///< the reference was not followed in the last window, or a fault came
   FaultCode fault = FaultCode::kNone;
+  double detected_s = kInfinity;  ///< after the kick hand and device were found to shake; or never
 };
 
 /// One hand with one damping of the twin.

@@ -148,7 +148,9 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   update_device(record.robot, state.reference);
   advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
-  twin_.chain.update(state.twin.q_a, state.twin.dq_a, values.loads);
+  const model::Loads loads = {values.loads.mass * state.calming.inertia,
+                              values.loads.gravity / state.calming.inertia};
+  twin_.chain.update(state.twin.q_a, state.twin.dq_a, loads);
   factor_mass(twin_.chain.M(), L_);
   J_H_ = device_.chain.jacobian(device_.handle);
   J_a_ = twin_.chain.jacobian(twin_.end_effector);
@@ -172,6 +174,10 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
     budget.spring = share * spring_torque(twin_, state.twin.q_a, state.inner.parameters);
     if (share < 1.0) budget.spring -= (1.0 - share) * twin_.chain.gravity();
     budget.damping = damping_torque(L_, state.twin.dq_a, options_.dt, values);
+    if (state.calming.damping > 0.0) {
+      const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
+      budget.damping.noalias() += J_a_.topRows<3>().transpose() * (state.calming.damping * v_E);
+    }
     budget.friction = slip_torque(state.twin.dq_a, state.inner);
     budget.surface = J_a_.transpose() * (share * values.w_ref);
   }
@@ -297,6 +303,21 @@ bool Rendering::is_blocked() const noexcept {
     if (hqp::is_violated(solution_.state[row])) return true;
   }
   return false;
+}
+
+Vector6 Rendering::handle_twist(const RobotState& robot) const noexcept {
+  return J_H_ * stacked(robot.dq_p, robot.dq_m);
+}
+
+Vector6 Rendering::end_effector_twist(const State& state) const noexcept {
+  return J_a_ * state.twin.dq_a;
+}
+
+double Rendering::apparent_mass(const State& state) const noexcept {
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxTwin, 3> root =
+      J_a_.topRows<3>().transpose();
+  L_.triangularView<Eigen::Lower>().solveInPlace(root);
+  return 1.0 / (state.calming.inertia * root.colwise().squaredNorm().maxCoeff());
 }
 
 void Rendering::report_kinematics(const State& state, CycleRecord& record) const noexcept {

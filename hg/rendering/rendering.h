@@ -22,11 +22,18 @@
 
 namespace hg::rendering {
 
+/// What makes the twin calmer than it was set up: see hg/passivity.
+struct Calming {
+  double damping = 0.0;  ///< of its end effector in all directions, Ns/m
+  double inertia = 1.0;  ///< factor of its inertia, without more weight
+};
+
 /// Part of the copyable state of a cycle.
 struct State {
   ReferenceState reference;
   TwinState twin;
   TwinInnerState inner;
+  Calming calming;  ///< for the next step
   hqp::ActiveSet active_set;
   TouchedEnds touched;  ///< by the last result; law paper only
 };
@@ -69,6 +76,14 @@ class Rendering {
   /// In the last step a joint or virtual joint of the device could not be kept within its limits:
   /// what the gantry does to a held twin stands above them.
   bool is_blocked() const noexcept;
+
+  // of the last step, with its posture:
+  /// Twist of the handle as measured, resolved in B.
+  Vector6 handle_twist(const RobotState& robot) const noexcept;
+  /// Twist of the end effector of the twin, resolved in B.
+  Vector6 end_effector_twist(const State& state) const noexcept;
+  /// Of the twin as set up, at its end effector in the direction of B's axes where it is least, kg.
+  double apparent_mass(const State& state) const noexcept;
 
   /// Who is told about kRenderingSetUp, kSolver and kReactions from now on.
   void watch(const StageProbe& probe) noexcept { ended_ = probe; }
