@@ -18,8 +18,8 @@ struct CampaignConfig {
   std::uint64_t seed = 1;
   double watched_s = 2.0;  ///< after a fault begins
   /// A run without a reaction is harmless while the truth stays within these.
-  double harmless_excess = 0.01;    ///< outside any limit of the device, rad or m
-  double harmless_force = 30.0;     ///< more than without the fault, N
+  double harmless_excess = 0.01;  ///< outside any limit of the device, rad or m
+  double harmless_force = 50.0;  ///< more than without the fault, N: what the device gives for long
   double harmless_distance = 0.02;  ///< of true handle and twin, m
   /// No run, with or without a reaction, may go beyond these.
   double excess_bound = 0.10;  ///< outside any limit of the device, rad or m
