@@ -111,6 +111,11 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       ->check(CLI::IsMember({"gauss", "paper"}));
   command->add_option("--bounds", run.bounds, "recoverable or paper; default: the device's")
       ->check(CLI::IsMember({"recoverable", "paper"}));
+  command
+      ->add_option("--passivity", run.passivity,
+                   "off, observe or act on a hand and a device that shake each other; default: the "
+                   "device's")
+      ->check(CLI::IsMember({"off", "observe", "act"}));
   command->add_option("--summary", run.summary, "write the closing summary as JSON to this file");
   command->add_flag("!--no-viewer", run.has_viewer, "without the page");
   command

@@ -15,10 +15,11 @@ struct RunArguments {
   std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
   /// Unset: until the script has played; on a terminal with a page until Ctrl-C.
   std::optional<double> duration_s;
-  bool is_fast = false;  ///< as fast as it can, without page
-  std::string law;       ///< "gauss" or "paper"; empty = the device's
-  std::string bounds;    ///< "recoverable" or "paper"; empty = the device's
-  std::string summary;   ///< JSON file; empty = none
+  bool is_fast = false;   ///< as fast as it can, without page
+  std::string law;        ///< "gauss" or "paper"; empty = the device's
+  std::string bounds;     ///< "recoverable" or "paper"; empty = the device's
+  std::string passivity;  ///< "off", "observe" or "act"; empty = the device's
+  std::string summary;    ///< JSON file; empty = none
   bool has_viewer = true;
   std::string address = "127.0.0.1";  ///< at which the page is served
   std::uint16_t port = 0;             ///< of the page; 0 = any free one

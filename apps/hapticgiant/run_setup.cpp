@@ -165,6 +165,7 @@ std::string changes(const RunArguments& arguments) {
   if (world.step_s) line("--step", fmt::format("{}", *world.step_s));
   line("--law", arguments.law);
   line("--bounds", arguments.bounds);
+  line("--passivity", arguments.passivity);
   return text;
 }
 
@@ -185,6 +186,9 @@ config::Scenario make_scenario(const RunArguments& arguments) {
          scenario.device.rendering.law);
   choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
          scenario.device.rendering.bounds);
+  choose("--passivity", arguments.passivity,
+         config::Choices<passivity::Reaction>(config::kPassivityReactions),
+         scenario.device.passivity.reaction);
   scenario.device.rendering.slow_solve = arguments.slow_solve;
   return scenario;
 }

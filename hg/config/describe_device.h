@@ -58,11 +58,6 @@ struct DeviceDraft {
 inline constexpr std::array<Choice<Kinematics>, 2> kKinematics = {
     {{"haptic_giant", Kinematics::kHapticGiant}, {"generic", Kinematics::kGeneric}}};
 
-inline constexpr std::array<Choice<passivity::Reaction>, 3> kPassivityReactions = {
-    {{"off", passivity::Reaction::kOff},
-     {"observe", passivity::Reaction::kObserve},
-     {"act", passivity::Reaction::kAct}}};
-
 inline constexpr JointKey kBrake = {"ddq_brake_rad_per_s2", "ddq_brake_m_per_s2"};
 
 template <class V>

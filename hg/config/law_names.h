@@ -1,9 +1,10 @@
-/// Names of law and bounds, in device.yaml and on the command line.
+/// Names of law, bounds and what is done about passivity, in device.yaml and on the command line.
 #pragma once
 
 #include <array>
 
 #include "hg/config/range.h"
+#include "hg/passivity/passivity.h"
 #include "hg/rendering/options.h"
 
 namespace hg::config {
@@ -15,5 +16,10 @@ inline constexpr std::array<Choice<rendering::Law>, 2> kLaws = {
 inline constexpr std::array<Choice<rendering::Bounds>, 2> kBounds = {
     {{to_string(rendering::Bounds::kRecoverable), rendering::Bounds::kRecoverable},
      {to_string(rendering::Bounds::kPaper), rendering::Bounds::kPaper}}};
+
+inline constexpr std::array<Choice<passivity::Reaction>, 3> kPassivityReactions = {
+    {{"off", passivity::Reaction::kOff},
+     {"observe", passivity::Reaction::kObserve},
+     {"act", passivity::Reaction::kAct}}};
 
 }  // namespace hg::config

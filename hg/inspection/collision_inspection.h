@@ -1,0 +1,12 @@
+/// Which pairs of a device are watched for collisions, and which are not, in one line.
+#pragma once
+
+#include "hg/config/device.h"
+#include "hg/inspection/findings.h"
+
+namespace hg::inspection {
+
+/// One finding: a note, or a warning where parts of the device move unwatched.
+void inspect_collisions(const config::Device& device, Collector& out);
+
+}  // namespace hg::inspection
