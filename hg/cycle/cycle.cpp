@@ -90,6 +90,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   if (safety::is_finite(monitor_.config(), sensors)) {
     record.robot =
         estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
+    trust_wrench(sensors, record.robot);
     ended_(Stage::kEstimation);
     look_ahead(record);
     if (is_moving(state_.supervisor.mode())) {
@@ -123,7 +124,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   record.tare = state_.estimation.wrench.tare.status;
   record.is_tared = estimation_.is_tared(state_.estimation);
   record.is_latency_known = control_.is_latency_known(state_.control);
-  record.state_hash = hash_of(state_, record.robot, rendering_.problem().rows());
+  record.state_hash = hash_of(state_, rendering_.problem().rows());
   ended_(Stage::kStateHash);
 }
 
@@ -177,6 +178,19 @@ void Cycle::begin_anew() noexcept {
   state_.estimation = {};
   state_.estimation.wrench.tare = tare;
   control_.restart(state_.control);
+  const TwinState& twin = state_.rendering.twin;
+  if (twin.q_a.allFinite() && twin.dq_a.allFinite()) return;
+  state_.rendering = rendering_.start(state_.rendering.reference.q_m);
+}
+
+// Beyond its range the sensor says nothing about the user: the last good wrench holds while the
+// rule waits and during the stop.
+void Cycle::trust_wrench(const SensorFrame& sensors, RobotState& robot) noexcept {
+  if (safety::is_wrench_in_range(monitor_.config(), sensors)) {
+    state_.w_H = robot.w_H;
+  } else {
+    robot.w_H = state_.w_H;
+  }
 }
 
 // Whether braking now still keeps all parts of the device apart. What is foreseen is that all

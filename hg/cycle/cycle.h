@@ -45,11 +45,12 @@ struct State {
   prepositioning::TargetState gantry_target;
   collision::State collision;
   passivity::State passivity;
-  VectorP dq_p;                ///< gantry command of the last cycle
-  VectorM q_m, tau_m;          ///< positions and torques of the last command
-  bool was_on = false;         ///< the last command had the drives on
-  bool is_blocked = false;     ///< a device limit could not be met in the last cycle
-  bool brakes_joints = false;  ///< the law gave no solution: each joint brakes by itself
+  Vector6 w_H = Vector6::Zero();  ///< of the user: the last one within the sensor's range
+  VectorP dq_p;                   ///< gantry command of the last cycle
+  VectorM q_m, tau_m;             ///< positions and torques of the last command
+  bool was_on = false;            ///< the last command had the drives on
+  bool is_blocked = false;        ///< a device limit could not be met in the last cycle
+  bool brakes_joints = false;     ///< the law gave no solution: each joint brakes by itself
   double force_share = 0.0;  ///< of the forces that act on the twin, 0..1: they come in with a ramp
 };
 
@@ -87,6 +88,7 @@ class Cycle {
   Fault check(const SensorFrame& sensors) noexcept;
   Refusal refusal_to_arm() const noexcept;
   void begin_anew() noexcept;
+  void trust_wrench(const SensorFrame& sensors, RobotState& robot) noexcept;
   void look_ahead(CycleRecord& record) noexcept;
   void watch_energy(CycleRecord& record) noexcept;
   void hold(CycleRecord& record) noexcept;

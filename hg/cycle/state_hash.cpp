@@ -167,7 +167,7 @@ void mix(const passivity::State& state, Hash& hash) noexcept {
 
 }  // namespace
 
-std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noexcept {
+std::uint64_t hash_of(const State& state, int rows) noexcept {
   Hash hash;
   mix(state.rendering, rows, hash);
   hash.mix(std::uint64_t{state.gantry_target.is_started});
@@ -195,7 +195,7 @@ std::uint64_t hash_of(const State& state, const RobotState& robot, int rows) noe
        {&control.integral, &control.friction, &control.tau_r, &control.dtau_r, &control.ddtau_r}) {
     hash.mix(*v);
   }
-  hash.mix(robot.w_H);
+  hash.mix(state.w_H);
   return hash.value();
 }
 

@@ -167,8 +167,10 @@ void expect_safe_stop(Loop& loop, FaultCode code) {
 
 // braked first, under power all the time, if it moves; returns the cycles that it took
 int expect_controlled_stop(Loop& loop, FaultCode code, Stop stop) {
-  loop.step();
-  int cycles = 1;
+  int cycles = 0;
+  do {
+    loop.step();  // as long as the rule's debounce takes
+  } while (loop.record.mode == Mode::kRunning && ++cycles < 30);
   for (; loop.record.mode == Mode::kStopping && cycles < 2000; ++cycles) {
     EXPECT_TRUE(loop.command.enable);
     EXPECT_EQ(loop.record.fault.code, code);
@@ -375,7 +377,10 @@ TEST(Cycle, TheTwinMeetsTheHandleAgainAfterAFaultInMotion) {
   loop.sensors.safety.emergency_stop = true;
   expect_controlled_stop(loop, FaultCode::kEmergencyStop, Stop::kSs1);
   loop.sensors.safety.emergency_stop = false;
-  loop.sensors.q_p[0] += 0.3;  // the gantry has coasted
+  for (int k = 0; k < 100; ++k) {
+    loop.sensors.q_p[0] += 0.003;  // the gantry coasts
+    loop.step();
+  }
   loop.operator_input.request = ModeRequest::kReset;
   loop.run(1000);
   EXPECT_LT(loop.record.sync_error, 1e-6);
@@ -391,6 +396,52 @@ TEST(Cycle, HandleAndTwinApartIsAFault) {
   state.rendering.twin.q_a[0] += 0.03;
   loop.cycle->restore(state);
   expect_controlled_stop(loop, FaultCode::kSyncLost, Stop::kSs2);
+}
+
+// the largest speed of the joints falls with no more than their rating, under power, to rest
+TEST(Cycle, WithoutASolutionTheJointsBrakeByThemselvesAndAResetRunsAgain) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[0] = 5.0;
+  loop.run(400);
+  const double speed = loop.record.reference.dq_m.lpNorm<Eigen::Infinity>();
+  ASSERT_GT(speed, 0.05);
+  State state = loop.cycle->state();
+  state.rendering.twin.q_a[1] = std::numeric_limits<double>::quiet_NaN();
+  loop.cycle->restore(state);
+  loop.step();
+  const FaultCode code = loop.record.fault.code;
+  EXPECT_TRUE(code == FaultCode::kSolverFailed || code == FaultCode::kReferenceNotFinite);
+  EXPECT_LT(loop.command.dq_m.lpNorm<Eigen::Infinity>(), speed);
+  EXPECT_TRUE(loop.command.dq_p.isZero());
+  const int cycles = expect_controlled_stop(loop, code, Stop::kSs2);
+  EXPECT_GT(cycles, 5);
+  EXPECT_LT(cycles, 1000);
+  loop.sensors.w_S[0] = 0.0;
+  expect_to_run_again(loop);
+}
+
+TEST(Cycle, AnOperatorWhoLetsGoEndsReadyWithItsCauseToldMeanwhile) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[0] = 5.0;
+  loop.run(300);
+  loop.sensors.safety.operator_enable = false;
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kStopping);
+  EXPECT_EQ(loop.record.stop, Stop::kSs1);
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kOperatorReleased);
+  loop.run(1000);
+  EXPECT_EQ(loop.record.mode, Mode::kReady);
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kNone);
+  EXPECT_FALSE(loop.command.enable);
+}
+
+TEST(Cycle, TooManyLateCyclesStopTheDevice) {
+  Loop loop;
+  loop.start_running();
+  loop.operator_input.late_cycles = 3;
+  expect_controlled_stop(loop, FaultCode::kCycleOverrun, Stop::kSs2);
 }
 
 TEST(Cycle, ASnapshotContinuesBitForBit) {
