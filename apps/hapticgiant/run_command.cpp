@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -66,7 +67,7 @@ void tell_requests(Observers& observers, const CycleRecord& record) {
     tell(observers, record.time_s, "tare", to_string(record.tare));
   }
   if (record.refusal != Refusal::kNone) {
-    tell(observers, record.time_s, "arm", to_string(record.refusal));
+    tell(observers, record.time_s, "refused", to_string(record.refusal));
   }
 }
 
@@ -154,6 +155,7 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = arguments.is_fast;
   options.changes = scenario.changes;
+  options.panel = scenario.panel;
   if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / options.rate_Hz;
   options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};
   // a simulated device waits for its controller: late cycles hurt nobody
@@ -232,7 +234,9 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) 
   const config::Scenario& scenario = run.scenario;
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && page != nullptr;
-  const runtime::Options options = runtime_options(scenario, arguments, goes_on);
+  runtime::Options options = runtime_options(scenario, arguments, goes_on);
+  const auto is_reset = [](const TimedPanel& p) { return p.request == ModeRequest::kReset; };
+  options.stays_in_fault = page != nullptr || std::ranges::any_of(scenario.panel, is_reset);
   RunRecording recording(scenario, arguments);  // last: a refused run leaves no file
   const recording::Recorder* recorder = recording.recorder();
   auto dumps = problem_dumps(scenario, arguments, recorder);

@@ -9,6 +9,7 @@
 #include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
 #include "hg/model/urdf.h"
+#include "hg/safety/rules.h"
 
 namespace hg::apps {
 namespace {
@@ -23,12 +24,40 @@ std::vector<double> values_of(const std::vector<config::FormField>& form) {
 }
 
 // commands that a run follows whatever its device is
-constexpr CommandName kAlways[] = {CommandName::kStop, CommandName::kSet};
+constexpr CommandName kAlways[] = {CommandName::kStop, CommandName::kSet, CommandName::kMode};
 // and those that need a simulated device, which waits and can begin anew
 constexpr CommandName kSimulated[] = {
-    CommandName::kPause, CommandName::kResume,  CommandName::kStep,
-    CommandName::kSpeed, CommandName::kRestart, CommandName::kScenario,
-    CommandName::kTwin,  CommandName::kLaw,     CommandName::kPerson};
+    CommandName::kPause,   CommandName::kResume,   CommandName::kStep, CommandName::kSpeed,
+    CommandName::kRestart, CommandName::kScenario, CommandName::kTwin, CommandName::kLaw,
+    CommandName::kPerson,  CommandName::kPanel};
+
+struct NamedButton {
+  std::string_view name;
+  bool SafetyPanel::*is_on;
+};
+constexpr NamedButton kButtons[] = {{"emergency_stop", &SafetyPanel::emergency_stop},
+                                    {"operator_enable", &SafetyPanel::operator_enable},
+                                    {"override_key", &SafetyPanel::override_key},
+                                    {"person_in_field", &SafetyPanel::person_in_field}};
+
+struct NamedRequest {
+  std::string_view name;
+  ModeRequest request;
+};
+constexpr NamedRequest kRequests[] = {{"arm", ModeRequest::kArm},
+                                      {"run", ModeRequest::kRun},
+                                      {"run_alone", ModeRequest::kAutonomous},
+                                      {"hold", ModeRequest::kStop},
+                                      {"reset", ModeRequest::kReset}};
+
+std::string told(const Fault& fault) {
+  if (fault.code == FaultCode::kNone) return {};
+  const safety::Rule& rule = safety::rule_of(fault.code);
+  std::string text = fmt::format("{} {}", static_cast<int>(fault.code), rule.meaning);
+  if (fault.value == 0.0 && fault.limit == 0.0) return text;
+  const std::string which = fault.index < 0 ? "" : fmt::format("number {}: ", fault.index);
+  return text + fmt::format(" ({}{:.4g}, limit {:.4g})", which, fault.value, fault.limit);
+}
 
 std::string refusal_of_device(const PreparedRun& run) {
   if (run.remote == nullptr) return {};
@@ -107,6 +136,13 @@ void RunPage::publish() {
   view_.budget = analysis_->budget(newest_->record);
   view_.singularity = analysis_->singularity(newest_->record);
   view_.run_state.position_s = newest_->record.time_s;
+  const CycleRecord& record = newest_->record;
+  const bool is_stopped = record.fault.code != FaultCode::kNone;
+  view_.safety = {
+      .cause = told(record.fault),
+      .release = is_stopped ? std::string(safety::rule_of(record.fault.code).release) : "",
+      .warning = told(record.warning),
+      .panel = newest_->operator_input.panel};
   server_.publish(view_);
   view_.cycle_time_max_us = 0.0;
   has_news_ = false;
@@ -153,6 +189,8 @@ std::string RunPage::obey(const Command& command, runtime::Runtime* runtime, con
   }
   if (runtime == nullptr) return "the run is over: start it again";
   if (command.name == CommandName::kSet) return set(command, *runtime, note);
+  if (command.name == CommandName::kPanel) return obey_panel(command, *runtime, note);
+  if (command.name == CommandName::kMode) return obey_mode(command, *runtime, note);
   if (command.name == CommandName::kStop) {
     runtime->request_stop();
     stop_was_asked_ = true;
@@ -160,6 +198,38 @@ std::string RunPage::obey(const Command& command, runtime::Runtime* runtime, con
     return {};
   }
   return obey_pace(command, runtime->pace(), note);
+}
+
+std::string RunPage::obey_panel(const Command& command, runtime::Runtime& runtime,
+                                const Note& note) {
+  SafetyPanel panel = newest_->operator_input.panel;
+  const auto button = std::find_if(std::begin(kButtons), std::end(kButtons),
+                                   [&](const auto& b) { return b.name == command.argument; });
+  if (button == std::end(kButtons)) return "there is no such button: " + command.argument;
+  panel.*button->is_on = command.value != 0.0;
+  panel.reset = false;
+  newest_->operator_input.panel = panel;  // for a command that comes before the next sample
+  if (!runtime.set_panel(panel)) return "too many commands are waiting";
+  note(command.argument, command.value != 0.0 ? "on" : "off");
+  return {};
+}
+
+std::string RunPage::obey_mode(const Command& command, runtime::Runtime& runtime,
+                               const Note& note) {
+  const auto named = std::find_if(std::begin(kRequests), std::end(kRequests),
+                                  [&](const auto& r) { return r.name == command.argument; });
+  if (named == std::end(kRequests)) return "there is no such mode: " + command.argument;
+  // one button resets the safety controller as well, and first
+  if (named->request == ModeRequest::kReset) {
+    SafetyPanel panel = newest_->operator_input.panel;
+    panel.reset = true;
+    if (!runtime.set_panel(panel)) return "too many commands are waiting";
+  }
+  const bool is_taken = runtime.request(ModeRequest::kNone) &&
+                        runtime.request(ModeRequest::kNone) && runtime.request(named->request);
+  if (!is_taken) return "too many commands are waiting";
+  note(command.argument, "asked for in the page");
+  return {};
 }
 
 std::string RunPage::obey_pace(const Command& command, runtime::Pace& pace, const Note& note) {

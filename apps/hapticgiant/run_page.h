@@ -52,6 +52,10 @@ class RunPage {
  private:
   std::string obey(const viewer_server::Command& command, runtime::Runtime* runtime,
                    const Note& note);
+  std::string obey_panel(const viewer_server::Command& command, runtime::Runtime& runtime,
+                         const Note& note);
+  std::string obey_mode(const viewer_server::Command& command, runtime::Runtime& runtime,
+                        const Note& note);
   std::string obey_pace(const viewer_server::Command& command, runtime::Pace& pace,
                         const Note& note);
   std::string choose(const viewer_server::Command& command);

@@ -1,10 +1,11 @@
 #include "hg/config/reference_page.h"
 
 #include "hg/config/describe_changes.h"
-#include "hg/config/describe_injections.h"
 #include "hg/config/describe_control.h"
 #include "hg/config/describe_device.h"
 #include "hg/config/describe_device_behaviour.h"
+#include "hg/config/describe_injections.h"
+#include "hg/config/describe_panel.h"
 #include "hg/config/describe_scenario.h"
 #include "hg/config/describe_script.h"
 #include "hg/config/describe_simulation.h"
@@ -102,6 +103,8 @@ std::string scenario_table() {
   ChangesDraft changes;
   changes.joints.emplace_back();  // stands for every joint
   describe_changes(writer, changes);
+  std::vector<TimedPanel> panel;
+  describe_panel(writer, panel);
   InjectionsDraft injections = injections_of({}, {});
   describe_injections(writer, injections);
   return writer.table();

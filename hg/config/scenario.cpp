@@ -5,6 +5,7 @@
 
 #include "hg/config/describe_changes.h"
 #include "hg/config/describe_injections.h"
+#include "hg/config/describe_panel.h"
 #include "hg/config/describe_scenario.h"
 #include "hg/config/loader.h"
 #include "hg/core/error.h"
@@ -50,6 +51,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   ScenarioDraft draft;
   ChangesDraft changes;
   InjectionsDraft injections;
+  std::vector<TimedPanel> panel;
   std::optional<Device> device;
   std::optional<Twin> twin;
   std::optional<Script> script = Script{};
@@ -72,6 +74,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
     describe_events(loader, draft);
     changes = changes_of(twin->model);
     describe_changes(loader, changes);
+    describe_panel(loader, panel);
     injections = injections_of(draft.names.manipulator, draft.names.gantry);
     describe_injections(loader, injections);
   });
@@ -86,6 +89,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
           .limits = std::move(catalogue),
           .events = std::move(draft.events),
           .changes = std::move(changes.changes),
+          .panel = std::move(panel),
           .faults = std::move(injections.injections),
           .sources = reader.texts(),
           .places = std::move(file.places)};

@@ -14,6 +14,7 @@
 #include "hg/injection/injection.h"
 #include "hg/signals/limit.h"
 #include "hg/signals/timed_changes.h"
+#include "hg/signals/timed_panel.h"
 #include "hg/user/person.h"
 
 namespace hg::config {
@@ -29,6 +30,7 @@ struct Scenario {
   LimitCatalogue limits;
   std::vector<evaluation::EventRule> events;  ///< expected, in this order
   std::vector<TimedChange> changes;           ///< of the twin, in the order of their times
+  std::vector<TimedPanel> panel;              ///< of the operator, likewise
   std::vector<injection::Injection> faults;   ///< on purpose
   std::vector<SourceText> sources;            ///< of all files, the scenario first
   Places places;                              ///< of the keys of the YAML file

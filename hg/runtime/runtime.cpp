@@ -70,7 +70,10 @@ Runtime::Runtime(const Options& options, cycle::Cycle& cycle, device::Device& de
       samples_(options.ring),
       hand_targets_(256),
       parameter_changes_(256),
-      changes_(options.changes) {}
+      panels_(64),
+      requests_(64),
+      changes_(options.changes),
+      timed_panels_(options.panel) {}
 
 Runtime::~Runtime() {
   request_stop();
@@ -182,6 +185,25 @@ void Runtime::prepare_thread() noexcept {
   cycle_.watch({.ended = &Runtime::stage_ended, .listener = this});
 }
 
+// What the operator does before the next cycle: by a script, by somebody, or by itself.
+void Runtime::operate(const Sample& sample, bool is_stopping, OperatorFrame& input) noexcept {
+  const CycleRecord& record = sample.record;
+  input.panel.reset = false;
+  if (panels_.pop(input.panel)) is_operated_ = is_operated_ || !input.panel.operator_enable;
+  ModeRequest request = ModeRequest::kNone;
+  if (requests_.pop(request)) is_operated_ = true;
+  const double time_s = static_cast<double>(report_.cycles) / options_.rate_Hz;
+  if (const TimedPanel* due = timed_panels_.due(time_s)) {
+    input.panel = due->panel;
+    request = due->request;
+    is_operated_ = is_operated_ || request != ModeRequest::kNone;
+  }
+  is_operated_ = is_operated_ || (options_.stays_in_fault && record.mode == Mode::kFault);
+  input.request = is_operated_ && !is_stopping
+                      ? request
+                      : next_request(record, cycle_.is_held(sample.sensors), is_stopping);
+}
+
 void Runtime::loop() noexcept {
   prepare_thread();
   const auto sample = std::make_unique<Sample>();
@@ -200,14 +222,14 @@ void Runtime::loop() noexcept {
     const bool is_over = options_.duration_s > 0.0 && record.time_s >= options_.duration_s;
     const bool is_stopping = is_over || stop_requested_.load(std::memory_order_relaxed);
     if (is_stopping && stop_since_s < 0.0) stop_since_s = record.time_s;
-    if (record.mode == Mode::kFault && way_to_rest.is_over(*sample)) break;
+    const bool ends_in_fault = !options_.stays_in_fault || is_stopping;
+    if (record.mode == Mode::kFault && ends_in_fault && way_to_rest.is_over(*sample)) break;
     const bool is_at_rest = record.mode != Mode::kRunning && record.mode != Mode::kStopping;
     if (is_stopping && is_at_rest && record.mode != Mode::kFault) break;
     const bool has_waited = is_stopping && record.time_s > stop_since_s + kLongestStop;
     report_.stop_timed_out = has_waited && record.mode != Mode::kFault;
     if (has_waited) break;
-    sample->operator_input.request =
-        next_request(record, cycle_.is_held(sample->sensors), is_stopping);
+    operate(*sample, is_stopping, sample->operator_input);
 
     if (options_.is_fast) continue;
     const std::uint32_t late = device_.is_clock() ? late_for_device() : schedule.advance(now_ns());

@@ -22,6 +22,7 @@
 #include "hg/runtime/schedule.h"
 #include "hg/signals/state.h"
 #include "hg/signals/timed_changes.h"
+#include "hg/signals/timed_panel.h"
 
 namespace hg::runtime {
 
@@ -32,6 +33,10 @@ struct Options {
   double duration_s = 0.0;           ///< then the device is stopped; 0 = until request_stop()
   std::size_t ring = 4096;           ///< samples that an observer may fall behind
   std::vector<TimedChange> changes;  ///< of the twin, in the order of their times
+  std::vector<TimedPanel> panel;     ///< of the operator, likewise
+  /// A fault does not end the run: somebody is there who can reset it. From then on nothing is
+  /// asked for by itself any more.
+  bool stays_in_fault = false;
   /// A cycle that takes longer is slow: its problem is kept. In real time only with a priority for
   /// it; otherwise the time says more about other programs.
   double slow_cycle_us = kInfinity;
@@ -85,6 +90,12 @@ class Runtime {
   [[nodiscard]] bool change(const ParameterChange& change) noexcept {
     return parameter_changes_.push(change);
   }
+  /// The same thread: the panel of a simulated operator, for one cycle after the other. False when
+  /// too many are waiting.
+  [[nodiscard]] bool set_panel(const SafetyPanel& panel) noexcept { return panels_.push(panel); }
+  /// The same thread: asks for a mode, in one of the next cycles. From the first one on nothing is
+  /// asked for by itself, except to stop at the end. False when too many are waiting.
+  [[nodiscard]] bool request(ModeRequest request) noexcept { return requests_.push(request); }
   /// The same thread: slow motion and pause. Not for a device that is a clock of its own, nor for
   /// a real one: it does not wait.
   Pace& pace() noexcept { return pace_; }
@@ -95,6 +106,7 @@ class Runtime {
   void hand_out(const Sample& sample) noexcept;
   void release(CommandFrame& command) noexcept;
   ParameterChange next_change() noexcept;
+  void operate(const Sample& sample, bool is_stopping, OperatorFrame& input) noexcept;
   void prepare_thread() noexcept;
   Schedule new_schedule() const noexcept;
   void wait_for_turn(Schedule& schedule) noexcept;
@@ -109,7 +121,11 @@ class Runtime {
   SpscRing<Sample> samples_;
   SpscRing<HandTarget> hand_targets_;
   SpscRing<ParameterChange> parameter_changes_;
+  SpscRing<SafetyPanel> panels_;
+  SpscRing<ModeRequest> requests_;
   TimedChanges changes_;
+  TimedPanels timed_panels_;
+  bool is_operated_ = false;  ///< somebody else asks for modes
   Pace pace_;
   double speed_ = 1.0;                       ///< that the schedule was made for
   std::int64_t read_ns_ = 0, stage_ns_ = 0;  ///< end of the last read() and of the last stage

@@ -13,9 +13,9 @@
 namespace hg::viewer_server {
 
 template <>
-inline constexpr auto kWords<CommandName> =
-    std::to_array<std::string_view>({"pause", "resume", "step", "speed", "restart", "stop",
-                                     "scenario", "twin", "law", "person", "set", "seek"});
+inline constexpr auto kWords<CommandName> = std::to_array<std::string_view>(
+    {"pause", "resume", "step", "speed", "restart", "stop", "scenario", "twin", "law", "person",
+     "set", "seek", "panel", "mode"});
 
 struct HandMessage {
   bool active = false;

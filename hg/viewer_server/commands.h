@@ -17,8 +17,10 @@ enum class CommandName : std::uint8_t {
   kTwin,
   kLaw,
   kPerson,
-  kSet,   ///< the setting `name` gets `value`
-  kSeek,  ///< second `value` of a recording
+  kSet,    ///< the setting `name` gets `value`
+  kSeek,   ///< second `value` of a recording
+  kPanel,  ///< button, switch or key `name` of the operator's panel: `value` 1 on, 0 off
+  kMode,   ///< asks for the mode `name`: arm, run, run_alone, hold or reset
 };
 
 /// One that has been read and whose numbers are finite; `page` and `id` go back with the answer.

@@ -31,6 +31,7 @@ struct FrameMessage {
   double sync_error_mm = 0.0, sync_error_deg = 0.0, cycle_time_us = 0.0, cycle_time_max_us = 0.0;
   HandMessage hand;
   RunStateMessage run_state;
+  SafetyMessage safety;
   std::uint64_t clients = 0;
   std::optional<GhostMessage> ghost;
 };
@@ -77,6 +78,7 @@ void fields(Archive& a, T& frame) {
   a("cycle_time_max_us", frame.cycle_time_max_us, "since the frame before");
   a("hand", frame.hand);
   a("run_state", frame.run_state);
+  a("safety", frame.safety);
   a("clients", frame.clients, "pages that are connected");
   a("ghost", frame.ghost);
 }

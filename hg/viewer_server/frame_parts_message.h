@@ -14,6 +14,8 @@ template <>
 inline constexpr auto kWords<Mode> =
     std::to_array<std::string_view>({"off", "ready", "armed", "running", "stopping", "fault"});
 template <>
+inline constexpr auto kWords<Stop> = std::to_array<std::string_view>({"none", "SS2", "SS1", "STO"});
+template <>
 inline constexpr auto kWords<LimitState> = std::to_array<std::string_view>({"inactive", "lower",
                                                                             "upper", "violated"});
 template <>
@@ -48,6 +50,15 @@ struct SingularityMessage {
   int limit = -1;
 };
 
+struct SafetyMessage {
+  Stop stop = Stop::kNone;
+  bool is_autonomous = false;
+  int fault = 0;
+  std::string cause, release, warning;
+  bool emergency_stop = false, operator_enable = true, override_key = false;
+  bool person_in_field = false;
+};
+
 struct RunStateMessage {
   bool is_paused = false;
   double speed = 1.0;
@@ -75,6 +86,9 @@ template <>
 inline constexpr Interface kInterface<SingularityMessage> = {"Singularity", "of the manipulator"};
 template <>
 inline constexpr Interface kInterface<RunStateMessage> = {"RunState", "what commands have made"};
+template <>
+inline constexpr Interface kInterface<SafetyMessage> = {
+    "Safety", "what stops the device, and the panel of its simulated operator"};
 template <>
 inline constexpr Interface kInterface<GhostMessage> = {"Ghost", "a second recording, compared"};
 
@@ -130,6 +144,20 @@ void fields(Archive& a, T& state) {
   a("is_over", state.is_over, "stopped, a fault, or the end of a recording");
   a("position_s", state.position_s, "in the recording that is played; else time_s");
   a("recording", state.recording, "name of the file that is written or played; empty = none");
+}
+
+template <typename Archive, Is<SafetyMessage> T>
+void fields(Archive& a, T& safety) {
+  a("stop", safety.stop, "how it is being stopped, or was");
+  a("is_autonomous", safety.is_autonomous, "runs with nobody at the handle");
+  a("fault", safety.fault, "number of the cause; 0 = none");
+  a("cause", safety.cause, "with value and limit; empty = none");
+  a("release", safety.release, "what has to happen before a reset");
+  a("warning", safety.warning, "the rule nearest to its threshold; empty = all are far from it");
+  a("emergency_stop", safety.emergency_stop, "the button is pressed");
+  a("operator_enable", safety.operator_enable, "the switch is held");
+  a("override_key", safety.override_key, "the key is turned");
+  a("person_in_field", safety.person_in_field, "besides the user");
 }
 
 template <typename Archive, Is<GhostMessage> T>

@@ -202,6 +202,21 @@ std::string encode_scene(const Scene& scene, double update_rate_hz) {
   return to_json(message);
 }
 
+SafetyMessage safety_message(const View& view) {
+  const CycleRecord& record = view.record;
+  const SafetyView& safety = view.safety;
+  return {record.stop,
+          record.is_autonomous,
+          static_cast<int>(record.fault.code),
+          safety.cause,
+          safety.release,
+          safety.warning,
+          safety.panel.emergency_stop,
+          safety.panel.operator_enable,
+          safety.panel.override_key,
+          safety.panel.person_in_field};
+}
+
 std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients) {
   const CycleRecord& record = view.record;
   FrameMessage frame;
@@ -222,6 +237,7 @@ std::string encode_frame(const View& view, const LimitCatalogue& limits, std::ui
   const RunState& state = view.run_state;
   frame.run_state = {state.is_paused, state.speed, state.is_over, state.position_s,
                      state.recording};
+  frame.safety = safety_message(view);
   frame.clients = clients;
   if (view.ghost) {
     const CycleRecord& other = view.ghost->record;

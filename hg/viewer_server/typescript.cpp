@@ -116,7 +116,7 @@ std::string typescript_text() {
   add_all<SceneMessage, SceneChainMessage, SceneJointMessage, SceneLimitMessage, SceneBoxMessage,
           Choices, Choice, SettingMessage>(text);
   add_all<FrameMessage, FeltLimitMessage, ActiveLimitMessage, BudgetMessage, WrenchMessage,
-          SingularityMessage, RunStateMessage, GhostMessage>(text);
+          SingularityMessage, RunStateMessage, SafetyMessage, GhostMessage>(text);
   add_all<HandMessage, CommandMessage, AnswerMessage, ValuesMessage, EventMessage>(text);
   return text;
 }

@@ -39,6 +39,14 @@ struct Ghost {
   CycleRecord record;
 };
 
+/// What stops the device, in words, and the panel of its simulated operator.
+struct SafetyView {
+  std::string cause;    ///< of the stop or fault, one sentence; empty = there is none
+  std::string release;  ///< what has to happen before a reset
+  std::string warning;  ///< the rule nearest to its threshold; empty = all is far from it
+  SafetyPanel panel;
+};
+
 struct View {
   std::uint64_t run = 1;  ///< Scene::run
   CycleRecord record;
@@ -48,6 +56,7 @@ struct View {
   HandBudget budget;
   std::optional<Singularity> singularity;
   RunState run_state;
+  SafetyView safety;
   std::optional<Ghost> ghost;
 };
 

@@ -10,6 +10,7 @@ import { EventsPanel } from "./panels/events";
 import { FeelPanel } from "./panels/feel";
 import { JointsPanel } from "./panels/joints";
 import { Notices } from "./panels/notices";
+import { SafetyPanel } from "./panels/safety";
 import { Tabs } from "./panels/tabs";
 import { PlotDrawer } from "./plots/drawer";
 import { ReplayBar } from "./replay_bar";
@@ -62,6 +63,7 @@ class Page {
   private readonly feel = new FeelPanel(element("feel"));
   private readonly joints = new JointsPanel(element("joints"));
   private readonly change = new ChangePanel(element("change"), this.store.commands);
+  private readonly safety = new SafetyPanel(element("safety"), this.store.commands);
   private readonly events = new EventsPanel(element("events"));
   private readonly notices = new Notices();
   private readonly plots = new PlotDrawer(element("plots"), this.store);
@@ -125,6 +127,7 @@ class Page {
     this.replay.furnish(scene);
     this.joints.furnish(scene);
     this.change.furnish(scene);
+    this.safety.furnish(scene);
     this.plots.furnish(scene);
     this.hand_controls.furnish(scene);
     document.body.dataset.source = scene.source;
@@ -170,6 +173,7 @@ class Page {
     this.replay.show(scene, frame);
     if (!element("feel").hidden) this.feel.show(scene, frame);
     if (!element("joints").hidden) this.joints.show(scene, frame);
+    if (!element("safety").hidden) this.safety.show(frame);
     this.plots.show();
     write(element("sync"), `hand and twin ${(frame.sync_error_mm ?? 0).toFixed(1)} mm apart`);
     const cycle = `cycle ${(frame.cycle_time_us ?? 0).toFixed(0)} \u00b5s`;

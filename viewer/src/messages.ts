@@ -22,7 +22,7 @@ export interface Scene {
   environment: "room" | "door" | "excavator"; // of the twin
   choices: Choices;
   settings: Setting[];
-  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek")[]; // that are followed
+  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode")[]; // that are followed
   refusal: string; // why others are not; empty = all are
 }
 
@@ -132,6 +132,7 @@ export interface Frame {
   cycle_time_max_us: number; // since the frame before
   hand: Hand;
   run_state: RunState;
+  safety: Safety;
   clients: number; // pages that are connected
   ghost: Ghost | null;
 }
@@ -190,6 +191,20 @@ export interface RunState {
   recording: string; // name of the file that is written or played; empty = none
 }
 
+// what stops the device, and the panel of its simulated operator
+export interface Safety {
+  stop: "none" | "SS2" | "SS1" | "STO"; // how it is being stopped, or was
+  is_autonomous: boolean; // runs with nobody at the handle
+  fault: number; // number of the cause; 0 = none
+  cause: string; // with value and limit; empty = none
+  release: string; // what has to happen before a reset
+  warning: string; // the rule nearest to its threshold; empty = all are far from it
+  emergency_stop: boolean; // the button is pressed
+  operator_enable: boolean; // the switch is held
+  override_key: boolean; // the key is turned
+  person_in_field: boolean; // besides the user
+}
+
 // a second recording, compared
 export interface Ghost {
   time_s: number;
@@ -212,7 +227,7 @@ export interface Hand {
 export interface Command {
   type: "command";
   id: number; // 0..2^53, comes back in the answer
-  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek";
+  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode";
   name: string; // of what is chosen or set; else empty
   value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value
 }

@@ -171,7 +171,10 @@ struct Case {
 
 const Case kCases[] = {
     {FaultCode::kLimitExceeded, "measured joint", 1, 3, 2.031, 2.029,
-     [](Bench& b, double x) { b.record.robot.q_m[3] = b.record.reference.q_m[3] = x; }},
+     [](Bench& b, double x) {
+       b.record.robot.q_m[3] = x;
+       b.record.reference.q_m[3] = 2.0;
+     }},
     {FaultCode::kLimitExceeded, "reference of a joint", 1, 2, -2.031, -2.029,
      [](Bench& b, double x) {
        b.record.reference.q_m[2] = x;

@@ -53,6 +53,7 @@ const FRAME: Record<keyof Omit<Frame, "type">, Test> = {
   cycle_time_max_us: or_null(is_number),
   hand: is_object,
   run_state: is_object,
+  safety: is_object,
   clients: is_number,
   ghost: or_null(is_object),
 };

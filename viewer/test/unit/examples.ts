@@ -122,6 +122,18 @@ export const frame: Frame = {
   cycle_time_max_us: 30,
   hand: { type: "hand", active: false, p_B_m: [0, 0, 0], quaternion_B_H: null, press: 0 },
   run_state: { is_paused: false, speed: 1, is_over: false, position_s: 1.5, recording: "" },
+  safety: {
+    stop: "none",
+    is_autonomous: false,
+    fault: 0,
+    cause: "",
+    release: "",
+    warning: "",
+    emergency_stop: false,
+    operator_enable: true,
+    override_key: false,
+    person_in_field: false,
+  },
   clients: 1,
   ghost: null,
 };

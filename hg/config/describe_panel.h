@@ -1,0 +1,47 @@
+/// Description of scenario.yaml, third part: what a simulated operator does while it runs.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hg/config/range.h"
+#include "hg/signals/timed_panel.h"
+
+namespace hg::config {
+
+inline constexpr std::array<Choice<ModeRequest>, 6> kRequests = {
+    {{"arm", ModeRequest::kArm},
+     {"run", ModeRequest::kRun},
+     {"run_alone", ModeRequest::kAutonomous},
+     {"stop", ModeRequest::kStop},
+     {"reset", ModeRequest::kReset},
+     {"tare", ModeRequest::kTare}}};
+
+template <class V>
+void describe(V& v, std::vector<TimedPanel>& panels) {
+  TimedPanel now;
+  if (!panels.empty()) now = panels.back();  // what is not given stays as it is
+  const double last_s = now.at_s;
+  now.request = ModeRequest::kNone;
+  now.panel.reset = false;
+  v.number("at_s", now.at_s, kNotNegative, "when this is done", Need::kRequired);
+  v.rule(now.at_s >= last_s, "at_s", "events must be in the order of their times");
+  v.flag("emergency_stop", now.panel.emergency_stop, "whether the stop button is pressed");
+  v.flag("operator_enable", now.panel.operator_enable, "whether the enabling switch is held");
+  v.flag("override_key", now.panel.override_key, "whether the override key is turned");
+  v.flag("person_in_field", now.panel.person_in_field,
+         "whether somebody besides the user is in the scanner's field");
+  v.flag("reset", now.panel.reset, "presses the reset button of the safety controller");
+  v.choice("request", now.request, kRequests,
+           "what is asked for; from the first one on nothing is asked for by itself");
+  panels.push_back(now);
+}
+
+template <class V>
+void describe_panel(V& v, std::vector<TimedPanel>& panels) {
+  v.list(
+      "panel", [&](auto& child) { describe(child, panels); },
+      "what a simulated operator does; without it the switch is held and nothing else is touched");
+}
+
+}  // namespace hg::config

@@ -1,0 +1,93 @@
+// The operator's panel of a simulated device, and what stops it: state, cause, release.
+
+import type { Commands } from "../data/commands";
+import type { Frame, Safety, Scene } from "../messages";
+import { make, make_button, make_check_box, write } from "../page";
+
+type Switch = "emergency_stop" | "operator_enable" | "override_key" | "person_in_field";
+
+const SWITCHES: readonly [Switch, string, string][] = [
+  ["operator_enable", "Enabling switch held", "The operator lets go: braked, then drives off"],
+  ["override_key", "Override key", "May move slowly with nobody at the handle"],
+  ["person_in_field", "Somebody in the field", "Of the scanner, besides the user"],
+];
+
+const REQUESTS = [
+  ["reset", "Reset", "After a fault, once its cause is gone"],
+  ["arm", "Arm", "Drives on, brakes open, the device is held"],
+  ["run", "Run", "By hand: somebody holds the handle"],
+  ["run_alone", "Run alone", "With the override key, slowly, with nobody at the handle"],
+  ["hold", "Hold", "Braked, then held under power"],
+] as const;
+
+const STOP_TEXT: Record<Safety["stop"], string> = {
+  none: "",
+  SS2: "braked, then held",
+  SS1: "braked, then drives off",
+  STO: "drives off and brakes closed at once",
+};
+
+export class SafetyPanel {
+  private readonly mode = make("output", "large");
+  private readonly how = make("p", "reason");
+  private readonly cause = make("p", "safety");
+  private readonly release = make("p", "reason");
+  private readonly warning = make("p", "reason");
+  private readonly stop: HTMLButtonElement;
+  private readonly boxes = new Map<Switch, HTMLLabelElement>();
+  private readonly panel = make("div", "safety-panel");
+  private is_pressed = false;
+
+  constructor(section: HTMLElement, commands: Commands) {
+    const flip = (name: Switch, is_on: boolean): void => {
+      commands.send("panel", name, is_on ? 1 : 0);
+    };
+    this.stop = make_button("Emergency stop", "Press it, and press it again to pull it out", () =>
+      flip("emergency_stop", !this.is_pressed),
+    );
+    this.stop.className = "emergency-stop";
+    this.panel.append(this.stop);
+    for (const [name, text, title] of SWITCHES) {
+      const box = make_check_box(text, name === "operator_enable", (is_on) => flip(name, is_on));
+      box.title = title;
+      this.boxes.set(name, box);
+      this.panel.append(box);
+    }
+    const requests = make("div", "buttons");
+    for (const [name, text, title] of REQUESTS) {
+      requests.append(make_button(text, title, () => commands.send("mode", name)));
+    }
+    section.append(
+      make("h2", "", "Safety"),
+      this.mode,
+      this.how,
+      this.cause,
+      this.release,
+      this.warning,
+      this.panel,
+      requests,
+      make("p", "quiet", "Simulated. Nothing here is a certified safety function."),
+    );
+  }
+
+  furnish(scene: Scene): void {
+    this.panel.hidden = !scene.commands.includes("panel");
+  }
+
+  show({ mode, safety }: Frame): void {
+    write(this.mode, safety.is_autonomous ? `${mode}, nobody at the handle` : mode);
+    write(this.how, STOP_TEXT[safety.stop]);
+    write(this.cause, safety.cause);
+    this.cause.dataset.mode = mode;
+    write(this.release, safety.release === "" ? "" : `Reset it when ${safety.release}.`);
+    write(this.warning, safety.warning === "" ? "" : `Near: ${safety.warning}`);
+    this.is_pressed = safety.emergency_stop;
+    this.stop.setAttribute("aria-pressed", String(this.is_pressed));
+    for (const [name, box] of this.boxes) {
+      const input = box.querySelector("input")!;
+      if (document.activeElement !== input || input.checked === safety[name]) {
+        input.checked = safety[name];
+      }
+    }
+  }
+}
