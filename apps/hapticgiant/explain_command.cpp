@@ -37,7 +37,7 @@ class Reader final : public recording::RecordingListener {
   std::vector<explanation::Entry> entries() {
     for (const recording::Event& event : events_) {
       // these the samples tell as well, and more of them
-      if (event.name == "tare" || event.name == "arm" || event.name == "fault") continue;
+      if (event.name == "tare" || event.name == "request" || event.name == "fault") continue;
       explainer_->add_event(event.time_s, event.name, event.text);
     }
     return explainer_->finish();

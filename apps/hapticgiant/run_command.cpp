@@ -67,7 +67,7 @@ void tell_requests(Observers& observers, const CycleRecord& record) {
     tell(observers, record.time_s, "tare", to_string(record.tare));
   }
   if (record.refusal != Refusal::kNone) {
-    tell(observers, record.time_s, "refused", to_string(record.refusal));
+    tell(observers, record.time_s, "request", to_string(record.refusal));
   }
 }
 

@@ -54,7 +54,8 @@ void Summary::add(const Sample& sample) {
   ++cycles_;
   last_hash_ = record.state_hash;
   cycle_time_us_.add(sample.cycle_time_us);
-  if (record.fault.code != FaultCode::kNone && fault_.code == FaultCode::kNone) {
+  // an operator who lets go is the cause of a stop, too, and no fault
+  if (record.mode == Mode::kFault && fault_.code == FaultCode::kNone) {
     fault_ = record.fault;
   }
   if (record.mode != Mode::kRunning) {
