@@ -29,7 +29,10 @@ double share_of_Hz(double dt, double frequency) noexcept {
 // 1 = detected
 double look_for_oscillation(const Config& config, const Input& input, State& s) noexcept {
   const double dt = config.dt;
-  if (!s.is_started) s.x1 = s.x2 = s.x3 = input.f;
+  if (!s.is_started) {
+    s.x1 = s.x2 = s.x3 = input.f;
+    s.since_pushed_s = kAfterPush;
+  }
   s.x1 += share_of_Hz(dt, kHigh_Hz) * (input.f - s.x1);
   s.x2 += share_of_Hz(dt, kLow_Hz) * (s.x1 - s.x2);
   s.x3 += share_of_Hz(dt, kLow_Hz) * (s.x2 - s.x3);

@@ -23,7 +23,7 @@ Input with_force(double amplitude, double frequency_Hz, double t) {
 
 // seconds until it is detected; infinity: not within 5 s
 double time_to_trip(double amplitude, double frequency_Hz, double pull = 0.0) {
-  const Config config;
+  const Config config = {.reaction = Reaction::kAct};
   State state;
   for (int n = 0; n < 5000; ++n) {
     Input input = with_force(amplitude, frequency_Hz, kDt * n);
@@ -48,7 +48,7 @@ TEST(Passivity, LeavesSlowAndGentleForcesAlone) {
 }
 
 TEST(Passivity, DoesNotCountImpacts) {
-  const Config config;
+  const Config config = {.reaction = Reaction::kAct};
   State state;
   for (int n = 0; n < 3000; ++n) {
     Input input = with_force(30.0, 8.0, kDt * n);
@@ -58,7 +58,7 @@ TEST(Passivity, DoesNotCountImpacts) {
 }
 
 TEST(Passivity, CalmsAtOnceAndLetsGoSlowly) {
-  const Config config;
+  const Config config = {.reaction = Reaction::kAct};
   State state;
   for (int n = 0; n < 1000; ++n) step(config, with_force(20.0, 6.0, kDt * n), state);
   EXPECT_NEAR(state.calming.damping, 25.0, 0.1);
@@ -91,7 +91,7 @@ TEST(Passivity, ObservesWithoutActing) {
 }
 
 TEST(Passivity, StopsWhatCalmingDoesNotEnd) {
-  const Config config;
+  const Config config = {.reaction = Reaction::kAct};
   State state;
   double stopped_s = kInfinity;
   for (int n = 0; n < 6000 && stopped_s == kInfinity; ++n) {
@@ -109,7 +109,7 @@ TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
-    Config config;
+    const Config config = {.reaction = Reaction::kAct};
     State state;
     const double mass = 0.3 + 0.2 * seed;
     double v = 0.0, v_late = 0.0, taken = 0.0, push = 0.0;
@@ -142,7 +142,7 @@ TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {
 }
 
 TEST(Passivity, AllocatesNothing) {
-  const Config config;
+  const Config config = {.reaction = Reaction::kAct};
   State state;
   const AllocationCounter allocations;
   for (int n = 0; n < 1000; ++n) step(config, with_force(20.0, 6.0, kDt * n), state);
