@@ -234,11 +234,7 @@ void derive(Device& device, const DeviceDraft& draft) {
   for (std::size_t i = 0; i < draft.gantry.size(); ++i) {
     device.monitor.gantry_range.push_back(device.prepositioning.q_limits[i]);
   }
-  for (const ActuatorModel& actuator : device.control.actuators) {
-    device.monitor.joint_torque_max.push_back(actuator.torque_max);
-    device.monitor.joint_stiffness.push_back(actuator.stiffness);
-    device.monitor.joint_rotor_inertia.push_back(actuator.rotor_inertia);
-  }
+  device.monitor.actuators = device.control.actuators;
   for (int i : draft.manipulator) {
     device.monitor.is_slide.push_back(draft.joints[static_cast<std::size_t>(i)].unit ==
                                       JointUnit::kLength);

@@ -320,6 +320,7 @@ void Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
                                                  {.state = state_.supervisor.state,
                                                   .late_cycles = late_cycles,
                                                   .dq_p_command = state_.dq_p,
+                                                  .tau_m = state_.tau_m,
                                                   .pulled_back = pulled_back_},
                                                  state_.monitor);
   record.warning = verdict.warning;

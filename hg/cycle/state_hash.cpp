@@ -145,8 +145,8 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
   for (const double value : {state.time_s, state.clock_error, state.late}) hash.mix(value);
   hash.mix(state.w_S);
   hash.mix(state.imu);
-  for (const VectorM* v :
-       {&state.q_m, &state.tau_m, &state.pulled_back, &state.lowest, &state.highest}) {
+  for (const VectorM* v : {&state.q_m, &state.tau_m, &state.pulled_back, &state.momentum,
+                           &state.lowest, &state.highest}) {
     hash.mix(*v);
   }
   for (const VectorP* v :

@@ -9,9 +9,9 @@
 
 namespace hg::cycle {
 
-/// Hash of everything in `state` and of `robot`, which the estimation made of its part; of the
-/// drives' past commands only the last one, the others were in earlier hashes. `rows` is the number
-/// of rows of the rendering problem, of which the state holds the active set.
+/// Hash of everything in `state`; of the drives' past commands only the last one, the others were
+/// in earlier hashes. `rows` is the number of rows of the rendering problem, of which the state
+/// holds the active set.
 std::uint64_t hash_of(const State& state, int rows) noexcept;
 
 }  // namespace hg::cycle

@@ -10,9 +10,10 @@
 namespace hg::safety {
 namespace {
 
-constexpr double kClockMemory = 0.02;  // share of the newest sample in the clock's mean error
-constexpr double kPullMemory_s = 0.2;  // after which a reference that came back is forgotten
-constexpr double kGapMemory_s = 2.0;   // after which an error of the drive model is forgotten
+constexpr double kClockMemory = 0.02;    // share of the newest sample in the clock's mean error
+constexpr double kPullMemory_s = 0.2;    // after which a reference that came back is forgotten
+constexpr double kGapMemory_s = 2.0;     // after which an error of the drive model is forgotten
+constexpr double kMotorMemory_s = 0.02;  // over which the torque of a motor is observed
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -71,6 +72,11 @@ bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept
   return first_not_finite(config, sensors) < 0;
 }
 
+bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
+  return sensors.w_S.head<3>().norm() <= config.force_max &&
+         sensors.w_S.tail<3>().norm() <= config.torque_max;
+}
+
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
                     std::uint64_t expected_sequence) noexcept {
   if (sensors.driver_fault != FaultCode::kNone) {
@@ -109,16 +115,13 @@ Monitor::Monitor(const MonitorConfig& config, int n_p, int n_m)
   if (config_.is_slide.empty()) config_.is_slide.resize(at(n_m));
   if (config_.joint_speed_max.empty()) config_.joint_speed_max.resize(at(n_m), kInfinity);
   if (config_.joint_acceleration.empty()) config_.joint_acceleration.resize(at(n_m), kInfinity);
-  if (config_.joint_torque_max.empty()) config_.joint_torque_max.resize(at(n_m), kInfinity);
   require(config_.gantry_range.size() == at(n_p), "one range per gantry axis is needed");
-  for (const auto* list :
-       {&config_.joint_speed_max, &config_.joint_acceleration, &config_.joint_torque_max}) {
+  for (const auto* list : {&config_.joint_speed_max, &config_.joint_acceleration}) {
     require(list->size() == at(n_m), "one rating per joint is needed");
   }
   require(config_.joint_range.size() == at(n_m) && config_.is_slide.size() == at(n_m),
           "one range per joint is needed");
-  require(fits(config_.joint_stiffness, n_m) && fits(config_.joint_rotor_inertia, n_m),
-          "one stiffness and one rotor inertia per joint are needed, or none");
+  require(fits(config_.actuators, n_m), "one actuator per joint is needed, or none");
   for (std::size_t i = 0; i < kRuleCount; ++i) {
     const Debounce& debounce = kRules[i].debounce;
     const int samples = static_cast<int>(std::ceil(debounce.seconds / config.dt - 1e-9));
@@ -147,6 +150,7 @@ Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
     state.dq_p_model = state.gantry_gap = VectorP::Zero(n_p_);
   }
   for (int i = 0; i < n_m_; ++i) look_at_joint(i, record, watched, state);
+  look_at_motors(record.robot, watched, state);
   look_at_gantry(sensors, record, watched, state);
   look_at_frames(record, watched);
   look_at_clocks(sensors, watched, state);
@@ -186,6 +190,34 @@ void Monitor::look_at_joint(int joint, const CycleRecord& record, const Watched&
       joint, std::abs(reference.ddq_m[joint]),
       config_.acceleration_tolerance * config_.joint_acceleration[i]);
   look<FaultCode::kTrackingLost>(joint, std::abs(q_r - q + pulled), apart);
+}
+
+// What its command, spring and inertia do not explain of a motor's motion is friction, or a motor
+// that does not do as told: observed from its momentum, without accelerations.
+void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
+                             MonitorState& state) noexcept {
+  const bool is_told = watched.tau_m.size() == n_m_ && robot.dtheta_m.size() == n_m_ &&
+                       robot.tau_m.size() == n_m_ && !config_.actuators.empty();
+  if (!is_told || !is_powered(watched.state)) {
+    state.momentum.resize(0);
+    return;
+  }
+  const bool is_new = state.momentum.size() != n_m_;
+  if (is_new) state.momentum.resize(n_m_);
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& actuator = config_.actuators[at(i)];
+    const double dtheta = robot.dtheta_m[i], tau_J = robot.tau_m[i];
+    const double p = actuator.rotor_inertia * dtheta;
+    if (is_new) state.momentum[i] = p;
+    const double unexplained = (state.momentum[i] - p) / kMotorMemory_s;
+    const double most = torque_available(actuator, watched.tau_m[i] * dtheta > 0.0 ? dtheta : 0.0);
+    const double told = std::clamp(watched.tau_m[i], -most, most);
+    state.momentum[i] += config_.dt * (told - tau_J - unexplained);
+    const double friction =
+        coulomb_torque(actuator, 0.0, tau_J) + actuator.viscous_friction * std::abs(dtheta);
+    look<FaultCode::kMotorDeviates>(i, std::abs(unexplained) - friction,
+                                    config_.motor_tolerance * actuator.torque_max);
+  }
 }
 
 void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& record,
@@ -264,11 +296,13 @@ void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) n
   }
   for (int i = 0; i < sensors.tau_m.size(); ++i) {
     const double tau = sensors.tau_m[i];
-    look<FaultCode::kJointTorqueExceeded>(
-        i, std::abs(tau), config_.torque_tolerance * config_.joint_torque_max[at(i)]);
-    if (config_.joint_stiffness.empty() || sensors.theta_m.size() == 0) continue;
+    if (config_.actuators.empty()) break;
+    const ActuatorModel& actuator = config_.actuators[at(i)];
+    look<FaultCode::kJointTorqueExceeded>(i, std::abs(tau),
+                                          config_.torque_tolerance * actuator.torque_max);
+    if (sensors.theta_m.size() == 0) continue;
     const double twist = turned(sensors.theta_m[i] - sensors.q_m[i]);
-    look<FaultCode::kSensorImplausible>(i, std::abs(twist - tau / config_.joint_stiffness[at(i)]),
+    look<FaultCode::kSensorImplausible>(i, std::abs(twist - tau / actuator.stiffness),
                                         config_.plausibility);
   }
   if (state.has_sample) {

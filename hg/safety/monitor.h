@@ -12,6 +12,7 @@
 #include "hg/core/interval.h"
 #include "hg/safety/rules.h"
 #include "hg/safety/transitions.h"
+#include "hg/signals/actuator_model.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/state.h"
 
@@ -30,6 +31,7 @@ struct MonitorConfig {
   double speed_tolerance = 1.1;            ///< times the rating
   double acceleration_tolerance = 2.0;     ///< times the rating; bounds may take 1.5 of it
   double torque_tolerance = 1.0;           ///< times the peak torque
+  double motor_tolerance = 0.15;           ///< off its command and friction, times the peak torque
   double tracking_tolerance = 0.08;        ///< reference minus measured joint, rad
   double slide_tracking_tolerance = 0.02;  ///< the same of a prismatic joint, m
   double sync_tolerance = 0.02;            ///< between handle and twin, m
@@ -50,18 +52,16 @@ struct MonitorConfig {
   double overruns_per_s = 5;               ///< late cycles that may come again and again
 
   // what the device is
-  double dt = 1e-3;                         ///< period, s
-  double gantry_speed_max = 1.5;            ///< of commands, m/s or rad/s
-  DriveModel drive;                         ///< of every gantry axis
-  bool is_gantry_slide = true;              ///< its axes are prismatic
-  std::vector<Interval> gantry_range;       ///< of the axes
-  std::vector<Interval> joint_range;        ///< of the manipulator joints
-  std::vector<bool> is_slide;               ///< joints that are prismatic; empty = none
-  std::vector<double> joint_speed_max;      ///< rad/s or m/s
-  std::vector<double> joint_acceleration;   ///< ratings; empty = none
-  std::vector<double> joint_torque_max;     ///< peak torques; empty = none
-  std::vector<double> joint_stiffness;      ///< of the springs; empty: joints are rigid
-  std::vector<double> joint_rotor_inertia;  ///< at the output of the gear; as joint_stiffness
+  double dt = 1e-3;                        ///< period, s
+  double gantry_speed_max = 1.5;           ///< of commands, m/s or rad/s
+  DriveModel drive;                        ///< of every gantry axis
+  bool is_gantry_slide = true;             ///< its axes are prismatic
+  std::vector<Interval> gantry_range;      ///< of the axes
+  std::vector<Interval> joint_range;       ///< of the manipulator joints
+  std::vector<bool> is_slide;              ///< joints that are prismatic; empty = none
+  std::vector<double> joint_speed_max;     ///< rad/s or m/s
+  std::vector<double> joint_acceleration;  ///< ratings; empty = none
+  std::vector<ActuatorModel> actuators;    ///< of the joints; empty: drives follow positions
   int first_cartesian = 0;  ///< Cartesian limits in the catalogue: first and one past the last;
   int end_cartesian = 0;    ///< sums of joints stand between them and the joints
 };
@@ -73,6 +73,9 @@ inline bool is_held(const MonitorConfig& config, const SensorFrame& sensors) noe
 
 /// Whether every measured value is a number: others must not reach the estimation.
 bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept;
+
+/// Whether force and torque at the handle are below those that stop the device.
+bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors) noexcept;
 
 /// The first thing that makes a sample unusable, or kNone.
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
@@ -86,6 +89,7 @@ struct Watched {
   State state = State::kOff;      ///< of the supervisor
   std::uint32_t late_cycles = 0;  ///< since the last cycle
   VectorP dq_p_command;           ///< that the gantry follows now
+  VectorM tau_m;                  ///< that the motors were told a period ago; empty = none
   VectorM pulled_back;  ///< by how much the reference had to come back to the device; empty = not
 };
 
@@ -106,6 +110,7 @@ struct MonitorState {
   VectorP dq_p_model;       ///< of the gantry by its drive model
   VectorP gantry_gap;       ///< how far it is from where the model takes it; forgotten slowly
   VectorM pulled_back;      ///< in all, while it lasts
+  VectorM momentum;         ///< of the motors, as their commands and springs make it, Nms
   VectorM lowest, highest;  ///< where joints may be: limits, or where they stood when armed
   VectorP lowest_p, highest_p;
 };
@@ -141,6 +146,8 @@ class Monitor {
   void look_at_joint(int joint, const CycleRecord& record, const Watched& watched,
                      MonitorState& state) noexcept;
   void look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept;
+  void look_at_motors(const RobotState& robot, const Watched& watched,
+                      MonitorState& state) noexcept;
   void look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept;
   void look_at_gantry(const SensorFrame& sensors, const CycleRecord& record, const Watched& watched,
                       MonitorState& state) noexcept;

@@ -60,9 +60,8 @@ Sanitiser::Sanitiser(const SanitiserConfig& config, const MonitorConfig& monitor
          .highest = range.ub + margin,
          .speed = kSpeedShare * monitor.joint_speed_max[i],
          .braking = std::isfinite(rating) ? kBrakingShare * rating : kBrakingWithoutRating,
-         .peak = monitor.joint_torque_max[i],
-         .rotor_inertia =
-             monitor.joint_rotor_inertia.empty() ? 0.0 : monitor.joint_rotor_inertia[i]});
+         .peak = monitor.actuators.empty() ? kInfinity : monitor.actuators[i].torque_max,
+         .rotor_inertia = monitor.actuators.empty() ? 0.0 : monitor.actuators[i].rotor_inertia});
   }
 }
 

@@ -50,6 +50,9 @@ void Simulation::step(const CommandFrame& command) noexcept {
   const std::size_t slot = (first_waiting_ + waiting_count_) % waiting_.size();
   waiting_[slot] = {command, steps_ + latency_steps_};
   ++waiting_count_;
+  const bool is_new = command.sequence == 0 || command.sequence != last_number_;
+  silent_s_ = is_new ? 0.0 : silent_s_ + config_.sensed.period;
+  last_number_ = command.sequence;
   for (int i = 0; i < config_.steps; ++i) {
     take_due_command();
     move(at_work_);
@@ -86,7 +89,8 @@ void Simulation::take_due_command() noexcept {
 }
 
 void Simulation::move(const CommandFrame& command) noexcept {
-  const bool is_on = command.enable && safety_plc_.has_power();
+  const bool is_watched = silent_s_ <= config_.drive_watchdog;
+  const bool is_on = command.enable && is_watched && safety_plc_.has_power();
   if (auto* ideal = std::get_if<IdealPlant>(&plant_)) {
     ideal->step(command, is_on);
     return;

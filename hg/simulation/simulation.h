@@ -30,6 +30,9 @@ struct Config {
   SensedDevice sensed;  ///< with the step of the plant and the period
   bool has_dead_man = true;
   SafetyPlcConfig safety;  ///< with the period
+  /// Without a new command for so long the drives switch themselves off, s; [HANDBOOK] 6.6. A
+  /// command is new when its number is; those without one (0) always are.
+  double drive_watchdog = 0.01;
 };
 
 class Simulation {
@@ -71,7 +74,9 @@ class Simulation {
   std::uint64_t steps_ = 0;  ///< of the plant so far
   std::array<Waiting, kMaxLatency + 1> waiting_;
   std::size_t first_waiting_ = 0, waiting_count_ = 0;
-  CommandFrame at_work_;  ///< the newest command that has reached the drives
+  std::uint64_t last_number_ = 0;  ///< of the commands
+  double silent_s_ = 0.0;          ///< since a new command came
+  CommandFrame at_work_;           ///< the newest command that has reached the drives
   Vector6 w_H_ = Vector6::Zero();
   Truth truth_;
   SensorFrame frame_;

@@ -201,6 +201,22 @@ TEST(Cycle, ANanInTheWrenchEndsInASafeCommandWithItsCause) {
   EXPECT_EQ(loop.record.fault.index, 16);
 }
 
+TEST(Cycle, AWrenchBeyondTheSensorsRangeIsNotUsedNeitherBeforeTheStopNorInIt) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[0] = 4.0;
+  loop.run(500);
+  const Vector6 good = loop.record.robot.w_H;
+  loop.sensors.w_S[0] = 500.0;
+  int cycles = 0;
+  for (; loop.record.mode != Mode::kFault && cycles < 2000; ++cycles) {
+    loop.step();
+    ASSERT_EQ(loop.record.robot.w_H, good) << cycles;
+  }
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kWrenchTooLarge);
+  EXPECT_GT(cycles, 10);
+}
+
 TEST(Cycle, OnlyItsOwnSolveIsKeptForASlowStep) {
   Loop loop;
   loop.start_running();

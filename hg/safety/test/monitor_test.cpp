@@ -26,8 +26,14 @@ MonitorConfig config() {
   monitor.gantry_range.assign(2, {-1.4, 1.4});
   monitor.joint_speed_max.assign(6, 3.0);
   monitor.joint_acceleration.assign(6, 20.0);
-  monitor.joint_torque_max.assign(6, 100.0);
-  monitor.joint_stiffness.assign(6, 10000.0);
+  monitor.actuators.assign(6, {.rotor_inertia = 0.6,
+                               .stiffness = 10000.0,
+                               .coulomb_friction = 5.0,
+                               .load_friction = 0.0,
+                               .stiction = 1.0,
+                               .torque_max = 100.0,
+                               .speed_full_torque = 2.0,
+                               .speed_no_load = 4.0});
   monitor.first_cartesian = 7;
   monitor.end_cartesian = 10;
   monitor.frozen_samples = 20;
@@ -395,6 +401,47 @@ TEST(Monitor, TheSafeSpeedHoldsOnlyWithNobodyAtTheHandle) {
   EXPECT_EQ(bench.until_fault(FaultCode::kSafeSpeedExceeded,
                               [&] { bench.state.dq_p_model = bench.record.robot.dq_p; }),
             3);
+}
+
+// A motor of the bench that accelerates as `share` of its torque makes it, against its friction.
+struct Motor {
+  double dtheta = 0.0;
+  void step(Bench& bench, double told, double share, double spring) {
+    bench.watched.tau_m = VectorM::Zero(6);
+    bench.watched.tau_m[2] = told;
+    const double friction = 4.0 * std::tanh(dtheta / 0.01);
+    dtheta += 1e-3 * (share * told - spring - friction) / 0.6;
+    bench.record.robot.dtheta_m = bench.record.robot.tau_m = VectorM::Zero(6);
+    bench.record.robot.dtheta_m[2] = dtheta;
+    bench.record.robot.tau_m[2] = spring;
+    bench.step();
+  }
+};
+
+TEST(Monitor, AMotorThatDoesAsToldIsLeftAloneWhateverItsLoadAndSpeed) {
+  Bench bench;
+  Motor motor;
+  for (int k = 0; k < 3000; ++k) {
+    const double wave = std::sin(2e-3 * std::numbers::pi * 2.0 * k);
+    motor.step(bench, 40.0 + 15.0 * wave, 1.0, 40.0);
+    ASSERT_EQ(bench.verdict.fault.code, FaultCode::kNone) << k;
+  }
+  EXPECT_GT(std::abs(motor.dtheta), 0.1);
+}
+
+TEST(Monitor, AMotorThatGivesNoTorqueIsNoticedBeforeItHasMovedFar) {
+  Bench bench;
+  Motor motor;
+  int k = 0;
+  double moved = 0.0;
+  for (; k < 300 && bench.verdict.fault.code == FaultCode::kNone; ++k) {
+    motor.step(bench, 30.0, 0.0, 6.0);  // 30 Nm, of which the spring would carry 6
+    moved += 1e-3 * motor.dtheta;
+  }
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kMotorDeviates);
+  EXPECT_EQ(bench.verdict.fault.index, 2);
+  EXPECT_GE(k, 50);
+  EXPECT_LT(k, 120);
 }
 
 TEST(Monitor, AGantryThatSlowlyComesAwayFromItsDriveModelDeviates) {

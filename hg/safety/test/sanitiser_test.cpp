@@ -21,8 +21,7 @@ MonitorConfig ratings() {
   monitor.is_slide.assign(6, false);
   monitor.joint_speed_max.assign(6, kSpeed);
   monitor.joint_acceleration.assign(6, kBraking / 1.5);
-  monitor.joint_torque_max.assign(6, kPeak);
-  monitor.joint_rotor_inertia.assign(6, kRotor);
+  monitor.actuators.assign(6, {.rotor_inertia = kRotor, .torque_max = kPeak});
   return monitor;
 }
 

@@ -177,8 +177,30 @@ TEST(Simulation, BrakesHoldTheMotorsOfADisabledDeviceAgainstAnyHand) {
   // without brakes and torques the forearm falls
   command.enable = true;
   command.tau_m.setZero();
-  for (int k = 0; k < 200; ++k) device.step(command);
+  for (int k = 0; k < 200; ++k) {
+    command.sequence = device.sensors().sequence;
+    device.step(command);
+  }
   EXPECT_GT((device.truth().theta_m - theta).lpNorm<Eigen::Infinity>(), 1e-2);
+}
+
+TEST(Simulation, WithoutNewCommandsTheDrivesSwitchThemselvesOff) {
+  Config world = elastic_world();
+  Simulation device = make(world);
+  CommandFrame command = hold(device);
+  command.enable = true;
+  command.tau_m.setConstant(5.0);
+  command.sequence = 1;
+  const auto speed = [&] { return device.truth().dtheta_m.lpNorm<Eigen::Infinity>(); };
+  for (int k = 0; k < 8; ++k) device.step(command);  // the same one again and again
+  EXPECT_GT(speed(), 0.01);
+  for (int k = 0; k < 300; ++k) device.step(command);
+  EXPECT_EQ(speed(), 0.0);
+  for (int k = 0; k < 20; ++k) {
+    ++command.sequence;
+    device.step(command);
+  }
+  EXPECT_GT(speed(), 0.01);
 }
 
 TEST(Simulation, TheGantryOfADisabledDeviceBrakesWhateverItIsTold) {
