@@ -33,6 +33,7 @@ class StillDevice final : public device::Device {
   }
   void write(const CommandFrame& command) noexcept override {
     ++sensors_.sequence;
+    sensors_.time_s += 1e-3;
     if (sensors_.sequence == lost_sample) ++sensors_.sequence;
     sensors_.dead_man = !(sensors_.sequence >= opens_at && sensors_.sequence < closes_at);
     if (sensors_.sequence == stalls_at) stall();
@@ -136,6 +137,38 @@ TEST(Runtime, RealTimeModePlaysTheWholeDuration) {
   EXPECT_GE(report.cycles, 100u);
   EXPECT_EQ(report.dropped + seen, report.cycles);
   EXPECT_EQ(report.allocations, 0u);
+}
+
+TEST(Runtime, StaysInAFaultWhereSomebodyCanResetItAndAsksForNothingByItselfThen) {
+  Parts parts;
+  parts.device.lost_sample = 50;
+  const Options options = {.is_fast = true,
+                           .duration_s = 2.0,
+                           .panel = {{0.8, {}, ModeRequest::kReset},
+                                     {1.0, {}, ModeRequest::kArm},
+                                     {1.2, {}, ModeRequest::kRun}},
+                           .stays_in_fault = true};
+  Runtime runtime(options, *parts.cycle, parts.device);
+  runtime.start();
+  const auto sample = std::make_unique<Sample>();
+  while (true) {
+    const bool is_finished = runtime.is_finished();
+    while (runtime.pop(*sample)) {
+      const double t = sample->record.time_s;
+      const Mode mode = sample->record.mode;
+      const auto expect = [&](double from, double to, Mode expected) {
+        if (t > from && t < to) {
+          EXPECT_EQ(mode, expected) << t;
+        }
+      };
+      expect(0.06, 0.79, Mode::kFault);
+      expect(0.81, 0.99, Mode::kReady);
+      expect(1.01, 1.19, Mode::kArmed);
+      expect(1.21, 1.99, Mode::kRunning);
+    }
+    if (is_finished) break;
+  }
+  EXPECT_GE(runtime.join().cycles, 2001u);
 }
 
 TEST(Runtime, EndsAtAFaultOnceTheDeviceRests) {
