@@ -13,6 +13,7 @@
 #include "apps/hapticgiant/check_command.h"
 #include "apps/hapticgiant/doctor_command.h"
 #include "apps/hapticgiant/experiment_command.h"
+#include "apps/hapticgiant/experiments/command_line.h"
 #include "apps/hapticgiant/explain_command.h"
 #include "apps/hapticgiant/faults_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
@@ -167,10 +168,11 @@ void add_doctor(CLI::App& app, hg::apps::DoctorArguments& doctor, int& exit_code
 }
 
 void add_replay(CLI::App& app, hg::apps::ReplayArguments& replay, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("replay", "What happened in a recording; look at it again.");
+  CLI::App* command = app.add_subcommand(
+      "replay", "Runs the cycle of a recording again, bit for bit; or look at it again.");
   command->footer(
       "Examples:\n"
+      "  hapticgiant replay recordings/latest.mcap        does the cycle still give the same?\n"
       "  hapticgiant replay recordings/latest.mcap --view\n"
       "  hapticgiant replay one.mcap --compare two.mcap --view --speed 0.5");
   command->add_option("file", replay.file, "recording of hapticgiant run")
@@ -317,16 +319,22 @@ void add_identify(CLI::App& app, hg::apps::IdentifyArguments& arguments, int& ex
       [&arguments, &exit_code] { exit_code = hg::apps::identify_payload(arguments); });
 }
 
-void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "experiment", "What the simulated device is like to hold, measured (docs/simulator.md).");
+void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
+                    hg::apps::ExperimentsArguments& more, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("experiment",
+                         "The paper's experiments, and what the simulated device is like to hold "
+                         "(docs/experiments, docs/simulator.md).");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n"
+      "  hapticgiant experiment all               Figs. 6, 8 and 9 of the paper, and its path\n"
+      "  hapticgiant experiment door --law both --out results\n"
       "  hapticgiant experiment free-space        force and vibration on a slow walk, what makes "
       "them\n"
       "  hapticgiant experiment stability-map --svg stability.svg\n"
       "  hapticgiant experiment impedance --json impedance.json");
+  hg::apps::add_paper_experiments(*command, more.paper, exit_code);
   const auto add = [&](const char* name, const char* text,
                        int (*run)(const hg::apps::ExperimentArguments&)) {
     CLI::App* what = command->add_subcommand(name, text);
@@ -379,6 +387,7 @@ int main(int argc, char** argv) {
   hg::apps::HqpSolveArguments hqp;
   hg::apps::IdentifyArguments identified;
   hg::apps::ExperimentArguments measured;
+  hg::apps::ExperimentsArguments experiments;
   hg::apps::BenchArguments compared;
   hg::apps::FaultsArguments broken;
   add_run(app, run, exit_code);
@@ -390,7 +399,8 @@ int main(int argc, char** argv) {
   add_new(app, created, exit_code);
   add_hqp(app, hqp, exit_code);
   add_identify(app, identified, exit_code);
-  add_experiment(app, measured, exit_code);
+  add_experiment(app, measured, experiments, exit_code);
+  hg::apps::add_plot_and_compare(app, experiments, exit_code);
   add_bench(app, compared, exit_code);
   add_faults(app, broken, exit_code);
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/hapticgiant/experiments/rerun.h"
 #include "apps/hapticgiant/hand_analysis.h"
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/page_scene.h"
@@ -153,12 +154,22 @@ void play(Show& show, viewer_server::ViewerServer& server, const std::atomic<boo
   }
 }
 
+// whether the cycle still gives what it gave
+int run_again(const std::string& file) {
+  const Rerun result = rerun(file);
+  print_out(result.is_same
+                ? fmt::format("run again   {} cycles, the same bit for bit\n", result.cycles)
+                : fmt::format("run again   {}\n            {} cycles are the same\n", result.text,
+                              result.cycles));
+  return result.is_same ? 0 : 1;
+}
+
 }  // namespace
 
 int replay(const ReplayArguments& arguments) {
   Show show(arguments);
   print_content(show);
-  if (!arguments.has_view) return 0;
+  if (!arguments.has_view) return run_again(arguments.file);
   viewer_server::Options options;
   options.page = find_page();
   if (options.page.empty()) return 0;

@@ -132,19 +132,34 @@ std::string recording_name(const std::filesystem::path& scenario) {
   return name;
 }
 
-// those of changes() below that say what a page draws
-ScenarioArguments recorded_arguments(const std::string& text) {
-  ScenarioArguments arguments;
+// those of changes() below that say what the cycle is
+RunArguments recorded_arguments(const std::string& text) {
+  RunArguments arguments;
+  ScenarioArguments& world = arguments.world;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     const std::size_t space = line.find(' ');
     if (space == std::string::npos) continue;
     const std::string option = line.substr(0, space), value = line.substr(space + 1);
-    if (option == "--device") arguments.device = value;
-    if (option == "--twin") arguments.twin = value;
-    if (option == "--rate-hz") arguments.rate_Hz = std::strtod(value.c_str(), nullptr);
+    if (option == "--device") world.device = value;
+    if (option == "--twin") world.twin = value;
+    if (option == "--rate-hz") world.rate_Hz = std::strtod(value.c_str(), nullptr);
+    if (option == "--plant") world.plant = value;
+    if (option == "--law") arguments.law = value;
+    if (option == "--bounds") arguments.bounds = value;
+    if (option == "--passivity") arguments.passivity = value;
   }
   return arguments;
+}
+
+void apply_law(const RunArguments& arguments, config::Scenario& scenario) {
+  choose("--law", arguments.law, config::Choices<rendering::Law>(config::kLaws),
+         scenario.device.rendering.law);
+  choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
+         scenario.device.rendering.bounds);
+  choose("--passivity", arguments.passivity,
+         config::Choices<passivity::Reaction>(config::kPassivityReactions),
+         scenario.device.passivity.reaction);
 }
 
 // the options that change what the scenario says, one per line
@@ -182,20 +197,14 @@ config::Scenario make_scenario(const ScenarioArguments& arguments) {
 config::Scenario make_scenario(const RunArguments& arguments) {
   if (!arguments.device_address.empty()) refuse_what_is_simulated(arguments.world);
   config::Scenario scenario = make_scenario(arguments.world);
-  choose("--law", arguments.law, config::Choices<rendering::Law>(config::kLaws),
-         scenario.device.rendering.law);
-  choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
-         scenario.device.rendering.bounds);
-  choose("--passivity", arguments.passivity,
-         config::Choices<passivity::Reaction>(config::kPassivityReactions),
-         scenario.device.passivity.reaction);
+  apply_law(arguments, scenario);
   scenario.device.rendering.slow_solve = arguments.slow_solve;
   return scenario;
 }
 
 config::Scenario recorded_scenario(const std::vector<recording::NamedText>& configuration) {
   std::vector<config::SourceText> sources;
-  ScenarioArguments arguments;
+  RunArguments arguments;
   for (const recording::NamedText& text : configuration) {
     if (text.name == kArguments) {
       arguments = recorded_arguments(text.text);
@@ -205,7 +214,9 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
   }
   config::Scenario scenario = config::load_scenario(sources);
   config::SourceReader reader(std::move(sources));
-  apply(arguments, reader, scenario);
+  apply(arguments.world, reader, scenario);
+  apply_to_simulation(arguments.world, scenario);
+  apply_law(arguments, scenario);
   return scenario;
 }
 

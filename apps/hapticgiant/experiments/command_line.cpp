@@ -1,0 +1,87 @@
+#include "apps/hapticgiant/experiments/command_line.h"
+
+#include <cmath>
+
+#include "apps/hapticgiant/experiments/paper_experiments.h"
+#include "hg/core/error.h"
+
+namespace hg::apps {
+namespace {
+
+void add_options(CLI::App& command, PaperExperimentArguments& arguments) {
+  command.add_option("--law", arguments.law, "gauss, paper or both; default: the device's")
+      ->check(CLI::IsMember({"gauss", "paper", "both"}));
+  command.add_option("--bounds", arguments.bounds, "recoverable or paper; default: the device's")
+      ->check(CLI::IsMember({"recoverable", "paper"}));
+  command.add_option("--seed", arguments.seed,
+                     "of noise and tremor: the same seed, the same files");
+  command.add_option("--out", arguments.out, "folder; one per experiment is made in it")
+      ->capture_default_str();
+  command.add_option("--duration", arguments.duration_s,
+                     "seconds, to cut it short; default: until the script has played");
+  command.add_option("--docs", arguments.docs,
+                     "refresh the figures in the pages of this folder (make experiments)");
+}
+
+void check(const PaperExperimentArguments& arguments) {
+  if (arguments.duration_s &&
+      !(*arguments.duration_s > 0.0 && std::isfinite(*arguments.duration_s))) {
+    throw SetupError("--duration: must be more than 0");
+  }
+}
+
+}  // namespace
+
+void add_paper_experiments(CLI::App& experiment, PaperExperimentArguments& arguments,
+                           int& exit_code) {
+  std::vector<std::string> all;
+  const auto add = [&](const std::string& name, const std::string& text,
+                       const std::vector<std::string>& names) {
+    CLI::App* command = experiment.add_subcommand(name, text);
+    add_options(*command, arguments);
+    command->callback([&arguments, &exit_code, names] {
+      check(arguments);
+      exit_code = run_paper_experiments(arguments, names);
+    });
+  };
+  for (const PaperExperiment& each : paper_experiments()) {
+    const std::string name(each.name);
+    add(name, std::string(each.title) + " of the paper, " + std::string(each.source), {name});
+    all.push_back(name);
+  }
+  add("all", "these four, one after the other", all);
+  CLI::App* timing = experiment.add_subcommand(
+      "timing", "computing time of a cycle beside the paper's, section VII-A; minutes");
+  add_options(*timing, arguments);
+  timing->add_option("--rates", arguments.rates_Hz, "control rates, Hz")
+      ->delimiter(',')
+      ->capture_default_str();
+  timing->callback([&arguments, &exit_code] {
+    check(arguments);
+    exit_code = timing_experiment(arguments);
+  });
+}
+
+void add_plot_and_compare(CLI::App& app, ExperimentsArguments& arguments, int& exit_code) {
+  CLI::App* plot = app.add_subcommand("plot", "Figures of recordings, several over each other.");
+  plot->footer(
+      "Examples:\n"
+      "  hapticgiant plot recordings/latest.mcap\n"
+      "  hapticgiant plot one.mcap two.mcap --out figures");
+  plot->add_option("files", arguments.plot.files, "recordings, one to four")
+      ->required()
+      ->expected(1, 4)
+      ->check(CLI::ExistingFile);
+  plot->add_option("--out", arguments.plot.out, "folder for figure.svg, figure.png and signals")
+      ->capture_default_str();
+  plot->callback([&arguments, &exit_code] { exit_code = hg::apps::plot(arguments.plot); });
+
+  CLI::App* compare = app.add_subcommand(
+      "compare", "Tells what is different in two recordings: events, forces, limits, timing.");
+  compare->footer("Example:\n  hapticgiant compare before.mcap after.mcap");
+  compare->add_option("a", arguments.compare.a, "recording")->required()->check(CLI::ExistingFile);
+  compare->add_option("b", arguments.compare.b, "recording")->required()->check(CLI::ExistingFile);
+  compare->callback([&arguments, &exit_code] { exit_code = hg::apps::compare(arguments.compare); });
+}
+
+}  // namespace hg::apps

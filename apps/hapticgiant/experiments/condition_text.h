@@ -1,0 +1,24 @@
+/// Conditions of expected events, in words and as data.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "hg/config/scenario.h"
+#include "hg/evaluation/events.h"
+
+namespace hg::apps {
+
+/// "elbow x within 2 mm of its upper limit, which acts"; conditions of one rule joined by "and".
+std::string condition_text(const evaluation::EventRule& rule, const config::Scenario& scenario);
+
+/// [{"kind": "limit", "of": "elbow x", "side": "upper"}, {"kind": "force_above", "value": 10},
+/// ...].
+nlohmann::ordered_json condition_json(const evaluation::EventRule& rule,
+                                      const config::Scenario& scenario);
+
+/// What the paper calls the event: its name "t_b", or the one its sentence begins with ("t_a: the
+/// locked door ..."); otherwise its name.
+std::string paper_label(const evaluation::EventRule& rule);
+
+}  // namespace hg::apps

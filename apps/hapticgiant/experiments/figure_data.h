@@ -1,0 +1,29 @@
+/// What the figures of a run need to know besides its signals: the file run.json.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/hapticgiant/experiments/run_table.h"
+#include "hg/config/scenario.h"
+
+namespace hg::apps {
+
+/// An event as a figure marks it.
+struct Mark {
+  std::string label;
+  double time_s = 0.0;
+  std::string what;
+};
+
+/// `kind`: "cartesian", "excavator", "door" or "path", the panels of that figure; "any": all there
+/// are. `note` says where the data comes from.
+nlohmann::ordered_json figure_data(const config::Scenario& scenario, const RunTable& table,
+                                   const std::vector<Mark>& marks, const std::string& kind,
+                                   const std::string& note);
+
+/// Seconds per row of the file signals.csv that figures are drawn from.
+inline constexpr double kFigurePeriod_s = 0.01;
+
+}  // namespace hg::apps

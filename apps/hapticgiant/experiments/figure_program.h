@@ -1,0 +1,19 @@
+/// Draws figures with the Python of the set-up, where it is there.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hg::apps {
+
+/// Draws figure.svg and figure.png into `out` (python/hapticgiant/figures.py) from folders that
+/// hold run.json and signals.csv; several are drawn over each other. Returns why there are none and
+/// how to get them, in one line; empty = they are drawn.
+///
+/// The interpreter is that of the environment variable HAPTICGIANT_PYTHON, else .venv/bin/python
+/// beside models/, else python3.
+std::string draw_figures(const std::filesystem::path& out,
+                         const std::vector<std::filesystem::path>& folders);
+
+}  // namespace hg::apps

@@ -1,0 +1,34 @@
+/// A recording read again: its scenario, events, signals and judgement.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/hapticgiant/experiments/figure_data.h"
+#include "apps/hapticgiant/experiments/run_table.h"
+#include "hg/config/scenario.h"
+#include "hg/recording/recording_reader.h"
+
+namespace hg::apps {
+
+struct RecordedSignals {
+  std::unique_ptr<config::Scenario> scenario;  ///< which `table` refers to
+  std::unique_ptr<RunTable> table;
+  std::vector<Mark> marks;            ///< events as recorded, by the names of the paper
+  nlohmann::ordered_json summary;     ///< as of run --summary, of what the recording holds
+  std::vector<std::uint64_t> hashes;  ///< of the state, cycle by cycle
+  std::uint64_t first_cycle = 0;
+  bool is_complete = true;  ///< false: a crash has cut it off
+  std::vector<recording::NamedText> configuration;
+
+  double rate_Hz() const { return scenario->device.rate_Hz; }
+};
+
+/// One row of signals per `period_s`. Throws SetupError.
+RecordedSignals read_signals(const std::filesystem::path& file, double period_s);
+
+}  // namespace hg::apps

@@ -1,0 +1,420 @@
+"""Figures of runs, as the paper draws them.
+
+    python figures.py OUT FOLDER...      also: python -m hapticgiant.figures OUT FOLDER...
+
+Each folder holds run.json and signals.csv, which `hapticgiant experiment` and `hapticgiant plot`
+write. Draws OUT/figure.svg and OUT/figure.png; several runs are drawn over each other. The same
+data gives the same files. Needs numpy and matplotlib, and nothing else of this package.
+"""
+
+import json
+import pathlib
+import re
+import sys
+
+try:
+    import numpy as np
+except ImportError:
+    np = None
+
+NO_MATPLOTLIB = 3
+WIDTH = 7.2  # inches: both columns of a paper
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c564b")
+STYLES = ("-", (0, (4, 1.5)), (0, (1, 1)), (0, (5, 1, 1, 1)))
+SETTINGS = {
+    "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 7.5,
+    "axes.titlesize": 8, "axes.labelsize": 7.5, "legend.fontsize": 6.8, "xtick.labelsize": 7,
+    "ytick.labelsize": 7, "lines.linewidth": 1.0, "axes.linewidth": 0.6, "grid.linewidth": 0.4,
+    "grid.color": "#dddddd", "axes.grid": True, "axes.axisbelow": True, "legend.frameon": False,
+    "legend.handlelength": 1.6, "legend.columnspacing": 1.2, "legend.borderaxespad": 0.2,
+    "svg.hashsalt": "hapticgiant", "svg.fonttype": "path", "path.simplify_threshold": 0.3,
+    "mathtext.default": "regular",
+}
+
+
+class Run:
+    """One run: signals by the names of their columns, and what run.json says about them."""
+
+    def __init__(self, folder):
+        folder = pathlib.Path(folder)
+        self.facts = json.loads((folder / "run.json").read_text())
+        with open(folder / "signals.csv") as stream:
+            names = stream.readline().strip().split(",")
+            values = np.loadtxt(stream, delimiter=",", ndmin=2)
+        self.signals = dict(zip(names, values.T))
+        self.time = self.signals["time_s"]
+
+    def __getitem__(self, column):
+        return self.signals[column]
+
+    def has(self, column):
+        return column in self.signals and bool(np.isfinite(self.signals[column]).any())
+
+    def events(self):
+        return self.facts["events"]
+
+    def at(self, time_s):
+        """Index of the row at that time."""
+        return min(int(np.searchsorted(self.time, time_s)), len(self.time) - 1)
+
+
+def label_of(name):
+    """t_b' as in the paper; "checkpoint 3" as 3; other events have no label."""
+    if match := re.fullmatch(r"t_(\w)('?)", name):
+        return f"$t_{{{match[1]}}}{match[2]}$"
+    if match := re.fullmatch(r"checkpoint (\d+)", name):
+        return match[1]
+    return ""
+
+
+def mark_events(axes, run):
+    """Lines through all panels; labels above the first one, a step higher where they are close."""
+    span = run.time[-1] - run.time[0]
+    last, height = -np.inf, 0
+    for event in run.events():
+        time, label = event["time_s"], label_of(event["label"])
+        for panel in axes:
+            panel.axvline(time, color="black" if label else "#999999", linewidth=0.7 if label else 0.5,
+                          zorder=1.5)
+        if not label:
+            continue
+        height = 1 - height if time - last < 0.035 * span else 0
+        last = time
+        axes[0].annotate(label, (time, 1.0), (0, 2 + 9 * height), ha="center", va="bottom",
+                         xycoords=("data", "axes fraction"), textcoords="offset points",
+                         fontsize=8, annotation_clip=False)
+
+
+def shade_locks(axes, run):
+    for phase in run.facts["locked"]:
+        for panel in axes:
+            panel.axvspan(phase["from_s"], phase["to_s"], color="#bbbbbb", alpha=0.45, linewidth=0,
+                          zorder=0.5)
+
+
+def make_room(panel, share):
+    """For a legend above the curves."""
+    low, high = panel.get_ylim()
+    panel.set_ylim(low, high + share * (high - low))
+
+
+def legend(panel, columns, **options):
+    make_room(panel, 0.24)
+    panel.legend(loc="upper left", ncol=columns, **options)
+
+
+def draw_signals(panel, runs, entries, label, legend_columns=6):
+    """Signals of run.json with their limits, dotted in the same colour."""
+    for number, style in enumerate(STYLES[:len(runs)]):
+        for entry, colour in zip(entries, COLOURS * 4):
+            if runs[number].has(entry["column"]):
+                panel.plot(runs[number].time, runs[number][entry["column"]], color=colour,
+                           linestyle=style, label=entry["name"] if number == 0 else None)
+    for entry, colour in zip(entries, COLOURS * 4):
+        for side in ("lower", "upper"):
+            if entry[side] is not None:
+                panel.axhline(entry[side], color=colour, linestyle=":", linewidth=0.9)
+    panel.set_ylabel(label)
+    legend(panel, legend_columns)
+
+
+def draw_wrench(panel, runs):
+    """Norms of force (left) and torque (right) of the user."""
+    right = panel.twinx()
+    right.grid(False)
+    for run, style in zip(runs, STYLES):
+        panel.plot(run.time, run["force_N"], color=COLOURS[0], linestyle=style)
+        right.plot(run.time, run["torque_Nm"], color=COLOURS[1], linestyle=style)
+    panel.set_ylabel("force in N", color=COLOURS[0])
+    right.set_ylabel("torque in Nm", color=COLOURS[1])
+    for each in (panel, right):
+        each.set_ylim(bottom=0)
+
+
+def draw_torques(panel, runs, entries):
+    for number, run in enumerate(runs):
+        for entry, colour in zip(entries, COLOURS):
+            panel.plot(run.time, run[entry["torque_column"]], color=colour,
+                       linestyle=STYLES[number], label=entry["name"] if number == 0 else None)
+    units = "/".join(sorted({entry["torque_unit"] for entry in entries}, reverse=True))
+    panel.set_ylabel(f"user, {units}")
+    legend(panel, 6)
+
+
+def draw_speeds(panel, runs, entry):
+    for run, style in zip(runs, STYLES):
+        panel.plot(run.time, run[entry["speed_column"]], color=COLOURS[0], linestyle=style)
+    if entry["speed_max"] is not None:
+        for sign in (-1, 1):
+            panel.axhline(sign * entry["speed_max"], color=COLOURS[0], linestyle=":", linewidth=0.9)
+    panel.set_ylabel(f"{entry['name']} in {entry['unit']}/s")
+
+
+def box(panel, x, y, colour):
+    """Limits of a plane; what is infinite is left out."""
+    for value in x:
+        if value is not None:
+            panel.axvline(value, color=colour, linestyle=":", linewidth=0.9)
+    for value in y:
+        if value is not None:
+            panel.axhline(value, color=colour, linestyle=":", linewidth=0.9)
+
+
+def draw_top_view(panel, runs, from_s=-np.inf, to_s=np.inf):
+    """Motion of hand, elbow and gantry in the plane, with their limits."""
+    facts = runs[0].facts
+    gantry = facts["gantry"] if [joint["unit"] for joint in facts["gantry"]] == ["m", "m"] else []
+    curves = [("end effector", "hand_x_m", "hand_y_m", COLOURS[0])]
+    if facts["has_elbow"]:
+        curves.append(("elbow", "elbow_x_m", "elbow_y_m", COLOURS[1]))
+    if gantry:
+        curves.append(("gantry", gantry[0]["column"], gantry[1]["column"], COLOURS[2]))
+    for number, run in enumerate(runs):
+        rows = (run.time >= from_s) & (run.time <= to_s) & (run["running"] > 0)
+        for name, x, y, colour in curves:
+            panel.plot(run[x][rows], run[y][rows], color=colour, linestyle=STYLES[number],
+                       label=name if number == 0 else None)
+    box(panel, facts["box"]["x"], facts["box"]["y"], COLOURS[0])
+    if gantry:
+        box(panel, *([joint["lower"], joint["upper"]] for joint in gantry), COLOURS[2])
+    panel.set_aspect("equal", adjustable="datalim")
+    panel.set_xlabel("x in m")
+    panel.set_ylabel("y in m")
+    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncol=3)
+
+
+def mark_places(panel, run, places):
+    """Events in the top view: (label, name of the curve)."""
+    for event in run.events():
+        if event["label"] not in places:
+            continue
+        column = places[event["label"]]
+        row = run.at(event["time_s"])
+        x, y = (run[f"{column}_{axis}_m"] if column != "gantry" else
+                run[run.facts["gantry"]["xy".index(axis)]["column"]] for axis in "xy")
+        panel.plot(x[row], y[row], "o", color="black", markersize=3, zorder=4)
+        panel.annotate(label_of(event["label"]), (x[row], y[row]), (4, 3),
+                       textcoords="offset points", fontsize=8)
+
+
+def draw_checkpoints(panel, run):
+    """Circles of 5 cm with the heading in which the handle is asked for."""
+    from matplotlib.patches import Circle
+    for point in run.facts["checkpoints"]:
+        x, y, azimuth = point["x_m"], point["y_m"], point["azimuth_rad"]
+        panel.add_patch(Circle((x, y), 0.05, fill=False, color="black", linewidth=0.9, zorder=4))
+        panel.annotate("", (x + 0.35 * np.cos(azimuth), y + 0.35 * np.sin(azimuth)), (x, y),
+                       arrowprops={"arrowstyle": "->", "linewidth": 0.9})
+        panel.annotate(label_of(point["name"]), (x, y), (-10, 4), textcoords="offset points",
+                       fontsize=9)
+
+
+def side_view(pose):
+    """Distance from the first joint's axis and height of every link, m."""
+    points = np.array(pose["points"]) - pose["points"][0]
+    return np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+
+
+def top_view(pose):
+    points = np.array(pose["points"]) - pose["points"][0]
+    return points[:, 0], points[:, 1]
+
+
+def draw_poses(figure, grid, run):
+    """The twin at the labelled events: from the side, and from above."""
+    poses = [pose for pose in run.facts["poses"] if label_of(pose["label"])]
+    if not poses:
+        return
+    rows = grid.subgridspec(2, len(poses), hspace=0.12, wspace=0.08)
+    for row, (view, name) in enumerate(((side_view, "side"), (top_view, "above"))):
+        spread = np.hstack([np.array(view(pose)) for pose in poses])
+        low, high = spread.min(axis=1) - 0.2, spread.max(axis=1) + 0.2
+        for column, pose in enumerate(poses):
+            panel = figure.add_subplot(rows[row, column])
+            x, y = view(pose)
+            for part, colour in zip(range(1, len(x) - 1), COLOURS):
+                panel.plot(x[part:part + 2], y[part:part + 2], color=colour, linewidth=2.2,
+                           solid_capstyle="round")
+            panel.plot(x[1:-1], y[1:-1], "o", color="black", markersize=2.5)
+            panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xticks=[], yticks=[])
+            panel.set_aspect("equal")
+            if row == 0:
+                panel.set_title(f"{label_of(pose['label'])} = {pose['time_s']:.1f} s")
+            if column == 0:
+                panel.set_ylabel(name)
+
+
+def letter(panel, text):
+    panel.text(-0.075, 1.0, f"({text})", transform=panel.transAxes, ha="right", va="bottom",
+               fontsize=8, fontweight="bold")
+
+
+def finish_time_panels(figure, panels, runs):
+    mark_events(panels, runs[0])
+    for panel in panels:
+        panel.set_xlim(runs[0].time[0], max(run.time[-1] for run in runs))
+    for panel in panels[:-1]:
+        panel.tick_params(labelbottom=False)
+    panels[-1].set_xlabel("time in s")
+    figure.align_ylabels(panels)
+
+
+def beside_top_view(figure, heights):
+    """Panels over each other at the left, one over their whole height at the right."""
+    grid = figure.add_gridspec(len(heights), 2, width_ratios=(1.75, 1), height_ratios=heights,
+                               hspace=0.12, wspace=0.32)
+    left = [figure.add_subplot(grid[row, 0]) for row in range(len(heights))]
+    return left, figure.add_subplot(grid[:, 1])
+
+
+def cartesian(figure, runs):
+    figure.set_size_inches(WIDTH, 5.4)
+    facts = runs[0].facts
+    (joints, singularity, wrench), top = beside_top_view(figure, (2.2, 1, 1.4))
+    draw_signals(joints, runs, facts["manipulator"], "joints in rad")
+    draw_signals(singularity, runs, facts["virtual"], "rad")
+    draw_wrench(wrench, runs)
+    draw_top_view(top, runs, 10.0, 45.0)
+    mark_places(top, runs[0], {"t_b": "elbow", "t_b'": "hand", "t_f": "gantry", "t_g": "hand"})
+    finish_time_panels(figure, [joints, singularity, wrench], runs)
+    for panel, text in zip((joints, singularity, wrench, top), "abcd"):
+        letter(panel, text)
+
+
+def excavator(figure, runs):
+    figure.set_size_inches(WIDTH, 6.4)
+    grid = figure.add_gridspec(3, 1, height_ratios=(1.5, 1.3, 1.2), hspace=0.16)
+    draw_poses(figure, grid[0], runs[0])
+    angles, torques = figure.add_subplot(grid[1]), figure.add_subplot(grid[2])
+    draw_signals(angles, runs, runs[0].facts["twin"], "joints in rad")
+    draw_torques(torques, runs, runs[0].facts["twin"])
+    finish_time_panels(figure, [angles, torques], runs)
+    letter(angles, "b")
+    letter(torques, "c")
+    figure.text(0.06, 0.9, "(a)", fontsize=8, fontweight="bold")
+
+
+def door(figure, runs):
+    figure.set_size_inches(WIDTH, 4.6)
+    grid = figure.add_gridspec(3, 1, height_ratios=(1.4, 1, 1.2), hspace=0.14)
+    panels = [figure.add_subplot(cell) for cell in grid]
+    twin = runs[0].facts["twin"]
+    draw_signals(panels[0], runs, twin, "joints in rad")
+    draw_speeds(panels[1], runs, twin[0])
+    draw_torques(panels[2], runs, twin)
+    shade_locks(panels, runs[0])
+    finish_time_panels(figure, panels, runs)
+    for panel, text in zip(panels, "abc"):
+        letter(panel, text)
+
+
+def path(figure, runs):
+    figure.set_size_inches(WIDTH, 4.6)
+    (joints, wrench), top = beside_top_view(figure, (1.5, 1))
+    draw_signals(joints, runs, runs[0].facts["manipulator"], "joints in rad")
+    draw_wrench(wrench, runs)
+    draw_top_view(top, runs)
+    draw_checkpoints(top, runs[0])
+    finish_time_panels(figure, [joints, wrench], runs)
+    for panel, text in zip((joints, wrench, top), "abc"):
+        letter(panel, text)
+
+
+def any_run(figure, runs):
+    """Whatever device and twin have."""
+    facts = runs[0].facts
+    names = ["wrench"] + [group for group in ("manipulator", "virtual", "gantry", "twin")
+                          if any(run.has(entry["column"]) for entry in facts[group]
+                                 for run in runs)]
+    if "twin" in names:
+        names.append("torques")
+    figure.set_size_inches(WIDTH, max(3.2, 1.25 * len(names) + 0.8))
+    panels, top = beside_top_view(figure, [1.6 if name == "manipulator" else 1 for name in names])
+    for name, panel in zip(names, panels):
+        if name == "wrench":
+            draw_wrench(panel, runs)
+        elif name == "torques":
+            draw_torques(panel, runs, facts["twin"])
+        else:
+            units = "/".join(sorted({entry["unit"] for entry in facts[name]}, reverse=True))
+            draw_signals(panel, runs, facts[name], f"{name} in {units}")
+        if name in ("twin", "torques"):
+            shade_locks([panel], runs[0])
+    draw_top_view(top, runs)
+    finish_time_panels(figure, panels, runs)
+
+
+def timing(figure, tables):
+    """Shares of cycles by computing time, and the paper's figures."""
+    facts = tables[0]
+    figure.set_size_inches(WIDTH, 3.2)
+    panel = figure.add_subplot()
+    for number, series in enumerate(facts["series"]):
+        panel.step(series["from_us"], series["share_percent"], where="post", label=series["name"],
+                   color=COLOURS[number // 2 % len(COLOURS)] if facts["has_two_laws"] else
+                   COLOURS[number % len(COLOURS)],
+                   linestyle=STYLES[number % 2] if facts["has_two_laws"] else "-")
+    for name, value in facts["paper_us"].items():
+        panel.axvline(value, color="black", linewidth=0.7)
+        panel.annotate(f"paper, {name}: {value:g} us", (value, 0.97), (-2, 0), rotation=90,
+                       xycoords=("data", "axes fraction"), textcoords="offset points", ha="right",
+                       va="top", fontsize=6.5)
+    panel.set(xscale="log", xlabel="computing time of a cycle in us", ylabel="cycles in %")
+    panel.legend(loc="upper center", bbox_to_anchor=(0.4, 1.0))
+
+
+KINDS = {"cartesian": cartesian, "excavator": excavator, "door": door, "path": path,
+         "any": any_run}
+
+
+def captions(figure, runs):
+    """With several runs: which line is whose."""
+    if len(runs) < 2:
+        return
+    from matplotlib.lines import Line2D
+    handles = [Line2D([], [], color="black", linestyle=style, label=run.facts["note"])
+               for run, style in zip(runs, STYLES)]
+    figure.legend(handles=handles, loc="lower left", ncol=1, bbox_to_anchor=(0.05, 0.97))
+
+
+def draw(out, folders):
+    """Draws the runs of `folders` over each other into `out`."""
+    import matplotlib
+    matplotlib.use("svg")
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    out = pathlib.Path(out)
+    out.mkdir(parents=True, exist_ok=True)
+    with matplotlib.rc_context(SETTINGS):
+        figure = Figure()
+        FigureCanvasAgg(figure)
+        table = json.loads((pathlib.Path(folders[0]) / "run.json").read_text())
+        if table["kind"] == "timing":
+            timing(figure, [table])
+        else:
+            runs = [Run(folder) for folder in folders[:len(STYLES)]]
+            KINDS[table["kind"]](figure, runs)
+            captions(figure, runs)
+        figure.savefig(out / "figure.svg", metadata={"Date": None, "Creator": None},
+                       bbox_inches="tight", pad_inches=0.04)
+        figure.savefig(out / "figure.png", dpi=200, metadata={"Software": None},
+                       bbox_inches="tight", pad_inches=0.04)
+
+
+def main(arguments):
+    if len(arguments) < 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        return NO_MATPLOTLIB
+    if np is None:
+        return NO_MATPLOTLIB
+    draw(arguments[0], arguments[1:])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
