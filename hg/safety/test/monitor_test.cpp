@@ -141,8 +141,10 @@ struct Bench {
     if (state.dq_p_model.size() > 0) sensors.q_p += 1e-3 * state.dq_p_model;
     if (has_noise) {
       ++cycles;
-      sensors.w_S[2] = 1e-3 * cycles;
-      sensors.a_S[0] = 1e-3 * cycles;
+      const double noise = cycles % 2 == 0 ? 1e-6 : -1e-6;
+      sensors.w_S.array() += noise;
+      sensors.a_S.array() += noise;
+      sensors.omega_S.array() += noise;
       for (int i = 0; i < 6; ++i) sensors.tau_m[i] = 1e-4 * cycles + (i == 0 ? torque : 0.0);
     }
     verdict = monitor.watch(sensors, record, watched, state);
@@ -297,14 +299,23 @@ TEST(Monitor, SeesFrozenSensorsOnlyWhereTheyHaveNoise) {
   Bench all;
   EXPECT_EQ(freeze(all, 100, [](int) {}), 21);
   EXPECT_EQ(all.verdict.fault.code, FaultCode::kSensorFrozen);
-  Bench one;
-  EXPECT_EQ(freeze(one, 100,
-                   [&](int k) {
-                     one.sensors.w_S[3] = one.sensors.omega_S[1] = 1e-3 * k;
-                     for (int i = 0; i < 5; ++i) one.sensors.tau_m[i] = 1e-3 * k;
-                   }),
-            21);
-  EXPECT_EQ(one.verdict.fault.index, 5);
+  // joint torques, wrench, accelerometer, gyroscope: one component alone
+  for (const int frozen : {5, 6, 11, 12, 17}) {
+    Bench one;
+    const auto noise = [&](int k) {
+      const auto shake = [&](int first, auto& v) {
+        for (int i = 0; i < v.size(); ++i) {
+          if (first + i != frozen) v[i] = 1e-3 * k;
+        }
+      };
+      shake(0, one.sensors.tau_m);
+      shake(6, one.sensors.w_S);
+      shake(12, one.sensors.a_S);
+      shake(15, one.sensors.omega_S);
+    };
+    EXPECT_EQ(freeze(one, 100, noise), 21) << frozen;
+    EXPECT_EQ(one.verdict.fault.index, frozen);
+  }
   MonitorConfig without = config();
   without.frozen_samples = 0;
   Bench ideal(without);
@@ -386,6 +397,32 @@ TEST(Monitor, WithoutPowerADeviceMayBeAnywhereAndFromThereItMayOnlyMoveBack) {
   bench.record.robot.q_p[0] = 1.53;
   bench.run(3);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kGantryExceeded);
+}
+
+TEST(Monitor, TheTwistOfALoadedSpringIsNoContradictionAndItsAbsenceIsOne) {
+  Bench bench;
+  bench.torque = 90.0;  // twists the spring by 9 mrad
+  bench.sensors.theta_m[0] = 0.009;
+  bench.run(10);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.sensors.theta_m[0] = -0.0115;
+  bench.run(3);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSensorImplausible);
+}
+
+TEST(Monitor, BelowALimitItMayOnlyMoveBackToo) {
+  Bench bench;
+  const auto put = [&](double q) { bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = q; };
+  bench.watched.state = State::kReady;
+  put(-2.5);
+  bench.step();
+  bench.watched.state = State::kByHand;
+  put(-2.3);
+  bench.run(2);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  put(-2.34);
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kLimitExceeded);
 }
 
 TEST(Monitor, TheSafeSpeedHoldsOnlyWithNobodyAtTheHandle) {
