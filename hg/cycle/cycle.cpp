@@ -53,6 +53,19 @@ prepositioning::TargetConfig target_of(const prepositioning::Config& gantry,
   return target;
 }
 
+// Whether the end of a range or a surface pushes back. Limits of acceleration do so in every
+// oscillation, so that only limits that are near count.
+bool is_pushed_back(const CycleRecord& record) noexcept {
+  constexpr double kPush = 0.5;   // N or Nm
+  constexpr double kNear = 0.05;  // m or rad
+  for (int i = 0; i < record.limit_count; ++i) {
+    const LimitReport& limit = record.limits[static_cast<std::size_t>(i)];
+    const double left = std::min(limit.to_lower, limit.to_upper);
+    if (left < kNear && std::abs(limit.reaction) > kPush) return true;
+  }
+  return record.budget.surface.lpNorm<Eigen::Infinity>() > kPush;
+}
+
 }  // namespace
 
 Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
@@ -219,18 +232,16 @@ void Cycle::watch_energy(CycleRecord& record) noexcept {
   const Vector6 twist_E = rendering_.end_effector_twist(rendering);
   const Vector6& w = record.robot.w_H;
   const Budget& budget = record.budget;
-  constexpr double kPush = 0.5;  // N or Nm of any limit
-  record.passivity = passivity::step(
-      config_.passivity,
-      {.f = w.head<3>(),
-       .power_measured = w.dot(rendering_.handle_twist(record.robot)),
-       .power_rendered = w.dot(twist_E),
-       .dissipation = (budget.damping + budget.friction).dot(rendering.twin.dq_a),
-       .mass = rendering_.apparent_mass(rendering),
-       .speed = twist_E.head<3>().norm(),
-       .is_pushed_back = std::max(budget.limits.lpNorm<Eigen::Infinity>(),
-                                  budget.surface.lpNorm<Eigen::Infinity>()) > kPush},
-      state_.passivity);
+  record.passivity =
+      passivity::step(config_.passivity,
+                      {.f = w.head<3>(),
+                       .power_measured = w.dot(rendering_.handle_twist(record.robot)),
+                       .power_rendered = w.dot(twist_E),
+                       .dissipation = (budget.damping + budget.friction).dot(rendering.twin.dq_a),
+                       .mass = rendering_.apparent_mass(rendering),
+                       .speed = twist_E.head<3>().norm(),
+                       .is_pushed_back = is_pushed_back(record)},
+                      state_.passivity);
   const passivity::Calming& calming = state_.passivity.calming;
   state_.rendering.calming = {calming.damping, calming.inertia};
   const Fault fault = passivity::check(config_.passivity, record.passivity, state_.passivity);

@@ -82,8 +82,7 @@ std::string mass_text(const StabilityMap& map, double mass) {
 KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) {
   Player player(kicked);
   const double rate_Hz = kicked.device.rate_Hz;
-  const double kick_s = kicked.script.script.grasp_s + config.kick.settling;
-  const double begin_s = kick_s + config.kick.duration;
+  const double begin_s = kicked.script.script.grasp_s + config.kick.settling + config.kick.duration;
   const double last_window_s = begin_s + config.kick.watched - config.calm.window;
   KickOutcome outcome;
   std::vector<double> speed;
@@ -93,9 +92,6 @@ KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) 
     player.run();
     const CycleRecord& record = player.record();
     if (record.time_s >= begin_s) speed.push_back(player.truth().twist.head<3>().norm());
-    if (record.time_s >= kick_s && record.passivity.oscillation >= 1.0) {
-      outcome.detected_s = std::min(outcome.detected_s, record.time_s - kick_s);
-    }
     if (record.time_s > last_window_s && record.tracking.is_clamped) was_lost = true;
   }
   outcome.fault = player.record().fault.code;
@@ -128,8 +124,8 @@ user::HandImpedance spring_hand(const SpringHand& hand, double stiffness) {
   return result;
 }
 
-KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config,
-                 const user::HandImpedance& hand, double mass, double damping) {
+config::Scenario kicked(const config::Scenario& scenario, const StabilityConfig& config,
+                        const user::HandImpedance& hand, double mass, double damping) {
   config::Scenario kicked = scenario;
   set_free_twin(kicked, {.mass = mass, .damping = damping});
   kicked.twin.model.q_start.head<3>() = config.position;
@@ -137,10 +133,16 @@ KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config
   kicked.device.passivity.reaction = config.reaction;
   kicked.script.hand = hand;
   set_kick(config.kick, kicked);
-  KickOutcome outcome = play(kicked, config);
+  return kicked;
+}
+
+KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config,
+                 const user::HandImpedance& hand, double mass, double damping) {
+  config::Scenario played = kicked(scenario, config, hand, mass, damping);
+  KickOutcome outcome = play(played, config);
   if (!is_stable(outcome.verdict) && !outcome.was_lost) {
-    take_friction(kicked.device.control);
-    if (is_stable(play(kicked, config).verdict)) outcome.verdict = Verdict::kHunts;
+    take_friction(played.device.control);
+    if (is_stable(play(played, config).verdict)) outcome.verdict = Verdict::kHunts;
   }
   return outcome;
 }

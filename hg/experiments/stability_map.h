@@ -52,7 +52,6 @@ struct KickOutcome {
   double last_speed = 0.0;  ///< largest of the handle in the last window, m/s
   bool was_lost = false;    ///< the reference was not followed in the last window, or a fault came
   FaultCode fault = FaultCode::kNone;
-  double detected_s = kInfinity;  ///< after the kick hand and device were found to shake; or never
 };
 
 /// One hand with one damping of the twin.
@@ -71,7 +70,11 @@ struct StabilityMap {
   std::string device;              ///< its name and its control
 };
 
-/// `scenario` gives device and free twin; its hand is replaced. Where the handle does not calm down
+/// The scenario of a kick: `scenario` gives device and free twin; its hand is replaced.
+config::Scenario kicked(const config::Scenario& scenario, const StabilityConfig& config,
+                        const user::HandImpedance& hand, double mass, double damping);
+
+/// Plays the scenario of a kick. Where the handle does not calm down
 /// the kick is repeated without friction, to see what goes on.
 KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config,
                  const user::HandImpedance& hand, double mass, double damping);
