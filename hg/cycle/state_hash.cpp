@@ -134,13 +134,11 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
   for (std::size_t i = 0; i < state.broken.size(); ++i) {
     counts += state.broken[i] * (2 * i + 1);
   }
-  for (std::size_t i = 0; i < state.same_torque.size(); ++i) {
-    counts += state.same_torque[i] * ((2 * i + 1) << 32U);
+  for (std::size_t i = 0; i < state.same.size(); ++i) {
+    counts += state.same[i] * ((2 * i + 1) << 32U);
   }
   hash.mix(counts);
-  hash.mix(static_cast<std::uint64_t>(state.same_wrench) |
-           static_cast<std::uint64_t>(state.same_imu) << 24U |
-           static_cast<std::uint64_t>(state.late_in_a_row) << 40U |
+  hash.mix(static_cast<std::uint64_t>(state.late_in_a_row) |
            std::uint64_t{state.has_sample} << 62U | std::uint64_t{state.is_broken} << 63U);
   for (const double value : {state.time_s, state.clock_error, state.late}) hash.mix(value);
   hash.mix(state.w_S);

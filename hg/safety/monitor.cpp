@@ -322,27 +322,25 @@ void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) n
   state.has_sample = true;
 }
 
-// joint torques by joint, then wrench and inertial unit
+// joint torques by joint, then the components of wrench and inertial unit
 void Monitor::look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept {
-  const double most = config_.frozen_samples;
-  const bool can_compare = state.has_sample;
-  const bool has_torques = sensors.tau_m.size() == state.tau_m.size() && can_compare;
-  for (int i = 0; i < sensors.tau_m.size(); ++i) {
-    std::uint16_t& same = state.same_torque[at(i)];
-    same = has_torques && sensors.tau_m[i] == state.tau_m[i] ? count_up(same) : std::uint16_t{0};
-    look<FaultCode::kSensorFrozen>(i, same, most);
-  }
-  state.same_wrench = can_compare && sensors.w_S == state.w_S ? state.same_wrench + 1 : 0;
-  look<FaultCode::kSensorFrozen>(n_m_, state.same_wrench, most);
-  if (config_.has_imu) {
-    Vector6 imu;
-    imu << sensors.a_S, sensors.omega_S;
-    state.same_imu = can_compare && imu == state.imu ? state.same_imu + 1 : 0;
-    look<FaultCode::kSensorFrozen>(n_m_ + 1, state.same_imu, most);
-    state.imu = imu;
-  }
+  const auto compare = [&](int first, const auto& now, const auto& before) {
+    const bool can_compare = state.has_sample && now.size() == before.size();
+    for (int i = 0; i < now.size(); ++i) {
+      std::uint16_t& same = state.same[at(first + i)];
+      same = can_compare && now[i] == before[i] ? count_up(same) : std::uint16_t{0};
+      look<FaultCode::kSensorFrozen>(first + i, same, config_.frozen_samples);
+    }
+  };
+  compare(0, sensors.tau_m, state.tau_m);
+  compare(n_m_, sensors.w_S, state.w_S);
   state.tau_m = sensors.tau_m;
   state.w_S = sensors.w_S;
+  if (!config_.has_imu) return;
+  Vector6 imu;
+  imu << sensors.a_S, sensors.omega_S;
+  compare(n_m_ + 6, imu, state.imu);
+  state.imu = imu;
 }
 
 // Of several rules that are broken the one with the hardest reaction, then the smallest number.

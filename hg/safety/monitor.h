@@ -102,8 +102,8 @@ struct MonitorState {
   VectorP q_p;
   Vector6 w_S = Vector6::Zero(), imu = Vector6::Zero();
   double time_s = 0.0;
-  int same_wrench = 0, same_imu = 0;  ///< samples with the same bits
-  std::array<std::uint16_t, kMaxManipulator> same_torque{};
+  /// Samples with the same bits: of joint torques, wrench and inertial unit.
+  std::array<std::uint16_t, kMaxManipulator + 12> same{};
   double clock_error = 0.0;  ///< mean, periods per sample
   double late = 0.0;         ///< late cycles, less what may come
   int late_in_a_row = 0;
