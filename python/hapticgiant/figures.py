@@ -25,7 +25,8 @@ SETTINGS = {
     "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 7.5,
     "axes.titlesize": 8, "axes.labelsize": 7.5, "legend.fontsize": 6.8, "xtick.labelsize": 7,
     "ytick.labelsize": 7, "lines.linewidth": 1.0, "axes.linewidth": 0.6, "grid.linewidth": 0.4,
-    "grid.color": "#dddddd", "axes.grid": True, "axes.axisbelow": True, "legend.frameon": False,
+    "grid.color": "#dddddd", "axes.grid": True, "axes.axisbelow": True, "legend.frameon": True,
+    "legend.framealpha": 0.85, "legend.edgecolor": "none", "legend.fancybox": False,
     "legend.handlelength": 1.6, "legend.columnspacing": 1.2, "legend.borderaxespad": 0.2,
     "svg.hashsalt": "hapticgiant", "svg.fonttype": "path", "path.simplify_threshold": 0.3,
     "mathtext.default": "regular",
@@ -61,7 +62,7 @@ class Run:
 def label_of(name):
     """t_b' as in the paper; "checkpoint 3" as 3; other events have no label."""
     if match := re.fullmatch(r"t_(\w)('?)", name):
-        return f"$t_{{{match[1]}}}{match[2]}$"
+        return f"$t_{{{match[1]}}}${match[2]}"
     if match := re.fullmatch(r"checkpoint (\d+)", name):
         return match[1]
     return ""
@@ -137,7 +138,7 @@ def draw_torques(panel, runs, entries):
             panel.plot(run.time, run[entry["torque_column"]], color=colour,
                        linestyle=STYLES[number], label=entry["name"] if number == 0 else None)
     units = "/".join(sorted({entry["torque_unit"] for entry in entries}, reverse=True))
-    panel.set_ylabel(f"user, {units}")
+    panel.set_ylabel(f"user in {units}")
     legend(panel, 6)
 
 
@@ -177,23 +178,23 @@ def draw_top_view(panel, runs, from_s=-np.inf, to_s=np.inf):
     box(panel, facts["box"]["x"], facts["box"]["y"], COLOURS[0])
     if gantry:
         box(panel, *([joint["lower"], joint["upper"]] for joint in gantry), COLOURS[2])
-    panel.set_aspect("equal", adjustable="datalim")
+    panel.set_aspect("equal", adjustable="box", anchor="N")
     panel.set_xlabel("x in m")
     panel.set_ylabel("y in m")
-    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncol=3)
+    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncol=3, columnspacing=0.9)
 
 
 def mark_places(panel, run, places):
-    """Events in the top view: (label, name of the curve)."""
+    """Events in the top view: label -> name of the curve, offset of the label in points."""
     for event in run.events():
         if event["label"] not in places:
             continue
-        column = places[event["label"]]
+        column, offset = places[event["label"]]
         row = run.at(event["time_s"])
         x, y = (run[f"{column}_{axis}_m"] if column != "gantry" else
                 run[run.facts["gantry"]["xy".index(axis)]["column"]] for axis in "xy")
         panel.plot(x[row], y[row], "o", color="black", markersize=3, zorder=4)
-        panel.annotate(label_of(event["label"]), (x[row], y[row]), (4, 3),
+        panel.annotate(label_of(event["label"]), (x[row], y[row]), offset,
                        textcoords="offset points", fontsize=8)
 
 
@@ -275,7 +276,8 @@ def cartesian(figure, runs):
     draw_signals(singularity, runs, facts["virtual"], "rad")
     draw_wrench(wrench, runs)
     draw_top_view(top, runs, 10.0, 45.0)
-    mark_places(top, runs[0], {"t_b": "elbow", "t_b'": "hand", "t_f": "gantry", "t_g": "hand"})
+    mark_places(top, runs[0], {"t_b": ("elbow", (-12, 6)), "t_b'": ("hand", (-13, -12)),
+                               "t_f": ("gantry", (5, -9)), "t_g": ("hand", (4, 3))})
     finish_time_panels(figure, [joints, singularity, wrench], runs)
     for panel, text in zip((joints, singularity, wrench, top), "abcd"):
         letter(panel, text)
@@ -359,8 +361,9 @@ def timing(figure, tables):
         panel.annotate(f"paper, {name}: {value:g} us", (value, 0.97), (-2, 0), rotation=90,
                        xycoords=("data", "axes fraction"), textcoords="offset points", ha="right",
                        va="top", fontsize=6.5)
-    panel.set(xscale="log", xlabel="computing time of a cycle in us", ylabel="cycles in %")
-    panel.legend(loc="upper center", bbox_to_anchor=(0.4, 1.0))
+    panel.set(xscale="log", yscale="log", ylim=(1e-3, 100.0),
+              xlabel="computing time of a cycle in us", ylabel="cycles in %")
+    panel.legend(loc="upper center", bbox_to_anchor=(0.52, 1.0))
 
 
 KINDS = {"cartesian": cartesian, "excavator": excavator, "door": door, "path": path,
@@ -374,7 +377,7 @@ def captions(figure, runs):
     from matplotlib.lines import Line2D
     handles = [Line2D([], [], color="black", linestyle=style, label=run.facts["note"])
                for run, style in zip(runs, STYLES)]
-    figure.legend(handles=handles, loc="lower left", ncol=1, bbox_to_anchor=(0.05, 0.97))
+    figure.legend(handles=handles, loc="lower left", ncol=1, bbox_to_anchor=(0.05, 0.935))
 
 
 def draw(out, folders):

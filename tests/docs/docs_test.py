@@ -1,6 +1,6 @@
 """Runs what the documents show: the files in them are written, the commands in them are executed.
 
-In docs/*.md a block ```yaml NAME or ```hqp NAME is a file, ```yaml +NAME is more of it; a block
+In docs/**/*.md a block ```yaml NAME or ```hqp NAME is a file, ```yaml +NAME is more of it; a block
 ```sh holds commands. Both are taken in the order of the document, in a folder of its own that
 starts as a copy of models/examples. Every command must end with exit code 0, or with N where its line ends with
 `# exit N`. Lines that a ```text block shows after a command are not compared.
@@ -53,7 +53,7 @@ def run_document(document, program, folder):
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
     total, faults = 0, []
-    for document in sorted((ROOT / "docs").glob("*.md")):
+    for document in sorted((ROOT / "docs").rglob("*.md")):
         with tempfile.TemporaryDirectory() as folder:
             shutil.copytree(ROOT / "models" / "examples", folder, dirs_exist_ok=True)
             count, found = run_document(document, program, pathlib.Path(folder))

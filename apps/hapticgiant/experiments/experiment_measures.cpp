@@ -113,9 +113,12 @@ std::vector<Statement> measure_cartesian(const Look& look) {
                             look.over("m4_rad_per_s", d, d + 0.5).magnitude()}),
                   3))},
       {"t_e: joint 4 at its upper limit", "height cannot be increased, force jumps",
-       fmt::format("height ends at {} m, force {} to {} N",
-                   number(look.over("hand_z_m", e, e + 1.5).most, 3),
-                   number(force(e - 0.5, e).mean, 1), number(force(e, e + 1.0).most, 1))},
+       fmt::format("m4 at most {} rad (limit 2.45), force {} to {} N; height {} m, then {} m by "
+                   "tilting the handle",
+                   number(look.over("m4_rad", 0.0, look.end()).most, 4),
+                   number(force(e - 0.5, e).mean, 1), number(force(e, e + 1.0).most, 1),
+                   number(look.at("hand_z_m", e), 3),
+                   number(look.over("hand_z_m", e, e + 1.5).most, 3))},
       {"t_f: gantry ends in y", "full stop in y, x still possible, force and torque stay low",
        fmt::format(
            "until t_g: force at most {} N, torque at most {} Nm; joint 2 goes from {} to {} "

@@ -26,6 +26,12 @@ std::string found_text(const EventResult& event) {
   return fmt::format("{:.3f} s{}", *event.found_s, event.is_as_expected() ? "" : ", NOT THERE");
 }
 
+// without the law where there are two
+std::string common_note(const std::vector<ReportedRun>& runs) {
+  const std::string note = run_note(runs.front().result);
+  return runs.size() == 1 ? note : note.substr(note.find(", ") + 2);
+}
+
 Rows event_rows(const std::vector<ReportedRun>& runs) {
   Rows rows = {{"event", "condition", "expected"}};
   for (const ReportedRun& run : runs) rows.front().push_back("found, law " + run.law);
@@ -155,7 +161,7 @@ std::string report_html(const std::vector<ReportedRun>& runs, const std::filesys
   const PaperExperiment& experiment = *runs.front().result.experiment;
   std::string body = fmt::format(
       "<h1>{}</h1>\n<p class=\"source\">{} of the paper; {}</p>\n<p>{}</p>\n", experiment.title,
-      experiment.source, escaped(run_note(runs.front().result)), experiment.about);
+      experiment.source, escaped(common_note(runs)), experiment.about);
   body += verdict_html(runs);
   body += html_figure(
       folder / "figure.svg",
@@ -177,8 +183,7 @@ std::string report_html(const std::vector<ReportedRun>& runs, const std::filesys
 }
 
 std::string report_markdown(const std::vector<ReportedRun>& runs, const std::string& command) {
-  const ExperimentResult& first = runs.front().result;
-  std::string text = fmt::format("`{}`; {}.\n\n### Events\n\n", command, run_note(first));
+  std::string text = fmt::format("`{}`; {}.\n\n### Events\n\n", command, common_note(runs));
   text += markdown_table(event_rows(runs));
   text +=
       "\n### Beside the paper\n\nThe paper's column comes from a real machine, ours from a "
