@@ -185,8 +185,10 @@ int timing_experiment(const PaperExperimentArguments& arguments) {
   if (const auto why = draw_figures(folder, {folder}); !why.empty()) print_out(why + "\n");
   write_output((folder / "report.html").string(), report(rows, folder, machine));
   if (!arguments.docs.empty()) {
+    const std::string cut =
+        arguments.duration_s ? fmt::format(" --duration {:g}", *arguments.duration_s) : "";
     std::string text =
-        fmt::format("`hapticgiant experiment timing`, {}, {}. {}\n\n",
+        fmt::format("`hapticgiant experiment timing{}`, {}, {}. {}\n\n", cut,
                     machine["date"].get<std::string>(), machine["cpu"].get<std::string>(), how());
     refresh_page(arguments.docs, "timing", text + markdown_table(table(rows)),
                  folder / "figure.svg");
