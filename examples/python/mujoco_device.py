@@ -98,6 +98,7 @@ class World:
         weight = np.array(self.data.qfrc_bias[self.m])  # the springs carry it
         self.data.qpos[self.theta] = q_m + weight / STIFFNESS
         self.sequence = self.at_work = 0
+        self.random = np.random.default_rng(1)
         self.time_s = 0.0
         self.tau = np.zeros(6)  # of the motors, behind their current
         self.tau_cmd, self.dq_p_cmd, self.is_enabled = np.zeros(6), np.zeros(2), False
@@ -136,7 +137,7 @@ class World:
         w_S = np.concatenate([
             force - inertia_force,
             torque - cross(P_H_S, force) - inertia_torque - cross(to_com, inertia_force)])
-        return [*w_S, *a_S, *omega]
+        return np.concatenate([w_S, a_S, omega])
 
     def live(self, command):
         self.target.active, self.target.p_b, self.target.press = command["hand"]
@@ -187,9 +188,12 @@ class World:
         tau = STIFFNESS * (theta - q_m) + DAMPING * (dq[self.theta] - dq[self.m])
         wrapped = np.array(q_m)
         wrapped[0] = (q_m[0] + np.pi) % (2.0 * np.pi) - np.pi  # m1 turns without end
+        # sensors that show the same bits again and again count as broken: a trace of noise
+        tau = tau + 1e-6 * self.random.standard_normal(len(tau))
+        at_sensor = self.at_sensor() + 1e-6 * self.random.standard_normal(12)
         return [self.sequence, self.time_s, self.at_work, int(self.person.is_holding(self.time_s)),
-                0, 0, 0, *vector(wrapped), *vector(dq[self.m]), *vector(theta), *vector(tau),
-                *vector(q[self.p], 2), *self.at_sensor()]
+                0, 1, 0, 1, 0, 0, 0, *vector(wrapped), *vector(dq[self.m]), *vector(theta), *vector(tau),
+                *vector(q[self.p], 2), *at_sensor, *vector([])]
 
 
 def off(sequence):

@@ -51,7 +51,7 @@ class MainJob(TemporaryFolder):
         self.assertEqual(set(told["events"][0]), {"name", "time_s", "what"})
         self.assertEqual(told["missing_events"], [])
         self.assertEqual(told["allocations_in_loop"], 0)
-        self.assertEqual(set(told["cycle_time_us"]), {"median", "p99_9", "max"})
+        self.assertEqual(set(told["cycle_time_us"]), {"median", "p99_9", "max", "histogram"})
         self.assertLess(told["sync_error"]["max_m"], 1e-3)
         self.assertIn("worst_violation", told["limits"]["hinge"])
         self.check_recording(pathlib.Path(told["recording"]), told["cycles"])
@@ -388,7 +388,7 @@ class BadInput(TemporaryFolder):
                                    (["rum"], "rum: no such subcommand of hapticgiant, did you mean "
                                              "'run'?"),
                                    (["hqp", "slove", "x"], "did you mean 'solve'?"),
-                                   (["experiment"], "experiment: expected a subcommand: free-space"),
+                                   (["experiment"], "experiment: expected a subcommand: cartesian"),
                                    (["experiment", "stability"], "did you mean 'stability-map'?"),
                                    (["experiment", "free-space", "--svg", "x"], "--svg"),
                                    (["experiment", "impedance", "--json", "/no/such/x"],

@@ -178,7 +178,7 @@ class PageTest(TemporaryFolder):
         self.addCleanup(page.close)
         for command in ("pause", "restart"):
             self.assertIn("keeps its own time", self.refuse(page, command))
-        self.assertEqual(set(page.scene()["commands"]), {"stop", "set"})
+        self.assertEqual(set(page.scene()["commands"]), {"stop", "set", "mode"})
         process.send_signal(signal.SIGINT)
         process.wait(timeout=30)
 

@@ -81,9 +81,15 @@ class Commands(unittest.TestCase):
             self.assertRegex(said, r"link +\d+ sent, \d+ received")
             self.assertRegex(said, r"truth +joint limits .*; force of the user at most \d")
 
-    def test_seed_step_hand_sensors_and_plant_are_arguments_of_simulate(self):
+    def test_a_device_whose_sensors_have_no_noise_against_its_description_is_noticed(self):
+        with Server("free_space", "--fast", "--sensors", "ideal") as server:
+            result = run("free_space", "--fast", "--device-address", server.address)
+            self.assertEqual(result.returncode, 3)
+            self.assertIn("105 measured value is frozen", result.stdout)
+
+    def test_seed_step_hand_and_plant_are_arguments_of_simulate(self):
         for world, for_both in [(["--seed", "7", "--step", "0.5e-3", "--hand", "stiff"], []),
-                                (["--sensors", "ideal"], ["--plant", "ideal"])]:
+                                (["--seed", "7"], ["--plant", "ideal"])]:
             with Server("free_space", "--fast", *world, *for_both) as server:
                 there = self.state(*for_both, "--device-address", server.address)
                 self.assertEqual(there, self.state(*world, *for_both))
