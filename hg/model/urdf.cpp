@@ -133,12 +133,12 @@ class Reader {
     const Pose pose = origin(e, item);
     const XMLElement& i = child(e, "inertia", item);
     // all before the matrix: Eigen does not bear an exception between its commas
-    const double ixx = number(i, "ixx", item);
-    const double iyy = number(i, "iyy", item);
-    const double izz = number(i, "izz", item);
     const double ixy = number(i, "ixy", item);
     const double ixz = number(i, "ixz", item);
     const double iyz = number(i, "iyz", item);
+    const double ixx = number(i, "ixx", item);
+    const double iyy = number(i, "iyy", item);
+    const double izz = number(i, "izz", item);
     Eigen::Matrix3d inertia;
     inertia << ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz;
     const Inertial result = {.mass = number(child(e, "mass", item), "value", item),

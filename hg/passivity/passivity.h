@@ -34,7 +34,7 @@ enum class Reaction : std::uint8_t {
 
 /// Set-up data.
 struct Config {
-  Reaction reaction = Reaction::kAct;
+  Reaction reaction = Reaction::kObserve;
   double dt = 1e-3;         ///< s
   double trip_time = 0.2;   ///< of oscillation until it is detected, s
   double damping = 25.0;    ///< of the damper when calmed, Ns/m; [C] 7

@@ -241,7 +241,9 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& reco
     if (state.has_sample) {
       const double moved = sensors.q_p[axis] - state.q_p[axis];
       state.gantry_gap[axis] = kept * state.gantry_gap[axis] + moved - config_.dt * model;
-      look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_gap[axis]), gap);
+      // a drive that is as fast again as its model thinks is still no fault
+      const double by_lag = config_.drive.lag * std::abs(model);
+      look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_gap[axis]), gap + by_lag);
     }
     look<FaultCode::kGantryExceeded>(
         axis, std::max(q - state.highest_p[axis], state.lowest_p[axis] - q), beyond);
