@@ -18,12 +18,16 @@
 #include <vector>
 
 #include "hg/core/types.h"
+#include "hg/environment/cast.h"
+#include "hg/environment/planes.h"
 #include "hg/environment/surface.h"
 
 namespace hg::environment {
 
 inline constexpr std::size_t kMaxSurfaces = 64;
-inline constexpr int kMaxSweeps = 16;
+inline constexpr int kMaxRounds = 4;  ///< in which the proxy follows a curved surface
+inline constexpr int kMaxSweeps = 5 * kMaxRounds;
+
 inline constexpr double kFullDamping = 5e-3;  ///< depth from which damping acts in full, m; [C] 5
 
 /// Part of the copyable state of a cycle.
@@ -57,6 +61,14 @@ class Environment {
   int surface_around(const Eigen::Vector3d& position) const noexcept;
 
  private:
+  struct Found {
+    Hit hit;  ///< resolved in B
+    int surface = -1;
+  };
+  Found first_hit(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const noexcept;
+  void slide(const Eigen::Vector3d& handle, Planes& planes, Eigen::Vector3d& proxy) const noexcept;
+  void follow(const Eigen::Vector3d& handle, Planes& planes, Eigen::Vector3d& proxy) const noexcept;
+
   std::vector<Surface> surfaces_;
   double period_ = 0.0;
 };
