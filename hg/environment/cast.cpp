@@ -16,7 +16,7 @@ class Clip {
 
   // a half space: what is at most `height` along the unit vector `normal`
   void flat(const Vector3d& normal, double height) noexcept {
-    const double from = normal.dot(a_) - height;
+    const double from = normal.dot(a_) - (height + kGrown);
     const double rise = normal.dot(d_);
     begin_at(from, rise, normal);
     if (rise == 0.0) {
@@ -29,7 +29,8 @@ class Clip {
   }
 
   // what is within `radius` of the origin, along the axes where `mask` is 1
-  void round(const Vector3d& mask, double radius) noexcept {
+  void round(const Vector3d& mask, double said_radius) noexcept {
+    const double radius = said_radius + kGrown;
     const Vector3d a = mask.cwiseProduct(a_), d = mask.cwiseProduct(d_);
     const double distance = a.norm();
     const double slope = a.dot(d);

@@ -41,10 +41,10 @@ Environment::Environment(std::vector<Surface> surfaces, double period)
   for (const Surface& surface : surfaces_) check(surface);
 }
 
-Contact Environment::step(const Vector3d& position, const Vector3d& velocity,
-                          State& state) const noexcept {
+ContactReport Environment::step(const Vector3d& position, const Vector3d& velocity,
+                                State& state) const noexcept {
   const Vector3d handle = position + 0.5 * period_ * velocity;
-  Contact contact;
+  ContactReport contact;
   contact.proxy = handle;
   if (surfaces_.empty() || !handle.allFinite()) return contact;
   if (!state.is_started) state = {handle, true};

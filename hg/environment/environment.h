@@ -21,6 +21,7 @@
 #include "hg/environment/cast.h"
 #include "hg/environment/planes.h"
 #include "hg/environment/surface.h"
+#include "hg/signals/state.h"
 
 namespace hg::environment {
 
@@ -36,13 +37,6 @@ struct State {
   bool is_started = false;  ///< false: the proxy starts where the handle is
 };
 
-/// What the surfaces do in one sample.
-struct Contact {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the handle
-  Eigen::Vector3d proxy = Eigen::Vector3d::Zero();
-  int surface = -1;  ///< index of the one that pushes most; -1 = none
-};
-
 class Environment {
  public:
   Environment() = default;  ///< without surfaces
@@ -54,8 +48,8 @@ class Environment {
   /// `position` and `velocity` of the handle at the begin of a sample. The spring acts as in its
   /// middle, where the handle is half a period later; else it would give energy. A handle that
   /// starts inside a solid is free until it has left it.
-  Contact step(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
-               State& state) const noexcept;
+  ContactReport step(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
+                     State& state) const noexcept;
 
   /// Index of a solid that a point is inside of; -1 = of none. Meshes have no inside.
   int surface_around(const Eigen::Vector3d& position) const noexcept;

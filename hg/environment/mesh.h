@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <vector>
@@ -54,10 +55,23 @@ Mesh read_stl(std::string_view content, std::string_view source, double scale);
 template <class Visit>
 void Mesh::for_each_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double margin,
                          const Visit& visit) const noexcept {
-  Eigen::AlignedBox3d way(a.cwiseMin(b).array() - margin, a.cwiseMax(b).array() + margin);
+  // a box is missed where the shares of the way at which it lies between its faces have nothing in
+  // common; a division by zero gives infinities, which stand for always or never
+  const Eigen::Array3d inverse = (b - a).array().inverse();
+  const auto is_missed = [&](const Eigen::AlignedBox3d& box) {
+    const Eigen::Array3d to_min = (box.min() - a).array() - margin;
+    const Eigen::Array3d to_max = (box.max() - a).array() + margin;
+    double first = 0.0, last = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = to_min[axis] * inverse[axis], y = to_max[axis] * inverse[axis];
+      first = std::max(first, std::min(x, y));
+      last = std::min(last, std::max(x, y));
+    }
+    return first > last;
+  };
   for (std::size_t i = 0; i < nodes_.size();) {
     const Node& node = nodes_[i];
-    if (!node.box.intersects(way)) {
+    if (is_missed(node.box)) {
       i = static_cast<std::size_t>(node.next);
       continue;
     }

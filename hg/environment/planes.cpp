@@ -32,7 +32,7 @@ Vector3d Planes::shares(const Vector3d& to_handle) const noexcept {
   Matrix3d N = Matrix3d::Zero();
   for (int i = 0; i < count_; ++i) N.col(i) = planes_[static_cast<std::size_t>(i)].normal;
   const Vector3d depths = -(N.transpose() * to_handle);
-  const double rounding = 1e-9 * to_handle.norm();
+  const double rounding = 1e-11 * to_handle.norm();
   constexpr std::array<int, 8> kBySize = {0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110, 0b111};
   for (const int set : kBySize) {
     if (set >= 1 << count_) continue;

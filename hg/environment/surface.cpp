@@ -1,6 +1,6 @@
 #include "hg/environment/surface.h"
 
-#include <fmt/format.h>
+#include <sstream>
 
 #include "hg/core/error.h"
 
@@ -9,8 +9,10 @@ namespace {
 
 void require(const Surface& surface, const char* what, const Interval& range, double value) {
   if (range.contains(value)) return;
-  throw SetupError(fmt::format("surface {}: {} must be {:g} .. {:g}, got {:g}", surface.name, what,
-                               range.lb, range.ub, value));
+  std::ostringstream text;
+  text << "surface " << surface.name << ": " << what << " must be " << range.lb << " .. "
+       << range.ub << ", got " << value;
+  throw SetupError(text.str());
 }
 
 }  // namespace
