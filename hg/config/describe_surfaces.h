@@ -84,8 +84,7 @@ void describe_surfaces(V& v, std::vector<SurfaceDraft>& surfaces) {
   v.rule(surfaces.size() <= environment::kMaxSurfaces, "surfaces", "at most 64 surfaces");
 }
 
-/// Reads the meshes. Throws SetupError.
-std::vector<environment::Surface> surfaces_of(const std::vector<SurfaceDraft>& drafts,
-                                              SourceReader& reader);
+/// Reads the file of a mesh. Throws SetupError.
+environment::Surface surface_of(const SurfaceDraft& draft, SourceReader& reader);
 
 }  // namespace hg::config

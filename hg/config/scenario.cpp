@@ -10,6 +10,7 @@
 #include "hg/config/describe_surfaces.h"
 #include "hg/config/loader.h"
 #include "hg/core/error.h"
+#include "hg/environment/cast.h"
 #include "hg/rendering/catalogue.h"
 
 namespace hg::config {
@@ -47,12 +48,35 @@ EventNames names_of(const Device& device, const Twin& twin, const LimitCatalogue
   return names;
 }
 
+std::vector<environment::Surface> load_surfaces(Loader& loader, LoaderFile& file,
+                                                const rendering::TwinModel& twin) {
+  std::vector<SurfaceDraft> drafts;
+  describe_surfaces(loader, drafts);
+  model::Chain chain = twin.chain;
+  chain.update_poses(twin.q_start);
+  const Eigen::Vector3d start = chain.pose(twin.end_effector).p;
+  std::vector<environment::Surface> surfaces;
+  for (const SurfaceDraft& draft : drafts) {
+    if (draft.shape == SurfaceShape::kMesh && draft.mesh.empty()) continue;
+    try {
+      surfaces.push_back(surface_of(draft, file.sources));
+    } catch (const SetupError& error) {
+      file.faults.add_complete(error.what());
+      continue;
+    }
+    loader.rule(!environment::is_inside(surfaces.back(), start), "surfaces",
+                "the end effector of the twin must not start inside of one",
+                "'" + draft.surface.name + "' around it");
+  }
+  return surfaces;
+}
+
 Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   ScenarioDraft draft;
   ChangesDraft changes;
   InjectionsDraft injections;
-  std::vector<SurfaceDraft> surfaces;
+  std::vector<environment::Surface> surfaces;
   std::vector<TimedPanel> panel;
   std::optional<Device> device;
   std::optional<Twin> twin;
@@ -79,7 +103,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
     describe_panel(loader, panel);
     injections = injections_of(draft.names.manipulator, draft.names.gantry);
     describe_injections(loader, injections);
-    describe_surfaces(loader, surfaces);
+    surfaces = load_surfaces(loader, file, twin->model);
   });
 
   return {.title = draft.title,
@@ -94,7 +118,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
           .changes = std::move(changes.changes),
           .panel = std::move(panel),
           .faults = std::move(injections.injections),
-          .surfaces = surfaces_of(surfaces, reader),
+          .surfaces = std::move(surfaces),
           .sources = reader.texts(),
           .places = std::move(file.places)};
 }

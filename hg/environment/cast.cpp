@@ -149,23 +149,32 @@ std::optional<Hit> first_hit(const Convex& solid, const Vector3d& a, const Vecto
   return clip(solid, a, b).hit();
 }
 
-}  // namespace
-
-std::optional<Hit> first_hit(const Shape& shape, const Vector3d& from,
-                             const Vector3d& to) noexcept {
-  return std::visit([&](const auto& kind) { return first_hit(kind, from, to); }, shape);
+Vector3d into(const Pose& pose, const Vector3d& p) noexcept {
+  return pose.R.transpose() * (p - pose.p);
 }
 
-bool is_inside(const Shape& shape, const Vector3d& point) noexcept {
+}  // namespace
+
+std::optional<Hit> first_hit(const Surface& surface, const Vector3d& from,
+                             const Vector3d& to) noexcept {
+  const Vector3d a = into(surface.pose, from), b = into(surface.pose, to);
+  std::optional<Hit> hit =
+      std::visit([&](const auto& shape) { return first_hit(shape, a, b); }, surface.shape);
+  if (hit) hit->normal = surface.pose.R * hit->normal;
+  return hit;
+}
+
+bool is_inside(const Surface& surface, const Vector3d& point) noexcept {
+  const Vector3d p = into(surface.pose, point);
   return std::visit(
-      [&](const auto& kind) {
-        if constexpr (std::is_same_v<decltype(kind), const Mesh&>) {
+      [&](const auto& shape) {
+        if constexpr (std::is_same_v<decltype(shape), const Mesh&>) {
           return false;
         } else {
-          return clip(kind, point, point).depth() > kOutside;
+          return clip(shape, p, p).depth() > kOutside;
         }
       },
-      shape);
+      surface.shape);
 }
 
 }  // namespace hg::environment

@@ -4,7 +4,7 @@
 /// where it gets kEntered deep, it is stopped on the surface itself, and what begins less than
 /// kOutside deep counts as outside. So a proxy that rests on a surface may glide along it, and is
 /// stopped again when it is pushed into it. Solids are larger than they are said to be by kGrown,
-/// so that nothing falls between two that touch. SI units, frame of the shape. No allocation.
+/// so that nothing falls between two that touch. SI units, frame B. No allocation.
 #pragma once
 
 #include <optional>
@@ -23,10 +23,10 @@ struct Hit {
   Eigen::Vector3d normal;  ///< of the surface there, outwards, unit
 };
 
-std::optional<Hit> first_hit(const Shape& shape, const Eigen::Vector3d& from,
+std::optional<Hit> first_hit(const Surface& surface, const Eigen::Vector3d& from,
                              const Eigen::Vector3d& to) noexcept;
 
-/// Whether a point is in the solid, deeper than kOutside. Meshes and their sides have no inside.
-bool is_inside(const Shape& shape, const Eigen::Vector3d& point) noexcept;
+/// Whether a point is in the solid, deeper than kOutside. Meshes have no inside.
+bool is_inside(const Surface& surface, const Eigen::Vector3d& point) noexcept;
 
 }  // namespace hg::environment

@@ -13,10 +13,6 @@ using Eigen::Vector3d;
 
 constexpr double kStill = 1e-10;  // m; a proxy that moves less has arrived
 
-Vector3d into(const Pose& pose, const Vector3d& p) noexcept {
-  return pose.R.transpose() * (p - pose.p);
-}
-
 // Never pulls, and along the surface within the cone of friction.
 Vector3d force_of(const Spread& spread, const Vector3d& velocity) noexcept {
   const double damping = spread.damping * std::min(1.0, spread.depth / kFullDamping);
@@ -57,22 +53,12 @@ ContactReport Environment::step(const Vector3d& position, const Vector3d& veloci
   return contact;
 }
 
-int Environment::surface_around(const Vector3d& position) const noexcept {
-  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    const Surface& surface = surfaces_[i];
-    if (is_inside(surface.shape, into(surface.pose, position))) return static_cast<int>(i);
-  }
-  return -1;
-}
-
 Environment::Found Environment::first_hit(const Vector3d& from, const Vector3d& to) const noexcept {
   Found first;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    const Surface& surface = surfaces_[i];
-    const auto hit =
-        environment::first_hit(surface.shape, into(surface.pose, from), into(surface.pose, to));
+    const auto hit = environment::first_hit(surfaces_[i], from, to);
     if (!hit || (first.surface >= 0 && hit->share >= first.hit.share)) continue;
-    first = {{hit->share, surface.pose.R * hit->normal}, static_cast<int>(i)};
+    first = {*hit, static_cast<int>(i)};
   }
   return first;
 }

@@ -51,12 +51,9 @@ class Environment {
   ContactReport step(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
                      State& state) const noexcept;
 
-  /// Index of a solid that a point is inside of; -1 = of none. Meshes have no inside.
-  int surface_around(const Eigen::Vector3d& position) const noexcept;
-
  private:
   struct Found {
-    Hit hit;  ///< resolved in B
+    Hit hit;
     int surface = -1;
   };
   Found first_hit(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const noexcept;

@@ -114,9 +114,9 @@ void add_all(std::string& text) {
 std::string typescript_text() {
   std::string text(kHead);
   add_all<SceneMessage, SceneChainMessage, SceneJointMessage, SceneLimitMessage, SceneBoxMessage,
-          Choices, Choice, SettingMessage>(text);
-  add_all<FrameMessage, FeltLimitMessage, ActiveLimitMessage, BudgetMessage, WrenchMessage,
-          SingularityMessage, RunStateMessage, SafetyMessage, GhostMessage>(text);
+          SceneSurfaceMessage, Choices, Choice, SettingMessage>(text);
+  add_all<FrameMessage, FeltLimitMessage, ActiveLimitMessage, ContactMessage, BudgetMessage,
+          WrenchMessage, SingularityMessage, RunStateMessage, SafetyMessage, GhostMessage>(text);
   add_all<HandMessage, CommandMessage, AnswerMessage, ValuesMessage, EventMessage>(text);
   return text;
 }

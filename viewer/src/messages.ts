@@ -20,6 +20,7 @@ export interface Scene {
   floor_z_m: number;
   box: SceneBox;
   environment: "room" | "door" | "excavator"; // of the twin
+  surfaces: SceneSurface[];
   choices: Choices;
   settings: Setting[];
   commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode")[]; // that are followed
@@ -60,6 +61,16 @@ export interface SceneLimit {
 export interface SceneBox {
   min_m: Vec3;
   max_m: Vec3;
+}
+
+// a virtual surface
+export interface SceneSurface {
+  name: string;
+  shape: "plane" | "box" | "sphere" | "cylinder" | "mesh"; // a plane is solid below its z = 0, a cylinder has its axis along z
+  p_B_m: Vec3; // of its centre
+  quaternion_B: Quaternion;
+  size_m: Vec3; // of the box around it; zero for a plane
+  triangles_m: number[]; // of a mesh: 9 coordinates each; else empty
 }
 
 // what can be chosen, and is
@@ -122,6 +133,7 @@ export interface Frame {
   torque_Nm: Vec3;
   felt: FeltLimit | null;
   active: ActiveLimit[]; // limits that act
+  contact: Contact | null; // null = none
   limit_position: number[]; // rad or m, in the order of Scene.limits
   limit_distance: (number | null)[]; // to the nearer end, with margin; null = unbounded
   budget: Budget; // why do I feel this?
@@ -156,6 +168,13 @@ export interface ActiveLimit {
   text: string;
 }
 
+// with virtual surfaces
+export interface Contact {
+  surface: number; // in Scene.surfaces, the one that pushes most
+  force_N: Vec3; // of all of them on the handle
+  proxy_m: Vec3; // where the handle would be if they were hard
+}
+
 // user = inertia + damping + ... + structure + rest
 export interface Budget {
   user: Wrench; // what the user exerts
@@ -163,7 +182,7 @@ export interface Budget {
   damping: Wrench;
   spring: Wrench; // springs and closers
   friction: Wrench; // while slipping; held joints are limits
-  surface: Wrench; // reference wrench of the twin
+  surface: Wrench; // virtual surfaces and the reference wrench of the twin
   limits: Wrench; // all limits that act
   conflict: Wrench; // limits that could not be met
   structure: Wrench; // carried by the bearings of the twin

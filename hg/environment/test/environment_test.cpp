@@ -324,8 +324,8 @@ TEST(Mesh, OfABoxFeelsLikeTheBox) {
 TEST(Handle, ThatStartsInsideIsFreeUntilItHasLeft) {
   const Surface solid = box({0.1, 0.1, 0.1}, Vector3d::Zero());
   Led led({solid});
-  EXPECT_EQ(led.environment.surface_around(Vector3d(0.02, 0, 0)), 0);
-  EXPECT_EQ(led.environment.surface_around(Vector3d(0.06, 0, 0)), -1);
+  EXPECT_TRUE(is_inside(solid, {0.02, 0, 0}));
+  EXPECT_FALSE(is_inside(solid, {0.06, 0, 0}));
   EXPECT_EQ(led.to({0.02, 0, 0}).surface, -1);
   led.to({0.06, 0, 0});
   EXPECT_NEAR(led.to({0.04, 0, 0}).force.x(), 20.0, 1e-6);

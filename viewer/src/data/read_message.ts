@@ -43,6 +43,7 @@ const FRAME: Record<keyof Omit<Frame, "type">, Test> = {
   torque_Nm: vector(3),
   felt: or_null(is_object),
   active: list_of(is_object),
+  contact: or_null(is_object),
   limit_position: list_of(or_null(is_number)),
   limit_distance: list_of(or_null(is_number)),
   budget: is_object,
