@@ -51,13 +51,14 @@ EventNames names_of(const Device& device, const Twin& twin, const LimitCatalogue
 std::vector<environment::Surface> load_surfaces(Loader& loader, LoaderFile& file,
                                                 const rendering::TwinModel& twin) {
   std::vector<SurfaceDraft> drafts;
+  const std::size_t faults = file.faults.count();
   describe_surfaces(loader, drafts);
+  if (file.faults.count() > faults) return {};
   model::Chain chain = twin.chain;
   chain.update_poses(twin.q_start);
   const Eigen::Vector3d start = chain.pose(twin.end_effector).p;
   std::vector<environment::Surface> surfaces;
   for (const SurfaceDraft& draft : drafts) {
-    if (draft.shape == SurfaceShape::kMesh && draft.mesh.empty()) continue;
     try {
       surfaces.push_back(surface_of(draft, file.sources));
     } catch (const SetupError& error) {

@@ -48,6 +48,8 @@ TEST(StateHash, SeesEveryValueOfTheState) {
       [](State& s) { s.rendering.active_set.before[kRows - 1] = hqp::RowState::kUpper; },
       [](State& s) { s.rendering.touched.lower[kMaxLimits - 1] = true; },
       [](State& s) { s.rendering.touched.upper[0] = true; },
+      [](State& s) { s.rendering.contact.proxy[2] = 1.0; },
+      [](State& s) { s.rendering.contact.is_started = true; },
       [](State& s) { s.gantry_target.is_started = true; },
       [](State& s) { s.gantry_target.q[7] = 0.0; }, [](State& s) { s.collision.count = 1; },
       [](State& s) { s.passivity.tank = 1.0; }, [](State& s) { s.passivity.calming.inertia = 2.0; },

@@ -1,0 +1,83 @@
+// Virtual surfaces, as a scenario lists them.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+
+#include "hg/config/scenario.h"
+#include "hg/core/test/message_of.h"
+
+namespace hg::config {
+namespace {
+
+constexpr const char* kPlate = "solid x\nvertex 0 0 0\nvertex 1000 0 0\nvertex 0 1000 0\nendsolid";
+
+// The twin is the door: its handle starts about 0.75 m from its hinge.
+Scenario load_surfaces(const std::string& surfaces) {
+  std::vector<SourceText> texts = {
+      {"models/scenarios/run.yaml",
+       "title: a\ndescription: b\ndevice: ../haptic_giant/device.yaml\n"
+       "twin: ../twins/door/twin.yaml\nperson: mouse\nduration_s: 3\nsurfaces:\n" +
+           surfaces},
+      {"models/scenarios/plate.stl", kPlate},
+      {"models/scenarios/bad.stl", "solid x\nvertex 0 zero 0\n"}};
+  for (const SourceText& source : load_scenario("models/scenarios/door.yaml").sources) {
+    if (source.name != "models/scenarios/door.yaml") texts.push_back(source);
+  }
+  return load_scenario(texts);
+}
+
+std::string message(const std::string& surface) {
+  return message_of([&] { load_surfaces("  - " + surface + "\n"); });
+}
+
+TEST(Surfaces, HaveShapePlaceAndFeel) {
+  const auto surfaces =
+      load_surfaces(
+          "  - {name: a, placement: {z_m: -5}}\n"
+          "  - {name: b, shape: box, size_m: [1, 2, 3], placement: {x_m: 9}, friction: 0.3}\n"
+          "  - {name: c, shape: sphere, radius_m: 0.2, placement: {x_m: 9, yaw_rad: 1.570796}}\n"
+          "  - {name: d, shape: cylinder, radius_m: 0.1, length_m: 0.4, placement: {x_m: 9},\n"
+          "     stiffness_N_per_m: 500, damping_Ns_per_m: 7}\n"
+          "  - {name: e, shape: mesh, mesh: plate.stl, scale: 0.001}\n")
+          .surfaces;
+  ASSERT_EQ(surfaces.size(), 5U);
+  EXPECT_TRUE(std::holds_alternative<environment::Plane>(surfaces[0].shape));
+  EXPECT_EQ(surfaces[0].stiffness, 2000.0);
+  EXPECT_EQ(surfaces[0].pose.p, Eigen::Vector3d(0, 0, -5));
+  EXPECT_EQ(std::get<environment::Box>(surfaces[1].shape).size, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(surfaces[1].friction, 0.3);
+  EXPECT_EQ(std::get<environment::Sphere>(surfaces[2].shape).radius, 0.2);
+  EXPECT_NEAR(surfaces[2].pose.R(1, 0), 1.0, 1e-6);
+  EXPECT_EQ(std::get<environment::Cylinder>(surfaces[3].shape).length, 0.4);
+  EXPECT_EQ(surfaces[3].stiffness, 500.0);
+  EXPECT_EQ(surfaces[3].damping, 7.0);
+  const auto& mesh = std::get<environment::Mesh>(surfaces[4].shape);
+  ASSERT_EQ(mesh.triangles().size(), 1U);
+  EXPECT_EQ(mesh.triangles()[0].corners[1], Eigen::Vector3d(1, 0, 0));
+}
+
+TEST(Surfaces, AreRefusedWithTheirPlace) {
+  const std::string at = "models/scenarios/run.yaml:8:";
+  EXPECT_EQ(message("{name: a, shape: spere}"),
+            at + "22: surfaces[0].shape: must be plane, box, sphere, cylinder, mesh, got 'spere', "
+                 "did you mean 'sphere'?");
+  EXPECT_EQ(message("{name: a, shape: sphere}"),
+            at + "5: surfaces[0]: key 'radius_m' is missing");
+  EXPECT_EQ(message("{name: a, shape: box}"), at + "5: surfaces[0]: a box needs 'size_m'");
+  EXPECT_EQ(message("{name: a, shape: mesh, mesh: plat.stl}"),
+            at + "34: surfaces[0].mesh: no such file, got 'plat.stl'");
+  EXPECT_EQ(message("{name: a, shape: mesh, mesh: bad.stl}"),
+            "models/scenarios/bad.stl:2: a number is expected after 'vertex', got 'zero'");
+  EXPECT_EQ(message("{name: a, stiffness_N_per_m: 1e6}"),
+            at + "34: surfaces[0].stiffness_N_per_m: must be 10 .. 100000, got 1e6");
+  EXPECT_EQ(message("{name: a, placement: {z_m: -5}}\n  - {name: a, placement: {z_m: -5}}"),
+            "models/scenarios/run.yaml:9:12: surfaces[1].name: surfaces must not use a name twice");
+  EXPECT_EQ(message("{name: a, placement: {z_m: 50}}"),
+            "models/scenarios/run.yaml:8:3: surfaces: the end effector of the twin must not start "
+            "inside of one, got 'a' around it");
+}
+
+}  // namespace
+}  // namespace hg::config
