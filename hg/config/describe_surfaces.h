@@ -9,7 +9,7 @@
 
 #include "hg/config/describe_common.h"
 #include "hg/config/sources.h"
-#include "hg/environment/surface.h"
+#include "hg/environment/environment.h"
 
 namespace hg::config {
 

@@ -61,7 +61,7 @@ TEST(Surfaces, HaveShapePlaceAndFeel) {
 TEST(Surfaces, AreRefusedWithTheirPlace) {
   const std::string at = "models/scenarios/run.yaml:8:";
   EXPECT_EQ(message("{name: a, shape: spere}"),
-            at + "22: surfaces[0].shape: must be plane, box, sphere, cylinder, mesh, got 'spere', "
+            at + "22: surfaces[0].shape: must be one of plane, box, sphere, cylinder, mesh, got 'spere', "
                  "did you mean 'sphere'?");
   EXPECT_EQ(message("{name: a, shape: sphere}"),
             at + "5: surfaces[0]: key 'radius_m' is missing");
