@@ -183,6 +183,7 @@ void bind_signals(nb::module_& module) {
   bind_fields<LimitReport>(module, "LimitReport", "One limit in one cycle.");
   bind_fields<CollisionReport>(module, "CollisionReport", "How near the device comes to itself.");
   bind_fields<PassivityReport>(module, "PassivityReport", "Energy and oscillation at the handle.");
+  bind_fields<ContactReport>(module, "ContactReport", "What virtual surfaces do to the twin.");
   bind_fields<CycleRecord>(module, "CycleRecord", "Everything that a cycle has to say.");
 }
 
