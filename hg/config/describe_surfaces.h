@@ -26,7 +26,7 @@ inline constexpr std::array<Choice<SurfaceShape>, 5> kSurfaceShapes = {
 struct SurfaceDraft {
   environment::Surface surface;  ///< without its shape
   SurfaceShape shape = SurfaceShape::kPlane;
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  Eigen::Vector3d size = Eigen::Vector3d::Constant(kNoDefault);
   double radius = 0.0, length = 0.0, scale = 1.0;
   std::filesystem::path mesh;
   Placement placement;

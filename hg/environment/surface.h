@@ -39,10 +39,10 @@ struct Surface {
   double friction = 0.0;      ///< Coulomb coefficient, sticking as slipping
 };
 
-inline constexpr Interval kStiffness = {10.0, 1e5};
+inline constexpr Interval kStiffness = {10.0, 5e4};
 inline constexpr Interval kDamping = {0.0, 1e3};
 inline constexpr Interval kFriction = {0.0, 2.0};
-inline constexpr Interval kSize = {1e-4, 100.0};  ///< m, of edges, radii and lengths
+inline constexpr Interval kSize = {1e-3, 100.0};  ///< m, of edges, radii and lengths
 
 /// Throws SetupError "surface NAME: rule, got value".
 void check(const Surface& surface);

@@ -71,7 +71,7 @@ TEST(Surfaces, AreRefusedWithTheirPlace) {
   EXPECT_EQ(message("{name: a, shape: mesh, mesh: bad.stl}"),
             "models/scenarios/bad.stl:2: a number is expected after 'vertex', got 'zero'");
   EXPECT_EQ(message("{name: a, stiffness_N_per_m: 1e6}"),
-            at + "34: surfaces[0].stiffness_N_per_m: must be 10 .. 100000, got 1e6");
+            at + "34: surfaces[0].stiffness_N_per_m: must be 10 .. 50000, got 1e6");
   EXPECT_EQ(message("{name: a, placement: {z_m: -5}}\n  - {name: a, placement: {z_m: -5}}"),
             "models/scenarios/run.yaml:9:12: surfaces[1].name: surfaces must not use a name twice");
   EXPECT_EQ(message("{name: a, placement: {z_m: 50}}"),

@@ -353,11 +353,11 @@ TEST(Check, RefusesWhatNoSurfaceIs) {
   };
   Surface surface = table();
   surface.stiffness = 1e6;
-  EXPECT_EQ(message(surface), "surface table: stiffness must be 10 .. 100000, got 1e+06");
+  EXPECT_EQ(message(surface), "surface table: stiffness must be 10 .. 50000, got 1e+06");
   surface = table(-0.1);
   EXPECT_EQ(message(surface), "surface table: friction must be 0 .. 2, got -0.1");
   EXPECT_EQ(message(box({0.1, 0.0, 0.1}, Vector3d::Zero())),
-            "surface box: edge must be 0.0001 .. 100, got 0");
+            "surface box: edge must be 0.001 .. 100, got 0");
   surface = table();
   surface.shape = Mesh();
   EXPECT_EQ(message(surface), "surface table: a mesh needs triangles, got none");
