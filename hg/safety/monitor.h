@@ -122,7 +122,7 @@ struct Verdict {
 
 class Monitor {
  public:
-  /// Throws SetupError when a list has not one entry per joint, or a value is out of range.
+  /// Throws SetupError when a list has not one entry per joint or axis, or the period is not > 0.
   Monitor(const MonitorConfig& config, int n_p, int n_m);
 
   const MonitorConfig& config() const noexcept { return config_; }

@@ -410,6 +410,36 @@ TEST(Monitor, TheTwistOfALoadedSpringIsNoContradictionAndItsAbsenceIsOne) {
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSensorImplausible);
 }
 
+TEST(Monitor, SlidesAndTurningGantriesHaveTolerancesOfTheirOwn) {
+  MonitorConfig other = config();
+  other.is_slide.assign(6, false);
+  other.is_slide[3] = true;
+  other.slide_tolerance = 0.01;
+  other.slide_tracking_tolerance = 0.005;
+  other.is_gantry_slide = false;
+  other.turn_tolerance = 0.2;
+  other.turn_deviation = 0.1;
+  const auto until = [&](FaultCode code, auto put) {
+    Bench bench(other);
+    return bench.until_fault(code, [&] { put(bench); });
+  };
+  for (const double excess : {0.009, 0.011}) {
+    EXPECT_EQ(
+        until(FaultCode::kLimitExceeded,
+              [&](Bench& b) { b.record.robot.q_m[3] = b.record.reference.q_m[3] = 2.0 + excess; }),
+        excess < 0.01 ? -1 : 1);
+    EXPECT_EQ(
+        until(FaultCode::kTrackingLost, [&](Bench& b) { b.record.robot.q_m[3] = 0.5 * excess; }),
+        excess < 0.01 ? -1 : 20);
+    EXPECT_EQ(until(FaultCode::kGantryExceeded,
+                    [&](Bench& b) { b.record.robot.q_p[1] = 1.4 + 20.0 * excess; }),
+              excess < 0.01 ? -1 : 3);
+    EXPECT_EQ(until(FaultCode::kGantryDeviates,
+                    [&](Bench& b) { b.record.robot.dq_p[1] = 11.5 * excess; }),
+              excess < 0.01 ? -1 : 100);
+  }
+}
+
 TEST(Monitor, BelowALimitItMayOnlyMoveBackToo) {
   Bench bench;
   const auto put = [&](double q) { bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = q; };
