@@ -342,7 +342,8 @@ void Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
                                                   .late_cycles = late_cycles,
                                                   .dq_p_command = state_.dq_p,
                                                   .tau_m = state_.tau_m,
-                                                  .pulled_back = pulled_back_},
+                                                  .pulled_back = pulled_back_,
+                                                  .unexplained = state_.control.unexplained},
                                                  state_.monitor);
   record.warning = verdict.warning;
   if (state_.monitor.is_broken) safety::break_rule(verdict.fault, state_.supervisor);

@@ -194,8 +194,8 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
                                                              << 32U);
   hash.mix(control.poles.w0);
   hash.mix(control.modes.Q());
-  for (const VectorM* v :
-       {&control.integral, &control.friction, &control.tau_r, &control.dtau_r, &control.ddtau_r}) {
+  for (const VectorM* v : {&control.integral, &control.friction, &control.tau_r, &control.dtau_r,
+                           &control.ddtau_r, &control.unexplained}) {
     hash.mix(*v);
   }
   hash.mix(state.w_H);

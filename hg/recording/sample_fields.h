@@ -68,6 +68,7 @@ template <typename Archive, Is<TrackingReport> T>
 void fields(Archive& a, T& tracking) {
   a("error", tracking.error, "reference minus link side, rad");
   a("torque_share", tracking.torque_share, "motor torque asked for over its peak");
+  a("torque_unexplained", tracking.torque_unexplained, "by motion and user's wrench, mean, Nm");
   a("latency_s", tracking.latency_s, "of the torque loop, as measured");
   a("is_clamped", tracking.is_clamped, "the reference was brought back to the device");
 }

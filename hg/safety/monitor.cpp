@@ -131,6 +131,7 @@ Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
   }
   for (int i = 0; i < n_m_; ++i) look_at_joint(i, record, watched, state);
   look_at_motors(record.robot, watched, state);
+  look_at_torques(watched);
   look_at_gantry(sensors, record, watched, state);
   look_at_frames(record, watched);
   look_at_clocks(sensors, watched, state);
@@ -197,6 +198,17 @@ void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
         coulomb_torque(actuator, 0.0, tau_J) + actuator.viscous_friction * std::abs(dtheta);
     look<FaultCode::kMotorDeviates>(i, std::abs(unexplained) - friction,
                                     config_.motor_tolerance * actuator.torque_max);
+  }
+}
+
+// What neither motion nor the user's wrench explains: somebody or something touches the arm, or the
+// sensors of force and torque contradict each other. Braking at a stop has to be exact for nobody.
+void Monitor::look_at_torques(const Watched& watched) noexcept {
+  if (mode_of(watched.state) != Mode::kRunning || watched.unexplained.size() != n_m_) return;
+  for (int i = 0; i < n_m_ && !config_.actuators.empty(); ++i) {
+    look<FaultCode::kTorqueUnexplained>(
+        i, std::abs(watched.unexplained[i]),
+        config_.unexplained_tolerance * config_.actuators[at(i)].torque_max);
   }
 }
 

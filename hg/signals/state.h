@@ -90,8 +90,10 @@ struct Budget {
 
 /// How well the device follows its reference.
 struct TrackingReport {
-  VectorM error;            ///< reference minus link side, rad or m
-  VectorM torque_share;     ///< motor torque asked for over its peak; empty without torque control
+  VectorM error;         ///< reference minus link side, rad or m
+  VectorM torque_share;  ///< motor torque asked for over its peak; empty without torque control
+  /// Joint torque that motion and user's wrench do not explain, a moving mean, Nm; empty likewise.
+  VectorM torque_unexplained;
   double latency_s = 0.0;   ///< of the torque loop, as measured before it was closed
   bool is_clamped = false;  ///< tracking was lost: the reference was brought back to the device
 };

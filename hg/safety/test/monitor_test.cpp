@@ -207,6 +207,11 @@ const Case kCases[] = {
        b.torque = x;
        b.sensors.theta_m[0] = x / 10000.0;
      }},
+    {FaultCode::kTorqueUnexplained, "unexplained torque", 20, 4, 10.1, 9.9,
+     [](Bench& b, double x) {
+       b.watched.unexplained = VectorM::Zero(6);
+       b.watched.unexplained[4] = -x;
+     }},
     {FaultCode::kSensorImplausible, "contradiction", 3, 2, 0.0202, 0.0198,
      [](Bench& b, double x) { b.sensors.theta_m[2] = x; }},
     {FaultCode::kWrenchTooLarge, "force", 5, 0, 151.0, 149.0,
@@ -509,6 +514,14 @@ TEST(Monitor, AMotorThatGivesNoTorqueIsNoticedBeforeItHasMovedFar) {
   EXPECT_EQ(bench.verdict.fault.index, 2);
   EXPECT_GE(k, 50);
   EXPECT_LT(k, 120);
+}
+
+TEST(Monitor, WhatBrakingDoesNotExplainStopsNothing) {
+  Bench bench;
+  bench.watched.unexplained = VectorM::Constant(6, 50.0);
+  bench.watched.state = State::kToReady;
+  bench.run(200);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
 }
 
 TEST(Monitor, AGantryThatSlowlyComesAwayFromItsDriveModelDeviates) {
