@@ -28,8 +28,9 @@ BUILD := build/$(PRESET)
 RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
   head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering prepositioning control safety \
-  cycle user simulation remote identification evaluation fuzz_replay)
-TSAN_TESTS := $(addsuffix _test, core runtime viewer_server)
+  collision passivity cycle user simulation injection remote identification evaluation explanation \
+  readiness recording fuzz_replay)
+TSAN_TESTS := $(addsuffix _test, core runtime recording viewer_server)
 RTSAN_TESTS := $(addsuffix _test, cycle runtime)
 FUZZ_SECONDS ?= 600
 FUZZ_TARGETS ?= hqp_reader hqp_solver config urdf protocol commands recording

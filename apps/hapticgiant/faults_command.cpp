@@ -2,32 +2,80 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/progress.h"
+#include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
 
 namespace hg::apps {
+namespace {
+
+// Where recordings are until they are read back.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    path_ = (std::filesystem::temp_directory_path() / "hapticgiant_XXXXXX").string();
+    if (mkdtemp(path_.data()) == nullptr) {
+      throw SetupError(path_ + ": cannot be created: " + std::strerror(errno));
+    }
+  }
+  ~ScratchFolder() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace
 
 int faults(const FaultsArguments& arguments) {
   std::vector<config::Scenario> scenarios;
   for (const std::string& name : arguments.scenarios) {
     scenarios.push_back(config::load_scenario(find_scenario(name)));
-    if (assembly::planned_duration_s(scenarios.back()) == 0.0) {
-      throw SetupError(name + ": faults are played in scenarios with a script");
+    const Interval times = experiments::fault_times(scenarios.back());
+    if (times.lb > times.ub) {
+      throw SetupError(
+          name +
+          ": faults are played in scenarios with a script that goes on for two seconds "
+          "after the grasp");
     }
   }
   check_writable(arguments.json);
+  check_writable(arguments.markdown);
+  const ScratchFolder scratch;
+  std::vector<recording::RecordingInfo> recordings;
+  if (recording::recording_available()) {
+    for (std::size_t i = 0; i < scenarios.size(); ++i) {
+      RunArguments run;
+      run.world.scenario = arguments.scenarios[i];
+      run.recordings = scratch.path();
+      recordings.push_back(recording_info(scenarios[i], run));
+    }
+  }
   print_out(fmt::format("HapticGiant {}  {} faults on purpose, seed {}\n\n", kVersion,
                         arguments.campaign.cases, arguments.campaign.seed));
   const experiments::Campaign campaign =
-      experiments::run_campaign(scenarios, arguments.campaign, progress_of("faults"));
+      experiments::run_campaign(scenarios, arguments.campaign, recordings, progress_of("faults"));
   print_out(experiments::to_text(campaign));
+  if (!arguments.markdown.empty()) {
+    write_output(arguments.markdown, experiments::to_markdown(campaign));
+  }
   if (!arguments.json.empty()) {
     nlohmann::ordered_json json = experiments::to_json(campaign);
     json["version"] = kVersion;

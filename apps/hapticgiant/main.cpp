@@ -364,6 +364,7 @@ void add_faults(CLI::App& app, hg::apps::FaultsArguments& arguments, int& exit_c
   command->add_option("--seed", arguments.campaign.seed, "of scenarios, times and sizes");
   command->add_option("--scenario", arguments.scenarios, "scenarios with a script");
   command->add_option("--json", arguments.json, "write all cases as JSON to this file");
+  command->add_option("--markdown", arguments.markdown, "write the table as a page to this file");
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::faults(arguments); });
 }
 

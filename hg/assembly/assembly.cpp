@@ -134,8 +134,9 @@ simulation::Simulation simulation_of(const config::Device& device, const Start& 
 }
 
 bool has_noise(const simulation::SensorsConfig& sensors) {
-  return sensors.wrench.force_noise > 0.0 && sensors.torque.noise > 0.0 &&
-         sensors.accelerometer.noise > 0.0;
+  return sensors.wrench.force_noise > 0.0 && sensors.wrench.torque_noise > 0.0 &&
+         sensors.torque.noise > 0.0 && sensors.accelerometer.noise > 0.0 &&
+         sensors.gyroscope.noise > 0.0;
 }
 
 constexpr int kStabilityPostures = 32;

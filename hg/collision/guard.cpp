@@ -20,8 +20,10 @@ void check(const Config& config, const model::Chain& chain) {
   };
   require(config.reaction.size() == chain.nv() && config.deceleration.size() == chain.nv(),
           "reaction and deceleration need one value per joint");
-  require(config.reaction.minCoeff() >= 0.0, "reaction must not be negative");
-  require(config.deceleration.minCoeff() > 0.0, "deceleration must be positive");
+  require(config.reaction.allFinite() && config.reaction.minCoeff() >= 0.0,
+          "reaction must be finite and not negative");
+  require(config.deceleration.allFinite() && config.deceleration.minCoeff() > 0.0,
+          "deceleration must be finite and positive");
   require(config.safe_distance > 0.0, "safe_distance must be positive");
 }
 
@@ -165,7 +167,8 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
   const auto count = static_cast<int>(config_.pairs.watched.size());
   if (count == 0) return prediction;
   const Path path(config_, q, dq);
-  int budget = kMaxDistances;
+  const int had_budget = state.count == count ? kMaxDistances : 0;
+  int budget = had_budget;
   if (state.count == count) {
     fade(q, path.stop, state);
   } else {
@@ -197,7 +200,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
     is_done[static_cast<std::size_t>(next)] = true;
     evaluate(next, path, is_moving, budget, state);
   }
-  prediction.distances += kMaxDistances - budget;
+  prediction.distances += had_budget - budget;
 
   const auto nearest = std::min_element(state.left.begin(), state.left.begin() + count);
   const auto pair = static_cast<std::size_t>(nearest - state.left.begin());

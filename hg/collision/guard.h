@@ -10,9 +10,10 @@
 /// a bound found once loses at most sum_i L_i e_i from cycle to cycle and is computed anew only
 /// when little of it is left.
 ///
-/// A cycle computes at most kMaxDistances distances, for the pairs with the least left first. What
-/// did not get its turn and has nothing left counts as a collision ahead: too much work brakes the
-/// device, it never lets it through. Deterministic; no allocation, noexcept after set-up.
+/// A cycle computes at most kMaxDistances distances, for the pairs with the least left first; only
+/// the first one, with the drives off, so many for each pair. What did not get its turn and has
+/// nothing left counts as a collision ahead: too much work brakes the device, it never lets it
+/// through. Deterministic; no allocation, noexcept after set-up.
 #pragma once
 
 #include <array>

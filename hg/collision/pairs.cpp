@@ -118,7 +118,7 @@ Pairs choose_pairs(const std::vector<Shape>& shapes, model::Chain chain,
       const Shape& inner = shapes[static_cast<std::size_t>(a)];
       const Shape& outer = shapes[static_cast<std::size_t>(b)];
       if (inner.body == outer.body) continue;  // never move relative to each other
-      if (outer.body - inner.body == 1) {
+      if (outer.body - inner.body == 1 && !inner.is_surrounding) {
         pairs.excluded.push_back({a, b, Exclusion::kNeighbours, 0.0});
         continue;
       }

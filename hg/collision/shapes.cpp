@@ -102,8 +102,10 @@ Geometry read_geometry(const Urdf& urdf, const model::Chain& chain) {
 Shape floor_at(double z) {
   constexpr double kHalfWidth = 50.0;
   constexpr double kHalfDepth = 5.0;
-  Shape floor = {
-      .name = "floor", .half_edges = {kHalfWidth, kHalfWidth, kHalfDepth}, .is_box = true};
+  Shape floor = {.name = "floor",
+                 .half_edges = {kHalfWidth, kHalfWidth, kHalfDepth},
+                 .is_box = true,
+                 .is_surrounding = true};
   floor.T_frame_shape.p.z() = z - kHalfDepth;
   return floor;
 }

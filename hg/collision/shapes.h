@@ -24,6 +24,7 @@ struct Shape {
   double half_length = 0.0;                              ///< m, of its segment, along z
   Eigen::Vector3d half_edges = Eigen::Vector3d::Zero();  ///< m, of a box
   bool is_box = false;
+  bool is_surrounding = false;  ///< no part of the device: nothing touches it by design
 };
 
 struct Geometry {

@@ -27,6 +27,8 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "times the largest acceleration of a joint, of its reference");
   v.number("torque_tolerance", monitor.torque_tolerance, kPositive,
            "times the peak torque of a joint");
+  v.number("unexplained_tolerance", monitor.unexplained_tolerance, kPositive,
+           "joint torque that motion and user's wrench do not explain, times its peak torque");
   v.number("motor_tolerance", monitor.motor_tolerance, kPositive,
            "torque of a motor off its command and friction, times its peak torque");
   v.number("sync_tolerance_m", monitor.sync_tolerance, kPositive, "between handle and twin");

@@ -1,4 +1,4 @@
-/// Description of scenario.yaml, third part: faults on purpose.
+/// Description of scenario.yaml, fourth part: faults on purpose.
 #pragma once
 
 #include <cmath>
@@ -13,6 +13,8 @@ namespace hg::config {
 /// What stands in the list `faults`.
 struct InjectionsDraft {
   std::vector<std::string> manipulator, gantry;  ///< joints by name
+  std::vector<std::string> components;           ///< of the sensor at the handle
+  std::vector<std::string> inputs;               ///< of the safety controller
   std::vector<std::string> names;                ///< all that a fault may concern
   std::vector<std::string> kinds;
   std::vector<injection::Injection> injections;
@@ -21,12 +23,13 @@ struct InjectionsDraft {
 /// Without faults yet.
 inline InjectionsDraft injections_of(const std::vector<std::string>& manipulator,
                                      const std::vector<std::string>& gantry) {
-  InjectionsDraft draft = {.manipulator = manipulator, .gantry = gantry};
-  for (const auto* joints : {&manipulator, &gantry}) {
-    draft.names.insert(draft.names.end(), joints->begin(), joints->end());
-  }
-  for (const char* name : {"x", "y", "z", "torque x", "torque y", "torque z"}) {
-    draft.names.emplace_back(name);
+  InjectionsDraft draft = {
+      .manipulator = manipulator,
+      .gantry = gantry,
+      .components = {"x", "y", "z", "torque x", "torque y", "torque z"},
+      .inputs = {"stop buttons", "operator enable", "dead-man switch", "override key"}};
+  for (const auto* parts : {&draft.manipulator, &draft.gantry, &draft.components, &draft.inputs}) {
+    draft.names.insert(draft.names.end(), parts->begin(), parts->end());
   }
   for (const injection::Kind& kind : injection::kinds()) draft.kinds.emplace_back(kind.name);
   return draft;
@@ -36,15 +39,26 @@ inline InjectionsDraft injections_of(const std::vector<std::string>& manipulator
 /// them.
 inline int part_index(const InjectionsDraft& d, const injection::Kind& kind, int name) {
   const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());
-  const int count = injection::parts_of(kind.part, n_m, n_p);
-  int first = n_m + n_p;  // components
-  if (kind.part == injection::Part::kGantryEncoder) first = n_m;
-  if (kind.part == injection::Part::kGantryDrive) first = n_m;
-  const bool is_component = kind.part == injection::Part::kForceSensor ||
-                            kind.part == injection::Part::kAccelerometer ||
-                            kind.part == injection::Part::kGyroscope;
-  if (first == n_m + n_p && !is_component) first = 0;
-  return name >= first && name < first + count ? name - first : -1;
+  const int components = static_cast<int>(d.components.size());
+  int first = 0;
+  switch (kind.part) {
+    case injection::Part::kGantryEncoder:
+    case injection::Part::kGantryDrive:
+      first = n_m;
+      break;
+    case injection::Part::kForceSensor:
+    case injection::Part::kAccelerometer:
+    case injection::Part::kGyroscope:
+      first = n_m + n_p;
+      break;
+    case injection::Part::kSafetyChannel:
+      first = n_m + n_p + components;
+      break;
+    default:
+      break;
+  }
+  const int index = name - first;
+  return index >= 0 && index < injection::parts_of(kind.part, n_m, n_p) ? index : -1;
 }
 
 template <class V>
@@ -55,21 +69,29 @@ void describe(V& v, InjectionsDraft& d) {
   v.number("at_s", fault.from_s, kNotNegative, "when the fault begins, on the device's clock",
            Need::kRequired);
   v.number("for_s", fault.for_s, kNotNegative, "how long it lasts; 0: until the end");
-  v.name("fault", kind, d.kinds, "a fault", "what goes wrong, see the table in docs/safety.md",
-         Need::kRequired);
-  v.name("of", name, d.names, "a joint or a component",
-         "a joint, or x, y, z, torque x, torque y, torque z of the sensor at the handle");
+  v.name("fault", kind, d.kinds, "a fault",
+         "what goes wrong, see the table in docs/fault_campaign.md", Need::kRequired);
+  v.name(
+      "of", name, d.names, "a joint, a component or an input",
+      "a joint; x, y, z, torque x, torque y, torque z of the sensor at the handle; stop buttons, "
+      "operator enable, dead-man switch, override key of the safety controller");
   v.number("magnitude", magnitude, kAnyNumber, "in the unit of the fault");
 
   fault.kind = &injection::kinds()[static_cast<std::size_t>(kind)];
   const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());
   const bool has_parts = injection::parts_of(fault.kind->part, n_m, n_p) > 0;
   if (has_parts) fault.index = part_index(d, *fault.kind, name);
-  v.rule(!has_parts || fault.index >= 0, "of", "this fault needs one of its joints or components");
-  v.rule(has_parts || name < 0, "of", "this fault concerns no single joint or component");
+  v.rule(!has_parts || fault.index >= 0, "of",
+         "this fault needs one of its joints, components or inputs");
+  v.rule(has_parts || name < 0, "of", "this fault concerns no single joint, component or input");
   const bool has_magnitude = !fault.kind->unit.empty();
   v.rule(has_magnitude == !std::isnan(magnitude), "magnitude",
          has_magnitude ? "this fault needs a magnitude" : "this fault has no magnitude");
+  v.rule(!has_magnitude || fault.kind->has_sign || !(magnitude < 0.0), "magnitude",
+         "must not be negative for this fault");
+  v.rule(fault.kind->effect != injection::Effect::kLate ||
+             !(magnitude > static_cast<double>(injection::kMostLate)),
+         "magnitude", "must be at most " + std::to_string(injection::kMostLate) + " periods");
   if (has_magnitude) fault.magnitude = magnitude;
 }
 

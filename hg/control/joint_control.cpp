@@ -16,6 +16,7 @@ constexpr double kLatencyMemory = 0.05;    // share of the newest sample in the 
 constexpr double kLatencyMargin = 0.5;     // periods; with gains for one period two are unstable
 constexpr double kLateFor = 0.05;          // s; a device hears no command for as long, too
 constexpr double kFeedforwardShare = 0.7;  // of the peak torque, the rest is for feedback
+constexpr double kUnexplained_s = 0.1;     // over which unexplained torques are averaged
 const double kFastestFilter = std::sqrt(5.0) - 1.0;  // rad per period, see largest_flatness_Hz()
 constexpr double kSlides = 0.5;          // share of friction_speed's tanh from which a joint slides
 constexpr double kMostFriction = 2.0;    // times what is configured; more would be another fault
@@ -147,11 +148,11 @@ void JointControl::step(const ReferenceState& now, const ReferenceState& next,
     state.is_saturated = state.is_saturated || std::abs(tau) > available;
     tau = std::clamp(tau, -available, available);
   }
+  report.torque_unexplained = state.unexplained;
   report.latency_s = state.latency * config_.dt;
 }
 
-// Torques of the springs that move the links as the reference says ([C] 1), as far as they may be
-// fed forward: what is beyond is left to the feedback.
+// Torques of the springs that move the links as the reference says, [C] 1.
 VectorM JointControl::link_torque(const ReferenceState& reference,
                                   const RobotState& robot) noexcept {
   chain_.update(stacked(robot.q_p, reference.q_m), stacked(robot.dq_p, reference.dq_m));
@@ -161,7 +162,7 @@ VectorM JointControl::link_torque(const ReferenceState& reference,
   tau.noalias() += M.rightCols(n_m_) * reference.ddq_m;
   tau.noalias() += M.leftCols(n_p_) * robot.ddq_p;
   tau.noalias() -= J.rightCols(n_m_).transpose() * robot.w_H;
-  return tau.cwiseMin(feed_max_).cwiseMax(-feed_max_);
+  return tau;
 }
 
 // Scaled mass matrix, whose eigenvectors are the modes.
@@ -173,7 +174,8 @@ MatrixM JointControl::scaled_mass() const noexcept {
 void JointControl::begin(const ReferenceState& reference, const RobotState& robot,
                          State& state) noexcept {
   state.poles = poles_for(state.latency * config_.dt + config_.loop.current_lag);
-  state.tau_r = link_torque(reference, robot);
+  state.tau_r = fed(link_torque(reference, robot));
+  state.unexplained = VectorM::Zero(n_m_);
   state.dtau_r.setZero();
   state.ddtau_r.setZero();
   state.integral.setZero();
@@ -185,7 +187,9 @@ void JointControl::begin(const ReferenceState& reference, const RobotState& robo
 JointControl::Feedforward JointControl::feedforward(const ReferenceState& reference,
                                                     const RobotState& robot,
                                                     State& state) noexcept {
-  follow_torque(link_torque(reference, robot), state);
+  const VectorM tau = link_torque(reference, robot);
+  state.unexplained += config_.dt / kUnexplained_s * (robot.tau_m - tau - state.unexplained);
+  follow_torque(fed(tau), state);
   return {.tau = state.tau_r,
           .dtheta = reference.dq_m + state.dtau_r.cwiseQuotient(K_),
           .ddtheta = reference.ddq_m + state.ddtau_r.cwiseQuotient(K_)};

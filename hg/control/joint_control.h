@@ -58,6 +58,8 @@ struct State {
   VectorM integral;  ///< of q_r - q, rad s
   VectorM friction;  ///< what is fed forward over the Coulomb friction of the configuration
   VectorM tau_r, dtau_r, ddtau_r;  ///< feedforward torque of the links and its derivatives
+  /// Joint torques that reference and user's wrench do not explain, a moving mean, Nm.
+  VectorM unexplained;
   bool is_saturated = false;
 };
 
@@ -101,6 +103,9 @@ class JointControl {
     VectorM tau, dtheta, ddtheta;
   };
   VectorM link_torque(const ReferenceState& reference, const RobotState& robot) noexcept;
+  VectorM fed(const VectorM& tau) const noexcept {
+    return tau.cwiseMin(feed_max_).cwiseMax(-feed_max_);
+  }
   MatrixM scaled_mass() const noexcept;
   void begin(const ReferenceState& reference, const RobotState& robot, State& state) noexcept;
   Feedforward feedforward(const ReferenceState& reference, const RobotState& robot,

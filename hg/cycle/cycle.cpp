@@ -11,12 +11,19 @@ namespace {
 constexpr double kBrakingRate = 20.0;  // 1/s: stopping takes about 0.2 s
 constexpr double kSafeShare = 0.9;     // of the safe speed, which is watched
 constexpr double kStandstill = 1e-3;   // rad/s and m/s
+constexpr double kCoasting = 0.1;      // rad/s and m/s
 constexpr double kRamp = 0.3;          // s in which the forces of a run come in
 
 bool stands_still(const CycleRecord& record) noexcept {
   return record.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
          record.reference.dq_m.lpNorm<Eigen::Infinity>() < kStandstill &&
          record.robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
+}
+
+// Measured, so above what encoders and a hand on the springs of a braked arm make of rest.
+bool is_coasting(const RobotState& robot) noexcept {
+  return robot.dq_m.lpNorm<Eigen::Infinity>() > kCoasting ||
+         robot.dq_p.lpNorm<Eigen::Infinity>() > kCoasting;
 }
 
 bool is_moving(Mode mode) noexcept { return mode == Mode::kRunning || mode == Mode::kStopping; }
@@ -98,6 +105,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   supervise(sensors, operator_input.request, record);
 
   record.change = rendering_.change(operator_input.change, state_.rendering);
+  rendering_.limit_solver(operator_input.most_active_sets);
   ended_(Stage::kSupervision);
 
   // estimation -> rendering -> prepositioning
@@ -105,6 +113,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
     record.robot =
         estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
     trust_wrench(sensors, record.robot);
+    state_.is_coasting = is_coasting(record.robot);
     ended_(Stage::kEstimation);
     look_ahead(record);
     if (is_moving(state_.supervisor.mode())) {
@@ -154,15 +163,15 @@ void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
   const bool was_fault = supervisor.state == safety::State::kFault;
   const bool is_arming = is_new && request == ModeRequest::kArm;
   const Fault fault = check(sensors);
-  safety::SupervisorInput input = {.request = request,
-                                   .is_held = is_held(sensors),
-                                   .safety = sensors.safety,
-                                   .to_arm = is_arming ? refusal_to_arm() : Refusal::kNone,
-                                   .is_broken = state_.monitor.is_broken,
-                                   .fault = safety::check_safety_inputs(sensors.safety, supervisor),
-                                   .reaction = fault.code != FaultCode::kNone
-                                                   ? safety::rule_of(fault.code).reaction
-                                                   : Stop::kNone};
+  safety::SupervisorInput input = {
+      .request = request,
+      .is_held = is_held(sensors),
+      .safety = sensors.safety,
+      .to_arm = is_arming ? refusal_to_arm() : Refusal::kNone,
+      .is_broken = state_.monitor.is_broken,
+      .fault = safety::check_safety_inputs(sensors.safety, supervisor),
+      // such a sample cannot be controlled with
+      .reaction = fault.code != FaultCode::kNone ? Stop::kSto : Stop::kNone};
   if (input.fault.code == FaultCode::kNone) input.fault = fault;
   record.refusal = safety::advance(input, supervisor);
   if (was_fault && supervisor.state != safety::State::kFault) begin_anew();
@@ -180,6 +189,7 @@ Fault Cycle::check(const SensorFrame& sensors) noexcept {
 }
 
 Refusal Cycle::refusal_to_arm() const noexcept {
+  if (state_.is_coasting) return Refusal::kStillMoving;
   if (!estimation_.is_tared(state_.estimation)) return Refusal::kNotTared;
   if (!control_.is_latency_known(state_.control)) return Refusal::kLatencyUnknown;
   if (!control_.is_stable(state_.control)) return Refusal::kLatencyTooLong;
@@ -249,14 +259,16 @@ void Cycle::watch_energy(CycleRecord& record) noexcept {
   if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
 }
 
-// Nothing moves. Before it is armed the device may be moved by others: the twin goes along.
+// Nothing moves. Before it is armed the device may be moved by others: the twin goes along. Where
+// joints have braked by themselves the twin was left behind, and meets the handle again.
 void Cycle::hold(CycleRecord& record) noexcept {
   rendering::State& rendering = state_.rendering;
-  if (state_.supervisor.state != safety::State::kArmed) {
+  const bool is_armed = state_.supervisor.state == safety::State::kArmed;
+  if (!is_armed) {
     rendering.reference.q_m = record.robot.q_m;
-    rendering_.align(record.robot, rendering);
     rendering.contact = {};
   }
+  if (!is_armed || state_.brakes_joints) rendering_.align(record.robot, rendering);
   rendering.reference.dq_m.setZero();
   rendering.twin.dq_a.setZero();
   rendering_.step(rendering, kBrakingRate, record);
@@ -310,10 +322,10 @@ void Cycle::render(CycleRecord& record) noexcept {
   ended_(Stage::kIntegration);
 }
 
-// Where the law has no solution it cannot brake either: each joint goes to rest with its own
-// rating, which its position limits leave room for, and twin and gantry are left behind.
-// [HANDBOOK] 6.2 has a ramp of 50 ms, for which the motors of a stretched arm have not got the
-// torque.
+// Where the law has no solution it cannot brake, and its way to rest may lead to a collision: each
+// joint goes to rest with its own rating, which its position limits leave room for, and twin and
+// gantry are left behind. [HANDBOOK] 6.2 has a ramp of 50 ms, for which the motors of a stretched
+// arm have not got the torque.
 void Cycle::brake_joints(CycleRecord& record) noexcept {
   rendering::State& rendering = state_.rendering;
   ReferenceState& reference = rendering.reference;
@@ -334,7 +346,8 @@ void Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
                                                   .late_cycles = late_cycles,
                                                   .dq_p_command = state_.dq_p,
                                                   .tau_m = state_.tau_m,
-                                                  .pulled_back = pulled_back_},
+                                                  .pulled_back = pulled_back_,
+                                                  .unexplained = state_.control.unexplained},
                                                  state_.monitor);
   record.warning = verdict.warning;
   if (state_.monitor.is_broken) safety::break_rule(verdict.fault, state_.supervisor);

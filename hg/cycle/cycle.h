@@ -54,7 +54,8 @@ struct State {
   VectorM q_m, tau_m;             ///< positions and torques of the last command
   bool was_on = false;            ///< the last command had the drives on
   bool is_blocked = false;        ///< a device limit could not be met in the last cycle
-  bool brakes_joints = false;     ///< the law gave no solution: each joint brakes by itself
+  bool brakes_joints = false;     ///< no solution, or a collision ahead: each brakes by itself
+  bool is_coasting = false;       ///< joints or gantry moved in the last sample
   double force_share = 0.0;  ///< of the forces that act on the twin, 0..1: they come in with a ramp
 };
 

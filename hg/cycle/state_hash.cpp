@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <type_traits>
 
 namespace hg::cycle {
 namespace {
@@ -22,13 +23,14 @@ class Hash {
     mix(interval.lb);
     mix(interval.ub);
   }
-  // the first `count` of values of one byte, eight in a word
+  // the first `count` values, as many in a word as fit
   template <typename T>
-  void mix_bytes(const T* values, std::size_t count) noexcept {
-    static_assert(sizeof(T) == 1);
-    for (std::size_t i = 0; i < count; i += 8) {
+  void mix_packed(const T* values, std::size_t count) noexcept {
+    constexpr std::size_t kInWord = sizeof(std::uint64_t) / sizeof(T);
+    static_assert(kInWord > 1 && std::has_unique_object_representations_v<T>);
+    for (std::size_t i = 0; i < count; i += kInWord) {
       std::uint64_t word = 0;
-      std::memcpy(&word, values + i, std::min<std::size_t>(8, count - i));
+      std::memcpy(&word, values + i, std::min(kInWord, count - i) * sizeof(T));
       mix(word);
     }
   }
@@ -55,7 +57,7 @@ void mix(const rendering::TwinInnerState& inner, std::size_t dofs, Hash& hash) n
     hash.mix(std::uint64_t{lock.is_engaged} | std::uint64_t{lock.is_locked} << 1U);
     hash.mix(lock.edge);
   }
-  hash.mix_bytes(inner.sticks.data(), dofs);
+  hash.mix_packed(inner.sticks.data(), dofs);
   const rendering::TwinParameters& parameters = inner.parameters;
   mix(parameters.now, dofs, hash);
   mix(parameters.target, dofs, hash);
@@ -64,8 +66,8 @@ void mix(const rendering::TwinInnerState& inner, std::size_t dofs, Hash& hash) n
     hash.mix(parameters.moving[i].q);
     hash.mix(std::uint64_t{parameters.moving[i].is_crossed});
   }
-  hash.mix_bytes(parameters.holds.data(), parameters.holds.size());
-  hash.mix_bytes(parameters.may_be_overrun.data(), dofs);
+  hash.mix_packed(parameters.holds.data(), parameters.holds.size());
+  hash.mix_packed(parameters.may_be_overrun.data(), dofs);
 }
 
 void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
@@ -76,10 +78,12 @@ void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
   hash.mix(state.twin.dq_a);
   hash.mix(state.twin.ddq_a);
   mix(state.inner, static_cast<std::size_t>(state.twin.dq_a.size()), hash);
-  hash.mix_bytes(state.active_set.state.data(), static_cast<std::size_t>(rows));
-  hash.mix_bytes(state.active_set.before.data(), static_cast<std::size_t>(rows));
-  hash.mix_bytes(state.touched.lower.data(), state.touched.lower.size());
-  hash.mix_bytes(state.touched.upper.data(), state.touched.upper.size());
+  hash.mix_packed(state.active_set.state.data(), static_cast<std::size_t>(rows));
+  hash.mix_packed(state.active_set.before.data(), static_cast<std::size_t>(rows));
+  hash.mix_packed(state.touched.lower.data(), state.touched.lower.size());
+  hash.mix_packed(state.touched.upper.data(), state.touched.upper.size());
+  hash.mix(state.calming.damping);
+  hash.mix(state.calming.inertia);
   hash.mix(state.contact.proxy);
   hash.mix(std::uint64_t{state.contact.is_started});
 }
@@ -106,6 +110,7 @@ void mix(const estimation::State& state, Hash& hash) noexcept {
       hash.mix(value);
     }
   }
+  hash.mix(std::uint64_t{state.is_started} | std::uint64_t{state.wrench.is_started} << 1U);
   hash.mix(state.wrench.omega_S);
   hash.mix(state.wrench.alpha_S);
   hash.mix(state.wrench.w_S);
@@ -129,17 +134,16 @@ void mix(const safety::SupervisorState& state, Hash& hash) noexcept {
            static_cast<std::uint64_t>(state.fault.code) << 32U |
            static_cast<std::uint64_t>(state.also.code) << 48U);
   hash.mix(static_cast<std::uint64_t>(state.stop_samples));
+  for (const Fault* fault : {&state.fault, &state.also}) {
+    hash.mix(static_cast<std::uint64_t>(fault->index));
+    hash.mix(fault->value);
+    hash.mix(fault->limit);
+  }
 }
 
 void mix(const safety::MonitorState& state, Hash& hash) noexcept {
-  std::uint64_t counts = 0;  // all but a few are zero
-  for (std::size_t i = 0; i < state.broken.size(); ++i) {
-    counts += state.broken[i] * (2 * i + 1);
-  }
-  for (std::size_t i = 0; i < state.same.size(); ++i) {
-    counts += state.same[i] * ((2 * i + 1) << 32U);
-  }
-  hash.mix(counts);
+  hash.mix_packed(state.broken.data(), state.broken.size());
+  hash.mix_packed(state.same.data(), state.same.size());
   hash.mix(static_cast<std::uint64_t>(state.late_in_a_row) |
            std::uint64_t{state.has_sample} << 62U | std::uint64_t{state.is_broken} << 63U);
   for (const double value : {state.time_s, state.clock_error, state.late}) hash.mix(value);
@@ -174,8 +178,9 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
   hash.mix(state.gantry_target.q);
   hash.mix(state.dq_p);
   hash.mix(std::uint64_t{state.is_blocked} | std::uint64_t{state.brakes_joints} << 1U |
-           std::uint64_t{state.was_on} << 2U);
+           std::uint64_t{state.was_on} << 2U | std::uint64_t{state.is_coasting} << 3U);
   hash.mix(state.force_share);
+  hash.mix(state.cycle);
   hash.mix(state.next_sequence);
   mix(state.supervisor, hash);
   mix(state.monitor, hash);
@@ -191,8 +196,8 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
                                                              << 32U);
   hash.mix(control.poles.w0);
   hash.mix(control.modes.Q());
-  for (const VectorM* v :
-       {&control.integral, &control.friction, &control.tau_r, &control.dtau_r, &control.ddtau_r}) {
+  for (const VectorM* v : {&control.integral, &control.friction, &control.tau_r, &control.dtau_r,
+                           &control.ddtau_r, &control.unexplained}) {
     hash.mix(*v);
   }
   hash.mix(state.w_H);

@@ -15,6 +15,9 @@ class Device {
   virtual void write(const CommandFrame& command) noexcept = 0;
   /// What is really the case at the last read(); null where nobody knows: the device is real.
   virtual const Truth* truth() const noexcept { return nullptr; }
+  /// Faults on purpose of the computer that runs the cycle, after read(); only simulated devices
+  /// have some.
+  virtual void spoil(OperatorFrame& /*input*/) const noexcept {}
   /// Whether read() waits for the next sample, at most a fixed time: then nobody else keeps time.
   virtual bool is_clock() const noexcept { return false; }
 };

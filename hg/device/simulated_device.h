@@ -21,11 +21,10 @@ class SimulatedDevice final : public Device {
   void write(const CommandFrame& command) noexcept override {
     arrived_ = command;
     injector_.spoil(arrived_);
-    simulation_.step(arrived_);
+    simulation_.step(arrived_, injector_.hardware());
   }
   const Truth* truth() const noexcept override { return &simulation_.truth(); }
-  /// For OperatorFrame::late_cycles of the sample that was read last: injected ones.
-  std::uint32_t late_cycles() const noexcept { return injector_.late_cycles(); }
+  void spoil(OperatorFrame& input) const noexcept override { injector_.spoil(input); }
 
  private:
   simulation::Simulation simulation_;

@@ -1,15 +1,19 @@
 #include "hg/experiments/fault_campaign.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "hg/assembly/assembly.h"
+#include "hg/core/error.h"
 #include "hg/experiments/player.h"
+#include "hg/recording/recording_reader.h"
 #include "hg/rendering/catalogue.h"
 
 namespace hg::experiments {
@@ -59,7 +63,8 @@ bool has_reacted(const CycleRecord& record) {
 // Peaks of the person's force in a run without faults, one per tenth of a second.
 class CleanRun {
  public:
-  explicit CleanRun(const config::Scenario& scenario) {
+  explicit CleanRun(config::Scenario scenario) {
+    scenario.faults.clear();
     Player player(scenario);
     for (bool goes_on = true; goes_on; goes_on = player.end()) {
       player.begin();
@@ -98,21 +103,54 @@ injection::Injection draw(const injection::Kind& kind, const config::Scenario& s
     if (kind.has_sign && uniform(-1.0, 1.0) < 0.0) drawn.magnitude *= -1.0;
     const bool is_count =
         kind.effect == injection::Effect::kLost || kind.effect == injection::Effect::kLate ||
-        kind.part == injection::Part::kBus || kind.part == injection::Part::kCycles;
+        kind.part == injection::Part::kBus || kind.part == injection::Part::kCycles ||
+        kind.part == injection::Part::kSolver;
     if (is_count) drawn.magnitude = std::round(drawn.magnitude);
     const bool is_torque = kind.part == injection::Part::kForceSensor && drawn.index >= 3;
     if (is_torque) drawn.magnitude *= 0.1;
   }
-  const double grasp_s = scenario.script.script.grasp_s;
-  const double last_s = assembly::planned_duration_s(scenario) - 1.0;
-  drawn.from_s = uniform(grasp_s + kSettling, std::min(last_s, grasp_s + kLatest));
+  const Interval times = fault_times(scenario);
+  drawn.from_s = uniform(times.lb, times.ub);
   return drawn;
+}
+
+// Counts the cycles of a recording, and whether they are all there.
+class CycleCounter final : public recording::RecordingListener {
+ public:
+  void configuration(const recording::NamedText& /*text*/) override {}
+  void event(const recording::Event& /*event*/) override {}
+  void sample(const Sample& sample) override {
+    is_gapless_ = is_gapless_ && sample.record.cycle == count_;
+    ++count_;
+  }
+
+  bool has_all(std::uint64_t cycles) const { return is_gapless_ && count_ == cycles; }
+
+ private:
+  std::uint64_t count_ = 0;
+  bool is_gapless_ = true;
+};
+
+bool has_all_cycles(const std::filesystem::path& file, std::uint64_t cycles) {
+  CycleCounter counter;
+  try {
+    return recording::read_recording(file, counter) && counter.has_all(cycles);
+  } catch (const SetupError&) {
+    return false;  // damaged
+  }
 }
 
 }  // namespace
 
+Interval fault_times(const config::Scenario& scenario) {
+  const double grasp_s = scenario.script.script.grasp_s;
+  const double last_s = assembly::planned_duration_s(scenario) - 1.0;
+  return {grasp_s + kSettling, std::min(last_s, grasp_s + kLatest)};
+}
+
 FaultCase play_fault(const config::Scenario& scenario, const injection::Injection& injection,
-                     const CampaignConfig& config, double clean_force) {
+                     const CampaignConfig& config, double clean_force,
+                     const recording::RecordingInfo* recording) {
   FaultCase result = {.injection = injection};
   config::Scenario played = scenario;
   played.faults = {injection};
@@ -120,16 +158,19 @@ FaultCase play_fault(const config::Scenario& scenario, const injection::Injectio
   TrueLimits limits(scenario);
   const double end_s = injection.from_s + config.watched_s;
   double noticed_at_s = kNever;
-  std::uint64_t cycle = 0;
+  std::uint64_t cycles = 0;
+  const auto recorder =
+      recording != nullptr ? std::make_unique<recording::Recorder>(*recording) : nullptr;
   result.stopped_s = kNever;
   for (bool goes_on = true; goes_on;) {
     player.begin();
     player.run();
     const CycleRecord& record = player.record();
     const Truth truth = player.truth();
+    if (recorder != nullptr) recorder->push_waiting(player.sample());
     player.end();
     goes_on = record.time_s < end_s;
-    result.is_complete = result.is_complete && record.cycle == cycle++;
+    ++cycles;
     if (record.time_s < injection.from_s) continue;
 
     result.peak_force = std::max(result.peak_force, truth.w_H.head<3>().norm());
@@ -151,6 +192,10 @@ FaultCase play_fault(const config::Scenario& scenario, const injection::Injectio
       result.stopped_s = record.time_s - noticed_at_s;
     }
   }
+  if (recorder != nullptr) {
+    result.is_complete = has_all_cycles(recorder->close().file, cycles);
+    std::filesystem::remove_all(recording->folder);
+  }
   const bool is_worse = result.worst_excess > config.harmless_excess ||
                         result.peak_force > clean_force + config.harmless_force ||
                         result.worst_distance > config.harmless_distance;
@@ -159,6 +204,7 @@ FaultCase play_fault(const config::Scenario& scenario, const injection::Injectio
 }
 
 Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const CampaignConfig& config,
+                      const std::vector<recording::RecordingInfo>& recordings,
                       const Progress& progress) {
   Campaign campaign = {.config = config};
   for (const config::Scenario& scenario : scenarios) campaign.scenarios.push_back(scenario.title);
@@ -177,7 +223,13 @@ Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const Camp
             draw(kinds[i % kinds.size()], scenarios[which], random);
         const double clean_force =
             clean[which]->peak(injection.from_s, injection.from_s + config.watched_s);
-        campaign.cases[i] = play_fault(scenarios[which], injection, config, clean_force);
+        recording::RecordingInfo recording;
+        if (!recordings.empty()) {
+          recording = recordings[which];
+          recording.folder /= fmt::format("case_{}", i);
+        }
+        campaign.cases[i] = play_fault(scenarios[which], injection, config, clean_force,
+                                       recordings.empty() ? nullptr : &recording);
         campaign.cases[i].scenario = which;
       },
       progress);
@@ -211,10 +263,12 @@ std::string case_text(const Campaign& campaign, std::size_t index) {
   const FaultCase& result = campaign.cases[index];
   const injection::Injection& injection = result.injection;
   return fmt::format(
-      "case {}: {} of {} by {:.4g} {} at {:.3f} s in {}: {}, {:.0f} N, {:.3f} outside, {:.3f} m\n",
+      "case {}: {} of {} by {:.4g} {} at {:.3f} s in {}: {}, {:.0f} N, {:.3f} outside, {:.3f} "
+      "m{}\n",
       index, injection.kind->name, injection.index, injection.magnitude, injection.kind->unit,
       injection.from_s, campaign.scenarios[result.scenario], to_string(result.outcome),
-      result.peak_force, result.worst_excess, result.worst_distance);
+      result.peak_force, result.worst_excess, result.worst_distance,
+      result.is_complete ? "" : ", its recording has lost cycles");
 }
 
 // What became of all cases of one kind.
@@ -259,6 +313,47 @@ std::string range_text(const std::vector<double>& sorted) {
   return fmt::format("{:.0f} / {:.0f}", sorted[sorted.size() / 2], sorted.back());
 }
 
+using Cells = std::array<std::string, 11>;
+
+const Cells kHead = {"fault",      "cases", "noticed", "harmless", "unnoticed", "noticed ms",
+                     "at rest ms", "stop",  "N",       "outside",  "most often"};
+
+Cells cells_of(const injection::Kind& kind, const Row& row) {
+  const FaultCode fault = most_frequent(row.faults);
+  return {std::string(kind.name),
+          std::to_string(row.cases),
+          std::to_string(row.noticed),
+          std::to_string(row.harmless),
+          std::to_string(row.unnoticed),
+          range_text(row.noticed_ms),
+          range_text(row.stopped_ms),
+          std::string(hg::to_string(most_frequent(row.stops))),
+          fmt::format("{:.0f}", row.peak_force),
+          fmt::format("{:.4f}", row.worst_excess),
+          row.noticed == 0 ? ""
+          : fault == FaultCode::kNone
+              ? "no fault"
+              : fmt::format("{} {}", static_cast<int>(fault), hg::to_string(fault))};
+}
+
+std::vector<Cells> table_of(const Campaign& campaign) {
+  std::vector<Cells> table;
+  for (const injection::Kind& kind : injection::kinds()) {
+    const Row row = row_of(campaign, kind);
+    if (row.cases > 0) table.push_back(cells_of(kind, row));
+  }
+  return table;
+}
+
+std::string verdict_of(const Campaign& campaign) {
+  const auto bad = std::ranges::count_if(
+      campaign.cases, [&](const FaultCase& result) { return !is_good(campaign.config, result); });
+  return fmt::format(
+      "{} of {} faults unnoticed, beyond {:g} rad or m outside, beyond {:g} N or lost from their "
+      "recording",
+      bad, campaign.cases.size(), campaign.config.excess_bound, campaign.config.force_bound);
+}
+
 }  // namespace
 
 bool is_passed(const Campaign& campaign) {
@@ -267,36 +362,39 @@ bool is_passed(const Campaign& campaign) {
 }
 
 std::string to_text(const Campaign& campaign) {
-  std::string text =
-      fmt::format("{:24} {:>5} {:>7} {:>8} {:>9}  {:>14} {:>14}  {:>5} {:>6} {:>8}  {}\n", "fault",
-                  "cases", "noticed", "harmless", "unnoticed", "noticed ms", "at rest ms", "stop",
-                  "N", "outside", "most often");
-  for (const injection::Kind& kind : injection::kinds()) {
-    const Row row = row_of(campaign, kind);
-    if (row.cases == 0) continue;
-    const FaultCode fault = most_frequent(row.faults);
-    text += fmt::format(
-        "{:24} {:>5} {:>7} {:>8} {:>9}  {:>14} {:>14}  {:>5} {:>6.0f} {:>8.4f}  {}\n", kind.name,
-        row.cases, row.noticed, row.harmless, row.unnoticed, range_text(row.noticed_ms),
-        range_text(row.stopped_ms), hg::to_string(most_frequent(row.stops)), row.peak_force,
-        row.worst_excess,
-        row.noticed == 0 ? ""
-                         : fmt::format("{} {}", static_cast<int>(fault), hg::to_string(fault)));
-  }
+  std::string text;
+  const auto add = [&](const Cells& c) {
+    text += fmt::format("{:24} {:>5} {:>7} {:>8} {:>9}  {:>14} {:>14}  {:>5} {:>6} {:>8}  {}\n",
+                        c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], c[9], c[10]);
+  };
+  add(kHead);
+  for (const Cells& cells : table_of(campaign)) add(cells);
   text +=
       "\nnoticed and at rest: median / longest, in ms after the fault began and after it was "
       "noticed; N: largest force of the person;\noutside: furthest true position outside a "
       "limit of the device, rad or m\n\n";
-  std::size_t bad = 0;
   for (std::size_t i = 0; i < campaign.cases.size(); ++i) {
-    if (is_good(campaign.config, campaign.cases[i])) continue;
-    text += case_text(campaign, i);
-    ++bad;
+    if (!is_good(campaign.config, campaign.cases[i])) text += case_text(campaign, i);
   }
-  text +=
-      fmt::format("{} of {} faults unnoticed or beyond {:g} rad or m outside, {:g} N\n", bad,
-                  campaign.cases.size(), campaign.config.excess_bound, campaign.config.force_bound);
-  return text;
+  return text + verdict_of(campaign) + "\n";
+}
+
+std::string to_markdown(const Campaign& campaign) {
+  const auto line = [](const auto& cells) {
+    return fmt::format("| {} |\n", fmt::join(cells, " | "));
+  };
+  std::string text = line(kHead);
+  Cells rule;
+  rule.fill("---");
+  text += line(rule);
+  for (const Cells& cells : table_of(campaign)) text += line(cells);
+  return fmt::format(
+      "# What became of {} faults on purpose\n\n"
+      "Written by `hapticgiant faults --markdown`; [safety.md](safety.md) says what the columns "
+      "mean.\n"
+      "Seed {}; {}: {}.\n\n{}",
+      campaign.cases.size(), campaign.config.seed, fmt::join(campaign.scenarios, ", "),
+      verdict_of(campaign), text);
 }
 
 nlohmann::ordered_json to_json(const Campaign& campaign) {
@@ -318,6 +416,7 @@ nlohmann::ordered_json to_json(const Campaign& campaign) {
     entry["peak_force_N"] = result.peak_force;
     entry["worst_excess"] = result.worst_excess;
     entry["worst_distance_m"] = result.worst_distance;
+    entry["recording_complete"] = result.is_complete;
     json["cases"].push_back(std::move(entry));
   }
   return json;

@@ -10,11 +10,12 @@
 #include "hg/config/scenario.h"
 #include "hg/experiments/workers.h"
 #include "hg/injection/injection.h"
+#include "hg/recording/recorder.h"
 
 namespace hg::experiments {
 
 struct CampaignConfig {
-  int cases = 530;
+  int cases = 560;
   std::uint64_t seed = 1;
   double watched_s = 2.0;  ///< after a fault begins
   /// A run without a reaction is harmless while the truth stays within these.
@@ -45,7 +46,7 @@ struct FaultCase {
   double peak_force = 0.0;      ///< of the person, true, from the begin of the fault on, N
   double worst_excess = 0.0;    ///< true, outside any limit of the device, rad or m
   double worst_distance = 0.0;  ///< of true handle and twin while running, m
-  bool is_complete = true;      ///< the records have every cycle, in order, once
+  bool is_complete = true;      ///< its recording has every cycle, in order, once
 };
 
 struct Campaign {
@@ -54,19 +55,29 @@ struct Campaign {
   std::vector<FaultCase> cases;
 };
 
-/// One run. `scenario` has a script; `clean_force` is the person's peak without the fault.
+/// When faults begin: the hand has settled, and the script goes on for a while. Empty (lb > ub) for
+/// a script that is too short, or that there is none.
+Interval fault_times(const config::Scenario& scenario);
+
+/// One run. `scenario` has a script; `clean_force` is the person's peak without the fault. The run
+/// is recorded as `recording` says, read back and deleted; null: it is not.
 FaultCase play_fault(const config::Scenario& scenario, const injection::Injection& injection,
-                     const CampaignConfig& config, double clean_force);
+                     const CampaignConfig& config, double clean_force,
+                     const recording::RecordingInfo* recording = nullptr);
 
 /// All kinds in turn, in random scenarios, at random times, of random sizes; on all cores. The
-/// scenarios are played on their own simulated machines.
+/// scenarios are played on their own simulated machines. `recordings` are what the recording of
+/// each scenario is told, with a folder that is deleted afterwards; empty: nothing is recorded.
 Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const CampaignConfig& config,
+                      const std::vector<recording::RecordingInfo>& recordings,
                       const Progress& progress);
 
 /// Whether no fault was unnoticed and no bound exceeded.
 bool is_passed(const Campaign& campaign);
 /// A row per kind of fault, and what went wrong.
 std::string to_text(const Campaign& campaign);
+/// The same table and its last line, as a page.
+std::string to_markdown(const Campaign& campaign);
 nlohmann::ordered_json to_json(const Campaign& campaign);
 
 }  // namespace hg::experiments

@@ -1,6 +1,7 @@
 #include "hg/experiments/player.h"
 
 #include "hg/assembly/assembly.h"
+#include "hg/core/error.h"
 #include "hg/runtime/requests.h"
 
 namespace hg::experiments {
@@ -10,11 +11,16 @@ Player::Player(const config::Scenario& scenario)
       cycle_(assembly::make_cycle(scenario)),
       device_(assembly::make_simulated_device(scenario)),
       changes_(scenario.changes),
-      end_s_(assembly::planned_duration_s(scenario)) {}
+      end_s_(assembly::planned_duration_s(scenario)) {
+  if (!scenario.panel.empty()) {
+    throw SetupError("panel: only `hapticgiant run` plays an operator, leave it out here");
+  }
+}
 
 void Player::begin() {
   device_.read(sample_->sensors);
-  sample_->operator_input.late_cycles = device_.late_cycles();
+  sample_->operator_input.late_cycles = 0;
+  device_.spoil(sample_->operator_input);
   sample_->operator_input.change =
       changes_.due(static_cast<double>(played_++) / scenario_.device.rate_Hz);
 }

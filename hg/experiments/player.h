@@ -28,6 +28,8 @@ class Player {
   bool end();
 
   const CycleRecord& record() const noexcept { return sample_->record; }
+  /// Between run() and end(): all of this period but the truth.
+  const Sample& sample() const noexcept { return *sample_; }
   /// Between begin() and end(): at the time of the sensors.
   const Truth& truth() const noexcept { return *device_.truth(); }
   /// For disturbances: what is changed between run() and end() is what the device gets.

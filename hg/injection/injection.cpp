@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "hg/simulation/hardware_faults.h"
+
 namespace hg::injection {
 namespace {
 
@@ -125,6 +127,10 @@ constexpr std::array kKinds = {
          Effect::kDropped},
     Kind{"safety_channels_differ", "the channels of a safety input differ", Part::kSafetyChannels,
          Effect::kRaised},
+    Kind{"safety_channel_opens", "one of the two wires of a safety input breaks",
+         Part::kSafetyChannel, Effect::kDropped},
+    Kind{"safety_channel_stuck", "one of the two wires of a safety input stays on",
+         Part::kSafetyChannel, Effect::kRaised},
     Kind{"clock_stops", "the device's clock stands still", Part::kClock, Effect::kFrozen},
     Kind{"clock_wrong",
          "the device's clock runs at another speed",
@@ -172,6 +178,8 @@ constexpr std::array kKinds = {
          "m/s",
          true},
     Kind{"gantry_frozen", "a gantry axis keeps its speed", Part::kGantryDrive, Effect::kFrozen},
+    Kind{"brake_closes", "the brake of a joint closes by itself", Part::kBrake, Effect::kRaised},
+    Kind{"brake_weak", "the brake of a joint does not hold", Part::kBrake, Effect::kDropped},
     Kind{"power_lost", "the drives lose their power", Part::kPower, Effect::kDropped},
     Kind{"commands_lost", "the drives get no new commands", Part::kCommands, Effect::kFrozen},
     Kind{"commands_late",
@@ -181,6 +189,12 @@ constexpr std::array kKinds = {
          {1.0, 8.0},
          "periods"},
     Kind{"cycles_late", "cycles come too late", Part::kCycles, Effect::kSet, {1.0, 20.0}, "cycles"},
+    Kind{"solver_hurried",
+         "the solver has no time to finish",
+         Part::kSolver,
+         Effect::kSet,
+         {1.0, 3.0},
+         "active sets"},
 };
 
 }  // namespace
@@ -200,6 +214,7 @@ int parts_of(Part part, int n_m, int n_p) noexcept {
     case Part::kTorqueSensor:
     case Part::kTemperature:
     case Part::kMotor:
+    case Part::kBrake:
       return n_m;
     case Part::kGantryEncoder:
     case Part::kGantryDrive:
@@ -209,6 +224,8 @@ int parts_of(Part part, int n_m, int n_p) noexcept {
     case Part::kAccelerometer:
     case Part::kGyroscope:
       return 3;
+    case Part::kSafetyChannel:
+      return simulation::kSafetyInputs;
     default:
       return 0;
   }

@@ -35,6 +35,9 @@ enum class Part : std::uint8_t {
   kPower,
   kCommands,
   kCycles,
+  kSolver,
+  kBrake,
+  kSafetyChannel,
 };
 
 /// What becomes of it.
@@ -46,8 +49,8 @@ enum class Effect : std::uint8_t {
   kDrift,    ///< plus the magnitude for each second
   kFactor,   ///< times the magnitude
   kSet,      ///< is the magnitude
-  kRaised,   ///< a truth value: true
-  kDropped,  ///< a truth value: false
+  kRaised,   ///< a truth value: true; a brake closes
+  kDropped,  ///< a truth value: false; a brake does not hold
   kLost,     ///< so many do not arrive
   kLate,     ///< arrives so many periods later
 };
@@ -69,6 +72,8 @@ std::span<const Kind> kinds() noexcept;
 const Kind* find_kind(std::string_view name) noexcept;
 /// Joint, axis or component that is spoilt; 0 = it has no parts.
 int parts_of(Part part, int n_m, int n_p) noexcept;
+
+inline constexpr int kMostLate = 16;  ///< periods that a command may be late
 
 /// One fault of a run.
 struct Injection {

@@ -11,7 +11,7 @@ namespace {
 
 bool is_of_command(Part part) noexcept {
   return part == Part::kMotor || part == Part::kGantryDrive || part == Part::kPower ||
-         part == Part::kCommands;
+         part == Part::kCommands || part == Part::kBrake || part == Part::kSafetyChannel;
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ void Injector::spoil(SensorFrame& sensors) noexcept {
   if (!has_started_) start_s_ = sensors.time_s;
   has_started_ = true;
   now_s_ = sensors.time_s - start_s_;
-  late_cycles_ = 0;
+  late_cycles_ = most_active_sets_ = 0;
   for (Fault& fault : faults_) {
     const Part part = fault.injection.kind->part;
     if (is_of_command(part) || !is_active(fault)) continue;
@@ -75,8 +75,7 @@ void Injector::spoil(SensorFrame& sensors) noexcept {
     spoil_sensors(fault, sensors);
     spoil_inputs(fault, sensors);
     spoil_samples(fault, sensors);
-    const bool is_late = fault.periods < static_cast<std::uint32_t>(fault.injection.magnitude);
-    if (part == Part::kCycles && is_late) late_cycles_ = 1;
+    spoil_computer(fault);
     ++fault.periods;
     fault.has_begun = true;
   }
@@ -156,14 +155,29 @@ void Injector::spoil_samples(const Fault& fault, SensorFrame& sensors) const noe
   }
 }
 
+// So many late cycles in a row; so few active sets for as long as it lasts.
+void Injector::spoil_computer(const Fault& fault) noexcept {
+  const auto count = static_cast<std::uint32_t>(fault.injection.magnitude);
+  const Part part = fault.injection.kind->part;
+  if (part == Part::kCycles && fault.periods < count) late_cycles_ = 1;
+  if (part == Part::kSolver) most_active_sets_ = count;
+}
+
+void Injector::spoil(OperatorFrame& input) const noexcept {
+  input.late_cycles += late_cycles_;
+  input.most_active_sets = most_active_sets_;
+}
+
 void Injector::spoil(CommandFrame& command) noexcept {
   if (!has_commanded_) past_.fill(command);
   has_commanded_ = true;
   newest_ = (newest_ + 1) % past_.size();
   past_[newest_] = command;
+  hardware_ = {};
   for (Fault& fault : faults_) {
     if (!is_of_command(fault.injection.kind->part) || !is_active(fault)) continue;
     spoil_command(fault, command);
+    spoil_hardware(fault.injection);
     fault.has_begun = true;
   }
 }
@@ -179,6 +193,17 @@ void Injector::spoil_command(Fault& fault, CommandFrame& command) const noexcept
     command = fault.injection.kind->effect == Effect::kLate
                   ? past_[(newest_ + past_.size() - age) % past_.size()]
                   : fault.command;
+  }
+}
+
+void Injector::spoil_hardware(const Injection& injection) noexcept {
+  const std::uint32_t bit = 1U << static_cast<unsigned>(injection.index);
+  const bool is_raised = injection.kind->effect == Effect::kRaised;
+  if (injection.kind->part == Part::kBrake) {
+    (is_raised ? hardware_.closed_brakes : hardware_.weak_brakes) |= bit;
+  }
+  if (injection.kind->part == Part::kSafetyChannel) {
+    (is_raised ? hardware_.stuck_channels : hardware_.open_channels) |= bit;
   }
 }
 

@@ -7,13 +7,12 @@
 
 #include "hg/injection/injection.h"
 #include "hg/signals/frames.h"
+#include "hg/simulation/hardware_faults.h"
 
 namespace hg::injection {
 
 class Injector {
  public:
-  static constexpr int kMostLate = 16;  ///< periods that a command may be late
-
   Injector() = default;
   /// Throws SetupError for a command that is later than kMostLate.
   explicit Injector(const std::vector<Injection>& injections);
@@ -22,8 +21,10 @@ class Injector {
   void spoil(SensorFrame& sensors) noexcept;
   /// Makes of this command what arrives.
   void spoil(CommandFrame& command) noexcept;
-  /// For OperatorFrame::late_cycles of the sample that was spoilt last.
-  std::uint32_t late_cycles() const noexcept { return late_cycles_; }
+  /// What becomes of the computer in the cycle of the sample that was spoilt last.
+  void spoil(OperatorFrame& input) const noexcept;
+  /// What becomes of the hardware in the period of the command that was spoilt last.
+  const simulation::HardwareFaults& hardware() const noexcept { return hardware_; }
 
  private:
   /// One fault, and what it holds on to.
@@ -43,14 +44,17 @@ class Injector {
   void spoil_sensors(Fault& fault, SensorFrame& sensors) noexcept;
   void spoil_inputs(const Fault& fault, SensorFrame& sensors) const noexcept;
   void spoil_samples(const Fault& fault, SensorFrame& sensors) const noexcept;
+  void spoil_computer(const Fault& fault) noexcept;
   void spoil_command(Fault& fault, CommandFrame& command) const noexcept;
+  void spoil_hardware(const Injection& injection) noexcept;
 
   std::vector<Fault> faults_;
   std::array<CommandFrame, kMostLate + 1> past_;  ///< a ring of commands, the newest at newest_
   std::size_t newest_ = 0;
   double start_s_ = 0.0, now_s_ = 0.0;
   bool has_started_ = false, has_commanded_ = false;
-  std::uint32_t late_cycles_ = 0;
+  std::uint32_t late_cycles_ = 0, most_active_sets_ = 0;
+  simulation::HardwareFaults hardware_;
 };
 
 }  // namespace hg::injection

@@ -88,7 +88,8 @@ PassivityReport step(const Config& config, const Input& input, State& state) noe
   state.energy = std::max(0.0, state.energy - config.dt * input.power_measured);
   report.tank = state.tank;
   report.energy = state.energy;
-  report.scale = 1.0 + state.calming.damping / config.damping;
+  report.damping = state.calming.damping;
+  report.inertia = state.calming.inertia;
   return report;
 }
 

@@ -70,6 +70,7 @@ template <typename Archive, Is<TrackingReport> T>
 void fields(Archive& a, T& tracking) {
   a("error", tracking.error, "reference minus link side, rad");
   a("torque_share", tracking.torque_share, "motor torque asked for over its peak");
+  a("torque_unexplained", tracking.torque_unexplained, "by motion and user's wrench, mean, Nm");
   a("latency_s", tracking.latency_s, "of the torque loop, as measured");
   a("is_clamped", tracking.is_clamped, "the reference was brought back to the device");
 }
@@ -77,7 +78,7 @@ void fields(Archive& a, T& tracking) {
 template <typename Archive, Is<CollisionReport> T>
 void fields(Archive& a, T& collision) {
   a("distance", collision.distance, "smallest while braking from now on, m");
-  a("pair", collision.pair, "in the order of metadata \"collision_pairs\"; -1 none");
+  a("pair", collision.pair, "index among the pairs that are watched; -1 none");
 }
 
 template <typename Archive, Is<PassivityReport> T>
@@ -85,7 +86,8 @@ void fields(Archive& a, T& passivity) {
   a("tank", passivity.tank, "energy that the rendering may still give, J");
   a("energy", passivity.energy, "given through the handle and not got back, J");
   a("oscillation", passivity.oscillation, "index; 1 = detected");
-  a("scale", passivity.scale, "factor on inertia and damping of the twin in effect");
+  a("damping", passivity.damping, "added to calm the twin, Ns/m");
+  a("inertia", passivity.inertia, "factor on the masses of the twin, to calm it");
 }
 
 template <typename Archive, Is<ContactReport> T>

@@ -54,7 +54,8 @@ bool fits(const Description& agreed, const SensorFrame& sensors) noexcept {
          sensors.q_p.size() == static_cast<Eigen::Index>(agreed.n_p) &&
          std::isfinite(sensors.time_s) && sensors.q_m.allFinite() && sensors.dq_m.allFinite() &&
          sensors.theta_m.allFinite() && sensors.tau_m.allFinite() && sensors.q_p.allFinite() &&
-         sensors.w_S.allFinite() && sensors.a_S.allFinite() && sensors.omega_S.allFinite();
+         sensors.w_S.allFinite() && sensors.a_S.allFinite() && sensors.omega_S.allFinite() &&
+         sensors.temperature_m.allFinite();
 }
 
 bool fits(const Description& agreed, const CommandFrame& command) noexcept {

@@ -123,8 +123,14 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
       solver_(tasks_.problem().capacity()),
       solution_(tasks_.problem().capacity()),
       kept_problems_(std::make_unique<hqp::KeptProblems>(tasks_.problem().capacity())) {
-  solver_options_.max_iterations =
-      std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
+  limit_solver(0);
+}
+
+void Rendering::limit_solver(std::uint32_t most_active_sets) noexcept {
+  const auto usual = static_cast<std::uint32_t>(
+      std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows()));
+  const std::uint32_t most = most_active_sets == 0 ? usual : std::min(usual, most_active_sets);
+  solver_options_.max_iterations = static_cast<int>(most);
 }
 
 State Rendering::start(const VectorM& q_m) const {

@@ -89,6 +89,9 @@ class Rendering {
   /// Of the twin as set up, at its end effector in the direction of B's axes where it is least, kg.
   double apparent_mass(const State& state) const noexcept;
 
+  /// The solver tries at most so many active sets from now on; 0: as many as it is made for.
+  void limit_solver(std::uint32_t most_active_sets) noexcept;
+
   /// Who is told about kRenderingSetUp, kSolver and kReactions from now on.
   void watch(const StageProbe& probe) noexcept { ended_ = probe; }
 

@@ -92,6 +92,7 @@ Report Runtime::join() {
 
 void Runtime::run_cycle(Sample& sample) noexcept HG_NONBLOCKING {
   device_.read(sample.sensors);
+  device_.spoil(sample.operator_input);
   const Truth* truth = device_.truth();
   sample.truth = truth != nullptr ? *truth : Truth{};
   read_ns_ = stage_ns_ = now_ns();
@@ -189,6 +190,7 @@ void Runtime::prepare_thread() noexcept {
 void Runtime::operate(const Sample& sample, bool is_stopping, OperatorFrame& input) noexcept {
   const CycleRecord& record = sample.record;
   input.panel.reset = false;
+  input.late_cycles = 0;
   if (panels_.pop(input.panel)) is_operated_ = is_operated_ || !input.panel.operator_enable;
   ModeRequest request = ModeRequest::kNone;
   if (requests_.pop(request)) is_operated_ = true;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hg/core/error.h"
+#include "hg/core/first_not_finite.h"
 
 namespace hg::safety {
 namespace {
@@ -18,38 +19,17 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
-template <typename Vector>
-int first_not_finite(const Vector& v) noexcept {
-  for (int i = 0; i < v.size(); ++i) {
-    if (!std::isfinite(v[i])) return i;
-  }
-  return -1;
-}
-
 Fault make_fault(FaultCode code, int index, double value, double limit) noexcept {
   return {code, static_cast<std::int16_t>(index), value, limit};
 }
 
-// The first of several vectors' components that is not finite, counted through; -1 = none.
-template <typename... Vectors>
-int first_of_all(const Vectors&... vectors) noexcept {
-  int first = 0, found = -1;
-  const auto look = [&](const auto& v) {
-    const int i = first_not_finite(v);
-    if (found < 0 && i >= 0) found = first + i;
-    first += static_cast<int>(v.size());
-  };
-  (look(vectors), ...);
-  return found;
-}
-
 // joints, joint speeds, gantry, wrench, motors, joint torques, accelerometer, gyroscope, motor
 // temperatures
-int first_not_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
+int first_bad_value(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
   const Eigen::Vector3d kNone = Eigen::Vector3d::Zero();
-  return first_of_all(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
-                      sensors.tau_m, config.has_imu ? sensors.a_S : kNone,
-                      config.has_imu ? sensors.omega_S : kNone, sensors.temperature_m);
+  return first_not_finite(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
+                          sensors.tau_m, config.has_imu ? sensors.a_S : kNone,
+                          config.has_imu ? sensors.omega_S : kNone, sensors.temperature_m);
 }
 
 // the nearest of all turns: joints without limits are wrapped
@@ -69,7 +49,7 @@ std::uint16_t count_up(std::uint16_t count) noexcept {
 }  // namespace
 
 bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
-  return first_not_finite(config, sensors) < 0;
+  return first_bad_value(config, sensors) < 0;
 }
 
 bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
@@ -86,7 +66,7 @@ Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
     return make_fault(FaultCode::kSequenceGap, -1, static_cast<double>(sensors.sequence),
                       static_cast<double>(expected_sequence));
   }
-  const int index = first_not_finite(config, sensors);
+  const int index = first_bad_value(config, sensors);
   if (index >= 0) return make_fault(FaultCode::kSensorNotFinite, index, NAN, 0.0);
   return {};
 }
@@ -151,6 +131,7 @@ Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
   }
   for (int i = 0; i < n_m_; ++i) look_at_joint(i, record, watched, state);
   look_at_motors(record.robot, watched, state);
+  look_at_torques(watched);
   look_at_gantry(sensors, record, watched, state);
   look_at_frames(record, watched);
   look_at_clocks(sensors, watched, state);
@@ -217,6 +198,17 @@ void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
         coulomb_torque(actuator, 0.0, tau_J) + actuator.viscous_friction * std::abs(dtheta);
     look<FaultCode::kMotorDeviates>(i, std::abs(unexplained) - friction,
                                     config_.motor_tolerance * actuator.torque_max);
+  }
+}
+
+// What neither motion nor the user's wrench explains: somebody or something touches the arm, or the
+// sensors of force and torque contradict each other. Braking at a stop has to be exact for nobody.
+void Monitor::look_at_torques(const Watched& watched) noexcept {
+  if (mode_of(watched.state) != Mode::kRunning || watched.unexplained.size() != n_m_) return;
+  for (int i = 0; i < n_m_ && !config_.actuators.empty(); ++i) {
+    look<FaultCode::kTorqueUnexplained>(
+        i, std::abs(watched.unexplained[i]),
+        config_.unexplained_tolerance * config_.actuators[at(i)].torque_max);
   }
 }
 

@@ -32,6 +32,7 @@ struct MonitorConfig {
   double acceleration_tolerance = 2.0;     ///< times the rating; bounds may take 1.5 of it
   double torque_tolerance = 1.0;           ///< times the peak torque
   double motor_tolerance = 0.15;           ///< off its command and friction, times the peak torque
+  double unexplained_tolerance = 0.1;      ///< joint torque, times the peak torque
   double tracking_tolerance = 0.08;        ///< reference minus measured joint, rad
   double slide_tracking_tolerance = 0.02;  ///< the same of a prismatic joint, m
   double sync_tolerance = 0.02;            ///< between handle and twin, m
@@ -91,6 +92,7 @@ struct Watched {
   VectorP dq_p_command;           ///< that the gantry follows now
   VectorM tau_m;                  ///< that the motors were told a period ago; empty = none
   VectorM pulled_back;  ///< by how much the reference had to come back to the device; empty = not
+  VectorM unexplained;  ///< joint torques, TrackingReport::torque_unexplained; empty = none
 };
 
 /// Part of the copyable state of a cycle.
@@ -122,7 +124,7 @@ struct Verdict {
 
 class Monitor {
  public:
-  /// Throws SetupError when a list has not one entry per joint, or a value is out of range.
+  /// Throws SetupError when a list has not one entry per joint or axis, or the period is not > 0.
   Monitor(const MonitorConfig& config, int n_p, int n_m);
 
   const MonitorConfig& config() const noexcept { return config_; }
@@ -146,6 +148,7 @@ class Monitor {
   void look_at_joint(int joint, const CycleRecord& record, const Watched& watched,
                      MonitorState& state) noexcept;
   void look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept;
+  void look_at_torques(const Watched& watched) noexcept;
   void look_at_motors(const RobotState& robot, const Watched& watched,
                       MonitorState& state) noexcept;
   void look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept;

@@ -1,5 +1,5 @@
-/// Everything that stops the device, as data: the table of docs/safety.md, the texts of program and
-/// page, and what supervisor and monitor do all come from here.
+/// Everything that stops the device, as data: the table of docs/safety.md, the explanations of
+/// program and page, and what supervisor and monitor do all come from here.
 ///
 /// Source: [HANDBOOK] 6.2, 6.5; where a number differs, docs/safety.md says why. Not a certified
 /// safety function.
@@ -137,6 +137,15 @@ inline constexpr Rule kRules[] = {
      .debounce = {.seconds = 0.05},
      .reaction = Stop::kSto,
      .release = "at once, and look at motor and drive: only they can tell"},
+    {.code = FaultCode::kTorqueUnexplained,
+     .name = "unexplained torque",
+     .meaning = "Something but the hand at the handle pushes the arm, or force sensor and joint "
+                "torques contradict each other.",
+     .threshold = "monitor.unexplained_tolerance",
+     .warn_from = 0.6,
+     .debounce = {.seconds = 0.02},
+     .reaction = Stop::kSs1,
+     .release = "at once; look what touches the arm, and tare the force sensor"},
     {.code = FaultCode::kOperatorReleased,
      .name = "operator let go",
      .meaning = "The operator let go of the enabling switch, or squeezed it through.",
@@ -162,7 +171,7 @@ inline constexpr Rule kRules[] = {
      .warn_from = 0.95,
      .debounce = {.samples = 3},
      .reaction = Stop::kSs1,
-     .release = "the device stands still"},
+     .release = "at once; it is armed again once it stands still"},
     {.code = FaultCode::kSolverFailed,
      .name = "solver failed",
      .meaning = "The rendering problem of a cycle was not solved.",
@@ -186,7 +195,7 @@ inline constexpr Rule kRules[] = {
      .meaning = "Cycles of the loop came too late too often.",
      .threshold = "monitor.overruns_in_a_row, monitor.overruns_per_s",
      .reaction = Stop::kSs2,
-     .release = "the loop keeps its period again"},
+     .release = "at once; look at what else this computer does"},
     {.code = FaultCode::kLimitExceeded,
      .name = "position limit",
      .meaning = "A joint, a sum of joints or a frame is outside its limit by more than the "
@@ -203,7 +212,7 @@ inline constexpr Rule kRules[] = {
      .warn_from = 0.95,
      .debounce = {.samples = 3},
      .reaction = Stop::kSs1,
-     .release = "the joint is slower than the threshold"},
+     .release = "at once; it is armed again once it stands still"},
     {.code = FaultCode::kTrackingLost,
      .name = "tracking",
      .meaning = "A joint is too far from its reference.",
@@ -226,7 +235,7 @@ inline constexpr Rule kRules[] = {
      .threshold = "half a period above the latency measured before arming",
      .debounce = {.seconds = 0.05},
      .reaction = Stop::kSto,
-     .release = "the device answers in time again"},
+     .release = "at once; the latency is measured again before arming"},
     {.code = FaultCode::kCollisionAhead,
      .name = "collision ahead",
      .meaning = "The device would hit itself or its surroundings if it braked any later.",
@@ -250,7 +259,7 @@ inline constexpr Rule kRules[] = {
      .warn_from = 0.6,
      .debounce = {.seconds = 0.1},
      .reaction = Stop::kSs1,
-     .release = "the gantry stands still"},
+     .release = "at once; it is armed again once it stands still"},
     {.code = FaultCode::kOscillation,
      .name = "oscillation",
      .meaning = "Hand and device shake each other, and more damping did not end it.",

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/core/first_not_finite.h"
+
 namespace hg::safety {
 namespace {
 
@@ -10,25 +12,6 @@ constexpr double kSpeedShare = 1.05;            // of the rating, from which acc
 constexpr double kBrakingShare = 1.5;           // of the rating: the bounds brake with no more
 constexpr double kBrakingWithoutRating = 10.0;  // rad/s^2 or m/s^2
 constexpr unsigned kFirstGantryBit = 16;
-
-template <typename Vector>
-int first_not_finite(const Vector& v, int& first) noexcept {
-  for (int i = 0; i < v.size(); ++i) {
-    if (!std::isfinite(v[i])) return first + i;
-  }
-  first += static_cast<int>(v.size());
-  return -1;
-}
-
-// q, q', q'', torques, gantry, counted through; -1: all are finite
-int first_not_finite(const CommandFrame& command) noexcept {
-  int first = 0;
-  for (const VectorM* v : {&command.q_m, &command.dq_m, &command.ddq_m, &command.tau_m}) {
-    const int index = first_not_finite(*v, first);
-    if (index >= 0) return index;
-  }
-  return first_not_finite(command.dq_p, first);
-}
 
 void disable(CommandFrame& command) noexcept {
   command.enable = false;
@@ -67,7 +50,8 @@ Sanitiser::Sanitiser(const SanitiserConfig& config, const MonitorConfig& monitor
 
 Sanitised Sanitiser::step(const SanitiserInput& input, CommandFrame& command) const noexcept {
   Sanitised result;
-  const int index = first_not_finite(command);
+  const int index =
+      first_not_finite(command.q_m, command.dq_m, command.ddq_m, command.tau_m, command.dq_p);
   if (index >= 0) {
     disable(command);
     result.fault = {FaultCode::kCommandNotFinite, static_cast<std::int16_t>(index), NAN, 0.0};

@@ -32,6 +32,8 @@ std::string_view to_string(FaultCode code) noexcept {
       return "motor is too hot";
     case FaultCode::kDriveFault:
       return "drive reports a fault";
+    case FaultCode::kTorqueUnexplained:
+      return "joint torque that motion and user do not explain";
     case FaultCode::kMotorDeviates:
       return "motor does not give the torque it is told";
     case FaultCode::kOperatorReleased:

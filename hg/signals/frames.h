@@ -102,6 +102,8 @@ struct OperatorFrame {
   SafetyPanel panel;
   ParameterChange change;
   std::uint32_t late_cycles = 0;  ///< missed by this run since the last cycle: late or left out
+  /// That the solver may try in this cycle at most; 0: as configured. A fault on purpose.
+  std::uint32_t most_active_sets = 0;
 };
 
 /// What the device is asked to do until the next sample.

@@ -99,6 +99,8 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "not started: to run without a hand the override key must be turned";
     case Refusal::kFieldOccupied:
       return "not started: somebody is in the scanner's field";
+    case Refusal::kStillMoving:
+      return "not armed: the device still moves";
   }
   return "unknown";
 }

@@ -50,7 +50,8 @@ struct PassivityReport {
   double tank = 0.0;         ///< energy that the rendering may still give, J
   double energy = 0.0;       ///< given through the handle and not got back, J
   double oscillation = 0.0;  ///< index of oscillation; 1 = detected
-  double scale = 1.0;        ///< factor on inertia and damping of the twin in effect
+  double damping = 0.0;      ///< added to calm the twin, Ns/m
+  double inertia = 1.0;      ///< factor on the masses of the twin, to calm it
 };
 
 /// What virtual surfaces do to the end effector of the twin; resolved in B.
@@ -96,8 +97,10 @@ struct Budget {
 
 /// How well the device follows its reference.
 struct TrackingReport {
-  VectorM error;            ///< reference minus link side, rad or m
-  VectorM torque_share;     ///< motor torque asked for over its peak; empty without torque control
+  VectorM error;         ///< reference minus link side, rad or m
+  VectorM torque_share;  ///< motor torque asked for over its peak; empty without torque control
+  /// Joint torque that motion and user's wrench do not explain, a moving mean, Nm; empty likewise.
+  VectorM torque_unexplained;
   double latency_s = 0.0;   ///< of the torque loop, as measured before it was closed
   bool is_clamped = false;  ///< tracking was lost: the reference was brought back to the device
 };
@@ -147,6 +150,7 @@ enum class Refusal : std::uint8_t {
   kSomebodyHolds = 11,    ///< running autonomously with somebody at the handle
   kNoOverride = 12,       ///< running autonomously without the override key
   kFieldOccupied = 13,    ///< running autonomously with somebody in the scanner's field
+  kStillMoving = 14,      ///< arming a device that still moves, its drives just off
 };
 
 std::string_view to_string(Refusal refusal) noexcept;
@@ -159,7 +163,9 @@ struct CycleRecord {
   bool is_autonomous = false;  ///< runs with nobody at the handle
   Stop stop = Stop::kNone;     ///< how it is being stopped, or was
   Fault fault;
-  Fault warning;                ///< the rule nearest to its threshold, once beyond its warning
+  /// The rule nearest to its threshold, once beyond its warning; after a stop that another rule
+  /// broke off, that one.
+  Fault warning;
   std::uint32_t sanitised = 0;  ///< bit i: command of joint i was changed; from bit 16: gantry
   ChangeStatus change = ChangeStatus::kNone;
   TareStatus tare = TareStatus::kNone;

@@ -87,7 +87,7 @@ void Plant::step(const PlantInput& input) noexcept {
 
   Equations eq = equations(truth_.ddq_p);
   const Contacts contacts = near_stops();
-  resist(eq, contacts, input.brakes_closed);
+  resist(eq, contacts, input);
   accelerate(eq, contacts);
   integrate(truth_.ddq_p);
   chain_.update(q_, dq_, loads());
@@ -183,13 +183,23 @@ Plant::Equations Plant::equations(const VectorP& ddq_p) const noexcept {
   return eq;
 }
 
+namespace {
+
+bool is_held(const PlantInput& input, int joint) noexcept {
+  if (has_bit(input.faults.closed_brakes, joint)) return true;
+  return input.brakes_closed && !has_bit(input.faults.weak_brakes, joint);
+}
+
+}  // namespace
+
 double Plant::friction_bound(int joint) const noexcept {
   return coulomb_torque(config_.actuators[at(joint)], truth_.dtheta_m[joint],
                         forces_.tau_links[joint]);
 }
 
 // Friction, brakes and stops as one box problem in the speeds at the end of the step.
-void Plant::resist(const Equations& eq, const Contacts& contacts, bool brakes_closed) noexcept {
+void Plant::resist(const Equations& eq, const Contacts& contacts,
+                   const PlantInput& input) noexcept {
   const double h = config_.step;
   const int n = n_m_ + contacts.count;
   MatrixUpTo<kMaxLinks, kMaxBoxRows> G = MatrixUpTo<kMaxLinks, kMaxBoxRows>::Zero(n_l_, n);
@@ -199,7 +209,7 @@ void Plant::resist(const Equations& eq, const Contacts& contacts, bool brakes_cl
   VectorL ddq_free = eq.tau;
   solve_lower(eq.L, ddq_free);
   for (int i = 0; i < n_m_; ++i) {
-    box_.ub[i] = brakes_closed ? kInfinity : friction_bound(i);
+    box_.ub[i] = is_held(input, i) ? kInfinity : friction_bound(i);
     box_.lb[i] = -box_.ub[i];
     box_solution_.state[at(i)] = friction_states_[at(i)];
     G(i, i) = eq.coupling[i] / eq.inertia[i];

@@ -18,6 +18,7 @@
 #include "hg/signals/drive_model.h"
 #include "hg/signals/truth.h"
 #include "hg/simulation/friction.h"
+#include "hg/simulation/hardware_faults.h"
 #include "hg/simulation/plant_config.h"
 
 namespace hg::simulation {
@@ -26,6 +27,7 @@ namespace hg::simulation {
 struct PlantInput {
   VectorM tau_command;            ///< for the motors, Nm
   bool brakes_closed = true;      ///< of all manipulator joints
+  HardwareFaults faults;          ///< of single brakes
   VectorP dq_p_command;           ///< for the gantry's drives, before their dead time
   Vector6 w_H = Vector6::Zero();  ///< of the user on the handle, at H, in B, force first
 };
@@ -111,7 +113,7 @@ class Plant {
   VectorP gantry_acceleration(const VectorP& dq_p_command) noexcept;
   Contacts near_stops() const noexcept;
   Equations equations(const VectorP& ddq_p) const noexcept;
-  void resist(const Equations& eq, const Contacts& contacts, bool brakes_closed) noexcept;
+  void resist(const Equations& eq, const Contacts& contacts, const PlantInput& input) noexcept;
   double friction_bound(int joint) const noexcept;
   void accelerate(Equations& eq, const Contacts& contacts) noexcept;
   void integrate(const VectorP& ddq_p) noexcept;

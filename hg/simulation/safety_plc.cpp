@@ -15,24 +15,23 @@ int periods_of(double time, double period) noexcept {
 }  // namespace
 
 std::uint8_t SafetyPlc::Delay::shift(std::uint8_t value) noexcept {
-  values[static_cast<std::size_t>(next)] = value;
-  const int delayed = (next - periods + kMaxDelay) % kMaxDelay;
-  next = (next + 1) % kMaxDelay;
-  return values[static_cast<std::size_t>(delayed)];
+  values[next] = value;
+  next = (next + 1) % values.size();
+  return values[next];
 }
 
 SafetyPlc::SafetyPlc(const SafetyPlcConfig& config)
     : config_(config),
       discrepancy_(periods_of(config.discrepancy, config.period)),
       stop_time_(periods_of(config.stop_time, config.period)) {
-  // a higher rate than the longest response has room for shortens it
-  const auto delay = [&](double time) {
-    return std::min(periods_of(time, config.period), kMaxDelay - 1);
+  const auto values = [&](double time) {
+    return static_cast<std::size_t>(periods_of(time, config.period)) + 1;
   };
-  for (Delay& input : inputs_) input.periods = delay(config.response);
-  inputs_[0].values.fill(kFree);
-  inputs_[1].values.fill(kFree);
-  field_.periods = delay(config.scanner_response);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const bool is_on = i < 2;  // stop buttons and operator: a machine that nobody has stopped
+    inputs_[i].values.assign(values(config.response), is_on ? kFree : std::uint8_t{0});
+  }
+  field_.values.assign(values(config.scanner_response), 0);
 }
 
 void SafetyPlc::step(const SafetyPlcInput& input) noexcept {
@@ -57,7 +56,9 @@ void SafetyPlc::step(const SafetyPlcInput& input) noexcept {
 }
 
 // On when both channels are; channels that differ count as off at once and as a fault in time.
-bool SafetyPlc::evaluate(int input, const TwoChannels& channels) noexcept {
+bool SafetyPlc::evaluate(int input, TwoChannels channels, const HardwareFaults& faults) noexcept {
+  if (has_bit(faults.open_channels, input)) channels.is_on[0] = false;
+  if (has_bit(faults.stuck_channels, input)) channels.is_on[0] = true;
   const auto i = static_cast<std::size_t>(input);
   const auto now =
       static_cast<std::uint8_t>((channels.is_on[0] ? 1 : 0) | (channels.is_on[1] ? 2 : 0));
@@ -70,10 +71,10 @@ bool SafetyPlc::evaluate(int input, const TwoChannels& channels) noexcept {
 
 void SafetyPlc::evaluate_all(const SafetyPlcInput& input) noexcept {
   differs_now_ = false;
-  permit_.stop_free = evaluate(0, input.stop_free);
-  permit_.operator_enable = evaluate(1, input.operator_enable);
-  permit_.user_hold = evaluate(2, input.user_hold);
-  permit_.override_key = evaluate(3, input.override_key);
+  permit_.stop_free = evaluate(0, input.stop_free, input.faults);
+  permit_.operator_enable = evaluate(1, input.operator_enable, input.faults);
+  permit_.user_hold = evaluate(2, input.user_hold, input.faults);
+  permit_.override_key = evaluate(3, input.override_key, input.faults);
   const double speed = std::max(input.hand_speed, input.gantry_speed);
   permit_.is_slow = speed <= config_.safe_speed;
   const auto field =

@@ -15,8 +15,10 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "hg/signals/frames.h"
+#include "hg/simulation/hardware_faults.h"
 
 namespace hg::simulation {
 
@@ -52,6 +54,7 @@ struct SafetyPlcInput {
   double gantry_speed = 0.0;  ///< m/s
   bool drives_on = false;     ///< the program has switched them on
   bool reset = false;
+  HardwareFaults faults;  ///< of single channels
 };
 
 /// The inputs of the formula, after filtering.
@@ -90,18 +93,15 @@ class SafetyPlc {
   PlcTrip trip() const noexcept { return trip_; }
 
  private:
-  static constexpr int kMaxDelay = 512;  // periods
-  static constexpr int kInputs = 4;
-
   // An input as it was some periods ago.
   struct Delay {
-    std::array<std::uint8_t, kMaxDelay> values{};
-    int next = 0, periods = 0;
+    std::vector<std::uint8_t> values;  // one more than periods
+    std::size_t next = 0;
 
     std::uint8_t shift(std::uint8_t value) noexcept;
   };
 
-  bool evaluate(int input, const TwoChannels& channels) noexcept;
+  bool evaluate(int input, TwoChannels channels, const HardwareFaults& faults) noexcept;
   void evaluate_all(const SafetyPlcInput& input) noexcept;
   void watch_motion(const SafetyPlcInput& input) noexcept;
   void trip(PlcTrip cause) noexcept;
@@ -109,9 +109,9 @@ class SafetyPlc {
 
   SafetyPlcConfig config_;
   int discrepancy_, stop_time_;  // periods
-  std::array<Delay, kInputs> inputs_;
+  std::array<Delay, kSafetyInputs> inputs_;
   Delay field_;
-  std::array<int, kInputs> differing_{};  // periods
+  std::array<int, kSafetyInputs> differing_{};  // periods
   bool differs_now_ = false, has_disagreement_ = false;
   PlcTrip trip_ = PlcTrip::kNone;
   bool was_reset_ = false;                // the button was pressed before

@@ -46,7 +46,8 @@ Simulation::Simulation(const Config& config, const model::Chain& chain, int hand
   sample();
 }
 
-void Simulation::step(const CommandFrame& command) noexcept {
+void Simulation::step(const CommandFrame& command, const HardwareFaults& faults) noexcept {
+  faults_ = faults;
   const std::size_t slot = (first_waiting_ + waiting_count_) % waiting_.size();
   waiting_[slot] = {command, steps_ + latency_steps_};
   ++waiting_count_;
@@ -76,7 +77,8 @@ void Simulation::watch_over(const SafetyPanel& panel) noexcept {
        .hand_speed = truth_.twist.head<3>().norm(),
        .gantry_speed = truth_.dq_p.norm(),
        .drives_on = at_work_.enable,
-       .reset = panel.reset});
+       .reset = panel.reset,
+       .faults = faults_});
   frame_.safety = safety_plc_.outputs();
 }
 
@@ -97,6 +99,7 @@ void Simulation::move(const CommandFrame& command) noexcept {
   }
   PlantInput input = {.tau_command = command.tau_m,
                       .brakes_closed = !is_on,
+                      .faults = faults_,
                       .dq_p_command = command.dq_p,
                       .w_H = w_H_};
   if (!is_on) {

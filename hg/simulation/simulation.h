@@ -50,7 +50,7 @@ class Simulation {
   const user::Person& person() const noexcept { return person_; }
   const SafetyPlc& safety_plc() const noexcept { return safety_plc_; }
   /// Lives one period under `command`, which has come as answer to sensors().
-  void step(const CommandFrame& command) noexcept;
+  void step(const CommandFrame& command, const HardwareFaults& faults = {}) noexcept;
 
  private:
   /// Commands on their way to the drives, the oldest first.
@@ -70,6 +70,7 @@ class Simulation {
   std::uint64_t latency_steps_;
   Sensors sensors_;
   SafetyPlc safety_plc_;
+  HardwareFaults faults_;  ///< of this period
   user::Person person_;
   std::uint64_t steps_ = 0;  ///< of the plant so far
   std::array<Waiting, kMaxLatency + 1> waiting_;

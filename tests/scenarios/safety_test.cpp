@@ -81,6 +81,13 @@ struct Machine {
     input.request = request;
     step();
   }
+  // of the safety controller
+  void press_reset() {
+    input.panel.reset = true;
+    step();
+    input.panel.reset = false;
+    step();
+  }
 };
 
 TEST(Safety, NoShippedScenarioIsStoppedOrTouchedByARuleWithAllSensorErrors) {
@@ -132,10 +139,7 @@ TEST(Safety, AnEmergencyStopBrakesAndSwitchesOffAndAResetLeadsBackToRunning) {
   machine.run(0.1);
   machine.ask(ModeRequest::kReset);
   EXPECT_EQ(machine.record.refusal, Refusal::kCauseRemains) << "the safety controller has latched";
-  machine.input.panel.reset = true;
-  machine.step();
-  machine.input.panel.reset = false;
-  machine.step();
+  machine.press_reset();
   machine.ask(ModeRequest::kReset);
   EXPECT_EQ(machine.record.mode, Mode::kReady);
   machine.asks = true;
@@ -221,10 +225,7 @@ TEST(Safety, SomebodyInTheFieldStopsADeviceThatMovesAlone) {
   EXPECT_EQ(machine.record.refusal, Refusal::kCauseRemains);
   machine.input.panel.person_in_field = false;
   machine.run(0.2);
-  machine.input.panel.reset = true;
-  machine.step();
-  machine.input.panel.reset = false;
-  machine.step();
+  machine.press_reset();
   machine.ask(ModeRequest::kReset);
   EXPECT_EQ(machine.record.mode, Mode::kReady);
 }

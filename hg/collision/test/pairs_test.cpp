@@ -41,6 +41,17 @@ TEST(Shapes, ThatAreMeshesAreNamed) {
   EXPECT_EQ(device_of(text).links_without, (std::vector<std::string>{"m4", "m5"}));
 }
 
+TEST(Pairs, NothingTouchesTheFloorByDesign) {
+  const TestDevice device = device_of(haptic_giant_urdf());
+  for (const Excluded& pair : device.config.pairs.excluded) {
+    if (device.config.shapes[static_cast<std::size_t>(pair.a)].name != "floor" &&
+        device.config.shapes[static_cast<std::size_t>(pair.b)].name != "floor") {
+      continue;
+    }
+    EXPECT_NE(pair.reason, Exclusion::kNeighbours) << name(device.config, pair.a, pair.b);
+  }
+}
+
 TEST(Pairs, OfTheHapticGiantAreThoseThatCanTouch) {
   const TestDevice device = device_of(haptic_giant_urdf());
   const Pairs& pairs = device.config.pairs;

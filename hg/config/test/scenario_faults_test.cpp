@@ -32,9 +32,11 @@ TEST(ScenarioFaults, NameJointsAxesAndComponents) {
                           "  - {at_s: 1, fault: link_encoder_jump, of: m3, magnitude: -0.2}\n"
                           "  - {at_s: 2, for_s: 0.5, fault: gantry_dead, of: ppu2}\n"
                           "  - {at_s: 3, fault: force_sensor_offset, of: torque y, magnitude: 2}\n"
-                          "  - {at_s: 4, fault: drive_fault}\n")
+                          "  - {at_s: 4, fault: drive_fault}\n"
+                          "  - {at_s: 5, fault: brake_weak, of: m6}\n"
+                          "  - {at_s: 6, fault: safety_channel_opens, of: dead-man switch}\n")
                           .faults;
-  ASSERT_EQ(faults.size(), 4U);
+  ASSERT_EQ(faults.size(), 6U);
   EXPECT_EQ(faults[0].kind->name, "link_encoder_jump");
   EXPECT_EQ(faults[0].index, 2);
   EXPECT_EQ(faults[0].magnitude, -0.2);
@@ -44,6 +46,8 @@ TEST(ScenarioFaults, NameJointsAxesAndComponents) {
   EXPECT_EQ(faults[1].for_s, 0.5);
   EXPECT_EQ(faults[2].index, 4);
   EXPECT_EQ(faults[3].index, 0);
+  EXPECT_EQ(faults[4].index, 5);
+  EXPECT_EQ(faults[5].index, 2);
 }
 
 TEST(ScenarioFaults, AreRefusedWithTheirPlace) {
@@ -52,13 +56,19 @@ TEST(ScenarioFaults, AreRefusedWithTheirPlace) {
             at + "22: faults[0].fault: must be a fault, got 'drive_fautl', did you mean "
                  "'drive_fault'?");
   EXPECT_EQ(message("{at_s: 1, fault: gantry_dead}"),
-            at + "5: faults[0]: this fault needs one of its joints or components");
+            at + "5: faults[0]: this fault needs one of its joints, components or inputs");
   EXPECT_EQ(message("{at_s: 1, fault: gantry_dead, of: m1}"),
-            at + "39: faults[0].of: this fault needs one of its joints or components");
+            at + "39: faults[0].of: this fault needs one of its joints, components or inputs");
+  EXPECT_EQ(message("{at_s: 1, fault: gantry_dead, of: x}"),
+            at + "39: faults[0].of: this fault needs one of its joints, components or inputs");
   EXPECT_EQ(message("{at_s: 1, fault: drive_fault, of: m1}"),
-            at + "39: faults[0].of: this fault concerns no single joint or component");
+            at + "39: faults[0].of: this fault concerns no single joint, component or input");
   EXPECT_EQ(message("{at_s: 1, fault: motor_hot, of: m1}"),
             at + "5: faults[0]: this fault needs a magnitude");
+  EXPECT_EQ(message("{at_s: 1, fault: bus_errors, magnitude: -1}"),
+            at + "45: faults[0].magnitude: must not be negative for this fault");
+  EXPECT_EQ(message("{at_s: 1, fault: commands_late, magnitude: 17}"),
+            at + "48: faults[0].magnitude: must be at most 16 periods");
   EXPECT_EQ(message("{at_s: 1, fault: drive_fault, magnitude: 2}"),
             at + "46: faults[0].magnitude: this fault has no magnitude");
 }

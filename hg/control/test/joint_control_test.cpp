@@ -81,6 +81,20 @@ TEST_P(BothMethods, InMotionTheFeedforwardIsTheInverseDynamicsOfTheHandbook) {
   }
 }
 
+TEST_P(BothMethods, WhatMotionAndUserDoNotExplainOfATorqueIsToldAsAMovingMean) {
+  const VectorM weight = joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0);
+  const ReferenceState reference = at_rest(home());
+  RobotState robot = following(reference, weight);
+  robot.tau_m = weight + joints(0.0, 0.0, -3.0, 5.0, 0.0, 0.0);
+  JointControl control = control_of(reference_config(GetParam()));
+  State state = control.start();
+  TrackingReport report;
+  for (int k = 0; k <= 100; ++k) report = answer(control, state, reference, robot).report;
+  EXPECT_NEAR(report.torque_unexplained[3], 5.0 * (1.0 - std::exp(-1.0)), 0.05);
+  for (int k = 0; k < 2000; ++k) report = answer(control, state, reference, robot).report;
+  EXPECT_LT(largest(report.torque_unexplained - joints(0.0, 0.0, -3.0, 5.0, 0.0, 0.0)), 1e-3);
+}
+
 TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
   // a force of the user that grows with 100 N/s: theta_r' = tau_r' / K
   Config config = frictionless_config(GetParam());

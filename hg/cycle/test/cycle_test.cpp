@@ -245,6 +245,59 @@ TEST(Cycle, ALostSampleStopsTheDevice) {
   expect_safe_stop(loop, FaultCode::kSequenceGap);
 }
 
+TEST(Cycle, ANanBesidesAFaultThatAsksForAControlledStopTakesThePowerAtOnce) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.driver_fault = FaultCode::kBusErrors;  // stops under control where it comes alone
+  loop.sensors.q_m[2] = std::numeric_limits<double>::quiet_NaN();
+  loop.step();
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kBusErrors);
+  EXPECT_EQ(loop.record.stop, Stop::kSto);
+  EXPECT_FALSE(loop.command.enable);
+  EXPECT_TRUE(loop.command.q_m.allFinite());
+}
+
+TEST(Cycle, ADeviceThatStillMovesIsNotArmed) {
+  Loop loop;
+  loop.step();
+  loop.sensors.dq_m[1] = 0.5;
+  loop.step();
+  loop.operator_input.request = ModeRequest::kArm;
+  loop.step();
+  EXPECT_EQ(loop.record.refusal, Refusal::kStillMoving);
+  EXPECT_FALSE(loop.command.enable);
+  loop.sensors.dq_m[1] = 0.0;
+  loop.operator_input.request = ModeRequest::kNone;
+  loop.run(2);
+  loop.operator_input.request = ModeRequest::kArm;
+  loop.step();
+  EXPECT_EQ(loop.record.refusal, Refusal::kNone);
+  EXPECT_TRUE(loop.command.enable);
+}
+
+TEST(Cycle, TheTwinMeetsTheHandleWhereJointsBrakedByThemselvesInAStopThatEndsArmed) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[0] = 5.0;
+  loop.run(400);
+  loop.sensors.dead_man = false;
+  loop.run(3);
+  ASSERT_EQ(loop.record.mode, Mode::kStopping);
+  State state = loop.cycle->state();
+  state.brakes_joints = true;  // as a collision ahead does
+  loop.cycle->restore(state);
+  loop.sensors.w_S[0] = 0.0;
+  double farthest = 0.0;
+  for (int k = 0; k < 1000 && loop.record.mode == Mode::kStopping; ++k) {
+    loop.step();
+    farthest = std::max(farthest, (loop.record.T_B_H.p - loop.record.T_B_E.p).norm());
+  }
+  ASSERT_EQ(loop.record.mode, Mode::kArmed);
+  EXPECT_GT(farthest, 1e-4);
+  loop.run(2);
+  EXPECT_LT((loop.record.T_B_H.p - loop.record.T_B_E.p).norm(), 1e-5);
+}
+
 TEST(Cycle, AFaultLastsUntilItIsResetAndThenRunsAgain) {
   Loop loop;
   loop.start_running();

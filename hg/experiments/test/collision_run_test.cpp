@@ -139,6 +139,7 @@ TEST(CollisionRun, NoScenarioIsStoppedWithoutNeed) {
     }
     EXPECT_EQ(player.record().fault.code, FaultCode::kNone) << name;
     EXPECT_GT(nearest, 0.03) << name;
+    EXPECT_LT(nearest, 10.0) << name << ": something was watched";
   }
 }
 

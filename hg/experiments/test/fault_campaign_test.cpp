@@ -52,7 +52,7 @@ TEST(Campaign, IsTheSameForTheSameSeedAndTellsEveryCase) {
   scenario.duration_s = 3.0;
   const auto cases_of = [&](std::uint64_t seed) {
     const CampaignConfig config = {.cases = 4, .seed = seed, .watched_s = 0.1};
-    return to_json(run_campaign({scenario}, config, {}))["cases"];
+    return to_json(run_campaign({scenario}, config, {}, {}))["cases"];
   };
   const auto cases = cases_of(3);
   EXPECT_EQ(cases.size(), 4U);

@@ -200,7 +200,7 @@ TEST(Injector, SamplesAreLostRepeatedAndLate) {
   Injector lost({{.kind = find_kind("samples_lost"), .magnitude = 4.0, .from_s = kFrom_s}});
   Injector repeated({{.kind = find_kind("samples_repeated"), .from_s = kFrom_s}});
   Injector late({{.kind = find_kind("cycles_late"), .magnitude = 2.0, .from_s = kFrom_s}});
-  std::uint32_t late_cycles = 0;
+  OperatorFrame input;
   for (int cycle = 0; cycle < 20; ++cycle) {
     SensorFrame one = sensors_at(cycle), two = one, three = one;
     lost.spoil(one);
@@ -210,9 +210,43 @@ TEST(Injector, SamplesAreLostRepeatedAndLate) {
     EXPECT_EQ(one.sequence, sequence + (cycle < 10 ? 0U : 4U));
     EXPECT_EQ(two.sequence, cycle < 10 ? sequence : 10U);
     EXPECT_EQ(three.sequence, sequence);
-    late_cycles += late.late_cycles();
+    late.spoil(input);
   }
-  EXPECT_EQ(late_cycles, 2U);
+  EXPECT_EQ(input.late_cycles, 2U);
+}
+
+TEST(Injector, TheSolverHasFewActiveSetsWhileItLasts) {
+  Injector injector({{.kind = find_kind("solver_hurried"),
+                      .magnitude = 2.0,
+                      .from_s = kFrom_s,
+                      .for_s = kFor_s}});
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    SensorFrame sensors = sensors_at(cycle);
+    OperatorFrame input;
+    injector.spoil(sensors);
+    injector.spoil(input);
+    EXPECT_EQ(input.most_active_sets, cycle >= 10 && cycle < 15 ? 2U : 0U) << cycle;
+  }
+}
+
+TEST(Injector, BrakesAndChannelsHaveABitEachWhileItLasts) {
+  const auto injection = [](const char* name, int index) -> Injection {
+    return {.kind = find_kind(name), .index = index, .from_s = kFrom_s, .for_s = kFor_s};
+  };
+  Injector injector({injection("brake_closes", 0), injection("brake_closes", 5),
+                     injection("brake_weak", 1), injection("safety_channel_opens", 2),
+                     injection("safety_channel_stuck", 3)});
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    SensorFrame sensors = sensors_at(cycle);
+    CommandFrame command = command_at(cycle);
+    injector.spoil(sensors);
+    injector.spoil(command);
+    const bool is_during = cycle >= 10 && cycle < 15;
+    EXPECT_EQ(injector.hardware().closed_brakes, is_during ? 0b100001U : 0U) << cycle;
+    EXPECT_EQ(injector.hardware().weak_brakes, is_during ? 0b10U : 0U) << cycle;
+    EXPECT_EQ(injector.hardware().open_channels, is_during ? 0b100U : 0U) << cycle;
+    EXPECT_EQ(injector.hardware().stuck_channels, is_during ? 0b1000U : 0U) << cycle;
+  }
 }
 
 TEST(Injector, RefusesCommandsThatAreTooLateAndAllocatesNothing) {

@@ -102,6 +102,21 @@ TEST(Passivity, StopsWhatCalmingDoesNotEnd) {
   EXPECT_LT(stopped_s, 3.8);
 }
 
+TEST(Passivity, StopsWhatGivesMoreEnergyThanItsTankHolds) {
+  const Config config = {.reaction = Reaction::kAct};
+  State state;
+  Fault fault;
+  double given = 0.0;
+  while (fault.code == FaultCode::kNone && given < 1000.0) {
+    const PassivityReport report =
+        step(config, {.power_measured = 0.0, .power_rendered = 50.0}, state);
+    given += kDt * 50.0;
+    fault = check(config, report, state);
+  }
+  EXPECT_EQ(fault.code, FaultCode::kEnergy);
+  EXPECT_NEAR(given, config.tank_start, 0.1);
+}
+
 // A body whose inertia and damping follow the calming, pushed at random, moved a little late: what
 // its port takes is never less than what it stores, less what the tank held.
 TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {

@@ -207,6 +207,11 @@ const Case kCases[] = {
        b.torque = x;
        b.sensors.theta_m[0] = x / 10000.0;
      }},
+    {FaultCode::kTorqueUnexplained, "unexplained torque", 20, 4, 10.1, 9.9,
+     [](Bench& b, double x) {
+       b.watched.unexplained = VectorM::Zero(6);
+       b.watched.unexplained[4] = -x;
+     }},
     {FaultCode::kSensorImplausible, "contradiction", 3, 2, 0.0202, 0.0198,
      [](Bench& b, double x) { b.sensors.theta_m[2] = x; }},
     {FaultCode::kWrenchTooLarge, "force", 5, 0, 151.0, 149.0,
@@ -410,6 +415,36 @@ TEST(Monitor, TheTwistOfALoadedSpringIsNoContradictionAndItsAbsenceIsOne) {
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSensorImplausible);
 }
 
+TEST(Monitor, SlidesAndTurningGantriesHaveTolerancesOfTheirOwn) {
+  MonitorConfig other = config();
+  other.is_slide.assign(6, false);
+  other.is_slide[3] = true;
+  other.slide_tolerance = 0.01;
+  other.slide_tracking_tolerance = 0.005;
+  other.is_gantry_slide = false;
+  other.turn_tolerance = 0.2;
+  other.turn_deviation = 0.1;
+  const auto until = [&](FaultCode code, auto put) {
+    Bench bench(other);
+    return bench.until_fault(code, [&] { put(bench); });
+  };
+  for (const double excess : {0.009, 0.011}) {
+    EXPECT_EQ(
+        until(FaultCode::kLimitExceeded,
+              [&](Bench& b) { b.record.robot.q_m[3] = b.record.reference.q_m[3] = 2.0 + excess; }),
+        excess < 0.01 ? -1 : 1);
+    EXPECT_EQ(
+        until(FaultCode::kTrackingLost, [&](Bench& b) { b.record.robot.q_m[3] = 0.5 * excess; }),
+        excess < 0.01 ? -1 : 20);
+    EXPECT_EQ(until(FaultCode::kGantryExceeded,
+                    [&](Bench& b) { b.record.robot.q_p[1] = 1.4 + 20.0 * excess; }),
+              excess < 0.01 ? -1 : 3);
+    EXPECT_EQ(until(FaultCode::kGantryDeviates,
+                    [&](Bench& b) { b.record.robot.dq_p[1] = 11.5 * excess; }),
+              excess < 0.01 ? -1 : 100);
+  }
+}
+
 TEST(Monitor, BelowALimitItMayOnlyMoveBackToo) {
   Bench bench;
   const auto put = [&](double q) { bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = q; };
@@ -479,6 +514,14 @@ TEST(Monitor, AMotorThatGivesNoTorqueIsNoticedBeforeItHasMovedFar) {
   EXPECT_EQ(bench.verdict.fault.index, 2);
   EXPECT_GE(k, 50);
   EXPECT_LT(k, 120);
+}
+
+TEST(Monitor, WhatBrakingDoesNotExplainStopsNothing) {
+  Bench bench;
+  bench.watched.unexplained = VectorM::Constant(6, 50.0);
+  bench.watched.state = State::kToReady;
+  bench.run(200);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
 }
 
 TEST(Monitor, AGantryThatSlowlyComesAwayFromItsDriveModelDeviates) {

@@ -81,6 +81,15 @@ TEST(Sanitiser, CutsWhatPushesOnBeyondALimitDownToTheTorqueThatHolds) {
   EXPECT_EQ(strict.torque_after(kLimit + 0.006, 0.0, 20.0, 50.0), 0.0);
 }
 
+TEST(Sanitiser, TheMarginOfASlideIsItsOwn) {
+  MonitorConfig monitor = ratings();
+  monitor.is_slide[2] = true;
+  Bench bench;
+  bench.sanitiser = Sanitiser({.slide_margin = 2e-3, .torque_rise = 2e-3}, monitor);
+  EXPECT_EQ(bench.torque_after(kLimit + 0.0019, 0.0, 20.0, 50.0), 50.0);
+  EXPECT_EQ(bench.torque_after(kLimit + 0.0021, 0.0, 20.0, 50.0), 20.0);
+}
+
 TEST(Sanitiser, MakesAJointBrakeThatWouldNotStopInTime) {
   Bench bench;
   const double distance = 0.05;

@@ -191,6 +191,8 @@ TEST(Supervisor, ARefusedRequestChangesNothingAndEveryRefusalHasWords) {
   EXPECT_EQ(
       ask(State::kFault, ModeRequest::kReset, [](SupervisorInput& i) { i.fault = kRuleFault; }),
       Refusal::kCauseRemains);
+  EXPECT_EQ(ask(State::kFault, ModeRequest::kReset, [](SupervisorInput& i) { i.is_broken = true; }),
+            Refusal::kCauseRemains);
 }
 
 TEST(Supervisor, StartsActOnEdgesAndStopsOnLevels) {

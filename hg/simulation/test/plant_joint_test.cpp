@@ -159,6 +159,22 @@ TEST(PlantJoint, BrakesStopMotorsAtOnceAndForGood) {
   EXPECT_GT(plant.truth().dtheta_m.norm(), 0.0);
 }
 
+TEST(PlantJoint, ABrakeThatClosesByItselfHoldsItsMotorAndAWeakOneHoldsNothing) {
+  const PlantConfig config = reference_config();
+  const model::Chain chain = haptic_giant();
+  for (const bool brakes_closed : {false, true}) {
+    Plant plant(config, chain, chain.frame("handle"));
+    PlantInput input = idle(config, brakes_closed);
+    input.faults = {.closed_brakes = 1U << 1, .weak_brakes = 1U << 2};
+    input.tau_command << 100.0, -60.0, 60.0, 60.0, 10.0, 5.0;
+    const VectorM theta = plant.truth().theta_m;
+    for (int k = 0; k < 400; ++k) plant.step(input);
+    EXPECT_EQ(plant.truth().theta_m[1], theta[1]);
+    EXPECT_NE(plant.truth().theta_m[2], theta[2]);
+    EXPECT_EQ(plant.truth().theta_m[0] == theta[0], brakes_closed);
+  }
+}
+
 TEST(PlantJoint, CurrentFollowsItsCommandWithItsLagUpToThePeakTorque) {
   PlantConfig config = reference_config();
   config.current_lag = 2e-3;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace hg::simulation {
 namespace {
 
@@ -125,6 +127,44 @@ TEST(SafetyPlc, ChannelsMayDifferForHalfASecondAndCountAsOffMeanwhile) {
     brief.run(20);
   }
   EXPECT_FALSE(brief.plc.outputs().has_disagreement);
+}
+
+TEST(SafetyPlc, IsAsSlowAsConfiguredAtEveryRate) {
+  for (const double period : {1e-3, 1e-4}) {
+    Bench bench;
+    bench.plc = SafetyPlc({.period = period, .scanner_response = 0.3});
+    bench.run(100);
+    bench.input.field = ScannerField::kSmall;
+    const int periods = static_cast<int>(std::lround(0.3 / period));
+    bench.run(periods);
+    EXPECT_TRUE(bench.plc.outputs().is_field_clear) << period;
+    bench.run(1);
+    EXPECT_FALSE(bench.plc.outputs().is_field_clear) << period;
+  }
+}
+
+TEST(SafetyPlc, ABrokenWireStopsAndAStuckOneIsFoundWhenTheSwitchIsUsed) {
+  Bench broken;
+  broken.run(20);
+  broken.input.faults.open_channels = 1U << 0;  // stop buttons
+  broken.run(11);
+  EXPECT_TRUE(broken.plc.outputs().emergency_stop);
+  EXPECT_FALSE(broken.plc.outputs().has_disagreement);
+  broken.run(500);
+  EXPECT_TRUE(broken.plc.outputs().has_disagreement);
+  broken.reset();
+  EXPECT_TRUE(broken.plc.outputs().has_disagreement) << "the wire is still broken";
+
+  Bench stuck;
+  stuck.input.faults.stuck_channels = 1U << 1;  // operator's enabling switch
+  stuck.run(1000);
+  EXPECT_TRUE(stuck.plc.outputs().operator_enable);
+  EXPECT_FALSE(stuck.plc.outputs().has_disagreement);
+  stuck.input.operator_enable = TwoChannels::both(false);
+  stuck.run(11);
+  EXPECT_FALSE(stuck.plc.outputs().operator_enable);
+  stuck.run(500);
+  EXPECT_TRUE(stuck.plc.outputs().has_disagreement);
 }
 
 // with nobody at the handle, the key turned, slowly

@@ -1,0 +1,22 @@
+/// Which number of several vectors is none.
+#pragma once
+
+#include <cmath>
+
+namespace hg {
+
+/// The first component that is NaN or infinite, counted through all vectors; -1 = there is none.
+template <typename... Vectors>
+int first_not_finite(const Vectors&... vectors) noexcept {
+  int passed = 0, found = -1;
+  const auto look = [&](const auto& v) {
+    for (int i = 0; i < v.size() && found < 0; ++i) {
+      if (!std::isfinite(v[i])) found = passed + i;
+    }
+    passed += static_cast<int>(v.size());
+  };
+  (look(vectors), ...);
+  return found;
+}
+
+}  // namespace hg
