@@ -1,0 +1,37 @@
+/// The groups of measurements of benchmark.h; each adds its figures, tables and failures.
+#pragma once
+
+#include "hg/config/scenario.h"
+#include "hg/experiments/workers.h"
+#include "hg/haptify/benchmark.h"
+#include "hg/haptify/figures.h"
+
+namespace hg::haptify {
+
+struct Group {
+  const config::Scenario& scenario;
+  const Options& options;
+  const Told& told;
+  Benchmark& out;
+
+  experiments::Progress progress(const std::string& what) const {
+    return [this, what](std::size_t done, std::size_t total) {
+      if (told) told(what, done, total);
+    };
+  }
+  std::size_t repetitions() const { return static_cast<std::size_t>(options.repetitions); }
+  std::uint64_t seed(std::size_t repetition) const { return options.seed + repetition; }
+  /// Nothing when `failure` is empty.
+  void add_failure(const std::string& what, const std::string& failure) const {
+    if (!failure.empty()) out.failures.push_back(what + ": " + failure);
+  }
+};
+
+void add_workspace(const Group& group);
+void add_free_space(const Group& group);
+void add_dynamics(const Group& group);
+void add_transparency(const Group& group);
+void add_force_response(const Group& group);
+void add_latency(const Group& group);
+
+}  // namespace hg::haptify

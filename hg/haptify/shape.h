@@ -1,0 +1,20 @@
+/// Workspace volume and shape: postures within all limits, drawn at random.
+#pragma once
+
+#include <cstdint>
+
+#include "hg/config/device.h"
+#include "hg/inspection/workspace.h"
+
+namespace hg::haptify {
+
+struct ShapeConfig {
+  int postures = 60'000;  ///< of the arm, each with eight positions of the gantry
+};
+
+/// Joint limits, the distance to the singularity (virtual joints), travel of the gantry and walls
+/// (Cartesian limits of handle and elbow) all hold; the control loop does not run.
+inspection::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
+                                    std::uint64_t seed);
+
+}  // namespace hg::haptify
