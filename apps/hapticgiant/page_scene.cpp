@@ -83,6 +83,26 @@ Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
   return box;
 }
 
+viewer_server::SceneSurface scene_surface(const environment::Surface& surface) {
+  using viewer_server::SurfaceShape;
+  viewer_server::SceneSurface scene{.name = surface.name, .pose = surface.pose};
+  scene.shape = static_cast<SurfaceShape>(surface.shape.index());
+  if (const auto* box = std::get_if<environment::Box>(&surface.shape)) {
+    scene.size = box->size;
+  } else if (const auto* sphere = std::get_if<environment::Sphere>(&surface.shape)) {
+    scene.size.setConstant(2.0 * sphere->radius);
+  } else if (const auto* cylinder = std::get_if<environment::Cylinder>(&surface.shape)) {
+    scene.size << 2.0 * cylinder->radius, 2.0 * cylinder->radius, cylinder->length;
+  } else if (const auto* mesh = std::get_if<environment::Mesh>(&surface.shape)) {
+    for (const environment::Triangle& triangle : mesh->triangles()) {
+      for (const Eigen::Vector3d& corner : triangle.corners) {
+        scene.triangles.insert(scene.triangles.end(), corner.begin(), corner.end());
+      }
+    }
+  }
+  return scene;
+}
+
 // told from the name of the twin's robot
 Environment environment_of(const config::Twin& twin) {
   std::string name = twin.urdf.stem().string() + " " + twin.name;
@@ -124,6 +144,9 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   scene.box = box_of(scenario);
   scene.floor_z = scenario.device.floor_z;
   scene.environment = environment_of(scenario.twin);
+  for (const environment::Surface& surface : scenario.surfaces) {
+    scene.surfaces.push_back(scene_surface(surface));
+  }
   return scene;
 }
 

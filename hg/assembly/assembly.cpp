@@ -216,7 +216,8 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
                        .monitor = monitor,
                        .sanitiser = device.sanitiser,
                        .collision = device.collision,
-                       .passivity = device.passivity},
+                       .passivity = device.passivity,
+                       .surfaces = scenario.surfaces},
                       device.model, scenario.twin.model);
 }
 

@@ -9,6 +9,7 @@
 #include "hg/config/describe_scenario.h"
 #include "hg/config/describe_script.h"
 #include "hg/config/describe_simulation.h"
+#include "hg/config/describe_surfaces.h"
 #include "hg/config/describe_tool.h"
 #include "hg/config/describe_twin.h"
 #include "hg/config/describe_twin_joints.h"
@@ -107,6 +108,8 @@ std::string scenario_table() {
   describe_panel(writer, panel);
   InjectionsDraft injections = injections_of({}, {});
   describe_injections(writer, injections);
+  std::vector<SurfaceDraft> surfaces;
+  describe_surfaces(writer, surfaces);
   return writer.table();
 }
 

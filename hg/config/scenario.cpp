@@ -7,6 +7,7 @@
 #include "hg/config/describe_injections.h"
 #include "hg/config/describe_panel.h"
 #include "hg/config/describe_scenario.h"
+#include "hg/config/describe_surfaces.h"
 #include "hg/config/loader.h"
 #include "hg/core/error.h"
 #include "hg/rendering/catalogue.h"
@@ -51,6 +52,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   ScenarioDraft draft;
   ChangesDraft changes;
   InjectionsDraft injections;
+  std::vector<SurfaceDraft> surfaces;
   std::vector<TimedPanel> panel;
   std::optional<Device> device;
   std::optional<Twin> twin;
@@ -77,6 +79,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
     describe_panel(loader, panel);
     injections = injections_of(draft.names.manipulator, draft.names.gantry);
     describe_injections(loader, injections);
+    describe_surfaces(loader, surfaces);
   });
 
   return {.title = draft.title,
@@ -91,6 +94,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
           .changes = std::move(changes.changes),
           .panel = std::move(panel),
           .faults = std::move(injections.injections),
+          .surfaces = surfaces_of(surfaces, reader),
           .sources = reader.texts(),
           .places = std::move(file.places)};
 }

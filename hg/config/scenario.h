@@ -10,6 +10,7 @@
 #include "hg/config/script.h"
 #include "hg/config/sources.h"
 #include "hg/config/twin.h"
+#include "hg/environment/surface.h"
 #include "hg/evaluation/events.h"
 #include "hg/injection/injection.h"
 #include "hg/signals/limit.h"
@@ -28,12 +29,13 @@ struct Scenario {
   user::PersonKind person = user::PersonKind::kNone;
   Script script;  ///< empty unless person is kScript
   LimitCatalogue limits;
-  std::vector<evaluation::EventRule> events;  ///< expected, in this order
-  std::vector<TimedChange> changes;           ///< of the twin, in the order of their times
-  std::vector<TimedPanel> panel;              ///< of the operator, likewise
-  std::vector<injection::Injection> faults;   ///< on purpose
-  std::vector<SourceText> sources;            ///< of all files, the scenario first
-  Places places;                              ///< of the keys of the YAML file
+  std::vector<evaluation::EventRule> events;   ///< expected, in this order
+  std::vector<TimedChange> changes;            ///< of the twin, in the order of their times
+  std::vector<TimedPanel> panel;               ///< of the operator, likewise
+  std::vector<injection::Injection> faults;    ///< on purpose
+  std::vector<environment::Surface> surfaces;  ///< that the twin meets
+  std::vector<SourceText> sources;             ///< of all files, the scenario first
+  Places places;                               ///< of the keys of the YAML file
 };
 
 /// Throws SetupError with the faults of the scenario, its device, twin and script, one per line.

@@ -72,7 +72,8 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
              const rendering::TwinModel& twin)
     : config_(config),
       estimation_(config.estimation, device.chain, device.n_p, device.n_m, device.handle),
-      rendering_(device, twin, config.rendering),
+      rendering_(device, twin, config.rendering,
+                 environment::Environment(config.surfaces, config.rendering.dt)),
       control_(config.control, device.chain, device.n_p, device.n_m, device.handle),
       gantry_target_(target_of(config.prepositioning, device), device.chain),
       guard_(config.collision, device.chain),
@@ -254,6 +255,7 @@ void Cycle::hold(CycleRecord& record) noexcept {
   if (state_.supervisor.state != safety::State::kArmed) {
     rendering.reference.q_m = record.robot.q_m;
     rendering_.align(record.robot, rendering);
+    rendering.contact = {};
   }
   rendering.reference.dq_m.setZero();
   rendering.twin.dq_a.setZero();

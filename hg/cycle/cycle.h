@@ -4,10 +4,13 @@
 /// construction.
 #pragma once
 
+#include <vector>
+
 #include "hg/collision/guard.h"
 #include "hg/control/joint_control.h"
 #include "hg/core/nonblocking.h"
 #include "hg/core/stage_probe.h"
+#include "hg/environment/environment.h"
 #include "hg/estimation/estimation.h"
 #include "hg/passivity/passivity.h"
 #include "hg/prepositioning/gantry_target.h"
@@ -30,6 +33,7 @@ struct Config {
   safety::SanitiserConfig sanitiser;
   collision::Config collision;
   passivity::Config passivity;
+  std::vector<environment::Surface> surfaces;  ///< that the twin meets
 };
 
 /// All that a cycle remembers. Copy it to take a snapshot, assign it to go back. What is added here

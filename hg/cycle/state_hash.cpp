@@ -80,6 +80,8 @@ void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
   hash.mix_bytes(state.active_set.before.data(), static_cast<std::size_t>(rows));
   hash.mix_bytes(state.touched.lower.data(), state.touched.lower.size());
   hash.mix_bytes(state.touched.upper.data(), state.touched.upper.size());
+  hash.mix(state.contact.proxy);
+  hash.mix(std::uint64_t{state.contact.is_started});
 }
 
 void mix(const estimation::TareState& tare, Hash& hash) noexcept {

@@ -30,6 +30,8 @@ template <>
 inline constexpr std::string_view kMessageName<PassivityReport> =
     "hapticgiant_msgs/PassivityReport";
 template <>
+inline constexpr std::string_view kMessageName<ContactReport> = "hapticgiant_msgs/ContactReport";
+template <>
 inline constexpr std::string_view kMessageName<CycleRecord> = "hapticgiant_msgs/CycleRecord";
 template <>
 inline constexpr std::string_view kMessageName<Truth> = "hapticgiant_msgs/Truth";
@@ -86,6 +88,13 @@ void fields(Archive& a, T& passivity) {
   a("scale", passivity.scale, "factor on inertia and damping of the twin in effect");
 }
 
+template <typename Archive, Is<ContactReport> T>
+void fields(Archive& a, T& contact) {
+  a("force", contact.force, "of virtual surfaces on the handle, N");
+  a("proxy", contact.proxy, "nearest to the handle outside of all surfaces, m");
+  a("surface", contact.surface, "that pushes most, in the order of the scenario; -1 none");
+}
+
 template <typename Archive, Is<CycleRecord> T>
 void fields(Archive& a, T& record) {
   a("cycle", record.cycle);
@@ -121,6 +130,7 @@ void fields(Archive& a, T& record) {
   a("tracking", record.tracking, "how well the device follows");
   a("collision", record.collision);
   a("passivity", record.passivity);
+  a("contact", record.contact);
   a("q_p_target", record.q_p_target, "where prepositioning wants the gantry, m");
   a("solver_status", record.solver_status, "0 not run, 1 solved, 2 iteration limit, 3 failed");
   a("solver_iterations", record.solver_iterations);

@@ -109,10 +109,12 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
   check(twin);
 }
 
-Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options)
+Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
+                     environment::Environment environment)
     : device_((check(device, twin, options), std::move(device))),
       twin_(std::move(twin)),
       options_(options),
+      environment_(std::move(environment)),
       tasks_(device_, twin_, options_),
       reactions_(device_, twin_),
       L_(twin_.chain.nv(), twin_.chain.nv()),
@@ -181,6 +183,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
     budget.friction = slip_torque(state.twin.dq_a, state.inner);
     budget.surface = J_a_.transpose() * (share * values.w_ref);
   }
+  feel_surfaces(state, is_braking ? 0.0 : share, record);
 
   const hqp::ActiveSet previous = state.active_set;
   solve(state, handle_speed, record);
@@ -190,6 +193,16 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   report_kinematics(state, record);
   ended_(Stage::kReactions);
   return record.solver_status;
+}
+
+// The proxy goes along while nothing is felt, too.
+void Rendering::feel_surfaces(State& state, double share, CycleRecord& record) noexcept {
+  const Eigen::Vector3d p_E = twin_.chain.pose(twin_.end_effector).p;
+  const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
+  record.contact = environment_.step(p_E, v_E, state.contact);
+  if (record.contact.surface < 0) return;
+  record.contact.force *= share;
+  record.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * record.contact.force;
 }
 
 void Rendering::align(const RobotState& robot, State& state) noexcept {

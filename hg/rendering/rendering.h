@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "hg/core/stage_probe.h"
+#include "hg/environment/environment.h"
 #include "hg/hqp/kept_problems.h"
 #include "hg/hqp/solver.h"
 #include "hg/rendering/device_model.h"
@@ -36,6 +37,7 @@ struct State {
   Calming calming;  ///< for the next step
   hqp::ActiveSet active_set;
   TouchedEnds touched;  ///< by the last result; law paper only
+  environment::State contact;
 };
 
 /// Throws SetupError naming the first thing in the models that the law cannot use.
@@ -43,7 +45,8 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
 
 class Rendering {
  public:
-  Rendering(DeviceModel device, TwinModel twin, const Options& options);
+  Rendering(DeviceModel device, TwinModel twin, const Options& options,
+            environment::Environment environment = {});
 
   const DeviceModel& device() const noexcept { return device_; }
   const TwinModel& twin() const noexcept { return twin_; }
@@ -58,7 +61,8 @@ class Rendering {
   /// record.robot; fills the rest that concerns device, twin, limits and solver. Does not move the
   /// state: integrate() does. `braking_rate` > 0 (1/s) brings the twin to rest: it is then a body
   /// without springs, friction and weight that nobody touches, under the same limits. `share`
-  /// (0..1) of the user's wrench, the twin's springs, its weight and its reference wrench counts,
+  /// (0..1) of the user's wrench, the twin's springs, its weight, its reference wrench and the
+  /// surfaces around it counts,
   /// so that a run that begins against a leaning hand begins without a bump. The handle moves no
   /// faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian limits
   /// for it.
@@ -103,12 +107,14 @@ class Rendering {
 
  private:
   void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
+  void feel_surfaces(State& state, double share, CycleRecord& record) noexcept;
   void solve(State& state, double handle_speed, CycleRecord& record) noexcept;
   void report_kinematics(const State& state, CycleRecord& record) const noexcept;
 
   DeviceModel device_;
   TwinModel twin_;
   Options options_;
+  environment::Environment environment_;
   Tasks tasks_;
   Reactions reactions_;
   // of this cycle: M_a = L L^T, the Jacobians of handle (gantry first) and end effector

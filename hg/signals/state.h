@@ -53,6 +53,13 @@ struct PassivityReport {
   double scale = 1.0;        ///< factor on inertia and damping of the twin in effect
 };
 
+/// What virtual surfaces do to the end effector of the twin; resolved in B.
+struct ContactReport {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the handle, N
+  Eigen::Vector3d proxy = Eigen::Vector3d::Zero();  ///< nearest to it outside of all of them, m
+  int surface = -1;  ///< index in the scenario of the one that pushes most; -1 = none
+};
+
 /// What estimation knows about the device.
 struct RobotState {
   VectorM q_m, dq_m;              ///< link side, unlimited joints unwrapped
@@ -178,6 +185,7 @@ struct CycleRecord {
   TrackingReport tracking;
   CollisionReport collision;
   PassivityReport passivity;
+  ContactReport contact;
   VectorP q_p_target;  ///< where prepositioning wants the gantry
   SolverStatus solver_status = SolverStatus::kNotRun;
   int solver_iterations = 0;

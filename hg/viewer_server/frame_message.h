@@ -24,6 +24,7 @@ struct FrameMessage {
   Quaternion quaternion_B_H{}, quaternion_B_E{};
   std::optional<FeltLimitMessage> felt;
   std::vector<ActiveLimitMessage> active;
+  std::optional<ContactMessage> contact;
   std::vector<double> limit_position;
   std::vector<std::optional<double>> limit_distance;
   BudgetMessage budget;
@@ -68,6 +69,7 @@ void fields(Archive& a, T& frame) {
   a("torque_Nm", frame.torque);
   a("felt", frame.felt);
   a("active", frame.active, "limits that act");
+  a("contact", frame.contact, "null = none");
   a("limit_position", frame.limit_position, "rad or m, in the order of Scene.limits");
   a("limit_distance", frame.limit_distance, "to the nearer end, with margin; null = unbounded");
   a("budget", frame.budget, "why do I feel this?");

@@ -36,6 +36,11 @@ struct ActiveLimitMessage {
   std::string text;
 };
 
+struct ContactMessage {
+  int surface = -1;
+  Vec3 force{}, proxy{};
+};
+
 struct WrenchMessage {
   Vec3 force{}, torque{};
 };
@@ -78,6 +83,8 @@ inline constexpr Interface kInterface<FeltLimitMessage> = {"FeltLimit", "what is
 template <>
 inline constexpr Interface kInterface<ActiveLimitMessage> = {"ActiveLimit", "a limit that acts"};
 template <>
+inline constexpr Interface kInterface<ContactMessage> = {"Contact", "with virtual surfaces"};
+template <>
 inline constexpr Interface kInterface<WrenchMessage> = {"Wrench", "on the hand, at H, in B"};
 template <>
 inline constexpr Interface kInterface<BudgetMessage> = {
@@ -111,6 +118,13 @@ void fields(Archive& a, T& limit) {
   a("text", limit.text);
 }
 
+template <typename Archive, Is<ContactMessage> T>
+void fields(Archive& a, T& contact) {
+  a("surface", contact.surface, "in Scene.surfaces, the one that pushes most");
+  a("force_N", contact.force, "of all of them on the handle");
+  a("proxy_m", contact.proxy, "where the handle would be if they were hard");
+}
+
 template <typename Archive, Is<WrenchMessage> T>
 void fields(Archive& a, T& wrench) {
   a("force_N", wrench.force);
@@ -124,7 +138,7 @@ void fields(Archive& a, T& budget) {
   a("damping", budget.damping);
   a("spring", budget.spring, "springs and closers");
   a("friction", budget.friction, "while slipping; held joints are limits");
-  a("surface", budget.surface, "reference wrench of the twin");
+  a("surface", budget.surface, "virtual surfaces and the reference wrench of the twin");
   a("limits", budget.limits, "all limits that act");
   a("conflict", budget.conflict, "limits that could not be met");
   a("structure", budget.structure, "carried by the bearings of the twin");

@@ -57,6 +57,15 @@ SceneChainMessage chain_message(const SceneChain& chain, std::string_view addres
   return message;
 }
 
+std::vector<SceneSurfaceMessage> surface_messages(const std::vector<SceneSurface>& surfaces) {
+  std::vector<SceneSurfaceMessage> messages;
+  for (const SceneSurface& s : surfaces) {
+    messages.push_back(
+        {s.name, s.shape, vec3(s.pose.p), vec3(s.size), quaternion(s.pose.R), s.triangles});
+  }
+  return messages;
+}
+
 // Task levels as in [HG] Table II: Cartesian frames one after the other, three rows each.
 std::vector<SceneLimitMessage> limit_messages(const LimitCatalogue& limits) {
   std::vector<SceneLimitMessage> messages;
@@ -191,6 +200,7 @@ std::string encode_scene(const Scene& scene, double update_rate_hz) {
                        .floor_z = scene.floor_z,
                        .box = {vec3(scene.box.min()), vec3(scene.box.max())},
                        .environment = scene.environment,
+                       .surfaces = surface_messages(scene.surfaces),
                        .choices = scene.choices,
                        .settings = {},
                        .commands = scene.commands,
@@ -229,6 +239,10 @@ std::string encode_frame(const View& view, const LimitCatalogue& limits, std::ui
   add_motion(record, frame);
   frame.felt = felt_message(record, limits);
   add_limits(record, limits, frame);
+  const ContactReport& contact = record.contact;
+  if (contact.surface >= 0) {
+    frame.contact = {contact.surface, vec3(contact.force), vec3(contact.proxy)};
+  }
   frame.budget = budget_message(view.budget);
   if (view.singularity) frame.singularity = {view.singularity->measure, view.singularity->limit};
   frame.cycle_time_us = view.cycle_time_us;

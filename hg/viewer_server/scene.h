@@ -40,6 +40,17 @@ struct SceneChain {
 /// What stands around the twin.
 enum class Environment : std::uint8_t { kRoom, kDoor, kExcavator };
 
+enum class SurfaceShape : std::uint8_t { kPlane, kBox, kSphere, kCylinder, kMesh };
+
+/// A virtual surface.
+struct SceneSurface {
+  std::string name;
+  SurfaceShape shape = SurfaceShape::kPlane;
+  Pose pose;                                       ///< in B
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< m, of the box around it; zero for a plane
+  std::vector<double> triangles;                   ///< of a mesh: 9 coordinates each, m
+};
+
 enum class Source : std::uint8_t { kRun, kRecording };
 
 struct Choice {
@@ -76,6 +87,7 @@ struct Scene {
   double rate_hz = 1000.0;  ///< of the cycle
   int gantry_joints = 0;    ///< of the device, its first ones
   Environment environment = Environment::kRoom;
+  std::vector<SceneSurface> surfaces;
   Choices choices;
   std::vector<Setting> settings;
   std::vector<CommandName> commands;  ///< that are followed

@@ -22,6 +22,7 @@ struct SceneMessage {
   double floor_z = 0.0;
   SceneBoxMessage box;
   Environment environment = Environment::kRoom;
+  std::vector<SceneSurfaceMessage> surfaces;
   Choices choices;
   std::vector<SettingMessage> settings;
   std::vector<CommandName> commands;
@@ -47,6 +48,7 @@ void fields(Archive& a, T& scene) {
   a("floor_z_m", scene.floor_z);
   a("box", scene.box);
   a("environment", scene.environment, "of the twin");
+  a("surfaces", scene.surfaces);
   a("choices", scene.choices);
   a("settings", scene.settings);
   a("commands", scene.commands, "that are followed");

@@ -23,6 +23,10 @@ inline constexpr auto kWords<Environment> = std::to_array<std::string_view>({"ro
 template <>
 inline constexpr auto kWords<Source> = std::to_array<std::string_view>({"run", "recording"});
 
+template <>
+inline constexpr auto kWords<SurfaceShape> =
+    std::to_array<std::string_view>({"plane", "box", "sphere", "cylinder", "mesh"});
+
 enum class LimitUnit : std::uint8_t { kRad, kM };
 template <>
 inline constexpr auto kWords<LimitUnit> = std::to_array<std::string_view>({"rad", "m"});
@@ -54,6 +58,14 @@ struct SceneBoxMessage {
   Vec3 min{}, max{};
 };
 
+struct SceneSurfaceMessage {
+  std::string name;
+  SurfaceShape shape = SurfaceShape::kPlane;
+  Vec3 p_B{}, size{};
+  Quaternion quaternion_B{};
+  std::vector<double> triangles;
+};
+
 struct SettingMessage {
   std::string name, group, label, unit;
   double min = 0.0, max = 0.0;
@@ -71,6 +83,8 @@ inline constexpr Interface kInterface<SceneLimitMessage> = {"SceneLimit", "a lim
 template <>
 inline constexpr Interface kInterface<SceneBoxMessage> = {"SceneBox",
                                                           "Cartesian limits of the handle in B"};
+template <>
+inline constexpr Interface kInterface<SceneSurfaceMessage> = {"SceneSurface", "a virtual surface"};
 template <>
 inline constexpr Interface kInterface<Choice> = {"Choice", "something to choose"};
 template <>
@@ -114,6 +128,16 @@ template <typename Archive, Is<SceneBoxMessage> T>
 void fields(Archive& a, T& box) {
   a("min_m", box.min);
   a("max_m", box.max);
+}
+
+template <typename Archive, Is<SceneSurfaceMessage> T>
+void fields(Archive& a, T& surface) {
+  a("name", surface.name);
+  a("shape", surface.shape, "a plane is solid below its z = 0, a cylinder has its axis along z");
+  a("p_B_m", surface.p_B, "of its centre");
+  a("quaternion_B", surface.quaternion_B);
+  a("size_m", surface.size, "of the box around it; zero for a plane");
+  a("triangles_m", surface.triangles, "of a mesh: 9 coordinates each; else empty");
 }
 
 template <typename Archive, Is<Choice> T>

@@ -93,6 +93,7 @@ Scene make_scene() {
   scene.gantry_joints = 1;
   scene.choices = {.scenario = "door", .scenarios = {{"door", "Door"}}};
   scene.settings = {{.name = "hinge.damping", .group = "hinge", .max = 10.0, .value = kInfinity}};
+  scene.surfaces = {{.name = "table", .shape = SurfaceShape::kMesh, .triangles = {1.0}}};
   scene.commands = {CommandName::kPause, CommandName::kSet};
   scene.twin.joints = {{"free", JointType::kFloating},
                        {"glide x", JointType::kPrismatic, "glide", Eigen::Vector3d::UnitY()}};
@@ -124,6 +125,7 @@ View make_view() {
   record.limits[2].reaction = -23.4;
   record.limits[2].to_upper = 0.25;
   record.limits[2].to_lower = 1.75;
+  record.contact.surface = 0;
   record.sync_error = 0.0015;
   view.budget.inertia << 1, 0, 0, 0, 0, 2;
   view.singularity = {0.5, 1};

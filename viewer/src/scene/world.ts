@@ -15,6 +15,7 @@ import { paint_shapes } from "./materials";
 import { Person } from "./person";
 import { scanner_zone } from "./scanner_zone";
 import type { Stage } from "./stage";
+import { SurfacesView } from "./surfaces";
 import { type Surroundings, surroundings_of } from "./surroundings";
 import { Trail } from "./trail";
 
@@ -35,6 +36,7 @@ export class World {
   private readonly trails = new Group();
   private readonly gauges: Gauge[];
   private readonly surroundings: Surroundings;
+  private readonly surfaces: SurfacesView;
   private readonly scanner: Group;
   private readonly ghost: Ghost;
 
@@ -47,12 +49,13 @@ export class World {
   ) {
     this.person = new Person(scene.floor_z_m);
     this.surroundings = surroundings_of(scene);
+    this.surfaces = new SurfacesView(scene.surfaces);
     this.scanner = scanner_zone(scene.box, scene.floor_z_m);
     this.ghost = new Ghost(scene);
     this.gauges = gauges_of(scene, device);
     this.trails.add(this.handle_trail.line, this.elbow_trail.line);
     this.root.add(device.placement, twin.placement, this.surroundings.group, this.ghost.group);
-    this.root.add(this.person.group, this.trails, this.scanner);
+    this.root.add(this.person.group, this.trails, this.scanner, this.surfaces.group);
     this.root.add(this.handle.pull, this.handle.arrows);
     this.apply_layers();
   }
@@ -70,6 +73,7 @@ export class World {
       ["device", [this.device.placement]],
       ["twin", [this.twin.placement]],
       ["ghost", [this.ghost.group]],
+      ["surfaces", [this.surfaces.group]],
       ["surroundings", [this.surroundings.group]],
       ["person", [this.person.group]],
       ["arrows", [this.handle.arrows]],
@@ -104,6 +108,7 @@ export class World {
     const attitude = new Quaternion(...frame.quaternion_B_H).normalize();
     this.person.pose(new Vector3(...frame.p_B_H_m), attitude);
     this.ghost.show(frame.ghost);
+    this.surfaces.show(frame.p_B_E_m, frame.contact);
   }
 
   dispose(): void {

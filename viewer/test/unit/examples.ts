@@ -49,6 +49,7 @@ export const scene: Scene = {
   floor_z_m: -2,
   box: { min_m: [-1, -1, -1], max_m: [1, 1, 0] },
   environment: "door",
+  surfaces: [],
   choices: {
     scenario: "door",
     scenarios: [],
@@ -112,6 +113,7 @@ export const frame: Frame = {
   torque_Nm: [0, 0, 2],
   felt: null,
   active: [],
+  contact: null,
   limit_position: [0.3, 0.5, 0.4],
   limit_distance: [0.3, 0.5, 0.4],
   budget: budget(),

@@ -1,0 +1,91 @@
+/// Description of scenario.yaml, fourth part: virtual surfaces.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hg/config/describe_common.h"
+#include "hg/config/sources.h"
+#include "hg/environment/surface.h"
+
+namespace hg::config {
+
+enum class SurfaceShape { kPlane, kBox, kSphere, kCylinder, kMesh };
+
+inline constexpr std::array<Choice<SurfaceShape>, 5> kSurfaceShapes = {
+    {{"plane", SurfaceShape::kPlane},
+     {"box", SurfaceShape::kBox},
+     {"sphere", SurfaceShape::kSphere},
+     {"cylinder", SurfaceShape::kCylinder},
+     {"mesh", SurfaceShape::kMesh}}};
+
+/// What stands under `surfaces`, before it becomes a Surface.
+struct SurfaceDraft {
+  environment::Surface surface;  ///< without its shape
+  SurfaceShape shape = SurfaceShape::kPlane;
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  double radius = 0.0, length = 0.0, scale = 1.0;
+  std::filesystem::path mesh;
+  Placement placement;
+};
+
+constexpr Range range_of(const Interval& interval) {
+  return {.lb = interval.lb, .ub = interval.ub};
+}
+
+template <class V>
+void describe_shape(V& v, SurfaceDraft& d) {
+  const Range length = range_of(environment::kSize);
+  v.choice("shape", d.shape, kSurfaceShapes,
+           "a plane is hard where z < 0 in its own frame; the others are solids");
+  if (v.covers(d.shape == SurfaceShape::kBox)) {
+    v.vector("size_m", d.size, length, "edges of a box along its x, y, z");
+    v.rule(v.is_given("size_m"), "", "a box needs 'size_m'");
+  }
+  if (v.covers(d.shape == SurfaceShape::kSphere || d.shape == SurfaceShape::kCylinder)) {
+    v.number("radius_m", d.radius, length, "of a sphere or cylinder", Need::kRequired);
+  }
+  if (v.covers(d.shape == SurfaceShape::kCylinder)) {
+    v.number("length_m", d.length, length, "of a cylinder, along its z", Need::kRequired);
+  }
+  if (v.covers(d.shape == SurfaceShape::kMesh)) {
+    v.path("mesh", d.mesh, "STL file of a mesh, binary or text", Need::kRequired);
+    v.number("scale", d.scale, kPositive, "of a mesh, m per unit of the file; 0.001 for mm");
+  }
+}
+
+template <class V>
+void describe(V& v, std::vector<SurfaceDraft>& surfaces) {
+  SurfaceDraft& d = surfaces.emplace_back();
+  v.words("name", d.surface.name, "for the page and for messages", Need::kRequired);
+  const auto same = [&](const SurfaceDraft& other) { return other.surface.name == d.surface.name; };
+  v.rule(std::count_if(surfaces.begin(), surfaces.end(), same) == 1, "name",
+         "surfaces must not use a name twice");
+  describe_shape(v, d);
+  v.group(
+      "placement", [&](auto& child) { describe(child, d.placement); },
+      "of the surface in B; without it, its frame is B");
+  v.number("stiffness_N_per_m", d.surface.stiffness, range_of(environment::kStiffness),
+           "of the spring between handle and surface");
+  v.number("damping_Ns_per_m", d.surface.damping, range_of(environment::kDamping),
+           "against the motion of the handle inside, in full from 5 mm on");
+  v.number("friction", d.surface.friction, range_of(environment::kFriction),
+           "coefficient of Coulomb friction");
+}
+
+template <class V>
+void describe_surfaces(V& v, std::vector<SurfaceDraft>& surfaces) {
+  v.list(
+      "surfaces", [&](auto& child) { describe(child, surfaces); },
+      "virtual surfaces that push the end effector of the twin, docs/environment.md");
+  v.rule(surfaces.size() <= environment::kMaxSurfaces, "surfaces", "at most 64 surfaces");
+}
+
+/// Reads the meshes. Throws SetupError.
+std::vector<environment::Surface> surfaces_of(const std::vector<SurfaceDraft>& drafts,
+                                              SourceReader& reader);
+
+}  // namespace hg::config

@@ -1,0 +1,112 @@
+#include "hg/environment/environment.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "hg/core/error.h"
+
+namespace hg::environment {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kStill = 1e-10;  // m; a proxy that moves less has arrived
+
+Vector3d into(const Pose& pose, const Vector3d& p) noexcept {
+  return pose.R.transpose() * (p - pose.p);
+}
+
+// Never pulls, and along the surface within the cone of friction.
+Vector3d force_of(const Spread& spread, const Vector3d& velocity) noexcept {
+  const double damping = spread.damping * std::min(1.0, spread.depth / kFullDamping);
+  const double speed = velocity.dot(spread.normal);
+  const double f_normal = std::max(0.0, spread.stiffness * spread.depth - damping * speed);
+  const Vector3d v_tangent = velocity - speed * spread.normal;
+  Vector3d f_tangent = spread.stiffness * spread.tangent - damping * v_tangent;
+  const double held = spread.friction * f_normal;
+  const double wanted = f_tangent.norm();
+  if (wanted > held) f_tangent *= held / wanted;
+  return f_normal * spread.normal + f_tangent;
+}
+
+}  // namespace
+
+Environment::Environment(std::vector<Surface> surfaces, double period)
+    : surfaces_(std::move(surfaces)), period_(period) {
+  if (surfaces_.size() > kMaxSurfaces) {
+    throw SetupError("surfaces: at most " + std::to_string(kMaxSurfaces) + ", got " +
+                     std::to_string(surfaces_.size()));
+  }
+  for (const Surface& surface : surfaces_) check(surface);
+}
+
+ContactReport Environment::step(const Vector3d& position, const Vector3d& velocity,
+                                State& state) const noexcept {
+  const Vector3d handle = position + 0.5 * period_ * velocity;
+  ContactReport contact;
+  contact.proxy = handle;
+  if (surfaces_.empty() || !handle.allFinite()) return contact;
+  if (!state.is_started) state = {handle, true};
+  Planes planes;
+  follow(handle, planes, state.proxy);
+  contact.proxy = state.proxy;
+  const Spread spread = planes.spread(handle, state.proxy);
+  contact.surface = spread.surface;
+  if (spread.surface >= 0) contact.force = force_of(spread, velocity);
+  return contact;
+}
+
+int Environment::surface_around(const Vector3d& position) const noexcept {
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const Surface& surface = surfaces_[i];
+    if (is_inside(surface.shape, into(surface.pose, position))) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+Environment::Found Environment::first_hit(const Vector3d& from, const Vector3d& to) const noexcept {
+  Found first;
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const Surface& surface = surfaces_[i];
+    const auto hit =
+        environment::first_hit(surface.shape, into(surface.pose, from), into(surface.pose, to));
+    if (!hit || (first.surface >= 0 && hit->share >= first.hit.share)) continue;
+    first = {{hit->share, surface.pose.R * hit->normal}, static_cast<int>(i)};
+  }
+  return first;
+}
+
+// From the surface that the proxy meets on its way to the handle along that surface and whatever
+// it then meets. A round ends where the way is free; on a curved surface and behind an edge the
+// next one begins from there. No planes: the proxy has reached the handle.
+void Environment::follow(const Vector3d& handle, Planes& planes, Vector3d& proxy) const noexcept {
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const Found met = first_hit(proxy, handle);
+    planes = {};
+    if (met.surface < 0) {
+      proxy = handle;
+      return;
+    }
+    const Vector3d before = proxy;
+    proxy += met.hit.share * (handle - proxy);
+    planes.add(met.hit.normal, surfaces_[static_cast<std::size_t>(met.surface)], met.surface);
+    slide(handle, planes, proxy);
+    if ((proxy - before).norm() < kStill) return;
+  }
+}
+
+void Environment::slide(const Vector3d& handle, Planes& planes, Vector3d& proxy) const noexcept {
+  constexpr int kSweeps = kMaxSweeps / kMaxRounds - 1;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    const Vector3d target = planes.step(handle, proxy);
+    if ((target - proxy).norm() < kStill) return;
+    const Found met = first_hit(proxy, target);
+    proxy += met.hit.share * (target - proxy);
+    if (met.surface < 0) return;
+    const Surface& surface = surfaces_[static_cast<std::size_t>(met.surface)];
+    if (!planes.add(met.hit.normal, surface, met.surface)) return;
+  }
+}
+
+}  // namespace hg::environment

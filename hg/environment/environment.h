@@ -1,0 +1,70 @@
+/// The force of virtual surfaces on a point, by a proxy that never enters them.
+///
+/// The handle may enter a surface, its proxy stays outside and is where the handle would be if the
+/// surface were hard; a spring pulls the handle towards it. The way of the proxy is followed, so
+/// that no wall is too thin. One proxy for all surfaces: touching solids make one.
+///
+/// Sources: C. Zilles, K. Salisbury, A constraint-based god-object method for haptic display, IROS
+/// 1995 (active planes); D. Ruspini, K. Kolarov, O. Khatib, The haptic display of complex graphical
+/// environments, SIGGRAPH 1997 (way of the proxy, friction as a cone); J. E. Colgate, G. Schenkel,
+/// Passivity of a class of sampled-data systems, J. Robotic Systems 14(1), 1997 (K < 2 b / T); K.
+/// Hunt, F. Crossley, J. Applied Mechanics 42, 1975 (damping that begins with the depth).
+/// Differs from them: docs/environment.md.
+///
+/// SI units, frame B. No allocation after construction. At most kMaxSweeps searches of the way of
+/// the proxy in a step.
+#pragma once
+
+#include <vector>
+
+#include "hg/core/types.h"
+#include "hg/environment/cast.h"
+#include "hg/environment/planes.h"
+#include "hg/environment/surface.h"
+#include "hg/signals/state.h"
+
+namespace hg::environment {
+
+inline constexpr std::size_t kMaxSurfaces = 64;
+inline constexpr int kMaxRounds = 4;  ///< in which the proxy follows a curved surface
+inline constexpr int kMaxSweeps = 5 * kMaxRounds;
+
+inline constexpr double kFullDamping = 5e-3;  ///< depth from which damping acts in full, m; [C] 5
+
+/// Part of the copyable state of a cycle.
+struct State {
+  Eigen::Vector3d proxy = Eigen::Vector3d::Zero();
+  bool is_started = false;  ///< false: the proxy starts where the handle is
+};
+
+class Environment {
+ public:
+  Environment() = default;  ///< without surfaces
+  /// `period` of the steps, s. Throws SetupError naming the first surface that cannot be.
+  Environment(std::vector<Surface> surfaces, double period);
+
+  const std::vector<Surface>& surfaces() const noexcept { return surfaces_; }
+
+  /// `position` and `velocity` of the handle at the begin of a sample. The spring acts as in its
+  /// middle, where the handle is half a period later; else it would give energy. A handle that
+  /// starts inside a solid is free until it has left it.
+  ContactReport step(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
+                     State& state) const noexcept;
+
+  /// Index of a solid that a point is inside of; -1 = of none. Meshes have no inside.
+  int surface_around(const Eigen::Vector3d& position) const noexcept;
+
+ private:
+  struct Found {
+    Hit hit;  ///< resolved in B
+    int surface = -1;
+  };
+  Found first_hit(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const noexcept;
+  void slide(const Eigen::Vector3d& handle, Planes& planes, Eigen::Vector3d& proxy) const noexcept;
+  void follow(const Eigen::Vector3d& handle, Planes& planes, Eigen::Vector3d& proxy) const noexcept;
+
+  std::vector<Surface> surfaces_;
+  double period_ = 0.0;
+};
+
+}  // namespace hg::environment
