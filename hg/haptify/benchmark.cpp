@@ -9,10 +9,15 @@ Benchmark measure(const config::Scenario& scenario, const Options& options, cons
   const Group group = {scenario, options, told, result};
   add_workspace(group);
   add_free_space(group);
+  add_sources(group);
+  add_sliding(group);
+  add_stiffness(group);
+  add_peak(group);
   add_dynamics(group);
   add_transparency(group);
   add_force_response(group);
   add_latency(group);
+  add_z_width(group);
   return result;
 }
 

@@ -29,7 +29,13 @@ struct Group {
 
 void add_workspace(const Group& group);
 void add_free_space(const Group& group);
+/// After add_free_space(): which imperfection its vibration comes from.
+void add_sources(const Group& group);
 void add_dynamics(const Group& group);
+void add_sliding(const Group& group);
+void add_stiffness(const Group& group);
+void add_peak(const Group& group);
+void add_z_width(const Group& group);
 void add_transparency(const Group& group);
 void add_force_response(const Group& group);
 void add_latency(const Group& group);

@@ -59,6 +59,7 @@ void add_workspace(const Group& group) {
     volume.why = fmt::format(
         "The limits of the handle are a box of {:.2f} m^3, and {:.1f} % of it is reached.",
         first.box_volume, 100.0 * mean(volume.values) / first.box_volume);
+    volume.why += unreached_sides(group.scenario.device, first, config, group.seed(0));
   }
   Table shape = {.id = "workspace_shape",
                  .title = "Workspace shape",

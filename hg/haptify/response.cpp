@@ -54,10 +54,15 @@ std::span<const Instant> part(const Played& played, double begin_s, double end_s
   return std::span(played.instants).subspan(at(begin_s), at(end_s) - at(begin_s));
 }
 
+// Weighted with Hann: what is left of slow transients does not leak into a frequency.
 Complex amplitude(std::span<const Instant> instants, double frequency_Hz, double rate_Hz,
                   const std::function<double(const Instant&)>& value) {
   std::vector<double> values;
-  for (const Instant& now : instants) values.push_back(value(now));
+  const auto count = static_cast<double>(instants.size());
+  for (const Instant& now : instants) {
+    const double angle = 2.0 * kPi * static_cast<double>(values.size()) / count;
+    values.push_back((1.0 - std::cos(angle)) * value(now));
+  }
   return experiments::phasor(values, frequency_Hz, rate_Hz);
 }
 
@@ -179,7 +184,7 @@ ForceResponse measure_force_response(const config::Scenario& scenario, const Res
     const double omega = 2.0 * kPi * spell.frequency_Hz;
     const auto counted = part(played, spell.begin_s, spell.end_s, rate_Hz);
     const Complex f = amplitude(counted, spell.frequency_Hz, rate_Hz,
-                                [&](const Instant& now) { return -now.w_H[axis]; });
+                                [&](const Instant& now) { return now.w_H[axis]; });
     const Complex commanded =
         amplitude(counted, spell.frequency_Hz, rate_Hz, [&](const Instant& now) {
           return config.force * std::sin(omega * (now.time_s - start_of(spell)));

@@ -16,8 +16,8 @@ namespace hg::haptify {
 struct ResponseConfig {
   std::vector<double> frequency_Hz{0.1, 0.2, 0.5, 1, 2, 3, 5, 8, 12, 20, 30, 50};
   double force = 10.0;  ///< amplitude of the push, N: beyond the friction of the joints, [A]
-  int periods = 4;      ///< of each frequency that count; at least `least_s` long
-  double least_s = 1.0;
+  int periods = 5;      ///< of each frequency that count; at least `least_s` long
+  double least_s = 2.0;
   Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
   double step_force = 10.0;                    ///< of the step for the latency, N
   double watched_s = 0.15;                     ///< after the step
@@ -40,10 +40,11 @@ struct Response {
 Response measure_response(const config::Scenario& scenario, const ResponseConfig& config, int axis,
                           std::uint64_t seed);
 
-/// At one frequency: force at a hand that holds still over the reference wrench of the twin.
+/// At one frequency: force of a hand that holds still over the reference wrench of the twin, which
+/// is what the person should exert ([HG] (9)).
 struct ForceAnswer {
   double frequency_Hz = 0.0;
-  std::complex<double> rendered;  ///< true force at the handle over the commanded one
+  std::complex<double> rendered;  ///< true force of the person over the commanded one
   std::complex<double> ideal;     ///< the same twin in the same hand without a device between
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "hg/config/device.h"
 #include "hg/inspection/workspace.h"
@@ -16,5 +17,10 @@ struct ShapeConfig {
 /// (Cartesian limits of handle and elbow) all hold; the control loop does not run.
 inspection::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
                                     std::uint64_t seed);
+
+/// The sides of the handle's box that it does not reach by more than 2 mm, and the joints that
+/// stand at a limit where it comes nearest; empty when there is none.
+std::string unreached_sides(const config::Device& device, const inspection::Workspace& shape,
+                            const ShapeConfig& config, std::uint64_t seed);
 
 }  // namespace hg::haptify
