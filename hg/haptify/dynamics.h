@@ -16,7 +16,7 @@ namespace hg::haptify {
 struct DynamicsConfig {
   double stroke = 0.10;                              ///< m, edge of the cube; [HANDBOOK] 7
   double angle = 0.25;                               ///< rad, of a stroke of rotation, [A]
-  std::vector<double> duration_s = {1.6, 0.8, 0.5};  ///< of one stroke: several speeds
+  std::vector<double> duration_s = {1.6, 1.0, 0.7};  ///< of one stroke: several speeds
   int strokes = 6;                                   ///< of each duration
   Eigen::Vector3d position{0.0, 0.0, -0.775};        ///< middle of the box of the handle, m in B
 };

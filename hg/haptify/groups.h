@@ -2,11 +2,15 @@
 #pragma once
 
 #include "hg/config/scenario.h"
+#include "hg/experiments/motion_analysis.h"
 #include "hg/experiments/workers.h"
 #include "hg/haptify/benchmark.h"
 #include "hg/haptify/figures.h"
 
 namespace hg::haptify {
+
+/// A lighter body than the shipped one, for comparison; [C] 4.
+inline constexpr experiments::FreeTwin kLightBody = {.mass = 3.0, .damping = 2.0};
 
 struct Group {
   const config::Scenario& scenario;

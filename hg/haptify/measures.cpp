@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <unsupported/Eigen/FFT>
 
 #include "hg/evaluation/reality.h"
@@ -29,6 +30,7 @@ Signal above_band(std::span<const Eigen::Vector3d> input, double rate_Hz) {
 
 std::vector<double> dft321(std::span<const Eigen::Vector3d> axes) {
   using Complex = std::complex<double>;
+  if (axes.empty()) return {};
   Eigen::FFT<double> fft;
   std::vector<double> one(axes.size());
   std::vector<Complex> spectrum, sum(axes.size());
@@ -45,7 +47,7 @@ std::vector<double> dft321(std::span<const Eigen::Vector3d> axes) {
     sum[i] = std::polar(std::sqrt(energy[i]), std::arg(sum[i]));
   }
   std::vector<double> result;
-  if (!axes.empty()) fft.inv(result, sum);
+  fft.inv(result, sum);
   return result;
 }
 
@@ -93,6 +95,15 @@ Line fit_line(std::span<const double> x, std::span<const double> y) {
   if (spread <= 0.0) return {0.0, mean_y};
   const double slope = ((xs - mean_x) * (ys - mean_y)).sum() / spread;
   return {slope, mean_y - slope * mean_x};
+}
+
+std::complex<double> amplitude(std::span<const double> x, double frequency_Hz, double rate_Hz) {
+  std::vector<double> weighted(x.begin(), x.end());
+  const double step = 2.0 * std::numbers::pi / static_cast<double>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    weighted[i] *= 1.0 - std::cos(step * static_cast<double>(i));
+  }
+  return experiments::phasor(weighted, frequency_Hz, rate_Hz);
 }
 
 double bandwidth(std::span<const double> frequency_Hz, std::span<const double> ratio,

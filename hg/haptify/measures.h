@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <complex>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,10 @@ struct Line {
 
 /// Least squares of y over x.
 Line fit_line(std::span<const double> x, std::span<const double> y);
+
+/// Complex amplitude of x(t) at a frequency, weighted with a Hann window: what is left of slow
+/// transients does not leak into it. `x` should last a whole number of its periods, at least three.
+std::complex<double> amplitude(std::span<const double> x, double frequency_Hz, double rate_Hz);
 
 /// First frequency at which a ratio is more than `factor` times too large or too small, on
 /// logarithmic axes between the two frequencies around it; the last frequency when it never is.

@@ -79,12 +79,11 @@ void add_workspace(const Group& group) {
 }
 
 void add_free_space(const Group& group) {
-  constexpr experiments::FreeTwin kLight = {.mass = 3.0, .damping = 2.0};  // [C] 4
   FreeSpaceConfig config;
   if (group.options.is_quick) config.duration_s = 6.0;
   const experiments::FreeTwin twin = experiments::free_twin_of(group.scenario);
   config::Scenario light = group.scenario;
-  experiments::set_free_twin(light, kLight);
+  experiments::set_free_twin(light, kLightBody);
   const std::size_t n = group.repetitions();
   std::vector<FreeSpace> all(2 * n);
   experiments::do_all(
@@ -119,7 +118,7 @@ void add_free_space(const Group& group) {
            "times velocity); the device adds {:.2f} N to that (mean norm of the difference). "
            "Rendered as {:g} kg, {:g} Ns/m on the same strokes it is {:.2f} N.",
            mean(values_of(shipped, &FreeSpace::own_share)), body,
-           mean(values_of(shipped, &FreeSpace::extra)), kLight.mass, kLight.damping,
+           mean(values_of(shipped, &FreeSpace::extra)), kLightBody.mass, kLightBody.damping,
            mean(values_of(lighter, &FreeSpace::force)))});
   group.out.table.push_back({.id = "free_space_vibration",
                              .name = "Free-space vibration, RMS",
@@ -144,10 +143,10 @@ void add_free_space(const Group& group) {
   };
   beyond("free_space_extra", "Free-space force that the device adds", "N", 2,
          values_of(shipped, &FreeSpace::extra), "mean |f - (m a + b v)| below 20 Hz");
-  beyond(
-      "free_space_force_light",
-      fmt::format("Mean free-space force, body of {:g} kg, {:g} Ns/m", kLight.mass, kLight.damping),
-      "N", 2, values_of(lighter, &FreeSpace::force), "the same strokes");
+  beyond("free_space_force_light",
+         fmt::format("Mean free-space force, body of {:g} kg, {:g} Ns/m", kLightBody.mass,
+                     kLightBody.damping),
+         "N", 2, values_of(lighter, &FreeSpace::force), "the same strokes");
   beyond("free_space_vibration_light", "Free-space vibration of that body, RMS", "m/s^2", 3,
          values_of(lighter, &FreeSpace::vibration_rms), "the same strokes");
 }

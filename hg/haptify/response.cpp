@@ -7,7 +7,6 @@
 #include <span>
 
 #include "hg/experiments/changes.h"
-#include "hg/experiments/motion_analysis.h"
 #include "hg/haptify/measures.h"
 #include "hg/haptify/play.h"
 
@@ -54,16 +53,11 @@ std::span<const Instant> part(const Played& played, double begin_s, double end_s
   return std::span(played.instants).subspan(at(begin_s), at(end_s) - at(begin_s));
 }
 
-// Weighted with Hann: what is left of slow transients does not leak into a frequency.
-Complex amplitude(std::span<const Instant> instants, double frequency_Hz, double rate_Hz,
-                  const std::function<double(const Instant&)>& value) {
+Complex amplitude_of(std::span<const Instant> instants, double frequency_Hz, double rate_Hz,
+                     const std::function<double(const Instant&)>& value) {
   std::vector<double> values;
-  const auto count = static_cast<double>(instants.size());
-  for (const Instant& now : instants) {
-    const double angle = 2.0 * kPi * static_cast<double>(values.size()) / count;
-    values.push_back((1.0 - std::cos(angle)) * value(now));
-  }
-  return experiments::phasor(values, frequency_Hz, rate_Hz);
+  for (const Instant& now : instants) values.push_back(value(now));
+  return amplitude(values, frequency_Hz, rate_Hz);
 }
 
 // Ramps of half a period are nearly a sine.
@@ -110,7 +104,7 @@ Response measure_response(const config::Scenario& scenario, const ResponseConfig
   for (const Spell& spell : plan.spells) {
     const auto counted = part(played, spell.begin_s, spell.end_s, rate_Hz);
     const auto of = [&](const std::function<double(const Instant&)>& value) {
-      return amplitude(counted, spell.frequency_Hz, rate_Hz, value);
+      return amplitude_of(counted, spell.frequency_Hz, rate_Hz, value);
     };
     const Complex v = of([&](const Instant& now) { return direction.dot(now.twist.head<3>()); });
     const Complex f = of([&](const Instant& now) { return direction.dot(now.w_H.head<3>()); });
@@ -183,10 +177,10 @@ ForceResponse measure_force_response(const config::Scenario& scenario, const Res
   for (const Spell& spell : plan.spells) {
     const double omega = 2.0 * kPi * spell.frequency_Hz;
     const auto counted = part(played, spell.begin_s, spell.end_s, rate_Hz);
-    const Complex f = amplitude(counted, spell.frequency_Hz, rate_Hz,
-                                [&](const Instant& now) { return now.w_H[axis]; });
+    const Complex f = amplitude_of(counted, spell.frequency_Hz, rate_Hz,
+                                   [&](const Instant& now) { return now.w_H[axis]; });
     const Complex commanded =
-        amplitude(counted, spell.frequency_Hz, rate_Hz, [&](const Instant& now) {
+        amplitude_of(counted, spell.frequency_Hz, rate_Hz, [&](const Instant& now) {
           return config.force * std::sin(omega * (now.time_s - start_of(spell)));
         });
     const Complex hand = hand_impedance(driven.script.hand, static_cast<int>(person_axis), omega);

@@ -71,11 +71,11 @@ Loading loading_of(const Played& played, double surface_z, double least_force) {
 config::Scenario above_surface(const config::Scenario& scenario, const SurfaceConfig& config,
                                double stiffness, double damping) {
   config::Scenario above = scenario;
-  above.surfaces = {{.name = "plane",
-                     .shape = environment::Plane{},
-                     .pose = {.p = config.position},
-                     .stiffness = stiffness,
-                     .damping = damping}};
+  above.surfaces = {environment::Surface{.name = "plane",
+                                         .shape = environment::Plane{},
+                                         .pose = {.p = config.position},
+                                         .stiffness = stiffness,
+                                         .damping = damping}};
   above.twin.model.q_start.head<3>() =
       config.position + config.clearance * Eigen::Vector3d::UnitZ();
   return above;
@@ -110,6 +110,7 @@ Slide measure_slide(const config::Scenario& scenario, const SurfaceConfig& confi
         twin.mass * now.acceleration.head<2>() + twin.damping * now.twist.head<2>();
     result.force += now.w_H.head<2>().norm();
     result.own_share += own.norm();
+    result.extra += (now.w_H.head<2>() - own).norm();
     result.normal -= now.w_H.z();
     result.speed += now.twist.head<2>().norm();
     count += 1.0;
@@ -118,7 +119,8 @@ Slide measure_slide(const config::Scenario& scenario, const SurfaceConfig& confi
     if (result.failure.empty()) result.failure = "the hand did not touch the surface";
     return result;
   }
-  for (double* sum : {&result.force, &result.own_share, &result.normal, &result.speed}) {
+  for (double* sum :
+       {&result.force, &result.own_share, &result.extra, &result.normal, &result.speed}) {
     *sum /= count;
   }
   return result;

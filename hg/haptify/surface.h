@@ -41,6 +41,7 @@ config::Scenario above_surface(const config::Scenario& scenario, const SurfaceCo
 struct Slide {
   double force = 0.0;      ///< mean tangential |f| in contact while sliding, N
   double own_share = 0.0;  ///< mean |m a + b v| of it, tangential, N
+  double extra = 0.0;      ///< mean |f - (m a + b v)|, tangential, N
   double normal = 0.0;     ///< mean normal force, N
   double speed = 0.0;      ///< mean, m/s
   std::string failure;

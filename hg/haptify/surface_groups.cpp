@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/experiments/changes.h"
 #include "hg/haptify/groups.h"
 #include "hg/haptify/surface.h"
 
@@ -20,18 +21,29 @@ double mean(const std::vector<double>& values) { return mean_of(values).value; }
 void add_sliding(const Group& group) {
   SurfaceConfig config;
   if (group.options.is_quick) config.strokes = 1;
-  std::vector<Slide> all(group.repetitions());
+  config::Scenario light = group.scenario;
+  experiments::set_free_twin(light, kLightBody);
+  const std::size_t n = group.repetitions();
+  std::vector<Slide> all(2 * n);
   experiments::do_all(
       all.size(),
-      [&](std::size_t i) { all[i] = measure_slide(group.scenario, config, group.seed(i)); },
+      [&](std::size_t i) {
+        all[i] = measure_slide(i < n ? group.scenario : light, config, group.seed(i % n));
+      },
       group.progress("frictionless surface"));
-  std::vector<double> force, own, normal, speed;
+  std::vector<double> force, own, extra, normal, speed, lighter;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    group.add_failure(fmt::format("frictionless surface, seed {}", group.seed(i)), all[i].failure);
-    force.push_back(all[i].force);
-    own.push_back(all[i].own_share);
-    normal.push_back(all[i].normal);
-    speed.push_back(all[i].speed);
+    const Slide& one = all[i];
+    group.add_failure(fmt::format("frictionless surface, seed {}", group.seed(i % n)), one.failure);
+    if (i >= n) {
+      lighter.push_back(one.force);
+      continue;
+    }
+    force.push_back(one.force);
+    own.push_back(one.own_share);
+    extra.push_back(one.extra);
+    normal.push_back(one.normal);
+    speed.push_back(one.speed);
   }
   group.out.table.push_back(
       {.id = "frictionless_surface",
@@ -43,9 +55,16 @@ void add_sliding(const Group& group) {
        .note = fmt::format("tangential, on a plane of {:g} N/m; strokes of {:g} m at {:.2f} m/s on "
                            "average, pressed with {:.1f} N",
                            config.slide_stiffness, config.stroke, mean(speed), mean(normal)),
-       .why = fmt::format("{:.2f} N of it is what the rendered body needs for the strokes (mass "
-                          "times acceleration, damping times velocity).",
-                          mean(own))});
+       .why = fmt::format(
+           "{:.2f} N of it is what the rendered body needs for the strokes (mass times "
+           "acceleration, damping times velocity); device and surface add {:.2f} N to that (mean "
+           "norm of the difference). Rendered as {:g} kg, {:g} Ns/m it is {:.2f} N.",
+           mean(own), mean(extra), kLightBody.mass, kLightBody.damping, mean(lighter))});
+  group.out.beyond.push_back({.id = "frictionless_surface_extra",
+                              .name = "Frictionless surface force that device and surface add",
+                              .unit = "N",
+                              .values = extra,
+                              .note = "tangential, mean |f - (m a + b v)|"});
 }
 
 void add_stiffness(const Group& group) {

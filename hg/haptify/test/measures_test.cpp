@@ -137,6 +137,24 @@ TEST(FitLine, IsLeastSquares) {
   EXPECT_EQ(fit_line(std::vector<double>{2.0, 2.0}, std::vector<double>{1.0, 3.0}).slope, 0.0);
 }
 
+// f = m a + b v of a body that drifts besides: what Response makes of force and velocity.
+TEST(Amplitude, GivesTheImpedanceOfABodyThatStillDrifts) {
+  constexpr double kMass = 6.0, kDamping = 4.0, kFrequency = 5.0, kDrift = 0.7;  // 1/s
+  const double w = 2.0 * kPi * kFrequency;
+  std::vector<double> v, f;
+  for (std::size_t i = 0; i < 1000; ++i) {  // five periods
+    const double drift = 0.2 * std::exp(-kDrift * at(i));
+    const double swing = 0.05 * std::sin(w * at(i) + 0.4);
+    v.push_back(swing + drift);
+    f.push_back(kMass * (0.05 * w * std::cos(w * at(i) + 0.4) - kDrift * drift) +
+                kDamping * v.back());
+  }
+  const std::complex<double> impedance =
+      amplitude(f, kFrequency, kRate) / amplitude(v, kFrequency, kRate);
+  const std::complex<double> body = {kDamping, w * kMass};
+  EXPECT_NEAR(std::abs(impedance / body - 1.0), 0.0, 0.01);
+}
+
 TEST(Bandwidth, IsWhereTheRatioLeavesItsBand) {
   const std::vector<double> frequency = {1.0, 10.0, 100.0};
   EXPECT_EQ(bandwidth(frequency, std::vector<double>{1.0, 1.2, 0.8}, 1.4), 100.0);
