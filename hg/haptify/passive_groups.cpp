@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "hg/experiments/changes.h"
@@ -25,6 +26,40 @@ double mean(const std::vector<double>& values) { return mean_of(values).value; }
 
 std::string range_text(const Interval& range) {
   return fmt::format("{:.2f} .. {:.2f} m", range.lb, range.ub);
+}
+
+// Its vibration, and what the device adds.
+void add_vibration(const Group& group, const std::vector<FreeSpace>& shipped,
+                   const std::vector<FreeSpace>& lighter) {
+  group.out.table.push_back({.id = "free_space_vibration",
+                             .name = "Free-space vibration, RMS",
+                             .unit = "m/s^2",
+                             .digits = 3,
+                             .published = {0.81, 0.07, 0.04},
+                             .goal = {.ub = 0.1},
+                             .values = values_of(shipped, &FreeSpace::vibration_rms),
+                             .note = "of the same strokes; above 20 Hz, DFT321"});
+  group.out.table.push_back({.id = "free_space_centroid",
+                             .name = "Free-space vibration, spectral centroid",
+                             .unit = "Hz",
+                             .digits = 1,
+                             .published = {77.3, 123.0, 162.8},
+                             .goal = {.lb = 90.0},
+                             .values = values_of(shipped, &FreeSpace::centroid_Hz),
+                             .note = "of the same signal, 20 to 500 Hz, weighted with magnitude"});
+  const auto beyond = [&](const char* id, const std::string& name, const char* unit, int digits,
+                          const std::vector<double>& values, const std::string& note) {
+    group.out.beyond.push_back(
+        {.id = id, .name = name, .unit = unit, .digits = digits, .values = values, .note = note});
+  };
+  beyond("free_space_extra", "Free-space force that the device adds", "N", 2,
+         values_of(shipped, &FreeSpace::extra), "mean |f - (m a + b v)| below 20 Hz");
+  beyond("free_space_force_light",
+         fmt::format("Mean free-space force, body of {:g} kg, {:g} Ns/m", kLightBody.mass,
+                     kLightBody.damping),
+         "N", 2, values_of(lighter, &FreeSpace::force), "the same strokes");
+  beyond("free_space_vibration_light", "Free-space vibration of that body, RMS", "m/s^2", 3,
+         values_of(lighter, &FreeSpace::vibration_rms), "the same strokes");
 }
 
 }  // namespace
@@ -120,35 +155,7 @@ void add_free_space(const Group& group) {
            mean(values_of(shipped, &FreeSpace::own_share)), body,
            mean(values_of(shipped, &FreeSpace::extra)), kLightBody.mass, kLightBody.damping,
            mean(values_of(lighter, &FreeSpace::force)))});
-  group.out.table.push_back({.id = "free_space_vibration",
-                             .name = "Free-space vibration, RMS",
-                             .unit = "m/s^2",
-                             .digits = 3,
-                             .published = {0.81, 0.07, 0.04},
-                             .goal = {.ub = 0.1},
-                             .values = values_of(shipped, &FreeSpace::vibration_rms),
-                             .note = "of the same strokes; above 20 Hz, DFT321"});
-  group.out.table.push_back({.id = "free_space_centroid",
-                             .name = "Free-space vibration, spectral centroid",
-                             .unit = "Hz",
-                             .digits = 1,
-                             .published = {77.3, 123.0, 162.8},
-                             .goal = {.lb = 90.0},
-                             .values = values_of(shipped, &FreeSpace::centroid_Hz),
-                             .note = "of the same signal, 20 to 500 Hz, weighted with magnitude"});
-  const auto beyond = [&](const char* id, const std::string& name, const char* unit, int digits,
-                          const std::vector<double>& values, const std::string& note) {
-    group.out.beyond.push_back(
-        {.id = id, .name = name, .unit = unit, .digits = digits, .values = values, .note = note});
-  };
-  beyond("free_space_extra", "Free-space force that the device adds", "N", 2,
-         values_of(shipped, &FreeSpace::extra), "mean |f - (m a + b v)| below 20 Hz");
-  beyond("free_space_force_light",
-         fmt::format("Mean free-space force, body of {:g} kg, {:g} Ns/m", kLightBody.mass,
-                     kLightBody.damping),
-         "N", 2, values_of(lighter, &FreeSpace::force), "the same strokes");
-  beyond("free_space_vibration_light", "Free-space vibration of that body, RMS", "m/s^2", 3,
-         values_of(lighter, &FreeSpace::vibration_rms), "the same strokes");
+  add_vibration(group, shipped, lighter);
 }
 
 void add_dynamics(const Group& group) {
