@@ -53,7 +53,7 @@ void add_vibration(const Group& group, const std::vector<FreeSpace>& shipped,
         {.id = id, .name = name, .unit = unit, .digits = digits, .values = values, .note = note});
   };
   beyond("free_space_extra", "Free-space force that the device adds", "N", 2,
-         values_of(shipped, &FreeSpace::extra), "mean |f - (m a + b v)| below 20 Hz");
+         values_of(shipped, &FreeSpace::extra), "mean norm of f - (m a + b v), below 20 Hz");
   beyond("free_space_force_light",
          fmt::format("Mean free-space force, body of {:g} kg, {:g} Ns/m", kLightBody.mass,
                      kLightBody.damping),

@@ -64,7 +64,7 @@ void add_sliding(const Group& group) {
                               .name = "Frictionless surface force that device and surface add",
                               .unit = "N",
                               .values = extra,
-                              .note = "tangential, mean |f - (m a + b v)|"});
+                              .note = "tangential, mean norm of f - (m a + b v)"});
 }
 
 void add_stiffness(const Group& group) {
