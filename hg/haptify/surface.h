@@ -27,6 +27,7 @@ struct SurfaceConfig {
   double press_s = 4.0;       ///< of pressing and of letting go
   double least_force = 2.0;   ///< from which the slope counts, N
   double peak_force = 140.0;  ///< N, goal of the hardest press: the monitor stops at 150
+  double peak_s = 8.0;        ///< of pressing so hard
   double peak_stiffness = 4000.0;
   double peak_tolerance = 0.1;  ///< of the force from the line: farther off it is not the surface
   // knocking

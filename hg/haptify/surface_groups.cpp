@@ -117,8 +117,8 @@ void add_stiffness(const Group& group) {
                           fmt::format("{:.1f}", mean(force))});
   }
   accuracy.why = fmt::format(
-      "With the depth of the rendered body instead of the handle it is {:.1f} %: the rest is how "
-      "far the joints give way under the load.",
+      "With the depth of the rendered body instead of the handle it is {:.1f} %, where mass and "
+      "damping of body and surface add to the spring; the rest is how far the joints give way.",
       mean(twin));
   group.out.table.push_back(accuracy);
   group.out.tables.push_back(table);
@@ -126,7 +126,7 @@ void add_stiffness(const Group& group) {
 
 void add_peak(const Group& group) {
   SurfaceConfig config;
-  if (group.options.is_quick) config.press_s = 1.5;
+  if (group.options.is_quick) config.peak_s = 3.0;
   std::vector<Peak> all(group.repetitions());
   experiments::do_all(
       all.size(),
