@@ -16,6 +16,7 @@
 #include "apps/hapticgiant/experiments/command_line.h"
 #include "apps/hapticgiant/explain_command.h"
 #include "apps/hapticgiant/faults_command.h"
+#include "apps/hapticgiant/haptify_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/new_command.h"
@@ -368,6 +369,32 @@ void add_faults(CLI::App& app, hg::apps::FaultsArguments& arguments, int& exit_c
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::faults(arguments); });
 }
 
+void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "haptify",
+      "Table III of the paper on the simulated device: how good it is to hold; minutes.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant haptify                      report in haptify/report.html\n"
+      "  hapticgiant haptify --quick              a look, in seconds\n"
+      "  hapticgiant haptify --seed 7 --repetitions 10 --out results");
+  const auto is_seed = [](double value) { return value >= 0.0 && value == std::floor(value); };
+  const auto is_count = [](double value) {
+    return value >= 2.0 && value <= 100.0 && value == std::floor(value);
+  };
+  command->add_option("--out", arguments.out, "folder of the report")->capture_default_str();
+  command->add_option("--seed", arguments.options.seed, "of the first repetition")
+      ->check(number_that("a whole number, at least 0", is_seed))
+      ->capture_default_str();
+  command->add_option("--repetitions", arguments.options.repetitions, "with other seeds")
+      ->check(number_that("a whole number from 2 to 100", is_count))
+      ->capture_default_str();
+  command->add_flag("--quick", arguments.options.is_quick, "few samples and short runs");
+  command->add_option("--docs", arguments.docs,
+                      "refresh the page haptify.md of this folder (make experiments)");
+  command->callback([&arguments, &exit_code] { exit_code = hg::apps::run_haptify(arguments); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -391,6 +418,7 @@ int main(int argc, char** argv) {
   hg::apps::ExperimentsArguments experiments;
   hg::apps::BenchArguments compared;
   hg::apps::FaultsArguments broken;
+  hg::apps::HaptifyArguments haptified;
   add_run(app, run, exit_code);
   add_doctor(app, examined, exit_code);
   add_replay(app, replayed, exit_code);
@@ -404,6 +432,7 @@ int main(int argc, char** argv) {
   hg::apps::add_plot_and_compare(app, experiments, exit_code);
   add_bench(app, compared, exit_code);
   add_faults(app, broken, exit_code);
+  add_haptify(app, haptified, exit_code);
 
   try {
     app.parse(argc, argv);

@@ -1,0 +1,71 @@
+#include "apps/hapticgiant/haptify_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "apps/hapticgiant/experiments/docs_page.h"
+#include "apps/hapticgiant/haptify_report.h"
+#include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/status_line.h"
+#include "apps/hapticgiant/version.h"
+#include "hg/config/scenario.h"
+#include "hg/core/error.h"
+#include "hg/haptify/benchmark.h"
+
+namespace hg::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+// on a terminal in place; elsewhere one line per measurement
+void tell(const std::string& what, std::size_t done, std::size_t total) {
+  const bool is_terminal = isatty(STDERR_FILENO) != 0;
+  if (is_terminal) {
+    fmt::print(stderr, "{}: {} of {}{}", what, done, total, done < total ? " \r" : "\r\033[K");
+  } else if (done == total) {
+    fmt::print(stderr, "{}: {} runs\n", what, total);
+  }
+}
+
+std::string command_of(const haptify::Options& options) {
+  std::string command = fmt::format("hapticgiant haptify --seed {}", options.seed);
+  if (options.repetitions != haptify::Options{}.repetitions) {
+    command += fmt::format(" --repetitions {}", options.repetitions);
+  }
+  return command + (options.is_quick ? " --quick" : "");
+}
+
+}  // namespace
+
+int run_haptify(const HaptifyArguments& arguments) {
+  const fs::path folder = arguments.out;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());
+  print_out(fmt::format(
+      "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
+      kVersion));
+  const config::Scenario scenario = config::load_scenario(find_scenario("walk"));
+  const haptify::Benchmark result = haptify::measure(scenario, arguments.options, tell);
+  const std::string command = command_of(arguments.options);
+
+  print_out(haptify_text(result));
+  const auto write = [&](const std::string& name, const std::string& text) {
+    write_output((folder / name).string(), text);
+  };
+  write("report.html", haptify_html(result, command));
+  const std::string markdown = haptify_markdown(result, command);
+  write("report.md", "# Haptify\n\n" + markdown);
+  write("table.tex", haptify_latex(result));
+  write("haptify.csv", haptify_csv(result));
+  write("repetitions.csv", repetitions_csv(result));
+  for (const haptify::Table& table : result.tables) write(table.id + ".csv", table_csv(table));
+  if (!arguments.docs.empty()) refresh_page(arguments.docs, "haptify", markdown, {});
+  print_out(fmt::format("\nreport      {}\n", (folder / "report.html").string()));
+  return result.failures.empty() ? 0 : 1;
+}
+
+}  // namespace hg::apps

@@ -1,0 +1,21 @@
+/// `hapticgiant haptify`: the benchmark of Table III of the paper on the simulated device.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "hg/haptify/figures.h"
+
+namespace hg::apps {
+
+struct HaptifyArguments {
+  std::string out = "haptify";  ///< folder
+  std::string docs;             ///< folder of documentation to refresh; empty = none
+  haptify::Options options;
+};
+
+/// Exit code: 0 all measured, 1 a measurement failed: fault, limit exceeded. A goal that is missed
+/// is no failure: the report says why. Throws SetupError for bad input.
+int run_haptify(const HaptifyArguments& arguments);
+
+}  // namespace hg::apps

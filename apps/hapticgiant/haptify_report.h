@@ -1,0 +1,25 @@
+/// What the benchmark leaves behind: a page, Markdown, LaTeX and CSV, without time and place, so
+/// that the same figures give the same bytes.
+#pragma once
+
+#include <string>
+
+#include "hg/haptify/figures.h"
+
+namespace hg::apps {
+
+/// The table for a terminal, goals that are missed, failures.
+std::string haptify_text(const haptify::Benchmark& result);
+/// One self-contained page; `command` repeats it.
+std::string haptify_html(const haptify::Benchmark& result, const std::string& command);
+/// The same without a title.
+std::string haptify_markdown(const haptify::Benchmark& result, const std::string& command);
+/// Table III with our column: a tabular for the package booktabs.
+std::string haptify_latex(const haptify::Benchmark& result);
+/// One row per figure: mean, half width, repetitions, the published values.
+std::string haptify_csv(const haptify::Benchmark& result);
+/// One row per figure and repetition.
+std::string repetitions_csv(const haptify::Benchmark& result);
+std::string table_csv(const haptify::Table& table);
+
+}  // namespace hg::apps

@@ -1,0 +1,45 @@
+/// Global free-space forces and vibrations: a hand leads a free body slowly through the workspace.
+///
+/// Source: [HANDBOOK] 7. What is measured is the true force of the person and the true acceleration
+/// of the handle.
+#pragma once
+
+#include <cstdint>
+
+#include "hg/config/scenario.h"
+#include "hg/config/twin.h"
+#include "hg/haptify/play.h"
+
+namespace hg::haptify {
+
+struct FreeSpaceConfig {
+  double duration_s = 60.0;
+  double settling_s = 2.0;  ///< after the grasp, does not count
+  /// Mean speeds of strokes from place to place, m/s: with minimum-jerk ramps about 0.2 rms.
+  double slowest = 0.12, fastest = 0.24;
+  /// Where the strokes end, m in B: as far as no limit is felt.
+  Eigen::Vector3d lower{-1.2, -1.5, -1.05}, upper{1.2, 1.5, -0.55};
+  double turn = 0.6;  ///< of the hand's azimuth per stroke at most, rad
+};
+
+/// Random strokes from `start`: other places, speeds and azimuths with every seed.
+user::Script exploration(const FreeSpaceConfig& config, const config::HandPose& start,
+                         std::uint64_t seed);
+
+struct FreeSpace {
+  double force = 0.0;          ///< mean |f|, N
+  double own_share = 0.0;      ///< mean |m a + b v|: what the rendered body itself asks for, N
+  double extra = 0.0;          ///< mean |f - (m a + b v)|: what the device adds, N
+  double speed_rms = 0.0;      ///< m/s
+  double vibration_rms = 0.0;  ///< m/s^2
+  double centroid_Hz = 0.0;
+  double limited_share = 0.0;  ///< of the time, on which a limit was felt
+  double path = 0.0;           ///< m
+  std::string failure;
+};
+
+/// `scenario`: with a free body as the twin; throws SetupError otherwise.
+FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceConfig& config,
+                             std::uint64_t seed);
+
+}  // namespace hg::haptify

@@ -1,0 +1,47 @@
+/// The groups of measurements of benchmark.h; each adds its figures, tables and failures.
+#pragma once
+
+#include "hg/config/scenario.h"
+#include "hg/experiments/motion_analysis.h"
+#include "hg/experiments/workers.h"
+#include "hg/haptify/benchmark.h"
+#include "hg/haptify/figures.h"
+
+namespace hg::haptify {
+
+/// A lighter body than the shipped one, for comparison; [C] 4.
+inline constexpr experiments::FreeTwin kLightBody = {.mass = 3.0, .damping = 2.0};
+
+struct Group {
+  const config::Scenario& scenario;
+  const Options& options;
+  const Told& told;
+  Benchmark& out;
+
+  experiments::Progress progress(const std::string& what) const {
+    return [this, what](std::size_t done, std::size_t total) {
+      if (told) told(what, done, total);
+    };
+  }
+  std::size_t repetitions() const { return static_cast<std::size_t>(options.repetitions); }
+  std::uint64_t seed(std::size_t repetition) const { return options.seed + repetition; }
+  /// Nothing when `failure` is empty.
+  void add_failure(const std::string& what, const std::string& failure) const {
+    if (!failure.empty()) out.failures.push_back(what + ": " + failure);
+  }
+};
+
+void add_workspace(const Group& group);
+void add_free_space(const Group& group);
+/// After add_free_space(): which imperfection its vibration comes from.
+void add_sources(const Group& group);
+void add_dynamics(const Group& group);
+void add_sliding(const Group& group);
+void add_stiffness(const Group& group);
+void add_peak(const Group& group);
+void add_z_width(const Group& group);
+void add_transparency(const Group& group);
+void add_force_response(const Group& group);
+void add_latency(const Group& group);
+
+}  // namespace hg::haptify

@@ -1,0 +1,65 @@
+#include "hg/haptify/play.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "hg/assembly/assembly.h"
+#include "hg/experiments/player.h"
+
+namespace hg::haptify {
+
+config::Scenario with_script(config::Scenario scenario, const user::Script& script) {
+  const double grasp_s = scenario.script.script.grasp_s;
+  scenario.person = user::PersonKind::kScript;
+  scenario.script.script = script;
+  scenario.script.script.grasp_s = grasp_s;
+  scenario.script.script.start[user::kGripChannel] = 1.0;
+  scenario.script.start_given = {};
+  scenario.duration_s = 0.0;
+  scenario.events.clear();
+  return scenario;
+}
+
+void set_seed(config::Scenario& scenario, std::uint64_t seed) {
+  scenario.device.simulation.seed = seed;
+  scenario.device.simulation.sensors.seed = seed;
+}
+
+Played play(const config::Scenario& scenario) {
+  experiments::Player player(scenario);
+  evaluation::Summary summary = assembly::make_summary(scenario);
+  const double grasp_s = scenario.script.script.grasp_s;
+  auto sample = std::make_unique<Sample>();
+  Played played;
+  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    player.begin();
+    player.run();
+    sample->record = player.record();
+    sample->truth = player.truth();
+    summary.add(*sample);
+    const CycleRecord& record = sample->record;
+    if (record.time_s < grasp_s) continue;
+    const Truth& truth = sample->truth;
+    played.instants.push_back({.time_s = record.time_s - grasp_s,
+                               .T_B_H = truth.T_B_H,
+                               .twist = truth.twist,
+                               .acceleration = truth.acceleration,
+                               .w_H = truth.w_H,
+                               .p_B_E = record.T_B_E.p,
+                               .p_ref = record.T_B_H.p,
+                               .is_limited = record.felt_limit >= 0});
+  }
+  const Fault& fault = player.record().fault;
+  if (fault.code != FaultCode::kNone) {
+    played.failure = fmt::format("fault {} ({}) at {:.2f} s", static_cast<int>(fault.code),
+                                 to_string(fault.code), player.record().time_s);
+  } else if (!player.is_running()) {
+    played.failure = "the device did not run";
+  } else if (!summary.limits_held()) {
+    played.failure = "a limit was exceeded";
+  }
+  return played;
+}
+
+}  // namespace hg::haptify

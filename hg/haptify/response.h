@@ -1,0 +1,70 @@
+/// How the handle answers a hand, by frequency and in time: transparency, bandwidths, latency.
+///
+/// A person pushes along one axis of H to and fro, as in experiments/impedance.h; here beside what
+/// the twin itself would do. Amplitudes are those at the frequency itself. SI units.
+#pragma once
+
+#include <complex>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hg/config/scenario.h"
+
+namespace hg::haptify {
+
+struct ResponseConfig {
+  std::vector<double> frequency_Hz{0.1, 0.2, 0.5, 1, 2, 3, 5, 8, 12, 20, 30, 50};
+  double force = 10.0;  ///< amplitude of the push, N: beyond the friction of the joints, [A]
+  int periods = 5;      ///< of each frequency that count; at least `least_s` long
+  double least_s = 2.0;
+  Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
+  double step_force = 10.0;                    ///< of the step for the latency, N
+  double watched_s = 0.15;                     ///< after the step
+};
+
+/// At one frequency, along one axis of H.
+struct Answer {
+  double frequency_Hz = 0.0;
+  std::complex<double> impedance;  ///< true force over true velocity of the handle, Ns/m
+  std::complex<double> twin;       ///< of the free body: j w m + b
+  std::complex<double> following;  ///< true handle over twin, positions
+};
+
+struct Response {
+  std::vector<Answer> answers;
+  std::string failure;
+};
+
+/// `axis` 0..2 of H. Throws SetupError when the twin is not a free body.
+Response measure_response(const config::Scenario& scenario, const ResponseConfig& config, int axis,
+                          std::uint64_t seed);
+
+/// At one frequency: force of a hand that holds still over the reference wrench of the twin, which
+/// is what the person should exert ([HG] (9)).
+struct ForceAnswer {
+  double frequency_Hz = 0.0;
+  std::complex<double> rendered;  ///< true force of the person over the commanded one
+  std::complex<double> ideal;     ///< the same twin in the same hand without a device between
+};
+
+struct ForceResponse {
+  std::vector<ForceAnswer> answers;
+  std::string failure;
+};
+
+/// Reference wrench w_ref to and fro, the stiff hand of [HANDBOOK] 5.1 held still.
+ForceResponse measure_force_response(const config::Scenario& scenario, const ResponseConfig& config,
+                                     int axis, std::uint64_t seed);
+
+struct Latency {
+  double motion_s = 0.0;  ///< true velocity of the handle behind that of an ideal twin
+  double sensed_s = 0.0;  ///< of which the twin's own velocity is behind
+  std::string failure;
+};
+
+/// From a step of the person's push.
+Latency measure_latency(const config::Scenario& scenario, const ResponseConfig& config, int axis,
+                        std::uint64_t seed);
+
+}  // namespace hg::haptify

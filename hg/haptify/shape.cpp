@@ -1,0 +1,93 @@
+#include "hg/haptify/shape.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <vector>
+
+#include "hg/rendering/device_model.h"
+
+namespace hg::haptify {
+namespace {
+
+// Joints and virtual joints of a posture (gantry first) that stand at a limit.
+std::vector<std::string> joints_at_limits(const rendering::DeviceModel& model,
+                                          const Eigen::VectorXd& q) {
+  constexpr double kNear = 0.02;  // rad
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name, const limits::JointLimits& range, double value) {
+    if (value > range.q_max - kNear)
+      names.push_back(fmt::format("{} at {:.2f} rad", name, range.q_max));
+    if (value < range.q_min + kNear)
+      names.push_back(fmt::format("{} at {:.2f} rad", name, range.q_min));
+  };
+  const Eigen::VectorXd arm = q.tail(model.n_m);
+  for (Eigen::Index i = 0; i < arm.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(model.n_p + i);
+    // what moves the handle sideways only is not what ends its height
+    if (model.chain.joints()[joint].type == model::JointType::kContinuous) continue;
+    add(model.chain.joints()[joint].name, model.joint_limits[static_cast<std::size_t>(i)], arm[i]);
+  }
+  for (const rendering::VirtualJoint& joint : model.virtual_joints) {
+    add(joint.name, joint.limits, joint.weights.dot(arm));
+  }
+  return names;
+}
+
+// The posture of those drawn that brings the handle farthest along `axis`, `side` = -1 or 1.
+Eigen::VectorXd farthest(const config::Device& device, const ShapeConfig& config,
+                         std::uint64_t seed, int axis, double side) {
+  inspection::Random random(seed);
+  const inspection::JointRanges ranges = inspection::joint_ranges(device);
+  model::Chain chain = device.model.chain;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
+  Eigen::VectorXd best;
+  double most = 0.0;
+  for (int i = 0; i < config.postures; ++i) {
+    const auto q = inspection::draw(device, ranges, true, random);
+    if (!q) break;
+    chain.update_kinematics(*q, zero);
+    const double reach = side * chain.pose(device.model.handle).p[axis];
+    if (best.size() > 0 && reach <= most) continue;
+    most = reach;
+    best = *q;
+  }
+  return best;
+}
+
+}  // namespace
+
+inspection::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
+                                    std::uint64_t seed) {
+  inspection::Random random(seed);
+  inspection::Survey survey;
+  survey.options.seed = seed;
+  survey.cloud = inspection::cloud(device, config.postures, true, random);
+  return inspection::workspace(device, survey);
+}
+
+std::string unreached_sides(const config::Device& device, const inspection::Workspace& shape,
+                            const ShapeConfig& config, std::uint64_t seed) {
+  constexpr double kReached = 2e-3;  // m
+  if (!shape.has_box) return {};
+  const Eigen::AlignedBox3d box = inspection::handle_box(device.model);
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const double limit = side < 0.0 ? box.min()[axis] : box.max()[axis];
+      const double reached = side < 0.0 ? shape.bounds.min()[axis] : shape.bounds.max()[axis];
+      const double short_by = side * (limit - reached);
+      if (short_by < kReached) continue;
+      const Eigen::VectorXd q = farthest(device, config, seed, axis, side);
+      text += fmt::format(
+          " The side {} = {:.2f} m is missed by {:.0f} mm, {:.2f} m^3 of the box: "
+          "where the handle comes nearest, {}.",
+          "xyz"[axis], limit, 1e3 * short_by, short_by * box.volume() / box.sizes()[axis],
+          fmt::join(joints_at_limits(device.model, q), " and "));
+    }
+  }
+  return text;
+}
+
+}  // namespace hg::haptify

@@ -1,0 +1,23 @@
+/// What repetitions say about a figure.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace hg::haptify {
+
+/// Mean of independent repetitions, with the half width of its 95 % confidence interval.
+struct Mean {
+  double value = std::numeric_limits<double>::quiet_NaN();       ///< NaN without repetitions
+  double half_width = std::numeric_limits<double>::quiet_NaN();  ///< NaN for less than two
+  std::size_t count = 0;
+};
+
+/// Student's t, two sides, for normally distributed values.
+Mean mean_of(std::span<const double> values);
+
+/// 97.5 % quantile of Student's distribution; degrees >= 1.
+double student_t(std::size_t degrees);
+
+}  // namespace hg::haptify

@@ -1,0 +1,56 @@
+"""The Haptify benchmark as its user meets it, with few samples.
+
+Usage: haptify_test.py PROGRAM   (from the repository root)
+"""
+
+import csv
+import unittest
+
+from program import TemporaryFolder, run
+
+TABLE = ["workspace_volume", "free_space_force", "free_space_vibration", "free_space_centroid",
+         "frictionless_surface", "stiffness_accuracy", "stiffness_peak_force"]
+BEYOND = ["transparency_bandwidth", "position_bandwidth", "force_bandwidth", "latency", "z_width"]
+
+
+class Haptify(TemporaryFolder):
+    def measure(self, name, *arguments):
+        folder = self.folder / name
+        code, out, err = run("haptify", "--quick", "--repetitions", 2, "--out", folder, *arguments)
+        self.assertEqual(code, 0, out + err)
+        return folder, out
+
+    def test_two_runs_write_the_same_files_with_all_rows(self):
+        one, out = self.measure("one")
+        two, _ = self.measure("two")
+        names = sorted(file.name for file in one.iterdir())
+        self.assertEqual(names, sorted(file.name for file in two.iterdir()))
+        self.assertLessEqual({"report.html", "report.md", "table.tex", "haptify.csv",
+                              "repetitions.csv", "transparency.csv", "z_width.csv"}, set(names))
+        for name in names:
+            self.assertEqual((one / name).read_bytes(), (two / name).read_bytes(), name)
+
+        with open(one / "haptify.csv") as stream:
+            rows = {row["id"]: row for row in csv.DictReader(stream)}
+        for name in TABLE + BEYOND:
+            self.assertTrue(float(rows[name]["mean"]) > 0.0, name)
+        for name in TABLE:
+            self.assertEqual(rows[name]["repetitions"], "2")
+        # Table III of the paper
+        self.assertEqual([float(rows[name]["paper"]) for name in TABLE],
+                         [12.2, 1.28, 0.81, 77.3, 1.96, 109.0, 76.7])
+        for name in ("report.html", "report.md", "table.tex"):
+            text = (one / name).read_text()
+            self.assertIn("real machines in real hands; ours is a simulated machine", text, name)
+            self.assertNotIn("nan", text.split(), name)
+        self.assertIn("ours, simulated", out)
+
+    def test_bad_options_are_refused(self):
+        for option, value in (("--repetitions", "1"), ("--seed", "-1"), ("--repetitions", "2.5")):
+            code, _, err = run("haptify", option, value)
+            self.assertEqual(code, 2)
+            self.assertIn(option, err)
+
+
+if __name__ == "__main__":
+    unittest.main()
