@@ -17,7 +17,8 @@ struct Falling {
   CycleRecord record;
 
   static TwinModel body() {
-    TwinModel twin = unlimited_twin(model::Chain::free_body({.mass = kMass}), "handle");
+    TwinModel twin =
+        unlimited_twin(model::Chain::free_body({.mass = kMass}, {.gravity = false}), "handle");
     twin.q_start = floating_at({{0.4, 0.1, 0.001}, Eigen::Matrix3d::Identity()});
     return twin;
   }
