@@ -22,7 +22,7 @@ const REQUESTS = [
 
 const STOP_TEXT: Record<Safety["stop"], string> = {
   none: "",
-  SS2: "braked, then held",
+  SS2: "braked, then drives off",
   SS1: "braked, then drives off",
   STO: "drives off and brakes closed at once",
 };
@@ -76,18 +76,17 @@ export class SafetyPanel {
 
   show({ mode, safety }: Frame): void {
     write(this.mode, safety.is_autonomous ? `${mode}, nobody at the handle` : mode);
-    write(this.how, STOP_TEXT[safety.stop]);
+    // after a fault the drives go off in any case
+    const is_held = safety.stop === "SS2" && safety.fault === 0;
+    write(this.how, is_held ? "braked, then held" : STOP_TEXT[safety.stop]);
     write(this.cause, safety.cause);
     this.cause.dataset.mode = mode;
-    write(this.release, safety.release === "" ? "" : `Reset it when ${safety.release}.`);
+    write(this.release, safety.release === "" ? "" : `Released: ${safety.release}.`);
     write(this.warning, safety.warning === "" ? "" : `Near: ${safety.warning}`);
     this.is_pressed = safety.emergency_stop;
     this.stop.setAttribute("aria-pressed", String(this.is_pressed));
     for (const [name, box] of this.boxes) {
-      const input = box.querySelector("input")!;
-      if (document.activeElement !== input || input.checked === safety[name]) {
-        input.checked = safety[name];
-      }
+      box.querySelector("input")!.checked = safety[name];
     }
   }
 }
