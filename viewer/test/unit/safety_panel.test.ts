@@ -50,13 +50,18 @@ describe("SafetyPanel", () => {
     });
     section = new FakeElement("section");
     panel = new SafetyPanel(section as never, { send } as unknown as Commands);
-    panel.furnish({ commands: ["panel"] } as unknown as Scene);
+    panel.furnish({ commands: ["panel", "mode"] } as unknown as Scene);
   });
 
   const show = (safety: Partial<Safety>, mode: Frame["mode"] = "running"): void => {
     panel.show({ ...frame, mode, safety: { ...frame.safety, ...safety } });
   };
   const texts = (): string[] => section.all().map((part) => part.textContent);
+  const is_hidden = (text: string): boolean => {
+    const holds = (part: FakeElement): boolean =>
+      part.textContent === text || part.children.some(holds);
+    return section.all().some((part) => part.hidden && holds(part));
+  };
   const box_of = (text: string): FakeElement =>
     section.all().find((part) => part.textContent === text)!.querySelector("input")!;
 
@@ -90,6 +95,13 @@ describe("SafetyPanel", () => {
     expect(texts()).toContain("braked, then held");
     show({ stop: "SS2", fault: 302 }, "stopping");
     expect(texts()).toContain("braked, then drives off");
+  });
+
+  it("offers a recording no buttons", () => {
+    const hidden = (): boolean[] => ["Emergency stop", "Reset"].map((text) => is_hidden(text));
+    expect(hidden()).toEqual([false, false]);
+    panel.furnish({ commands: ["seek"] } as unknown as Scene);
+    expect(hidden()).toEqual([true, true]);
   });
 
   it("tells cause and release as sentences", () => {
