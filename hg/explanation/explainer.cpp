@@ -117,9 +117,12 @@ void Explainer::add_modes(const Sample& sample) {
     text += record.is_autonomous ? ": by itself, with nobody at the handle"
                                  : ": the user holds the handle (dead-man closed)";
   }
-  const bool is_let_go =
-      record.fault.code == FaultCode::kOperatorReleased && record.fault.code != last_.fault;
-  if (record.mode == Mode::kStopping || is_let_go) text += why_it_stops(sample);
+  if (record.mode == Mode::kStopping) text += why_it_stops(sample);
+  // what stands is stopped at once
+  const bool was_on = last_.mode == Mode::kArmed || last_.mode == Mode::kRunning;
+  if (record.mode == Mode::kReady && was_on && !sample.sensors.safety.operator_enable) {
+    text += ": the operator let go of the enabling switch";
+  }
   entries_.push_back({record.time_s, "mode", text, {}});
 }
 

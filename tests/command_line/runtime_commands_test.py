@@ -74,7 +74,7 @@ class FlightRecorder(TemporaryFolder):
             self.assertIn("--view", err)
 
     def test_an_operator_who_lets_go_is_no_fault(self):
-        code, out, files = self.play(what="panel:\n  - {at_s: 3.0, operator_enable: false}\n")
+        code, out, files = self.play(what="panel:\n  - {at_s: 10.5, operator_enable: false}\n")
         self.assertEqual(code, 0, out)
         self.assertIn("stopped            130 ", out)
         self.assertNotIn("FAULT", out)
