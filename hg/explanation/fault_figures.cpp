@@ -68,6 +68,7 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
     case FaultCode::kJointTorqueExceeded:
     case FaultCode::kTooHot:
     case FaultCode::kMotorDeviates:
+    case FaultCode::kTorqueUnexplained:
     case FaultCode::kSpeedExceeded:
     case FaultCode::kTrackingLost:
     case FaultCode::kAccelerationExceeded:
