@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What pages cost: cycle times with four pages and with none, and the server's processor time.
+"""What pages cost: cycle times with four pages and with none, and the server's processor time;
+and how many frames a second reach a page.
 
 Usage, in the source folder, with the page built: page_timing.py PROGRAM [SECONDS]
 
@@ -26,10 +27,14 @@ SETTLE_S = 1.0  # after pages have come or gone
 
 
 def listen(page):
-    """Takes everything that comes, until the page is closed."""
+    """Takes everything that comes, until the page is closed; counts frames."""
+    def count(_):
+        page.frames += 1
+        return False
+
     try:
         while True:
-            page.next("none")
+            page.next("frame", count)
     except (OSError, EOFError, ValueError, TimeoutError):
         pass
 
@@ -52,7 +57,7 @@ def main():
     folder = pathlib.Path(tempfile.mkdtemp())
     process = subprocess.Popen([program, "run", "door", "--user", "mouse", "--no-browser", "--recordings", folder,
                                 "--duration", "100000"], stdout=subprocess.PIPE, text=True)
-    spans, cpu = [], {}
+    spans, cpu, rates = [], {}, []
     try:
         while not (link := re.search(r"http://\S+", process.stdout.readline())):
             pass
@@ -64,13 +69,18 @@ def main():
         for count in PHASES:
             pages = [Page(link[0]) for _ in range(count)]
             for page in pages:
+                page.frames = 0
                 threading.Thread(target=listen, args=[page], daemon=True).start()
             time.sleep(SETTLE_S)
             begin, ticks = time.monotonic(), server_ticks(process)
+            seen = sum(page.frames for page in pages)
             time.sleep(seconds)
             end = time.monotonic()
             spans.append((count, begin - offset, end - offset))
             cpu.setdefault(count, []).append((server_ticks(process) - ticks) / (end - begin))
+            if pages:
+                seen = sum(page.frames for page in pages) - seen
+                rates.append(seen / count / (end - begin))
             for page in pages:
                 page.socket.shutdown(2)
     finally:
@@ -94,6 +104,7 @@ def main():
         print(f"{count:5}  {len(values):6}  {quantile(values, .5):9.2f}  "
               f"{quantile(values, .99):7.1f}  {quantile(values, .999):9.1f}  "
               f"{100 * sum(cpu[count]) / len(cpu[count]):8.2f}")
+    print(f"frames per second and page: {min(rates):.1f} .. {max(rates):.1f}")
     alone = [quantile(phase, .5) for phase, span in zip(phases, spans) if span[0] == 0]
     print(f"median of single phases without pages: {min(alone):.2f} .. {max(alone):.2f} us")
     for name, share in (("median", .5), ("99 %", .99), ("99.9 %", .999)):

@@ -182,7 +182,7 @@ int bench(const BenchArguments& arguments) {
   for (const auto& file : bench::reference_files(data_root())) {
     reference.emplace_back(file, effort.problems);
   }
-  make_folder(arguments.out);
+  check_folder(arguments.out);
   check_writable(arguments.json);
 
   results.machine = bench::describe_machine();

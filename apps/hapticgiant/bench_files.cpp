@@ -5,11 +5,9 @@
 #include <filesystem>
 #include <map>
 #include <string_view>
-#include <system_error>
 
 #include "apps/hapticgiant/output_file.h"
 #include "bench/figures.h"
-#include "hg/core/error.h"
 
 namespace hg::apps {
 namespace {
@@ -172,13 +170,9 @@ std::string to_csv(const ordered_json& rows) {
   return text;
 }
 
-void make_folder(const std::string& folder) {
+void check_folder(const std::string& folder) {
   if (folder.empty()) return;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder, error)) {
-    throw SetupError(folder + ": expected a folder, or a place where one can be made");
-  }
+  make_folder(folder);
   check_writable((std::filesystem::path(folder) / "machine.txt").string());
 }
 

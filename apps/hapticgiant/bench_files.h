@@ -27,7 +27,7 @@ nlohmann::ordered_json to_json(const BenchResults& results);
 std::string to_csv(const nlohmann::ordered_json& rows);
 
 /// Makes the folder where it is missing. Throws SetupError; "" means "no folder".
-void make_folder(const std::string& folder);
+void check_folder(const std::string& folder);
 
 /// machine.txt, and per table a CSV file and a figure. Throws SetupError.
 void write_files(const std::string& folder, const BenchResults& results);

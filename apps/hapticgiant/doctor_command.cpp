@@ -24,17 +24,10 @@ using readiness::Line;
 
 constexpr double kRates_Hz[] = {1000.0, 10000.0};
 
-/// At one rate; the ordinary thread first: the other one locks the memory.
+/// At one rate.
 struct Measured {
   Jitter ordinary, real_time;
 };
-
-Measured measure(double rate_Hz, const DoctorArguments& arguments) {
-  return {.ordinary = readiness::measure_jitter(rate_Hz, arguments.seconds,
-                                                {.priority = 0, .cpu = arguments.cpu}),
-          .real_time = readiness::measure_jitter(
-              rate_Hz, arguments.seconds, {.priority = arguments.priority, .cpu = arguments.cpu})};
-}
 
 void print(const Line& line) {
   print_out(
@@ -75,12 +68,18 @@ int doctor(const DoctorArguments& arguments) {
 
   print_out(
       fmt::format("\nhow late threads wake up, measured for {:.0f} s:\n", 4.0 * arguments.seconds));
+  const auto measure = [&](double rate_Hz, int priority) {
+    return readiness::measure_jitter(rate_Hz, arguments.seconds,
+                                     {.priority = priority, .cpu = arguments.cpu});
+  };
+  // all ordinary threads first: the others lock the memory
   std::vector<Measured> measured;
-  for (const double rate_Hz : kRates_Hz) {
-    measured.push_back(measure(rate_Hz, arguments));
-    const Measured& last = measured.back();
+  for (const double rate_Hz : kRates_Hz) measured.push_back({.ordinary = measure(rate_Hz, 0)});
+  for (Measured& pair : measured) {
+    const double rate_Hz = pair.ordinary.rate_Hz;
+    pair.real_time = measure(rate_Hz, arguments.priority);
     // 1 kHz is what devices need; faster is a choice
-    lines.push_back(readiness::judge(last.ordinary, last.real_time, rate_Hz == kRates_Hz[0]));
+    lines.push_back(readiness::judge(pair.ordinary, pair.real_time, rate_Hz == kRates_Hz[0]));
     print(lines.back());
   }
 

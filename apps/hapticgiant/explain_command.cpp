@@ -37,7 +37,10 @@ class Reader final : public recording::RecordingListener {
   std::vector<explanation::Entry> entries() {
     for (const recording::Event& event : events_) {
       // these the samples tell as well, and more of them
-      if (event.name == "tare" || event.name == "request" || event.name == "fault") continue;
+      if (event.name == "tare" || event.name == "request" || event.name == "fault" ||
+          event.name == "stopped") {
+        continue;
+      }
       explainer_->add_event(event.time_s, event.name, event.text);
     }
     return explainer_->finish();
@@ -45,22 +48,16 @@ class Reader final : public recording::RecordingListener {
 
  private:
   explanation::Names names() {
-    explanation::Names names;
     try {
       const config::Scenario scenario = recorded_scenario(configuration_);
       title_ = scenario.title;
-      names.limits = scenario.limits;
-      const rendering::DeviceModel& device = scenario.device.model;
-      for (std::size_t i = 0; i < device.chain.joints().size(); ++i) {
-        auto& list = static_cast<int>(i) < device.n_p ? names.gantry : names.joints;
-        list.push_back(device.chain.joints()[i].name);
-      }
+      return part_names(scenario);
     } catch (const SetupError& error) {
       const std::string why = error.what();
       title_ = "its configuration is not understood, parts are numbered: " +
                why.substr(0, why.find('\n'));
     }
-    return names;
+    return {};
   }
 
   std::vector<recording::NamedText> configuration_;

@@ -20,6 +20,7 @@
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/new_command.h"
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/replay_command.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/simulate_command.h"
@@ -29,25 +30,11 @@
 
 namespace {
 
+using hg::apps::at_least;
+using hg::apps::number_that;
+
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
-
-using Check = std::function<std::string(const std::string&)>;
-
-// CLI11's ranges let "nan" through and print all digits of their ends.
-Check number_that(const std::string& rule, const std::function<bool(double)>& holds) {
-  return [=](const std::string& text) -> std::string {
-    double value = 0.0;
-    if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) {
-      return "expected a number, got '" + text + "'";
-    }
-    return holds(value) ? "" : "must be " + rule + ", got " + text;
-  };
-}
-
-Check at_least(int least) {
-  return number_that(fmt::format("at least {}", least), [=](double v) { return v >= least; });
-}
 
 // The subcommand of `app` that was missed, and which there are.
 std::string missing_subcommand(const CLI::App& app) {
@@ -179,10 +166,13 @@ void add_replay(CLI::App& app, hg::apps::ReplayArguments& replay, int& exit_code
   command->add_option("file", replay.file, "recording of hapticgiant run")
       ->required()
       ->check(CLI::ExistingFile);
-  command->add_flag("--view", replay.has_view, "in the page, with play, pause and scrubbing");
+  CLI::Option* view =
+      command->add_flag("--view", replay.has_view, "in the page, with play, pause and scrubbing");
   command->add_option("--compare", replay.compare, "a second recording, shown through the first")
+      ->needs(view)
       ->check(CLI::ExistingFile);
   command->add_option("--speed", replay.speed, "recorded seconds per second, 0.1..8")
+      ->needs(view)
       ->check(number_that("from 0.1 to 8", [](double v) { return v >= 0.1 && v <= 8.0; }));
   command->add_option("--bind", replay.address, "as in run")->capture_default_str();
   command->add_option("--port", replay.port, "as in run");

@@ -48,4 +48,12 @@ void write_output(const std::string& file, const std::string& text) {
   if (!stream || error) throw SetupError(file + ": could not be written");
 }
 
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && fs::is_directory(folder, error)) return;
+  throw SetupError(folder + ": expected a folder, or a place where one can be made" +
+                   (error ? ": " + error.message() : ""));
+}
+
 }  // namespace hg::apps

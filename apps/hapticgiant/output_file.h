@@ -12,4 +12,7 @@ void check_writable(const std::string& file);
 /// Replaces a regular file in one step; others (/dev/stdout) are written to. Throws SetupError.
 void write_output(const std::string& file, const std::string& text);
 
+/// With the folders that it lies in. Throws SetupError.
+void make_folder(const std::string& folder);
+
 }  // namespace hg::apps

@@ -1,5 +1,7 @@
 #include "apps/hapticgiant/page_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include "hg/assembly/start_posture.h"
 #include "hg/config/law_names.h"
 #include "hg/inspection/workspace.h"
+#include "hg/safety/rules.h"
 
 namespace hg::apps {
 namespace {
@@ -196,6 +199,21 @@ std::vector<viewer_server::Setting> page_settings(const std::vector<config::Form
                         field.value, field.step, field.help});
   }
   return settings;
+}
+
+viewer_server::SafetyView safety_view(const Sample& sample, const explanation::Names& names) {
+  const CycleRecord& record = sample.record;
+  const auto told = [&](const Fault& fault) -> std::string {
+    if (fault.code == FaultCode::kNone) return {};
+    const std::string figures = explanation::figures_of(fault, names, sample.sensors);
+    return fmt::format("{} {}{}", static_cast<int>(fault.code), safety::rule_of(fault.code).meaning,
+                       figures.empty() ? "" : " (" + figures + ")");
+  };
+  const bool is_stopped = record.fault.code != FaultCode::kNone;
+  return {.cause = told(record.fault),
+          .release = is_stopped ? std::string(safety::rule_of(record.fault.code).release) : "",
+          .warning = told(record.warning),
+          .panel = sample.operator_input.panel};
 }
 
 }  // namespace hg::apps

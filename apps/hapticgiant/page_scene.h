@@ -6,7 +6,9 @@
 #include "apps/hapticgiant/run_command.h"
 #include "hg/config/scenario.h"
 #include "hg/config/twin_form.h"
+#include "hg/explanation/fault_figures.h"
 #include "hg/viewer_server/scene.h"
+#include "hg/viewer_server/view.h"
 
 namespace hg::apps {
 
@@ -21,5 +23,8 @@ viewer_server::Choices page_choices(const RunArguments& arguments);
 bool is_choice(const std::vector<viewer_server::Choice>& choices, const std::string& name);
 
 std::vector<viewer_server::Setting> page_settings(const std::vector<config::FormField>& form);
+
+/// What stops the device, in words, at `sample`.
+viewer_server::SafetyView safety_view(const Sample& sample, const explanation::Names& names);
 
 }  // namespace hg::apps

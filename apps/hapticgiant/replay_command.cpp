@@ -37,6 +37,7 @@ class Show {
   explicit Show(const ReplayArguments& arguments)
       : run_(arguments.file, kFrame_s),
         scenario_(recorded_scenario(run_.configuration())),
+        names_(part_names(scenario_)),
         playback_(run_.duration_s()),
         sample_(std::make_unique<Sample>()) {
     if (!arguments.compare.empty()) other_.emplace(arguments.compare, kFrame_s);
@@ -71,6 +72,7 @@ class Show {
     }
     run_.read(index, *sample_);
     view.record = sample_->record;
+    view.safety = safety_view(*sample_, names_);
     view.hand = sample_->operator_input.hand_target;
     view.cycle_time_us = view.cycle_time_max_us = sample_->cycle_time_us;
     view.status_text = scenario_.description;
@@ -125,6 +127,7 @@ class Show {
   recording::RecordedRun run_;
   std::optional<recording::RecordedRun> other_;
   config::Scenario scenario_;
+  explanation::Names names_;
   recording::Playback playback_;
   std::string name_;
   std::unique_ptr<Sample> sample_;

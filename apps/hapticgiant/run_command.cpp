@@ -24,7 +24,9 @@
 #include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
 #include "hg/evaluation/summary.h"
+#include "hg/explanation/fault_figures.h"
 #include "hg/runtime/runtime.h"
+#include "hg/safety/rules.h"
 
 namespace hg::apps {
 namespace {
@@ -50,6 +52,8 @@ struct Observers {
   double script_end_s = 0.0;  ///< > 0: the run goes on after the script, tell so
   TareStatus told_tare = TareStatus::kNone;
   FaultCode told_fault = FaultCode::kNone;
+  explanation::Names names;
+  std::string fault_figures = {};  ///< of the first fault
 };
 
 // what somebody did to the run
@@ -71,10 +75,10 @@ void tell_requests(Observers& observers, const CycleRecord& record) {
   }
 }
 
-void tell_fault(Observers& observers, const CycleRecord& record) {
-  const FaultCode code = record.fault.code;
+void tell_fault(Observers& observers, const Sample& sample) {
+  const FaultCode code = sample.record.fault.code;
   if (std::exchange(observers.told_fault, code) == code || code == FaultCode::kNone) return;
-  tell(observers, record.time_s, "fault",
+  tell(observers, sample.record.time_s, safety::is_fault(code) ? "fault" : "stopped",
        fmt::format("{} {}", static_cast<int>(code), to_string(code)));
 }
 
@@ -90,9 +94,13 @@ void observe(Observers& observers, const Sample& sample) {
     observers.script_end_s = 0.0;
     observers.status_line.print("the script has played; drag the handle in the page");
   }
+  const bool had_fault = observers.summary.fault().code != FaultCode::kNone;
   observers.summary.add(sample);
+  if (const Fault& fault = observers.summary.fault(); !had_fault && safety::is_fault(fault.code)) {
+    observers.fault_figures = explanation::figures_of(fault, observers.names, sample.sensors);
+  }
   tell_requests(observers, sample.record);
-  tell_fault(observers, sample.record);
+  tell_fault(observers, sample);
   observers.recording.push(sample);
   if (const auto event = observers.detector.observe(sample.record)) {
     observers.summary.add(*event);
@@ -251,7 +259,8 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) 
       .recording = std::move(recording),
       .dumps = std::move(dumps),
       .is_fast = arguments.is_fast,
-      .script_end_s = options.duration_s == 0.0 ? assembly::planned_duration_s(scenario) : 0.0};
+      .script_end_s = options.duration_s == 0.0 ? assembly::planned_duration_s(scenario) : 0.0,
+      .names = part_names(scenario)};
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, scenario.title));
   if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
 
@@ -264,6 +273,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) 
 
   evaluation::RunFacts facts = facts_of(run, options, report);
   facts.recording = observers.recording.close();
+  facts.fault_figures = observers.fault_figures;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
   const std::vector<std::string> missing = observers.detector.missing();
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "apps/hapticgiant/page_scene.h"
+#include "apps/hapticgiant/run_setup.h"
 #include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
 #include "hg/model/urdf.h"
-#include "hg/safety/rules.h"
 
 namespace hg::apps {
 namespace {
@@ -49,15 +49,6 @@ constexpr NamedRequest kRequests[] = {{"arm", ModeRequest::kArm},
                                       {"run_alone", ModeRequest::kAutonomous},
                                       {"hold", ModeRequest::kStop},
                                       {"reset", ModeRequest::kReset}};
-
-std::string told(const Fault& fault) {
-  if (fault.code == FaultCode::kNone) return {};
-  const safety::Rule& rule = safety::rule_of(fault.code);
-  std::string text = fmt::format("{} {}", static_cast<int>(fault.code), rule.meaning);
-  if (fault.value == 0.0 && fault.limit == 0.0) return text;
-  const std::string which = fault.index < 0 ? "" : fmt::format("number {}: ", fault.index);
-  return text + fmt::format(" ({}{:.4g}, limit {:.4g})", which, fault.value, fault.limit);
-}
 
 std::string refusal_of_device(const PreparedRun& run) {
   if (run.remote == nullptr) return {};
@@ -101,6 +92,7 @@ void RunPage::begin(const PreparedRun& run, const std::string& recording) {
   }
   server_.set_values(values_);
   analysis_.emplace(run.scenario);
+  names_ = part_names(run.scenario);
   view_ = {};
   view_.run = number_;
   view_.run_state.recording = recording;
@@ -136,13 +128,7 @@ void RunPage::publish() {
   view_.budget = analysis_->budget(newest_->record);
   view_.singularity = analysis_->singularity(newest_->record);
   view_.run_state.position_s = newest_->record.time_s;
-  const CycleRecord& record = newest_->record;
-  const bool is_stopped = record.fault.code != FaultCode::kNone;
-  view_.safety = {
-      .cause = told(record.fault),
-      .release = is_stopped ? std::string(safety::rule_of(record.fault.code).release) : "",
-      .warning = told(record.warning),
-      .panel = newest_->operator_input.panel};
+  view_.safety = safety_view(*newest_, names_);
   server_.publish(view_);
   view_.cycle_time_max_us = 0.0;
   has_news_ = false;

@@ -14,6 +14,7 @@
 #include "apps/hapticgiant/hand_analysis.h"
 #include "apps/hapticgiant/prepared_run.h"
 #include "hg/config/twin_form.h"
+#include "hg/explanation/fault_figures.h"
 #include "hg/runtime/runtime.h"
 #include "hg/viewer_server/viewer_server.h"
 
@@ -69,6 +70,7 @@ class RunPage {
   std::vector<config::FormField> form_;
   std::vector<double> values_;  ///< of the form, as targets
   viewer_server::ViewerServer server_;
+  explanation::Names names_;
   std::optional<HandAnalysis> analysis_;
   viewer_server::View view_;
   std::unique_ptr<Sample> newest_;

@@ -7,6 +7,7 @@
 
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
+#include "hg/safety/rules.h"
 
 namespace hg::apps {
 namespace {
@@ -20,9 +21,7 @@ RunRecording::RunRecording(const config::Scenario& scenario, const RunArguments&
       writes_always_(arguments.flight_recorder == "always"),
       program_(arguments.program) {
   if (!recording::recording_available()) {
-    if (arguments.has_recording) {
-      print_out("recording   off (the program was built without Rust)\n");
-    }
+    if (arguments.has_recording) print_out(kNoRecording);
     return;
   }
   const recording::RecordingInfo info = recording_info(scenario, arguments);
@@ -43,7 +42,7 @@ void RunRecording::keep_last_seconds(const Sample& sample) {
   flight_->push(sample);
   if (!cause_.empty() && record.time_s >= write_at_s_) flight_->write(std::exchange(cause_, ""));
   const FaultCode last = std::exchange(fault_, record.fault.code);
-  if (fault_ == FaultCode::kNone || fault_ == last) return;
+  if (!safety::is_fault(fault_) || fault_ == last) return;
   // what follows from the first fault belongs to it
   if (cause_.empty()) cause_ = fmt::format("fault{}", static_cast<int>(fault_));
   write_at_s_ = record.time_s + kAfterFault_s;

@@ -15,6 +15,9 @@
 
 namespace hg::apps {
 
+/// What is said where a recording is wanted and cannot be made.
+inline constexpr char kNoRecording[] = "recording   off (the program was built without Rust)\n";
+
 class RunRecording {
  public:
   /// Says on stdout why there is no recording. Throws SetupError.

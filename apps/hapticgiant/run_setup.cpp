@@ -234,6 +234,13 @@ ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments&
        .program = arguments.program});
 }
 
+explanation::Names part_names(const config::Scenario& scenario) {
+  const rendering::DeviceModel& device = scenario.device.model;
+  return {.joints = joint_names(device, device.n_p, device.n_m),
+          .gantry = joint_names(device, 0, device.n_p),
+          .limits = scenario.limits};
+}
+
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
                                         const RunArguments& arguments) {
   const rendering::DeviceModel& device = scenario.device.model;

@@ -8,6 +8,7 @@
 #include "apps/hapticgiant/problem_dumps.h"
 #include "apps/hapticgiant/run_command.h"
 #include "hg/config/scenario.h"
+#include "hg/explanation/fault_figures.h"
 #include "hg/recording/recorder.h"
 
 namespace hg::apps {
@@ -26,6 +27,9 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
 /// switched off.
 ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments,
                            const recording::Recorder* recorder);
+
+/// What the parts of the device are called in messages.
+explanation::Names part_names(const config::Scenario& scenario);
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
                                         const RunArguments& arguments);

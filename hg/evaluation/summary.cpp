@@ -255,12 +255,8 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("recording", facts.recording.empty() ? "off" : facts.recording);
   if (facts.stop_timed_out) line("STOP", "timed out: drives off while the device was moving");
   if (fault_.code != FaultCode::kNone) {
-    const std::string number = fault_.index < 0 ? "" : fmt::format("number {}: ", fault_.index);
-    const bool has_values = fault_.value != 0.0 || fault_.limit != 0.0;
-    line("FAULT", fmt::format("{} {}", static_cast<int>(fault_.code), to_string(fault_.code)) +
-                      (has_values ? fmt::format(" ({}{:.4g}, limit {:.4g})", number, fault_.value,
-                                                fault_.limit)
-                                  : ""));
+    line("FAULT", fmt::format("{} {}{}", static_cast<int>(fault_.code), to_string(fault_.code),
+                              facts.fault_figures.empty() ? "" : " (" + facts.fault_figures + ")"));
   }
   return text;
 }

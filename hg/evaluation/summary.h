@@ -29,6 +29,7 @@ struct RunFacts {
   Timing timing;
   std::uint64_t dropped = 0;
   std::uint64_t allocations_in_loop = 0;
+  std::string fault_figures;    ///< part, value and limit of the fault; empty = it has none
   bool stop_timed_out = false;  ///< drives were disabled while the device was moving
   LinkCounts link;              ///< to a remote device; nothing was sent: there is none
   std::string recording;        ///< file, empty when off

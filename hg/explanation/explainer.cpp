@@ -48,7 +48,7 @@ std::string_view reaction_text(Stop stop) {
     case Stop::kNone:
       return "nothing was to be stopped";
     case Stop::kSs2:
-      return "SS2: brought to rest under control, then held under power";
+      return "SS2: brought to rest under control, then drives off";
     case Stop::kSs1:
       return "SS1: brought to rest under control, then drives off and brakes closed";
     case Stop::kSto:
@@ -58,40 +58,12 @@ std::string_view reaction_text(Stop stop) {
 }
 
 std::string why_it_stops(const Sample& sample) {
-  if (sample.record.fault.code != FaultCode::kNone) return ": a fault, see there";
+  const FaultCode code = sample.record.fault.code;
+  if (code == FaultCode::kOperatorReleased) return ": the operator let go of the enabling switch";
+  if (safety::is_fault(code)) return ": a fault, see there";
   if (sample.operator_input.request == ModeRequest::kStop) return ": a stop was asked for";
   if (!sample.sensors.dead_man) return ": the user let go of the handle (dead-man open)";
   return "";
-}
-
-// which value of a sample is meant, counted as safety::check_sensors counts
-std::string sensor_name(const SensorFrame& sensors, const Names& names, int index) {
-  const auto of = [](const std::vector<std::string>& list, int i) {
-    return i < static_cast<int>(list.size()) ? list[static_cast<std::size_t>(i)]
-                                             : fmt::format("{}", i);
-  };
-  const struct {
-    const char* what;
-    Eigen::Index size;
-    const std::vector<std::string>* parts;
-  } kGroups[] = {{"link encoder", sensors.q_m.size(), &names.joints},
-                 {"speed", sensors.dq_m.size(), &names.joints},
-                 {"gantry encoder", sensors.q_p.size(), &names.gantry},
-                 {"force/torque sensor, component", 6, nullptr},
-                 {"motor encoder", sensors.theta_m.size(), &names.joints},
-                 {"torque sensor", sensors.tau_m.size(), &names.joints},
-                 {"accelerometer, component", 3, nullptr},
-                 {"gyroscope, component", 3, nullptr},
-                 {"temperature", sensors.temperature_m.size(), &names.joints}};
-  for (const auto& group : kGroups) {
-    if (index < group.size) {
-      return fmt::format(
-          " of {} {}", group.what,
-          group.parts != nullptr ? of(*group.parts, index) : fmt::format("{}", index + 1));
-    }
-    index -= static_cast<int>(group.size);
-  }
-  return {};
 }
 
 std::string detail(const char* label, const std::string& text) {
@@ -104,7 +76,7 @@ Explainer::Explainer(Names names) : names_(std::move(names)) {}
 
 void Explainer::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
-  if (first_s_ < 0.0) first_s_ = last_.time_s = record.time_s;
+  if (first_s_ < 0.0) begin(sample);
   period_s_ = record.time_s - last_.time_s;
   if (record.time_s >= force_until_s_) {
     force_before_ = std::exchange(force_now_, 0.0);
@@ -119,7 +91,18 @@ void Explainer::add(const Sample& sample) {
   add_fault(sample);
   if (has_aftermath_) follow(sample);
   close_spans(record.time_s, false);
-  last_ = {record.time_s, record.mode, record.fault.code, record.tare, sample.command.enable};
+  remember(sample);
+}
+
+// A recording that does not begin with the run tells nothing of how its first state came.
+void Explainer::begin(const Sample& sample) {
+  first_s_ = last_.time_s = sample.record.time_s;
+  if (sample.record.cycle != 0) remember(sample);
+}
+
+void Explainer::remember(const Sample& sample) {
+  const CycleRecord& record = sample.record;
+  last_ = {record.time_s, record.mode, record.fault.code, record.tare};
 }
 
 void Explainer::add_event(double time_s, const std::string& name, const std::string& text) {
@@ -135,6 +118,11 @@ void Explainer::add_modes(const Sample& sample) {
                                  : ": the user holds the handle (dead-man closed)";
   }
   if (record.mode == Mode::kStopping) text += why_it_stops(sample);
+  // what stands is stopped at once
+  const bool was_on = last_.mode == Mode::kArmed || last_.mode == Mode::kRunning;
+  if (record.mode == Mode::kReady && was_on && !sample.sensors.safety.operator_enable) {
+    text += ": the operator let go of the enabling switch";
+  }
   entries_.push_back({record.time_s, "mode", text, {}});
 }
 
@@ -183,8 +171,9 @@ void Explainer::add_others(const Sample& sample) {
   const CycleRecord& record = sample.record;
   if (record.warning.code != FaultCode::kNone) {
     const safety::Rule& rule = safety::rule_of(record.warning.code);
+    const std::string part = part_of(record.warning, names_, sample.sensors);
     extend("warning",
-           fmt::format("{}{}, stops at {:.4g}", rule.name, name_of(record.warning),
+           fmt::format("{}{}, stops at {:.4g}", rule.name, part.empty() ? "" : " (" + part + ")",
                        record.warning.limit),
            record.time_s, record.warning.value);
   }
@@ -241,55 +230,24 @@ std::string Explainer::joint(int index) const {
                   : fmt::format("number {}", index);
 }
 
-// " of m4", empty where a fault concerns no part
-std::string Explainer::name_of(const Fault& fault) const {
-  if (fault.index < 0) return {};
-  const auto index = static_cast<std::size_t>(fault.index);
-  switch (fault.code) {
-    case FaultCode::kWrenchTooLarge:
-      return fault.index == 0 ? " (force, N)" : " (torque, Nm)";
-    case FaultCode::kLimitExceeded:
-      return index < names_.limits.size() ? " of " + names_.limits[index].name : "";
-    case FaultCode::kGantryExceeded:
-    case FaultCode::kGantryDeviates:
-      return " of " +
-             (index < names_.gantry.size() ? names_.gantry[index] : fmt::format("axis {}", index));
-    case FaultCode::kSensorImplausible:
-    case FaultCode::kSensorJump:
-    case FaultCode::kJointTorqueExceeded:
-    case FaultCode::kTooHot:
-    case FaultCode::kSpeedExceeded:
-    case FaultCode::kTrackingLost:
-      return " of " + joint(fault.index);
-    default:
-      return fmt::format(" (number {})", fault.index);
-  }
-}
-
-std::string Explainer::quantity(const Fault& fault) const {
-  if (!std::isfinite(fault.value)) return ", value not finite";
-  const bool is_yes_or_no = fault.limit == 0.0 && (fault.value == 0.0 || fault.value == 1.0);
-  if (is_yes_or_no) return {};
-  return fmt::format(": {:.6g}, limit {:.6g}", fault.value, fault.limit);
-}
-
 void Explainer::add_fault(const Sample& sample) {
   const CycleRecord& record = sample.record;
   const Fault& fault = record.fault;
   if (fault.code == last_.fault) return;
   end_aftermath();
+  // the stop is told with the mode, and that the operator arms again as well
+  if (fault.code == FaultCode::kOperatorReleased) return;
   if (fault.code == FaultCode::kNone) {
+    if (!safety::is_fault(last_.fault)) return;
     entries_.push_back({record.time_s, "reset", "the fault is gone and was reset", {}});
     return;
   }
   const safety::Rule& rule = safety::rule_of(fault.code);
+  const std::string figures = figures_of(fault, names_, sample.sensors);
   Entry entry{record.time_s,
               "FAULT",
-              fmt::format("{} {}{}{}", static_cast<int>(fault.code), rule.name,
-                          fault.code == FaultCode::kSensorNotFinite
-                              ? sensor_name(sample.sensors, names_, fault.index)
-                              : name_of(fault),
-                          quantity(fault)),
+              fmt::format("{} {}{}", static_cast<int>(fault.code), rule.name,
+                          figures.empty() ? "" : " (" + figures + ")"),
               {}};
   entry.details.push_back(detail("meaning", std::string(rule.meaning)));
   entry.details.push_back(detail("released by", std::string(rule.release) + ", then a reset"));

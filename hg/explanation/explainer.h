@@ -10,15 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "hg/explanation/fault_figures.h"
 #include "hg/signals/state.h"
 
 namespace hg::explanation {
-
-struct Names {
-  std::vector<std::string> joints;  ///< of the manipulator
-  std::vector<std::string> gantry;
-  LimitCatalogue limits;
-};
 
 /// Something that happened.
 struct Entry {
@@ -56,7 +51,6 @@ class Explainer {
     Mode mode = Mode::kOff;
     FaultCode fault = FaultCode::kNone;
     TareStatus tare = TareStatus::kNone;
-    bool is_enabled = false;
   };
   /// From a fault to the rest of the device.
   struct Aftermath {
@@ -68,6 +62,8 @@ class Explainer {
     Stop stop = Stop::kNone;
   };
 
+  void begin(const Sample& sample);
+  void remember(const Sample& sample);
   void add_modes(const Sample& sample);
   void add_requests(const CycleRecord& record);
   void add_limits(const CycleRecord& record);
@@ -78,8 +74,6 @@ class Explainer {
   void extend(const char* kind, const std::string& text, double time_s, double value = 0.0,
               const char* unit = "");
   void close_spans(double now_s, bool all);
-  std::string name_of(const Fault& fault) const;
-  std::string quantity(const Fault& fault) const;
   std::string joint(int index) const;
 
   Names names_;

@@ -1,21 +1,15 @@
 #include "hg/readiness/jitter.h"
 
-#include <time.h>
-
 #include <cmath>
 #include <cstdint>
 #include <thread>
 
+#include "hg/runtime/monotonic_clock.h"
+
 namespace hg::readiness {
 namespace {
 
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
-
-std::int64_t now_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * kNanoseconds + now.tv_nsec;
-}
+using runtime::now_ns;
 
 void measure(double seconds, const runtime::ThreadOptions& options, Jitter& jitter) noexcept {
   jitter.thread = runtime::become_real_time(options);
@@ -24,8 +18,7 @@ void measure(double seconds, const runtime::ThreadOptions& options, Jitter& jitt
   std::int64_t due_ns = now_ns();
   for (std::int64_t i = 0; i < periods; ++i) {
     due_ns += period_ns;
-    const timespec due{.tv_sec = due_ns / kNanoseconds, .tv_nsec = due_ns % kNanoseconds};
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr);
+    runtime::sleep_until(due_ns);
     const std::int64_t late_ns = now_ns() - due_ns;
     jitter.wake_up_us.add(1e-3 * static_cast<double>(late_ns));
     // periods that were slept through show as one, with their whole length

@@ -48,11 +48,15 @@ Line priority(const Readings& r) {
   return {Level::kBad, "priority", r.user + " may not use SCHED_FIFO (rtprio 0)", grant(r.user)};
 }
 
+bool may_lock(const Readings& r) {
+  return r.may_lock_memory || std::isinf(r.lock_bytes.value_or(0.0));
+}
+
 Line memory(const Readings& r) {
-  const double most = r.lock_bytes.value_or(0.0);
-  if (r.may_lock_memory || std::isinf(most)) {
+  if (may_lock(r)) {
     return {Level::kOk, "memory", "may be locked without limit", ""};
   }
+  const double most = r.lock_bytes.value_or(0.0);
   const std::string found = fmt::format("at most {:.0f} MiB may be locked", most / 1048576.0);
   if (most >= kMemoryNeeded) return {Level::kOk, "memory", found, ""};
   return {Level::kWarn, "memory", found + ": a page that is missing stops the loop", grant(r.user)};
@@ -61,7 +65,7 @@ Line memory(const Readings& r) {
 Line swap(const Readings& r) {
   if (r.swaps.empty()) return {Level::kOk, "swap", "none", ""};
   const std::string found = fmt::format("{}", fmt::join(r.swaps, ", "));
-  if (r.may_lock_memory || std::isinf(r.lock_bytes.value_or(0.0))) {
+  if (may_lock(r)) {
     return {Level::kOk, "swap", found + "; the program's memory is locked and stays", ""};
   }
   return {Level::kWarn, "swap", found, "sudo swapoff -a"};
@@ -88,6 +92,10 @@ Line idle(const Readings& r) {
 }
 
 Line isolation(const Readings& r) {
+  if (r.processors == 0) {
+    return {Level::kWarn, "processors", "not told",
+            "nproc says how many there are: the loop needs two or more"};
+  }
   if (r.processors < 2) {
     return {Level::kBad, "processors", "one: whatever else runs here delays the loop",
             "a computer with two or more processors"};

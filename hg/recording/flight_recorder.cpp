@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "hg/core/error.h"
@@ -17,7 +18,8 @@ constexpr std::size_t kMostEvents = 1000;
 
 std::size_t slot_count(const RecordingInfo& info, double seconds) {
   if (!(seconds > 0.0 && info.rate_Hz > 0.0 && std::isfinite(seconds * info.rate_Hz))) {
-    throw SetupError("flight recorder: seconds and rate must be positive");
+    throw SetupError("flight recorder: seconds and rate must be positive, got " +
+                     std::to_string(seconds) + " s and " + std::to_string(info.rate_Hz) + " Hz");
   }
   return static_cast<std::size_t>(std::ceil(seconds * info.rate_Hz));
 }

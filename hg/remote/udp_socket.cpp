@@ -15,8 +15,6 @@
 namespace hg::remote {
 namespace {
 
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
-
 using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
 
 std::string text_of(const Address& address) { return address.host + ":" + address.port; }
@@ -87,12 +85,6 @@ std::string to_string(const Peer& peer) {
                : fmt::format("{}:{}", host.data(), port.data());
 }
 
-std::int64_t now_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * kNanoseconds + now.tv_nsec;
-}
-
 UdpSocket UdpSocket::listening_at(const Address& address) {
   return UdpSocket(open_socket(address, AI_PASSIVE, "listen", bind));
 }
@@ -130,7 +122,8 @@ void UdpSocket::wait(std::int64_t until_ns) noexcept {
   const std::int64_t left = until_ns - now_ns();
   if (left <= 0) return;
   pollfd one{.fd = file_, .events = POLLIN, .revents = 0};
-  const timespec time{.tv_sec = left / kNanoseconds, .tv_nsec = left % kNanoseconds};
+  const timespec time{.tv_sec = left / runtime::kNanoseconds,
+                      .tv_nsec = left % runtime::kNanoseconds};
   ppoll(&one, 1, &time, nullptr);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "hg/remote/codec.h"
+#include "hg/runtime/monotonic_clock.h"
 
 namespace hg::remote {
 
@@ -29,8 +30,7 @@ bool operator==(const Peer& a, const Peer& b) noexcept;
 /// HOST:PORT in numbers.
 std::string to_string(const Peer& peer);
 
-/// ns on a clock that only goes forward.
-std::int64_t now_ns() noexcept;
+using runtime::now_ns;
 
 class UdpSocket {
  public:

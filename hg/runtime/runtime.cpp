@@ -1,7 +1,5 @@
 #include "hg/runtime/runtime.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -9,22 +7,16 @@
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
+#include "hg/runtime/monotonic_clock.h"
 #include "hg/runtime/requests.h"
 
 namespace hg::runtime {
 namespace {
 
-constexpr std::int64_t kNanoseconds = 1'000'000'000;
 constexpr std::int64_t kPausePoll = 2'000'000;  // ns
 constexpr double kLongestStop = 1.0;  // s; a device that is still moving then is left to its brakes
 constexpr double kStandstill = 2e-2;  // rad/s and m/s; measured, so above the noise of encoders
 constexpr double kRest = 0.1;         // s at rest; an arm whose brakes close late sags within it
-
-std::int64_t now_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * kNanoseconds + now.tv_nsec;
-}
 
 // A device after a fault: the way to its rest belongs into the recording.
 class WayToRest {
@@ -44,11 +36,6 @@ class WayToRest {
  private:
   double since_s_ = -1.0, moved_s_ = -1.0;
 };
-
-void sleep_until(std::int64_t time_ns) noexcept {
-  const timespec time{.tv_sec = time_ns / kNanoseconds, .tv_nsec = time_ns % kNanoseconds};
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr);
-}
 
 }  // namespace
 

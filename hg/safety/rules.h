@@ -301,4 +301,9 @@ constexpr std::size_t rule_index(FaultCode code) noexcept {
 /// The rule of `code`; of an unknown code one that switches the drives off.
 const Rule& rule_of(FaultCode code) noexcept;
 
+/// Whether a cause is told as a fault: an operator who lets go is none, and needs no reset.
+constexpr bool is_fault(FaultCode code) noexcept {
+  return code != FaultCode::kNone && code != FaultCode::kOperatorReleased;
+}
+
 }  // namespace hg::safety

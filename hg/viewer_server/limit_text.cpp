@@ -59,14 +59,6 @@ std::string limit_text(const LimitInfo& info, const LimitReport& report) {
   return text + ", " + number(std::abs(report.reaction)) + (info.is_angle ? " Nm" : " N");
 }
 
-std::string fault_text(const Fault& fault) {
-  if (fault.code == FaultCode::kNone) return {};
-  std::string text(to_string(fault.code));
-  if (fault.index >= 0) text += " (number " + std::to_string(fault.index + 1) + ")";
-  if (fault.value == 0.0 && fault.limit == 0.0) return text;
-  return text + ": " + number(fault.value) + ", limit " + number(fault.limit);
-}
-
 std::string mode_text(const CycleRecord& record) {
   switch (record.mode) {
     case Mode::kOff:
@@ -84,7 +76,7 @@ std::string mode_text(const CycleRecord& record) {
     case Mode::kStopping:
       return "stopping: asked for, or the hand has let go";
     case Mode::kFault:
-      return "fault: " + fault_text(record.fault);
+      return "fault: " + std::string(to_string(record.fault.code));
   }
   return {};
 }

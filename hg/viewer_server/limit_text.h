@@ -1,9 +1,8 @@
-/// Limits, faults and modes in words for people.
+/// Limits and modes in words for people.
 #pragma once
 
 #include <string>
 
-#include "hg/signals/fault.h"
 #include "hg/signals/limit.h"
 #include "hg/signals/state.h"
 
@@ -11,9 +10,6 @@ namespace hg::viewer_server {
 
 /// For example "elbow x: upper limit, 23 N" or "hinge: locked, 4.1 Nm".
 std::string limit_text(const LimitInfo& info, const LimitReport& report);
-
-/// For example "joint too fast (number 3): 2.6, limit 2.5"; empty for kNone.
-std::string fault_text(const Fault& fault);
 
 /// The mode and why, for example "ready: the force/torque sensor is being tared".
 std::string mode_text(const CycleRecord& record);

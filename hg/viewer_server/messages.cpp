@@ -234,7 +234,7 @@ std::string encode_frame(const View& view, const LimitCatalogue& limits, std::ui
   frame.time_s = record.time_s;
   frame.mode = record.mode;
   frame.mode_text = mode_text(record);
-  frame.fault = fault_text(record.fault);
+  if (record.fault.code != FaultCode::kNone) frame.fault = to_string(record.fault.code);
   frame.status = view.status_text;
   add_motion(record, frame);
   frame.felt = felt_message(record, limits);

@@ -34,6 +34,16 @@ def drain(terminal):
     return shown
 
 
+def wait_until_tared(process):
+    """What a run has said until half a second of it has been simulated."""
+    head = ""
+    while "tare " not in head:
+        line = process.stdout.readline()
+        assert line, head
+        head += line
+    return head
+
+
 class MainJob(TemporaryFolder):
     def test_the_door_ends_with_0_and_a_complete_summary(self):
         summary = self.folder / "summary.json"
@@ -89,29 +99,28 @@ class MainJob(TemporaryFolder):
         process = subprocess.Popen(
             [PROGRAM, "run", "door", "--no-viewer", "--recordings", self.folder,
              "--summary", self.folder / "s.json"], stdout=subprocess.PIPE, text=True)
-        time.sleep(2.0)
+        head = wait_until_tared(process)
         process.send_signal(signal.SIGINT)
-        out, _ = process.communicate(timeout=20)
-        self.assertEqual(process.returncode, 0, out)
+        out, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, head + out)
         told = json.loads((self.folder / "s.json").read_text())
         with open(told["recording"], "rb") as stream:
             statistics = make_reader(stream).get_summary().statistics
-        self.assertGreater(statistics.message_count, 500)
+        self.assertGreater(statistics.message_count, 100)
 
     def test_a_recording_is_completed_when_terminal_or_pipe_close(self):
         for closes, number in (("terminal", signal.SIGHUP), ("pipe", None)):
             folder = self.folder / closes
             process = subprocess.Popen(
                 [PROGRAM, "run", "door", "--no-viewer", "--duration", "3", "--recordings", folder],
-                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-            process.stdout.readline()
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            wait_until_tared(process)
             if number is None:
                 process.stdout.close()
             else:
-                time.sleep(1.0)
                 process.send_signal(number)
             process.stderr.read()
-            self.assertIn(process.wait(timeout=20), (0, 1), closes)  # 1: events are missing
+            self.assertIn(process.wait(timeout=60), (0, 1), closes)  # 1: events are missing
             process.stderr.close()
             process.stdout.close()
             file, = (f for f in folder.glob("*.mcap") if not f.is_symlink())

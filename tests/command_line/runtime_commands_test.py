@@ -4,6 +4,7 @@ Usage: runtime_commands_test.py PROGRAM   (from the repository root)
 """
 
 import json
+import os
 import unittest
 
 from program import MODELS, TemporaryFolder, run
@@ -37,17 +38,17 @@ class Doctor(TemporaryFolder):
 
 
 class FlightRecorder(TemporaryFolder):
-    def spoilt(self):
-        """A door scenario in which somebody presses the emergency stop at 3 s."""
+    def spoilt(self, what):
+        """A door scenario in which something happens at 3 s."""
         text = (MODELS / "scenarios" / "door.yaml").read_text()
         text = text.replace("../", f"{MODELS}/")
         head = text[: text.index("events:")]
         file = self.folder / "spoilt.yaml"
-        file.write_text(head + "faults:\n  - {at_s: 3.0, fault: emergency_stop}\n")
+        file.write_text(head + what)
         return file
 
-    def play(self, *options):
-        code, out, err = run("run", self.spoilt(), "--fast", "--no-viewer", "--recordings",
+    def play(self, *options, what="faults:\n  - {at_s: 3.0, fault: emergency_stop}\n"):
+        code, out, err = run("run", self.spoilt(what), "--fast", "--no-viewer", "--recordings",
                              self.folder / "new", *options)
         self.assertEqual(err, "")
         return code, out, sorted(self.folder.glob("new/spoilt_*.mcap"))
@@ -67,6 +68,21 @@ class FlightRecorder(TemporaryFolder):
         self.assertNotIn("CUT OFF", out)
         code, out, _ = run("replay", files[0])
         self.assertEqual(code, 0)
+        for option in (("--compare", files[0]), ("--speed", "2")):
+            code, _, err = run("replay", files[0], *option)
+            self.assertEqual(code, 2)
+            self.assertIn("--view", err)
+
+    def test_an_operator_who_lets_go_is_no_fault(self):
+        code, out, files = self.play(what="panel:\n  - {at_s: 10.5, operator_enable: false}\n")
+        self.assertEqual(code, 0, out)
+        self.assertIn("stopped            130 ", out)
+        self.assertNotIn("FAULT", out)
+        self.assertEqual(len(files), 1)  # the recording: no last seconds of a fault
+        code, out, _ = run("explain", files[0])
+        self.assertEqual(code, 0)
+        self.assertIn("running -> stopping: the operator let go of the enabling switch", out)
+        self.assertIn("no fault", out)
 
     def test_stands_beside_the_recording_or_is_off(self):
         _, _, files = self.play()
@@ -100,8 +116,9 @@ class Priority(TemporaryFolder):
         return json.loads(file.read_text()), out
 
     def test_an_ordinary_thread_is_asked_for_and_told(self):
-        told, out = self.summary("--priority", "0", "--cpu", "0")
-        self.assertEqual((told["real_time"], told["cpu"]), (False, 0))
+        cpu = min(os.sched_getaffinity(0))
+        told, out = self.summary("--priority", "0", "--cpu", str(cpu))
+        self.assertEqual((told["real_time"], told["cpu"]), (False, cpu))
         self.assertIn("priority     normal", out)
         self.assertIn("wake-up", out)
         self.assertIn("stages", out)

@@ -23,6 +23,7 @@ import { current_theme, on_theme_change, start_theme } from "./theme";
 import { Toolbar, build_view_tools } from "./toolbar";
 import { Headset } from "./xr/headset";
 
+const NEWS_S = 1; // a page that is opened later is told what was before, too
 const PANEL_GAP_MS = 66; // words and bars change 15 times a second
 
 // What tests and the console may look at.
@@ -91,7 +92,12 @@ class Page {
     this.store.subscribe({
       on_scene: (scene) => void this.furnish(scene),
       on_frame: (frame) => this.note(frame),
-      on_event: (event) => this.events.add(event),
+      on_event: (event) => {
+        this.events.add(event);
+        const { scene, frame } = this.store;
+        const is_new = scene?.source === "run" && event.time_s > (frame?.time_s ?? Infinity) - NEWS_S;
+        if (event.name === "request" && is_new) this.notices.show("request", event.text);
+      },
       on_events_cleared: () => this.events.clear(),
       on_values: (values) => this.change.take(values),
       on_connection: (is_connected) => {

@@ -129,6 +129,7 @@ export class Toolbar {
 
 // A fault, or why the device does not follow the hand.
 function fault_text(frame: Frame): string {
+  if (frame.safety.cause !== "") return frame.safety.cause;
   if (frame.fault !== "") return frame.fault;
   if (frame.is_clamped) return "The device lost track of its reference and catches up.";
   return "";

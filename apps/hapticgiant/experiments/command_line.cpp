@@ -1,9 +1,7 @@
 #include "apps/hapticgiant/experiments/command_line.h"
 
-#include <cmath>
-
 #include "apps/hapticgiant/experiments/paper_experiments.h"
-#include "hg/core/error.h"
+#include "apps/hapticgiant/option_checks.h"
 
 namespace hg::apps {
 namespace {
@@ -17,17 +15,12 @@ void add_options(CLI::App& command, PaperExperimentArguments& arguments) {
                      "of noise and tremor: the same seed, the same files");
   command.add_option("--out", arguments.out, "folder; one per experiment is made in it")
       ->capture_default_str();
-  command.add_option("--duration", arguments.duration_s,
-                     "seconds, to cut it short; default: until the script has played");
+  command
+      .add_option("--duration", arguments.duration_s,
+                  "seconds, to cut it short; default: until the script has played")
+      ->check(number_that("more than 0", [](double value) { return value > 0.0; }));
   command.add_option("--docs", arguments.docs,
                      "refresh the figures in the pages of this folder (make experiments)");
-}
-
-void check(const PaperExperimentArguments& arguments) {
-  if (arguments.duration_s &&
-      !(*arguments.duration_s > 0.0 && std::isfinite(*arguments.duration_s))) {
-    throw SetupError("--duration: must be more than 0");
-  }
 }
 
 }  // namespace
@@ -39,10 +32,8 @@ void add_paper_experiments(CLI::App& experiment, PaperExperimentArguments& argum
                        const std::vector<std::string>& names) {
     CLI::App* command = experiment.add_subcommand(name, text);
     add_options(*command, arguments);
-    command->callback([&arguments, &exit_code, names] {
-      check(arguments);
-      exit_code = run_paper_experiments(arguments, names);
-    });
+    command->callback(
+        [&arguments, &exit_code, names] { exit_code = run_paper_experiments(arguments, names); });
   };
   for (const PaperExperiment& each : paper_experiments()) {
     const std::string name(each.name);
@@ -56,10 +47,7 @@ void add_paper_experiments(CLI::App& experiment, PaperExperimentArguments& argum
   timing->add_option("--rates", arguments.rates_Hz, "control rates, Hz")
       ->delimiter(',')
       ->capture_default_str();
-  timing->callback([&arguments, &exit_code] {
-    check(arguments);
-    exit_code = timing_experiment(arguments);
-  });
+  timing->callback([&arguments, &exit_code] { exit_code = timing_experiment(arguments); });
 }
 
 void add_plot_and_compare(CLI::App& app, ExperimentsArguments& arguments, int& exit_code) {

@@ -70,6 +70,10 @@ Findings configuration(const RecordedSignals& a, const RecordedSignals& b) {
 
 Findings state(const RecordedSignals& a, const RecordedSignals& b) {
   Findings findings;
+  if (a.first_cycle != b.first_cycle) {
+    findings.add(fmt::format("begins with cycle {} / {}", a.first_cycle, b.first_cycle));
+    return findings;
+  }
   const std::size_t both = std::min(a.hashes.size(), b.hashes.size());
   const auto different = std::mismatch(
       a.hashes.begin(), a.hashes.begin() + static_cast<std::ptrdiff_t>(both), b.hashes.begin());

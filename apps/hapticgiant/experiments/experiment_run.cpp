@@ -10,7 +10,9 @@
 #include <thread>
 
 #include "apps/hapticgiant/experiments/condition_text.h"
+#include "apps/hapticgiant/run_recording.h"
 #include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/assembly/assembly.h"
 #include "hg/evaluation/summary.h"
@@ -49,7 +51,10 @@ constexpr std::array kReproducible = {"scenario",
 // The recorder of an experiment, whose file says nothing of the wall clock.
 std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scenario,
                                                    const RunArguments& arguments) {
-  if (!recording::recording_available()) return nullptr;
+  if (!recording::recording_available()) {
+    print_out(kNoRecording);
+    return nullptr;
+  }
   recording::RecordingInfo info = recording_info(scenario, arguments);
   info.start = {};
   info.is_reproducible = true;
@@ -57,11 +62,14 @@ std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scena
 }
 
 // the name that everybody expects in a folder of its own
-void settle(recording::Recorder& recorder, const fs::path& folder) {
+void settle(recording::Recorder& recorder, const fs::path& folder, ExperimentResult& result) {
   const recording::RecordingSummary recorded = recorder.close();
-  std::error_code error;
-  fs::remove(folder / "latest.mcap", error);
+  std::error_code error, ignored;
+  fs::remove(folder / "latest.mcap", ignored);
   fs::rename(recorded.file, folder / "recording.mcap", error);
+  for (const std::string& why : {recorded.error, error ? error.message() : std::string()}) {
+    if (!why.empty()) result.failures.push_back("recording.mcap: " + why);
+  }
 }
 
 std::vector<EventResult> expected_events(const PaperExperiment& experiment,
@@ -182,7 +190,7 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
     if (!is_finished) std::this_thread::sleep_for(kIdle);
   }
   const runtime::Report report = runtime.join();
-  if (watcher.recorder) settle(*watcher.recorder, arguments.recordings);
+  if (watcher.recorder) settle(*watcher.recorder, arguments.recordings, result);
 
   const rendering::Options& law = scenario.device.rendering;
   evaluation::RunFacts facts = {.scenario = scenario.title,

@@ -13,7 +13,6 @@
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/core/error.h"
 
 namespace hg::apps {
 namespace {
@@ -28,12 +27,6 @@ std::string command_of(const PaperExperimentArguments& arguments, std::string_vi
   if (arguments.seed) command += fmt::format(" --seed {}", *arguments.seed);
   if (arguments.duration_s) command += fmt::format(" --duration {:g}", *arguments.duration_s);
   return command;
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());
 }
 
 // on a terminal, where it is read

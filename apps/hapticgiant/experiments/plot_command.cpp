@@ -10,7 +10,6 @@
 #include "apps/hapticgiant/experiments/recorded_signals.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/status_line.h"
-#include "hg/core/error.h"
 
 namespace hg::apps {
 namespace {
@@ -36,9 +35,7 @@ int plot(const PlotArguments& arguments) {
   for (std::size_t i = 0; i < folders.size(); ++i) {
     const std::string& file = arguments.files[i];
     const RecordedSignals signals = read_signals(file, kFigurePeriod_s);
-    std::error_code error;
-    fs::create_directories(folders[i], error);
-    if (error) throw SetupError(folders[i].string() + ": cannot be made: " + error.message());
+    make_folder(folders[i].string());
     write_output((folders[i] / "signals.csv").string(), signals.table->to_csv(kFigurePeriod_s));
     const nlohmann::ordered_json facts =
         figure_data(*signals.scenario, *signals.table, signals.marks, "any",

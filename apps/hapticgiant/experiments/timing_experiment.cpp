@@ -163,9 +163,7 @@ void check(const std::vector<double>& rates_Hz) {
 int timing_experiment(const PaperExperimentArguments& arguments) {
   check(arguments.rates_Hz);
   const fs::path folder = fs::path(arguments.out) / "timing";
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());
+  make_folder(folder.string());
   print_out(fmt::format("HapticGiant {}  computing time of a cycle\n\n", kVersion));
 
   const bool has_two_laws = arguments.law.empty() || arguments.law == "both";

@@ -116,7 +116,7 @@ TEST(Explainer, ExplainsAFaultAndWhatTheMachineDid) {
   ASSERT_EQ(faults.size(), 1u);
   const Entry& fault = faults.front();
   EXPECT_TRUE(has(fault.text, "302 ")) << fault.text;
-  EXPECT_TRUE(has(fault.text, "of m2: 0.083, limit 0.08")) << fault.text;
+  EXPECT_TRUE(has(fault.text, "tracking (m2: 0.083, limit 0.08)")) << fault.text;
   const safety::Rule& rule = safety::rule_of(FaultCode::kTrackingLost);
   EXPECT_TRUE(has_detail(fault, std::string(rule.meaning)));
   EXPECT_TRUE(has_detail(fault, std::string(rule.release)));
@@ -137,7 +137,7 @@ TEST(Explainer, SaysWhenTheEndIsNotSeen) {
   const auto faults = of_kind(entries, "FAULT");
   ASSERT_EQ(faults.size(), 1u);
   // link encoders 0, 1, speeds 2, 3, wrench 4 .. 9, motors 10, 11, torques 12, 13
-  EXPECT_TRUE(has(faults[0].text, "of torque sensor m2, value not finite")) << faults[0].text;
+  EXPECT_TRUE(has(faults[0].text, "(torque sensor m2: not finite)")) << faults[0].text;
   EXPECT_TRUE(has_detail(faults[0], "not seen: 49 ms later"));
   EXPECT_TRUE(has_detail(faults[0], "0.700"));
 }
@@ -155,11 +155,59 @@ TEST(Explainer, TellsWarningsRefusalsLateCyclesAndTheSanitiser) {
     }
   });
   ASSERT_EQ(of_kind(entries, "warning").size(), 1u);
-  EXPECT_TRUE(has(of_kind(entries, "warning")[0].text, "of m1, stops at 0.08, up to 0.05"));
+  EXPECT_TRUE(has(of_kind(entries, "warning")[0].text, "tracking (m1), stops at 0.08, up to 0.05"));
   EXPECT_EQ(of_kind(entries, "command").size(), 2u);
   EXPECT_EQ(of_kind(entries, "refused").size(), 1u);
   EXPECT_TRUE(has(of_kind(entries, "late")[0].text, "up to 3"));
   EXPECT_EQ(of_kind(entries, "solver").size(), 1u);
+}
+
+TEST(Explainer, DoesNotTellAnOperatorWhoLetsGoAsAFault) {
+  const auto entries = explained(1.0, [](double t, Sample& sample) {
+    if (t < 0.4 || t >= 0.8) return;
+    sample.record.mode = t < 0.5 ? Mode::kStopping : Mode::kReady;
+    sample.record.stop = Stop::kSs1;
+    sample.record.fault = {FaultCode::kOperatorReleased, -1, 0.0, 1.0};
+  });
+  EXPECT_TRUE(of_kind(entries, "FAULT").empty());
+  EXPECT_TRUE(of_kind(entries, "reset").empty());
+  EXPECT_EQ(of_kind(entries, "mode")[3].text,
+            "running -> stopping: the operator let go of the enabling switch");
+}
+
+TEST(Explainer, TakesTheFirstStateOfARecordingThatBeginsLateAsItIs) {
+  Explainer explainer(names());
+  Sample sample;
+  sample.record.mode = Mode::kRunning;
+  sample.record.tare = TareStatus::kDone;
+  for (std::uint64_t cycle = 2376; cycle < 2500; ++cycle) {
+    sample.record.cycle = cycle;
+    sample.record.time_s = 1e-3 * static_cast<double>(cycle);
+    if (cycle == 2400) sample.record.mode = Mode::kStopping;
+    explainer.add(sample);
+  }
+  EXPECT_NEAR(explainer.first_s(), 2.376, 1e-9);
+  const auto entries = explainer.finish();
+  ASSERT_EQ(entries.size(), 1u);
+  EXPECT_EQ(entries[0].text.rfind("running -> stopping", 0), 0u) << entries[0].text;
+}
+
+TEST(FaultFigures, NameThePartTheValueAndTheLimit) {
+  SensorFrame sensors;
+  sensors.q_m = sensors.dq_m = VectorM::Zero(2);
+  const auto text = [&](FaultCode code, int index, double value, double limit) {
+    const Fault fault{code, static_cast<std::int16_t>(index), value, limit};
+    return figures_of(fault, names(), sensors);
+  };
+  EXPECT_EQ(text(FaultCode::kMotorDeviates, 1, 40.0, 30.0), "m2: 40, limit 30");
+  EXPECT_EQ(text(FaultCode::kAccelerationExceeded, 0, 9.0, 8.0), "m1: 9, limit 8");
+  EXPECT_EQ(text(FaultCode::kSensorJump, 1, 0.2, 0.1), "m2: 0.2, limit 0.1");
+  EXPECT_EQ(text(FaultCode::kSensorJump, 2, 0.2, 0.1), "p1: 0.2, limit 0.1");  // after the joints
+  EXPECT_EQ(text(FaultCode::kGantryExceeded, 0, 3.0, 2.0), "p1: 3, limit 2");
+  EXPECT_EQ(text(FaultCode::kLimitExceeded, 2, 0.3, 0.1), "hinge {}: 0.3, limit 0.1");
+  EXPECT_EQ(text(FaultCode::kWrenchTooLarge, 1, 30.0, 20.0), "torque in Nm: 30, limit 20");
+  EXPECT_EQ(text(FaultCode::kSyncLost, -1, 0.3, 0.1), "0.3, limit 0.1");
+  EXPECT_EQ(text(FaultCode::kEmergencyStop, -1, 1.0, 0.0), "");  // yes or no
 }
 
 TEST(Explainer, SurvivesWhatNoRecordingHolds) {

@@ -113,6 +113,15 @@ TEST(Doctor, TellsWhoMayNotBeRealTimeAndHowToChangeIt) {
   EXPECT_EQ(computer.line("memory").level, Level::kWarn);
 }
 
+TEST(Doctor, DoesNotTakeProcessorsThatAreNotToldForOne) {
+  Computer computer;
+  computer.put("sys/devices/system/cpu/online", "0");
+  EXPECT_EQ(computer.line("processors").level, Level::kBad);
+  computer.remove("sys/devices/system/cpu/online");
+  EXPECT_EQ(computer.line("processors").level, Level::kWarn);
+  EXPECT_EQ(computer.line("processors").found, "not told");
+}
+
 TEST(Doctor, TellsWhatSlowsProcessorsDown) {
   Computer computer;
   computer.put("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "powersave");

@@ -418,11 +418,5 @@ TEST(LimitText, NamesSideCauseAndReaction) {
       "elbow x: limit, exceeded by 3 mm");
 }
 
-TEST(FaultText, IsEmptyWithoutAFaultAndElseGivesValueAndLimit) {
-  EXPECT_EQ(fault_text({}), "");
-  const std::string text = fault_text({FaultCode::kSpeedExceeded, 2, 2.6, 2.5});
-  EXPECT_NE(text.find("(number 3): 2.6, limit 2.5"), std::string::npos) << text;
-}
-
 }  // namespace
 }  // namespace hg::viewer_server

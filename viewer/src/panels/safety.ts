@@ -22,20 +22,21 @@ const REQUESTS = [
 
 const STOP_TEXT: Record<Safety["stop"], string> = {
   none: "",
-  SS2: "braked, then held",
+  SS2: "braked, then drives off",
   SS1: "braked, then drives off",
   STO: "drives off and brakes closed at once",
 };
 
 export class SafetyPanel {
   private readonly mode = make("output", "large");
-  private readonly how = make("p", "reason");
+  private readonly how = make("p");
   private readonly cause = make("p", "safety");
-  private readonly release = make("p", "reason");
-  private readonly warning = make("p", "reason");
+  private readonly release = make("p");
+  private readonly warning = make("p");
   private readonly stop: HTMLButtonElement;
   private readonly boxes = new Map<Switch, HTMLLabelElement>();
   private readonly panel = make("div", "safety-panel");
+  private readonly requests = make("div", "buttons");
   private is_pressed = false;
 
   constructor(section: HTMLElement, commands: Commands) {
@@ -46,48 +47,45 @@ export class SafetyPanel {
       flip("emergency_stop", !this.is_pressed),
     );
     this.stop.className = "emergency-stop";
-    this.panel.append(this.stop);
     for (const [name, text, title] of SWITCHES) {
       const box = make_check_box(text, name === "operator_enable", (is_on) => flip(name, is_on));
       box.title = title;
       this.boxes.set(name, box);
       this.panel.append(box);
     }
-    const requests = make("div", "buttons");
     for (const [name, text, title] of REQUESTS) {
-      requests.append(make_button(text, title, () => commands.send("mode", name)));
+      this.requests.append(make_button(text, title, () => commands.send("mode", name)));
     }
     section.append(
       make("h2", "", "Safety"),
+      this.stop, // where no text moves it
       this.mode,
-      this.how,
-      this.cause,
-      this.release,
-      this.warning,
+      make("div", "safety-texts", this.how, this.cause, this.release, this.warning),
       this.panel,
-      requests,
+      this.requests,
       make("p", "quiet", "Simulated. Nothing here is a certified safety function."),
     );
   }
 
   furnish(scene: Scene): void {
-    this.panel.hidden = !scene.commands.includes("panel");
+    this.stop.hidden = this.panel.hidden = !scene.commands.includes("panel");
+    this.requests.hidden = !scene.commands.includes("mode");
   }
 
   show({ mode, safety }: Frame): void {
     write(this.mode, safety.is_autonomous ? `${mode}, nobody at the handle` : mode);
-    write(this.how, STOP_TEXT[safety.stop]);
+    // after a fault the drives go off in any case
+    const is_held = safety.stop === "SS2" && safety.fault === 0;
+    write(this.how, is_held ? "braked, then held" : STOP_TEXT[safety.stop]);
     write(this.cause, safety.cause);
     this.cause.dataset.mode = mode;
-    write(this.release, safety.release === "" ? "" : `Reset it when ${safety.release}.`);
+    write(this.release, safety.release === "" ? "" : `Released: ${safety.release}.`);
     write(this.warning, safety.warning === "" ? "" : `Near: ${safety.warning}`);
     this.is_pressed = safety.emergency_stop;
+    write(this.stop, this.is_pressed ? "Emergency stop: pull it out" : "Emergency stop");
     this.stop.setAttribute("aria-pressed", String(this.is_pressed));
     for (const [name, box] of this.boxes) {
-      const input = box.querySelector("input")!;
-      if (document.activeElement !== input || input.checked === safety[name]) {
-        input.checked = safety[name];
-      }
+      box.querySelector("input")!.checked = safety[name];
     }
   }
 }

@@ -1,0 +1,25 @@
+#include "apps/hapticgiant/option_checks.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+namespace hg::apps {
+
+// CLI11's ranges let "nan" through and print all digits of their ends.
+OptionCheck number_that(const std::string& rule, const std::function<bool(double)>& holds) {
+  return [=](const std::string& text) -> std::string {
+    double value = 0.0;
+    if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) {
+      return "expected a number, got '" + text + "'";
+    }
+    return holds(value) ? "" : "must be " + rule + ", got " + text;
+  };
+}
+
+OptionCheck at_least(int least) {
+  return number_that(fmt::format("at least {}", least), [=](double v) { return v >= least; });
+}
+
+}  // namespace hg::apps

@@ -1,0 +1,17 @@
+/// What is checked of numbers on the command line.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace hg::apps {
+
+/// For CLI::Option::check: what is wrong with a text; empty = nothing.
+using OptionCheck = std::function<std::string(const std::string&)>;
+
+/// `rule` completes "must be ...".
+OptionCheck number_that(const std::string& rule, const std::function<bool(double)>& holds);
+
+OptionCheck at_least(int least);
+
+}  // namespace hg::apps

@@ -1,0 +1,112 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+
+import type { Commands } from "../../src/data/commands";
+import type { Frame, Safety, Scene } from "../../src/messages";
+import { SafetyPanel } from "../../src/panels/safety";
+import { frame } from "./examples";
+
+// As much of an element as the panel uses.
+class FakeElement extends EventTarget {
+  textContent = "";
+  className = "";
+  title = "";
+  type = "";
+  hidden = false;
+  checked = false;
+  dataset: Record<string, string> = {};
+  readonly attributes = new Map<string, string>();
+  readonly children: FakeElement[] = [];
+
+  constructor(readonly tag: string) {
+    super();
+  }
+  append(...parts: (FakeElement | string)[]): void {
+    for (const part of parts) {
+      if (typeof part === "string") this.textContent += part;
+      else this.children.push(part);
+    }
+  }
+  setAttribute(name: string, value: string): void {
+    this.attributes.set(name, value);
+  }
+  querySelector(tag: string): FakeElement | null {
+    return this.all().find((part) => part.tag === tag) ?? null;
+  }
+  all(): FakeElement[] {
+    return this.children.flatMap((child) => [child, ...child.all()]);
+  }
+}
+
+describe("SafetyPanel", () => {
+  let section: FakeElement;
+  let panel: SafetyPanel;
+  const send = vi.fn();
+
+  beforeEach(() => {
+    send.mockClear();
+    vi.stubGlobal("document", {
+      activeElement: null,
+      createElement: (tag: string) => new FakeElement(tag),
+    });
+    section = new FakeElement("section");
+    panel = new SafetyPanel(section as never, { send } as unknown as Commands);
+    panel.furnish({ commands: ["panel", "mode"] } as unknown as Scene);
+  });
+
+  const show = (safety: Partial<Safety>, mode: Frame["mode"] = "running"): void => {
+    panel.show({ ...frame, mode, safety: { ...frame.safety, ...safety } });
+  };
+  const texts = (): string[] => section.all().map((part) => part.textContent);
+  const is_hidden = (text: string): boolean => {
+    const holds = (part: FakeElement): boolean =>
+      part.textContent === text || part.children.some(holds);
+    return section.all().some((part) => part.hidden && holds(part));
+  };
+  const box_of = (text: string): FakeElement =>
+    section.all().find((part) => part.textContent === text)!.querySelector("input")!;
+
+  it("follows the machine although somebody has just clicked the box", () => {
+    const box = box_of("Override key");
+    vi.stubGlobal("document", { activeElement: box });
+    show({ override_key: true });
+    expect(box.checked).toBe(true);
+    show({ override_key: false });
+    expect(box.checked).toBe(false);
+  });
+
+  it("sends what is clicked", () => {
+    const box = box_of("Enabling switch held");
+    box.checked = false;
+    box.dispatchEvent(new Event("change"));
+    const button = section.all().find((part) => part.textContent === "Emergency stop")!;
+    button.dispatchEvent(new Event("click"));
+    show({ emergency_stop: true });
+    button.dispatchEvent(new Event("click"));
+    expect(send.mock.calls).toEqual([
+      ["panel", "operator_enable", 0],
+      ["panel", "emergency_stop", 1],
+      ["panel", "emergency_stop", 0],
+    ]);
+    expect(button.attributes.get("aria-pressed")).toBe("true");
+  });
+
+  it("says that drives stay on after a stop, and go off after a fault", () => {
+    show({ stop: "SS2", fault: 0 }, "stopping");
+    expect(texts()).toContain("braked, then held");
+    show({ stop: "SS2", fault: 302 }, "stopping");
+    expect(texts()).toContain("braked, then drives off");
+  });
+
+  it("offers a recording no buttons", () => {
+    const hidden = (): boolean[] => ["Emergency stop", "Reset"].map((text) => is_hidden(text));
+    expect(hidden()).toEqual([false, false]);
+    panel.furnish({ commands: ["seek"] } as unknown as Scene);
+    expect(hidden()).toEqual([true, true]);
+  });
+
+  it("tells cause and release as sentences", () => {
+    show({ fault: 308, cause: "308 They shake.", release: "at once; hold it less stiffly" }, "fault");
+    expect(texts()).toContain("308 They shake.");
+    expect(texts()).toContain("Released: at once; hold it less stiffly.");
+  });
+});
