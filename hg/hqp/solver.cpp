@@ -14,7 +14,7 @@ namespace hg::hqp {
 namespace {
 
 // Efforts are counted in direct eliminations.
-constexpr int kEffortOfGuess = 3;        // itself, and one row in exchange for another;
+constexpr int kEffortOfGuess = 3;        // itself, and one row in exchange for another,
 constexpr int kEffortOfSecondGuess = 1;  // what differs more is found faster from zero,
 constexpr int kEffort = 32;              // with this and so much per variable. More is
 constexpr int kEffortPerVariable = 2;    // taken for a cycle
@@ -34,6 +34,19 @@ int find_bad_row(const Problem& problem) noexcept {
     if (broken_rule(problem, row) != nullptr) return row;
   }
   return -1;
+}
+
+// Whether the point tried last violates more rows than the one that has become active since.
+bool misses_rows(const Problem& problem, const Options& options, int levels,
+                 const Workspace& work) noexcept {
+  const int rows = rows_of(problem, levels);
+  for (int row = 0; row < rows; ++row) {
+    if (work.point.state[at(row)] == RowState::kInactive && problem.norm(row) > 0.0 &&
+        violation(problem, options, work, row) != 0.0) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // Tries the guess in work.point.state and its corrections until one is proven, or `max_effort` is
@@ -61,17 +74,23 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
   const auto try_for = [&](int effort) {
     return try_guesses(problem, options, levels, effort, max_iterations, iterations, work);
   };
-  load_guess(problem, levels, active.state, guess);
-  start_from_zero(problem, work);
-  if (try_for(kEffortOfGuess)) return true;
-
-  const int rows = rows_of(problem, levels);
   std::vector<RowState>& first = work.saved.state;
   std::vector<RowState>& second = work.second_guess;
+  const int rows = rows_of(problem, levels);
+  // of a solution, all rows are inactive only where x = 0, and that is where a cold start begins
+  const bool has_first = std::any_of(active.state.begin(), active.state.begin() + rows,
+                                     [](RowState state) { return state != RowState::kInactive; });
+  load_guess(problem, levels, active.state, guess);
+  const bool has_second = load_guess(problem, levels, active.before, second);
+  start_from_zero(problem, work);
+  if (has_first) {
+    if (try_for(1)) return true;
+    const bool is_near = !misses_rows(problem, options, levels, work);
+    if (is_near && try_for(kEffortOfGuess - 1)) return true;
+  }
+
   load_guess(problem, levels, active.state, first);
-  const bool has_second = load_guess(problem, levels, active.before, second) &&
-                          !std::equal(first.begin(), first.begin() + rows, second.begin());
-  if (has_second) {
+  if (has_second && !std::equal(first.begin(), first.begin() + rows, second.begin())) {
     start_from_zero_with(problem, second, work);
     if (try_for(kEffortOfSecondGuess)) return true;
   } else if (is_guess_from_zero(problem, levels, first)) {
