@@ -75,6 +75,7 @@ config::Scenario prepared(const config::Scenario& scenario, const ImpedanceConfi
   device.control.method = what.is_modal ? control::Method::kModal : control::Method::kMotorPd;
   if (!what.has_friction) take_friction(device.control);
   device.control.error_max = kInfinity;  // how far it gives way, and not when tracking is lost
+  device.monitor.unexplained_tolerance = kInfinity;  // nor when what is blind contradicts torques
   if (what.is_blind) {
     device.simulation.sensors.wrench.range = 1e-9;  // of full scale
     device.estimation.wrench.has_imu = false;       // which would show a wrench of its own

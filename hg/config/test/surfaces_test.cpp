@@ -60,11 +60,11 @@ TEST(Surfaces, HaveShapePlaceAndFeel) {
 
 TEST(Surfaces, AreRefusedWithTheirPlace) {
   const std::string at = "models/scenarios/run.yaml:8:";
-  EXPECT_EQ(message("{name: a, shape: spere}"),
-            at + "22: surfaces[0].shape: must be one of plane, box, sphere, cylinder, mesh, got 'spere', "
-                 "did you mean 'sphere'?");
-  EXPECT_EQ(message("{name: a, shape: sphere}"),
-            at + "5: surfaces[0]: key 'radius_m' is missing");
+  EXPECT_EQ(
+      message("{name: a, shape: spere}"),
+      at + "22: surfaces[0].shape: must be one of plane, box, sphere, cylinder, mesh, got 'spere', "
+           "did you mean 'sphere'?");
+  EXPECT_EQ(message("{name: a, shape: sphere}"), at + "5: surfaces[0]: key 'radius_m' is missing");
   EXPECT_EQ(message("{name: a, shape: box}"), at + "5: surfaces[0]: a box needs 'size_m'");
   EXPECT_EQ(message("{name: a, shape: mesh, mesh: plat.stl}"),
             at + "34: surfaces[0].mesh: no such file, got 'plat.stl'");
