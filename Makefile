@@ -28,7 +28,7 @@ BUILD := build/$(PRESET)
 RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
   head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering prepositioning control safety \
-  collision passivity cycle user simulation injection remote identification evaluation explanation \
+  collision passivity environment cycle user simulation injection remote identification evaluation explanation \
   readiness recording fuzz_replay)
 TSAN_TESTS := $(addsuffix _test, core runtime recording viewer_server)
 RTSAN_TESTS := $(addsuffix _test, cycle runtime)
