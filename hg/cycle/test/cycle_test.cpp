@@ -547,6 +547,7 @@ TEST(Cycle, ARunningStepEndsEveryStageInOrder) {
   loop.start_running();
   loop.sensors.w_S[0] = 3.0;
   std::vector<Stage> stages;
+  stages.reserve(100);  // what is told of a step must not allocate, either
   loop.cycle->watch({.ended = note, .listener = &stages});
   loop.step();
   const std::vector<Stage> all = {
@@ -563,6 +564,7 @@ TEST(Cycle, ARunningStepEndsEveryStageInOrder) {
 TEST(Cycle, BeingWatchedChangesNothing) {
   Loop watched, alone;
   std::vector<Stage> stages;
+  stages.reserve(100'000);
   watched.cycle->watch({.ended = note, .listener = &stages});
   for (Loop* loop : {&watched, &alone}) {
     loop->start_running();

@@ -44,7 +44,12 @@ class StillDevice final : public device::Device {
   }
 
   bool is_clock() const noexcept override { return keeps_time; }
-  void stall() const noexcept { std::this_thread::sleep_for(std::chrono::milliseconds(25)); }
+  // works hard: a device that slept would break the promise of write()
+  void stall() const noexcept {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(25);
+    while (std::chrono::steady_clock::now() < end) {
+    }
+  }
 
   bool keeps_time = false;
   std::uint64_t lost_sample = 0;
