@@ -1,6 +1,9 @@
 /// The groups of measurements of benchmark.h; each adds its figures, tables and failures.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "hg/config/scenario.h"
 #include "hg/experiments/motion_analysis.h"
 #include "hg/experiments/workers.h"
@@ -18,10 +21,16 @@ struct Group {
   const Told& told;
   Benchmark& out;
 
-  experiments::Progress progress(const std::string& what) const {
-    return [this, what](std::size_t done, std::size_t total) {
-      if (told) told(what, done, total);
-    };
+  /// measure(i) for every i < count, on all cores.
+  template <typename Measure>
+  auto measure_all(const std::string& what, std::size_t count, const Measure& measure) const {
+    std::vector<decltype(measure(std::size_t{}))> results(count);
+    experiments::do_all(
+        count, [&](std::size_t i) { results[i] = measure(i); },
+        [&](std::size_t done, std::size_t total) {
+          if (told) told(what, done, total);
+        });
+    return results;
   }
   std::size_t repetitions() const { return static_cast<std::size_t>(options.repetitions); }
   std::uint64_t seed(std::size_t repetition) const { return options.seed + repetition; }

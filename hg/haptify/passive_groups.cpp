@@ -14,15 +14,13 @@
 namespace hg::haptify {
 namespace {
 
-// mean over repetitions of one field
+// one field of all repetitions
 template <typename Result>
 std::vector<double> values_of(const std::vector<Result>& results, double Result::*field) {
   std::vector<double> values;
   for (const Result& result : results) values.push_back(result.*field);
   return values;
 }
-
-double mean(const std::vector<double>& values) { return mean_of(values).value; }
 
 std::string range_text(const Interval& range) {
   return fmt::format("{:.2f} .. {:.2f} m", range.lb, range.ub);
@@ -66,13 +64,9 @@ void add_vibration(const Group& group, const std::vector<FreeSpace>& shipped,
 
 void add_workspace(const Group& group) {
   const ShapeConfig config = {.postures = group.options.is_quick ? 4'000 : 60'000};
-  std::vector<inspection::Workspace> shapes(group.repetitions());
-  experiments::do_all(
-      shapes.size(),
-      [&](std::size_t i) {
-        shapes[i] = measure_shape(group.scenario.device, config, group.seed(i));
-      },
-      group.progress("workspace"));
+  const auto shapes = group.measure_all("workspace", group.repetitions(), [&](std::size_t i) {
+    return measure_shape(group.scenario.device, config, group.seed(i));
+  });
   Figure volume = {.id = "workspace_volume",
                    .name = "Workspace volume",
                    .unit = "m^3",
@@ -93,7 +87,7 @@ void add_workspace(const Group& group) {
   if (first.has_box) {
     volume.why = fmt::format(
         "The limits of the handle are a box of {:.2f} m^3, and {:.1f} % of it is reached.",
-        first.box_volume, 100.0 * mean(volume.values) / first.box_volume);
+        first.box_volume, 100.0 * mean_value(volume.values) / first.box_volume);
     volume.why += unreached_sides(group.scenario.device, first, config, group.seed(0));
   }
   Table shape = {.id = "workspace_shape",
@@ -120,14 +114,10 @@ void add_free_space(const Group& group) {
   config::Scenario light = group.scenario;
   experiments::set_free_twin(light, kLightBody);
   const std::size_t n = group.repetitions();
-  std::vector<FreeSpace> all(2 * n);
-  experiments::do_all(
-      all.size(),
-      [&](std::size_t i) {
-        const config::Scenario& scenario = i < n ? group.scenario : light;
-        all[i] = measure_free_space(scenario, config, group.seed(i % n));
-      },
-      group.progress("free space"));
+  const auto all = group.measure_all("free space", 2 * n, [&](std::size_t i) {
+    const config::Scenario& scenario = i < n ? group.scenario : light;
+    return measure_free_space(scenario, config, group.seed(i % n));
+  });
   const std::vector<FreeSpace> shipped(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n));
   const std::vector<FreeSpace> lighter(all.begin() + static_cast<std::ptrdiff_t>(n), all.end());
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -138,8 +128,8 @@ void add_free_space(const Group& group) {
       fmt::format("a free body of {:g} kg, {:g} Ns/m", twin.mass, twin.damping);
   const std::string walk = fmt::format(
       "{}; {:.0f} s, {:.1f} m of random strokes through the workspace at {:.2f} m/s rms", body,
-      config.duration_s, mean(values_of(shipped, &FreeSpace::path)),
-      mean(values_of(shipped, &FreeSpace::speed_rms)));
+      config.duration_s, mean_value(values_of(shipped, &FreeSpace::path)),
+      mean_value(values_of(shipped, &FreeSpace::speed_rms)));
   group.out.table.push_back(
       {.id = "free_space_force",
        .name = "Mean free-space force",
@@ -152,9 +142,9 @@ void add_free_space(const Group& group) {
            "{:.2f} N of it is what {} needs for this motion (mass times acceleration, damping "
            "times velocity); the device adds {:.2f} N to that (mean norm of the difference). "
            "Rendered as {:g} kg, {:g} Ns/m on the same strokes it is {:.2f} N.",
-           mean(values_of(shipped, &FreeSpace::own_share)), body,
-           mean(values_of(shipped, &FreeSpace::extra)), kLightBody.mass, kLightBody.damping,
-           mean(values_of(lighter, &FreeSpace::force)))});
+           mean_value(values_of(shipped, &FreeSpace::own_share)), body,
+           mean_value(values_of(shipped, &FreeSpace::extra)), kLightBody.mass, kLightBody.damping,
+           mean_value(values_of(lighter, &FreeSpace::force)))});
   add_vibration(group, shipped, lighter);
 }
 
@@ -165,14 +155,9 @@ void add_dynamics(const Group& group) {
     config.strokes = 2;
   }
   const std::size_t n = group.repetitions();
-  std::vector<Dynamics> all(n * kStrokeAxes);
-  experiments::do_all(
-      all.size(),
-      [&](std::size_t i) {
-        all[i] =
-            measure_dynamics(group.scenario, config, static_cast<int>(i / n), group.seed(i % n));
-      },
-      group.progress("strokes"));
+  const auto all = group.measure_all("strokes", n * kStrokeAxes, [&](std::size_t i) {
+    return measure_dynamics(group.scenario, config, static_cast<int>(i / n), group.seed(i % n));
+  });
   Table table = {.id = "local_dynamics",
                  .title = "Local dynamic forces and torques",
                  .note =

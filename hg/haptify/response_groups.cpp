@@ -40,13 +40,9 @@ std::string amount(double value) { return fmt::format("{:.3g}", value); }
 
 void add_transparency(const Group& group) {
   const ResponseConfig config = config_of(group.options);
-  std::array<Response, kAxes> axes;
-  experiments::do_all(
-      axes.size(),
-      [&](std::size_t i) {
-        axes[i] = measure_response(group.scenario, config, static_cast<int>(i), group.seed(0));
-      },
-      group.progress("transparency"));
+  const auto axes = group.measure_all("transparency", kAxes, [&](std::size_t i) {
+    return measure_response(group.scenario, config, static_cast<int>(i), group.seed(0));
+  });
   Table table = {.id = "transparency",
                  .title = "Transparency: impedance at the handle over the rendered body's",
                  .note =
@@ -96,14 +92,9 @@ void add_transparency(const Group& group) {
 void add_force_response(const Group& group) {
   ResponseConfig config = config_of(group.options);
   std::erase_if(config.frequency_Hz, [](double frequency) { return frequency < 0.5; });
-  std::array<ForceResponse, kAxes> axes;
-  experiments::do_all(
-      axes.size(),
-      [&](std::size_t i) {
-        axes[i] =
-            measure_force_response(group.scenario, config, static_cast<int>(i), group.seed(0));
-      },
-      group.progress("force response"));
+  const auto axes = group.measure_all("force response", kAxes, [&](std::size_t i) {
+    return measure_force_response(group.scenario, config, static_cast<int>(i), group.seed(0));
+  });
   Table table = {
       .id = "force_response",
       .title = "Force at a hand that holds still over the commanded force",
@@ -152,14 +143,9 @@ void add_force_response(const Group& group) {
 void add_latency(const Group& group) {
   const ResponseConfig config = config_of(group.options);
   const std::size_t n = group.repetitions();
-  std::vector<Latency> all(kAxes * n);
-  experiments::do_all(
-      all.size(),
-      [&](std::size_t i) {
-        all[i] =
-            measure_latency(group.scenario, config, static_cast<int>(i / n), group.seed(i % n));
-      },
-      group.progress("latency"));
+  const auto all = group.measure_all("latency", kAxes * n, [&](std::size_t i) {
+    return measure_latency(group.scenario, config, static_cast<int>(i / n), group.seed(i % n));
+  });
   Figure motion = {.id = "latency",
                    .name = "Latency from wrench to motion",
                    .unit = "ms",

@@ -27,8 +27,7 @@ void explain(const std::string& id, const std::vector<Source>& sources, double F
       });
   figure->why += fmt::format(
       "On one way of {:.0f} s: {:.3g} {} as it is; of the imperfections taken away one by one "
-      "\"{}\" "
-      "changes most, to {:.3g} {} (table \"What vibration comes from\").",
+      "\"{}\" changes most, to {:.3g} {} (table \"What vibration comes from\").",
       FreeSpaceConfig{}.duration_s, sources.front().measured.*field, figure->unit, best->name,
       best->measured.*field, figure->unit);
 }
@@ -43,15 +42,12 @@ void add_sources(const Group& group) {
     return &variant != &variants.front() && !variant.takes_away;
   });
   if (group.options.is_quick) variants.resize(2);
-  std::vector<Source> sources(variants.size());
-  experiments::do_all(
-      variants.size(),
-      [&](std::size_t i) {
+  const auto sources =
+      group.measure_all("sources of vibration", variants.size(), [&](std::size_t i) {
         config::Scenario changed = group.scenario;
         if (variants[i].change) variants[i].change(changed);
-        sources[i] = {variants[i].name, measure_free_space(changed, config, group.seed(0))};
-      },
-      group.progress("sources of vibration"));
+        return Source{variants[i].name, measure_free_space(changed, config, group.seed(0))};
+      });
   Table table = {.id = "vibration_sources",
                  .title = "What vibration comes from",
                  .note =

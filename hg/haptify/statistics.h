@@ -17,6 +17,8 @@ struct Mean {
 /// Student's t, two sides, for normally distributed values.
 Mean mean_of(std::span<const double> values);
 
+inline double mean_value(std::span<const double> values) { return mean_of(values).value; }
+
 /// 97.5 % quantile of Student's distribution; degrees >= 1.
 double student_t(std::size_t degrees);
 

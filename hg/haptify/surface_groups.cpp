@@ -12,25 +12,15 @@
 #include "hg/haptify/surface.h"
 
 namespace hg::haptify {
-namespace {
-
-double mean(const std::vector<double>& values) { return mean_of(values).value; }
-
-}  // namespace
-
 void add_sliding(const Group& group) {
   SurfaceConfig config;
   if (group.options.is_quick) config.strokes = 1;
   config::Scenario light = group.scenario;
   experiments::set_free_twin(light, kLightBody);
   const std::size_t n = group.repetitions();
-  std::vector<Slide> all(2 * n);
-  experiments::do_all(
-      all.size(),
-      [&](std::size_t i) {
-        all[i] = measure_slide(i < n ? group.scenario : light, config, group.seed(i % n));
-      },
-      group.progress("frictionless surface"));
+  const auto all = group.measure_all("frictionless surface", 2 * n, [&](std::size_t i) {
+    return measure_slide(i < n ? group.scenario : light, config, group.seed(i % n));
+  });
   std::vector<double> force, own, extra, normal, speed, lighter;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Slide& one = all[i];
@@ -54,12 +44,14 @@ void add_sliding(const Group& group) {
        .values = force,
        .note = fmt::format("tangential, on a plane of {:g} N/m; strokes of {:g} m at {:.2f} m/s on "
                            "average, pressed with {:.1f} N",
-                           config.slide_stiffness, config.stroke, mean(speed), mean(normal)),
+                           config.slide_stiffness, config.stroke, mean_value(speed),
+                           mean_value(normal)),
        .why = fmt::format(
            "{:.2f} N of it is what the rendered body needs for the strokes (mass times "
            "acceleration, damping times velocity); device and surface add {:.2f} N to that (mean "
            "norm of the difference). Rendered as {:g} kg, {:g} Ns/m it is {:.2f} N.",
-           mean(own), mean(extra), kLightBody.mass, kLightBody.damping, mean(lighter))});
+           mean_value(own), mean_value(extra), kLightBody.mass, kLightBody.damping,
+           mean_value(lighter))});
   group.out.beyond.push_back({.id = "frictionless_surface_extra",
                               .name = "Frictionless surface force that device and surface add",
                               .unit = "N",
@@ -74,13 +66,9 @@ void add_stiffness(const Group& group) {
   SurfaceConfig config;
   if (group.options.is_quick) config.press_s = 1.5;
   const std::size_t n = group.repetitions();
-  std::vector<Press> all(n * stiffness.size());
-  experiments::do_all(
-      all.size(),
-      [&](std::size_t i) {
-        all[i] = measure_press(group.scenario, config, stiffness[i / n], group.seed(i % n));
-      },
-      group.progress("stiffness"));
+  const auto all = group.measure_all("stiffness", n * stiffness.size(), [&](std::size_t i) {
+    return measure_press(group.scenario, config, stiffness[i / n], group.seed(i % n));
+  });
   Figure accuracy = {.id = "stiffness_accuracy",
                      .name = "Stiffness rendering accuracy",
                      .unit = "%",
@@ -109,17 +97,17 @@ void add_stiffness(const Group& group) {
       force.push_back(one.force);
       accuracy.values[i] += one.accuracy / static_cast<double>(stiffness.size());
     }
-    twin.push_back(mean(rendered));
+    twin.push_back(mean_value(rendered));
     const Mean slope = mean_of(slopes);
     table.rows.push_back({fmt::format("{:g}", stiffness[k]),
                           fmt::format("{:.2f} +- {:.2f}", slope.value, slope.half_width),
-                          fmt::format("{:.2f}", mean(rendered)),
-                          fmt::format("{:.1f}", mean(force))});
+                          fmt::format("{:.2f}", mean_value(rendered)),
+                          fmt::format("{:.1f}", mean_value(force))});
   }
   accuracy.why = fmt::format(
       "With the depth of the rendered body instead of the handle it is {:.1f} %, where mass and "
       "damping of body and surface add to the spring; the rest is how far the joints give way.",
-      mean(twin));
+      mean_value(twin));
   group.out.table.push_back(accuracy);
   group.out.tables.push_back(table);
 }
@@ -127,11 +115,9 @@ void add_stiffness(const Group& group) {
 void add_peak(const Group& group) {
   SurfaceConfig config;
   if (group.options.is_quick) config.peak_s = 3.0;
-  std::vector<Peak> all(group.repetitions());
-  experiments::do_all(
-      all.size(),
-      [&](std::size_t i) { all[i] = measure_peak(group.scenario, config, group.seed(i)); },
-      group.progress("peak force"));
+  const auto all = group.measure_all("peak force", group.repetitions(), [&](std::size_t i) {
+    return measure_peak(group.scenario, config, group.seed(i));
+  });
   Figure figure = {.id = "stiffness_peak_force",
                    .name = "Stiffness peak force",
                    .unit = "N",
@@ -159,14 +145,11 @@ void add_z_width(const Group& group) {
   const std::vector<double> damping =
       is_quick ? std::vector<double>{20} : std::vector<double>{0, 20, 50, 100, 200, 400};
   const SurfaceConfig config;
-  std::vector<experiments::Verdict> verdicts(stiffness.size() * damping.size());
-  experiments::do_all(
-      verdicts.size(),
-      [&](std::size_t i) {
-        verdicts[i] = knock(group.scenario, config, stiffness[i / damping.size()],
-                            damping[i % damping.size()]);
-      },
-      group.progress("Z-width"));
+  const auto verdicts =
+      group.measure_all("Z-width", stiffness.size() * damping.size(), [&](std::size_t i) {
+        return knock(group.scenario, config, stiffness[i / damping.size()],
+                     damping[i % damping.size()]);
+      });
   Table table = {.id = "z_width",
                  .title = "Z-width: which surfaces stay calm",
                  .note =
