@@ -1,4 +1,4 @@
-/// Description of scenario.yaml, fourth part: virtual surfaces.
+/// Description of scenario.yaml, fifth part: virtual surfaces.
 #pragma once
 
 #include <algorithm>

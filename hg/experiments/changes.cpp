@@ -40,6 +40,15 @@ FreeTwin free_twin_of(const config::Scenario& scenario) {
   return {.mass = model.mass_scale * inertia_of(scenario)(0, 0), .damping = model.dofs[0].damping};
 }
 
+void play_script(config::Scenario& scenario, const user::Script& script) {
+  const double grasp_s = scenario.script.script.grasp_s;
+  scenario.person = user::PersonKind::kScript;
+  scenario.script.script = script;
+  scenario.script.script.grasp_s = grasp_s;
+  scenario.script.start_given = {};
+  scenario.duration_s = 0.0;
+}
+
 void take_friction(control::Config& control) {
   for (ActuatorModel& actuator : control.actuators) {
     actuator.coulomb_friction = actuator.viscous_friction = actuator.load_friction = 0.0;

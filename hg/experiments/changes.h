@@ -13,6 +13,10 @@ void set_free_twin(config::Scenario& scenario, const FreeTwin& twin);
 /// Of the scenario's free body. Throws SetupError when the twin is not one.
 FreeTwin free_twin_of(const config::Scenario& scenario);
 
+/// The person plays `script` and nothing else, from the scenario's own grasp on; with it the run
+/// ends.
+void play_script(config::Scenario& scenario, const user::Script& script);
+
 /// Takes the friction of the joints away, in truth and in what the controller believes.
 void take_friction(control::Config& control);
 

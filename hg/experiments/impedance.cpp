@@ -80,13 +80,8 @@ config::Scenario prepared(const config::Scenario& scenario, const ImpedanceConfi
     device.simulation.sensors.wrench.range = 1e-9;  // of full scale
     device.estimation.wrench.has_imu = false;       // which would show a wrench of its own
   }
-  pushed.person = user::PersonKind::kScript;
-  const double grasp_s = pushed.script.script.grasp_s;
-  pushed.script.script = plan.script;
-  pushed.script.script.grasp_s = grasp_s;
-  pushed.script.start_given = {};
+  play_script(pushed, plan.script);
   pushed.script.hand.tremor_rms = 0.0;
-  pushed.duration_s = 0.0;
   return pushed;
 }
 

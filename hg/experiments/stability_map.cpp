@@ -37,7 +37,6 @@ std::vector<NamedHand> hands_of(const StabilityConfig& config) {
 void set_kick(const Kick& kick, config::Scenario& scenario) {
   constexpr double kEdge = 1e-4;  // s: less than a step of the plant
   user::Script script;
-  script.grasp_s = scenario.script.script.grasp_s;
   script.start[user::kGripChannel] = 1.0;
   const double each = kick.force / std::sqrt(3.0);
   for (int axis = 0; axis < 3; ++axis) {
@@ -51,9 +50,7 @@ void set_kick(const Kick& kick, config::Scenario& scenario) {
   }
   std::ranges::stable_sort(script.segments, {}, &user::Segment::start_s);
   script.duration_s = kick.settling + kick.duration + kick.watched;
-  scenario.script.script = script;
-  scenario.script.start_given = {};
-  scenario.duration_s = 0.0;
+  play_script(scenario, script);
 }
 
 // From the first stable mass of the ladder downwards.

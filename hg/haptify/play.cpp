@@ -5,18 +5,14 @@
 #include <memory>
 
 #include "hg/assembly/assembly.h"
+#include "hg/experiments/changes.h"
 #include "hg/experiments/player.h"
 
 namespace hg::haptify {
 
 config::Scenario with_script(config::Scenario scenario, const user::Script& script) {
-  const double grasp_s = scenario.script.script.grasp_s;
-  scenario.person = user::PersonKind::kScript;
-  scenario.script.script = script;
-  scenario.script.script.grasp_s = grasp_s;
+  experiments::play_script(scenario, script);
   scenario.script.script.start[user::kGripChannel] = 1.0;
-  scenario.script.start_given = {};
-  scenario.duration_s = 0.0;
   scenario.events.clear();
   return scenario;
 }

@@ -49,11 +49,8 @@ void set_restless_hand(unsigned seed, double duration_s, config::Scenario& scena
     }
   }
   script.duration_s = duration_s;
-  scenario.person = user::PersonKind::kScript;
+  play_script(scenario, script);
   scenario.script.hand = user::hand(user::HandPreset::kStiff);
-  scenario.script.script = script;
-  scenario.script.start_given = {};
-  scenario.duration_s = 0.0;
 }
 
 // The smallest distance of all watched pairs, for the true posture.
