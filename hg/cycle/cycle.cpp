@@ -12,7 +12,8 @@ constexpr double kBrakingRate = 20.0;  // 1/s: stopping takes about 0.2 s
 constexpr double kSafeShare = 0.9;     // of the safe speed, which is watched
 constexpr double kStandstill = 1e-3;   // rad/s and m/s
 constexpr double kCoasting = 0.1;      // rad/s and m/s
-constexpr double kRamp = 0.3;          // s in which the forces of a run come in
+constexpr double kRampIn = 0.3;        // s in which the forces of a run come in
+constexpr double kRampOut = 0.1;       // s in which they make room for braking
 
 bool stands_still(const CycleRecord& record) noexcept {
   return record.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
@@ -117,7 +118,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
     ended_(Stage::kEstimation);
     look_ahead(record);
     if (is_moving(state_.supervisor.mode())) {
-      render(record);
+      render(is_held(sensors), record);
     } else {
       hold(record);
     }
@@ -271,7 +272,7 @@ void Cycle::hold(CycleRecord& record) noexcept {
   if (!is_armed || state_.brakes_joints) rendering_.align(record.robot, rendering);
   rendering.reference.dq_m.setZero();
   rendering.twin.dq_a.setZero();
-  rendering_.step(rendering, kBrakingRate, record);
+  rendering_.step(rendering, kBrakingRate, record, 0.0);
   rendering.reference.ddq_m.setZero();
   rendering.twin.ddq_a.setZero();
   record.reference = rendering.reference;
@@ -284,8 +285,12 @@ void Cycle::hold(CycleRecord& record) noexcept {
   rendering.calming = {};
 }
 
-void Cycle::render(CycleRecord& record) noexcept {
+// A stop that was asked for comes gently to whoever holds the handle, all others at once.
+void Cycle::render(bool is_held, CycleRecord& record) noexcept {
   const bool is_stopping = state_.supervisor.mode() == Mode::kStopping;
+  double& share = state_.force_share;
+  const bool is_gentle = is_held && state_.supervisor.state == safety::State::kToArmed;
+  if (is_stopping && !is_gentle) share = 0.0;
   pulled_back_ = state_.rendering.reference.q_m;
   const bool has_left =
       rendering_.stay_near(record.robot, config_.control.error_max, state_.rendering);
@@ -293,9 +298,11 @@ void Cycle::render(CycleRecord& record) noexcept {
   if (!has_left) pulled_back_.resize(0);
   const bool is_alone = state_.supervisor.state == safety::State::kAutonomous;
   const double speed = is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
-  rendering_.step(state_.rendering, is_stopping ? kBrakingRate : 0.0, record, state_.force_share,
+  rendering_.step(state_.rendering, is_stopping ? kBrakingRate * (1.0 - share) : 0.0, record, share,
                   speed / std::sqrt(3.0));
-  state_.force_share = std::min(1.0, state_.force_share + config_.rendering.dt / kRamp);
+  const double step =
+      is_stopping ? -config_.rendering.dt / kRampOut : config_.rendering.dt / kRampIn;
+  share = std::clamp(share + step, 0.0, 1.0);
 
   if (!is_stopping) watch_energy(record);
 
@@ -316,8 +323,8 @@ void Cycle::render(CycleRecord& record) noexcept {
   ended_(Stage::kPrepositioning);
   rendering_.integrate(state_.rendering);
   if (is_stopping) {
-    safety::go_on_stopping(stands_still(record), longest_stop_, config_.monitor.stop_time,
-                           state_.supervisor);
+    safety::go_on_stopping(share == 0.0 && stands_still(record), longest_stop_,
+                           config_.monitor.stop_time, state_.supervisor);
   }
   ended_(Stage::kIntegration);
 }

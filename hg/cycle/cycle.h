@@ -56,7 +56,7 @@ struct State {
   bool is_blocked = false;        ///< a device limit could not be met in the last cycle
   bool brakes_joints = false;     ///< no solution, or a collision ahead: each brakes by itself
   bool is_coasting = false;       ///< joints or gantry moved in the last sample
-  double force_share = 0.0;  ///< of the forces that act on the twin, 0..1: they come in with a ramp
+  double force_share = 0.0;       ///< of the forces that act on the twin, 0..1: come in by a ramp
 };
 
 class Cycle {
@@ -97,7 +97,7 @@ class Cycle {
   void look_ahead(CycleRecord& record) noexcept;
   void watch_energy(CycleRecord& record) noexcept;
   void hold(CycleRecord& record) noexcept;
-  void render(CycleRecord& record) noexcept;
+  void render(bool is_held, CycleRecord& record) noexcept;
   void monitor(const SensorFrame& sensors, std::uint32_t late_cycles, CycleRecord& record) noexcept;
   void sanitise(CommandFrame& command, CycleRecord& record) noexcept;
   void brake_joints(CycleRecord& record) noexcept;

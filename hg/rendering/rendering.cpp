@@ -167,14 +167,12 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
 
   const int n_a = twin_.chain.nv();
   Budget& budget = record.budget;
-  const bool is_braking = braking_rate > 0.0;
-  if (is_braking) {
+  const bool is_released = braking_rate > 0.0 && share == 0.0;
+  if (is_released) {
     state.inner.sticks.fill(false);
-    const VectorA braking = braking_rate * state.twin.dq_a;
     record.tau_a = VectorA::Zero(n_a);
     budget.spring = -twin_.chain.gravity();
     budget.damping = VectorA::Zero(n_a);
-    budget.damping.noalias() += twin_.chain.M() * braking;
     budget.friction = VectorA::Zero(n_a);
     budget.surface = VectorA::Zero(n_a);
   } else {
@@ -189,13 +187,17 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
     budget.friction = slip_torque(state.twin.dq_a, state.inner);
     budget.surface = J_a_.transpose() * (share * values.w_ref);
   }
-  feel_surfaces(state, is_braking ? 0.0 : share, record);
+  if (braking_rate > 0.0) {
+    const VectorA braking = braking_rate * state.twin.dq_a;
+    budget.damping.noalias() += twin_.chain.M() * braking;
+  }
+  feel_surfaces(state, share, record);
 
   const hqp::ActiveSet previous = state.active_set;
   solve(state, handle_speed, record);
   record.active_set_changes =
       changed_rows(previous, state.active_set, tasks_.first_limit_row(), tasks_.limit_row_count());
-  if (!is_braking) catch_reversals(state.twin, options_.dt, state.inner);
+  if (!is_released) catch_reversals(state.twin, options_.dt, state.inner);
   report_kinematics(state, record);
   ended_(Stage::kReactions);
   return record.solver_status;

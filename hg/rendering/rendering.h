@@ -59,13 +59,12 @@ class Rendering {
 
   /// Solves for the accelerations of this sample and reports why they are what they are. Needs
   /// record.robot; fills the rest that concerns device, twin, limits and solver. Does not move the
-  /// state: integrate() does. `braking_rate` > 0 (1/s) brings the twin to rest: it is then a body
-  /// without springs, friction and weight that nobody touches, under the same limits. `share`
-  /// (0..1) of the user's wrench, the twin's springs, its weight, its reference wrench and the
-  /// surfaces around it counts,
-  /// so that a run that begins against a leaning hand begins without a bump. The handle moves no
-  /// faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian limits
-  /// for it.
+  /// state: integrate() does. `share` (0..1) of the user's wrench, the twin's springs, its weight,
+  /// its reference wrench and the surfaces around it counts, so that a run against a leaning hand
+  /// begins and ends without a bump. `braking_rate` > 0 (1/s) brings the twin to rest, under the
+  /// same limits; with `share` 0 it is then a body without friction that nobody touches. The handle
+  /// moves no faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian
+  /// limits for it.
   SolverStatus step(State& state, double braking_rate, CycleRecord& record, double share = 1.0,
                     double handle_speed = kInfinity) noexcept;
 

@@ -83,5 +83,26 @@ TEST(Bumpless, ALeaningHandMakesNoJerkWhenRenderingBegins) {
   EXPECT_LT(after_50_ms, 1.0);
 }
 
+TEST(Bumpless, AStopThatIsAskedForMakesNoJerkForALeaningHand) {
+  Leaning run;
+  run.prepare();
+  for (int k = 0; k < 600; ++k) run.step(k < 5 ? ModeRequest::kRun : ModeRequest::kNone);
+  ASSERT_EQ(run.sample().record.mode, Mode::kRunning);
+  Eigen::Vector3d last = run.sample().record.a_H;
+  double largest_change = 0.0, largest = 0.0;
+  int k = 0;
+  for (; k < 1000 && run.sample().record.mode != Mode::kArmed; ++k) {
+    const Eigen::Vector3d a_H = run.step(ModeRequest::kStop).record.a_H;
+    largest_change = std::max(largest_change, (a_H - last).norm());
+    largest = std::max(largest, a_H.norm());
+    last = a_H;
+  }
+  RecordProperty("largest_change", std::to_string(largest_change));
+  EXPECT_EQ(run.sample().record.mode, Mode::kArmed);
+  EXPECT_LT(k, 600);  // at rest
+  EXPECT_GT(largest, 1.0);
+  EXPECT_LT(largest_change, 0.1);  // m/s^2 in a cycle; 0.043 when written
+}
+
 }  // namespace
 }  // namespace hg

@@ -158,7 +158,7 @@ TEST(Stopping, KnowsNoFriction) {
   ASSERT_EQ(playing.limit(0).cause, LimitCause::kFriction);
   playing.state.twin.dq_a[0] = 0.1;
   playing.record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
-  playing.rendering.step(playing.state, 20.0, playing.record);
+  playing.rendering.step(playing.state, 20.0, playing.record, 0.0);
   EXPECT_EQ(playing.record.budget.friction[0], 0.0);
   EXPECT_NEAR(playing.state.twin.ddq_a[0], -2.0, 1e-6);
   EXPECT_NE(playing.limit(0).cause, LimitCause::kFriction);

@@ -351,7 +351,7 @@ TEST(Rendering, AStepMakesNoAllocation) {
   CycleRecord record = record_with(kGantryAtHome, kPosture, w);
   const AllocationCounter allocations;
   for (int k = 0; k < 20; ++k) {
-    rendering.step(state, k < 10 ? 0.0 : 20.0, record);
+    rendering.step(state, k < 10 ? 0.0 : 20.0, record, k < 10 ? 1.0 : 0.0);
     rendering.integrate(state);
   }
   EXPECT_EQ(allocations.count(), 0u);

@@ -69,7 +69,7 @@ TEST(TwinOnASurface, FeelsNothingWhileItIsBraked) {
   Falling twin;
   twin.state.twin.q_a[2] = -0.004;
   twin.state.contact = {{0.4, 0.1, 0.0}, true};
-  twin.step(Vector6::Zero(), 1.0, 20.0);
+  twin.step(Vector6::Zero(), 0.0, 20.0);
   EXPECT_EQ(twin.record.contact.force.norm(), 0.0);
   EXPECT_EQ(twin.record.budget.surface.norm(), 0.0);
   EXPECT_NEAR(twin.state.contact.proxy.z(), 0.0, 1e-8);

@@ -100,7 +100,7 @@ TEST(TwinJoint, BrakingStopsATwinWithASpring) {
   for (int k = 0; k < 600; ++k) {
     door.record = record_with(kGantryAtHome, kPosture, door.wrench_for(0, 20.0));
     door.state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-    door.rendering.step(door.state, 20.0, door.record);
+    door.rendering.step(door.state, 20.0, door.record, 0.0);
     door.rendering.integrate(door.state);
   }
   EXPECT_LT(std::abs(door.state.twin.dq_a[0]), 1e-3);
