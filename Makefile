@@ -14,8 +14,8 @@
 #                builds and runs the tests that pay off under sanitizers: address and undefined
 #                behaviour for the control cycle and what it calls, threads for what has threads
 #   make rtsan   builds with RealtimeSanitizer and runs the control loop: what allocates, locks or
-#                waits in it ends the program; needs clang 20 or newer (Debian: clang-22
-#                libclang-rt-22-dev libomp-22-dev)
+#                waits in it ends the program; RTSAN_CXX: clang 20 or newer. make rtsan-tests: without
+#                scenarios
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
 #                FUZZ_SECONDS=600 of random bytes each, under sanitizers; needs clang and its libomp.
 #                What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
@@ -37,7 +37,7 @@ FUZZ_TARGETS ?= hqp_reader hqp_solver config urdf protocol commands recording
 SOAK_HOURS ?= 30
 first_of = $(firstword $(foreach name,$(1),$(shell command -v $(name))) $(firstword $(1)))
 FUZZ_CXX ?= $(call first_of,clang++-22 clang++-19 clang++ clang++-16 clang++-14)
-RTSAN_CXX ?= $(call first_of,clang++-22 clang++-21 clang++-20 clang++)
+RTSAN_CXX ?= $(call first_of,clang++-22 clang++-21 clang++-20)
 empty :=
 space := $(empty) $(empty)
 # run_tests,PRESET,NAMES: builds these tests and runs them
@@ -48,7 +48,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build test experiments bench bench-instructions sanitize rtsan fuzz soak format check clean
+.PHONY: demo build test experiments bench bench-instructions sanitize rtsan rtsan-tests fuzz soak format check clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -88,11 +88,15 @@ sanitize:
 	$(call run_tests,asan,$(ASAN_TESTS))
 	$(call run_tests,tsan,$(TSAN_TESTS))
 
-rtsan:
+rtsan-tests:
 	@tools/setup.sh test
+	@RTSAN_CXX=$(RTSAN_CXX) tools/setup.sh rtsan
 	@CC=$(subst clang++,clang,$(RTSAN_CXX)) CXX=$(RTSAN_CXX) tools/configure.sh rtsan build
-	@cmake --build build/rtsan --target $(RTSAN_TESTS) hapticgiant
+	@cmake --build build/rtsan --target $(RTSAN_TESTS)
 	@set -e; for name in $(RTSAN_TESTS); do build/rtsan/$$name --gtest_brief=1; done
+
+rtsan: rtsan-tests
+	@cmake --build build/rtsan --target hapticgiant
 	@set -e; for scenario in door excavator free_space; do \
 	  build/rtsan/hapticgiant run $$scenario --fast --no-viewer --no-recording; \
 	done

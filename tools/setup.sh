@@ -6,6 +6,7 @@
 #   tools/setup.sh test     that, and what the tests need; fails where anything is missing
 #   tools/setup.sh bench    as build, and what `hapticgiant bench` is compared with
 #   tools/setup.sh count    as build, and what counts instructions
+#   tools/setup.sh rtsan    as build, and a compiler with RealtimeSanitizer: RTSAN_CXX, or clang++-22
 #
 # Works without root when the system packages are there, and names them otherwise.
 set -euo pipefail
@@ -13,9 +14,9 @@ cd -P "$(dirname "$0")/.."
 
 purpose=${1:-build}
 case "$purpose" in
-  build | test | bench | count) ;;
+  build | test | bench | count | rtsan) ;;
   *)
-    echo "setup: expected 'build', 'test', 'bench' or 'count', got '$purpose'" >&2
+    echo "setup: expected 'build', 'test', 'bench', 'count' or 'rtsan', got '$purpose'" >&2
     exit 2
     ;;
 esac
@@ -57,6 +58,13 @@ os.stat(sysconfig.get_path("include") + "/Python.h")' >/dev/null 2>&1 || need py
 fi
 
 [ "$purpose" != count ] || need valgrind valgrind
+rtsan_works() {
+  echo 'int main() {}' |
+    "${RTSAN_CXX:-clang++-22}" -fsanitize=realtime -fopenmp -x c++ - -o /dev/null 2>/dev/null
+}
+if [ "$purpose" = rtsan ] && ! rtsan_works; then
+  for package in clang-22 libclang-rt-22-dev libomp-22-dev; do need "$package"; done
+fi
 
 # Recordings are written by a small Rust library. Debian's plain cargo may be too old for it; CMake
 # tries the same places.

@@ -262,6 +262,11 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) 
       .script_end_s = options.duration_s == 0.0 ? assembly::planned_duration_s(scenario) : 0.0,
       .names = part_names(scenario)};
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, scenario.title));
+  if (run.remote != nullptr && !assembly::notices_frozen_sensors(scenario.device)) {
+    print_out(
+        "note        frozen sensors are not noticed (rule 105): simulation.yaml says that they "
+        "have no noise, or monitor.frozen_samples is 0\n");
+  }
   if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
 
   runtime::Runtime runtime(options, run.cycle, *run.device);

@@ -199,13 +199,15 @@ control::Config checked_control(const config::Device& device) {
 
 }  // namespace
 
+bool notices_frozen_sensors(const config::Device& device) {
+  const bool is_noisy = !device.simulation.is_from_file || has_noise(device.simulation.sensors);
+  return is_noisy && device.monitor.frozen_samples > 0.0;
+}
+
 cycle::Cycle make_cycle(const config::Scenario& scenario) {
   const config::Device& device = scenario.device;
-  // sensors that are simulated without noise show the same bits for ever at rest
   safety::MonitorConfig monitor = device.monitor;
-  if (device.simulation.is_from_file && !has_noise(device.simulation.sensors)) {
-    monitor.frozen_samples = 0.0;
-  }
+  if (!notices_frozen_sensors(device)) monitor.frozen_samples = 0.0;
   // the paper's bounds ask for more than any rating where they contradict each other
   if (device.rendering.bounds == rendering::Bounds::kPaper) {
     monitor.acceleration_tolerance = kInfinity;

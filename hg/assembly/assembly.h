@@ -13,6 +13,10 @@ namespace hg::assembly {
 /// The control cycle of the scenario's device and twin. Throws SetupError.
 cycle::Cycle make_cycle(const config::Scenario& scenario);
 
+/// Whether rule 105 is on: sensors that simulation.yaml describes without noise show the same bits
+/// for ever at rest.
+bool notices_frozen_sensors(const config::Device& device);
+
 /// The scenario's person, who takes the handle of a device at `start`.
 user::Person make_person(const config::Scenario& scenario, const Start& start);
 

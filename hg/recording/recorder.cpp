@@ -162,7 +162,8 @@ Recorder::Writer::Writer(const RecordingInfo& info)
       disk_budget_bytes_(info.disk_budget_bytes),
       is_reproducible_(info.is_reproducible),
       flush_samples_(static_cast<std::uint64_t>(std::ceil(kFlushSeconds * info.rate_Hz))),
-      tool_samples_(std::max(1LL, std::llround(info.rate_Hz / kToolRate_Hz))),
+      tool_samples_(
+          static_cast<std::uint64_t>(std::max(1LL, std::llround(info.rate_Hz / kToolRate_Hz)))),
       ring_(static_cast<std::size_t>(std::ceil(kRingSeconds * info.rate_Hz))),
       folder_(info.folder),
       path_(folder_.new_path(info.name, info.start)),

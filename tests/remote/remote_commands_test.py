@@ -7,6 +7,7 @@ import json
 import math
 import pathlib
 import re
+import shutil
 import signal
 import struct
 import subprocess
@@ -67,6 +68,7 @@ class Commands(unittest.TestCase):
             run("door", "--fast", "--summary", here)
             result = run("door", "--fast", "--device-address", server.address, "--summary", there)
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertNotIn("rule 105", result.stdout)
             here, there = json.loads(here.read_text()), json.loads(there.read_text())
             for key in ("events", "limits", "force", "cycles", "sync_error"):
                 self.assertEqual(there[key], here[key], key)
@@ -86,6 +88,19 @@ class Commands(unittest.TestCase):
             result = run("free_space", "--fast", "--device-address", server.address)
             self.assertEqual(result.returncode, 3)
             self.assertIn("105 measured value is frozen", result.stdout)
+
+    def test_a_description_without_noise_costs_a_rule_and_the_run_says_so(self):
+        with tempfile.TemporaryDirectory() as folder:
+            model = pathlib.Path(folder, "model")
+            shutil.copytree("models/haptic_giant", model)
+            simulation = model / "simulation.yaml"
+            simulation.write_text(re.sub(r"(?m)^sensors:.*\n(?:[ #].*\n|\n)*",
+                                         "sensors: {ideal: true}\n", simulation.read_text()))
+            arguments = ("free_space", "--fast", "--device", model / "device.yaml")
+            with Server(*arguments) as server:
+                result = run(*arguments, "--duration", "1", "--device-address", server.address)
+        self.assertEqual(result.returncode, 1, result.stderr)  # not all events in 1 s
+        self.assertIn("frozen sensors are not noticed (rule 105)", result.stdout)
 
     def test_seed_step_hand_and_plant_are_arguments_of_simulate(self):
         for world, for_both in [(["--seed", "7", "--step", "0.5e-3", "--hand", "stiff"], []),
