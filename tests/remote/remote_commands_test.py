@@ -99,7 +99,7 @@ class Commands(unittest.TestCase):
             arguments = ("free_space", "--fast", "--device", model / "device.yaml")
             with Server(*arguments) as server:
                 result = run(*arguments, "--duration", "1", "--device-address", server.address)
-        self.assertEqual(result.returncode, 1, result.stderr)  # not all events in 1 s
+        self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("frozen sensors are not noticed (rule 105)", result.stdout)
 
     def test_seed_step_hand_and_plant_are_arguments_of_simulate(self):
