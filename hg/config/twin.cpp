@@ -28,9 +28,12 @@ std::optional<model::Chain> make_free_body(LoaderFile& file, TwinDraft& draft,
 }
 
 std::optional<model::Chain> make_chain(LoaderFile& file, Loader& loader, TwinDraft& draft) {
-  std::optional<UrdfText> urdf;
-  if (!draft.is_free_body) urdf = read_urdf(file, draft.urdf);
-  const std::vector<std::string> links = urdf ? urdf->link_names : std::vector<std::string>();
+  // that of a free body is only drawn, but a recording needs it, too
+  const bool has_urdf = !draft.is_free_body || !draft.urdf.empty();
+  const std::optional<UrdfText> urdf =
+      has_urdf ? read_urdf(file, draft.urdf) : std::optional<UrdfText>();
+  std::vector<std::string> links;
+  if (urdf && !draft.is_free_body) links = urdf->link_names;
   describe(loader, draft.part, links);
   model::ChainOptions options = {.T_B_root = pose_of(draft.placement),
                                  .gravity = draft.gravity,

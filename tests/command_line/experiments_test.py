@@ -184,6 +184,15 @@ class Recordings(TemporaryFolder):
             self.assertEqual((code, err), (0, ""), out)
             self.assertRegex(out, r"run again   \d+ cycles, the same bit for bit")
 
+    def test_a_recording_of_any_scenario_says_all_about_it(self):
+        for scenario in sorted(pathlib.Path("models/scenarios").glob("*.yaml")):
+            file = self.record(scenario.stem, scenario, "--duration", 0.8)
+            code, out, err = run("replay", file)
+            self.assertEqual((code, err), (0, ""), out)
+            code, out, err = run("explain", file)
+            self.assertEqual((code, err), (0, ""), out)
+            self.assertNotIn("not understood", out)
+
     def test_replay_names_the_first_difference(self):
         file = self.record("one", "door", "--duration", 2)
         forged = self.folder / "forged.mcap"
