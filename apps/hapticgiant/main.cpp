@@ -32,6 +32,7 @@ namespace {
 
 using hg::apps::at_least;
 using hg::apps::number_that;
+using hg::apps::whole_number;
 
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
@@ -61,7 +62,9 @@ int explain(const CLI::App& app, const CLI::ParseError& error) {
 
 // what run and simulate share
 void add_scenario_options(CLI::App& command, hg::apps::ScenarioArguments& world) {
-  command.add_option("scenario", world.scenario, "scenario file, or door, excavator, free_space")
+  command
+      .add_option("scenario", world.scenario,
+                  "scenario file, or door, excavator, free_space, path, walk, surfaces")
       ->capture_default_str();
   command.add_option("--device", world.device, "device.yaml instead of the scenario's");
   command.add_option("--twin", world.twin, "twin.yaml instead of the scenario's");
@@ -71,7 +74,8 @@ void add_scenario_options(CLI::App& command, hg::apps::ScenarioArguments& world)
       ->check(CLI::IsMember({"real", "ideal"}));
   command.add_option("--hand", world.hand, "how hard the simulated hand is made")
       ->check(CLI::IsMember({"relaxed", "normal", "stiff"}));
-  command.add_option("--seed", world.seed, "of noise and tremor: the same seed, the same run");
+  command.add_option("--seed", world.seed, "of noise and tremor: the same seed, the same run")
+      ->check(whole_number(0.0));
   command.add_option("--step", world.step_s, "largest step of the simulated machine, s")
       ->check(number_that("from 1e-5 to 2e-3",
                           [](double value) { return value >= 1e-5 && value <= 2e-3; }));
@@ -93,9 +97,13 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
   command->add_option(
       "--device-address", run.device_address,
       "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one");
-  command->add_option("--duration", run.duration_s, "seconds; default: until the script has played")
+  command
+      ->add_option("--duration", run.duration_s,
+                   "seconds; default: until the script has played, with a page at a terminal until "
+                   "Ctrl-C")
       ->check(number_that("more than 0", [](double value) { return value > 0.0; }));
-  command->add_flag("--fast", run.is_fast, "as fast as it can instead of in real time");
+  command->add_flag("--fast", run.is_fast,
+                    "as fast as it can instead of in real time; without the page");
   command->add_option("--law", run.law, "gauss or paper; default: the device's")
       ->check(CLI::IsMember({"gauss", "paper"}));
   command->add_option("--bounds", run.bounds, "recoverable or paper; default: the device's")
@@ -111,7 +119,8 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       ->add_option("--bind", run.address,
                    "IP address that the page is served at; 0.0.0.0: all of this machine")
       ->capture_default_str();
-  command->add_option("--port", run.port, "port of the page; default: any free one");
+  command->add_option("--port", run.port, "port of the page; default: any free one")
+      ->check(whole_number(0.0, 65535.0));
   command->add_flag("!--no-browser", run.opens_browser, "print the link only");
   command->add_option("--recordings", run.recordings, "folder of the recordings")
       ->capture_default_str();
@@ -175,7 +184,7 @@ void add_replay(CLI::App& app, hg::apps::ReplayArguments& replay, int& exit_code
       ->needs(view)
       ->check(number_that("from 0.1 to 8", [](double v) { return v >= 0.1 && v <= 8.0; }));
   command->add_option("--bind", replay.address, "as in run")->capture_default_str();
-  command->add_option("--port", replay.port, "as in run");
+  command->add_option("--port", replay.port, "as in run")->check(whole_number(0.0, 65535.0));
   command->add_flag("!--no-browser", replay.opens_browser, "as in run");
   command->callback([&replay, &exit_code] { exit_code = hg::apps::replay(replay); });
 }
@@ -352,7 +361,8 @@ void add_faults(CLI::App& app, hg::apps::FaultsArguments& arguments, int& exit_c
   const auto is_count = [](double value) { return value >= 1 && value == std::floor(value); };
   command->add_option("--cases", arguments.campaign.cases, "number of runs")
       ->check(number_that("a whole number, at least 1", is_count));
-  command->add_option("--seed", arguments.campaign.seed, "of scenarios, times and sizes");
+  command->add_option("--seed", arguments.campaign.seed, "of scenarios, times and sizes")
+      ->check(whole_number(0.0));
   command->add_option("--scenario", arguments.scenarios, "scenarios with a script");
   command->add_option("--json", arguments.json, "write all cases as JSON to this file");
   command->add_option("--markdown", arguments.markdown, "write the table as a page to this file");

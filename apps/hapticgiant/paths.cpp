@@ -1,5 +1,8 @@
 #include "apps/hapticgiant/paths.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -32,8 +35,9 @@ fs::path find_scenario(const std::string& name) {
     if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
-  throw SetupError(name + ": no such scenario file, did you mean '" +
-                   nearest_name(fs::path(name).stem().string(), names) + "'?");
+  throw SetupError(fmt::format("{}: no such scenario file, did you mean '{}'? Shipped are {}", name,
+                               nearest_name(fs::path(name).stem().string(), names),
+                               fmt::join(names, ", ")));
 }
 
 }  // namespace hg::apps

@@ -238,6 +238,7 @@ explanation::Names part_names(const config::Scenario& scenario) {
   const rendering::DeviceModel& device = scenario.device.model;
   return {.joints = joint_names(device, device.n_p, device.n_m),
           .gantry = joint_names(device, 0, device.n_p),
+          .pairs = collision::pair_names(scenario.device.collision),
           .limits = scenario.limits};
 }
 

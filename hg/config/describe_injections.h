@@ -1,6 +1,8 @@
 /// Description of scenario.yaml, fourth part: faults on purpose.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 #include <vector>
@@ -70,12 +72,13 @@ void describe(V& v, InjectionsDraft& d) {
            Need::kRequired);
   v.number("for_s", fault.for_s, kNotNegative, "how long it lasts; 0: until the end");
   v.name("fault", kind, d.kinds, "a fault",
-         "what goes wrong, see the table in docs/fault_campaign.md", Need::kRequired);
+         "what goes wrong, see the list in docs/fault_campaign.md", Need::kRequired);
   v.name(
       "of", name, d.names, "a joint, a component or an input",
       "a joint; x, y, z, torque x, torque y, torque z of the sensor at the handle; stop buttons, "
       "operator enable, dead-man switch, override key of the safety controller");
-  v.number("magnitude", magnitude, kAnyNumber, "in the unit of the fault");
+  v.number("magnitude", magnitude, kAnyNumber,
+           "how much of it; unit and usual sizes in docs/fault_campaign.md");
 
   fault.kind = &injection::kinds()[static_cast<std::size_t>(kind)];
   const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());
@@ -92,6 +95,13 @@ void describe(V& v, InjectionsDraft& d) {
   v.rule(fault.kind->effect != injection::Effect::kLate ||
              !(magnitude > static_cast<double>(injection::kMostLate)),
          "magnitude", "must be at most " + std::to_string(injection::kMostLate) + " periods");
+  const bool is_counted = magnitude >= 1.0 && magnitude <= injection::kMostCounted &&
+                          magnitude == std::floor(magnitude);
+  v.rule(
+      !injection::is_count(*fault.kind) || magnitude < 0.0 || std::isnan(magnitude) || is_counted,
+      "magnitude",
+      fmt::format("must be a whole number of {} from 1 to {:.0f}", fault.kind->unit,
+                  injection::kMostCounted));
   if (has_magnitude) fault.magnitude = magnitude;
 }
 

@@ -41,7 +41,8 @@ template <class V>
 void describe_panel(V& v, std::vector<TimedPanel>& panels) {
   v.list(
       "panel", [&](auto& child) { describe(child, panels); },
-      "what a simulated operator does; without it the switch is held and nothing else is touched");
+      "what a simulated operator does; first the switch is held and nothing else is touched; what "
+      "an entry does not give stays as it is");
 }
 
 }  // namespace hg::config

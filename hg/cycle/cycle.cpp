@@ -191,6 +191,7 @@ Fault Cycle::check(const SensorFrame& sensors) noexcept {
 
 Refusal Cycle::refusal_to_arm() const noexcept {
   if (state_.is_coasting) return Refusal::kStillMoving;
+  if (state_.is_apart) return Refusal::kTwinApart;
   if (!estimation_.is_tared(state_.estimation)) return Refusal::kNotTared;
   if (!control_.is_latency_known(state_.control)) return Refusal::kLatencyUnknown;
   if (!control_.is_stable(state_.control)) return Refusal::kLatencyTooLong;
@@ -273,6 +274,7 @@ void Cycle::hold(CycleRecord& record) noexcept {
   rendering.reference.dq_m.setZero();
   rendering.twin.dq_a.setZero();
   rendering_.step(rendering, kBrakingRate, record, 0.0);
+  state_.is_apart = record.sync_error > monitor_.config().sync_tolerance;
   rendering.reference.ddq_m.setZero();
   rendering.twin.ddq_a.setZero();
   record.reference = rendering.reference;

@@ -56,6 +56,7 @@ struct State {
   bool is_blocked = false;        ///< a device limit could not be met in the last cycle
   bool brakes_joints = false;     ///< no solution, or a collision ahead: each brakes by itself
   bool is_coasting = false;       ///< joints or gantry moved in the last sample
+  bool is_apart = false;          ///< the held twin cannot be where the handle is
   double force_share = 0.0;       ///< of the forces that act on the twin, 0..1: come in by a ramp
 };
 

@@ -379,6 +379,22 @@ std::string to_text(const Campaign& campaign) {
   return text + verdict_of(campaign) + "\n";
 }
 
+namespace {
+
+std::string list_of_kinds() {
+  std::string text = "| fault | what goes wrong | magnitude |\n| --- | --- | --- |\n";
+  for (const injection::Kind& kind : injection::kinds()) {
+    const std::string magnitude =
+        kind.unit.empty() ? "-"
+                          : fmt::format("{}{:g} .. {:g} {}", kind.has_sign ? "+- " : "",
+                                        kind.magnitude.lb, kind.magnitude.ub, kind.unit);
+    text += fmt::format("| {} | {} | {} |\n", kind.name, kind.what, magnitude);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string to_markdown(const Campaign& campaign) {
   const auto line = [](const auto& cells) {
     return fmt::format("| {} |\n", fmt::join(cells, " | "));
@@ -392,9 +408,12 @@ std::string to_markdown(const Campaign& campaign) {
       "# What became of {} faults on purpose\n\n"
       "Written by `hapticgiant faults --markdown`; [safety.md](safety.md) says what the columns "
       "mean.\n"
-      "Seed {}; {}: {}.\n\n{}",
+      "Seed {}; {}: {}.\n\n{}\n"
+      "## The faults\n\n"
+      "For `faults` of a scenario and the drawn sizes of this campaign; a torque of the force "
+      "sensor is in Nm and gets a\ntenth.\n\n{}",
       campaign.cases.size(), campaign.config.seed, fmt::join(campaign.scenarios, ", "),
-      verdict_of(campaign), text);
+      verdict_of(campaign), text, list_of_kinds());
 }
 
 nlohmann::ordered_json to_json(const Campaign& campaign) {

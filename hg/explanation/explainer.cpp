@@ -57,13 +57,22 @@ std::string_view reaction_text(Stop stop) {
   return "unknown";
 }
 
-std::string why_it_stops(const Sample& sample) {
+std::string why_it_stops(const Sample& sample, bool was_autonomous) {
   const FaultCode code = sample.record.fault.code;
   if (code == FaultCode::kOperatorReleased) return ": the operator let go of the enabling switch";
   if (safety::is_fault(code)) return ": a fault, see there";
   if (sample.operator_input.request == ModeRequest::kStop) return ": a stop was asked for";
+  if (was_autonomous && sample.sensors.dead_man) return ": somebody took hold of the handle";
+  if (was_autonomous && !sample.sensors.safety.override_key) {
+    return ": the override key was turned off";
+  }
   if (!sample.sensors.dead_man) return ": the user let go of the handle (dead-man open)";
   return "";
+}
+
+std::string release_text(const safety::Rule& rule) {
+  const bool is_lost = rule.code == FaultCode::kDeviceSilent || rule.code == FaultCode::kDeviceGone;
+  return std::string(rule.release) + (is_lost ? "" : ", then a reset");
 }
 
 std::string detail(const char* label, const std::string& text) {
@@ -102,7 +111,7 @@ void Explainer::begin(const Sample& sample) {
 
 void Explainer::remember(const Sample& sample) {
   const CycleRecord& record = sample.record;
-  last_ = {record.time_s, record.mode, record.fault.code, record.tare};
+  last_ = {record.time_s, record.mode, record.fault.code, record.tare, record.is_autonomous};
 }
 
 void Explainer::add_event(double time_s, const std::string& name, const std::string& text) {
@@ -117,7 +126,7 @@ void Explainer::add_modes(const Sample& sample) {
     text += record.is_autonomous ? ": by itself, with nobody at the handle"
                                  : ": the user holds the handle (dead-man closed)";
   }
-  if (record.mode == Mode::kStopping) text += why_it_stops(sample);
+  if (record.mode == Mode::kStopping) text += why_it_stops(sample, last_.is_autonomous);
   // what stands is stopped at once
   const bool was_on = last_.mode == Mode::kArmed || last_.mode == Mode::kRunning;
   if (record.mode == Mode::kReady && was_on && !sample.sensors.safety.operator_enable) {
@@ -250,7 +259,7 @@ void Explainer::add_fault(const Sample& sample) {
                           figures.empty() ? "" : " (" + figures + ")"),
               {}};
   entry.details.push_back(detail("meaning", std::string(rule.meaning)));
-  entry.details.push_back(detail("released by", std::string(rule.release) + ", then a reset"));
+  entry.details.push_back(detail("released by", release_text(rule)));
   has_aftermath_ = true;
   aftermath_ = {.entry = entries_.size(),
                 .fault_s = record.time_s,

@@ -51,6 +51,7 @@ class Explainer {
     Mode mode = Mode::kOff;
     FaultCode fault = FaultCode::kNone;
     TareStatus tare = TareStatus::kNone;
+    bool is_autonomous = false;
   };
   /// From a fault to the rest of the device.
   struct Aftermath {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <initializer_list>
 
 namespace hg::explanation {
 namespace {
@@ -12,22 +13,15 @@ std::string name_in(const std::vector<std::string>& list, int index, const char*
   return is_known ? list[static_cast<std::size_t>(index)] : fmt::format("{} {}", otherwise, index);
 }
 
-// which value of a sample is meant, counted as safety::check_sensors counts
-std::string sensor_name(int index, const Names& names, const SensorFrame& sensors) {
-  const struct {
-    const char* what;
-    Eigen::Index size;
-    const std::vector<std::string>* parts;
-  } kGroups[] = {{"link encoder", sensors.q_m.size(), &names.joints},
-                 {"speed", sensors.dq_m.size(), &names.joints},
-                 {"gantry encoder", sensors.q_p.size(), &names.gantry},
-                 {"force/torque sensor, component", 6, nullptr},
-                 {"motor encoder", sensors.theta_m.size(), &names.joints},
-                 {"torque sensor", sensors.tau_m.size(), &names.joints},
-                 {"accelerometer, component", 3, nullptr},
-                 {"gyroscope, component", 3, nullptr},
-                 {"temperature", sensors.temperature_m.size(), &names.joints}};
-  for (const auto& group : kGroups) {
+// Vectors that follow each other, as they are counted where the fault is found.
+struct Group {
+  const char* what;
+  Eigen::Index size;
+  const std::vector<std::string>* parts = nullptr;  ///< null: components
+};
+
+std::string part_in(std::initializer_list<Group> groups, int index) {
+  for (const Group& group : groups) {
     if (index < group.size) {
       return fmt::format("{} {}", group.what,
                          group.parts != nullptr ? name_in(*group.parts, index, "number")
@@ -38,15 +32,58 @@ std::string sensor_name(int index, const Names& names, const SensorFrame& sensor
   return {};
 }
 
+constexpr const char* kForceSensor = "force/torque sensor, component";
+constexpr const char* kAccelerometer = "accelerometer, component";
+constexpr const char* kGyroscope = "gyroscope, component";
+
+bool is_yes_or_no(FaultCode code) {
+  switch (code) {
+    case FaultCode::kEmergencyStop:
+    case FaultCode::kOperatorReleased:
+    case FaultCode::kScannerField:
+    case FaultCode::kSafetyInputsDisagree:
+    case FaultCode::kDriveFault:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 std::string part_of(const Fault& fault, const Names& names, const SensorFrame& sensors) {
   const int index = fault.index;
   if (index < 0) return {};
   const auto n_m = static_cast<int>(sensors.q_m.size());
+  const auto n_p = static_cast<int>(sensors.q_p.size());
   switch (fault.code) {
     case FaultCode::kSensorNotFinite:
-      return sensor_name(index, names, sensors);
+      return part_in({{"link encoder", n_m, &names.joints},
+                      {"speed", sensors.dq_m.size(), &names.joints},
+                      {"gantry encoder", n_p, &names.gantry},
+                      {kForceSensor, 6},
+                      {"motor encoder", sensors.theta_m.size(), &names.joints},
+                      {"torque sensor", sensors.tau_m.size(), &names.joints},
+                      {kAccelerometer, 3},
+                      {kGyroscope, 3},
+                      {"temperature", sensors.temperature_m.size(), &names.joints},
+                      {"clock", 1}},
+                     index);
+    case FaultCode::kSensorFrozen:
+      return part_in({{"torque sensor", n_m, &names.joints},
+                      {kForceSensor, 6},
+                      {kAccelerometer, 3},
+                      {kGyroscope, 3}},
+                     index);
+    case FaultCode::kCommandNotFinite:
+      return part_in({{"position", n_m, &names.joints},
+                      {"speed", n_m, &names.joints},
+                      {"acceleration", n_m, &names.joints},
+                      {"torque", sensors.tau_m.size(), &names.joints},
+                      {"speed", n_p, &names.gantry}},
+                     index);
+    case FaultCode::kCollisionAhead:
+      return name_in(names.pairs, index, "pair");
     case FaultCode::kWrenchTooLarge:
       return index == 0 ? "force in N" : "torque in Nm";
     case FaultCode::kSafeSpeedExceeded:
@@ -79,11 +116,10 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
 }
 
 std::string figures_of(const Fault& fault, const Names& names, const SensorFrame& sensors) {
-  const auto is_bit = [](double value) { return value == 0.0 || value == 1.0; };
   std::string text = part_of(fault, names, sensors);
   const char* separator = text.empty() ? "" : ": ";
   if (!std::isfinite(fault.value)) return fmt::format("{}{}not finite", text, separator);
-  if (is_bit(fault.value) && is_bit(fault.limit)) return text;  // yes or no
+  if (is_yes_or_no(fault.code)) return text;
   return fmt::format("{}{}{:.4g}, limit {:.4g}", text, separator, fault.value, fault.limit);
 }
 

@@ -14,6 +14,7 @@ namespace hg::explanation {
 struct Names {
   std::vector<std::string> joints;  ///< of the manipulator
   std::vector<std::string> gantry;
+  std::vector<std::string> pairs;  ///< that may collide
   LimitCatalogue limits;
 };
 

@@ -206,6 +206,11 @@ const Kind* find_kind(std::string_view name) noexcept {
   return found == kKinds.end() ? nullptr : &*found;
 }
 
+bool is_count(const Kind& kind) noexcept {
+  return kind.effect == Effect::kLost || kind.effect == Effect::kLate || kind.part == Part::kBus ||
+         kind.part == Part::kCycles || kind.part == Part::kSolver;
+}
+
 int parts_of(Part part, int n_m, int n_p) noexcept {
   switch (part) {
     case Part::kLinkEncoder:

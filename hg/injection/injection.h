@@ -61,8 +61,9 @@ struct Kind {
   std::string_view what;  ///< one line for people
   Part part;
   Effect effect;
-  Interval magnitude{};   ///< from the least that is worth trying to the largest
-  std::string_view unit;  ///< of the magnitude; of a force sensor: of its forces, a tenth as torque
+  /// From the least that is worth trying to the largest; of a torque of the force sensor a tenth.
+  Interval magnitude{};
+  std::string_view unit;  ///< of the magnitude; of a torque of the force sensor Nm instead of N
   bool has_sign = false;  ///< the magnitude may be negative, too
 };
 
@@ -70,10 +71,13 @@ struct Kind {
 std::span<const Kind> kinds() noexcept;
 /// Null: there is no such kind.
 const Kind* find_kind(std::string_view name) noexcept;
+/// Its magnitude is a whole number from 1 on.
+bool is_count(const Kind& kind) noexcept;
 /// Joint, axis or component that is spoilt; 0 = it has no parts.
 int parts_of(Part part, int n_m, int n_p) noexcept;
 
-inline constexpr int kMostLate = 16;  ///< periods that a command may be late
+inline constexpr int kMostLate = 16;         ///< periods that a command may be late
+inline constexpr double kMostCounted = 1e6;  ///< of all other counts
 
 /// One fault of a run.
 struct Injection {

@@ -170,11 +170,12 @@ Recorder::Writer::Writer(const RecordingInfo& info)
       stem_(path_.stem().stem().string()),
       file_(path_),
       tool_messages_(info) {
+  const bool is_mine = !file_.has_failed();  // where it cannot be made it may be another run's
   write_head(info);
   file_.flush();
   if (file_.has_failed()) {
     std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
+    if (is_mine) std::filesystem::remove(path_, ignored);
     throw SetupError("recording file " + path_.string() +
                      ": must be writable, got: " + file_.error());
   }

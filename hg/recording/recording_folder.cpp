@@ -17,14 +17,23 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPartial = ".partial";
 constexpr std::string_view kExtension = ".mcap";
+constexpr std::chrono::minutes kAbandoned(1);
 
-/// A finished, broken or current recording.
+/// A finished or broken recording.
 struct Recording {
   std::string stamp;  ///< age: date and time, then the number that tells files of one second apart
   int number;
   fs::path path;
   double bytes;
 };
+
+// by another run; a recording is written at least every second, and a broken one no more
+bool is_being_written(const fs::path& path) {
+  if (path.stem().extension() != kPartial) return false;
+  std::error_code error;
+  const fs::file_time_type written = fs::last_write_time(path, error);
+  return !error && fs::file_time_type::clock::now() - written < kAbandoned;
+}
 
 std::vector<Recording> oldest_first(const fs::path& folder) {
   static const std::regex pattern(R"(.*_(\d{8}_\d{6})(?:_(\d{1,6}))?(?:\.partial)?\.mcap)");
@@ -37,7 +46,7 @@ std::vector<Recording> oldest_first(const fs::path& folder) {
     std::smatch match;
     if (!std::regex_match(name, match, pattern) || entry->is_symlink(no_file)) continue;
     const std::uintmax_t bytes = entry->file_size(no_file);
-    if (no_file) continue;
+    if (no_file || is_being_written(entry->path())) continue;
     const int number = match[2].matched ? std::stoi(match[2]) : 1;
     recordings.push_back({match[1], number, entry->path(), static_cast<double>(bytes)});
   }

@@ -25,6 +25,23 @@ constexpr std::string_view kEvents = "/hapticgiant/events";
   throw SetupError(file.string() + ": must be a recording of this program: " + std::string(what));
 }
 
+// Fields and their order; notes behind # may differ.
+bool is_same_schema(std::string_view recorded) {
+  const auto without_notes = [](std::string_view text) {
+    std::string fields;
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      std::string_view line = text.substr(begin, end - begin);
+      line = line.substr(0, line.find('#'));
+      line = line.substr(0, line.find_last_not_of(' ') + 1);
+      fields.append(line).push_back('\n');
+      begin = end + 1;
+    }
+    return fields;
+  };
+  return without_notes(recorded) == without_notes(schema_text<Sample>());
+}
+
 /// Stands between the C interface and a listener: nothing that is thrown may leave it.
 struct Teller {
   RecordingListener& listener;
@@ -42,7 +59,7 @@ struct Teller {
     }
     if (kind == mcap_channel && name == kSamples) {
       has_samples = true;
-      if (content != schema_text<Sample>()) error = "its samples are of another version";
+      if (!is_same_schema(content)) error = "its samples are of another version";
     }
     if (kind != mcap_message || !error.empty()) return;
     if (name == kEvents) {
@@ -94,11 +111,12 @@ struct RecordedRun::Taker {
   Moment last = {};  ///< that was not kept
   bool has_samples = false;
   const char* error = "";
+  std::exception_ptr thrown = {};
 
   void channel(std::string_view topic, std::string_view schema) {
     if (topic != kSamples) return;
     has_samples = true;
-    if (schema != schema_text<Sample>()) error = "its samples are of another version";
+    if (!is_same_schema(schema)) error = "its samples are of another version";
   }
 
   void message(std::string_view topic, std::uint64_t time_ns, std::span<const std::byte> bytes) {
@@ -117,15 +135,25 @@ struct RecordedRun::Taker {
   static void take(void* context, int kind, const char* name, std::size_t name_size,
                    std::uint64_t time_ns, const std::uint8_t* data, std::size_t size) {
     Taker& taker = *static_cast<Taker*>(context);
-    const std::string_view text(name, name_size);
-    const std::string_view content(reinterpret_cast<const char*>(data), size);
+    if (taker.thrown) return;
+    try {
+      taker.tell(kind, std::string_view(name, name_size), time_ns,
+                 {reinterpret_cast<const std::byte*>(data), size});
+    } catch (...) {
+      taker.thrown = std::current_exception();
+    }
+  }
+
+  void tell(int kind, std::string_view name, std::uint64_t time_ns,
+            std::span<const std::byte> bytes) {
+    const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     switch (kind) {
       case mcap_channel:
-        return taker.channel(text, content);
+        return channel(name, content);
       case mcap_message:
-        return taker.message(text, time_ns, {reinterpret_cast<const std::byte*>(data), size});
+        return message(name, time_ns, bytes);
       case mcap_attachment:
-        taker.run.configuration_.push_back({std::string(text), std::string(content)});
+        run.configuration_.push_back({std::string(name), std::string(content)});
         return;
       default:
         return;
@@ -139,6 +167,7 @@ RecordedRun::RecordedRun(const std::filesystem::path& file, double period_s) : f
   if (!mcap_sink_read(file.c_str(), &taker, &Taker::take, error.data(), error.size())) {
     refuse(file, error.data());
   }
+  if (taker.thrown) std::rethrow_exception(taker.thrown);
   if (!taker.has_samples) refuse(file, "it has no topic /hapticgiant/sample");
   if (*taker.error != '\0') refuse(file, taker.error);
   if (!taker.last.bytes.empty()) moments_.push_back(std::move(taker.last));

@@ -41,9 +41,8 @@ class Pace {
   /// The control thread's side, before each cycle: whether it may run now. Takes a step.
   bool may_run() noexcept {
     if (!is_paused_.load()) return true;
-    if (steps_.load() <= 0) return false;
-    steps_.fetch_sub(1);
-    return true;
+    int steps = steps_.load();
+    return steps > 0 && steps_.compare_exchange_strong(steps, steps - 1);  // if not, next time
   }
 
  private:

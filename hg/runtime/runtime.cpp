@@ -14,26 +14,30 @@ namespace hg::runtime {
 namespace {
 
 constexpr std::int64_t kPausePoll = 2'000'000;  // ns
-constexpr double kLongestStop = 1.0;  // s; a device that is still moving then is left to its brakes
 constexpr double kStandstill = 2e-2;  // rad/s and m/s; measured, so above the noise of encoders
 constexpr double kRest = 0.1;         // s at rest; an arm whose brakes close late sags within it
 
 // A device after a fault: the way to its rest belongs into the recording.
 class WayToRest {
  public:
+  explicit WayToRest(double longest_s) : longest_s_(longest_s) {}
+
   /// After each cycle in mode fault: whether nothing is left to be seen.
   bool is_over(const Sample& sample) noexcept {
     const double now_s = sample.record.time_s;
     if (since_s_ < 0.0) since_s_ = moved_s_ = now_s;
-    // what cannot be measured counts as being at rest
-    if (sample.sensors.dq_m.lpNorm<Eigen::Infinity>() > kStandstill ||
-        sample.record.robot.dq_p.lpNorm<Eigen::Infinity>() > kStandstill) {
-      moved_s_ = now_s;
-    }
-    return now_s > moved_s_ + kRest || now_s > since_s_ + kLongestStop;
+    if (moves(sample.sensors.dq_m) || moves(sample.record.robot.dq_p)) moved_s_ = now_s;
+    return now_s > moved_s_ + kRest || now_s > since_s_ + longest_s_;
   }
 
  private:
+  // a component that cannot be measured counts as being at rest
+  template <typename Vector>
+  static bool moves(const Vector& speed) noexcept {
+    return (speed.array().abs() > kStandstill).any();
+  }
+
+  double longest_s_;
   double since_s_ = -1.0, moved_s_ = -1.0;
 };
 
@@ -47,6 +51,8 @@ void check(const Options& options) {
           options.rate_Hz);
   require(std::isfinite(options.duration_s) && options.duration_s >= 0.0,
           "duration_s must not be negative", options.duration_s);
+  require(std::isfinite(options.longest_stop_s) && options.longest_stop_s > 0.0,
+          "longest_stop_s must be above 0", options.longest_stop_s);
   check(options.thread);
 }
 
@@ -184,8 +190,8 @@ void Runtime::operate(const Sample& sample, bool is_stopping, OperatorFrame& inp
   const double time_s = static_cast<double>(report_.cycles) / options_.rate_Hz;
   if (const TimedPanel* due = timed_panels_.due(time_s)) {
     input.panel = due->panel;
-    request = due->request;
-    is_operated_ = is_operated_ || request != ModeRequest::kNone;
+    if (due->request != ModeRequest::kNone) request = due->request;
+    is_operated_ = is_operated_ || due->request != ModeRequest::kNone;
   }
   is_operated_ = is_operated_ || (options_.stays_in_fault && record.mode == Mode::kFault);
   input.request = is_operated_ && !is_stopping
@@ -201,7 +207,7 @@ void Runtime::loop() noexcept {
 
   AllocationCounter allocations;
   double stop_since_s = -1.0;
-  WayToRest way_to_rest;
+  WayToRest way_to_rest(options_.longest_stop_s);
   while (true) {
     run_cycle(*sample);
     const CycleRecord& record = sample->record;
@@ -215,7 +221,7 @@ void Runtime::loop() noexcept {
     if (record.mode == Mode::kFault && ends_in_fault && way_to_rest.is_over(*sample)) break;
     const bool is_at_rest = record.mode != Mode::kRunning && record.mode != Mode::kStopping;
     if (is_stopping && is_at_rest && record.mode != Mode::kFault) break;
-    const bool has_waited = is_stopping && record.time_s > stop_since_s + kLongestStop;
+    const bool has_waited = is_stopping && record.time_s > stop_since_s + options_.longest_stop_s;
     report_.stop_timed_out = has_waited && record.mode != Mode::kFault;
     if (has_waited) break;
     operate(*sample, is_stopping, sample->operator_input);

@@ -29,8 +29,11 @@ namespace hg::runtime {
 /// Set-up data.
 struct Options {
   double rate_Hz = 1000.0;
-  bool is_fast = false;              ///< as fast as it can instead of in real time
-  double duration_s = 0.0;           ///< then the device is stopped; 0 = until request_stop()
+  bool is_fast = false;     ///< as fast as it can instead of in real time
+  double duration_s = 0.0;  ///< then the device is stopped; 0 = until request_stop()
+  /// After which a device that still moves is left to its brakes, s: a little longer than a
+  /// controlled stop may take.
+  double longest_stop_s = 1.1;
   std::size_t ring = 4096;           ///< samples that an observer may fall behind
   std::vector<TimedChange> changes;  ///< of the twin, in the order of their times
   std::vector<TimedPanel> panel;     ///< of the operator, likewise

@@ -24,12 +24,13 @@ Fault make_fault(FaultCode code, int index, double value, double limit) noexcept
 }
 
 // joints, joint speeds, gantry, wrench, motors, joint torques, accelerometer, gyroscope, motor
-// temperatures
+// temperatures, clock
 int first_bad_value(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
   const Eigen::Vector3d kNone = Eigen::Vector3d::Zero();
   return first_not_finite(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
                           sensors.tau_m, config.has_imu ? sensors.a_S : kNone,
-                          config.has_imu ? sensors.omega_S : kNone, sensors.temperature_m);
+                          config.has_imu ? sensors.omega_S : kNone, sensors.temperature_m,
+                          Eigen::Matrix<double, 1, 1>(sensors.time_s));
 }
 
 // the nearest of all turns: joints without limits are wrapped

@@ -101,6 +101,9 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "not started: somebody is in the scanner's field";
     case Refusal::kStillMoving:
       return "not armed: the device still moves";
+    case Refusal::kTwinApart:
+      return "not armed: the twin cannot be where the handle is; do both ends run the same "
+             "scenario?";
   }
   return "unknown";
 }

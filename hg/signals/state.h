@@ -151,6 +151,7 @@ enum class Refusal : std::uint8_t {
   kNoOverride = 12,       ///< running autonomously without the override key
   kFieldOccupied = 13,    ///< running autonomously with somebody in the scanner's field
   kStillMoving = 14,      ///< arming a device that still moves, its drives just off
+  kTwinApart = 15,        ///< arming where the twin cannot be where the handle is
 };
 
 std::string_view to_string(Refusal refusal) noexcept;

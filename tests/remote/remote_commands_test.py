@@ -89,6 +89,13 @@ class Commands(unittest.TestCase):
             self.assertEqual(result.returncode, 3)
             self.assertIn("105 measured value is frozen", result.stdout)
 
+    def test_another_scenario_over_there_is_not_armed(self):
+        with Server("door", "--fast") as server:
+            result = run("excavator", "--fast", "--duration", "2", "--device-address",
+                         server.address)
+        self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+        self.assertIn("not armed: the twin cannot be where the handle is", result.stdout)
+
     def test_a_description_without_noise_costs_a_rule_and_the_run_says_so(self):
         with tempfile.TemporaryDirectory() as folder:
             model = pathlib.Path(folder, "model")

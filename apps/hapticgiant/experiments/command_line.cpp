@@ -11,8 +11,9 @@ void add_options(CLI::App& command, PaperExperimentArguments& arguments) {
       ->check(CLI::IsMember({"gauss", "paper", "both"}));
   command.add_option("--bounds", arguments.bounds, "recoverable or paper; default: the device's")
       ->check(CLI::IsMember({"recoverable", "paper"}));
-  command.add_option("--seed", arguments.seed,
-                     "of noise and tremor: the same seed, the same files");
+  command
+      .add_option("--seed", arguments.seed, "of noise and tremor: the same seed, the same files")
+      ->check(whole_number(0.0));
   command.add_option("--out", arguments.out, "folder; one per experiment is made in it")
       ->capture_default_str();
   command

@@ -70,17 +70,17 @@ Findings configuration(const RecordedSignals& a, const RecordedSignals& b) {
 
 Findings state(const RecordedSignals& a, const RecordedSignals& b) {
   Findings findings;
-  if (a.first_cycle != b.first_cycle) {
-    findings.add(fmt::format("begins with cycle {} / {}", a.first_cycle, b.first_cycle));
-    return findings;
-  }
-  const std::size_t both = std::min(a.hashes.size(), b.hashes.size());
-  const auto different = std::mismatch(
-      a.hashes.begin(), a.hashes.begin() + static_cast<std::ptrdiff_t>(both), b.hashes.begin());
-  const auto cycle = static_cast<std::size_t>(different.first - a.hashes.begin());
-  if (cycle < both) {
-    findings.add(fmt::format("different from cycle {} ({:.3f} s) on", a.first_cycle + cycle,
-                             static_cast<double>(a.first_cycle + cycle) / a.rate_Hz()));
+  const std::uint64_t first_a = a.hashes.front().cycle, first_b = b.hashes.front().cycle;
+  if (first_a != first_b) findings.add(fmt::format("begins with cycle {} / {}", first_a, first_b));
+  // cycle by cycle, of those that both have
+  auto other = b.hashes.begin();
+  for (const CycleHash& one : a.hashes) {
+    while (other != b.hashes.end() && other->cycle < one.cycle) ++other;
+    if (other == b.hashes.end()) break;
+    if (other->cycle != one.cycle || other->hash == one.hash) continue;
+    findings.add(fmt::format("different from cycle {} ({:.3f} s) on", one.cycle,
+                             static_cast<double>(one.cycle) / a.rate_Hz()));
+    break;
   }
   if (a.hashes.size() != b.hashes.size()) {
     findings.add(fmt::format("{} -> {} cycles", a.hashes.size(), b.hashes.size()));

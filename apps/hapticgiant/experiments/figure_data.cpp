@@ -22,8 +22,9 @@ void add_device(const rendering::DeviceModel& device, Json& json) {
   for (const char* group : {"manipulator", "virtual", "gantry"}) json[group] = Json::array();
   for (int i = 0; i < device.n_m; ++i) {
     const limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
+    const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(device.n_p + i)];
     json["manipulator"].push_back(
-        signal(device.manipulator_joint(i), "rad", limits.q_min, limits.q_max));
+        signal(joint.name, is_angle(joint) ? "rad" : "m", limits.q_min, limits.q_max));
   }
   for (const rendering::VirtualJoint& joint : device.virtual_joints) {
     json["virtual"].push_back(signal(joint.name, "rad", joint.limits.q_min, joint.limits.q_max));

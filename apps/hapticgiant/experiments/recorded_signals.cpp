@@ -22,9 +22,9 @@ class Reader final : public recording::RecordingListener {
   }
   void event(const recording::Event& event) override { events_.push_back(event); }
   void sample(const Sample& sample) override {
-    if (!signals_.scenario) begin(sample);
+    if (!signals_.scenario) begin();
     signals_.table->add(sample);
-    signals_.hashes.push_back(sample.record.state_hash);
+    signals_.hashes.push_back({sample.record.cycle, sample.record.state_hash});
     summary_->add(sample);
   }
   void finish() {
@@ -46,11 +46,10 @@ class Reader final : public recording::RecordingListener {
   }
 
  private:
-  void begin(const Sample& sample) {
+  void begin() {
     signals_.scenario =
         std::make_unique<config::Scenario>(recorded_scenario(signals_.configuration));
     signals_.table = std::make_unique<RunTable>(*signals_.scenario, period_s_);
-    signals_.first_cycle = sample.record.cycle;
     summary_.emplace(assembly::make_summary(*signals_.scenario));
   }
 

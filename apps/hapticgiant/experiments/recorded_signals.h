@@ -15,13 +15,17 @@
 
 namespace hg::apps {
 
+/// Of the state after a cycle. Cycles that the recording has lost are left out.
+struct CycleHash {
+  std::uint64_t cycle, hash;
+};
+
 struct RecordedSignals {
   std::unique_ptr<config::Scenario> scenario;  ///< which `table` refers to
   std::unique_ptr<RunTable> table;
-  std::vector<Mark> marks;            ///< events as recorded, by the names of the paper
-  nlohmann::ordered_json summary;     ///< as of run --summary, of what the recording holds
-  std::vector<std::uint64_t> hashes;  ///< of the state, cycle by cycle
-  std::uint64_t first_cycle = 0;
+  std::vector<Mark> marks;         ///< events as recorded, by the names of the paper
+  nlohmann::ordered_json summary;  ///< as of run --summary, of what the recording holds
+  std::vector<CycleHash> hashes;
   bool is_complete = true;  ///< false: a crash has cut it off
   std::vector<recording::NamedText> configuration;
 

@@ -48,9 +48,10 @@ void RunTable::add_column(std::string name, std::function<double(const Sample&)>
 void RunTable::add_device_columns(const config::Scenario& scenario) {
   const rendering::DeviceModel& device = scenario.device.model;
   for (int i = 0; i < device.n_m; ++i) {
-    add_column(device.manipulator_joint(i) + "_rad",
-               [i](const Sample& s) { return at(s.record.reference.q_m, i); });
-    add_column(device.manipulator_joint(i) + "_rad_per_s",
+    const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(device.n_p + i)];
+    const std::string position = joint.name + (is_angle(joint) ? "_rad" : "_m");
+    add_column(position, [i](const Sample& s) { return at(s.record.reference.q_m, i); });
+    add_column(position + "_per_s",
                [i](const Sample& s) { return at(s.record.reference.dq_m, i); });
   }
   for (const rendering::VirtualJoint& joint : device.virtual_joints) {

@@ -69,6 +69,9 @@ TEST(ScenarioFaults, AreRefusedWithTheirPlace) {
             at + "45: faults[0].magnitude: must not be negative for this fault");
   EXPECT_EQ(message("{at_s: 1, fault: commands_late, magnitude: 17}"),
             at + "48: faults[0].magnitude: must be at most 16 periods");
+  EXPECT_EQ(
+      message("{at_s: 1, fault: solver_hurried, magnitude: 0.5}"),
+      at + "49: faults[0].magnitude: must be a whole number of active sets from 1 to 1000000");
   EXPECT_EQ(message("{at_s: 1, fault: drive_fault, magnitude: 2}"),
             at + "46: faults[0].magnitude: this fault has no magnitude");
 }

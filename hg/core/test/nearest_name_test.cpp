@@ -15,7 +15,10 @@ TEST(NearestName, FindsOneWrongMissingOrExtraLetter) {
   EXPECT_EQ(nearest_name("ppuu1", kJoints), "ppu1");
 }
 
-TEST(NearestName, FindsSwappedLetters) { EXPECT_EQ(nearest_name("hadnle", kJoints), "handle"); }
+TEST(NearestName, FindsSwappedLetters) {
+  EXPECT_EQ(nearest_name("hadnle", kJoints), "handle");
+  EXPECT_EQ(nearest_name("handel", std::vector<std::string>{"panel", "handle"}), "handle");
+}
 
 TEST(NearestName, WrongMissingAndExtraLettersWeighTheSame) {
   EXPECT_EQ(nearest_name("ax", std::vector<std::string>{"axyz", "ay"}), "ay");

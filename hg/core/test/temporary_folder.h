@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -30,6 +31,12 @@ class TemporaryFolder {
   }
   void write(const std::string& name, std::size_t bytes) const {
     write(name, std::string(bytes, 'x'));
+  }
+
+  /// As if it had been written so long ago.
+  void age(const std::string& name, std::chrono::seconds age) const {
+    std::filesystem::last_write_time(path_ / name,
+                                     std::filesystem::file_time_type::clock::now() - age);
   }
 
   std::set<std::string> names() const {

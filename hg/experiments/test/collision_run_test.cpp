@@ -9,6 +9,7 @@
 #include "hg/collision/guard.h"
 #include "hg/config/scenario.h"
 #include "hg/core/stacked.h"
+#include "hg/experiments/changes.h"
 #include "hg/experiments/player.h"
 
 namespace hg::experiments {

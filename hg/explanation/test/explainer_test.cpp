@@ -13,6 +13,7 @@ namespace {
 Names names() {
   return {.joints = {"m1", "m2"},
           .gantry = {"p1"},
+          .pairs = {"column - forearm"},
           .limits = {{LimitKind::kManipulatorJoint, "m1", true, {-1.0, 1.0}},
                      {LimitKind::kManipulatorJoint, "m2", true, {-1.0, 1.0}},
                      {LimitKind::kTwinJoint, "hinge {}", true, {0.0, 1.0}}}};
@@ -82,6 +83,26 @@ TEST(Explainer, TellsWhyARunStops) {
   };
   EXPECT_TRUE(has(stopped(true), "let go of the handle"));
   EXPECT_TRUE(has(stopped(false), "a stop was asked for"));
+}
+
+TEST(Explainer, TellsWhyARunByItselfStops) {
+  const auto stopped = [](bool is_held, bool is_key_turned) {
+    return of_kind(explained(1.0,
+                             [&](double t, Sample& sample) {
+                               sample.sensors.dead_man = false;
+                               sample.sensors.safety.override_key = true;
+                               sample.record.is_autonomous = t < 0.5;
+                               if (t < 0.5) return;
+                               sample.record.mode = Mode::kStopping;
+                               sample.sensors.dead_man = is_held;
+                               sample.sensors.safety.override_key = is_key_turned;
+                             }),
+                   "mode")
+        .back()
+        .text;
+  };
+  EXPECT_TRUE(has(stopped(false, false), "the override key was turned off"));
+  EXPECT_TRUE(has(stopped(true, true), "somebody took hold of the handle"));
 }
 
 TEST(Explainer, JoinsWhatALimitDoesAcrossShortInterruptions) {
@@ -208,6 +229,13 @@ TEST(FaultFigures, NameThePartTheValueAndTheLimit) {
   EXPECT_EQ(text(FaultCode::kWrenchTooLarge, 1, 30.0, 20.0), "torque in Nm: 30, limit 20");
   EXPECT_EQ(text(FaultCode::kSyncLost, -1, 0.3, 0.1), "0.3, limit 0.1");
   EXPECT_EQ(text(FaultCode::kEmergencyStop, -1, 1.0, 0.0), "");  // yes or no
+  EXPECT_EQ(text(FaultCode::kBusErrors, -1, 1.0, 0.0), "1, limit 0");
+  EXPECT_EQ(text(FaultCode::kCollisionAhead, 0, 0.029, 0.03),
+            "column - forearm: 0.029, limit 0.03");
+  EXPECT_EQ(text(FaultCode::kSensorFrozen, 1, 20.0, 20.0), "torque sensor m2: 20, limit 20");
+  EXPECT_EQ(text(FaultCode::kSensorFrozen, 4, 20.0, 20.0),
+            "force/torque sensor, component 3: 20, limit 20");
+  EXPECT_EQ(text(FaultCode::kCommandNotFinite, 5, NAN, 0.0), "acceleration m2: not finite");
 }
 
 TEST(Explainer, SurvivesWhatNoRecordingHolds) {

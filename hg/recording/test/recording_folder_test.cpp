@@ -69,6 +69,7 @@ TEST(RecordingFolder, DeletesTheOldestUntilTheBudgetHolds) {
   temporary.write("b_20270101_000000.mcap", 100);
   temporary.write("a_20270103_000000.mcap", 100);
   temporary.write("d_20270101_000000_2.partial.mcap", 100);
+  temporary.age("d_20270101_000000_2.partial.mcap", std::chrono::hours(1));
   temporary.write("c_20270101_000000_10.mcap", 100);
   temporary.write("z_20261231_235959.mcap", 100);
   EXPECT_EQ(folder.make_room(temporary.path() / "e_20270104_000000.partial.mcap", 50.0, 550.0),
@@ -79,6 +80,17 @@ TEST(RecordingFolder, DeletesTheOldestUntilTheBudgetHolds) {
             (Names{"b_20270101_000000.mcap", "d_20270101_000000_2.partial.mcap",
                    "c_20270101_000000_10.mcap"}));
   EXPECT_EQ(temporary.names(), std::set<std::string>{"a_20270103_000000.mcap"});
+}
+
+TEST(RecordingFolder, LeavesAloneWhatAnotherRunIsWriting) {
+  const TemporaryFolder temporary;
+  const RecordingFolder folder(temporary.path());
+  temporary.write("a_20270101_000000.partial.mcap", 100);
+  EXPECT_EQ(folder.make_room(temporary.path() / "b_20270101_000001.partial.mcap", 50.0, 1.0),
+            Names{});
+  temporary.age("a_20270101_000000.partial.mcap", std::chrono::minutes(2));
+  EXPECT_EQ(folder.make_room(temporary.path() / "b_20270101_000001.partial.mcap", 50.0, 1.0),
+            Names{"a_20270101_000000.partial.mcap"});
 }
 
 TEST(RecordingFolder, NeverDeletesTheCurrentFile) {

@@ -8,6 +8,8 @@ mod read;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ffi::{c_char, c_void, CStr, CString};
+use std::fs::File;
+use std::io::BufReader;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::path::Path;
 
@@ -251,8 +253,8 @@ pub unsafe extern "C" fn mcap_sink_read(
         take(context, kind, name.as_ptr(), name.len(), time_ns, data.as_ptr(), data.len());
     };
     let result = catch_unwind(AssertUnwindSafe(|| {
-        let file = std::fs::read(Path::new(&*path)).map_err(|failure| failure.to_string())?;
-        read(&file, hand_over).map_err(|failure| root_cause(&*failure))
+        let file = File::open(Path::new(&*path)).map_err(|failure| failure.to_string())?;
+        read(BufReader::new(file), hand_over).map_err(|failure| root_cause(&*failure))
     }));
     let message = match result {
         Ok(Ok(())) => return true,

@@ -1,6 +1,7 @@
 //! Reading a whole file, from its beginning to its end or to where a crash has cut it off.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 
 use mcap::parse_record;
 use mcap::records::Record;
@@ -55,7 +56,7 @@ impl Directory {
 }
 
 /// Hands out everything in `file`. A file that is cut off ends where it is.
-pub fn read(mut file: &[u8], mut take: impl FnMut(Item)) -> Result<(), Failure> {
+pub fn read(mut file: impl Read, mut take: impl FnMut(Item)) -> Result<(), Failure> {
     let options = LinearReaderOptions::default()
         .with_skip_end_magic(true)
         .with_validate_chunk_crcs(true)
@@ -65,10 +66,8 @@ pub fn read(mut file: &[u8], mut take: impl FnMut(Item)) -> Result<(), Failure> 
     while let Some(event) = reader.next_event() {
         match event {
             Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let (bytes, rest) = file.split_at(wanted.min(file.len()));
-                reader.insert(bytes.len()).copy_from_slice(bytes);
-                reader.notify_read(bytes.len());
-                file = rest;
+                let count = file.read(reader.insert(wanted))?;
+                reader.notify_read(count);
             }
             Ok(LinearReadEvent::Record { data, opcode }) => {
                 directory.hand_out(parse_record(opcode, data)?, &mut take);
