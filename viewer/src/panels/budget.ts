@@ -10,7 +10,7 @@ export const PARTS: Record<Part, string> = {
   damping: "damping",
   spring: "springs, closers",
   friction: "friction",
-  surface: "reference force",
+  surface: "surfaces, reference",
   limits: "limits",
   conflict: "limits in conflict",
   structure: "bearings of the twin",
@@ -55,6 +55,8 @@ export function summary(parts: Share[]): string {
     .filter(({ value }) => value > 0.15 * sum)
     .sort((a, b) => b.value - a.value)
     .slice(0, 2)
-    .map(({ part, value }) => `${PARTS[part]} (${Math.round((100 * value) / sum)} %)`);
-  return large.length === 0 ? "" : `mostly ${large.join(" and ")}`;
+    .map(({ part, value }) => ({ part, text: `${PARTS[part]} (${Math.round((100 * value) / sum)} %)` }));
+  if (large.length === 0) return "";
+  const why = large[0]!.part === "structure" ? ", you push where it cannot move" : "";
+  return `mostly ${large.map(({ text }) => text).join(" and ")}${why}`;
 }

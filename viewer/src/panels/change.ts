@@ -47,13 +47,12 @@ export class ChangePanel {
     }
     const can_set = scene.commands.includes("set");
     this.fields = scene.settings.map((setting) => new Field(setting, this.commands, can_set));
-    let group: string | null = null;
-    for (const field of this.fields) {
-      if (field.setting.group !== group) {
-        group = field.setting.group;
-        this.section.append(make("h2", "", group === "" ? "Twin" : group));
-      }
-      this.section.append(field.part);
+    const joints = new Set(scene.settings.map(({ group }) => group).filter((name) => name !== ""));
+    for (const group of ["", ...joints]) {
+      const parts = this.fields.filter(({ setting }) => setting.group === group);
+      if (parts.length === 0) continue;
+      this.section.append(make("h2", "", group === "" ? "Whole twin" : group));
+      this.section.append(...parts.map(({ part }) => part));
     }
   }
 

@@ -84,8 +84,9 @@ export class FeelPanel {
     fill(this.force_bar, force / FULL_FORCE);
     fill(this.torque_bar, torque / FULL_TORQUE);
     const parts = shares(frame.budget, "force");
-    write(this.reason, felt_text(frame, summary(parts)));
-    this.reason.dataset.held = String(frame.felt !== null && is_pushing(frame));
+    write(this.reason, felt_text(scene, frame, summary(parts)));
+    const is_held = frame.felt !== null || frame.contact !== null;
+    this.reason.dataset.held = String(is_held && is_pushing(frame));
     this.show_acting(scene, frame);
     this.show_near(scene, frame);
     this.show_singularity(scene, frame);

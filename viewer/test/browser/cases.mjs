@@ -207,7 +207,7 @@ export async function operator_stops_it_and_starts_it_again({ browser, program, 
   await press("Emergency stop");
   const stops = await comes_true(page, (f) => f.mode === "fault" && f.safety.fault === 102);
   expect(stops, "the emergency stop ends in a fault");
-  expect(await says("Released: the button is pulled out"), "the page says what releases it");
+  expect(await says("Release: the button is pulled out"), "the page says what releases it");
   // notes go by themselves, maybe before anybody looks
   await page.evaluate(() => {
     const notices = document.querySelector("#notices");

@@ -35,4 +35,10 @@ describe("summary", () => {
     );
     expect(summary(shares(budget(), "force"))).toBe("");
   });
+
+  it("says what it means when the bearings carry most", () => {
+    const across = budget({ user: wrench([0, 10, 0]), structure: wrench([0, 10, 0]) });
+    expect(summary(shares(across, "force"))).toMatch(/^mostly bearings.* you push where it cannot/);
+    expect(summary(shares(pushed, "force"))).not.toContain("cannot move");
+  });
 });
