@@ -71,6 +71,8 @@ export class Toolbar {
       scenarios.length > 0 ? scenarios : [{ name: scenario, title: scene.title }],
       scenario,
     );
+    const twin = scene.choices.twins.find(({ name }) => name !== "" && name === scene.choices.twin);
+    if (twin) this.scenario.selectedOptions[0]!.text += `, twin: ${twin.title}`;
     const speeds = scene.source === "recording" ? RECORDING_SPEEDS : RUN_SPEEDS;
     this.speed.replaceChildren(...speeds.map((s) => new Option(`${s} \u00d7`, String(s))));
     for (const [commands, part] of this.by_command) {

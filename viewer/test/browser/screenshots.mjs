@@ -8,8 +8,10 @@ import {
   arc,
   comes_true,
   drag_along,
+  drawn,
   frame_of,
   open_page,
+  pictures,
   scene_of,
   start_browser,
   start_program,
@@ -36,6 +38,21 @@ const at = (time) => async (page, take) => {
   await take();
 };
 
+// What is touched, from nearer by. The script begins anew: it has played on while the page was opened.
+async function touch_table(page, take) {
+  const { x, y } = await page.evaluate(() => window.hapticgiant.handle_on_screen);
+  await page.mouse.move(x, y - 100);
+  for (let i = 0; i < 4; i++) await page.mouse.wheel(0, -120);
+  await page.keyboard.press("r");
+  await comes_true(page, (f) => f.time_s < 4);
+  await drawn(page);
+  await comes_true(page, (f) => f.contact?.surface === 0 && Math.hypot(...f.contact.force_N) > 10);
+  await page.click("#pause");
+  await comes_true(page, (f) => f.run_state.is_paused);
+  await pictures(page);
+  await take();
+}
+
 const PICTURES = [
   { name: "door", args: ["door", "--user", "mouse"], play: open_door },
   { name: "viewer_excavator", args: ["excavator"], plots: true, play: at(13) },
@@ -47,6 +64,7 @@ const PICTURES = [
     plots: true,
     play: open_door,
   },
+  { name: "viewer_surfaces", args: ["surfaces", "--duration", "600"], play: touch_table },
   { name: "viewer_tablet", args: ["excavator"], viewport: tablet, play: at(13) },
 ];
 
