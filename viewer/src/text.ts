@@ -64,7 +64,8 @@ export function felt_text(scene: Scene, frame: Frame, parts: string): string {
     const { name } = scene.surfaces[frame.contact.surface]!;
     return `Virtual surface ${name}: ${size.toFixed(size < 9.95 ? 1 : 0)} N.`;
   }
-  return parts === "" ? "Nothing holds you." : `No limit: ${parts}.`;
+  if (parts === "") return "Nothing holds you.";
+  return frame.active.length > 0 ? `Hardly a limit: ${parts}.` : `No limit: ${parts}.`;
 }
 
 // A fault, why the device does not follow the hand, or how a run begins again.

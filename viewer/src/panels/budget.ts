@@ -47,6 +47,17 @@ export function shares(budget: Budget, kind: Kind): Share[] {
   });
 }
 
+const SMALLEST_SHARE = 0.05; // of limits: below, something else is what one feels
+
+// Whether limits carry a part of what the user pushes or turns with that can be felt.
+export function limits_matter(budget: Budget): boolean {
+  return (["force", "torque"] as const).some((kind) => {
+    const parts = shares(budget, kind).filter(({ part }) => part === "limits" || part === "conflict");
+    const value = parts.reduce((sum, part) => sum + part.value, 0);
+    return value > SMALLEST_SHARE * total(budget, kind);
+  });
+}
+
 // "mostly its mass (63 %) and damping (20 %)"; empty while there is nothing to explain.
 export function summary(parts: Share[]): string {
   const sum = parts.reduce((all, { value }) => all + Math.max(0, value), 0);
