@@ -89,14 +89,17 @@ Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
 viewer_server::SceneSurface scene_surface(const environment::Surface& surface) {
   using viewer_server::SurfaceShape;
   viewer_server::SceneSurface scene{.name = surface.name, .pose = surface.pose};
-  scene.shape = static_cast<SurfaceShape>(surface.shape.index());
   if (const auto* box = std::get_if<environment::Box>(&surface.shape)) {
+    scene.shape = SurfaceShape::kBox;
     scene.size = box->size;
   } else if (const auto* sphere = std::get_if<environment::Sphere>(&surface.shape)) {
+    scene.shape = SurfaceShape::kSphere;
     scene.size.setConstant(2.0 * sphere->radius);
   } else if (const auto* cylinder = std::get_if<environment::Cylinder>(&surface.shape)) {
+    scene.shape = SurfaceShape::kCylinder;
     scene.size << 2.0 * cylinder->radius, 2.0 * cylinder->radius, cylinder->length;
   } else if (const auto* mesh = std::get_if<environment::Mesh>(&surface.shape)) {
+    scene.shape = SurfaceShape::kMesh;
     for (const environment::Triangle& triangle : mesh->triangles()) {
       for (const Eigen::Vector3d& corner : triangle.corners) {
         scene.triangles.insert(scene.triangles.end(), corner.begin(), corner.end());
@@ -106,13 +109,15 @@ viewer_server::SceneSurface scene_surface(const environment::Surface& surface) {
   return scene;
 }
 
-// told from the name of the twin's robot
-Environment environment_of(const config::Twin& twin) {
-  std::string name = twin.urdf.stem().string() + " " + twin.name;
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (name.find("door") != std::string::npos) return Environment::kDoor;
-  if (name.find("excavator") != std::string::npos) return Environment::kExcavator;
+Environment environment_of(config::Surroundings surroundings) {
+  switch (surroundings) {
+    case config::Surroundings::kRoom:
+      return Environment::kRoom;
+    case config::Surroundings::kDoor:
+      return Environment::kDoor;
+    case config::Surroundings::kExcavator:
+      return Environment::kExcavator;
+  }
   return Environment::kRoom;
 }
 
@@ -146,7 +151,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   scene.rate_hz = scenario.device.rate_Hz;
   scene.box = box_of(scenario);
   scene.floor_z = scenario.device.floor_z;
-  scene.environment = environment_of(scenario.twin);
+  scene.environment = environment_of(scenario.twin.surroundings);
   for (const environment::Surface& surface : scenario.surfaces) {
     scene.surfaces.push_back(scene_surface(surface));
   }

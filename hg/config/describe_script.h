@@ -67,7 +67,8 @@ void describe(V& v, user::HandImpedance& hand) {
   v.vector("angular_damping_Nms_per_rad", hand.angular_damping, kNotNegative, "about x, y, z of H");
   v.number("force_max_N", hand.force_max, kPositive, "the arm pulls no harder");
   v.number("torque_max_Nm", hand.torque_max, kPositive, "the hand turns no harder");
-  v.number("press_force_N", hand.press_force, kNotNegative, "of a mouse that presses the lever");
+  v.number("press_force_N", hand.press_force, kNotNegative,
+           "of a mouse that presses the lever, besides as much as it pulls");
   v.number("tremor_N", hand.tremor_rms, kNotNegative,
            "root mean square of the tremor of 8 to 12 Hz along each axis; 0 = none");
 }

@@ -12,6 +12,11 @@
 
 namespace hg::config {
 
+inline constexpr std::array<Choice<Surroundings>, 3> kSurroundings = {
+    {{"room", Surroundings::kRoom},
+     {"door", Surroundings::kDoor},
+     {"excavator", Surroundings::kExcavator}}};
+
 /// Damping and friction of a floating joint, the same in all directions, and its start.
 struct FloatingPart {
   double damping = 0.0, angular_damping = 0.0;
@@ -32,6 +37,7 @@ struct TwinJoint {
 struct TwinDraft {
   std::string name;
   std::filesystem::path urdf;
+  Surroundings surroundings = Surroundings::kRoom;
   bool is_free_body = false;
   model::FreeBody body;
   Eigen::Vector3d principal_inertia = Eigen::Vector3d::Constant(0.08);
@@ -60,6 +66,9 @@ void describe_chain(V& v, TwinDraft& d) {
   v.path("urdf", d.urdf,
          "kinematics and inertia, with limits that are the defaults of joints; "
          "together with free_body only what is drawn");
+  v.choice("surroundings", d.surroundings, kSurroundings,
+           "what the page draws around it, for the eye only: rings on the floor, the wall of "
+           "models/twins/door, or a building site");
   d.is_free_body = v.group(
       "free_body",
       [&](auto& child) {

@@ -172,6 +172,7 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
   w_ref << draft.force_ref, draft.torque_ref;
   Twin twin = {.name = draft.name,
                .urdf = draft.urdf,
+               .surroundings = draft.surroundings,
                .T_B_root = pose_of(draft.placement),
                .model = {.chain = std::move(*chain),
                          .end_effector = draft.end_effector,

@@ -12,10 +12,14 @@
 
 namespace hg::config {
 
+/// What a page draws around a twin; none of it can be felt.
+enum class Surroundings { kRoom, kDoor, kExcavator };
+
 struct Twin {
   std::string name;
   std::filesystem::path urdf;  ///< what a page draws; empty for a free body without one
-  Pose T_B_root;               ///< placement of the root link
+  Surroundings surroundings = Surroundings::kRoom;
+  Pose T_B_root;  ///< placement of the root link
   rendering::TwinModel model;
   std::vector<SourceText> sources;  ///< the YAML file first
   Places places;                    ///< of the keys of the YAML file

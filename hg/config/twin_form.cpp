@@ -167,6 +167,11 @@ std::string label_of(std::string_view key) {
     key.remove_suffix(suffix.size());
     break;
   }
+  for (const auto& [symbol, words] :
+       {std::pair("q_min", "lowest position"), std::pair("q_max", "highest position"),
+        std::pair("dq_max", "largest speed")}) {
+    if (key == symbol) return words;
+  }
   std::string label(key);
   std::replace(label.begin(), label.end(), '_', ' ');
   if (!component.empty()) label += ' ';

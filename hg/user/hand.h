@@ -29,7 +29,8 @@ struct HandImpedance {
   Eigen::Vector3d angular_damping{0.08, 0.08, 0.08};  ///< Nms/rad, [A]
   double force_max = 60;      ///< the arm pulls no harder, N; [HANDBOOK] 5.3
   double torque_max = 8;      ///< Nm; [HANDBOOK] 5.3
-  double press_force = 14;    ///< with HandTarget::press = 1, downwards at the handle, N
+  double press_force = 14;    ///< with HandTarget::press = 1, downwards at the handle, N, when the
+                              ///< hand does not pull; it presses harder by what it pulls level
   double tremor_rms = 0.035;  ///< along each axis, N; 0 = none
 };
 

@@ -119,7 +119,10 @@ Vector6 Person::wrench(double t, const HandleMotion& handle, const HandTarget& t
   Vector6 wrench = grip * arm_.wrench();
   wrench.head<3>() += R * push_in_H.head<3>();
   wrench.tail<3>() += R * push_in_H.tail<3>();
-  if (target.active) wrench[2] -= target.press * config_.hand.press_force;
+  if (target.active) {
+    // with what it pulls on top: a lever turned by up to 45 degrees is not lifted by the pull
+    wrench[2] -= target.press * (config_.hand.press_force + wrench.head<2>().norm());
+  }
   keep_score(dt, handle);
   return wrench;
 }

@@ -59,7 +59,8 @@ class Page {
   );
   private readonly hand_controls = new HandControls(this.drag);
   private readonly headset: Headset;
-  private readonly toolbar = new Toolbar(this.store);
+  private readonly tabs = new Tabs();
+  private readonly toolbar = new Toolbar(this.store, () => this.tabs.show("safety"));
   private readonly replay = new ReplayBar(this.store);
   private readonly feel = new FeelPanel(element("feel"));
   private readonly joints = new JointsPanel(element("joints"));
@@ -74,7 +75,6 @@ class Page {
   private panels_ms = 0;
 
   constructor() {
-    new Tabs();
     build_view_tools(this.cameras, this.layers, () => this.plots.toggle());
     this.headset = new Headset(
       this.stage,
@@ -167,7 +167,8 @@ class Page {
     const is_first_person = this.cameras.current === "first person" || this.headset.is_worn;
     this.world.person.hide_body(is_first_person);
     if (!this.headset.is_worn) this.cameras.update(frame.p_B_H_m, this.world.person.eyes);
-    const handle_px = this.headset.is_worn ? null : this.stage.on_screen(frame.p_B_H_m);
+    const follows = frame.mode === "running" && !frame.run_state.is_over;
+    const handle_px = follows && !this.headset.is_worn ? this.stage.on_screen(frame.p_B_H_m) : null;
     this.hand_controls.show(handle_px, Math.hypot(...frame.force_N));
     if (now_ms - this.panels_ms < PANEL_GAP_MS) return;
     this.panels_ms = now_ms;

@@ -1,6 +1,6 @@
 // Numbers and states in words. Pure functions.
 
-import type { Frame, SceneJoint } from "./messages";
+import type { Frame, Scene, SceneJoint } from "./messages";
 
 export function time_text(time_s: number): string {
   const tenths = Math.round(10 * time_s);
@@ -52,10 +52,30 @@ export function is_pushing(frame: Frame): boolean {
 }
 
 // `parts`: the largest parts of the budget in words, may be empty.
-export function felt_text(frame: Frame, parts: string): string {
-  if (!is_pushing(frame)) return "You do not push, so nothing pushes back.";
+export function felt_text(scene: Scene, frame: Frame, parts: string): string {
+  if (!is_pushing(frame)) {
+    return frame.active.length > 0
+      ? "You do not push. What holds all the same:"
+      : "You do not push, so nothing pushes back.";
+  }
   if (frame.felt) return frame.felt.text;
-  return parts === "" ? "Nothing holds you." : `No limit: ${parts}.`;
+  if (frame.contact) {
+    const size = Math.hypot(...frame.contact.force_N);
+    const { name } = scene.surfaces[frame.contact.surface]!;
+    return `Virtual surface ${name}: ${size.toFixed(size < 9.95 ? 1 : 0)} N.`;
+  }
+  if (parts === "") return "Nothing holds you.";
+  return frame.active.length > 0 ? `Hardly a limit: ${parts}.` : `No limit: ${parts}.`;
+}
+
+// A fault, why the device does not follow the hand, or how a run begins again.
+export function note_text(frame: Frame, is_run: boolean): string {
+  const cause = frame.safety.cause || frame.fault;
+  if (is_run && frame.run_state.is_over) {
+    return `${cause || "The run is over."} The round arrow at the top (R) starts it again.`;
+  }
+  if (cause !== "") return cause;
+  return frame.is_clamped ? "The device lost track of its reference and catches up." : "";
 }
 
 export function connection_text(is_connected: boolean): string {

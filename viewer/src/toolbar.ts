@@ -9,7 +9,7 @@ import { fill_choice } from "./panels/change";
 import type { Cameras, View } from "./scene/cameras";
 import { VIEWS } from "./scene/cameras";
 import { LAYERS, LAYER_NAMES, type Layers } from "./scene/layers";
-import { time_text } from "./text";
+import { note_text, time_text } from "./text";
 import { choose_theme, current_theme, on_theme_change } from "./theme";
 
 const RUN_SPEEDS = [0.1, 0.25, 0.5, 1];
@@ -29,9 +29,16 @@ export class Toolbar {
   private readonly speed = make("select");
   private readonly pause: HTMLButtonElement;
   private readonly by_command: [CommandName[], HTMLButtonElement | HTMLSelectElement][];
+  private readonly way_out: HTMLButtonElement;
   private is_paused = false;
 
-  constructor(private readonly store: Store) {
+  constructor(
+    private readonly store: Store,
+    show_safety: () => void,
+  ) {
+    this.way_out = make_button("what now?", "Cause, release and the way back to running", show_safety);
+    this.way_out.className = "small";
+    element("fault").append(this.way_out);
     const send = (command: CommandName, value = 0): void => store.commands.send(command, "", value);
     this.pause = icon_button("pause", "Pause (P)", () => this.toggle_pause());
     this.pause.id = "pause";
@@ -64,6 +71,8 @@ export class Toolbar {
       scenarios.length > 0 ? scenarios : [{ name: scenario, title: scene.title }],
       scenario,
     );
+    const twin = scene.choices.twins.find(({ name }) => name !== "" && name === scene.choices.twin);
+    if (twin) this.scenario.selectedOptions[0]!.text += `, twin: ${twin.title}`;
     const speeds = scene.source === "recording" ? RECORDING_SPEEDS : RUN_SPEEDS;
     this.speed.replaceChildren(...speeds.map((s) => new Option(`${s} \u00d7`, String(s))));
     for (const [commands, part] of this.by_command) {
@@ -87,10 +96,18 @@ export class Toolbar {
     mode.dataset.mode = text;
     if (mode.title !== frame.mode_text) mode.title = frame.mode_text;
     write(element("time"), time_text(frame.time_s));
-    write(element("fault"), fault_text(frame));
-    element("fault").hidden = element("fault").textContent === "";
+    this.show_note(frame);
     if (this.is_paused !== run_state.is_paused) this.show_pause(run_state.is_paused);
     if (document.activeElement !== this.speed) this.show_speed(run_state.speed);
+  }
+
+  private show_note(frame: Frame): void {
+    const text = note_text(frame, this.store.scene?.source === "run");
+    const note = element("fault");
+    write(element("fault-text"), text);
+    note.hidden = text === "";
+    note.dataset.mode = frame.mode;
+    this.way_out.hidden = frame.mode !== "fault" || frame.run_state.is_over;
   }
 
   private get step_size(): number {
@@ -127,13 +144,6 @@ export class Toolbar {
   }
 }
 
-// A fault, or why the device does not follow the hand.
-function fault_text(frame: Frame): string {
-  if (frame.safety.cause !== "") return frame.safety.cause;
-  if (frame.fault !== "") return frame.fault;
-  if (frame.is_clamped) return "The device lost track of its reference and catches up.";
-  return "";
-}
 
 // Buttons at the right: camera, layers, plots, theme.
 export function build_view_tools(

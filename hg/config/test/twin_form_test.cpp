@@ -37,6 +37,7 @@ TEST(TwinForm, HasTheValuesOfTheFileAndTheWordsOfTheReferencePage) {
   EXPECT_EQ(damping.help, "viscous");
   EXPECT_EQ(damping.value, door.model.dofs[0].damping);
   EXPECT_EQ(damping.min, 0.0);
+  EXPECT_EQ(find(form, "hinge.q_max_rad").label, "highest position");
   EXPECT_EQ(find(form, "hinge.q_max_rad").value, door.model.dofs[0].limits.q_max);
   EXPECT_EQ(find(form, "reference_wrench.force_N.y").label, "force y");
   EXPECT_EQ(find(form, "mass_scale").max, 10.0);

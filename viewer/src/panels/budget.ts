@@ -10,7 +10,7 @@ export const PARTS: Record<Part, string> = {
   damping: "damping",
   spring: "springs, closers",
   friction: "friction",
-  surface: "reference force",
+  surface: "surfaces, reference",
   limits: "limits",
   conflict: "limits in conflict",
   structure: "bearings of the twin",
@@ -47,6 +47,17 @@ export function shares(budget: Budget, kind: Kind): Share[] {
   });
 }
 
+const SMALLEST_SHARE = 0.05; // of limits: below, something else is what one feels
+
+// Whether limits carry a part of what the user pushes or turns with that can be felt.
+export function limits_matter(budget: Budget): boolean {
+  return (["force", "torque"] as const).some((kind) => {
+    const parts = shares(budget, kind).filter(({ part }) => part === "limits" || part === "conflict");
+    const value = parts.reduce((sum, part) => sum + part.value, 0);
+    return value > SMALLEST_SHARE * total(budget, kind);
+  });
+}
+
 // "mostly its mass (63 %) and damping (20 %)"; empty while there is nothing to explain.
 export function summary(parts: Share[]): string {
   const sum = parts.reduce((all, { value }) => all + Math.max(0, value), 0);
@@ -55,6 +66,8 @@ export function summary(parts: Share[]): string {
     .filter(({ value }) => value > 0.15 * sum)
     .sort((a, b) => b.value - a.value)
     .slice(0, 2)
-    .map(({ part, value }) => `${PARTS[part]} (${Math.round((100 * value) / sum)} %)`);
-  return large.length === 0 ? "" : `mostly ${large.join(" and ")}`;
+    .map(({ part, value }) => ({ part, text: `${PARTS[part]} (${Math.round((100 * value) / sum)} %)` }));
+  if (large.length === 0) return "";
+  const why = large[0]!.part === "structure" ? ", you push where it cannot move" : "";
+  return `mostly ${large.map(({ text }) => text).join(" and ")}${why}`;
 }

@@ -22,6 +22,20 @@ export function fill_choice(select: HTMLSelectElement, choices: Choice[], chosen
   select.value = chosen;
 }
 
+const WHOLE = "Whole twin";
+const REFERENCE = "Wrench at which it rests";
+
+function heading_of({ group, name }: Setting): string {
+  if (group !== "") return group;
+  return name.startsWith("reference_wrench.") ? REFERENCE : WHOLE;
+}
+
+// What people look for first: mass and weight, then the joints.
+export function headings(settings: Setting[]): string[] {
+  const place = (heading: string): number => Number(heading === REFERENCE) - Number(heading === WHOLE);
+  return [...new Set(settings.map(heading_of))].sort((a, b) => place(a) - place(b));
+}
+
 export class ChangePanel {
   private fields: Field[] = [];
   private scene: Scene | null = null;
@@ -47,13 +61,9 @@ export class ChangePanel {
     }
     const can_set = scene.commands.includes("set");
     this.fields = scene.settings.map((setting) => new Field(setting, this.commands, can_set));
-    let group: string | null = null;
-    for (const field of this.fields) {
-      if (field.setting.group !== group) {
-        group = field.setting.group;
-        this.section.append(make("h2", "", group === "" ? "Twin" : group));
-      }
-      this.section.append(field.part);
+    for (const heading of headings(scene.settings)) {
+      const fields = this.fields.filter(({ setting }) => heading_of(setting) === heading);
+      this.section.append(make("h2", "", heading), ...fields.map(({ part }) => part));
     }
   }
 

@@ -12,7 +12,7 @@ import {
 import type { ActiveLimit, Frame, Scene } from "../messages";
 import { fill, make, make_button, write } from "../page";
 import { felt_text, is_pushing } from "../text";
-import { type Kind, PARTS, PART_NAMES, type Part, shares, summary, total } from "./budget";
+import { type Kind, PARTS, PART_NAMES, type Part, limits_matter, shares, summary, total } from "./budget";
 
 const FULL_FORCE = 80; // N, of a full bar
 const FULL_TORQUE = 10; // Nm
@@ -84,8 +84,10 @@ export class FeelPanel {
     fill(this.force_bar, force / FULL_FORCE);
     fill(this.torque_bar, torque / FULL_TORQUE);
     const parts = shares(frame.budget, "force");
-    write(this.reason, felt_text(frame, summary(parts)));
-    this.reason.dataset.held = String(frame.felt !== null && is_pushing(frame));
+    const felt = limits_matter(frame.budget) ? frame.felt : null;
+    write(this.reason, felt_text(scene, { ...frame, felt }, summary(parts)));
+    const is_held = felt !== null || frame.contact !== null;
+    this.reason.dataset.held = String(is_held && is_pushing(frame));
     this.show_acting(scene, frame);
     this.show_near(scene, frame);
     this.show_singularity(scene, frame);

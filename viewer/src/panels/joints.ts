@@ -32,6 +32,7 @@ export class JointsPanel {
     this.body.append(...this.twin.map(({ row }) => row));
     if (this.twin.length === 0) this.body.append(make("p", "quiet", "a body that moves freely"));
     this.body.append(make("h2", "", "Device"), ...this.device.map(({ row }) => row));
+    this.body.append(make("p", "quiet", "Mark: place in the range. Violet: share of the largest torque."));
   }
 
   show(scene: Scene, frame: Frame): void {

@@ -19,6 +19,10 @@ const REQUESTS = [
   ["run_alone", "Run alone", "With the override key, slowly, with nobody at the handle"],
   ["hold", "Hold", "Braked, then held under power"],
 ] as const;
+type Request = (typeof REQUESTS)[number][0];
+
+// What leads on from here, the first step of a way back to running.
+const NEXT: Partial<Record<Frame["mode"], Request>> = { fault: "reset", ready: "arm", armed: "run" };
 
 const STOP_TEXT: Record<Safety["stop"], string> = {
   none: "",
@@ -37,6 +41,7 @@ export class SafetyPanel {
   private readonly boxes = new Map<Switch, HTMLLabelElement>();
   private readonly panel = make("div", "safety-panel");
   private readonly requests = make("div", "buttons");
+  private readonly by_request = new Map<Request, HTMLButtonElement>();
   private is_pressed = false;
 
   constructor(section: HTMLElement, commands: Commands) {
@@ -54,7 +59,9 @@ export class SafetyPanel {
       this.panel.append(box);
     }
     for (const [name, text, title] of REQUESTS) {
-      this.requests.append(make_button(text, title, () => commands.send("mode", name)));
+      const button = make_button(text, title, () => commands.send("mode", name));
+      this.by_request.set(name, button);
+      this.requests.append(button);
     }
     section.append(
       make("h2", "", "Safety"),
@@ -72,14 +79,14 @@ export class SafetyPanel {
     this.requests.hidden = !scene.commands.includes("mode");
   }
 
-  show({ mode, safety }: Frame): void {
+  show({ mode, safety, run_state }: Frame): void {
     write(this.mode, safety.is_autonomous ? `${mode}, nobody at the handle` : mode);
     // after a fault the drives go off in any case
     const is_held = safety.stop === "SS2" && safety.fault === 0;
     write(this.how, is_held ? "braked, then held" : STOP_TEXT[safety.stop]);
     write(this.cause, safety.cause);
     this.cause.dataset.mode = mode;
-    write(this.release, safety.release === "" ? "" : `Released: ${safety.release}.`);
+    write(this.release, safety.release === "" ? "" : `Release: ${safety.release}.`);
     write(this.warning, safety.warning === "" ? "" : `Near: ${safety.warning}`);
     this.is_pressed = safety.emergency_stop;
     write(this.stop, this.is_pressed ? "Emergency stop: pull it out" : "Emergency stop");
@@ -87,5 +94,8 @@ export class SafetyPanel {
     for (const [name, box] of this.boxes) {
       box.querySelector("input")!.checked = safety[name];
     }
+    this.stop.dataset.next = String(this.is_pressed);
+    const next = this.is_pressed || run_state.is_over ? undefined : NEXT[mode];
+    for (const [name, button] of this.by_request) button.dataset.next = String(name === next);
   }
 }

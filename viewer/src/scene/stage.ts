@@ -77,7 +77,10 @@ export class Stage {
     this.scene.add(this.rig, this.sky, this.floor, this.grid.mesh, this.box_view);
     this.paint();
     on_theme_change(() => this.paint());
-    new ResizeObserver(() => this.resize()).observe(parent);
+    new ResizeObserver(() => {
+      this.resize(); // empties the canvas
+      if (!this.renderer.xr.isPresenting) this.renderer.render(this.scene, this.camera);
+    }).observe(parent);
     this.resize();
   }
 

@@ -1,6 +1,6 @@
 // Makes the pictures of the page in docs/images: door.png and viewer_*.png.
 //
-//   npm run screenshots [-- PROGRAM]      default: ../build/release/hapticgiant
+//   npm run screenshots [-- PROGRAM [NAME...]]      default: ../build/release/hapticgiant, all
 import { dirname, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -8,8 +8,10 @@ import {
   arc,
   comes_true,
   drag_along,
+  drawn,
   frame_of,
   open_page,
+  pictures,
   scene_of,
   start_browser,
   start_program,
@@ -31,10 +33,30 @@ async function open_door(page, take) {
   });
 }
 
-const at = (time) => async (page, take) => {
-  await comes_true(page, (f) => f.time_s > time);
+// Takes the picture when `test(frame)` holds, however slowly the machine draws: the script begins
+// anew, because it has played on while the page was opened, and stands still for the picture.
+async function take_when(page, test, take) {
+  const { run } = await frame_of(page);
+  await page.keyboard.press("r");
+  await comes_true(page, (f) => f.run !== run);
+  await drawn(page);
+  await comes_true(page, test);
+  await page.click("#pause");
+  await comes_true(page, (f) => f.run_state.is_paused);
+  await pictures(page);
   await take();
-};
+}
+
+const at = (time) => (page, take) => take_when(page, (f) => f.time_s > time, take);
+
+// The table that is touched, from nearer by.
+async function touch_table(page, take) {
+  const { x, y } = await page.evaluate(() => window.hapticgiant.handle_on_screen);
+  await page.mouse.move(x, y - 100);
+  for (let i = 0; i < 4; i++) await page.mouse.wheel(0, -120);
+  const presses = (f) => f.contact?.surface === 0 && Math.hypot(...f.contact.force_N) > 10;
+  await take_when(page, presses, take);
+}
 
 const PICTURES = [
   { name: "door", args: ["door", "--user", "mouse"], play: open_door },
@@ -47,12 +69,17 @@ const PICTURES = [
     plots: true,
     play: open_door,
   },
+  { name: "viewer_surfaces", args: ["surfaces"], play: touch_table },
   { name: "viewer_tablet", args: ["excavator"], viewport: tablet, play: at(13) },
 ];
 
+const LONG = ["--duration", "3600"]; // the program waits when the script has played
+
+const wanted = process.argv.slice(3);
 const browser = await start_browser();
 for (const { name, args, viewport = laptop, dark, plots, play } of PICTURES) {
-  const running = await start_program([program, "run", ...args, "--no-recording"]);
+  if (wanted.length > 0 && !wanted.includes(name)) continue;
+  const running = await start_program([program, "run", ...args, ...LONG, "--no-recording"]);
   const options = { viewport, colorScheme: dark ? "dark" : "light" };
   const { page, close } = await open_page(browser, `${running.link}&quality=best`, options);
   if (plots) await page.click("#show-plots");

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { shares, summary, total } from "../../src/panels/budget";
+import { limits_matter, shares, summary, total } from "../../src/panels/budget";
 import { budget, wrench } from "./examples";
 
 const pushed = budget({
@@ -34,5 +34,27 @@ describe("summary", () => {
       "mostly mass of the twin (55 %) and damping (45 %)",
     );
     expect(summary(shares(budget(), "force"))).toBe("");
+  });
+
+  it("says what it means when the bearings carry most", () => {
+    const across = budget({ user: wrench([0, 10, 0]), structure: wrench([0, 10, 0]) });
+    expect(summary(shares(across, "force"))).toMatch(/^mostly bearings.* you push where it cannot/);
+    expect(summary(shares(pushed, "force"))).not.toContain("cannot move");
+  });
+});
+
+describe("limits_matter", () => {
+  it("is false while a limit carries hardly anything of what is felt", () => {
+    const user = wrench([0, 20, 0]);
+    const bearings = wrench([0, 20, 0]);
+    const little = wrench([0, 0.1, 0]);
+    expect(limits_matter(budget({ user, structure: bearings, limits: little }))).toBe(false);
+    expect(limits_matter(budget({ user, limits: bearings }))).toBe(true);
+    expect(limits_matter(budget({ user, conflict: bearings }))).toBe(true);
+  });
+
+  it("looks at torques, too", () => {
+    const turned = { force_N: wrench().force_N, torque_Nm: [0, 0, 3] as [number, number, number] };
+    expect(limits_matter(budget({ user: turned, limits: turned }))).toBe(true);
   });
 });

@@ -97,6 +97,24 @@ describe("SafetyPanel", () => {
     expect(texts()).toContain("braked, then drives off");
   });
 
+  it("marks the next step of the way back to running", () => {
+    const marked = (): string[] =>
+      section.all().flatMap((part) => (part.dataset.next === "true" ? [part.textContent] : []));
+    show({ emergency_stop: true }, "fault");
+    expect(marked()).toEqual(["Emergency stop: pull it out"]);
+    show({}, "fault");
+    expect(marked()).toEqual(["Reset"]);
+    show({}, "ready");
+    expect(marked()).toEqual(["Arm"]);
+    show({}, "armed");
+    expect(marked()).toEqual(["Run"]);
+    show({}, "running");
+    expect(marked()).toEqual([]);
+    const run_state = { ...frame.run_state, is_over: true };
+    panel.show({ ...frame, mode: "armed", run_state }); // nothing but a restart leads on
+    expect(marked()).toEqual([]);
+  });
+
   it("offers a recording no buttons", () => {
     const hidden = (): boolean[] => ["Emergency stop", "Reset"].map((text) => is_hidden(text));
     expect(hidden()).toEqual([false, false]);
@@ -107,6 +125,6 @@ describe("SafetyPanel", () => {
   it("tells cause and release as sentences", () => {
     show({ fault: 308, cause: "308 They shake.", release: "at once; hold it less stiffly" }, "fault");
     expect(texts()).toContain("308 They shake.");
-    expect(texts()).toContain("Released: at once; hold it less stiffly.");
+    expect(texts()).toContain("Release: at once; hold it less stiffly.");
   });
 });

@@ -5,11 +5,12 @@ import {
   felt_text,
   is_pushing,
   joint_text,
+  note_text,
   share_between,
   time_text,
   unit_text,
 } from "../../src/text";
-import { frame } from "./examples";
+import { frame, scene } from "./examples";
 
 describe("time_text", () => {
   it("shows minutes, seconds and tenths", () => {
@@ -68,16 +69,67 @@ describe("felt_text", () => {
 
   it("names the limit, else the largest parts, else nothing", () => {
     const felt = { index: 0, name: "m4", text: "m4: upper limit", force_N: zero, torque_Nm: zero };
-    expect(felt_text({ ...frame, felt }, "")).toBe("m4: upper limit");
-    expect(felt_text(frame, "mostly damping (60 %)")).toContain("mostly damping");
-    expect(felt_text(frame, "")).toContain("Nothing");
+    expect(felt_text(scene, { ...frame, felt }, "")).toBe("m4: upper limit");
+    expect(felt_text(scene, frame, "mostly damping (60 %)")).toContain("mostly damping");
+    expect(felt_text(scene, frame, "")).toContain("Nothing");
   });
 
   it("does not blame a limit while nobody pushes", () => {
     const felt = { index: 0, name: "m4", text: "m4: lower limit", force_N: zero, torque_Nm: zero };
     const free = { ...frame, force_N: zero, torque_Nm: zero, felt };
     expect(is_pushing(free)).toBe(false);
-    expect(felt_text(free, "")).toContain("do not push");
+    expect(felt_text(scene, free, "")).toContain("do not push");
     expect(is_pushing({ ...free, torque_Nm: [0, 0, 1] })).toBe(true);
+  });
+
+  it("does not say that nothing pushes while limits hold something", () => {
+    const free = { ...frame, force_N: zero, torque_Nm: zero, felt: null };
+    expect(felt_text(scene, { ...free, active: [] }, "")).toContain("nothing pushes");
+    const lock = {
+      index: 2,
+      state: "lower",
+      cause: "lock",
+      reaction: 3,
+      excess: 0,
+      text: "hinge: locked",
+    } as const;
+    expect(felt_text(scene, { ...free, active: [lock] }, "")).not.toContain("nothing pushes");
+  });
+
+  it("names the virtual surface that pushes", () => {
+    const wall = {
+      name: "wall",
+      shape: "box",
+      p_B_m: zero,
+      quaternion_B: [0, 0, 0, 1],
+      size_m: [1, 1, 1],
+      triangles_m: [],
+    } as const;
+    const room = { ...scene, surfaces: [{ ...wall, name: "table" }, wall] } as never;
+    const contact = { surface: 1, force_N: [0, 3, 4] as [number, number, number], proxy_m: zero };
+    const touching = { ...frame, felt: null, contact };
+    expect(felt_text(room, touching, "mostly damping")).toBe("Virtual surface wall: 5.0 N.");
+    const free = { ...touching, force_N: zero, torque_Nm: zero };
+    expect(felt_text(room, free, "")).toContain("do not push");
+  });
+});
+
+describe("note_text", () => {
+  const over = { ...frame.run_state, is_over: true };
+  const stopped = { ...frame, safety: { ...frame.safety, cause: "102 A stop button is pressed." } };
+
+  it("is empty while all is well", () => {
+    expect(note_text(frame, true)).toBe("");
+  });
+
+  it("tells the cause of a fault, and why the device lags", () => {
+    expect(note_text(stopped, true)).toBe("102 A stop button is pressed.");
+    expect(note_text({ ...frame, is_clamped: true }, true)).toContain("lost track");
+  });
+
+  it("says how a run begins again, but a recording has its bar", () => {
+    expect(note_text({ ...frame, run_state: over }, true)).toMatch(/over.*starts it again/);
+    expect(note_text({ ...stopped, run_state: over }, true)).toMatch(/102.*starts it again/);
+    expect(note_text({ ...frame, run_state: over }, false)).toBe("");
   });
 });
