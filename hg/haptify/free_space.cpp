@@ -6,7 +6,6 @@
 
 #include "hg/experiments/changes.h"
 #include "hg/experiments/motion_analysis.h"
-#include "hg/haptify/measures.h"
 #include "hg/inspection/survey.h"
 
 namespace hg::haptify {
@@ -80,6 +79,11 @@ FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceCo
   result.speed_rms = std::sqrt(squares / count);
   result.vibration_rms = shaking.rms;
   result.centroid_Hz = shaking.centroid_Hz;
+  result.band_rms = shaking.band_rms;
+  const double density = led.device.simulation.sensors.accelerometer.noise;
+  const Vibration seen = vibration(with_noise(acceleration, density, rate_Hz, seed), rate_Hz);
+  result.seen_rms = seen.rms;
+  result.seen_centroid_Hz = seen.centroid_Hz;
   result.limited_share = limited / count;
   return result;
 }

@@ -4,10 +4,12 @@
 /// of the handle.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "hg/config/scenario.h"
 #include "hg/config/twin.h"
+#include "hg/haptify/measures.h"
 #include "hg/haptify/play.h"
 
 namespace hg::haptify {
@@ -33,6 +35,9 @@ struct FreeSpace {
   double speed_rms = 0.0;      ///< m/s
   double vibration_rms = 0.0;  ///< m/s^2
   double centroid_Hz = 0.0;
+  std::array<double, kBandEdges.size() - 1> band_rms{};  ///< m/s^2
+  double seen_rms = 0.0;  ///< vibration as an accelerometer like the device's own shows it, m/s^2
+  double seen_centroid_Hz = 0.0;
   double limited_share = 0.0;  ///< of the time, on which a limit was felt
   double path = 0.0;           ///< m
   std::string failure;

@@ -9,6 +9,7 @@
 
 #include "hg/evaluation/reality.h"
 #include "hg/experiments/motion_analysis.h"
+#include "hg/inspection/survey.h"
 
 namespace hg::haptify {
 namespace {
@@ -26,7 +27,40 @@ Signal above_band(std::span<const Eigen::Vector3d> input, double rate_Hz) {
   return signal;
 }
 
+// Of a signal that has nothing but vibration: rms in each band, by Parseval.
+std::array<double, kBandEdges.size() - 1> band_rms(const std::vector<double>& signal,
+                                                   double rate_Hz) {
+  std::vector<std::complex<double>> spectrum;
+  Eigen::FFT<double> fft;
+  fft.fwd(spectrum, signal);
+  const auto n = static_cast<double>(signal.size());
+  std::array<double, kBandEdges.size() - 1> result{};
+  for (std::size_t i = 0; i <= signal.size() / 2; ++i) {
+    const double frequency = static_cast<double>(i) * rate_Hz / n;
+    for (std::size_t band = 0; band < result.size(); ++band) {
+      const bool is_in = frequency >= kBandEdges[band] && frequency < kBandEdges[band + 1];
+      if (is_in) result[band] += 2.0 * std::norm(spectrum[i]) / (n * n);
+    }
+  }
+  for (double& value : result) value = std::sqrt(value);
+  return result;
+}
+
 }  // namespace
+
+Signal with_noise(std::span<const Eigen::Vector3d> signal, double density, double rate_Hz,
+                  std::uint64_t seed) {
+  inspection::Random random(seed);
+  const double sigma = density * std::sqrt(rate_Hz);
+  Signal noisy(signal.begin(), signal.end());
+  for (Eigen::Vector3d& value : noisy) {
+    for (int axis = 0; axis < 3; ++axis) {  // Box, Muller 1958
+      const double radius = std::sqrt(-2.0 * std::log(1.0 - random.next()));
+      value[axis] += sigma * radius * std::cos(2.0 * std::numbers::pi * random.next());
+    }
+  }
+  return noisy;
+}
 
 std::vector<double> dft321(std::span<const Eigen::Vector3d> axes) {
   using Complex = std::complex<double>;
@@ -64,7 +98,8 @@ Vibration vibration(std::span<const Eigen::Vector3d> acceleration, double rate_H
     motion[i].a.x() = reduced[i];
   }
   return {.rms = std::sqrt(squares / static_cast<double>(reduced.size())),
-          .centroid_Hz = experiments::spectral_centroid(motion, rate_Hz)};
+          .centroid_Hz = experiments::spectral_centroid(motion, rate_Hz),
+          .band_rms = band_rms(reduced, rate_Hz)};
 }
 
 DynamicFit fit_dynamics(std::span<const double> f, std::span<const double> v,

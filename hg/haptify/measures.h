@@ -5,7 +5,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <complex>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,10 +20,19 @@ inline constexpr double kVibrationBand = 20.0;
 /// their sum.
 std::vector<double> dft321(std::span<const Eigen::Vector3d> axes);
 
+/// Edges of the bands into which vibration is split, Hz.
+inline constexpr std::array<double, 5> kBandEdges = {kVibrationBand, 50.0, 100.0, 200.0, 500.0};
+
 struct Vibration {
   double rms = 0.0;          ///< m/s^2
   double centroid_Hz = 0.0;  ///< weighted with the magnitude, up to 500 Hz
+  std::array<double, kBandEdges.size() - 1> band_rms{};  ///< m/s^2, of each band
 };
+
+/// White noise of a sensor on top of a signal: sigma = density sqrt(rate) along each axis
+/// ([HANDBOOK] 4.5). The same seed gives the same noise.
+std::vector<Eigen::Vector3d> with_noise(std::span<const Eigen::Vector3d> signal, double density,
+                                        double rate_Hz, std::uint64_t seed);
 
 /// Of the acceleration of a handle: above kVibrationBand (Butterworth of fourth order without
 /// phase), reduced by dft321(); its first and last quarter of a second serve the filter only.

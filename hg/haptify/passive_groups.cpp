@@ -58,6 +58,14 @@ void add_vibration(const Group& group, const std::vector<FreeSpace>& shipped,
          "N", 2, values_of(lighter, &FreeSpace::force), "the same strokes");
   beyond("free_space_vibration_light", "Free-space vibration of that body, RMS", "m/s^2", 3,
          values_of(lighter, &FreeSpace::vibration_rms), "the same strokes");
+  const std::string seen = fmt::format(
+      "true vibration plus the noise of an accelerometer like the device's own, {:g} "
+      "m/s^2/sqrt(Hz)",
+      group.scenario.device.simulation.sensors.accelerometer.noise);
+  beyond("free_space_vibration_seen", "Free-space vibration as an accelerometer shows it, RMS",
+         "m/s^2", 3, values_of(shipped, &FreeSpace::seen_rms), seen);
+  beyond("free_space_centroid_seen", "Its spectral centroid", "Hz", 1,
+         values_of(shipped, &FreeSpace::seen_centroid_Hz), "of that signal");
 }
 
 }  // namespace

@@ -11,26 +11,33 @@
 namespace hg::haptify {
 namespace {
 
-// Joints and virtual joints of a posture (gantry first) that stand at a limit.
-std::vector<std::string> joints_at_limits(const rendering::DeviceModel& model,
-                                          const Eigen::VectorXd& q) {
-  constexpr double kNear = 0.02;  // rad
+// Joints and virtual joints of a posture (gantry first) that stand at a limit beyond which the
+// handle would go farther along `axis`, to the side of the sign of `side`.
+std::vector<std::string> binding_limits(const rendering::DeviceModel& model,
+                                        const Eigen::VectorXd& q, int axis, double side) {
+  constexpr double kNear = 0.02;   // rad
+  constexpr double kMoves = 1e-3;  // m/rad; what moves it less does not end its way
+  model::Chain chain = model.chain;
+  chain.update(q, Eigen::VectorXd::Zero(chain.nv()));
+  const Eigen::VectorXd gain =
+      side * chain.jacobian(model.handle).row(axis).tail(model.n_m).transpose();
+  const Eigen::VectorXd arm = q.tail(model.n_m);
   std::vector<std::string> names;
-  const auto add = [&](const std::string& name, const limits::JointLimits& range, double value) {
-    if (value > range.q_max - kNear)
+  const auto add = [&](const std::string& name, const limits::JointLimits& range, double value,
+                       double up, double down) {
+    if (value > range.q_max - kNear && up > kMoves)
       names.push_back(fmt::format("{} at {:.2f} rad", name, range.q_max));
-    if (value < range.q_min + kNear)
+    if (value < range.q_min + kNear && down > kMoves)
       names.push_back(fmt::format("{} at {:.2f} rad", name, range.q_min));
   };
-  const Eigen::VectorXd arm = q.tail(model.n_m);
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
     const auto joint = static_cast<std::size_t>(model.n_p + i);
-    // what moves the handle sideways only is not what ends its height
-    if (model.chain.joints()[joint].type == model::JointType::kContinuous) continue;
-    add(model.chain.joints()[joint].name, model.joint_limits[static_cast<std::size_t>(i)], arm[i]);
+    add(model.chain.joints()[joint].name, model.joint_limits[static_cast<std::size_t>(i)], arm[i],
+        gain[i], -gain[i]);
   }
   for (const rendering::VirtualJoint& joint : model.virtual_joints) {
-    add(joint.name, joint.limits, joint.weights.dot(arm));
+    const Eigen::VectorXd gains = joint.weights.cwiseProduct(gain);
+    add(joint.name, joint.limits, joint.weights.dot(arm), gains.maxCoeff(), -gains.minCoeff());
   }
   return names;
 }
@@ -84,7 +91,7 @@ std::string unreached_sides(const config::Device& device, const inspection::Work
           " The side {} = {:.2f} m is missed by {:.0f} mm, {:.2f} m^3 of the box: "
           "where the handle comes nearest, {}.",
           "xyz"[axis], limit, 1e3 * short_by, short_by * box.volume() / box.sizes()[axis],
-          fmt::join(joints_at_limits(device.model, q), " and "));
+          fmt::join(binding_limits(device.model, q, axis, side), " and "));
     }
   }
   return text;

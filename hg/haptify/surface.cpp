@@ -110,6 +110,8 @@ Slide measure_slide(const config::Scenario& scenario, const SurfaceConfig& confi
         twin.mass * now.acceleration.head<2>() + twin.damping * now.twist.head<2>();
     result.force += now.w_H.head<2>().norm();
     result.own_share += own.norm();
+    result.inertial += twin.mass * now.acceleration.head<2>().norm();
+    result.viscous += twin.damping * now.twist.head<2>().norm();
     result.extra += (now.w_H.head<2>() - own).norm();
     result.normal -= now.w_H.z();
     result.speed += now.twist.head<2>().norm();
@@ -119,8 +121,8 @@ Slide measure_slide(const config::Scenario& scenario, const SurfaceConfig& confi
     if (result.failure.empty()) result.failure = "the hand did not touch the surface";
     return result;
   }
-  for (double* sum :
-       {&result.force, &result.own_share, &result.extra, &result.normal, &result.speed}) {
+  for (double* sum : {&result.force, &result.own_share, &result.inertial, &result.viscous,
+                      &result.extra, &result.normal, &result.speed}) {
     *sum /= count;
   }
   return result;
@@ -212,7 +214,7 @@ experiments::Verdict knock(const config::Scenario& scenario, const SurfaceConfig
   if (!played.failure.empty()) return experiments::Verdict::kDiverges;
   std::vector<double> speed;
   for (const Instant& now : played.instants) {
-    if (now.time_s >= kick_s + kKickFor) speed.push_back(now.twist.head<3>().norm());
+    if (now.time_s >= kick_s + kKickFor) speed.push_back(std::abs(now.twist.z()));
   }
   return experiments::judge_decay(speed, config.calm, knocked.device.rate_Hz);
 }

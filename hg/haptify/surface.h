@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "hg/config/scenario.h"
@@ -42,6 +43,8 @@ config::Scenario above_surface(const config::Scenario& scenario, const SurfaceCo
 struct Slide {
   double force = 0.0;      ///< mean tangential |f| in contact while sliding, N
   double own_share = 0.0;  ///< mean |m a + b v| of it, tangential, N
+  double inertial = 0.0;   ///< mean |m a|, N
+  double viscous = 0.0;    ///< mean |b v|, N
   double extra = 0.0;      ///< mean |f - (m a + b v)|, tangential, N
   double normal = 0.0;     ///< mean normal force, N
   double speed = 0.0;      ///< mean, m/s
@@ -68,8 +71,13 @@ struct Peak {
 Peak measure_peak(const config::Scenario& scenario, const SurfaceConfig& config,
                   std::uint64_t seed);
 
-/// A hand presses on the surface, gets a kick of 15 N for 10 ms, and calms down or does not.
+/// A hand presses on the surface, gets a kick of 15 N for 10 ms, and the handle calms down along
+/// the normal or does not: along the surface nothing but joints' friction acts.
 experiments::Verdict knock(const config::Scenario& scenario, const SurfaceConfig& config,
                            double stiffness, double damping);
+
+/// The last of growing stiffnesses up to which all are calm, N/m; 0 when the first one is not.
+double stiffest_calm(std::span<const double> stiffness,
+                     std::span<const experiments::Verdict> verdicts);
 
 }  // namespace hg::haptify

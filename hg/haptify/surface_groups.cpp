@@ -2,35 +2,43 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "hg/environment/surface.h"
 #include "hg/experiments/changes.h"
 #include "hg/haptify/groups.h"
 #include "hg/haptify/surface.h"
 
 namespace hg::haptify {
+
 void add_sliding(const Group& group) {
   SurfaceConfig config;
   if (group.options.is_quick) config.strokes = 1;
   config::Scenario light = group.scenario;
   experiments::set_free_twin(light, kLightBody);
+  SurfaceConfig slow = config;
+  slow.stroke_s *= 2.0;
   const std::size_t n = group.repetitions();
-  const auto all = group.measure_all("frictionless surface", 2 * n, [&](std::size_t i) {
-    return measure_slide(i < n ? group.scenario : light, config, group.seed(i % n));
+  const auto all = group.measure_all("frictionless surface", 3 * n, [&](std::size_t i) {
+    const config::Scenario& scenario = i / n == 1 ? light : group.scenario;
+    return measure_slide(scenario, i / n == 2 ? slow : config, group.seed(i % n));
   });
-  std::vector<double> force, own, extra, normal, speed, lighter;
+  std::vector<double> force, own, inertial, viscous, extra, normal, speed, lighter, slower;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Slide& one = all[i];
     group.add_failure(fmt::format("frictionless surface, seed {}", group.seed(i % n)), one.failure);
     if (i >= n) {
-      lighter.push_back(one.force);
+      (i / n == 1 ? lighter : slower).push_back(one.force);
       continue;
     }
     force.push_back(one.force);
     own.push_back(one.own_share);
+    inertial.push_back(one.inertial);
+    viscous.push_back(one.viscous);
     extra.push_back(one.extra);
     normal.push_back(one.normal);
     speed.push_back(one.speed);
@@ -48,10 +56,13 @@ void add_sliding(const Group& group) {
                            mean_value(normal)),
        .why = fmt::format(
            "{:.2f} N of it is what the rendered body needs for the strokes (mass times "
-           "acceleration, damping times velocity); device and surface add {:.2f} N to that (mean "
-           "norm of the difference). Rendered as {:g} kg, {:g} Ns/m it is {:.2f} N.",
-           mean_value(own), mean_value(extra), kLightBody.mass, kLightBody.damping,
-           mean_value(lighter))});
+           "acceleration {:.2f} N, damping times velocity {:.2f} N on average); device and surface "
+           "add {:.2f} N to that (mean norm of the difference). Rendered as {:g} kg, {:g} Ns/m it "
+           "is {:.2f} N; with strokes of {:g} instead of {:g} s it is {:.2f} N. The goal lies "
+           "between Touch X and Touch, which render no body.",
+           mean_value(own), mean_value(inertial), mean_value(viscous), mean_value(extra),
+           kLightBody.mass, kLightBody.damping, mean_value(lighter), slow.stroke_s, config.stroke_s,
+           mean_value(slower))});
   group.out.beyond.push_back({.id = "frictionless_surface_extra",
                               .name = "Frictionless surface force that device and surface add",
                               .unit = "N",
@@ -137,42 +148,91 @@ void add_peak(const Group& group) {
   group.out.table.push_back(figure);
 }
 
-void add_z_width(const Group& group) {
-  const bool is_quick = group.options.is_quick;
-  const std::vector<double> stiffness =
-      is_quick ? std::vector<double>{1000, 8000}
-               : std::vector<double>{500, 1000, 2000, 4000, 8000, 16000};
-  const std::vector<double> damping =
-      is_quick ? std::vector<double>{20} : std::vector<double>{0, 20, 50, 100, 200, 400};
-  const SurfaceConfig config;
-  const auto verdicts =
-      group.measure_all("Z-width", stiffness.size() * damping.size(), [&](std::size_t i) {
-        return knock(group.scenario, config, stiffness[i / damping.size()],
-                     damping[i % damping.size()]);
-      });
+namespace {
+
+// A free body on the surfaces of the map, and how late the device learns what the person does.
+struct MapBody {
+  experiments::FreeTwin twin;
+  bool is_prompt = false;  ///< the wrench and what it is compensated with without any delay
+};
+
+config::Scenario with_body(config::Scenario scenario, const MapBody& body) {
+  experiments::set_free_twin(scenario, body.twin);
+  if (!body.is_prompt) return scenario;
+  scenario.device.simulation.sensors.wrench.filter = {.average = 0.0, .delay = 0.0};
+  scenario.device.simulation.sensors.imu_filter = {.average = 0.0, .delay = 0.0};
+  scenario.device.estimation.wrench.low_pass_Hz = 0.0;
+  return scenario;
+}
+
+Table z_width_table(const std::vector<double>& damping) {
   Table table = {.id = "z_width",
                  .title = "Z-width: which surfaces stay calm",
                  .note =
-                     "A normal hand presses with 10 N on a plane and is kicked (15 N for 10 "
-                     "ms); the rows are stiffness, the columns damping of the plane.",
-                 .columns = {"N/m"}};
+                     "A normal hand presses with 10 N on a plane and is kicked (15 N for 10 ms); "
+                     "the rows are body and stiffness, with the frequency at which the body would "
+                     "swing on the spring alone, the columns damping of the plane. Damping acts in "
+                     "full from 5 mm inside on: at 10 N that is 2 kN/m. Prompt: the wrench without "
+                     "the delays of sensor and low-pass.",
+                 .columns = {"body", "N/m", "Hz"}};
   for (const double value : damping) table.columns.push_back(fmt::format("{:g} Ns/m", value));
-  Figure widest = {.id = "z_width",
-                   .name = "Stiffest calm surface",
-                   .unit = "N/m",
-                   .digits = 0,
-                   .note = "of the map below, with the damping that suits it"};
+  return table;
+}
+
+}  // namespace
+
+double stiffest_calm(std::span<const double> stiffness,
+                     std::span<const experiments::Verdict> verdicts) {
   double most = 0.0;
-  for (std::size_t row = 0; row < stiffness.size(); ++row) {
-    table.rows.push_back({fmt::format("{:g}", stiffness[row])});
-    for (std::size_t column = 0; column < damping.size(); ++column) {
-      const experiments::Verdict verdict = verdicts[row * damping.size() + column];
-      table.rows.back().emplace_back(to_string(verdict));
-      if (verdict == experiments::Verdict::kStable) most = std::max(most, stiffness[row]);
-    }
+  for (std::size_t i = 0; i < stiffness.size(); ++i) {
+    if (verdicts[i] != experiments::Verdict::kStable) break;
+    most = stiffness[i];
   }
-  widest.values = {most};
-  group.out.beyond.push_back(widest);
+  return most;
+}
+
+void add_z_width(const Group& group) {
+  const bool is_quick = group.options.is_quick;
+  using Values = std::vector<double>;
+  const Values stiffness =
+      is_quick ? Values{1000, 8000} : Values{1000, 4000, 8000, 16000, 32000, 50000};
+  const Values damping = is_quick ? Values{0} : Values{0, 20, 100, 400};
+  std::vector<MapBody> bodies = {{experiments::free_twin_of(group.scenario)}, {kLightBody}};
+  if (!is_quick) bodies.push_back({kLightBody, true});
+  const SurfaceConfig config;
+  const std::size_t columns = damping.size(), rows = stiffness.size();
+  const auto verdicts =
+      group.measure_all("Z-width", bodies.size() * rows * columns, [&](std::size_t i) {
+        return knock(with_body(group.scenario, bodies[i / (rows * columns)]), config,
+                     stiffness[i / columns % rows], damping[i % columns]);
+      });
+  Table table = z_width_table(damping);
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const MapBody& body = bodies[k];
+    const std::string name = fmt::format("{:g} kg, {:g} Ns/m{}", body.twin.mass, body.twin.damping,
+                                         body.is_prompt ? ", prompt" : "");
+    std::vector<experiments::Verdict> undamped;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const double swing = std::sqrt(stiffness[row] / body.twin.mass) / (2.0 * std::numbers::pi);
+      table.rows.push_back(
+          {name, fmt::format("{:g}", stiffness[row]), fmt::format("{:.1f}", swing)});
+      const std::span found = std::span(verdicts).subspan((k * rows + row) * columns, columns);
+      for (const experiments::Verdict verdict : found) {
+        table.rows.back().emplace_back(to_string(verdict));
+      }
+      undamped.push_back(found.front());
+    }
+    if (body.is_prompt) continue;
+    group.out.beyond.push_back(
+        {.id = k == 0 ? "z_width" : "z_width_light",
+         .name = "Stiffest calm surface, body of " + name,
+         .unit = "N/m",
+         .digits = 0,
+         .values = {stiffest_calm(stiffness, undamped)},
+         .note = fmt::format("of the map below, plane without damping; {:g} N/m is the most that a "
+                             "surface may have",
+                             environment::kStiffness.ub)});
+  }
   group.out.tables.push_back(table);
 }
 

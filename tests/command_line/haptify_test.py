@@ -10,7 +10,12 @@ from program import TemporaryFolder, run
 
 TABLE = ["workspace_volume", "free_space_force", "free_space_vibration", "free_space_centroid",
          "frictionless_surface", "stiffness_accuracy", "stiffness_peak_force"]
-BEYOND = ["transparency_bandwidth", "position_bandwidth", "force_bandwidth", "latency", "z_width"]
+BEYOND = ["transparency_bandwidth", "position_bandwidth", "force_bandwidth", "latency", "z_width",
+          "z_width_light", "free_space_centroid_seen"]
+
+
+def cells(line):
+    return [cell.strip() for cell in line.strip().strip("|").split("|")]
 
 
 class Haptify(TemporaryFolder):
@@ -44,6 +49,43 @@ class Haptify(TemporaryFolder):
             self.assertIn("real machines in real hands; ours is a simulated machine", text, name)
             self.assertNotIn("nan", text.split(), name)
         self.assertIn("ours, simulated", out)
+        self.check_that_forms_agree(one, rows)
+
+    def check_that_forms_agree(self, folder, rows):
+        markdown = (folder / "report.md").read_text()
+        missed = markdown[markdown.index("## Goals that are missed"):
+                          markdown.index("## Beyond the paper")]
+        latex = (folder / "table.tex").read_text()
+        html = (folder / "report.html").read_text()
+        for name in TABLE:
+            row = rows[name]
+            line = next(line for line in markdown.splitlines()
+                        if line.startswith(f"| {row['name']} |"))
+            _, unit, ours, paper, *_, met = cells(line)
+            mean, half_width = (float(part) for part in ours.split(" +- "))
+            digits = len(ours.split(" ")[0].partition(".")[2])
+            self.assertEqual(unit, row["unit"])
+            self.assertAlmostEqual(mean, float(row["mean"]), delta=0.51 * 10 ** -digits)
+            self.assertAlmostEqual(half_width, float(row["half_width_95"]),
+                                   delta=0.51 * 10 ** -digits)
+            self.assertEqual(float(paper), float(row["paper"]))
+            is_met = (float(row["goal_min"] or "-inf") <= float(row["mean"])
+                      <= float(row["goal_max"] or "inf"))
+            self.assertEqual(met, "yes" if is_met else "no", name)
+            # every missed goal has its reason, and only those
+            reason = next((line for line in missed.splitlines()
+                           if line.startswith(f"- {row['name']}:")), "")
+            self.assertTrue(reason == "" if is_met else len(reason) > 100, reason)
+            self.assertIn(f"{row['name']} & ", latex)
+            self.assertIn(f"& ${ours.replace('+-', chr(92) + 'pm')}$ & ${paper}$ &", latex)
+            self.assertIn(ours, html)
+        with open(folder / "repetitions.csv") as stream:
+            for name in TABLE:
+                stream.seek(0)
+                values = [float(row["value"]) for row in csv.DictReader(stream)
+                          if row["id"] == name]
+                mean = float(rows[name]["mean"])
+                self.assertAlmostEqual(sum(values) / len(values), mean, delta=1e-4 * abs(mean))
 
     def test_bad_options_are_refused(self):
         for option, value in (("--repetitions", "1"), ("--seed", "-1"), ("--repetitions", "2.5")):

@@ -200,6 +200,39 @@ TEST(Force, OfABallPointsAwayFromItsCentre) {
   EXPECT_LT((contact.force - 2000 * 0.006 * p.normalized()).norm(), 1e-5);
 }
 
+TEST(Force, OfACylinderPointsAwayFromItsAxisOrOutOfItsEnd) {
+  Surface can = table();
+  can.shape = Cylinder{0.1, 0.3};
+  can.pose = {{0.2, 0, 0}, Eigen::AngleAxisd(1.0, Vector3d::UnitX()).toRotationMatrix()};
+  const auto in_B = [&](const Vector3d& p) { return can.pose.p + can.pose.R * p; };
+  const Vector3d radial = Vector3d(0.6, -0.8, 0);
+  struct Way {
+    Vector3d from, to, force;
+  };
+  const std::vector<Way> ways = {{0.2 * radial, 0.095 * radial, 10.0 * radial},
+                                 {{0.02, 0.03, 0.2}, {0.02, 0.03, 0.148}, {0, 0, 4.0}},
+                                 {{0.02, 0.03, -0.2}, {0.02, 0.03, -0.148}, {0, 0, -4.0}}};
+  for (const auto& [from, to, force] : ways) {
+    Led led({can});
+    led.at(in_B(from));
+    led.last = in_B(from);
+    const ContactReport contact = led.to(in_B(to));
+    EXPECT_LT((contact.force - can.pose.R * force).norm(), kRounding);
+  }
+}
+
+TEST(Force, OfUnequalFacesHasTheirMeansByTheirShares) {
+  Surface floor = table(), wall = box({0.4, 2, 2}, {0.5, 0, 0});
+  floor.stiffness = 1000;
+  wall.stiffness = 4000;
+  Led led({floor, wall});
+  led.last = {0.1, 0.1, 0.1};
+  led.at(led.last);
+  const ContactReport contact = led.to({0.303, 0.1, -0.001});  // shares 1/4 and 3/4
+  EXPECT_LT((contact.force - 3250 * Vector3d(-0.003, 0, 0.001)).norm(), 1e-5);
+  EXPECT_EQ(contact.surface, 1);
+}
+
 TEST(Friction, SticksWithinItsConeAndDoesNotCreep) {
   Led led({table(0.5)});
   led.at({0, 0, 0.01});
@@ -278,6 +311,32 @@ TEST(Energy, IsNotCreatedOnASlowWayInAndOut) {
   }
 }
 
+// The handle has left the solid then; what the spring had stored is lost and not given back.
+TEST(Energy, OfTheSpringIsLostWhereTheHandleSlipsOffAnEdge) {
+  constexpr double kDepth = 0.01;
+  Surface solid = box({0.2, 0.2, 0.2}, {0, 0, -0.1});
+  Surface mesh = solid;
+  mesh.shape = box_mesh({0.2, 0.2, 0.2});
+  for (const Surface& surface : {solid, mesh}) {
+    Led led({surface});
+    led.last = {0, 0, 0.01};
+    led.at(led.last);
+    EXPECT_NEAR(led.to({0.0999, 0, -kDepth}).force.z(), 2000 * kDepth, kRounding);
+    const ContactReport off = led.at({0.1001, 0, -kDepth});
+    EXPECT_EQ(off.force, Vector3d::Zero());
+    EXPECT_EQ(off.surface, -1);
+    EXPECT_EQ(led.to({0.0999, 0, -kDepth}).surface, 0);  // in again, now by the side
+    EXPECT_NEAR(led.to({0.0999, 0, -kDepth}).force.x(), 2000 * 1e-4, kRounding);
+
+    Led round({surface});
+    round.at({0, 0, 0.01});
+    const double stored = 0.5 * 2000 * kDepth * kDepth;
+    const double taken =
+        work(round, {{0, 0, -kDepth}, {0.12, 0, -kDepth}, {0.12, 0, 0.01}, {0, 0, 0.01}});
+    EXPECT_NEAR(taken, stored, 0.01 * stored);
+  }
+}
+
 // A mass that falls into a stiff surface without damping, moved as the law moves a twin.
 TEST(Energy, OfABouncingMassDoesNotGrow) {
   Surface floor = table();
@@ -318,6 +377,25 @@ TEST(Mesh, OfABoxFeelsLikeTheBox) {
       ASSERT_EQ(a.surface, b.surface) << k;
       ASSERT_LT((a.force - b.force).norm(), 1e-4) << k;
     }
+  }
+}
+
+// Rounding must not let a handle fall between two triangles.
+TEST(Mesh, HoldsOnTheEdgeBetweenItsTriangles) {
+  const Vector3d size(0.3, 0.2, 0.1);
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    std::mt19937 random(seed);
+    Surface plate = table();
+    plate.shape = box_mesh(size);
+    plate.pose = random_pose(random);
+    const double share = std::uniform_real_distribution<double>(-0.45, 0.45)(random);
+    const Vector3d on_edge = size.cwiseProduct(Vector3d(share, share, 0.5));
+    const auto in_B = [&](double height) -> Vector3d {
+      return plate.pose.p + plate.pose.R * (on_edge + height * Vector3d::UnitZ());
+    };
+    Led led({plate});
+    led.at(in_B(0.01));
+    ASSERT_NEAR(led.at(in_B(-0.001)).force.norm(), 2.0, kRounding) << "seed " << seed;
   }
 }
 

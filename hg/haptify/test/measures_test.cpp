@@ -102,6 +102,34 @@ TEST(Vibration, FallsOffBelow20Hz) {
   EXPECT_EQ(vibration(Signal(1499), kRate).rms, 0.0);
 }
 
+TEST(Vibration, IsSplitIntoBands) {
+  Signal all = sine(35.0, 1.0, Eigen::Vector3d::UnitX(), 4.0);
+  const double amplitudes[] = {2.0, 3.0, 4.0}, frequencies[] = {70.0, 150.0, 300.0};
+  for (int k = 0; k < 3; ++k) {
+    const Signal one = sine(frequencies[k], amplitudes[k], Eigen::Vector3d::UnitY(), 4.0);
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] += one[i];
+  }
+  const Vibration found = vibration(all, kRate);
+  double squares = 0.0;
+  for (const double rms : found.band_rms) squares += rms * rms;
+  EXPECT_NEAR(std::sqrt(squares), found.rms, 1e-3 * found.rms);
+  // at 35 Hz the filter takes a tenth
+  EXPECT_NEAR(found.band_rms[0] * std::numbers::sqrt2, 0.904, 0.01);
+  for (std::size_t k = 1; k < 4; ++k) {
+    EXPECT_NEAR(found.band_rms[k] * std::numbers::sqrt2, amplitudes[k - 1], 0.03);
+  }
+}
+
+// White noise has its centroid in the middle of 20 to 500 Hz, and three axes add in quadrature.
+TEST(WithNoise, IsWhiteAndAsStrongAsTheSensorSays) {
+  const Signal still(20'000, Eigen::Vector3d::Zero());
+  const Vibration found = vibration(with_noise(still, 1e-3, kRate, 4), kRate);
+  EXPECT_NEAR(found.rms, 1e-3 * std::sqrt(kRate * 3.0 * 480.0 / 500.0), 1e-3);
+  EXPECT_NEAR(found.centroid_Hz, 260.0, 5.0);
+  EXPECT_EQ(with_noise(still, 1e-3, kRate, 4)[7], with_noise(still, 1e-3, kRate, 4)[7]);
+  EXPECT_NE(with_noise(still, 1e-3, kRate, 4)[7], with_noise(still, 1e-3, kRate, 5)[7]);
+}
+
 TEST(FitDynamics, FindsWhatTheForceIsMadeOf) {
   std::vector<double> f, v, a;
   for (std::size_t i = 0; i < 3000; ++i) {
