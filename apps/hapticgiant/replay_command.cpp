@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -52,6 +54,7 @@ class Show {
   viewer_server::Scene scene() const {
     viewer_server::Scene scene = page_scene(scenario_);
     scene.source = viewer_server::Source::kRecording;
+    scene.begin_s = run_.begin_s();
     scene.duration_s = run_.duration_s();
     scene.commands = {CommandName::kPause, CommandName::kResume,  CommandName::kStep,
                       CommandName::kSpeed, CommandName::kRestart, CommandName::kSeek};
@@ -66,9 +69,9 @@ class Show {
     const std::size_t index = run_.at(playback_.position_s());
     viewer_server::View view;
     if (other_) {
-      const std::size_t shown = other_->at(playback_.position_s());
+      const std::size_t shown = other_->at(now_s() - other_->begin_s());
       other_->read(shown, *sample_);
-      view.ghost = viewer_server::Ghost{other_->time_s(shown), sample_->record};
+      view.ghost = viewer_server::Ghost{sample_->record.time_s, sample_->record};
     }
     run_.read(index, *sample_);
     view.record = sample_->record;
@@ -78,8 +81,8 @@ class Show {
     view.status_text = scenario_.description;
     view.budget = analysis.budget(view.record);
     view.singularity = analysis.singularity(view.record);
-    view.run_state = {playback_.is_paused(), playback_.speed(), playback_.is_over(),
-                      playback_.position_s(), name_};
+    view.run_state = {playback_.is_paused(), playback_.speed(), playback_.is_over(), now_s(),
+                      name_};
     return view;
   }
 
@@ -101,14 +104,25 @@ class Show {
       case CommandName::kRestart:
         return playback_.seek(0.0) ? "" : "there is nothing to play";
       case CommandName::kSeek:
-        if (playback_.seek(command.value)) return {};
-        return fmt::format("the recording has 0 .. {:.3f} s", playback_.duration_s());
+        return seek(command.value);
       default:
         return kRefusal;
     }
   }
 
  private:
+  // in the time of the run
+  double now_s() const { return run_.begin_s() + playback_.position_s(); }
+
+  // ends are met up to rounding
+  std::string seek(double time_s) {
+    const double offset = time_s - run_.begin_s();
+    const double nearest = std::clamp(offset, 0.0, playback_.duration_s());
+    if (std::abs(offset - nearest) < 1e-6 && playback_.seek(nearest)) return {};
+    return fmt::format("the recording has {:.3f} .. {:.3f} s", run_.begin_s(),
+                       run_.begin_s() + playback_.duration_s());
+  }
+
   static constexpr char kRefusal[] = "this is a recording";
 
   // a file of the configuration; empty if it is not there

@@ -32,6 +32,11 @@ void check(const Surface& surface) {
     if (mesh->triangles().empty()) {
       throw SetupError("surface " + surface.name + ": a mesh needs triangles, got none");
     }
+    Eigen::AlignedBox3d extent;
+    for (const Triangle& triangle : mesh->triangles()) {
+      for (const Eigen::Vector3d& corner : triangle.corners) extent.extend(corner);
+    }
+    require(surface, "size (scale: 0.001 for millimetres)", kSize, extent.sizes().maxCoeff());
   }
   const bool is_pose = surface.pose.p.allFinite() && surface.pose.R.isUnitary(1e-9);
   if (!is_pose) throw SetupError("surface " + surface.name + ": its pose must be one");

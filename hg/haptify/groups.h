@@ -34,9 +34,11 @@ struct Group {
   }
   std::size_t repetitions() const { return static_cast<std::size_t>(options.repetitions); }
   std::uint64_t seed(std::size_t repetition) const { return options.seed + repetition; }
-  /// Nothing when `failure` is empty.
-  void add_failure(const std::string& what, const std::string& failure) const {
-    if (!failure.empty()) out.failures.push_back(what + ": " + failure);
+  /// False when a measurement has failed, which is told: its numbers are none.
+  bool has_worked(const std::string& what, const std::string& failure) const {
+    if (failure.empty()) return true;
+    out.failures.push_back(what + ": " + failure);
+    return false;
   }
 };
 

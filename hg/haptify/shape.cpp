@@ -42,7 +42,8 @@ std::vector<std::string> binding_limits(const rendering::DeviceModel& model,
   return names;
 }
 
-// The posture of those drawn that brings the handle farthest along `axis`, `side` = -1 or 1.
+// The posture of those drawn that brings the handle farthest along `axis`, `side` = -1 or 1; empty
+// when the limits permit none.
 Eigen::VectorXd farthest(const config::Device& device, const ShapeConfig& config,
                          std::uint64_t seed, int axis, double side) {
   inspection::Random random(seed);
@@ -55,6 +56,7 @@ Eigen::VectorXd farthest(const config::Device& device, const ShapeConfig& config
     const auto q = inspection::draw(device, ranges, true, random);
     if (!q) break;
     chain.update_kinematics(*q, zero);
+    if (!inspection::permits_boxes(device.model, chain)) continue;
     const double reach = side * chain.pose(device.model.handle).p[axis];
     if (best.size() > 0 && reach <= most) continue;
     most = reach;
@@ -87,11 +89,15 @@ std::string unreached_sides(const config::Device& device, const inspection::Work
       const double short_by = side * (limit - reached);
       if (short_by < kReached) continue;
       const Eigen::VectorXd q = farthest(device, config, seed, axis, side);
-      text += fmt::format(
-          " The side {} = {:.2f} m is missed by {:.0f} mm, {:.2f} m^3 of the box: "
-          "where the handle comes nearest, {}.",
-          "xyz"[axis], limit, 1e3 * short_by, short_by * box.volume() / box.sizes()[axis],
-          fmt::join(binding_limits(device.model, q, axis, side), " and "));
+      text += fmt::format(" The side {} = {:.2f} m is missed by {:.0f} mm, {:.2f} m^3 of the box",
+                          "xyz"[axis], limit, 1e3 * short_by,
+                          short_by * box.volume() / box.sizes()[axis]);
+      std::vector<std::string> names;
+      if (q.size() > 0) names = binding_limits(device.model, q, axis, side);
+      if (!names.empty()) {
+        text += fmt::format(": where the handle comes nearest, {}", fmt::join(names, " and "));
+      }
+      text += ".";
     }
   }
   return text;

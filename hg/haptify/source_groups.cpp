@@ -66,8 +66,7 @@ std::string why_centroid(const std::vector<Source>& sources, std::size_t ways, d
   }
   return text +
          "What shakes a real handle there (teeth, drives, bending links) is not simulated; a "
-         "higher "
-         "figure would mean more vibration or another machine, not a better feel.";
+         "higher figure would mean more vibration or another machine, not a better feel.";
 }
 
 }  // namespace
@@ -98,9 +97,11 @@ void add_sources(const Group& group) {
   for (std::size_t i = 0; i + 1 < kBandEdges.size(); ++i) {
     table.columns.push_back(fmt::format("{:g} .. {:g}", kBandEdges[i], kBandEdges[i + 1]));
   }
+  bool has_all = true;
   for (const Source& source : sources) {
     const FreeSpace& it = source.measured;
-    group.add_failure("sources of vibration, " + source.name, it.failure);
+    has_all = group.has_worked("sources of vibration, " + source.name, it.failure) && has_all;
+    if (!it.failure.empty()) continue;
     table.rows.push_back({source.name, fmt::format("{:.4f}", it.vibration_rms),
                           fmt::format("{:.1f}", it.centroid_Hz), fmt::format("{:.3f}", it.force),
                           fmt::format("{:.3f}", it.extra)});
@@ -109,7 +110,7 @@ void add_sources(const Group& group) {
     }
   }
   const auto figure = std::ranges::find(group.out.table, "free_space_centroid", &Figure::id);
-  if (figure != group.out.table.end()) {
+  if (figure != group.out.table.end() && has_all) {
     figure->why = why_centroid(sources, ways.size(), config.duration_s);
   }
   group.out.tables.push_back(table);

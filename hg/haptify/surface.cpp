@@ -188,8 +188,8 @@ Peak measure_peak(const config::Scenario& scenario, const SurfaceConfig& config,
   return result;
 }
 
-experiments::Verdict knock(const config::Scenario& scenario, const SurfaceConfig& config,
-                           double stiffness, double damping) {
+Knock knock(const config::Scenario& scenario, const SurfaceConfig& config, double stiffness,
+            double damping) {
   constexpr double kKick = 15.0, kKickFor = 0.01, kEdge = 1e-4;  // as in experiments::Kick
   user::HandImpedance hand = user::hand(user::HandPreset::kNormal);
   hand.tremor_rms = 0.0;
@@ -211,12 +211,18 @@ experiments::Verdict knock(const config::Scenario& scenario, const SurfaceConfig
       with_hand(above_surface(scenario, config, stiffness, damping), hand, script);
   knocked.device.passivity.reaction = passivity::Reaction::kOff;
   const Played played = play(knocked);
-  if (!played.failure.empty()) return experiments::Verdict::kDiverges;
   std::vector<double> speed;
+  bool has_touched = false;
   for (const Instant& now : played.instants) {
     if (now.time_s >= kick_s + kKickFor) speed.push_back(std::abs(now.twist.z()));
+    has_touched = has_touched || (now.time_s < kick_s && now.p_B_E.z() < config.position.z());
   }
-  return experiments::judge_decay(speed, config.calm, knocked.device.rate_Hz);
+  if (!has_touched) {
+    return {.failure =
+                played.failure.empty() ? "the hand did not touch the surface" : played.failure};
+  }
+  if (!played.failure.empty()) return {.verdict = experiments::Verdict::kDiverges};
+  return {.verdict = experiments::judge_decay(speed, config.calm, knocked.device.rate_Hz)};
 }
 
 }  // namespace hg::haptify

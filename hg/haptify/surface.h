@@ -71,10 +71,14 @@ struct Peak {
 Peak measure_peak(const config::Scenario& scenario, const SurfaceConfig& config,
                   std::uint64_t seed);
 
+struct Knock {
+  experiments::Verdict verdict = experiments::Verdict::kDiverges;  ///< also where a fault ended it
+  std::string failure;  ///< the hand did not get to the surface
+};
 /// A hand presses on the surface, gets a kick of 15 N for 10 ms, and the handle calms down along
 /// the normal or does not: along the surface nothing but joints' friction acts.
-experiments::Verdict knock(const config::Scenario& scenario, const SurfaceConfig& config,
-                           double stiffness, double damping);
+Knock knock(const config::Scenario& scenario, const SurfaceConfig& config, double stiffness,
+            double damping);
 
 /// The last of growing stiffnesses up to which all are calm, N/m; 0 when the first one is not.
 double stiffest_calm(std::span<const double> stiffness,

@@ -172,6 +172,9 @@ RecordedRun::RecordedRun(const std::filesystem::path& file, double period_s) : f
   if (*taker.error != '\0') refuse(file, taker.error);
   if (!taker.last.bytes.empty()) moments_.push_back(std::move(taker.last));
   if (moments_.empty()) refuse(file, "it has no sample");
+  const auto first = std::make_unique<Sample>();
+  read(0, *first);
+  begin_s_ = first->record.time_s;
 }
 
 double RecordedRun::time_s(std::size_t index) const {

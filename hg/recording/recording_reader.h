@@ -38,6 +38,8 @@ class RecordedRun {
   /// Kept samples, at least one, in their order.
   std::size_t size() const noexcept { return moments_.size(); }
   /// Of a kept sample, in s since the first.
+  /// Of the run when the first kept sample was taken: a flight recording does not begin with it.
+  double begin_s() const noexcept { return begin_s_; }
   double time_s(std::size_t index) const;
   double duration_s() const { return time_s(size() - 1); }
   /// The last kept sample up to `time_s`; the first before it.
@@ -53,6 +55,7 @@ class RecordedRun {
   struct Taker;
 
   std::filesystem::path file_;
+  double begin_s_ = 0.0;
   std::vector<NamedText> configuration_;
   std::vector<Event> events_;
   std::vector<Moment> moments_;

@@ -156,7 +156,7 @@ void fields(Archive& a, T& state) {
   a("is_paused", state.is_paused);
   a("speed", state.speed, "simulated (or recorded) seconds per second");
   a("is_over", state.is_over, "stopped, a fault, or the end of a recording");
-  a("position_s", state.position_s, "in the recording that is played; else time_s");
+  a("position_s", state.position_s, "of the run, also of a recorded one");
   a("recording", state.recording, "name of the file that is written or played; empty = none");
 }
 

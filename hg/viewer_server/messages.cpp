@@ -192,6 +192,7 @@ std::string encode_scene(const Scene& scene, double update_rate_hz) {
                        .description = scene.description,
                        .rate_hz = scene.rate_hz,
                        .update_rate_hz = update_rate_hz,
+                       .begin_s = scene.begin_s,
                        .duration_s = scene.duration_s,
                        .device = chain_message(scene.device, kDeviceAddress),
                        .twin = chain_message(scene.twin, kTwinAddress),

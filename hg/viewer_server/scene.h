@@ -78,6 +78,7 @@ struct Scene {
   std::uint64_t run = 1;  ///< counts up when another run begins
   Source source = Source::kRun;
   std::string title, description;
+  double begin_s = 0.0;     ///< of a recording, in the time of its run
   double duration_s = 0.0;  ///< of a recording, or planned; 0 = open
   SceneChain device;        ///< gantry joints first, then manipulator: coordinates q_p, then q_m
   SceneChain twin;          ///< coordinates q_a

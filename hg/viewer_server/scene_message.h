@@ -15,7 +15,7 @@ struct SceneMessage {
   std::uint64_t run = 0;
   Source source = Source::kRun;
   std::string title, description;
-  double rate_hz = 0.0, update_rate_hz = 0.0, duration_s = 0.0;
+  double rate_hz = 0.0, update_rate_hz = 0.0, begin_s = 0.0, duration_s = 0.0;
   SceneChainMessage device, twin;
   int gantry_joints = 0;
   std::vector<SceneLimitMessage> limits;
@@ -40,6 +40,7 @@ void fields(Archive& a, T& scene) {
   a("description", scene.description);
   a("rate_hz", scene.rate_hz, "of the control cycle");
   a("update_rate_hz", scene.update_rate_hz, "of frames");
+  a("begin_s", scene.begin_s, "of a recording, in the time of its run");
   a("duration_s", scene.duration_s, "of a recording, or planned; 0 = open");
   a("device", scene.device);
   a("twin", scene.twin);

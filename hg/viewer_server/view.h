@@ -29,13 +29,13 @@ struct RunState {
   bool is_paused = false;
   double speed = 1.0;       ///< simulated or recorded seconds per second
   bool is_over = false;     ///< stopped, a fault, or the end of a recording
-  double position_s = 0.0;  ///< in a recording; else the time of the record
+  double position_s = 0.0;  ///< time of the run, also of a recorded one
   std::string recording;    ///< name of the file that is written or played; empty = none
 };
 
 /// A second run, shown through the first.
 struct Ghost {
-  double time_s = 0.0;  ///< in its recording
+  double time_s = 0.0;  ///< of its run
   CycleRecord record;
 };
 

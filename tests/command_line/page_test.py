@@ -222,6 +222,24 @@ class PageTest(TemporaryFolder):
             page.next("frame", lambda frame: frame["run_state"]["is_over"])
             self.end(process)
 
+    def test_a_flight_recording_is_played_in_the_time_of_its_run(self):
+        code, out, err = run("run", "door", "--fast", "--duration", "12", "--flight-recorder",
+                             "always", "--recordings", self.folder / "recordings")
+        self.assertEqual(err, "", out)
+        (file,) = (self.folder / "recordings").glob("*flight*.mcap")
+        with self.program("replay", file, "--view") as (process, link):
+            page = Page(link)
+            self.addCleanup(page.close)
+            scene = page.scene()
+            self.assertAlmostEqual(scene["begin_s"] + scene["duration_s"], 12.2, delta=0.3)
+            self.assertGreater(scene["begin_s"], 1.0)
+            self.accept(page, "pause")
+            self.accept(page, "seek", "", 5.0)
+            frame = page.next("frame", lambda frame: frame["run_state"]["position_s"] == 5.0)
+            self.assertAlmostEqual(frame["time_s"], 5.0, delta=0.03)
+            self.assertIn("12.", self.refuse(page, "seek", "", 0.5))
+            self.end(process)
+
     def test_a_file_that_is_no_recording_is_refused(self):
         file = self.folder / "no.mcap"
         file.write_text("nothing")

@@ -12,6 +12,7 @@ export interface Scene {
   description: string;
   rate_hz: number; // of the control cycle
   update_rate_hz: number; // of frames
+  begin_s: number; // of a recording, in the time of its run
   duration_s: number; // of a recording, or planned; 0 = open
   device: SceneChain;
   twin: SceneChain;
@@ -206,7 +207,7 @@ export interface RunState {
   is_paused: boolean;
   speed: number; // simulated (or recorded) seconds per second
   is_over: boolean; // stopped, a fault, or the end of a recording
-  position_s: number; // in the recording that is played; else time_s
+  position_s: number; // of the run, also of a recorded one
   recording: string; // name of the file that is written or played; empty = none
 }
 

@@ -9,6 +9,10 @@ import { GHOST_COLOR } from "./theme";
 
 const SEEK_GAP_MS = 60;
 
+function end_of(scene: Scene): number {
+  return scene.begin_s + scene.duration_s;
+}
+
 export class ReplayBar {
   private readonly part = element("replay");
   private readonly slider = make("input");
@@ -21,7 +25,6 @@ export class ReplayBar {
   constructor(private readonly store: Store) {
     this.slider.type = "range";
     this.slider.id = "scrub";
-    this.slider.min = "0";
     this.slider.step = "any";
     this.slider.setAttribute("aria-label", "Place in the recording");
     (this.ghost.firstElementChild as HTMLElement).style.background = hex_color(GHOST_COLOR);
@@ -38,7 +41,8 @@ export class ReplayBar {
 
   furnish(scene: Scene): void {
     this.part.hidden = scene.source !== "recording";
-    this.slider.max = String(scene.duration_s);
+    this.slider.min = String(scene.begin_s);
+    this.slider.max = String(end_of(scene));
     this.slider.disabled = !scene.commands.includes("seek");
   }
 
@@ -46,7 +50,7 @@ export class ReplayBar {
     if (scene.source !== "recording") return;
     const { position_s, recording } = frame.run_state;
     if (!this.is_scrubbing) this.slider.value = String(position_s);
-    write(this.time, `${time_text(position_s)} / ${time_text(scene.duration_s)}`);
+    write(this.time, `${time_text(position_s)} / ${time_text(end_of(scene))}`);
     write(this.name, recording);
     this.ghost.hidden = frame.ghost === null;
   }

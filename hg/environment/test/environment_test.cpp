@@ -439,6 +439,9 @@ TEST(Check, RefusesWhatNoSurfaceIs) {
   surface = table();
   surface.shape = Mesh();
   EXPECT_EQ(message(surface), "surface table: a mesh needs triangles, got none");
+  surface.shape = Mesh({{Vector3d(0, 0, 0), Vector3d(400, 0, 0), Vector3d(0, 300, 0)}});
+  EXPECT_EQ(message(surface),
+            "surface table: size (scale: 0.001 for millimetres) must be 0.001 .. 100, got 400");
   EXPECT_EQ(message_of([] { Environment(std::vector<Surface>(65, table()), kDt); }),
             "surfaces: at most 64, got 65");
 }

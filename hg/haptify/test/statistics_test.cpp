@@ -17,10 +17,9 @@ TEST(MeanOf, IsStudentsIntervalOfAKnownExample) {
   constexpr double kMean = 9.261460, kDeviation = 0.022789;
   constexpr int kCount = 195;
   std::vector<double> values = {kMean};
-  const double off = kDeviation * std::sqrt((kCount - 1.0) / (kCount - 1.0));
   for (int i = 0; i < (kCount - 1) / 2; ++i) {
-    values.push_back(kMean - off);
-    values.push_back(kMean + off);
+    values.push_back(kMean - kDeviation);
+    values.push_back(kMean + kDeviation);
   }
   const Mean mean = mean_of(values);
   EXPECT_EQ(mean.count, 195u);

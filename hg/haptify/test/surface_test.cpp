@@ -60,10 +60,10 @@ TEST(Slide, IsTheBodysOwnForce) {
 
 TEST(Knock, CalmsDownOnAMildSurfaceAndNotOnAStiffOneUnderALightBody) {
   const SurfaceConfig config;
-  EXPECT_EQ(knock(walk(), config, 1000.0, 20.0), Verdict::kStable);
+  EXPECT_EQ(knock(walk(), config, 1000.0, 20.0).verdict, Verdict::kStable);
   config::Scenario light = walk();
   experiments::set_free_twin(light, {.mass = 2.0, .damping = 2.0});
-  EXPECT_NE(knock(light, config, 50'000.0, 0.0), Verdict::kStable);
+  EXPECT_NE(knock(light, config, 50'000.0, 0.0).verdict, Verdict::kStable);
 }
 
 TEST(StiffestCalm, EndsBelowTheFirstThatIsNot) {

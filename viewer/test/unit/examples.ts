@@ -23,6 +23,7 @@ export const scene: Scene = {
   description: "",
   rate_hz: 1000,
   update_rate_hz: 60,
+  begin_s: 0,
   duration_s: 0,
   device: {
     urdf: "",
