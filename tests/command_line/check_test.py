@@ -109,7 +109,7 @@ class Check(unittest.TestCase):
         self.assertEqual(check(twin)[0], 0)
         code, out, _ = check(DEVICE, twin)
         self.assertEqual(code, 2)
-        self.assertRegex(out, r"twin\.yaml:7:\d+: fault: placement: ")
+        self.assertRegex(out, r"twin\.yaml:8:\d+: fault: placement: ")
 
     def test_files_that_are_no_kind_of_ours(self):
         odd = self.folder / "odd.yaml"

@@ -208,14 +208,14 @@ class PageTest(TemporaryFolder):
             self.addCleanup(page.close)
             scene = page.scene()
             self.assertEqual((scene["source"], scene["title"]), ("recording", "Door"))
-            self.assertAlmostEqual(scene["duration_s"], 4.0, delta=0.1)
+            self.assertAlmostEqual(scene["duration_s"], 4.2, delta=0.2)  # with the stop
             self.assertIn("<robot", page.get("/models/twin.urdf"))
             self.accept(page, "pause")
             self.accept(page, "seek", "", 2.5)
             frame = page.next("frame", lambda frame: frame["run_state"]["position_s"] == 2.5)
             self.assertAlmostEqual(frame["time_s"], 2.5, delta=0.03)
             self.assertAlmostEqual(frame["ghost"]["time_s"], 2.5, delta=0.03)
-            self.assertIn("4.0", self.refuse(page, "seek", "", 99))
+            self.assertIn("0.000 .. 4.", self.refuse(page, "seek", "", 99))
             self.assertIn("recording", self.refuse(page, "set", "mass_scale", 2))
             self.accept(page, "restart")
             self.accept(page, "resume")
@@ -226,7 +226,7 @@ class PageTest(TemporaryFolder):
         code, out, err = run("run", "door", "--fast", "--duration", "12", "--flight-recorder",
                              "always", "--recordings", self.folder / "recordings")
         self.assertEqual(err, "", out)
-        (file,) = (self.folder / "recordings").glob("*flight*.mcap")
+        (file,) = (self.folder / "recordings").glob("*_stop_*.mcap")
         with self.program("replay", file, "--view") as (process, link):
             page = Page(link)
             self.addCleanup(page.close)

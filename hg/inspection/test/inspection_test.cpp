@@ -335,7 +335,7 @@ TEST(Pair, TwinOutOfReachIsAFaultAtItsPlacement) {
   ASSERT_FALSE(findings.empty());
   EXPECT_EQ(findings.front().severity, Severity::kFault);
   EXPECT_EQ(findings.front().item, "placement");
-  EXPECT_EQ(findings.front().place.line, 7);
+  EXPECT_EQ(findings.front().place.line, 8);
 }
 
 TEST(Pair, AccelerationThatTheHandCannotBrakeIsNamedWithTheOneItCan) {
