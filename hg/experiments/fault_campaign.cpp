@@ -345,12 +345,24 @@ std::vector<Cells> table_of(const Campaign& campaign) {
   return table;
 }
 
+std::string list_of_kinds() {
+  std::string text = "| fault | what goes wrong | magnitude |\n| --- | --- | --- |\n";
+  for (const injection::Kind& kind : injection::kinds()) {
+    const std::string magnitude =
+        kind.unit.empty() ? "-"
+                          : fmt::format("{}{:g} .. {:g} {}", kind.has_sign ? "+- " : "",
+                                        kind.magnitude.lb, kind.magnitude.ub, kind.unit);
+    text += fmt::format("| {} | {} | {} |\n", kind.name, kind.what, magnitude);
+  }
+  return text;
+}
+
 std::string verdict_of(const Campaign& campaign) {
   const auto bad = std::ranges::count_if(
       campaign.cases, [&](const FaultCase& result) { return !is_good(campaign.config, result); });
   return fmt::format(
-      "{} of {} faults unnoticed, beyond {:g} rad or m outside, beyond {:g} N or lost from their "
-      "recording",
+      "{} of {} faults went unnoticed, took the device farther than {:g} rad or m outside a limit, "
+      "pushed the person with more than {:g} N, or are missing from their recording",
       bad, campaign.cases.size(), campaign.config.excess_bound, campaign.config.force_bound);
 }
 
@@ -378,22 +390,6 @@ std::string to_text(const Campaign& campaign) {
   }
   return text + verdict_of(campaign) + "\n";
 }
-
-namespace {
-
-std::string list_of_kinds() {
-  std::string text = "| fault | what goes wrong | magnitude |\n| --- | --- | --- |\n";
-  for (const injection::Kind& kind : injection::kinds()) {
-    const std::string magnitude =
-        kind.unit.empty() ? "-"
-                          : fmt::format("{}{:g} .. {:g} {}", kind.has_sign ? "+- " : "",
-                                        kind.magnitude.lb, kind.magnitude.ub, kind.unit);
-    text += fmt::format("| {} | {} | {} |\n", kind.name, kind.what, magnitude);
-  }
-  return text;
-}
-
-}  // namespace
 
 std::string to_markdown(const Campaign& campaign) {
   const auto line = [](const auto& cells) {
