@@ -69,7 +69,8 @@ std::vector<std::string> missed(const Benchmark& result) {
   for (const Figure& figure : result.table) {
     if (!figure.is_measured() || figure.meets_goal()) continue;
     sentences.push_back(fmt::format("{}: {} instead of {} {}. {}", figure.name, measured(figure),
-                                    goal_text(figure), figure.unit, figure.why));
+                                    goal_text(figure), figure.unit,
+                                    figure.why.empty() ? "The reason is not known." : figure.why));
   }
   return sentences;
 }

@@ -358,9 +358,8 @@ void add_faults(CLI::App& app, hg::apps::FaultsArguments& arguments, int& exit_c
       "Examples:\n"
       "  hapticgiant faults\n"
       "  hapticgiant faults --cases 60 --seed 7 --scenario door --json faults.json");
-  const auto is_count = [](double value) { return value >= 1 && value == std::floor(value); };
   command->add_option("--cases", arguments.campaign.cases, "number of runs")
-      ->check(number_that("a whole number, at least 1", is_count));
+      ->check(whole_number(1.0, 1e9));
   command->add_option("--seed", arguments.campaign.seed, "of scenarios, times and sizes")
       ->check(whole_number(0.0));
   command->add_option("--scenario", arguments.scenarios, "scenarios with a script");
@@ -378,16 +377,12 @@ void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit
       "  hapticgiant haptify                      report in haptify/report.html\n"
       "  hapticgiant haptify --quick              a look, in seconds\n"
       "  hapticgiant haptify --seed 7 --repetitions 10 --out results");
-  const auto is_seed = [](double value) { return value >= 0.0 && value == std::floor(value); };
-  const auto is_count = [](double value) {
-    return value >= 2.0 && value <= 100.0 && value == std::floor(value);
-  };
   command->add_option("--out", arguments.out, "folder of the report")->capture_default_str();
   command->add_option("--seed", arguments.options.seed, "of the first repetition")
-      ->check(number_that("a whole number, at least 0", is_seed))
+      ->check(whole_number(0.0))
       ->capture_default_str();
   command->add_option("--repetitions", arguments.options.repetitions, "with other seeds")
-      ->check(number_that("a whole number from 2 to 100", is_count))
+      ->check(whole_number(2.0, 100.0))
       ->capture_default_str();
   command->add_flag("--quick", arguments.options.is_quick, "few samples and short runs");
   command->add_option("--docs", arguments.docs,

@@ -35,8 +35,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kIdle(2);
 constexpr std::chrono::milliseconds kStatusPeriod(100);
-constexpr double kSlowCycle = 0.5;     // of the period
-constexpr double kStopMargin_s = 0.1;  // of a controlled stop, after which rule 310 has acted
+constexpr double kSlowCycle = 0.5;  // of the period
 
 /// Everything that watches a run from outside the control thread.
 struct Observers {
@@ -165,7 +164,7 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   options.is_fast = arguments.is_fast;
   options.changes = scenario.changes;
   options.panel = scenario.panel;
-  options.longest_stop_s = scenario.device.monitor.stop_time + kStopMargin_s;
+  options.longest_stop_s = assembly::longest_stop_s(scenario);
   if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / options.rate_Hz;
   options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};
   // a simulated device waits for its controller: late cycles hurt nobody

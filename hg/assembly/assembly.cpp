@@ -266,4 +266,9 @@ double planned_duration_s(const config::Scenario& scenario) {
   return script.grasp_s + (scenario.duration_s > 0.0 ? scenario.duration_s : script.duration_s);
 }
 
+double longest_stop_s(const config::Scenario& scenario) {
+  constexpr double kMargin = 0.1;
+  return scenario.device.monitor.stop_time + kMargin;
+}
+
 }  // namespace hg::assembly

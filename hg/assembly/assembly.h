@@ -34,4 +34,7 @@ evaluation::Summary make_summary(const config::Scenario& scenario);
 /// Seconds until everything planned has happened; 0 = nothing is planned.
 double planned_duration_s(const config::Scenario& scenario);
 
+/// After which a device that is being stopped is left to its brakes: rule 310 has acted by then.
+double longest_stop_s(const config::Scenario& scenario);
+
 }  // namespace hg::assembly

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,15 @@ void describe(V& v, Placement& placement) {
   v.number("roll_rad", placement.roll, kAnyNumber, "about x, first");
   v.number("pitch_rad", placement.pitch, kAnyNumber, "about y, second");
   v.number("yaw_rad", placement.yaw, kAnyNumber, "about z, last");
+}
+
+/// A value per manipulator joint. A faulty file may name more of them than a device can have: those
+/// are told elsewhere, and left out here.
+inline VectorM per_joint(std::size_t joints, double value) {
+  return VectorM::Constant(std::min(static_cast<int>(joints), kMaxManipulator), value);
+}
+inline void set_joint(VectorM& values, int index, double value) {
+  if (index < values.size()) values[index] = value;
 }
 
 }  // namespace hg::config

@@ -119,12 +119,13 @@ void describe(V& v, DeviceJoint& joint, bool is_gantry) {
 template <class V>
 void describe(V& v, rendering::VirtualJoint& joint, const std::vector<std::string>& names) {
   v.words("name", joint.name, "shown with the limit", Need::kRequired);
-  joint.weights = VectorM::Zero(static_cast<int>(names.size()));
+  joint.weights = per_joint(names.size(), 0.0);
   v.numbers_by_name(
       "weights", names, "a manipulator joint", kAnyNumber,
-      [&](int index, double weight) { joint.weights[index] = weight; },
+      [&](int index, double weight) { set_joint(joint.weights, index, weight); },
       "factor of each revolute joint in the sum");
-  v.rule(names.empty() || joint.weights.norm() > 0.0, "weights",
+  const bool is_complete = !names.empty() && names.size() <= kMaxManipulator;
+  v.rule(!is_complete || joint.weights.norm() > 0.0, "weights",
          "at least one joint must have a weight");
   describe_positions(v, joint.limits, JointUnit::kAngle);
   describe_ratings(v, joint.limits, JointUnit::kAngle, Need::kRequired);
@@ -158,10 +159,10 @@ void describe_limits(V& v, DeviceDraft& d) {
         describe(child, d.joints[static_cast<std::size_t>(index)], is_gantry);
       },
       "limits; what is not given is taken from the URDF");
-  d.posture = VectorM::Constant(static_cast<int>(d.manipulator_names.size()), kNoDefault);
+  d.posture = per_joint(d.manipulator_names.size(), kNoDefault);
   v.numbers_by_name(
       "posture", d.manipulator_names, "a manipulator joint", kAnyNumber,
-      [&](int index, double goal) { d.posture[index] = goal; },
+      [&](int index, double goal) { set_joint(d.posture, index, goal); },
       "where these joints should be, rad or m: the gantry moves so that they are, a seventh joint "
       "goes there, and the start is chosen near it");
   v.list(

@@ -68,7 +68,7 @@ void describe(V& v, user::HandImpedance& hand) {
   v.number("force_max_N", hand.force_max, kPositive, "the arm pulls no harder");
   v.number("torque_max_Nm", hand.torque_max, kPositive, "the hand turns no harder");
   v.number("press_force_N", hand.press_force, kNotNegative,
-           "of a mouse that presses the lever, besides as much as it pulls");
+           "of a mouse, down at the lever; plus as much as it pulls sideways");
   v.number("tremor_N", hand.tremor_rms, kNotNegative,
            "root mean square of the tremor of 8 to 12 Hz along each axis; 0 = none");
 }

@@ -113,10 +113,10 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
   v.group(
       "end_stops", [&](auto& child) { describe_end_stops(child, draft.simulation); },
       "buffers at the ends of all joints");
-  draft.simulation.gear_ratio = VectorM::Ones(static_cast<int>(manipulator.size()));
+  draft.simulation.gear_ratio = per_joint(manipulator.size(), 1.0);
   v.numbers_by_name(
       "gear_ratio", manipulator, "a joint of the manipulator", kPositive,
-      [&](int index, double ratio) { draft.simulation.gear_ratio[index] = ratio; },
+      [&](int index, double ratio) { set_joint(draft.simulation.gear_ratio, index, ratio); },
       "turns of the motor per turn of the joint, 1 where not given");
   v.group(
       "sensors", [&](auto& child) { describe(child, draft.simulation.sensors); },

@@ -206,7 +206,7 @@ rendering::DeviceModel make_model(model::Chain chain, const DeviceDraft& draft) 
 Simulation ideal_simulation(const DeviceDraft& draft) {
   Simulation simulation;
   simulation.sensors = simulation::ideal_sensors();
-  simulation.gear_ratio = VectorM::Ones(static_cast<int>(draft.manipulator.size()));
+  simulation.gear_ratio = per_joint(draft.manipulator.size(), 1.0);
   return simulation;
 }
 

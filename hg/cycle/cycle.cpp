@@ -287,18 +287,20 @@ void Cycle::hold(CycleRecord& record) noexcept {
   rendering.calming = {};
 }
 
-// A stop that was asked for comes gently to whoever holds the handle, all others at once.
+// A stop that was asked for comes gently to whoever held the handle, all others at once.
 void Cycle::render(bool is_held, CycleRecord& record) noexcept {
   const bool is_stopping = state_.supervisor.mode() == Mode::kStopping;
   double& share = state_.force_share;
-  const bool is_gentle = is_held && state_.supervisor.state == safety::State::kToArmed;
+  const bool is_alone = state_.supervisor.state == safety::State::kAutonomous;
+  if (!is_stopping) state_.was_alone = is_alone;
+  const bool is_gentle =
+      is_held && !state_.was_alone && state_.supervisor.state == safety::State::kToArmed;
   if (is_stopping && !is_gentle) share = 0.0;
   pulled_back_ = state_.rendering.reference.q_m;
   const bool has_left =
       rendering_.stay_near(record.robot, config_.control.error_max, state_.rendering);
   if (has_left) pulled_back_ -= state_.rendering.reference.q_m;
   if (!has_left) pulled_back_.resize(0);
-  const bool is_alone = state_.supervisor.state == safety::State::kAutonomous;
   const double speed = is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
   rendering_.step(state_.rendering, is_stopping ? kBrakingRate * (1.0 - share) : 0.0, record, share,
                   speed / std::sqrt(3.0));

@@ -57,6 +57,7 @@ struct State {
   bool brakes_joints = false;     ///< no solution, or a collision ahead: each brakes by itself
   bool is_coasting = false;       ///< joints or gantry moved in the last sample
   bool is_apart = false;          ///< the held twin cannot be where the handle is
+  bool was_alone = false;         ///< ran autonomously when it last rendered without stopping
   double force_share = 0.0;       ///< of the forces that act on the twin, 0..1: come in by a ramp
 };
 

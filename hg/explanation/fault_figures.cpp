@@ -43,6 +43,7 @@ bool is_yes_or_no(FaultCode code) {
     case FaultCode::kScannerField:
     case FaultCode::kSafetyInputsDisagree:
     case FaultCode::kDriveFault:
+    case FaultCode::kSolverFailed:
       return true;
     default:
       return false;
@@ -119,7 +120,8 @@ std::string figures_of(const Fault& fault, const Names& names, const SensorFrame
   std::string text = part_of(fault, names, sensors);
   const char* separator = text.empty() ? "" : ": ";
   if (!std::isfinite(fault.value)) return fmt::format("{}{}not finite", text, separator);
-  if (is_yes_or_no(fault.code)) return text;
+  const bool has_figures = fault.value != 0.0 || fault.limit != 0.0;
+  if (is_yes_or_no(fault.code) || !has_figures) return text;
   return fmt::format("{}{}{:.4g}, limit {:.4g}", text, separator, fault.value, fault.limit);
 }
 

@@ -186,6 +186,7 @@ void add_dynamics(const Group& group) {
                                one.fit.r2,      one.mean,        one.largest};
       for (std::size_t k = 0; k < columns.size(); ++k) columns[k].push_back(values[k]);
     }
+    if (columns[0].empty()) continue;
     const bool is_force = axis < 3;
     const char* units_force[] = {"kg", "Ns/m", "N", "", "N", "N"};
     const char* units_torque[] = {"kg m^2", "Nms/rad", "Nm", "", "Nm", "Nm"};

@@ -65,9 +65,13 @@ void add_transparency(const Group& group) {
                      .note = fmt::format("up to here the handle follows the rendered body within 3 "
                                          "dB, of {:g} Hz at most; along the worst axis",
                                          config.frequency_Hz.back())};
+  bool has_all = true;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     const std::string name(1, "xyz"[axis]);
-    if (!group.has_worked("transparency along " + name, axes[axis].failure)) continue;
+    if (!group.has_worked("%s" + name, axes[axis].failure)) {
+      has_all = false;
+      continue;
+    }
     std::vector<double> frequency, ratio, following;
     for (const Answer& answer : axes[axis].answers) {
       const std::complex<double> relative = answer.impedance / answer.twin;
@@ -84,6 +88,7 @@ void add_transparency(const Group& group) {
     keep_lowest(bandwidth(frequency, ratio, kWithin3dB), felt);
     keep_lowest(bandwidth(frequency, following, kWithin3dB), position);
   }
+  if (!has_all) felt.values = position.values = {};  // the worst axis may be the one that failed
   group.out.beyond.push_back(felt);
   group.out.beyond.push_back(position);
   group.out.tables.push_back(table);
@@ -117,9 +122,13 @@ void add_force_response(const Group& group) {
                      .note =
                          "up to here the force at that hand is within 3 dB of the commanded one: "
                          "the body's mass on the hand's spring swings"};
+  bool has_all = true;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     const std::string name(1, "xyz"[axis]);
-    if (!group.has_worked("force response along " + name, axes[axis].failure)) continue;
+    if (!group.has_worked("%s" + name, axes[axis].failure)) {
+      has_all = false;
+      continue;
+    }
     std::vector<double> frequency, ratio, rendered;
     for (const ForceAnswer& answer : axes[axis].answers) {
       frequency.push_back(answer.frequency_Hz);
@@ -135,6 +144,7 @@ void add_force_response(const Group& group) {
     keep_lowest(bandwidth(frequency, ratio, kWithin3dB), figure);
     keep_lowest(bandwidth(frequency, rendered, kWithin3dB), absolute);
   }
+  if (!has_all) figure.values = absolute.values = {};
   group.out.beyond.push_back(figure);
   group.out.beyond.push_back(absolute);
   group.out.tables.push_back(table);

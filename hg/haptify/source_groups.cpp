@@ -66,7 +66,7 @@ std::string why_centroid(const std::vector<Source>& sources, std::size_t ways, d
   }
   return text +
          "What shakes a real handle there (teeth, drives, bending links) is not simulated; a "
-         "higher figure would mean more vibration or another machine, not a better feel.";
+         "higher figure means another machine or more vibration, not a better feel.";
 }
 
 }  // namespace
@@ -110,7 +110,8 @@ void add_sources(const Group& group) {
     }
   }
   const auto figure = std::ranges::find(group.out.table, "free_space_centroid", &Figure::id);
-  if (figure != group.out.table.end() && has_all) {
+  const bool is_telling = has_all && !group.options.is_quick;  // which measures too few
+  if (figure != group.out.table.end() && is_telling) {
     figure->why = why_centroid(sources, ways.size(), config.duration_s);
   }
   group.out.tables.push_back(table);

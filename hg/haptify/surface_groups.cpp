@@ -113,6 +113,7 @@ void add_stiffness(const Group& group) {
       force.push_back(one.force);
       of_repetition[i].push_back(one.accuracy);
     }
+    if (slopes.empty()) continue;
     twin.push_back(mean_value(rendered));
     const Mean slope = mean_of(slopes);
     table.rows.push_back({fmt::format("{:g}", stiffness[k]),
@@ -149,10 +150,13 @@ void add_peak(const Group& group) {
                                        config.peak_force, group.scenario.device.monitor.force_max)};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string what = fmt::format("peak force, seed {}", group.seed(i));
-    if (group.has_worked(what, all[i].failure)) figure.values.push_back(all[i].force);
+    if (!group.has_worked(what, all[i].failure)) continue;
+    if (figure.values.empty()) {
+      figure.why = "It ended: " + all[i].end + ".";
+      figure.note += "; it ended: " + all[i].end;
+    }
+    figure.values.push_back(all[i].force);
   }
-  figure.why = "It ended: " + all.front().end + ".";
-  figure.note += "; it ended: " + all.front().end;
   group.out.table.push_back(figure);
 }
 

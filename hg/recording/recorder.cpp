@@ -31,6 +31,7 @@ static_assert(kRingSeconds + kFlushSeconds < 1.0, "the promise of docs/recording
 constexpr double kToolRate_Hz = 100.0;  // of the messages for other tools
 constexpr auto kPollPeriod = 5ms;       // the loop may not wake the thread: that is a system call
 constexpr int kIdlePolls = 50;          // then a loop that stands still is flushed, too
+constexpr int kTouchPolls = 2000;  // 10 s: no other run takes the file of a paused one for broken
 constexpr auto kWaitForPlace = 100us;
 constexpr double kBudgetStep = 0.01;  // of the budget: how far a file grows between two looks at it
 
@@ -122,6 +123,7 @@ class Recorder::Writer {
   void write(const Sample& sample);
   void write_events();
   void flush();
+  void show_that_it_is_written();
   void keep_budget();
   void end(const std::string& why);
   std::uint64_t log_time(double time_s) const;
@@ -232,14 +234,20 @@ RecordingSummary Recorder::Writer::close() {
   return summary;
 }
 
+void Recorder::Writer::show_that_it_is_written() {
+  std::error_code ignored;
+  std::filesystem::last_write_time(path_, std::filesystem::file_time_type::clock::now(), ignored);
+}
+
 void Recorder::Writer::run() {
-  int idle_polls = 0;
+  int idle_polls = 0, polls = 0;
   try {
     while (!is_closing_) {
       const bool has_written = write_waiting_samples();
       if (!is_reproducible_) write_events();
       idle_polls = has_written ? 0 : std::min(idle_polls + 1, kIdlePolls + 1);
       if (idle_polls == kIdlePolls && !is_reproducible_) flush();
+      if (++polls % kTouchPolls == 0) show_that_it_is_written();
       if (!has_written) std::this_thread::sleep_for(kPollPeriod);
     }
     write_waiting_samples();

@@ -27,7 +27,7 @@ struct Recording {
   double bytes;
 };
 
-// by another run; a recording is written at least every second, and a broken one no more
+// by another run; one that is paused is written now and then as well, and a broken one no more
 bool is_being_written(const fs::path& path) {
   if (path.stem().extension() != kPartial) return false;
   std::error_code error;

@@ -38,10 +38,10 @@ class RecordedRun {
   /// Kept samples, at least one, in their order.
   std::size_t size() const noexcept { return moments_.size(); }
   /// Of a kept sample, in s since the first.
-  /// Of the run when the first kept sample was taken: a flight recording does not begin with it.
-  double begin_s() const noexcept { return begin_s_; }
   double time_s(std::size_t index) const;
   double duration_s() const { return time_s(size() - 1); }
+  /// Time of the run at the first kept sample: a flight recording does not begin with its run.
+  double begin_s() const noexcept { return begin_s_; }
   /// The last kept sample up to `time_s`; the first before it.
   std::size_t at(double time_s) const;
   /// Throws SetupError when its bytes are damaged.

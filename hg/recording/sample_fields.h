@@ -112,7 +112,7 @@ void fields(Archive& a, T& record) {
     "0 none, 1 under way, 2 done, 3 refused: held, 4 moving, 5 unsteady, 6 running");
   a("is_tared", record.is_tared, "a tare is there, or this device needs none");
   a("is_latency_known", record.is_latency_known, "of the torque loop, or there is none");
-  a("refusal", record.refusal, "of the request: 0 none; why else: Refusal in hg/signals/state.h");
+  a("refusal", record.refusal, "of the request: 0 none; why else, docs/recording.md");
   a("robot", record.robot, "estimated state of the device");
   a("reference", record.reference, "integrated reference of the manipulator");
   a("twin", record.twin);

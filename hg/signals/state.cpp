@@ -102,8 +102,8 @@ std::string_view to_string(Refusal refusal) noexcept {
     case Refusal::kStillMoving:
       return "not armed: the device still moves";
     case Refusal::kTwinApart:
-      return "not armed: the twin cannot be where the handle is; do both ends run the same "
-             "scenario?";
+      return "not armed: the twin cannot be where the handle is; bring the handle back (a remote "
+             "device: is it of the same scenario?)";
   }
   return "unknown";
 }

@@ -30,7 +30,7 @@ struct HandImpedance {
   double force_max = 60;      ///< the arm pulls no harder, N; [HANDBOOK] 5.3
   double torque_max = 8;      ///< Nm; [HANDBOOK] 5.3
   double press_force = 14;    ///< with HandTarget::press = 1, downwards at the handle, N, when the
-                              ///< hand does not pull; it presses harder by what it pulls level
+                              ///< hand does not pull; plus as much as it pulls sideways
   double tremor_rms = 0.035;  ///< along each axis, N; 0 = none
 };
 

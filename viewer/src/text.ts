@@ -44,6 +44,7 @@ export function unit_text(unit: string): string {
 }
 
 const SMALLEST_FORCE = 1; // N; below both, hands feel nothing
+const SMALLEST_CONTACT = 0.1; // N
 const SMALLEST_TORQUE = 0.2; // Nm
 
 // Whether the user pushes or turns at all: limits also hold what pushes against them by itself.
@@ -52,6 +53,11 @@ export function is_pushing(frame: Frame): boolean {
 }
 
 // `parts`: the largest parts of the budget in words, may be empty.
+/** Whether the surface pushes: with a share of 0 it is touched and gives nothing. */
+export function is_felt(contact: NonNullable<Frame["contact"]>): boolean {
+  return Math.hypot(...contact.force_N) >= SMALLEST_CONTACT;
+}
+
 export function felt_text(scene: Scene, frame: Frame, parts: string): string {
   if (!is_pushing(frame)) {
     return frame.active.length > 0
@@ -59,7 +65,7 @@ export function felt_text(scene: Scene, frame: Frame, parts: string): string {
       : "You do not push, so nothing pushes back.";
   }
   if (frame.felt) return frame.felt.text;
-  if (frame.contact) {
+  if (frame.contact && is_felt(frame.contact)) {
     const size = Math.hypot(...frame.contact.force_N);
     const { name } = scene.surfaces[frame.contact.surface]!;
     return `Virtual surface ${name}: ${size.toFixed(size < 9.95 ? 1 : 0)} N.`;

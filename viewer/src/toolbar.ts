@@ -144,7 +144,6 @@ export class Toolbar {
   }
 }
 
-
 // Buttons at the right: camera, layers, plots, theme.
 export function build_view_tools(
   cameras: Cameras,

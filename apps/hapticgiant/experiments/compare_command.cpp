@@ -73,14 +73,26 @@ Findings state(const RecordedSignals& a, const RecordedSignals& b) {
   const std::uint64_t first_a = a.hashes.front().cycle, first_b = b.hashes.front().cycle;
   if (first_a != first_b) findings.add(fmt::format("begins with cycle {} / {}", first_a, first_b));
   // cycle by cycle, of those that both have
+  bool is_different = false;
+  std::size_t only_first = 0, only_second = 0;
   auto other = b.hashes.begin();
   for (const CycleHash& one : a.hashes) {
-    while (other != b.hashes.end() && other->cycle < one.cycle) ++other;
+    while (other != b.hashes.end() && other->cycle < one.cycle) ++other, ++only_second;
     if (other == b.hashes.end()) break;
-    if (other->cycle != one.cycle || other->hash == one.hash) continue;
-    findings.add(fmt::format("different from cycle {} ({:.3f} s) on", one.cycle,
-                             static_cast<double>(one.cycle) / a.rate_Hz()));
-    break;
+    if (other->cycle != one.cycle) {
+      ++only_first;
+      continue;
+    }
+    if (!is_different && other->hash != one.hash) {
+      is_different = true;
+      findings.add(fmt::format("different from cycle {} ({:.3f} s) on", one.cycle,
+                               static_cast<double>(one.cycle) / a.rate_Hz()));
+    }
+    ++other;
+  }
+  if (only_first + only_second > 0) {
+    findings.add(fmt::format("{} cycles are in the first only, {} in the second only", only_first,
+                             only_second));
   }
   if (a.hashes.size() != b.hashes.size()) {
     findings.add(fmt::format("{} -> {} cycles", a.hashes.size(), b.hashes.size()));

@@ -170,6 +170,7 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = true;
   options.duration_s = arguments.duration_s.value_or(assembly::planned_duration_s(scenario));
+  options.longest_stop_s = assembly::longest_stop_s(scenario);
   options.changes = scenario.changes;
   runtime::check(options);
   cycle::Cycle cycle = assembly::make_cycle(scenario);

@@ -215,5 +215,28 @@ TEST(OwnDevice, TheEndsOfTheChainAreNamedAtTheirKeys) {
             "device.yaml:6:10: rate_Hz: must be 100 .. 20000, got 1");
 }
 
+std::string message_of_list(const std::string& manipulator) {
+  const std::string text = "name: test\nurdf: arm.urdf\nmanipulator: " + manipulator +
+                           "\nhandle: l7\nposture: {j7: 0.1}\nvirtual_joints: [{name: sum, "
+                           "weights: {j7: 1}, q_max_rad: 1, "
+                           "dq_max_rad_per_s: 1, ddq_max_rad_per_s2: 9}]\n" +
+                           kJoints;
+  SourceReader reader({{"arm.urdf", arm_urdf("revolute")}, {"device.yaml", text}});
+  try {
+    load_device("device.yaml", reader);
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Values of the joints are read all the same, so that all faults are told.
+TEST(OwnDevice, ListsOfMoreJointsThanADeviceMayHaveAreRefused) {
+  const std::string all = message_of_list("[j0, j1, j2, j3, j4, j5, j6, j7]");
+  EXPECT_NE(all.find("at most 7 joints are possible"), std::string::npos) << all;
+  const std::string wrong = message_of_list("[j1, j2, j3, j4, j5, j6, jj]");
+  EXPECT_NE(wrong.find("manipulator[6]: must be a joint"), std::string::npos) << wrong;
+}
+
 }  // namespace
 }  // namespace hg::config

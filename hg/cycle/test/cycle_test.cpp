@@ -298,6 +298,36 @@ TEST(Cycle, TheTwinMeetsTheHandleWhereJointsBrakedByThemselvesInAStopThatEndsArm
   EXPECT_LT((loop.record.T_B_H.p - loop.record.T_B_E.p).norm(), 1e-5);
 }
 
+// Of the twin's reference wrench, in the first cycle of a stop.
+double force_while_stopping(bool is_alone) {
+  Loop loop;
+  loop.sensors.safety.override_key = is_alone;
+  loop.sensors.dead_man = !is_alone;
+  for (const ModeRequest request : {ModeRequest::kNone, ModeRequest::kArm,
+                                    is_alone ? ModeRequest::kAutonomous : ModeRequest::kRun}) {
+    loop.operator_input.request = request;
+    loop.step();
+  }
+  EXPECT_EQ(loop.record.mode, Mode::kRunning);
+  loop.operator_input.request = ModeRequest::kNone;
+  loop.operator_input.change = {Parameter::kReferenceWrench, 0, 2.0};
+  loop.run(1);
+  loop.operator_input.change = {};
+  loop.run(400);
+  EXPECT_GT(loop.record.budget.surface.norm(), 1.0);
+  // somebody takes hold, or asks for a stop
+  loop.sensors.dead_man = true;
+  if (!is_alone) loop.operator_input.request = ModeRequest::kStop;
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kStopping);
+  return loop.record.budget.surface.norm();
+}
+
+TEST(Cycle, OnlyAStopThatIsAskedForLetsForcesFadeOut) {
+  EXPECT_GT(force_while_stopping(false), 1.0);
+  EXPECT_EQ(force_while_stopping(true), 0.0);
+}
+
 TEST(Cycle, AFaultLastsUntilItIsResetAndThenRunsAgain) {
   Loop loop;
   loop.start_running();

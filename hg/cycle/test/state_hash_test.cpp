@@ -62,7 +62,7 @@ TEST(StateHash, SeesEveryValueOfTheState) {
       [](State& s) { s.supervisor.fault.value = 1.0; },
       [](State& s) { s.supervisor.also.limit = 1.0; }, [](State& s) { s.cycle = 9; },
       [](State& s) { s.is_coasting = true; }, [](State& s) { s.is_apart = true; },
-      [](State& s) { s.estimation.is_started = true; },
+      [](State& s) { s.was_alone = true; }, [](State& s) { s.estimation.is_started = true; },
       [](State& s) { s.estimation.wrench.is_started = true; },
       [](State& s) { s.rendering.calming.damping = 1.0; },
       [](State& s) { s.rendering.calming.inertia = 2.0; },

@@ -229,6 +229,7 @@ TEST(FaultFigures, NameThePartTheValueAndTheLimit) {
   EXPECT_EQ(text(FaultCode::kWrenchTooLarge, 1, 30.0, 20.0), "torque in Nm: 30, limit 20");
   EXPECT_EQ(text(FaultCode::kSyncLost, -1, 0.3, 0.1), "0.3, limit 0.1");
   EXPECT_EQ(text(FaultCode::kEmergencyStop, -1, 1.0, 0.0), "");  // yes or no
+  EXPECT_EQ(text(FaultCode::kDeviceSilent, -1, 0.0, 0.0), "");
   EXPECT_EQ(text(FaultCode::kBusErrors, -1, 1.0, 0.0), "1, limit 0");
   EXPECT_EQ(text(FaultCode::kCollisionAhead, 0, 0.029, 0.03),
             "column - forearm: 0.029, limit 0.03");
