@@ -68,7 +68,7 @@ void add_transparency(const Group& group) {
   bool has_all = true;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     const std::string name(1, "xyz"[axis]);
-    if (!group.has_worked("%s" + name, axes[axis].failure)) {
+    if (!group.has_worked("transparency along " + name, axes[axis].failure)) {
       has_all = false;
       continue;
     }
@@ -125,7 +125,7 @@ void add_force_response(const Group& group) {
   bool has_all = true;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     const std::string name(1, "xyz"[axis]);
-    if (!group.has_worked("%s" + name, axes[axis].failure)) {
+    if (!group.has_worked("force response along " + name, axes[axis].failure)) {
       has_all = false;
       continue;
     }
