@@ -240,14 +240,14 @@ void Recorder::Writer::show_that_it_is_written() {
 }
 
 void Recorder::Writer::run() {
-  int idle_polls = 0, polls = 0;
+  int idle_polls = 0;
   try {
     while (!is_closing_) {
       const bool has_written = write_waiting_samples();
       if (!is_reproducible_) write_events();
-      idle_polls = has_written ? 0 : std::min(idle_polls + 1, kIdlePolls + 1);
+      idle_polls = has_written ? 0 : idle_polls % kTouchPolls + 1;
       if (idle_polls == kIdlePolls && !is_reproducible_) flush();
-      if (++polls % kTouchPolls == 0) show_that_it_is_written();
+      if (idle_polls == kTouchPolls) show_that_it_is_written();
       if (!has_written) std::this_thread::sleep_for(kPollPeriod);
     }
     write_waiting_samples();

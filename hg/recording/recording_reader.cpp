@@ -42,24 +42,53 @@ bool is_same_schema(std::string_view recorded) {
   return without_notes(recorded) == without_notes(schema_text<Sample>());
 }
 
-/// Stands between the C interface and a listener: nothing that is thrown may leave it.
+using Bytes = std::span<const std::byte>;
+
+std::string_view text_of(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Hands all items of the file to `receiver`. Stands between it and the C interface: nothing that is
+// thrown may leave that. Throws it afterwards, and SetupError.
+template <typename Receiver>
+void hand_out(const std::filesystem::path& file, Receiver& receiver) {
+  struct Call {
+    Receiver& receiver;
+    std::exception_ptr thrown;
+  } call{receiver, {}};
+  const auto take = [](void* context, int kind, const char* name, std::size_t name_size,
+                       std::uint64_t time_ns, const std::uint8_t* data, std::size_t size) {
+    Call& each = *static_cast<Call*>(context);
+    if (each.thrown) return;
+    try {
+      each.receiver.take(kind, std::string_view(name, name_size), time_ns,
+                         Bytes(reinterpret_cast<const std::byte*>(data), size));
+    } catch (...) {
+      each.thrown = std::current_exception();
+    }
+  };
+  std::array<char, 256> error{};
+  const bool is_read = mcap_sink_read(file.c_str(), &call, take, error.data(), error.size());
+  if (call.thrown) std::rethrow_exception(call.thrown);
+  if (!is_read) refuse(file, error.data());
+}
+
+// Tells a listener.
 struct Teller {
   RecordingListener& listener;
   bool has_samples = false, is_complete = false;
   std::uint64_t samples = 0;
   std::string error;
-  std::exception_ptr thrown;
   Sample sample = {};
 
-  void tell(int kind, std::string_view name, std::span<const std::byte> bytes) {
-    const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  void take(int kind, std::string_view name, std::uint64_t, Bytes bytes) {
     if (kind == mcap_end) is_complete = true;
     if (kind == mcap_attachment) {
-      listener.configuration({std::string(name), std::string(content)});
+      listener.configuration({std::string(name), std::string(text_of(bytes))});
     }
     if (kind == mcap_channel && name == kSamples) {
       has_samples = true;
-      if (!is_same_schema(content)) error = "its samples are of another version";
+      if (!is_same_schema(text_of(bytes))) error = "its samples are of another version";
     }
     if (kind != mcap_message || !error.empty()) return;
     if (name == kEvents) {
@@ -74,36 +103,20 @@ struct Teller {
     }
     ++samples;
   }
-
-  static void take(void* context, int kind, const char* name, std::size_t name_size, std::uint64_t,
-                   const std::uint8_t* data, std::size_t size) {
-    Teller& teller = *static_cast<Teller*>(context);
-    if (teller.thrown) return;
-    try {
-      teller.tell(kind, std::string_view(name, name_size),
-                  {reinterpret_cast<const std::byte*>(data), size});
-    } catch (...) {
-      teller.thrown = std::current_exception();
-    }
-  }
 };
 
 }  // namespace
 
 bool read_recording(const std::filesystem::path& file, RecordingListener& listener) {
   const auto teller = std::make_unique<Teller>(Teller{.listener = listener});
-  std::array<char, 256> error{};
-  const bool is_read =
-      mcap_sink_read(file.c_str(), teller.get(), &Teller::take, error.data(), error.size());
-  if (teller->thrown) std::rethrow_exception(teller->thrown);
-  if (!is_read) refuse(file, error.data());
+  hand_out(file, *teller);
   if (!teller->has_samples) refuse(file, "it has no topic /hapticgiant/sample");
   if (!teller->error.empty()) refuse(file, teller->error);
   if (teller->samples == 0) refuse(file, "it has no sample");
   return teller->is_complete;
 }
 
-// What the reader calls back; remembers the first thing that is wrong.
+// Remembers the first thing that is wrong.
 struct RecordedRun::Taker {
   RecordedRun& run;
   std::uint64_t period_ns;
@@ -111,7 +124,6 @@ struct RecordedRun::Taker {
   Moment last = {};  ///< that was not kept
   bool has_samples = false;
   const char* error = "";
-  std::exception_ptr thrown = {};
 
   void channel(std::string_view topic, std::string_view schema) {
     if (topic != kSamples) return;
@@ -119,7 +131,7 @@ struct RecordedRun::Taker {
     if (!is_same_schema(schema)) error = "its samples are of another version";
   }
 
-  void message(std::string_view topic, std::uint64_t time_ns, std::span<const std::byte> bytes) {
+  void message(std::string_view topic, std::uint64_t time_ns, Bytes bytes) {
     if (topic == kEvents) {
       Event event;
       if (CdrReader(bytes).decode(event)) run.events_.push_back(std::move(event));
@@ -132,28 +144,14 @@ struct RecordedRun::Taker {
     run.moments_.push_back(std::exchange(last, {}));
   }
 
-  static void take(void* context, int kind, const char* name, std::size_t name_size,
-                   std::uint64_t time_ns, const std::uint8_t* data, std::size_t size) {
-    Taker& taker = *static_cast<Taker*>(context);
-    if (taker.thrown) return;
-    try {
-      taker.tell(kind, std::string_view(name, name_size), time_ns,
-                 {reinterpret_cast<const std::byte*>(data), size});
-    } catch (...) {
-      taker.thrown = std::current_exception();
-    }
-  }
-
-  void tell(int kind, std::string_view name, std::uint64_t time_ns,
-            std::span<const std::byte> bytes) {
-    const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
     switch (kind) {
       case mcap_channel:
-        return channel(name, content);
+        return channel(name, text_of(bytes));
       case mcap_message:
         return message(name, time_ns, bytes);
       case mcap_attachment:
-        run.configuration_.push_back({std::string(name), std::string(content)});
+        run.configuration_.push_back({std::string(name), std::string(text_of(bytes))});
         return;
       default:
         return;
@@ -163,11 +161,7 @@ struct RecordedRun::Taker {
 
 RecordedRun::RecordedRun(const std::filesystem::path& file, double period_s) : file_(file) {
   Taker taker{*this, static_cast<std::uint64_t>(std::llround(1e9 * period_s))};
-  std::array<char, 256> error{};
-  if (!mcap_sink_read(file.c_str(), &taker, &Taker::take, error.data(), error.size())) {
-    refuse(file, error.data());
-  }
-  if (taker.thrown) std::rethrow_exception(taker.thrown);
+  hand_out(file, taker);
   if (!taker.has_samples) refuse(file, "it has no topic /hapticgiant/sample");
   if (*taker.error != '\0') refuse(file, taker.error);
   if (!taker.last.bytes.empty()) moments_.push_back(std::move(taker.last));
