@@ -35,20 +35,9 @@ std::vector<NamedHand> hands_of(const StabilityConfig& config) {
 
 // the hand stays where the handle is and pushes once
 void set_kick(const Kick& kick, config::Scenario& scenario) {
-  constexpr double kEdge = 1e-4;  // s: less than a step of the plant
   user::Script script;
   script.start[user::kGripChannel] = 1.0;
-  const double each = kick.force / std::sqrt(3.0);
-  for (int axis = 0; axis < 3; ++axis) {
-    const int channel = user::kWrenchChannel + axis;
-    script.segments.push_back(
-        {.start_s = kick.settling, .duration_s = kEdge, .channel = channel, .value = each});
-    script.segments.push_back({.start_s = kick.settling + kick.duration,
-                               .duration_s = kEdge,
-                               .channel = channel,
-                               .value = 0.0});
-  }
-  std::ranges::stable_sort(script.segments, {}, &user::Segment::start_s);
+  add_kick(kick, kick.settling, script);
   script.duration_s = kick.settling + kick.duration + kick.watched;
   play_script(scenario, script);
 }
@@ -105,6 +94,19 @@ KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) 
 }
 
 }  // namespace
+
+void add_kick(const Kick& kick, double at_s, user::Script& script) {
+  constexpr double kEdge = 1e-4;  // s: less than a step of the plant
+  const double each = kick.force / std::sqrt(3.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int channel = user::kWrenchChannel + axis;
+    script.segments.push_back(
+        {.start_s = at_s, .duration_s = kEdge, .channel = channel, .value = each});
+    script.segments.push_back(
+        {.start_s = at_s + kick.duration, .duration_s = kEdge, .channel = channel, .value = 0.0});
+  }
+  std::ranges::stable_sort(script.segments, {}, &user::Segment::start_s);
+}
 
 user::HandImpedance spring_hand(const SpringHand& hand, double stiffness) {
   const auto damping = [&](double ratio, double spring) {

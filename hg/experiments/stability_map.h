@@ -32,6 +32,9 @@ struct Kick {
   double watched = 4.0;    ///< after the kick, s; see CalmRule
 };
 
+/// Pushes once, from `at_s` of the script on.
+void add_kick(const Kick& kick, double at_s, user::Script& script);
+
 struct StabilityConfig {
   std::vector<double> stiffness{100, 300, 1000, 2000, 3000, 6000};  ///< N/m, of spring hands; [C] 3
   std::vector<double> mass{0.5, 1, 1.5, 2, 3, 4, 6, 10, 20};        ///< of the twin, kg; [C] 3

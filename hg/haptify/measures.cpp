@@ -9,7 +9,7 @@
 
 #include "hg/evaluation/reality.h"
 #include "hg/experiments/motion_analysis.h"
-#include "hg/inspection/survey.h"
+#include "hg/simulation/random_stream.h"
 
 namespace hg::haptify {
 namespace {
@@ -50,14 +50,13 @@ std::array<double, kBandEdges.size() - 1> band_rms(const std::vector<double>& si
 
 Signal with_noise(std::span<const Eigen::Vector3d> signal, double density, double rate_Hz,
                   std::uint64_t seed) {
-  inspection::Random random(seed);
   const double sigma = density * std::sqrt(rate_Hz);
   Signal noisy(signal.begin(), signal.end());
-  for (Eigen::Vector3d& value : noisy) {
-    for (int axis = 0; axis < 3; ++axis) {  // Box, Muller 1958
-      const double radius = std::sqrt(-2.0 * std::log(1.0 - random.next()));
-      value[axis] += sigma * radius * std::cos(2.0 * std::numbers::pi * random.next());
-    }
+  for (int axis = 0; axis < 3; ++axis) {
+    // not that of the device's own sensor, which has moved the handle
+    const int channel = 3 + axis;
+    simulation::RandomStream random(seed, simulation::RandomEffect::kAccelerometerNoise, channel);
+    for (Eigen::Vector3d& value : noisy) value[axis] += sigma * random.gaussian();
   }
   return noisy;
 }

@@ -190,23 +190,15 @@ Peak measure_peak(const config::Scenario& scenario, const SurfaceConfig& config,
 
 Knock knock(const config::Scenario& scenario, const SurfaceConfig& config, double stiffness,
             double damping) {
-  constexpr double kKick = 15.0, kKickFor = 0.01, kEdge = 1e-4;  // as in experiments::Kick
+  const experiments::Kick kick;
   user::HandImpedance hand = user::hand(user::HandPreset::kNormal);
   hand.tremor_rms = 0.0;
   const double down = aim(hand, stiffness, config.clearance, config.knock_press);
   const double kick_s = kRest + 2.0, watched_s = 3.5 * config.calm.window;
   user::Script script;
   script.segments.push_back(move(kRest, 1.0, kHeight, -down));
-  for (int axis = 0; axis < 3; ++axis) {
-    const int channel = user::kWrenchChannel + axis;
-    const double each = kKick / std::sqrt(3.0);
-    script.segments.push_back(
-        {.start_s = kick_s, .duration_s = kEdge, .channel = channel, .value = each});
-    script.segments.push_back(
-        {.start_s = kick_s + kKickFor, .duration_s = kEdge, .channel = channel, .value = 0.0});
-  }
-  std::ranges::stable_sort(script.segments, {}, &user::Segment::start_s);
-  script.duration_s = kick_s + kKickFor + watched_s;
+  add_kick(kick, kick_s, script);
+  script.duration_s = kick_s + kick.duration + watched_s;
   config::Scenario knocked =
       with_hand(above_surface(scenario, config, stiffness, damping), hand, script);
   knocked.device.passivity.reaction = passivity::Reaction::kOff;
@@ -214,7 +206,7 @@ Knock knock(const config::Scenario& scenario, const SurfaceConfig& config, doubl
   std::vector<double> speed;
   bool has_touched = false;
   for (const Instant& now : played.instants) {
-    if (now.time_s >= kick_s + kKickFor) speed.push_back(std::abs(now.twist.z()));
+    if (now.time_s >= kick_s + kick.duration) speed.push_back(std::abs(now.twist.z()));
     has_touched = has_touched || (now.time_s < kick_s && now.p_B_E.z() < config.position.z());
   }
   if (!has_touched) {
