@@ -188,10 +188,8 @@ void Explainer::add_others(const Sample& sample) {
   }
   for (int i = 0; i < 32; ++i) {
     if (((record.sanitised >> i) & 1U) == 0) continue;
-    const std::string which = i < 16 ? joint(i)
-                                     : (i - 16 < static_cast<int>(names_.gantry.size())
-                                            ? names_.gantry[static_cast<std::size_t>(i - 16)]
-                                            : fmt::format("gantry {}", i - 16));
+    const std::string which =
+        i < 16 ? name_in(names_.joints, i, "number") : name_in(names_.gantry, i - 16, "gantry");
     extend("command", which + ": the sanitiser changed it before it left", record.time_s);
   }
   if (record.solver_status == SolverStatus::kIterationLimit ||
@@ -231,12 +229,6 @@ void Explainer::close_spans(double now_s, bool all) {
     }
     it = spans_.erase(it);
   }
-}
-
-std::string Explainer::joint(int index) const {
-  const bool is_known = index >= 0 && index < static_cast<int>(names_.joints.size());
-  return is_known ? names_.joints[static_cast<std::size_t>(index)]
-                  : fmt::format("number {}", index);
 }
 
 void Explainer::add_fault(const Sample& sample) {

@@ -75,7 +75,6 @@ class Explainer {
   void extend(const char* kind, const std::string& text, double time_s, double value = 0.0,
               const char* unit = "");
   void close_spans(double now_s, bool all);
-  std::string joint(int index) const;
 
   Names names_;
   std::vector<Entry> entries_;

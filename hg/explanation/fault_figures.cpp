@@ -6,12 +6,13 @@
 #include <initializer_list>
 
 namespace hg::explanation {
-namespace {
 
 std::string name_in(const std::vector<std::string>& list, int index, const char* otherwise) {
   const bool is_known = index >= 0 && index < static_cast<int>(list.size());
   return is_known ? list[static_cast<std::size_t>(index)] : fmt::format("{} {}", otherwise, index);
 }
+
+namespace {
 
 // Vectors that follow each other, as they are counted where the fault is found.
 struct Group {

@@ -18,6 +18,9 @@ struct Names {
   LimitCatalogue limits;
 };
 
+/// The name, or "OTHERWISE INDEX" where the list has none.
+std::string name_in(const std::vector<std::string>& list, int index, const char* otherwise);
+
 /// "m4", "torque sensor m2"; empty = no part. `sensors` tells which values the device has.
 std::string part_of(const Fault& fault, const Names& names, const SensorFrame& sensors);
 

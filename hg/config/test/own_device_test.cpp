@@ -7,7 +7,7 @@
 #include <string>
 
 #include "hg/config/device.h"
-#include "hg/core/error.h"
+#include "hg/core/test/message_of.h"
 
 namespace hg::config {
 namespace {
@@ -51,12 +51,7 @@ SourceReader reader_of(const std::string& rest, const std::string& urdf, const s
 std::string message(const std::string& rest, const std::string& urdf = arm_urdf("revolute"),
                     const std::string& tool = kTool) {
   SourceReader reader = reader_of(rest, urdf, tool);
-  try {
-    load_device("device.yaml", reader);
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "no error";
+  return message_of([&] { load_device("device.yaml", reader); });
 }
 
 const std::string kGantry = "gantry: [j0, j1]\nposture: {j2: 0.5}\n";
@@ -222,12 +217,7 @@ std::string message_of_list(const std::string& manipulator) {
                            "dq_max_rad_per_s: 1, ddq_max_rad_per_s2: 9}]\n" +
                            kJoints;
   SourceReader reader({{"arm.urdf", arm_urdf("revolute")}, {"device.yaml", text}});
-  try {
-    load_device("device.yaml", reader);
-  } catch (const SetupError& error) {
-    return error.what();
-  }
-  return "no error";
+  return message_of([&] { load_device("device.yaml", reader); });
 }
 
 // Values of the joints are read all the same, so that all faults are told.
