@@ -53,9 +53,9 @@ export function is_pushing(frame: Frame): boolean {
 }
 
 // `parts`: the largest parts of the budget in words, may be empty.
-/** Whether the surface pushes: with a share of 0 it is touched and gives nothing. */
-export function is_felt(contact: NonNullable<Frame["contact"]>): boolean {
-  return Math.hypot(...contact.force_N) >= SMALLEST_CONTACT;
+/** The virtual surface that pushes: of one whose share is 0 nothing is felt. */
+export function felt_contact({ contact }: Frame): Frame["contact"] {
+  return contact && Math.hypot(...contact.force_N) >= SMALLEST_CONTACT ? contact : null;
 }
 
 export function felt_text(scene: Scene, frame: Frame, parts: string): string {
@@ -65,9 +65,10 @@ export function felt_text(scene: Scene, frame: Frame, parts: string): string {
       : "You do not push, so nothing pushes back.";
   }
   if (frame.felt) return frame.felt.text;
-  if (frame.contact && is_felt(frame.contact)) {
-    const size = Math.hypot(...frame.contact.force_N);
-    const { name } = scene.surfaces[frame.contact.surface]!;
+  const contact = felt_contact(frame);
+  if (contact) {
+    const size = Math.hypot(...contact.force_N);
+    const { name } = scene.surfaces[contact.surface]!;
     return `Virtual surface ${name}: ${size.toFixed(size < 9.95 ? 1 : 0)} N.`;
   }
   if (parts === "") return "Nothing holds you.";

@@ -11,7 +11,7 @@ import {
 } from "../limit_words";
 import type { ActiveLimit, Frame, Scene } from "../messages";
 import { fill, make, make_button, write } from "../page";
-import { felt_text, is_felt, is_pushing } from "../text";
+import { felt_contact, felt_text, is_pushing } from "../text";
 import { type Kind, PARTS, PART_NAMES, type Part, limits_matter, shares, summary, total } from "./budget";
 
 const FULL_FORCE = 80; // N, of a full bar
@@ -86,7 +86,7 @@ export class FeelPanel {
     const parts = shares(frame.budget, "force");
     const felt = limits_matter(frame.budget) ? frame.felt : null;
     write(this.reason, felt_text(scene, { ...frame, felt }, summary(parts)));
-    const is_held = felt !== null || (frame.contact !== null && is_felt(frame.contact));
+    const is_held = felt !== null || felt_contact(frame) !== null;
     this.reason.dataset.held = String(is_held && is_pushing(frame));
     this.show_acting(scene, frame);
     this.show_near(scene, frame);

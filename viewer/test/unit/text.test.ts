@@ -111,6 +111,8 @@ describe("felt_text", () => {
     expect(felt_text(room, touching, "mostly damping")).toBe("Virtual surface wall: 5.0 N.");
     const free = { ...touching, force_N: zero, torque_Nm: zero };
     expect(felt_text(room, free, "")).toContain("do not push");
+    const stopped = { ...touching, contact: { ...contact, force_N: zero } };
+    expect(felt_text(room, stopped, "mostly damping")).toBe("No limit: mostly damping.");
   });
 });
 
