@@ -48,7 +48,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build test experiments bench bench-instructions sanitize rtsan rtsan-tests fuzz soak format check clean
+.PHONY: demo build test experiments bench bench-instructions sanitize rtsan rtsan-set-up rtsan-tests fuzz soak format check clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -88,9 +88,11 @@ sanitize:
 	$(call run_tests,asan,$(ASAN_TESTS))
 	$(call run_tests,tsan,$(TSAN_TESTS))
 
-rtsan-tests:
+rtsan-set-up:
 	@tools/setup.sh test
 	@RTSAN_CXX=$(RTSAN_CXX) tools/setup.sh rtsan
+
+rtsan-tests: rtsan-set-up  # by itself, so that the compiler that it installs is found
 	@CC=$(subst clang++,clang,$(RTSAN_CXX)) CXX=$(RTSAN_CXX) tools/configure.sh rtsan build
 	@cmake --build build/rtsan --target $(RTSAN_TESTS)
 	@set -e; for name in $(RTSAN_TESTS); do build/rtsan/$$name --gtest_brief=1; done

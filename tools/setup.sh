@@ -97,6 +97,10 @@ if [ ${#missing[@]} -gt 0 ]; then
   apt-get update -qq
   apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 fi
+if [ "$purpose" = rtsan ] && ! rtsan_works && ! RTSAN_CXX='' rtsan_works; then
+  echo "setup: no compiler with RealtimeSanitizer, also not ${RTSAN_CXX:-clang++-22}" >&2
+  exit 1
+fi
 if ! rust_works; then
   say "recording will be off: no cargo with rustc $least_rust or newer (Debian: cargo-web rustc-web)"
   [ "$purpose" != test ] || exit 1
