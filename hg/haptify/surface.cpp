@@ -8,6 +8,7 @@
 
 #include "hg/environment/surface.h"
 #include "hg/experiments/changes.h"
+#include "hg/experiments/stability_map.h"
 #include "hg/haptify/measures.h"
 
 namespace hg::haptify {
