@@ -20,7 +20,7 @@ import hapticgiant as hg
 from device_client import (COMMAND, GOODBYE, HELLO, READY, SENSORS, WELCOME, decode, encode, text,
                            unpack_command, vector)
 
-STEP_S = 0.25e-3
+STEP_S = 0.5e-3
 LATENCY_S, CURRENT_LAG_S = 1e-3, 0.5e-3  # from a command's frame to the motors
 TORQUE, LOCK_STEP_TIMEOUT_S, COMMAND_TIMEOUT_S = 2, 5.0, 0.05
 # rotor inertia, stiffness, damping, Coulomb and viscous friction, peak torque, rad/s with full
@@ -37,6 +37,9 @@ DEAD_TIME_S, LAG_S, SPEED_MAX, ACCELERATION_MAX = 4e-3, 40e-3, 1.5, 2.5  # gantr
 PRESCRIBED = 1e7  # kg on the gantry, so that nothing but its drives moves it
 PAYLOAD_KG, PAYLOAD_COM = 1.18, np.array([0.0, 0.0, -0.003])  # beyond the sensor, in H
 PAYLOAD_INERTIA = np.diag([0.0034, 0.0034, 0.00107])
+CURRENT_SHARE = 1.0 - np.exp(-STEP_S / CURRENT_LAG_S)  # of the way to the command, per step
+BODY = mujoco.mjtObj.mjOBJ_XBODY
+NO_TORQUE, NO_SPEED = np.zeros(6), np.zeros(2)
 P_M6_H, P_H_S = np.array([0.0, 0.0, 0.12]), np.array([0.0, 0.0, -0.0375])
 
 
@@ -44,6 +47,11 @@ def cross(a, b):
     """np.cross of two vectors, ten times as fast."""
     (a_x, a_y, a_z), (b_x, b_y, b_z) = a, b
     return np.array([a_y * b_z - a_z * b_y, a_z * b_x - a_x * b_z, a_x * b_y - a_y * b_x])
+
+
+def limited(value, least, most):
+    """np.clip, three times as fast."""
+    return np.minimum(np.maximum(value, least), most)
 
 
 def build_model():
@@ -87,10 +95,9 @@ class World:
         self.data = mujoco.MjData(self.model)
         self.person = hg.Person(scenario)
         self.steps = round(1.0 / scenario.rate_Hz / STEP_S)
-        index = lambda names: np.array([self.model.joint(n).dofadr[0] for n in names])
-        self.p = index(["ppu1", "ppu2"])
-        self.m = index([f"m{i}" for i in range(1, 7)])
-        self.theta = index([f"theta{i}" for i in range(1, 7)])
+        self.p = self.dofs(["ppu1", "ppu2"])
+        self.m = self.dofs([f"m{i}" for i in range(1, 7)])
+        self.theta = self.dofs([f"theta{i}" for i in range(1, 7)])
         self.hand = self.model.body("m6").id
         q_p, q_m = hg.start_posture(scenario)
         self.data.qpos[self.p], self.data.qpos[self.m] = q_p, q_m
@@ -108,13 +115,17 @@ class World:
         mujoco.mj_forward(self.model, self.data)
         self.look()
 
+    def dofs(self, names):
+        """Of joints that follow each other, as a slice: numpy gives a view and not a copy."""
+        first = int(self.model.joint(names[0]).dofadr[0])
+        return slice(first, first + len(names))
+
     def look(self):
         """Where the handle is and what the person does; all that depends on positions and speeds."""
         mujoco.mj_step1(self.model, self.data)
         rotation = self.data.xmat[self.hand].reshape(3, 3)
         velocity = np.zeros(6)  # rotation first
-        body = mujoco.mjtObj.mjOBJ_XBODY
-        mujoco.mj_objectVelocity(self.model, self.data, body, self.hand, velocity, 0)
+        mujoco.mj_objectVelocity(self.model, self.data, BODY, self.hand, velocity, 0)
         arm = rotation @ P_M6_H
         self.handle = self.data.xpos[self.hand] + arm
         twist = np.concatenate([velocity[3:] + cross(velocity[:3], arm), velocity[:3]])
@@ -125,8 +136,7 @@ class World:
         """Wrench, acceleration and angular velocity at S, in S, of the last step."""
         rotation = self.data.xmat[self.hand].reshape(3, 3)
         acceleration = np.zeros(6)
-        mujoco.mj_objectAcceleration(self.model, self.data, mujoco.mjtObj.mjOBJ_XBODY, self.hand,
-                                     acceleration, 0)
+        mujoco.mj_objectAcceleration(self.model, self.data, BODY, self.hand, acceleration, 0)
         a_S, omega = (np.array(self.data.sensor(name).data) for name in ("a_S", "omega_S"))
         alpha = rotation.T @ acceleration[:3]
         force, torque = rotation.T @ self.w_H[:3], rotation.T @ self.w_H[3:]
@@ -158,26 +168,26 @@ class World:
 
     def step(self):
         data, model = self.data, self.model
-        q, dq = data.qpos, data.qvel
-        stretch = STIFFNESS * (q[self.theta] - q[self.m])
-        share = (np.abs(dq[self.theta]) - SPEED_FULL) / (SPEED_NONE - SPEED_FULL)
-        drives = self.tau * dq[self.theta] > 0.0
-        most = np.where(drives, PEAK * (1.0 - np.clip(share, 0.0, 1.0)), PEAK)
-        wanted = self.tau_cmd if self.is_enabled else np.zeros(6)
-        self.tau += (1.0 - np.exp(-STEP_S / CURRENT_LAG_S)) * (wanted - self.tau)
+        theta, dtheta = data.qpos[self.theta], data.qvel[self.theta]
+        stretch = STIFFNESS * (theta - data.qpos[self.m])
+        share = (np.abs(dtheta) - SPEED_FULL) / (SPEED_NONE - SPEED_FULL)
+        drives = self.tau * dtheta > 0.0
+        most = np.where(drives, PEAK * (1.0 - limited(share, 0.0, 1.0)), PEAK)
+        wanted = self.tau_cmd if self.is_enabled else NO_TORQUE
+        self.tau += CURRENT_SHARE * (wanted - self.tau)
         model.dof_frictionloss[self.theta] = COULOMB + LOAD_FRICTION * np.abs(stretch)
-        self.speeds.append(self.dq_p_cmd if self.is_enabled else np.zeros(2))
-        speed = np.clip(self.speeds.popleft(), -SPEED_MAX, SPEED_MAX)
-        ddq_p = np.clip((speed - dq[self.p]) / LAG_S, -ACCELERATION_MAX, ACCELERATION_MAX)
-        data.qfrc_applied[:] = 0.0
-        mujoco.mj_applyFT(model, data, self.w_H[:3], self.w_H[3:], self.handle, self.hand,
-                          data.qfrc_applied)
-        data.qfrc_applied[self.theta] += np.clip(self.tau, -most, most)
-        data.qfrc_applied[self.p] = PRESCRIBED * ddq_p
-        held = np.array(q[self.theta])
+        self.speeds.append(self.dq_p_cmd if self.is_enabled else NO_SPEED)
+        speed = limited(self.speeds.popleft(), -SPEED_MAX, SPEED_MAX)
+        ddq_p = limited((speed - data.qvel[self.p]) / LAG_S, -ACCELERATION_MAX, ACCELERATION_MAX)
+        force = data.qfrc_applied
+        force[:] = 0.0
+        mujoco.mj_applyFT(model, data, self.w_H[:3], self.w_H[3:], self.handle, self.hand, force)
+        force[self.theta] += limited(self.tau, -most, most)
+        force[self.p] = PRESCRIBED * ddq_p
+        held = theta.copy()
         mujoco.mj_step2(model, data)
         if not self.is_enabled:  # the brakes hold the rotors
-            q[self.theta], dq[self.theta] = held, 0.0
+            theta[:], dtheta[:] = held, 0.0
         self.time_s += STEP_S
         self.look()
 
