@@ -1,6 +1,7 @@
 #include "bench/cycle_table.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/player.h"
 #include "bench/stop_watch.h"

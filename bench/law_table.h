@@ -1,7 +1,7 @@
 /// Both laws with both kinds of bounds on the same scenario.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

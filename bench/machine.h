@@ -1,7 +1,7 @@
 /// What figures have to be read with: when, on what, and from which sources they were measured.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace hg::bench {
 

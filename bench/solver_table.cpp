@@ -1,6 +1,7 @@
 #include "bench/solver_table.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>

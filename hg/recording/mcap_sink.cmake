@@ -64,9 +64,19 @@ if(cargo)
   set(library ${target_dir}/release/libmcap_sink.a)
   file(GLOB rust_sources CONFIGURE_DEPENDS ${mcap_sink_dir}/src/*.rs)
   get_filename_component(folder ${cargo} DIRECTORY)
+  # the system's zstd where it is there: compiling the one in the crate takes longer than all the rest
+  set(environment RUSTC=${folder}/rustc CARGO_TARGET_DIR=${target_dir})
+  find_package(PkgConfig QUIET)
+  if(PkgConfig_FOUND)
+    pkg_check_modules(zstd QUIET IMPORTED_TARGET libzstd)
+  endif()
+  if(zstd_FOUND)
+    list(APPEND environment ZSTD_SYS_USE_PKG_CONFIG=1)
+    set(zstd_target PkgConfig::zstd)
+  endif()
   add_custom_command(
     OUTPUT ${library}
-    COMMAND ${CMAKE_COMMAND} -E env RUSTC=${folder}/rustc CARGO_TARGET_DIR=${target_dir}
+    COMMAND ${CMAKE_COMMAND} -E env ${environment}
       ${cargo} build --release --locked --offline --quiet
     WORKING_DIRECTORY ${mcap_sink_dir}
     DEPENDS ${rust_sources} ${mcap_sink_dir}/Cargo.toml ${mcap_sink_dir}/Cargo.lock
@@ -77,7 +87,7 @@ if(cargo)
   add_dependencies(mcap_sink mcap_sink_build)
   set_target_properties(mcap_sink PROPERTIES
     IMPORTED_LOCATION ${library}
-    INTERFACE_LINK_LIBRARIES "Threads::Threads;${CMAKE_DL_LIBS};m")
+    INTERFACE_LINK_LIBRARIES "${zstd_target};Threads::Threads;${CMAKE_DL_LIBS};m")
 else()
   add_library(mcap_sink STATIC ${mcap_sink_dir}/without_rust.cpp)
   target_include_directories(mcap_sink PRIVATE ${PROJECT_SOURCE_DIR})

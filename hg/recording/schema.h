@@ -95,7 +95,8 @@ std::string schema_text() {
   writer.define<Message>();
   std::string text = writer.text;
   for (const SchemaWriter::Definition& definition : writer.inner) {
-    text += std::string(80, '=') + "\nMSG: " + definition.name + "\n" + definition.text;
+    text.append(80, '=').append("\nMSG: ").append(definition.name).append("\n");
+    text += definition.text;
   }
   return text;
 }
