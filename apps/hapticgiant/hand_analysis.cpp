@@ -1,8 +1,8 @@
 #include "apps/hapticgiant/hand_analysis.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 
+#include "hg/core/linear_algebra.h"
 #include "hg/model/joint_range.h"
 #include "hg/scaffold/postures.h"
 
@@ -43,7 +43,7 @@ viewer_server::HandBudget HandAnalysis::budget(const CycleRecord& record) {
   if (twin.q_a.size() != twin_.nq() || twin.dq_a.size() != twin_.nv()) return budget;
   twin_.update_kinematics(twin.q_a, twin.dq_a);
   const Eigen::MatrixXd J_transposed = twin_.jacobian(end_effector_).transpose();
-  const auto decomposition = J_transposed.completeOrthogonalDecomposition();
+  const LeastSquares decomposition(J_transposed);
   const auto at_hand = [&](const VectorA& tau) -> Vector6 {
     if (tau.size() != twin_.nv()) return Vector6::Zero();
     const Vector6 w = decomposition.solve(tau);

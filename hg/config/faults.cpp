@@ -8,6 +8,8 @@
 
 namespace hg::config {
 
+void Places::add(const std::string& item, Place place) { places_.emplace(item, place); }
+
 Place Places::nearest(std::string item) const {
   while (true) {
     const auto found = places_.find(item);

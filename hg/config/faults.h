@@ -19,7 +19,7 @@ struct Place {
 class Places {
  public:
   /// The first place of an item counts.
-  void add(const std::string& item, Place place) { places_.emplace(item, place); }
+  void add(const std::string& item, Place place);
   /// Place of `item` or, where it is not given, of the innermost map or list that would hold it.
   Place nearest(std::string item) const;
 

@@ -1,12 +1,10 @@
 #include "hg/control/loop_stability.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
+#include "hg/core/linear_algebra.h"
 #include "hg/estimation/joint_observer.h"
 
 namespace hg::control {
@@ -41,7 +39,7 @@ Eigen::MatrixXd plant_with_input(const Config& config, const MatrixM& M) {
     D[i] = actuator.damping;
     viscous[i] = actuator.viscous_friction;
   }
-  const Eigen::MatrixXd M_inverse = Eigen::MatrixXd(M).inverse();
+  const Eigen::MatrixXd M_inverse = inverse(M);
   const Eigen::VectorXd Jm_inverse = Jm.cwiseInverse();
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6 * n, 6 * n);
   const auto block = [&](int row, int column) { return A.block(row * n, column * n, n, n); };
@@ -121,7 +119,7 @@ class SampledLoop {
     model::Chain chain = loop.chain;
     chain.update(q, Eigen::VectorXd::Zero(q.size()));
     const MatrixM M = chain.M().bottomRightCorner(loop.n_m, loop.n_m);
-    step_ = (plant_with_input(config_, M) * (config_.dt / kSteps)).exp();
+    step_ = matrix_exponential(plant_with_input(config_, M) * (config_.dt / kSteps));
     feedback_ = feedback(loop, q, chain.c().tail(loop.n_m), latency);
     link_pole_ = estimation::low_pass_pole(loop.filters.link_pole_Hz, config_.dt);
     motor_pole_ = estimation::low_pass_pole(loop.filters.motor_low_pass_Hz, config_.dt);
@@ -205,7 +203,7 @@ double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latenc
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency,
                        const Reality& reality) {
   const Eigen::MatrixXd period = SampledLoop(loop, q, latency, reality).period();
-  return Eigen::EigenSolver<Eigen::MatrixXd>(period, false).eigenvalues().cwiseAbs().maxCoeff();
+  return hg::spectral_radius(period);
 }
 
 int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures, int most,

@@ -7,11 +7,6 @@ namespace hg {
 
 using VectorPM = VectorUpTo<kMaxGantry + kMaxManipulator>;  ///< chains p and m, stacked
 
-inline VectorPM stacked(const VectorP& p, const VectorM& m) noexcept {
-  VectorPM both(p.size() + m.size());
-  both.head(p.size()) = p;
-  both.tail(m.size()) = m;
-  return both;
-}
+VectorPM stacked(const VectorP& p, const VectorM& m) noexcept;
 
 }  // namespace hg

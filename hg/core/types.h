@@ -38,7 +38,7 @@ struct Pose {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
 };
 
-inline Pose operator*(const Pose& a, const Pose& b) { return {a.p + a.R * b.p, a.R * b.R}; }
-inline Pose inverse(const Pose& a) { return {-(a.R.transpose() * a.p), a.R.transpose()}; }
+Pose operator*(const Pose& a, const Pose& b);
+Pose inverse(const Pose& a);
 
 }  // namespace hg

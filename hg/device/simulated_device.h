@@ -1,8 +1,6 @@
 /// The simulation behind the device boundary, and faults on purpose between the two.
 #pragma once
 
-#include <utility>
-
 #include "hg/device/device.h"
 #include "hg/injection/injector.h"
 #include "hg/simulation/simulation.h"
@@ -11,20 +9,12 @@ namespace hg::device {
 
 class SimulatedDevice final : public Device {
  public:
-  explicit SimulatedDevice(simulation::Simulation simulation, injection::Injector injector = {})
-      : simulation_(std::move(simulation)), injector_(std::move(injector)) {}
+  explicit SimulatedDevice(simulation::Simulation simulation, injection::Injector injector = {});
 
-  void read(SensorFrame& sensors) noexcept override {
-    sensors = simulation_.sensors();
-    injector_.spoil(sensors);
-  }
-  void write(const CommandFrame& command) noexcept override {
-    arrived_ = command;
-    injector_.spoil(arrived_);
-    simulation_.step(arrived_, injector_.hardware());
-  }
-  const Truth* truth() const noexcept override { return &simulation_.truth(); }
-  void spoil(OperatorFrame& input) const noexcept override { injector_.spoil(input); }
+  void read(SensorFrame& sensors) noexcept override;
+  void write(const CommandFrame& command) noexcept override;
+  const Truth* truth() const noexcept override;
+  void spoil(OperatorFrame& input) const noexcept override;
 
  private:
   simulation::Simulation simulation_;

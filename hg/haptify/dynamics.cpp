@@ -1,9 +1,9 @@
 #include "hg/haptify/dynamics.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "hg/core/linear_algebra.h"
 #include "hg/haptify/play.h"
 
 namespace hg::haptify {
@@ -41,7 +41,7 @@ Eigen::Vector3d main_axis(const std::vector<Instant>& instants, int axis) {
     const Eigen::Vector3d omega = now.twist.tail<3>();
     spread += omega * omega.transpose();
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  return symmetric_eigen(spread).vectors.col(2);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 #include "hg/haptify/measures.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
+#include "hg/core/linear_algebra.h"
 #include "hg/evaluation/reality.h"
 #include "hg/experiments/motion_analysis.h"
 #include "hg/simulation/random_stream.h"
@@ -111,7 +111,7 @@ DynamicFit fit_dynamics(std::span<const double> f, std::span<const double> v,
     regressors.row(i) << a[k], v[k], sign;
   }
   const Eigen::Map<const Eigen::VectorXd> force(f.data(), n);
-  const Eigen::Vector3d fit = regressors.colPivHouseholderQr().solve(force);
+  const Eigen::Vector3d fit = LeastSquares(regressors).solve(force);
   const double left = (force - regressors * fit).squaredNorm();
   const double all = (force.array() - force.mean()).matrix().squaredNorm();
   return {.inertia = fit[0],

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "hg/core/interval.h"
+#include "hg/core/linear_algebra.h"
 
 namespace hg::identification {
 namespace {
@@ -34,9 +34,9 @@ struct Spread {
       const Eigen::Vector3d u = (pose.a_S - mean) / kGravity;
       covariance += u * u.transpose() / n;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-    variance = solver.eigenvalues().cwiseMax(0.0);
-    axes = solver.eigenvectors();
+    const SymmetricEigen eigen = symmetric_eigen(covariance);
+    variance = eigen.values.cwiseMax(0.0);
+    axes = eigen.vectors;
   }
 
   // by how much the poses show the mass, and the best and worst direction of its centre
@@ -51,8 +51,7 @@ struct Fit {
   Eigen::VectorXd x;
   double residual = 0.0;
 
-  Fit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
-      : x(A.completeOrthogonalDecomposition().solve(b)) {
+  Fit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) : x(LeastSquares(A).solve(b)) {
     const auto free = static_cast<double>(std::max<Eigen::Index>(1, A.rows() - A.cols()));
     residual = std::sqrt((b - A * x).squaredNorm() / free);
   }

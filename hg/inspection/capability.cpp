@@ -1,7 +1,8 @@
 #include "hg/inspection/capability.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
+
+#include "hg/core/linear_algebra.h"
 
 namespace hg::inspection {
 namespace {
@@ -24,18 +25,17 @@ Guarantee worst_direction(const Eigen::Ref<const Eigen::Matrix3Xd>& columns,
 }
 
 Guarantee worst_acceleration(const MatrixJ& J, const Eigen::Ref<const Eigen::VectorXd>& ddq_max) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& sigma = svd.singularValues();
+  const auto [sigma, U, V] = singular_value_decomposition(J);
   if (sigma.size() < 6 || sigma[5] < kRankTolerance) return {0.0, -1};
   const Eigen::MatrixXd inverse =
-      svd.matrixV() * sigma.cwiseInverse().asDiagonal() * svd.matrixU().transpose().leftCols<3>();
+      V * sigma.cwiseInverse().asDiagonal() * U.transpose().leftCols<3>();
   return worst_direction(inverse.transpose(), ddq_max);
 }
 
 Conditioning conditioning(const MatrixJ& J, double length) {
   MatrixJ scaled = J;
   scaled.topRows<3>() /= length;
-  const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(scaled).singularValues();
+  const Eigen::VectorXd sigma = singular_value_decomposition(scaled).sigma;
   if (sigma.size() < 6) return {0.0, kInfinity};
   return {sigma[5], sigma[5] > 0.0 ? sigma[0] / sigma[5] : kInfinity};
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "hg/assembly/start_posture.h"
 #include "hg/core/error.h"
+#include "hg/core/linear_algebra.h"
 #include "hg/core/stacked.h"
 #include "hg/inspection/survey.h"
 #include "hg/inspection/twin_inspection.h"
@@ -152,8 +152,7 @@ Match match(const config::Device& device, const config::Twin& twin) {
       device_chain.update_kinematics(stacked(start.q_p, start.q_m), zero);
       const MatrixJ J_m = manipulator_jacobian(device.model, device_chain, device.model.handle);
       meeting.manipulator_of_twin =
-          Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(J_m).solve(
-              Eigen::MatrixXd(meeting.J_a));
+          LeastSquares(J_m).pseudo_inverse() * Eigen::MatrixXd(meeting.J_a);
     } catch (const SetupError& error) {
       if (result.worst.empty()) {
         result.worst = error.what();

@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "hg/core/linear_algebra.h"
 #include "hg/inspection/survey.h"
 #include "hg/inspection/twin_bodies.h"
 #include "hg/model/joint_range.h"
@@ -141,21 +140,18 @@ TwinFigures twin_figures(const config::Twin& twin, const std::vector<Configurati
   figures.smallest_inertia = VectorA::Constant(chain.nv(), kInfinity);
   for (const ConfigurationA& q : postures) {
     chain.update(q, zero);
-    const Eigen::VectorXd eigenvalues =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(chain.M(), Eigen::EigenvaluesOnly)
-            .eigenvalues();
+    const Eigen::VectorXd eigenvalues = symmetric_eigen(chain.M()).values;
     const double smallest = eigenvalues[0], largest = eigenvalues[eigenvalues.size() - 1];
     figures.condition =
         std::max(figures.condition, smallest > 0.0 ? largest / smallest : kInfinity);
 
-    const Eigen::LDLT<Eigen::MatrixXd> M(chain.M());
-    const Eigen::MatrixXd inverse = M.solve(Eigen::MatrixXd::Identity(chain.nv(), chain.nv()));
+    const Eigen::MatrixXd inverse = hg::inverse(chain.M());
     figures.smallest_inertia =
         figures.smallest_inertia.cwiseMin(VectorA(inverse.diagonal().cwiseInverse()));
     const MatrixJ J = chain.jacobian(twin.model.end_effector);
     const Eigen::Matrix<double, 6, 6> mobility = J * inverse * J.transpose();
     const auto lightest = [](const Eigen::Matrix3d& part) {
-      return 1.0 / Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(part).eigenvalues()[2];
+      return 1.0 / symmetric_eigen(part).values[2];
     };
     figures.mass = std::min(figures.mass, lightest(mobility.topLeftCorner<3, 3>()));
     figures.inertia = std::min(figures.inertia, lightest(mobility.bottomRightCorner<3, 3>()));

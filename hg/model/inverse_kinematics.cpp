@@ -1,13 +1,13 @@
 #include "hg/model/inverse_kinematics.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 
 #include "hg/core/error.h"
+#include "hg/core/linear_algebra.h"
 #include "hg/core/rotation.h"
 #include "hg/model/joint_range.h"
 
@@ -144,9 +144,9 @@ class Search {
       std::vector<bool> is_held(static_cast<std::size_t>(n), false);
       Eigen::VectorXd step;
       do {
-        const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> rows(J);
+        const LeastSquares rows(J);
         step = rows.solve(error);
-        Eigen::MatrixXd N = Eigen::MatrixXd::Identity(n, n) - rows.pseudoInverse() * J;
+        Eigen::MatrixXd N = Eigen::MatrixXd::Identity(n, n) - rows.pseudo_inverse() * J;
         Eigen::VectorXd wish = Eigen::VectorXd::Zero(n);
         Eigen::MatrixXd wished = Eigen::MatrixXd::Zero(n, n);
         for (int i = 0; i < n; ++i) {
@@ -155,9 +155,7 @@ class Search {
           wish[i] = problem_.goal[i] - q[i] - step[i];
           wished.row(i) = N.row(i);
         }
-        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> free;
-        free.setThreshold(1e-9);
-        step += N * free.compute(wished).solve(wish);
+        step += N * LeastSquares(wished, 1e-9).solve(wish);
       } while (hold_at_limits(q, step, J, is_held));
       step *= std::min(1.0, kLargestStep / std::max(step.lpNorm<Eigen::Infinity>(), 1e-300));
       q = clamped(q + step);

@@ -2,7 +2,6 @@
 
 #include <tinyxml2.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -13,6 +12,7 @@
 #include <sstream>
 
 #include "hg/core/error.h"
+#include "hg/core/linear_algebra.h"
 #include "hg/core/nearest_name.h"
 
 namespace hg::model {
@@ -314,8 +314,7 @@ void check(const Inertial& inertial, std::string_view item) {
   require(inertial.p_com.allFinite() && inertial.inertia.allFinite(), "inertia must be finite",
           "nan or inf");
 
-  const Eigen::Vector3d moments =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertial.inertia).eigenvalues();
+  const Eigen::Vector3d moments = symmetric_eigen(inertial.inertia).values;
   std::ostringstream got;
   got << std::setprecision(4) << "principal moments " << moments[0] << ", " << moments[1] << ", "
       << moments[2];

@@ -1,11 +1,11 @@
 #include "hg/scaffold/postures.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "hg/core/linear_algebra.h"
 #include "hg/model/joint_range.h"
 
 namespace hg::scaffold {
@@ -57,7 +57,7 @@ double dexterity(model::Chain& chain, int frame, int first, const Eigen::VectorX
   chain.update_kinematics(q, at_rest);
   Eigen::MatrixXd J = chain.jacobian(frame).rightCols(chain.nv() - first);
   J.bottomRows<3>() *= kWrist;
-  const Eigen::VectorXd sigma = J.jacobiSvd().singularValues();
+  const Eigen::VectorXd sigma = singular_value_decomposition(J).sigma;
   return sigma.size() < 6 ? 0.0 : sigma[5];
 }
 

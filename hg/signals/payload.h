@@ -6,7 +6,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "hg/core/types.h"
 
@@ -22,15 +21,7 @@ struct Payload {
 /// Wrench that the payload exerts on the sensor, at S, resolved in S, force first: its weight minus
 /// its inertia. `a_S` is the acceleration of S minus gravity (at rest: g upwards), `omega_S` and
 /// `alpha_S` are the angular velocity and acceleration, all resolved in S.
-inline Vector6 payload_wrench(const Payload& payload, const Eigen::Vector3d& a_S,
-                              const Eigen::Vector3d& omega_S,
-                              const Eigen::Vector3d& alpha_S) noexcept {
-  const Eigen::Vector3d a_com =
-      a_S + alpha_S.cross(payload.com) + omega_S.cross(omega_S.cross(payload.com));
-  const Eigen::Vector3d f = -payload.mass * a_com;
-  const Eigen::Vector3d spin = payload.inertia * omega_S;  // angular momentum about the COM
-  const Eigen::Vector3d n = payload.com.cross(f) - payload.inertia * alpha_S - omega_S.cross(spin);
-  return (Vector6() << f, n).finished();
-}
+Vector6 payload_wrench(const Payload& payload, const Eigen::Vector3d& a_S,
+                       const Eigen::Vector3d& omega_S, const Eigen::Vector3d& alpha_S) noexcept;
 
 }  // namespace hg

@@ -19,5 +19,5 @@ endif()
 # the inputs that fuzzing has found worth keeping, in every build
 file(GLOB fuzz_sources CONFIGURE_DEPENDS tests/fuzz/*.cpp)
 list(REMOVE_ITEM fuzz_sources ${PROJECT_SOURCE_DIR}/tests/fuzz/entry.cpp)
-hg_test(fuzz_replay_test SOURCES ${fuzz_sources}
+hg_test(fuzz_replay_test KIND loop_test SOURCES ${fuzz_sources}
   LINKS hg_hqp_checks hg_config hg_remote hg_viewer_server hg_recording)

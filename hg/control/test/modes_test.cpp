@@ -12,6 +12,7 @@
 
 #include "hg/control/test/control_setup.h"
 #include "hg/core/allocation_counter.h"
+#include "hg/core/linear_algebra.h"
 
 namespace hg::control {
 namespace {
@@ -123,13 +124,13 @@ struct ModeErrors {
   double mu, product, orthogonality;
 };
 ModeErrors errors(const Modes& modes, const MatrixM& A) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> exact{Eigen::MatrixXd(A)};
+  const SymmetricEigen exact = symmetric_eigen(A);
   Eigen::VectorXd mu = modes.mu();
   std::sort(mu.begin(), mu.end());
-  const double scale = exact.eigenvalues().cwiseAbs().maxCoeff();
+  const double scale = exact.values.cwiseAbs().maxCoeff();
   const Eigen::MatrixXd Q = modes.Q();
   const auto n = A.rows();
-  return {(mu - exact.eigenvalues()).lpNorm<Eigen::Infinity>() / scale,
+  return {(mu - exact.values).lpNorm<Eigen::Infinity>() / scale,
           (Q * modes.mu().asDiagonal() * Q.transpose() - A).lpNorm<Eigen::Infinity>() / scale,
           (Q.transpose() * Q - Eigen::MatrixXd::Identity(n, n)).lpNorm<Eigen::Infinity>()};
 }

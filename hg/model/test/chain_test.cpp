@@ -5,10 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <unsupported/Eigen/MatrixFunctions>
-
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
+#include "hg/core/linear_algebra.h"
 #include "hg/model/test/dh_reference.h"
 #include "hg/model/test/models.h"
 
@@ -311,7 +310,7 @@ TEST(Chain, IntegrationFollowsTheExponentialOfAConstantTwist) {
     Eigen::Matrix4d twist = Eigen::Matrix4d::Zero();
     twist.topLeftCorner<3, 3>() = cross_matrix(step.tail<3>());
     twist.topRightCorner<3, 1>() = step.head<3>();
-    const Eigen::Matrix4d exponential = twist.exp();
+    const Eigen::Matrix4d exponential = matrix_exponential(twist);
     body.update_kinematics(q, step);
     const Pose expected =
         body.pose(0) * Pose{exponential.topRightCorner<3, 1>(), exponential.topLeftCorner<3, 3>()};

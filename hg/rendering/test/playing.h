@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "hg/core/linear_algebra.h"
 #include "hg/rendering/test/test_models.h"
 
 namespace hg::rendering {
@@ -59,7 +60,7 @@ struct Playing {
     chain.update_kinematics(state.twin.q_a, state.twin.dq_a);
     const Eigen::MatrixXd J_a_T = chain.jacobian(rendering.twin().end_effector).transpose();
     const Eigen::VectorXd tau = torque * Eigen::VectorXd::Unit(J_a_T.rows(), dof);
-    return J_a_T.completeOrthogonalDecomposition().solve(tau);
+    return LeastSquares(J_a_T).solve(tau);
   }
 
   void run(double seconds, int dof, double torque) {

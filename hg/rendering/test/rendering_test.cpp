@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <random>
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
+#include "hg/core/linear_algebra.h"
 #include "hg/rendering/test/playing.h"
 
 namespace hg::rendering {
@@ -23,7 +23,7 @@ TwinModel golden_twin() {
 
 // the acceleration that no limit disturbs
 VectorA free_acceleration(const TwinModel& twin, const VectorA& tau) {
-  return twin.chain.M().llt().solve(tau);
+  return LeastSquares(twin.chain.M()).solve(tau);
 }
 
 TEST(Rendering, GoldenCaseOfTheHandbookJoint6AtItsUpperLimit) {
@@ -105,7 +105,7 @@ TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessAskedFor) {
 // lb <= G a + g <= ub, by coordinate ascent on the dual.
 VectorA box_qp_oracle(const Eigen::MatrixXd& M, const VectorA& a_free, const Eigen::MatrixXd& G,
                       const Eigen::VectorXd& lb, const Eigen::VectorXd& ub) {
-  const Eigen::MatrixXd M_inv = M.inverse();
+  const Eigen::MatrixXd M_inv = inverse(M);
   const Eigen::MatrixXd GMG = G * M_inv * G.transpose();
   Eigen::VectorXd lambda = Eigen::VectorXd::Zero(G.rows());
   Eigen::VectorXd y = G * a_free;
@@ -155,8 +155,8 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     q_all << kGantryAtHome, q;
     chain.update_kinematics(q_all, Eigen::VectorXd::Zero(8));
     const Eigen::MatrixXd J_m = chain.jacobian(device.handle).rightCols(6);
-    const Eigen::MatrixXd G = J_m.fullPivLu().solve(
-        Eigen::MatrixXd(rendering.twin().chain.jacobian(rendering.twin().end_effector)));
+    const Eigen::MatrixXd J_a = rendering.twin().chain.jacobian(rendering.twin().end_effector);
+    const Eigen::MatrixXd G = inverse(J_m) * J_a;
     Eigen::VectorXd lb(6), ub(6);
     for (int i = 0; i < 6; ++i) {
       const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
@@ -239,7 +239,7 @@ TEST(Rendering, AtAHeldLimitTheOtherJointsMoveLikeTheReducedModel) {
   const Eigen::MatrixXd M = rendering.twin().chain.M();
   const Eigen::VectorXd c = rendering.twin().chain.c();
   const Eigen::Vector3d expected =
-      M.topLeftCorner<3, 3>().llt().solve(record.tau_a.head<3>() - c.head<3>());
+      LeastSquares(M.topLeftCorner<3, 3>()).solve(record.tau_a.head<3>() - c.head<3>());
   EXPECT_LT((record.twin.ddq_a.head<3>() - expected).norm(), 1e-9);
   EXPECT_NEAR(record.twin.ddq_a[3], 0.0, 1e-9);
   // what the limit pushes with is what the equation of the held joint lacks

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <random>
 
 #include "hg/core/allocation_counter.h"
+#include "hg/core/linear_algebra.h"
 #include "hg/model/test/models.h"
 #include "hg/rendering/test/playing.h"
 
@@ -89,7 +88,7 @@ TEST(Damper, TakesEnergyHoweverStiffItIsAndHoweverJointsAreCoupled) {
 
     // one sample of nothing but damping: each mode keeps its sign and becomes smaller
     const VectorA next =
-        dq - VectorA(kDt * M.llt().solve(damping_torque(L, dq, kDt, parameters.now)));
+        dq - VectorA(kDt * LeastSquares(M).solve(damping_torque(L, dq, kDt, parameters.now)));
     const double before = dq.dot(M * dq), after = next.dot(M * next), both = dq.dot(M * next);
     ASSERT_LE(after, before * (1 + 1e-12)) << trial;
     ASSERT_GE(both, -1e-12 * before) << trial;
@@ -186,7 +185,7 @@ TEST(ReferenceWrench, IsTheOneAtWhichTheTwinRests) {
   alone.step(Vector6::Zero());
   const model::Jacobian J_a = alone.rendering.twin().chain.jacobian(twin.end_effector);
   const VectorA push = -J_a.transpose() * twin.w_ref;
-  const VectorA expected = alone.rendering.twin().chain.M().llt().solve(push);
+  const VectorA expected = LeastSquares(alone.rendering.twin().chain.M()).solve(push);
   EXPECT_LT((alone.state.twin.ddq_a - expected).norm(), 1e-9);
   EXPECT_LT(alone.worst_gap, 1e-9);
 }
@@ -360,7 +359,7 @@ void expect_newton(const TwinModel& twin, double tolerance) {
     model::Chain chain = twin.chain;
     chain.update(before.twin.q_a, before.twin.dq_a);
     const VectorA tau = chain.jacobian(twin.end_effector).transpose() * w;
-    const VectorA expected = chain.M().ldlt().solve(VectorA(tau - chain.c()));
+    const VectorA expected = LeastSquares(chain.M()).solve(tau - chain.c());
     const VectorA error = playing.state.twin.ddq_a - expected;
     ASSERT_LT(error.norm(), tolerance * (1.0 + expected.norm())) << trial;
   }
@@ -403,8 +402,7 @@ TEST(AnyTwin, OfConditionNumberAMillion) {
   TwinModel twin = unlimited_twin(model::Chain::from_urdf_text(snake(6, 1e-5), "snake.urdf"), "l6");
   model::Chain chain = twin.chain;
   chain.update(chain.neutral(), VectorA::Zero(6));
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(chain.M()).eigenvalues();
+  const Eigen::VectorXd eigenvalues = symmetric_eigen(chain.M()).values;
   EXPECT_GT(eigenvalues[5] / eigenvalues[0], 1e6);
   expect_newton(twin, 1e-7);
 }

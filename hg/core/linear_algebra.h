@@ -1,0 +1,54 @@
+/// Dense linear algebra on matrices of any size, for set-up, checks and studies.
+///
+/// Decompositions are compiled here once instead of in every file that needs one. They allocate:
+/// the control cycle uses fixed-capacity types instead.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+namespace hg {
+
+/// Complete orthogonal decomposition of A (m x n) of any rank.
+class LeastSquares {
+ public:
+  /// Pivots below `threshold` times the largest one count as zero; 0 = a few roundings.
+  explicit LeastSquares(const Eigen::MatrixXd& A, double threshold = 0.0);
+  LeastSquares(LeastSquares&&) noexcept;
+  ~LeastSquares();
+
+  /// The shortest x (n) that minimises |A x - b|.
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  /// (n x m).
+  Eigen::MatrixXd pseudo_inverse() const;
+
+ private:
+  struct Decomposition;
+  std::unique_ptr<Decomposition> decomposition_;
+};
+
+/// Inverse of a regular matrix.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
+
+/// Singular value decomposition A = U diag(sigma) V^T.
+struct SingularValues {
+  Eigen::VectorXd sigma;  ///< largest first, as many as the smaller side of A
+  Eigen::MatrixXd U, V;   ///< as many columns
+};
+SingularValues singular_value_decomposition(const Eigen::MatrixXd& A);
+
+/// Eigenvalues of a symmetric matrix A, smallest first, and the eigenvectors as columns. Only the
+/// lower triangle of A is read.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
+
+/// Largest magnitude of an eigenvalue of a square matrix.
+double spectral_radius(const Eigen::MatrixXd& A);
+
+/// e^A.
+Eigen::MatrixXd matrix_exponential(const Eigen::MatrixXd& A);
+
+}  // namespace hg
