@@ -1,0 +1,68 @@
+# What the compiler is asked for, by kind of code:
+#   loop      the control cycle, and what simulates a machine: as fast as it gets
+#   solver    the same with Eigen under a name of its own, so that a consumer of the package with
+#             other vector flags does not share its functions
+#   offline   what reads files, serves pages, judges runs: a short build counts more
+#   scenario  the same for what plays or inspects whole scenarios
+# and of each kind but offline its test programs: loop_test, solver_test, scenario_test.
+#
+# Each kind has precompiled headers. They save time and nothing else: a file includes what it uses,
+# and compiles without them (HG_PRECOMPILE=OFF).
+option(HG_PRECOMPILE "Compile the headers that many files include once" ON)
+
+# the macro that tinyxml2 asks its users for, so that they can share headers with all others
+add_compile_definitions(_FILE_OFFSET_BITS=64)
+# the memory is there, and tidying it up takes a fifth of the time
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(--param=ggc-min-heapsize=1000000)
+endif()
+
+# hg_kind(NAME [SHORT_BUILD] HEADERS file... LINKS library... [DEFINITIONS macro...])
+function(hg_kind name)
+  cmake_parse_arguments(ARG "SHORT_BUILD" "" "HEADERS;LINKS;DEFINITIONS" ${ARGN})
+  if(ARG_SHORT_BUILD)
+    set(HG_KIND_${name}_FLAGS $<$<CONFIG:Release>:-O1> PARENT_SCOPE)
+  endif()
+  foreach(library IN LISTS ARG_LINKS)
+    list(APPEND ARG_DEFINITIONS $<TARGET_PROPERTY:${library},INTERFACE_COMPILE_DEFINITIONS>)
+  endforeach()
+  foreach(property HEADERS LINKS DEFINITIONS)
+    set(HG_KIND_${name}_${property} ${ARG_${property}} PARENT_SCOPE)
+  endforeach()
+endfunction()
+
+set(others ${PROJECT_SOURCE_DIR}/cmake/precompiled/others.h)
+set(scenario ${PROJECT_SOURCE_DIR}/cmake/precompiled/scenario.h)
+set(test <gtest/gtest.h>)
+set(own_eigen Eigen=hg_hqp_eigen)
+hg_kind(loop HEADERS ${others} LINKS Eigen3::Eigen)
+hg_kind(solver HEADERS ${others} LINKS Eigen3::Eigen DEFINITIONS ${own_eigen})
+hg_kind(offline SHORT_BUILD HEADERS ${others} <fmt/format.h> LINKS Eigen3::Eigen fmt::fmt)
+hg_kind(scenario SHORT_BUILD HEADERS ${others} <fmt/format.h> ${scenario}
+  LINKS Eigen3::Eigen fmt::fmt)
+hg_kind(loop_test SHORT_BUILD HEADERS ${others} ${test} LINKS Eigen3::Eigen GTest::gtest)
+hg_kind(solver_test SHORT_BUILD HEADERS ${others} ${test} LINKS Eigen3::Eigen GTest::gtest
+  DEFINITIONS ${own_eigen})
+hg_kind(scenario_test SHORT_BUILD HEADERS ${others} ${test} ${scenario}
+  LINKS Eigen3::Eigen GTest::gtest)
+
+# hg_build_kind(TARGET KIND)
+function(hg_build_kind target kind)
+  target_compile_options(${target} PRIVATE ${HG_KIND_${kind}_FLAGS})
+  target_compile_definitions(${target} PRIVATE ${HG_KIND_${kind}_DEFINITIONS})
+  if(NOT HG_PRECOMPILE)
+    return()
+  endif()
+  set(donor hg_precompiled_${kind})
+  if(NOT TARGET ${donor})
+    add_library(${donor} OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled/empty.cpp)
+    target_compile_options(${donor} PRIVATE ${HG_KIND_${kind}_FLAGS})
+    target_compile_definitions(${donor} PRIVATE ${HG_KIND_${kind}_DEFINITIONS})
+    target_include_directories(${donor} PRIVATE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${donor} PRIVATE ${HG_KIND_${kind}_LINKS})
+    target_precompile_headers(${donor} PRIVATE ${HG_KIND_${kind}_HEADERS})
+    get_target_property(is_pic ${target} POSITION_INDEPENDENT_CODE)
+    set_target_properties(${donor} PROPERTIES POSITION_INDEPENDENT_CODE ${is_pic})
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${donor})
+endfunction()
