@@ -32,6 +32,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATAD
   COMPONENT cpp)
 install(EXPORT hapticgiant NAMESPACE hapticgiant:: DESTINATION ${package_dir} COMPONENT cpp
   FILE hapticgiantTargets.cmake)
+export(EXPORT hapticgiant NAMESPACE hapticgiant:: FILE hapticgiantTargets.cmake)  # for pip
 configure_package_config_file(cmake/hapticgiantConfig.cmake.in generated/hapticgiantConfig.cmake
   INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_DATADIR)
 write_basic_package_version_file(generated/hapticgiantConfigVersion.cmake
