@@ -12,17 +12,22 @@
 #                counts their instructions (callgrind), into the same folder
 #   make sanitize
 #                builds and runs the tests that pay off under sanitizers: address and undefined
-#                behaviour for the control cycle and what it calls, threads for what has threads
+#                behaviour for the control cycle and what it calls, threads for what has threads.
+#                SANITIZER_CXX: clang 20 or newer, for rtsan and fuzz, too
 #   make rtsan   builds with RealtimeSanitizer and runs the control loop: what allocates, locks or
-#                waits in it ends the program; RTSAN_CXX: clang 20 or newer. make rtsan-tests: without
-#                scenarios
+#                waits in it ends the program. make rtsan-tests: without scenarios
+#   make headers checks that every header compiles alone
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
-#                FUZZ_SECONDS=600 of random bytes each, under sanitizers; needs clang and its libomp.
-#                What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
+#                FUZZ_SECONDS=600 of random bytes each, under sanitizers. What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
 #                memory, faults and limits; begun again it goes on where it was (tools/soak.py)
+#
+# JOBS=2: compilers or tests at a time; the number of processors unless told otherwise.
 
 ARGS ?=
+JOBS ?= $(shell nproc)
+export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
+export CTEST_PARALLEL_LEVEL := $(JOBS)
 PRESET ?= release
 BUILD := build/$(PRESET)
 RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
@@ -36,19 +41,19 @@ FUZZ_SECONDS ?= 600
 FUZZ_TARGETS ?= hqp_reader hqp_solver config urdf protocol commands recording
 SOAK_HOURS ?= 30
 first_of = $(firstword $(foreach name,$(1),$(shell command -v $(name))) $(firstword $(1)))
-FUZZ_CXX ?= $(call first_of,clang++-22 clang++-19 clang++ clang++-16 clang++-14)
-RTSAN_CXX ?= $(call first_of,clang++-22 clang++-21 clang++-20)
+SANITIZER_CXX ?= $(call first_of,clang++-22 clang++-21 clang++-20)
+with_sanitizers = CC=$(subst clang++,clang,$(SANITIZER_CXX)) CXX=$(SANITIZER_CXX)
 empty :=
 space := $(empty) $(empty)
 # run_tests,PRESET,NAMES: builds these tests and runs them
 define run_tests
-@tools/configure.sh $(1) test
+@$(with_sanitizers) tools/configure.sh $(1) test
 @cmake --build build/$(1) --target $(2)
 @ctest --test-dir build/$(1) --output-on-failure --no-tests=error \
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build test experiments bench bench-instructions sanitize rtsan rtsan-set-up rtsan-tests fuzz soak format check clean
+.PHONY: demo build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz soak format check headers clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -83,17 +88,16 @@ bench-instructions:
 	@mkdir -p $(RESULTS)
 	@.venv/bin/python tools/count_instructions.py $(BUILD)/bench_instructions $(RESULTS)/instructions.csv
 
-sanitize:
+sanitizer-set-up:
 	@tools/setup.sh test
+	@SANITIZER_CXX=$(SANITIZER_CXX) tools/setup.sh sanitize
+
+sanitize: sanitizer-set-up  # by itself, so that the compiler that it installs is found
 	$(call run_tests,asan,$(ASAN_TESTS))
 	$(call run_tests,tsan,$(TSAN_TESTS))
 
-rtsan-set-up:
-	@tools/setup.sh test
-	@RTSAN_CXX=$(RTSAN_CXX) tools/setup.sh rtsan
-
-rtsan-tests: rtsan-set-up  # by itself, so that the compiler that it installs is found
-	@CC=$(subst clang++,clang,$(RTSAN_CXX)) CXX=$(RTSAN_CXX) tools/configure.sh rtsan build
+rtsan-tests: sanitizer-set-up
+	@$(with_sanitizers) tools/configure.sh rtsan build
 	@cmake --build build/rtsan --target $(RTSAN_TESTS)
 	@set -e; for name in $(RTSAN_TESTS); do build/rtsan/$$name --gtest_brief=1; done
 
@@ -104,8 +108,8 @@ rtsan: rtsan-tests
 	done
 
 fuzz:
-	@tools/setup.sh build
-	@CC=$(subst clang++,clang,$(FUZZ_CXX)) CXX=$(FUZZ_CXX) tools/configure.sh fuzz build
+	@SANITIZER_CXX=$(SANITIZER_CXX) tools/setup.sh sanitize
+	@$(with_sanitizers) tools/configure.sh fuzz build
 	@cmake --build build/fuzz --target $(addprefix fuzz_,$(FUZZ_TARGETS))
 	@set -e; for name in $(FUZZ_TARGETS); do \
 	  mkdir -p build/fuzz/inputs/$$name; \
@@ -123,6 +127,11 @@ format:
 check:
 	@git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
 	@.venv/bin/python tools/check_modules.py
+
+headers:
+	@[ -f $(BUILD)/compile_commands.json ] || \
+	  { tools/setup.sh build && tools/configure.sh $(PRESET) build; }
+	@.venv/bin/python tools/check_headers.py $(BUILD) --jobs $(JOBS)
 
 clean:
 	rm -rf build viewer/dist

@@ -6,7 +6,7 @@
 #   tools/setup.sh test     that, and what the tests need; fails where anything is missing
 #   tools/setup.sh bench    as build, and what `hapticgiant bench` is compared with
 #   tools/setup.sh count    as build, and what counts instructions
-#   tools/setup.sh rtsan    as build, and a compiler with RealtimeSanitizer: RTSAN_CXX, or clang++-22
+#   tools/setup.sh sanitize as build, and a compiler with all sanitizers: SANITIZER_CXX, or clang++-22
 #
 # Works without root when the system packages are there, and names them otherwise.
 set -euo pipefail
@@ -14,9 +14,9 @@ cd -P "$(dirname "$0")/.."
 
 purpose=${1:-build}
 case "$purpose" in
-  build | test | bench | count | rtsan) ;;
+  build | test | bench | count | sanitize) ;;
   *)
-    echo "setup: expected 'build', 'test', 'bench', 'count' or 'rtsan', got '$purpose'" >&2
+    echo "setup: expected 'build', 'test', 'bench', 'count' or 'sanitize', got '$purpose'" >&2
     exit 2
     ;;
 esac
@@ -58,11 +58,11 @@ os.stat(sysconfig.get_path("include") + "/Python.h")' >/dev/null 2>&1 || need py
 fi
 
 [ "$purpose" != count ] || need valgrind valgrind
-rtsan_works() {
+sanitizers_work() {
   echo 'int main() {}' |
-    "${RTSAN_CXX:-clang++-22}" -fsanitize=realtime -fopenmp -x c++ - -o /dev/null 2>/dev/null
+    "${SANITIZER_CXX:-clang++-22}" -fsanitize=realtime -fopenmp -x c++ - -o /dev/null 2>/dev/null
 }
-if [ "$purpose" = rtsan ] && ! rtsan_works; then
+if [ "$purpose" = sanitize ] && ! sanitizers_work; then
   for package in clang-22 libclang-rt-22-dev libomp-22-dev; do need "$package"; done
 fi
 
@@ -97,8 +97,8 @@ if [ ${#missing[@]} -gt 0 ]; then
   apt-get update -qq
   apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 fi
-if [ "$purpose" = rtsan ] && ! rtsan_works && ! RTSAN_CXX='' rtsan_works; then
-  echo "setup: no compiler with RealtimeSanitizer, also not ${RTSAN_CXX:-clang++-22}" >&2
+if [ "$purpose" = sanitize ] && ! sanitizers_work && ! SANITIZER_CXX='' sanitizers_work; then
+  echo "setup: no compiler with RealtimeSanitizer, also not ${SANITIZER_CXX:-clang++-22}" >&2
   exit 1
 fi
 if ! rust_works; then

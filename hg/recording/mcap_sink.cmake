@@ -60,7 +60,7 @@ elseif(NOT cargo)
 endif()
 
 if(cargo)
-  set(target_dir ${CMAKE_BINARY_DIR}/mcap_sink)
+  set(target_dir ${PROJECT_SOURCE_DIR}/build/mcap_sink)  # the same for all presets
   set(library ${target_dir}/release/libmcap_sink.a)
   file(GLOB rust_sources CONFIGURE_DEPENDS ${mcap_sink_dir}/src/*.rs)
   get_filename_component(folder ${cargo} DIRECTORY)

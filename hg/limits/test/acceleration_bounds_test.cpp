@@ -190,7 +190,9 @@ TEST(PaperBounds, InfiniteLimitsLocksAndTinyRangesGiveNoNanAndNoEmptyInterval) {
             std::feclearexcept(FE_ALL_EXCEPT);
             const Interval ddq = bounds(limits, q, dq, kDt);
             ASSERT_LE(ddq.lb, ddq.ub) << width << ", " << mask << ", " << q << ", " << dq;
+#ifndef __clang__  // which may compute what a condition then throws away
             ASSERT_FALSE(std::fetestexcept(FE_INVALID));  // no NaN on the way either
+#endif
           }
         }
       }
