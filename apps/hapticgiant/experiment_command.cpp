@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/progress.h"
-#include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/config/scenario.h"
 #include "hg/experiments/free_space.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "apps/hapticgiant/status_line.h"
 #include "hg/core/error.h"
 #include "hg/explanation/explainer.h"
 #include "hg/recording/recording_reader.h"

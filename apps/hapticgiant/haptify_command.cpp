@@ -7,9 +7,9 @@
 
 #include "apps/hapticgiant/experiments/docs_page.h"
 #include "apps/hapticgiant/haptify_report.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
-#include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/config/scenario.h"
 #include "hg/core/error.h"

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/run_page.h"
-#include "apps/hapticgiant/status_line.h"
 
 namespace hg::apps {
 namespace {

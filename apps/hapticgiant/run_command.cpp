@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/prepared_run.h"
 #include "apps/hapticgiant/problem_dumps.h"
@@ -139,7 +140,6 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
     if (any && !observers.is_fast) show(observers, *sample);
     look_at_problems(observers, runtime.kept_problems());
     if (is_finished) break;
-    if (observers.interrupted.load()) runtime.request_stop();
     if (observers.page != nullptr) {
       observers.page->follow(&runtime, note(observers, *sample));
       if (observers.page->has_next()) runtime.request_stop();
@@ -158,8 +158,9 @@ void close_device(remote::RemoteDevice& device, const Fault& fault) {
 
 // `goes_on`: after the script, until Ctrl-C
 runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments,
-                                 bool goes_on) {
+                                 bool goes_on, const std::atomic<bool>& interrupted) {
   runtime::Options options;
+  options.stop = &interrupted;
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = arguments.is_fast;
   options.changes = scenario.changes;
@@ -238,12 +239,13 @@ void wait_for_next(Observers& observers, bool goes_on) {
 }
 
 // to its end and its summary; the exit code
-int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) {
+int play(PreparedRun& run, const std::atomic<bool>& interrupted, const BackgroundOutput& output,
+         RunPage* page) {
   const RunArguments& arguments = run.arguments;
   const config::Scenario& scenario = run.scenario;
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && page != nullptr;
-  runtime::Options options = runtime_options(scenario, arguments, goes_on);
+  runtime::Options options = runtime_options(scenario, arguments, goes_on, interrupted);
   const auto is_reset = [](const TimedPanel& p) { return p.request == ModeRequest::kReset; };
   options.stays_in_fault = page != nullptr || std::ranges::any_of(scenario.panel, is_reset);
   RunRecording recording(scenario, arguments);  // last: a refused run leaves no file
@@ -255,7 +257,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) 
       .scenario = scenario,
       .detector = {scenario.events, scenario.limits},
       .summary = assembly::make_summary(scenario),
-      .status_line = StatusLine(is_terminal),
+      .status_line = StatusLine(is_terminal, output),
       .page = page,
       .recording = std::move(recording),
       .dumps = std::move(dumps),
@@ -278,7 +280,9 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, RunPage* page) 
   if (run.remote != nullptr) close_device(*run.remote, observers.summary.fault());
 
   evaluation::RunFacts facts = facts_of(run, options, report);
-  facts.recording = observers.recording.close();
+  const RunRecording::Result recorded = observers.recording.close();
+  facts.recording = recorded.file;
+  facts.unrecorded = recorded.unrecorded;
   facts.fault_figures = observers.fault_figures;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
   const std::vector<std::string> missing = observers.detector.missing();
@@ -299,12 +303,13 @@ int run(const RunArguments& arguments) {
   check_writable(arguments.summary);
   auto present = std::make_unique<PreparedRun>(arguments);
   const std::atomic<bool>& interrupted = watch_interruption();
+  const BackgroundOutput output(interrupted);
   const auto page = open_page(*present);
   if (page) present_page(page->url(), arguments.address, arguments.opens_browser);
 
   std::unique_ptr<PreparedRun> last;  // until the page shows the next one
   while (true) {
-    const int code = play(*present, interrupted, page.get());
+    const int code = play(*present, interrupted, output, page.get());
     auto next = page && !interrupted.load() ? page->take_next() : nullptr;
     if (!next) return code;
     last = std::move(present);

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <utility>
 
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "apps/hapticgiant/status_line.h"
 #include "hg/safety/rules.h"
 
 namespace hg::apps {
@@ -53,34 +52,33 @@ void RunRecording::event(double time_s, std::string_view name, std::string_view 
   if (flight_) flight_->event(time_s, name, text);
 }
 
-std::string RunRecording::close() {
-  std::string file;
+RunRecording::Result RunRecording::close() {
+  Result result;
   if (flight_) {
     if (cause_.empty() && writes_always_) cause_ = "stop";
     if (!cause_.empty()) flight_->write(std::exchange(cause_, ""));
-    const recording::FlightRecorder::Result result = flight_->close();
-    for (const auto& written : result.files) {
+    const recording::FlightRecorder::Result kept = flight_->close();
+    for (const auto& written : kept.files) {
       print_out(fmt::format("the last seconds are kept; what happened:\n  {} explain {}\n",
                             program_, written.string()));
     }
-    if (!result.error.empty()) {
-      std::fputs(fmt::format("the last seconds could not be written: {}\n", result.error).c_str(),
-                 stderr);
+    if (!kept.error.empty()) {
+      print_error(fmt::format("the last seconds could not be written: {}\n", kept.error));
     }
     flight_.reset();
   }
   if (recorder_) {
     const recording::RecordingSummary recorded = recorder_->close();
     if (!recorded.error.empty()) {
-      std::fputs(fmt::format("recording ended early: {}\n", recorded.error).c_str(), stderr);
+      print_error(fmt::format("recording ended early: {}\n", recorded.error));
     }
     for (const auto& name : recorded.deleted) {
       print_out(fmt::format("recording {} deleted to keep within the disk budget\n", name));
     }
-    file = recorded.file.string();
+    result = {recorded.file.string(), recorded.dropped};
     recorder_.reset();
   }
-  return file;
+  return result;
 }
 
 }  // namespace hg::apps

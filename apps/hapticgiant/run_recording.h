@@ -28,9 +28,12 @@ class RunRecording {
   /// Every sample, in their order.
   void push(const Sample& sample);
   void event(double time_s, std::string_view name, std::string_view text);
-  /// Completes all files and says what there is to say about them. Returns the recording's name, or
-  /// empty.
-  std::string close();
+  struct Result {
+    std::string file;              ///< the recording; empty = there is none
+    std::uint64_t unrecorded = 0;  ///< samples that are not in it
+  };
+  /// Completes all files and says what there is to say about them.
+  Result close();
 
  private:
   void keep_last_seconds(const Sample& sample);

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/assembly/assembly.h"
 #include "hg/evaluation/summary.h"

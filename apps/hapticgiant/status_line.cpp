@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 
 #include "hg/viewer_server/limit_text.h"
 
@@ -45,13 +44,8 @@ std::string status_text(const Sample& sample, const LimitCatalogue& limits,
   return text + fmt::format("  {:.0f} us", sample.cycle_time_us);
 }
 
-void print_out(const std::string& text) {
-  std::fputs(text.c_str(), stdout);
-  std::fflush(stdout);
-}
-
 void StatusLine::show(const std::string& text) {
-  if (!is_terminal_) return;
+  if (!is_terminal_ || output_->is_behind()) return;
   print_out(
       fmt::format("\r\033[K{}", text.substr(0, terminal_width() - 1)));  // a full line would wrap
   is_drawn_ = true;

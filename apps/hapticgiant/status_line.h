@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "apps/hapticgiant/output.h"
 #include "hg/rendering/twin_model.h"
 #include "hg/signals/state.h"
 
@@ -12,13 +13,11 @@ namespace hg::apps {
 std::string status_text(const Sample& sample, const LimitCatalogue& limits,
                         const rendering::TwinModel& twin);
 
-/// To standard output. Nothing happens when nobody reads it any more: the run goes on.
-void print_out(const std::string& text);
-
 class StatusLine {
  public:
-  /// Redraws on terminals only; elsewhere only events are printed.
-  explicit StatusLine(bool is_terminal) : is_terminal_(is_terminal) {}
+  /// Redraws on terminals only, and when `output` is read; elsewhere only events are printed.
+  StatusLine(bool is_terminal, const BackgroundOutput& output)
+      : is_terminal_(is_terminal), output_(&output) {}
   ~StatusLine() { clear(); }
 
   /// Cut to the width of the terminal.
@@ -29,6 +28,7 @@ class StatusLine {
 
  private:
   bool is_terminal_;
+  const BackgroundOutput* output_;
   bool is_drawn_ = false;
 };
 

@@ -139,6 +139,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["state_hash"] = fmt::format("{:016x}", last_hash_);
   add_to(json, facts.timing);
   json["dropped_samples"] = facts.dropped;
+  json["unrecorded_samples"] = facts.unrecorded;
   json["allocations_in_loop"] = facts.allocations_in_loop;
   json["stop_timed_out"] = facts.stop_timed_out;
   if (facts.link.sent > 0) json["link"] = link_json(facts.link);
@@ -253,6 +254,13 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("state",
        fmt::format("{:016x} (hash of the last cycle: the same run has the same)", last_hash_));
   line("recording", facts.recording.empty() ? "off" : facts.recording);
+  if (facts.dropped > 0) {
+    line("LOST", fmt::format("{} samples: neither judged nor recorded", facts.dropped));
+  }
+  if (facts.unrecorded > 0) {
+    line("LOST", fmt::format("{} samples of the recording: the disk did not take them in time",
+                             facts.unrecorded));
+  }
   if (facts.stop_timed_out) line("STOP", "timed out: drives off while the device was moving");
   if (fault_.code != FaultCode::kNone) {
     line("FAULT", fmt::format("{} {}{}", static_cast<int>(fault_.code), to_string(fault_.code),

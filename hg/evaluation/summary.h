@@ -27,7 +27,8 @@ struct RunFacts {
   std::string bounds;  ///< of its limits
   double rate_Hz = 0.0;
   Timing timing;
-  std::uint64_t dropped = 0;
+  std::uint64_t dropped = 0;     ///< samples that were neither judged nor recorded
+  std::uint64_t unrecorded = 0;  ///< and that were judged only
   std::uint64_t allocations_in_loop = 0;
   std::string fault_figures;    ///< part, value and limit of the fault; empty = it has none
   bool stop_timed_out = false;  ///< drives were disabled while the device was moving

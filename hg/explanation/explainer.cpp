@@ -85,7 +85,11 @@ Explainer::Explainer(Names names) : names_(std::move(names)) {}
 
 void Explainer::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
-  if (first_s_ < 0.0) begin(sample);
+  if (first_s_ < 0.0) {
+    begin(sample);
+  } else {
+    add_gap(record);
+  }
   period_s_ = record.time_s - last_.time_s;
   if (record.time_s >= force_until_s_) {
     force_before_ = std::exchange(force_now_, 0.0);
@@ -111,7 +115,15 @@ void Explainer::begin(const Sample& sample) {
 
 void Explainer::remember(const Sample& sample) {
   const CycleRecord& record = sample.record;
-  last_ = {record.time_s, record.mode, record.fault.code, record.tare, record.is_autonomous};
+  last_ = {record.cycle,      record.time_s, record.mode,
+           record.fault.code, record.tare,   record.is_autonomous};
+}
+
+void Explainer::add_gap(const CycleRecord& record) {
+  if (record.cycle <= last_.cycle + 1) return;
+  if (lost_.gaps++ == 0) lost_.first_s = last_.time_s;
+  lost_.samples += record.cycle - last_.cycle - 1;
+  lost_.longest_s = std::max(lost_.longest_s, record.time_s - last_.time_s);
 }
 
 void Explainer::add_event(double time_s, const std::string& name, const std::string& text) {
@@ -297,6 +309,14 @@ void Explainer::end_aftermath() {
 std::vector<Entry> Explainer::finish() {
   end_aftermath();
   close_spans(last_.time_s, true);
+  if (lost_.gaps > 0) {
+    entries_.push_back({lost_.first_s,
+                        "LOST",
+                        fmt::format("{} samples are missing from here on in {} gaps, the longest "
+                                    "{:.3f} s: what happened there is not known",
+                                    lost_.samples, lost_.gaps, lost_.longest_s),
+                        {}});
+  }
   std::ranges::stable_sort(entries_, {}, &Entry::time_s);
   return std::exchange(entries_, {});
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -47,11 +48,17 @@ class Explainer {
   };
   /// What of the last sample is compared with the next.
   struct Last {
+    std::uint64_t cycle = 0;
     double time_s = 0.0;
     Mode mode = Mode::kOff;
     FaultCode fault = FaultCode::kNone;
     TareStatus tare = TareStatus::kNone;
     bool is_autonomous = false;
+  };
+  /// Samples that are not there.
+  struct Lost {
+    std::uint64_t samples = 0, gaps = 0;
+    double first_s = 0.0, longest_s = 0.0;
   };
   /// From a fault to the rest of the device.
   struct Aftermath {
@@ -65,6 +72,7 @@ class Explainer {
 
   void begin(const Sample& sample);
   void remember(const Sample& sample);
+  void add_gap(const CycleRecord& record);
   void add_modes(const Sample& sample);
   void add_requests(const CycleRecord& record);
   void add_limits(const CycleRecord& record);
@@ -78,6 +86,7 @@ class Explainer {
 
   Names names_;
   std::vector<Entry> entries_;
+  Lost lost_;
   std::map<std::pair<std::string, std::string>, Span> spans_;  ///< by kind and text
   Last last_;
   bool has_aftermath_ = false;

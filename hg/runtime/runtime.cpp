@@ -124,6 +124,11 @@ ParameterChange Runtime::next_change() noexcept {
   return change;
 }
 
+bool Runtime::stop_is_requested() const noexcept {
+  return stop_requested_.load(std::memory_order_relaxed) ||
+         (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed));
+}
+
 Schedule Runtime::new_schedule() const noexcept {
   return Schedule(now_ns(), std::llround(1e9 / (options_.rate_Hz * speed_)),
                   report_.told_late_cycles ? 0 : Schedule::kMostToMakeUp);
@@ -134,7 +139,7 @@ void Runtime::wait_for_turn(Schedule& schedule) noexcept {
   sleep_until(schedule.due_ns());
   report_.wake_up_us.add(1e-3 * static_cast<double>(now_ns() - schedule.due_ns()));
   bool was_paused = false;
-  while (!pace_.may_run() && !stop_requested_.load(std::memory_order_relaxed)) {
+  while (!pace_.may_run() && !stop_is_requested()) {
     was_paused = true;
     sleep_until(now_ns() + kPausePoll);
   }
@@ -215,7 +220,7 @@ void Runtime::loop() noexcept {
     hand_out(*sample);
 
     const bool is_over = options_.duration_s > 0.0 && record.time_s >= options_.duration_s;
-    const bool is_stopping = is_over || stop_requested_.load(std::memory_order_relaxed);
+    const bool is_stopping = is_over || stop_is_requested();
     if (is_stopping && stop_since_s < 0.0) stop_since_s = record.time_s;
     const bool ends_in_fault = !options_.stays_in_fault || is_stopping;
     if (record.mode == Mode::kFault && ends_in_fault && way_to_rest.is_over(*sample)) break;

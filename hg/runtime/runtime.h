@@ -44,6 +44,9 @@ struct Options {
   /// it; otherwise the time says more about other programs.
   double slow_cycle_us = kInfinity;
   ThreadOptions thread;  ///< of the control thread, in real time
+  /// Once true, the same as request_stop(), without anybody in between; for a signal handler.
+  /// nullptr: there is none.
+  const std::atomic<bool>* stop = nullptr;
   /// For a machine that does not wait for its controller: the cycle is told how many cycles were
   /// late, so that too many of them stop the device, and none is made up for. Only where the
   /// thread is real time; of an ordinary one, and with a device that waits, they are counted.
@@ -105,6 +108,7 @@ class Runtime {
 
  private:
   void loop() noexcept;
+  bool stop_is_requested() const noexcept;
   void run_cycle(Sample& sample) noexcept HG_NONBLOCKING;
   void hand_out(const Sample& sample) noexcept;
   void release(CommandFrame& command) noexcept;

@@ -128,6 +128,27 @@ class MainJob(TemporaryFolder):
             with file.open("rb") as stream:
                 self.assertGreater(make_reader(stream).get_summary().statistics.message_count, 100)
 
+    def test_a_terminal_that_stands_still_holds_nothing_up(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            primary, secondary = pty.openpty()
+            self.addCleanup(os.close, primary)
+            self.addCleanup(os.close, secondary)
+            summary = self.folder / "summary.json"
+            process = subprocess.Popen(
+                [PROGRAM, "run", "door", "--no-viewer", "--duration", "600", "--recordings",
+                 self.folder / "recordings", "--summary", summary], stdout=secondary)
+            self.addCleanup(process.kill)
+            shown = b""
+            while b"  tare  " not in shown:
+                shown += os.read(primary, 4096)
+            termios.tcflow(secondary, termios.TCOOFF)  # as Ctrl-S
+            time.sleep(1.0)
+            process.send_signal(number)
+            self.assertEqual(process.wait(timeout=30), 0)
+            told = json.loads(summary.read_text())
+            self.assertEqual(told["dropped_samples"], 0)
+            self.assertLess(told["duration_s"], 60.0)
+
     def test_the_status_line_is_cut_to_the_terminal(self):
         primary, secondary = pty.openpty()
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 40, 0, 0))

@@ -11,6 +11,7 @@ import re
 import shutil
 import signal
 import subprocess
+import termios
 import threading
 import time
 import unittest
@@ -247,20 +248,36 @@ class PageTest(TemporaryFolder):
         self.assertEqual(code, 2)
         self.assertIn("must be a recording", err)
 
-    def at_terminal(self, *options, **environment):
-        """A run of the door there, and the link that it prints."""
+    def at_terminal(self, *options, is_read=True, **environment):
+        """A run of the door there, and the link that it prints. Not read: Ctrl-S stands after it."""
         primary, secondary = pty.openpty()
         process = subprocess.Popen(
             [PROGRAM, "run", "door", "--user", "mouse", "--no-recording", *options],
             stdout=secondary, cwd=self.folder, env={"PATH": os.environ["PATH"], **environment})
-        os.close(secondary)
         self.addCleanup(os.close, primary)
         self.addCleanup(process.kill)
         shown = b""
         while not (link := re.search(rb"(http://\S+)\s", shown)):
             shown += os.read(primary, 4096)
-        threading.Thread(target=drain, args=[os.dup(primary)], daemon=True).start()
+        if is_read:
+            threading.Thread(target=drain, args=[os.dup(primary)], daemon=True).start()
+        else:
+            termios.tcflow(secondary, termios.TCOOFF)
+        os.close(secondary)
         return process, link[1].decode()
+
+    def test_a_terminal_that_stands_still_does_not_stop_the_stops_of_the_page(self):
+        process, link = self.at_terminal("--no-browser", is_read=False)
+        page = Page(link)
+        self.addCleanup(page.close)
+        page.next("frame", lambda frame: frame["mode"] == "running")
+        time.sleep(1.0)  # of status lines
+        self.accept(page, "panel", "emergency_stop", 1.0)
+        page.next("frame", lambda frame: frame["mode"] != "running")
+        self.accept(page, "stop")
+        page.next("frame", lambda frame: frame["run_state"]["is_over"])
+        process.send_signal(signal.SIGTERM)
+        process.wait(timeout=30)
 
     def open_at_terminal(self, *options, **environment):
         """The link that the program prints there, and the one that a browser is asked to open."""

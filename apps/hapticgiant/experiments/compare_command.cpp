@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/hapticgiant/experiments/recorded_signals.h"
-#include "apps/hapticgiant/status_line.h"
+#include "apps/hapticgiant/output.h"
 
 namespace hg::apps {
 namespace {

@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "apps/hapticgiant/experiments/condition_text.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/run_recording.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/assembly/assembly.h"
 #include "hg/evaluation/summary.h"

@@ -10,8 +10,8 @@
 #include "apps/hapticgiant/experiments/docs_page.h"
 #include "apps/hapticgiant/experiments/experiment_report.h"
 #include "apps/hapticgiant/experiments/figure_program.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
 
 namespace hg::apps {

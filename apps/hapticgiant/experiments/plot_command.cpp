@@ -8,8 +8,8 @@
 
 #include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/experiments/recorded_signals.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/status_line.h"
 
 namespace hg::apps {
 namespace {

@@ -195,6 +195,9 @@ TEST(Summary, TellsATimedOutStop) {
   const auto text = [&](const RunFacts& facts) { return summary.to_text(facts, {}); };
   EXPECT_EQ(text({}).find("timed out"), std::string::npos);
   EXPECT_NE(text({.stop_timed_out = true}).find("timed out"), std::string::npos);
+  EXPECT_EQ(text({}).find("LOST"), std::string::npos);
+  EXPECT_NE(text({.dropped = 7}).find("7 samples: neither judged nor recorded"), std::string::npos);
+  EXPECT_NE(text({.unrecorded = 8}).find("8 samples of the recording"), std::string::npos);
   const auto json = nlohmann::json::parse(summary.to_json({.stop_timed_out = true}, {}));
   EXPECT_TRUE(json["stop_timed_out"].get<bool>());
   EXPECT_FALSE(json["real_time"].get<bool>());

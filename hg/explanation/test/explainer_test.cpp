@@ -59,6 +59,21 @@ bool has_detail(const Entry& entry, const std::string& part) {
   return false;
 }
 
+TEST(Explainer, SaysThatSamplesAreMissing) {
+  Explainer explainer(names());
+  for (const std::uint64_t cycle : {5U, 6U, 7U, 10U, 11U, 500U}) {
+    Sample sample;
+    sample.record.cycle = cycle;
+    sample.record.time_s = 1e-3 * static_cast<double>(cycle);
+    explainer.add(sample);
+  }
+  const auto lost = of_kind(explainer.finish(), "LOST");
+  ASSERT_EQ(lost.size(), 1U);
+  EXPECT_EQ(lost[0].time_s, 0.007);
+  EXPECT_TRUE(has(lost[0].text, "490 samples")) << lost[0].text;
+  EXPECT_TRUE(has(lost[0].text, "2 gaps, the longest 0.489 s")) << lost[0].text;
+}
+
 TEST(Explainer, TellsModesInOrderAndNothingElseOfAQuietRun) {
   const auto entries = explained(0.5);
   ASSERT_EQ(entries.size(), 3u);
