@@ -10,4 +10,8 @@ Eigen::Vector3d rotation_between(const Eigen::Matrix3d& R_B_1,
   return turn.angle() * turn.axis();
 }
 
+double angle_between(const Eigen::Matrix3d& R_B_1, const Eigen::Matrix3d& R_B_2) noexcept {
+  return Eigen::AngleAxisd(R_B_1.transpose() * R_B_2).angle();
+}
+
 }  // namespace hg

@@ -9,4 +9,7 @@ namespace hg {
 Eigen::Vector3d rotation_between(const Eigen::Matrix3d& R_B_1,
                                  const Eigen::Matrix3d& R_B_2) noexcept;
 
+/// Angle of the rotation between two frames, rad, 0..pi.
+double angle_between(const Eigen::Matrix3d& R_B_1, const Eigen::Matrix3d& R_B_2) noexcept;
+
 }  // namespace hg

@@ -1,6 +1,5 @@
 #include "hg/rendering/rendering.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "hg/core/rotation.h"
 #include "hg/core/stacked.h"
 #include "hg/rendering/integration.h"
+#include "hg/rendering/shortest_velocity.h"
 
 namespace hg::rendering {
 namespace {
@@ -224,7 +224,7 @@ void Rendering::align(const RobotState& robot, State& state) noexcept {
     error << T_B_H.p - T_B_E.p, rotation_between(T_B_E.R, T_B_H.R);
     if (error.norm() < kAligned) return;
     const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
-    const VectorA step = J_a.completeOrthogonalDecomposition().solve(error);
+    const VectorA step = shortest_velocity(J_a, error);
     state.twin.q_a = twin_.chain.integrate(state.twin.q_a, step);
     for (std::size_t i = 0; i < twin_.dofs.size(); ++i) {
       if (twin_.dofs[i].q_index < 0) continue;
@@ -250,7 +250,7 @@ bool Rendering::stay_near(const RobotState& robot, double largest, State& state)
   twin_.chain.update_kinematics(state.twin.q_a, state.twin.dq_a);
   const Vector6 twist = device_.chain.twist(device_.handle);
   const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
-  state.twin.dq_a = J_a.completeOrthogonalDecomposition().solve(twist);
+  state.twin.dq_a = shortest_velocity(J_a, twist);
   return true;
 }
 
@@ -351,7 +351,7 @@ void Rendering::report_kinematics(const State& state, CycleRecord& record) const
   if (device_.elbow >= 0) record.p_B_elbow = device_.chain.pose(device_.elbow).p;
   record.T_B_E = twin_.chain.pose(twin_.end_effector);
   record.sync_error = (record.T_B_E.p - record.T_B_H.p).norm();
-  record.sync_error_angle = Eigen::AngleAxisd(record.T_B_H.R.transpose() * record.T_B_E.R).angle();
+  record.sync_error_angle = angle_between(record.T_B_H.R, record.T_B_E.R);
 }
 
 void Rendering::integrate(State& state) const noexcept {
