@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -150,6 +151,34 @@ nlohmann::json joint_json(const JointLine& joint) {
           {"gravity_max_" + effort, finite(joint.gravity_max)}};
 }
 
+// of axes with the same limit the one that needs most of it
+void print_stopping(const Datasheet& sheet) {
+  std::map<std::string, const inspection::Stopping*> most;
+  for (const inspection::Stopping& axis : sheet.stopping) {
+    const inspection::Stopping*& worst = most[axis.key];
+    if (worst == nullptr || axis.need.distance > worst->need.distance) worst = &axis;
+  }
+  std::string text;
+  for (const auto& [key, axis] : most) {
+    const char* unit = axis->is_angle ? "rad" : "m";
+    text += fmt::format(", {:g} {} ({} needs {:.2f} {} from full speed)", axis->distance, unit,
+                        axis->name, axis->need.distance, unit);
+  }
+  fmt::print("  stops               within {:g} s{}\n", sheet.stop_time, text);
+}
+
+nlohmann::json stopping_json(const Datasheet& sheet) {
+  nlohmann::json axes = nlohmann::json::array();
+  for (const inspection::Stopping& axis : sheet.stopping) {
+    const std::string unit = axis.is_angle ? "rad" : "m";
+    axes.push_back({{"name", axis.name},
+                    {"distance_" + unit, axis.distance},
+                    {"needs_" + unit, finite(axis.need.distance)},
+                    {"needs_s", finite(axis.need.time)}});
+  }
+  return {{"time_s", sheet.stop_time}, {"axes", axes}};
+}
+
 }  // namespace
 
 void print_datasheet(const Datasheet& sheet) {
@@ -163,6 +192,7 @@ void print_datasheet(const Datasheet& sheet) {
   print_capability(sheet);
   print_conditioning(sheet);
   print_bandwidth(sheet.bandwidth);
+  print_stopping(sheet);
   fmt::print(
       "  Of {} postures drawn uniformly in the joint ranges (seed {}), handle in the worst "
       "direction, at rest,\n  against the ratings less gravity. How to read it: docs/check.md\n",
@@ -177,6 +207,7 @@ nlohmann::json datasheet_json(const Datasheet& sheet) {
   json["joints"] = nlohmann::json::array();
   if (sheet.postures == 0) return json;
   for (const JointLine& joint : sheet.joints) json["joints"].push_back(joint_json(joint));
+  json["stopping"] = stopping_json(sheet);
   const inspection::Workspace& space = sheet.workspace;
   json["reach_m"] = sheet.reach;
   json["workspace"] = {{"volume_m3", space.volume},

@@ -38,6 +38,12 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "the same of a prismatic joint");
   v.number("plausibility_rad", monitor.plausibility, kPositive,
            "motor side minus twist of the spring minus link side of a joint; m where prismatic");
+  v.number("gyroscope_tolerance_rad", monitor.gyroscope_tolerance, kPositive,
+           "by how much the gyroscope may turn otherwise than the encoders within some seconds, "
+           "besides 2 % of what it turns");
+  v.number(
+      "tilt_tolerance_rad", monitor.tilt_tolerance, kPositive,
+      "by how much gravity may point elsewhere than the posture says when the device is armed");
   v.number("jump_factor", monitor.jump_factor, {.lb = 1.0},
            "times what the largest speed allows in a sample, of a measured position");
   v.number("frozen_samples", monitor.frozen_samples, kNotNegative,
@@ -66,6 +72,21 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "cycles that may be late again and again");
   v.number("stop_time_s", monitor.stop_time, kPositive,
            "that a controlled stop may take before the drives are switched off");
+  v.number("stop_distance_rad", monitor.stop_distance, kPositive,
+           "that a revolute joint may move in a stop; the brakes close at 90 % of it");
+  v.number("stop_distance_m", monitor.slide_stop_distance, kPositive,
+           "the same of a prismatic joint");
+  v.number("gantry_stop_distance_m", monitor.gantry_stop_distance, kPositive,
+           "the same of a prismatic axis of the gantry");
+  v.number("gantry_stop_distance_rad", monitor.turn_stop_distance, kPositive,
+           "the same of a revolute axis of the gantry");
+  v.number("braking_gap_rad", monitor.braking_gap, kPositive,
+           "of a revolute joint in a stop from where its reference has led");
+  v.number("braking_gap_m", monitor.slide_braking_gap, kPositive, "the same of a prismatic joint");
+  v.number("braking_deviation_rad_per_s", monitor.braking_deviation, kPositive,
+           "of its speed from that of its reference");
+  v.number("braking_deviation_m_per_s", monitor.slide_braking_deviation, kPositive,
+           "the same of a prismatic joint");
 }
 
 template <class V>

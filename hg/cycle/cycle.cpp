@@ -4,16 +4,18 @@
 #include <cmath>
 
 #include "hg/cycle/state_hash.h"
+#include "hg/safety/stopping.h"
 
 namespace hg::cycle {
 namespace {
 
-constexpr double kBrakingRate = 20.0;  // 1/s: stopping takes about 0.2 s
-constexpr double kSafeShare = 0.9;     // of the safe speed, which is watched
-constexpr double kStandstill = 1e-3;   // rad/s and m/s
-constexpr double kCoasting = 0.1;      // rad/s and m/s
-constexpr double kRampIn = 0.3;        // s in which the forces of a run come in
-constexpr double kRampOut = 0.1;       // s in which they make room for braking
+using safety::kBrakingRate;
+using safety::kRampOut;
+using safety::kStandstill;
+
+constexpr double kSafeShare = 0.9;  // of the safe speed, which is watched
+constexpr double kCoasting = 0.1;   // rad/s and m/s
+constexpr double kRampIn = 0.3;     // s in which the forces of a run come in
 
 bool stands_still(const CycleRecord& record) noexcept {
   return record.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
@@ -114,9 +116,11 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
     record.robot =
         estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
     trust_wrench(sensors, record.robot);
+    estimation_.check_motion(sensors, is_moving(state_.supervisor.mode()), state_.estimation);
     state_.is_coasting = is_coasting(record.robot);
     ended_(Stage::kEstimation);
-    look_ahead(record);
+    // what has jumped says nothing about where parts are, and is itself the fault
+    if (!monitor_.has_jumped(sensors, state_.monitor)) look_ahead(record);
     if (is_moving(state_.supervisor.mode())) {
       render(is_held(sensors), record);
     } else {
@@ -192,6 +196,9 @@ Fault Cycle::check(const SensorFrame& sensors) noexcept {
 Refusal Cycle::refusal_to_arm() const noexcept {
   if (state_.is_coasting) return Refusal::kStillMoving;
   if (state_.is_apart) return Refusal::kTwinApart;
+  if (estimation::tilt(state_.estimation.inertial) > monitor_.config().tilt_tolerance) {
+    return Refusal::kPostureImplausible;
+  }
   if (!estimation_.is_tared(state_.estimation)) return Refusal::kNotTared;
   if (!control_.is_latency_known(state_.control)) return Refusal::kLatencyUnknown;
   if (!control_.is_stable(state_.control)) return Refusal::kLatencyTooLong;
@@ -358,7 +365,9 @@ void Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
                                                   .dq_p_command = state_.dq_p,
                                                   .tau_m = state_.tau_m,
                                                   .pulled_back = pulled_back_,
-                                                  .unexplained = state_.control.unexplained},
+                                                  .unexplained = state_.control.unexplained,
+                                                  .turn = state_.estimation.inertial.turn.norm(),
+                                                  .turned = state_.estimation.inertial.turned},
                                                  state_.monitor);
   record.warning = verdict.warning;
   if (state_.monitor.is_broken) safety::break_rule(verdict.fault, state_.supervisor);

@@ -115,6 +115,13 @@ void mix(const estimation::State& state, Hash& hash) noexcept {
   hash.mix(state.wrench.alpha_S);
   hash.mix(state.wrench.w_S);
   mix(state.wrench.tare, hash);
+  const estimation::InertialCheck& inertial = state.inertial;
+  hash.mix(std::uint64_t{inertial.is_started});
+  for (int axis = 0; axis < 3; ++axis) {
+    hash.mix(Eigen::Vector3d(inertial.R_B_S.col(axis)));
+  }
+  for (const Eigen::Vector3d* v : {&inertial.bias, &inertial.turn, &inertial.up_S}) hash.mix(*v);
+  hash.mix(inertial.turned);
 }
 
 void mix(const collision::State& state, Hash& hash) noexcept {
@@ -153,10 +160,13 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
                            &state.lowest, &state.highest}) {
     hash.mix(*v);
   }
-  for (const VectorP* v :
-       {&state.q_p, &state.dq_p_model, &state.gantry_gap, &state.lowest_p, &state.highest_p}) {
+  for (const VectorP* v : {&state.q_p, &state.dq_p_model, &state.gantry_gap, &state.lowest_p,
+                           &state.highest_p, &state.stop_from_p, &state.braking_ramp_p}) {
     hash.mix(*v);
   }
+  hash.mix(std::uint64_t{state.is_stopping});
+  hash.mix(state.stop_from);
+  hash.mix(state.braking_ramp);
 }
 
 void mix(const passivity::State& state, Hash& hash) noexcept {

@@ -9,6 +9,7 @@
 
 #include "hg/core/types.h"
 #include "hg/estimation/gantry_observer.h"
+#include "hg/estimation/inertial_check.h"
 #include "hg/estimation/joint_observer.h"
 #include "hg/estimation/user_wrench.h"
 #include "hg/model/chain.h"
@@ -35,6 +36,7 @@ struct State {
   std::array<LinkObserver, kMaxManipulator> link;
   std::array<MotorObserver, kMaxManipulator> motor;
   WrenchState wrench;
+  InertialCheck inertial;
 };
 
 class Estimation {
@@ -46,6 +48,10 @@ class Estimation {
   /// acceleration of the manipulator's reference since then (n_m).
   RobotState step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
                   const VectorM& ddq_m_reference, State& state) noexcept;
+
+  /// Compares inertial unit and encoders, after step(); nothing without one. `is_moving`: the
+  /// device may move.
+  void check_motion(const SensorFrame& sensors, bool is_moving, State& state) const noexcept;
 
   /// Starts a tare of the wrench when asked for; ends one under way unless the device is at rest.
   void tare(bool is_asked_for, bool is_at_rest, State& state) const noexcept;

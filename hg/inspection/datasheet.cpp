@@ -111,6 +111,8 @@ Datasheet make_datasheet(const config::Device& device, const Survey& survey) {
   sheet.condition_median = quantile(conditions, 0.5);
   sheet.condition_high = quantile(conditions, 1.0 - kLow);
   sheet.most_singular = survey.most_singular;
+  sheet.stopping = stopping_of(device);
+  sheet.stop_time = device.monitor.stop_time;
   sheet.bandwidth = {
       .rate_Hz = device.rate_Hz,
       .synchronisation_Hz = std::sqrt(device.rendering.kP_tran) / (2.0 * M_PI),

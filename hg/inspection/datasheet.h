@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hg/config/device.h"
+#include "hg/inspection/stopping_rule.h"
 #include "hg/inspection/survey.h"
 #include "hg/inspection/workspace.h"
 
@@ -62,6 +63,8 @@ struct Datasheet {
   double condition_median = 0.0, condition_high = 0.0;  ///< 95 % are below the second
   Posture most_singular;
   Bandwidth bandwidth;
+  std::vector<Stopping> stopping;  ///< gantry first
+  double stop_time = 0.0;          ///< s, stated
 };
 
 Datasheet make_datasheet(const config::Device& device, const Survey& survey);

@@ -10,6 +10,7 @@
 
 #include "hg/inspection/cartesian_rule.h"
 #include "hg/inspection/collision_inspection.h"
+#include "hg/inspection/stopping_rule.h"
 #include "hg/inspection/workspace.h"
 
 namespace hg::inspection {
@@ -245,6 +246,7 @@ Findings inspect(const config::Device& device, const Survey& survey) {
   inspect_joints(device, survey, out);
   inspect_room(device, survey, out);
   inspect_cartesian_rule(device, survey, out);
+  inspect_stopping(device, out);
   inspect_singularities(device, survey, out);
   inspect_collisions(device, out);
   return std::move(out.findings);

@@ -15,6 +15,7 @@ constexpr double kClockMemory = 0.02;    // share of the newest sample in the cl
 constexpr double kPullMemory_s = 0.2;    // after which a reference that came back is forgotten
 constexpr double kGapMemory_s = 2.0;     // after which an error of the drive model is forgotten
 constexpr double kMotorMemory_s = 0.02;  // over which the torque of a motor is observed
+constexpr double kRoomForBrakes = 0.1;   // of a stopping distance, for what brakes take
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -121,6 +122,17 @@ void Monitor::look(int index, double value, double limit) noexcept {
   worst = {limit > 0.0 ? value / limit : kInfinity, value, limit, index};
 }
 
+bool Monitor::has_jumped(const SensorFrame& sensors, const MonitorState& state) const noexcept {
+  if (!state.has_sample) return false;
+  const double far = config_.jump_factor * config_.dt;
+  for (int i = 0; i < n_m_; ++i) {
+    if (std::abs(turned(sensors.q_m[i] - state.q_m[i])) > far * config_.joint_speed_max[at(i)]) {
+      return true;
+    }
+  }
+  return ((sensors.q_p - state.q_p).array().abs() > far * config_.drive.dq_max).any();
+}
+
 Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
                        const Watched& watched, MonitorState& state) noexcept {
   worst_ = fresh_;
@@ -133,7 +145,9 @@ Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
   for (int i = 0; i < n_m_; ++i) look_at_joint(i, record, watched, state);
   look_at_motors(record.robot, watched, state);
   look_at_torques(watched);
+  look_at_turn(watched);
   look_at_gantry(sensors, record, watched, state);
+  look_at_braking(record, watched, state);
   look_at_frames(record, watched);
   look_at_clocks(sensors, watched, state);
   look_at_sensors(sensors, state);
@@ -213,6 +227,14 @@ void Monitor::look_at_torques(const Watched& watched) noexcept {
   }
 }
 
+// Scale and direction of a gyroscope are known to some per cent of what it has turned.
+void Monitor::look_at_turn(const Watched& watched) noexcept {
+  constexpr double kScale = 0.02;
+  if (!is_powered(watched.state)) return;
+  look<FaultCode::kTurnUnexplained>(-1, watched.turn,
+                                    config_.gyroscope_tolerance + kScale * watched.turned);
+}
+
 void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& record,
                              const Watched& watched, MonitorState& state) noexcept {
   const RobotState& robot = record.robot;
@@ -244,6 +266,49 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& reco
                                      config_.speed_tolerance * config_.drive.dq_max);
     look<FaultCode::kGantryDeviates>(axis, std::abs(dq - model), off + while_dead);
     model += config_.dt * drive_acceleration(config_.drive, model, watched.dq_p_command[axis]);
+  }
+}
+
+// Every axis of a controlled stop against its ramp: a joint against its reference, an axis of the
+// gantry against its drive model. Whatever does not brake as it is asked to needs its brakes.
+void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
+                              MonitorState& state) noexcept {
+  const bool is_new = !state.is_stopping;
+  state.is_stopping = mode_of(watched.state) == Mode::kStopping;
+  if (!state.is_stopping) return;
+  const RobotState& robot = record.robot;
+  if (is_new) {
+    state.stop_from = state.braking_ramp = robot.q_m;
+    state.stop_from_p = state.braking_ramp_p = robot.q_p;
+  } else {
+    state.braking_ramp += config_.dt * record.reference.dq_m;
+    state.braking_ramp_p += config_.dt * state.dq_p_model;
+  }
+  constexpr double until_brakes = 1.0 - kRoomForBrakes;
+  for (int i = 0; i < n_m_; ++i) {
+    const bool is_slide = config_.is_slide[at(i)];
+    look<FaultCode::kBrakingPosition>(i, std::abs(robot.q_m[i] - state.braking_ramp[i]),
+                                      is_slide ? config_.slide_braking_gap : config_.braking_gap);
+    look<FaultCode::kBrakingSpeed>(
+        i, std::abs(robot.dq_m[i] - record.reference.dq_m[i]),
+        is_slide ? config_.slide_braking_deviation : config_.braking_deviation);
+    look<FaultCode::kStopTooFar>(
+        i, std::abs(robot.q_m[i] - state.stop_from[i]),
+        until_brakes * (is_slide ? config_.slide_stop_distance : config_.stop_distance));
+  }
+  const bool is_slide = config_.is_gantry_slide;
+  const double gap = is_slide ? config_.gantry_gap : config_.turn_gap;
+  const double off = is_slide ? config_.gantry_deviation : config_.turn_deviation;
+  const double by_dead_time = config_.drive.dead_time * config_.drive.ddq_max;
+  for (int i = 0; i < n_p_; ++i) {
+    const double moved = std::abs(robot.q_p[i] - state.stop_from_p[i]);
+    look<FaultCode::kBrakingPosition>(n_m_ + i, std::abs(robot.q_p[i] - state.braking_ramp_p[i]),
+                                      gap);
+    look<FaultCode::kBrakingSpeed>(n_m_ + i, std::abs(robot.dq_p[i] - state.dq_p_model[i]),
+                                   off + by_dead_time);
+    look<FaultCode::kStopTooFar>(
+        n_m_ + i, moved,
+        until_brakes * (is_slide ? config_.gantry_stop_distance : config_.turn_stop_distance));
   }
 }
 

@@ -37,17 +37,27 @@ struct MonitorConfig {
   double slide_tracking_tolerance = 0.02;  ///< the same of a prismatic joint, m
   double sync_tolerance = 0.02;            ///< between handle and twin, m
   double plausibility = 0.02;              ///< motor side minus spring minus link side, rad or m
+  double gyroscope_tolerance = 0.03;       ///< of the gyroscope from the encoders, rad
+  double tilt_tolerance = 0.1;             ///< of gravity from the posture when armed, rad
   double jump_factor = 3.0;                ///< times what the speed rating allows in a sample
   double clock_tolerance = 0.2;            ///< mean error of the clock, periods per sample
   double temperature_max = 90.0;           ///< of a motor, degrees Celsius
   double gantry_tolerance = 0.02;          ///< beyond the range of a prismatic axis, m
   double turn_tolerance = 0.03;            ///< beyond the range of a revolute axis, rad
-  double gantry_deviation = 0.25;          ///< from the speed of the drive model, m/s
-  double turn_deviation = 0.25;            ///< the same of a revolute axis, rad/s
-  double gantry_gap = 0.03;                ///< from where its drive model takes it, m
-  double turn_gap = 0.03;                  ///< the same of a revolute axis, rad
+  double gantry_deviation = 0.12;          ///< from the speed of the drive model, m/s
+  double turn_deviation = 0.12;            ///< the same of a revolute axis, rad/s
+  double gantry_gap = 0.02;                ///< from where its drive model takes it, m
+  double turn_gap = 0.02;                  ///< the same of a revolute axis, rad
   double safe_speed = 0.25;                ///< of handle and gantry with nobody at it, m/s
   double stop_time = 1.0;                  ///< that a controlled stop may take, s
+  double stop_distance = 0.8;              ///< that a revolute joint may move in a stop, rad
+  double slide_stop_distance = 0.6;        ///< the same of a prismatic joint, m
+  double gantry_stop_distance = 0.6;       ///< of a prismatic axis of the gantry, m
+  double turn_stop_distance = 0.8;         ///< of a revolute axis of the gantry, rad
+  double braking_gap = 0.025;              ///< of a joint that is stopped from its reference, rad
+  double slide_braking_gap = 0.02;         ///< the same of a prismatic joint, m
+  double braking_deviation = 0.25;         ///< of its speed from the reference's, rad/s
+  double slide_braking_deviation = 0.25;   ///< the same of a prismatic joint, m/s
   double frozen_samples = 0;               ///< with the same bits; 0: sensors have no noise
   double overruns_in_a_row = 2;            ///< late cycles that may follow each other
   double overruns_per_s = 5;               ///< late cycles that may come again and again
@@ -93,6 +103,8 @@ struct Watched {
   VectorM tau_m;                  ///< that the motors were told a period ago; empty = none
   VectorM pulled_back;  ///< by how much the reference had to come back to the device; empty = not
   VectorM unexplained;  ///< joint torques, TrackingReport::torque_unexplained; empty = none
+  double turn = 0.0;    ///< of the gyroscope beyond what the encoders say, rad
+  double turned = 0.0;  ///< of the handle at all in that time, rad
 };
 
 /// Part of the copyable state of a cycle.
@@ -115,6 +127,9 @@ struct MonitorState {
   VectorM momentum;         ///< of the motors, as their commands and springs make it, Nms
   VectorM lowest, highest;  ///< where joints may be: limits, or where they stood when armed
   VectorP lowest_p, highest_p;
+  bool is_stopping = false;             ///< what follows is of the present stop
+  VectorM stop_from, braking_ramp;      ///< joints: where it began, where the reference has led
+  VectorP stop_from_p, braking_ramp_p;  ///< gantry: where it began, where the drive model has led
 };
 
 struct Verdict {
@@ -133,6 +148,9 @@ class Monitor {
   Verdict watch(const SensorFrame& sensors, const CycleRecord& record, const Watched& watched,
                 MonitorState& state) noexcept;
 
+  /// Whether a measured position has moved farther since the last sample than it can.
+  bool has_jumped(const SensorFrame& sensors, const MonitorState& state) const noexcept;
+
   /// A sample could not be used: the next one is not compared with one before.
   static void forget(MonitorState& state) noexcept { state.has_sample = false; }
 
@@ -149,11 +167,14 @@ class Monitor {
                      MonitorState& state) noexcept;
   void look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept;
   void look_at_torques(const Watched& watched) noexcept;
+  void look_at_turn(const Watched& watched) noexcept;
   void look_at_motors(const RobotState& robot, const Watched& watched,
                       MonitorState& state) noexcept;
   void look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept;
   void look_at_gantry(const SensorFrame& sensors, const CycleRecord& record, const Watched& watched,
                       MonitorState& state) noexcept;
+  void look_at_braking(const CycleRecord& record, const Watched& watched,
+                       MonitorState& state) noexcept;
   void look_at_frames(const CycleRecord& record, const Watched& watched) noexcept;
   void look_at_clocks(const SensorFrame& sensors, const Watched& watched,
                       MonitorState& state) noexcept;

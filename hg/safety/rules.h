@@ -146,6 +146,17 @@ inline constexpr Rule kRules[] = {
      .debounce = {.seconds = 0.02},
      .reaction = Stop::kSs1,
      .release = "at once; look what touches the arm, and tare the force sensor"},
+    {.code = FaultCode::kTurnUnexplained,
+     .name = "gyroscope contradicts",
+     .meaning =
+         "The handle turns otherwise than the encoders of the joints say: an encoder drifts, "
+         "or the gyroscope does.",
+     .threshold = "monitor.gyroscope_tolerance_rad",
+     .warn_from = 0.6,
+     .debounce = {.samples = 3},
+     .reaction = Stop::kSto,
+     .release =
+         "at once, and look at encoders and gyroscope: the joints may not be where they seem"},
     {.code = FaultCode::kOperatorReleased,
      .name = "operator let go",
      .meaning = "The operator let go of the enabling switch, or squeezed it through.",
@@ -257,8 +268,8 @@ inline constexpr Rule kRules[] = {
      .threshold = "monitor.gantry_deviation_m_per_s, monitor.gantry_deviation_rad_per_s, "
                   "monitor.gantry_gap_m, monitor.gantry_gap_rad",
      .warn_from = 0.6,
-     .debounce = {.seconds = 0.1},
-     .reaction = Stop::kSs1,
+     .debounce = {.seconds = 0.01},
+     .reaction = Stop::kSto,
      .release = "at once; it is armed again once it stands still"},
     {.code = FaultCode::kOscillation,
      .name = "oscillation",
@@ -286,6 +297,32 @@ inline constexpr Rule kRules[] = {
      .debounce = {.samples = 3},
      .reaction = Stop::kSs1,
      .release = "at once; the reference begins at rest"},
+    {.code = FaultCode::kBrakingPosition,
+     .name = "off the braking ramp",
+     .meaning = "An axis that is being stopped is not where its braking ramp takes it.",
+     .threshold = "monitor.braking_gap_rad, monitor.braking_gap_m, monitor.gantry_gap_m, "
+                  "monitor.gantry_gap_rad",
+     .warn_from = 0.6,
+     .debounce = {.samples = 3},
+     .reaction = Stop::kSto,
+     .release = "at once, and look why: brakes had to stop it"},
+    {.code = FaultCode::kBrakingSpeed,
+     .name = "brakes too slowly",
+     .meaning = "An axis that is being stopped has not the speed of its braking ramp.",
+     .threshold = "monitor.braking_deviation_rad_per_s, monitor.braking_deviation_m_per_s, "
+                  "monitor.gantry_deviation_m_per_s, monitor.gantry_deviation_rad_per_s",
+     .warn_from = 0.6,
+     .debounce = {.seconds = 0.005},
+     .reaction = Stop::kSto,
+     .release = "at once, and look why: brakes had to stop it"},
+    {.code = FaultCode::kStopTooFar,
+     .name = "stop too far",
+     .meaning = "An axis that is being stopped has moved farther than its stopping distance.",
+     .threshold = "monitor.stop_distance_rad, monitor.stop_distance_m, "
+                  "monitor.gantry_stop_distance_m, monitor.gantry_stop_distance_rad",
+     .warn_from = 0.9,
+     .reaction = Stop::kSto,
+     .release = "at once, and look why: brakes had to stop it"},
 };
 
 inline constexpr std::size_t kRuleCount = std::size(kRules);

@@ -34,6 +34,8 @@ std::string_view to_string(FaultCode code) noexcept {
       return "drive reports a fault";
     case FaultCode::kTorqueUnexplained:
       return "joint torque that motion and user do not explain";
+    case FaultCode::kTurnUnexplained:
+      return "gyroscope and encoders contradict each other";
     case FaultCode::kMotorDeviates:
       return "motor does not give the torque it is told";
     case FaultCode::kOperatorReleased:
@@ -60,6 +62,12 @@ std::string_view to_string(FaultCode code) noexcept {
       return "controlled stop took too long";
     case FaultCode::kAccelerationExceeded:
       return "acceleration rating exceeded";
+    case FaultCode::kBrakingPosition:
+      return "axis is off its braking ramp";
+    case FaultCode::kBrakingSpeed:
+      return "axis brakes too slowly";
+    case FaultCode::kStopTooFar:
+      return "axis moved too far in a stop";
     case FaultCode::kWrenchTooLarge:
       return "user wrench exceeds the sensor's range";
     case FaultCode::kSolverFailed:

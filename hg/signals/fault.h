@@ -24,6 +24,7 @@ enum class FaultCode : std::uint16_t {
   kDriveFault = 113,           ///< a drive says that it has a fault
   kMotorDeviates = 114,        ///< a motor does not give the torque that it is told
   kTorqueUnexplained = 115,    ///< motion and user's wrench do not explain a joint torque
+  kTurnUnexplained = 120,      ///< the gyroscope turns otherwise than the encoders say
   kOperatorReleased = 130,     ///< the operator let go of the enabling switch
   kScannerField = 131,         ///< somebody is in the scanner's field while nobody holds the handle
   kSafetyInputsDisagree = 132,  ///< the two channels of a safety input differ for too long
@@ -44,6 +45,9 @@ enum class FaultCode : std::uint16_t {
   kEnergy = 309,          ///< the device has given more energy than its tank holds
   kStopTooSlow = 310,     ///< a controlled stop did not come to rest in time
   kAccelerationExceeded = 311,  ///< a joint is asked to accelerate more than its rating allows
+  kBrakingPosition = 320,  ///< an axis that is being stopped is not where its braking ramp takes it
+  kBrakingSpeed = 321,     ///< an axis that is being stopped has not the speed of its braking ramp
+  kStopTooFar = 322,       ///< an axis that is being stopped has moved too far
 };
 
 /// One line for humans, for example "measured value is not finite".

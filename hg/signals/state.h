@@ -137,21 +137,22 @@ std::string_view to_string(TareStatus status) noexcept;
 /// Why a request of the operator was not followed.
 enum class Refusal : std::uint8_t {
   kNone = 0,
-  kNotTared = 1,          ///< arming a device that needs a tare and has none
-  kLatencyTooLong = 2,    ///< arming a torque loop that would not be stable
-  kLatencyUnknown = 3,    ///< arming a torque loop before enough commands were answered
-  kNotReady = 4,          ///< arming a device that is not ready: off, on already, or stopping
-  kNotArmed = 5,          ///< running a device whose drives are off, or that runs or stops
-  kFaultPresent = 6,      ///< anything but a reset after a fault
-  kCauseRemains = 7,      ///< a reset while the cause of the fault is still there
-  kNoFault = 8,           ///< a reset without a fault
-  kOperatorReleased = 9,  ///< arming while the operator does not hold the enabling switch
-  kNobodyHolds = 10,      ///< running by hand with nobody at the handle
-  kSomebodyHolds = 11,    ///< running autonomously with somebody at the handle
-  kNoOverride = 12,       ///< running autonomously without the override key
-  kFieldOccupied = 13,    ///< running autonomously with somebody in the scanner's field
-  kStillMoving = 14,      ///< arming a device that still moves, its drives just off
-  kTwinApart = 15,        ///< arming where the twin cannot be where the handle is
+  kNotTared = 1,             ///< arming a device that needs a tare and has none
+  kLatencyTooLong = 2,       ///< arming a torque loop that would not be stable
+  kLatencyUnknown = 3,       ///< arming a torque loop before enough commands were answered
+  kNotReady = 4,             ///< arming a device that is not ready: off, on already, or stopping
+  kNotArmed = 5,             ///< running a device whose drives are off, or that runs or stops
+  kFaultPresent = 6,         ///< anything but a reset after a fault
+  kCauseRemains = 7,         ///< a reset while the cause of the fault is still there
+  kNoFault = 8,              ///< a reset without a fault
+  kOperatorReleased = 9,     ///< arming while the operator does not hold the enabling switch
+  kNobodyHolds = 10,         ///< running by hand with nobody at the handle
+  kSomebodyHolds = 11,       ///< running autonomously with somebody at the handle
+  kNoOverride = 12,          ///< running autonomously without the override key
+  kFieldOccupied = 13,       ///< running autonomously with somebody in the scanner's field
+  kStillMoving = 14,         ///< arming a device that still moves, its drives just off
+  kTwinApart = 15,           ///< arming where the twin cannot be where the handle is
+  kPostureImplausible = 16,  ///< arming where gravity says another posture than the encoders
 };
 
 std::string_view to_string(Refusal refusal) noexcept;

@@ -101,7 +101,11 @@ void bind_fault_codes(nb::module_& module) {
       .value("OSCILLATION", FaultCode::kOscillation)
       .value("ENERGY", FaultCode::kEnergy)
       .value("STOP_TOO_SLOW", FaultCode::kStopTooSlow)
-      .value("ACCELERATION_EXCEEDED", FaultCode::kAccelerationExceeded);
+      .value("ACCELERATION_EXCEEDED", FaultCode::kAccelerationExceeded)
+      .value("TURN_UNEXPLAINED", FaultCode::kTurnUnexplained)
+      .value("BRAKING_POSITION", FaultCode::kBrakingPosition)
+      .value("BRAKING_SPEED", FaultCode::kBrakingSpeed)
+      .value("STOP_TOO_FAR", FaultCode::kStopTooFar);
 }
 
 void bind_limit_words(nb::module_& module) {

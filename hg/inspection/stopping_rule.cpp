@@ -1,0 +1,58 @@
+#include "hg/inspection/stopping_rule.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace hg::inspection {
+namespace {
+
+constexpr double kUntilBrakes = 0.9;  // of a stopping distance; then the monitor closes them
+
+}  // namespace
+
+std::vector<Stopping> stopping_of(const config::Device& device) {
+  const rendering::DeviceModel& model = device.model;
+  const safety::MonitorConfig& monitor = device.monitor;
+  std::vector<Stopping> all;
+  for (int i = 0; i < model.n_p + model.n_m; ++i) {
+    const model::Joint& joint = model.chain.joints()[static_cast<std::size_t>(i)];
+    const bool is_angle = joint.type != model::JointType::kPrismatic;
+    Stopping stopping = {.name = joint.name, .is_angle = is_angle};
+    if (i < model.n_p) {
+      stopping.need = safety::stopping_need(device.drive);
+      stopping.distance = is_angle ? monitor.turn_stop_distance : monitor.gantry_stop_distance;
+      stopping.key =
+          is_angle ? "monitor.gantry_stop_distance_rad" : "monitor.gantry_stop_distance_m";
+    } else {
+      const auto& limits = model.joint_limits[static_cast<std::size_t>(i - model.n_p)];
+      stopping.need = safety::stopping_need(limits.dq_max, limits.ddq_max);
+      stopping.distance = is_angle ? monitor.stop_distance : monitor.slide_stop_distance;
+      stopping.key = is_angle ? "monitor.stop_distance_rad" : "monitor.stop_distance_m";
+    }
+    all.push_back(std::move(stopping));
+  }
+  return all;
+}
+
+void inspect_stopping(const config::Device& device, Collector& out) {
+  for (const Stopping& s : stopping_of(device)) {
+    if (std::isfinite(s.need.distance) && s.need.distance > kUntilBrakes * s.distance) {
+      const char* unit = s.is_angle ? "rad" : "m";
+      out.add(
+          Severity::kFault, s.key,
+          fmt::format("{:g} {}, but {} needs {:.3g} {} to stop from full speed: its brakes would "
+                      "close in ordinary stops",
+                      s.distance, unit, s.name, s.need.distance, unit),
+          "raise it, or lower the speed of the joint");
+    }
+    if (std::isfinite(s.need.time) && s.need.time > device.monitor.stop_time) {
+      out.add(Severity::kFault, "monitor.stop_time_s",
+              fmt::format("{:g} s, but {} needs {:.3g} s to stop from full speed",
+                          device.monitor.stop_time, s.name, s.need.time),
+              "raise it, or lower the speed of the joint");
+    }
+  }
+}
+
+}  // namespace hg::inspection
