@@ -60,6 +60,65 @@ bool has_reacted(const CycleRecord& record) {
          record.mode == Mode::kReady || record.mode == Mode::kFault;
 }
 
+// Ways of axes that nobody asked for, see FaultCase::travel_share.
+class Travel {
+ public:
+  Travel(const config::Scenario& scenario) : device_(scenario.device) {}
+
+  // One period from the begin of the fault on, until the device is at rest again.
+  void add(const Truth& truth, const Sample& sample, bool has_reacted) {
+    const double dt = device_.rendering.dt;
+    if (!has_begun_) {
+      has_begun_ = true;
+      from_m_ = truth.q_m;
+      from_p_ = plan_p_ = truth.q_p;
+      plan_from_m_ = sample.record.reference.q_m;
+      speed_p_ = truth.dq_p;
+    }
+    if (!has_reacted) {
+      plan_m_ = sample.record.reference.q_m - plan_from_m_;
+      for (Eigen::Index i = 0; i < plan_p_.size(); ++i) {
+        const double command = sample.command.enable ? sample.command.dq_p[i] : 0.0;
+        plan_p_[i] += dt * speed_p_[i];
+        speed_p_[i] += dt * drive_acceleration(device_.drive, speed_p_[i], command);
+      }
+      at_stop_m_ = truth.q_m;
+      at_stop_p_ = truth.q_p;
+      off_m_ = truth.q_m - from_m_ - plan_m_;
+      off_p_ = truth.q_p - plan_p_;
+    }
+    const safety::MonitorConfig& stated = device_.monitor;
+    for (Eigen::Index i = 0; i < truth.q_m.size(); ++i) {
+      const bool is_slide =
+          !stated.is_slide.empty() && stated.is_slide[static_cast<std::size_t>(i)];
+      look(off_m_[i] + truth.q_m[i] - at_stop_m_[i], truth.q_m[i] - from_m_[i],
+           is_slide ? stated.slide_stop_distance : stated.stop_distance);
+    }
+    for (Eigen::Index i = 0; i < truth.q_p.size(); ++i) {
+      look(off_p_[i] + truth.q_p[i] - at_stop_p_[i], truth.q_p[i] - from_p_[i],
+           stated.is_gantry_slide ? stated.gantry_stop_distance : stated.turn_stop_distance);
+    }
+    if (!has_reacted) return;
+    energy_ -= dt * truth.w_H.dot(truth.twist);
+    most_energy_ = std::max(most_energy_, energy_);
+  }
+
+  double share() const { return share_; }
+  double energy() const { return most_energy_; }
+
+ private:
+  // A plan that moves where the axis stands still, because its encoder drifts, is no way.
+  void look(double off, double moved, double stated) {
+    share_ = std::max(share_, std::min(std::abs(off), std::abs(moved)) / stated);
+  }
+
+  const config::Device& device_;
+  bool has_begun_ = false;
+  VectorM from_m_, plan_from_m_, plan_m_, at_stop_m_, off_m_;
+  VectorP from_p_, plan_p_, speed_p_, at_stop_p_, off_p_;
+  double share_ = 0.0, energy_ = 0.0, most_energy_ = 0.0;
+};
+
 // Peaks of the person's force in a run without faults, one per tenth of a second.
 class CleanRun {
  public:
@@ -114,6 +173,35 @@ injection::Injection draw(const injection::Kind& kind, const config::Scenario& s
   return drawn;
 }
 
+constexpr std::size_t kPhases = 4;
+constexpr double kFirst = 0.1;  // s: what is wrong from the first sample on is no fault that begins
+
+FaultCase draw_case(std::size_t number, const config::Scenario& scenario, std::mt19937_64& random) {
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  const auto kinds = injection::kinds();
+  FaultCase drawn = {.phase = static_cast<Phase>(number / kinds.size() % kPhases),
+                     .injection = draw(kinds[number % kinds.size()], scenario, random)};
+  double& from_s = drawn.injection.from_s;
+  switch (drawn.phase) {
+    case Phase::kRunning:
+      break;
+    case Phase::kPair:
+      drawn.other = draw(kinds[random() % kinds.size()], scenario, random);
+      drawn.other->from_s = from_s + uniform(0.0, 0.5);
+      break;
+    case Phase::kStopping:
+      drawn.other = {.kind = injection::find_kind("emergency_stop"), .from_s = from_s};
+      from_s += uniform(-0.05, 0.3);
+      break;
+    case Phase::kStarting:
+      from_s = uniform(kFirst, scenario.script.script.grasp_s);
+      break;
+  }
+  return drawn;
+}
+
 // Counts the cycles of a recording, and whether they are all there.
 class CycleCounter final : public recording::RecordingListener {
  public:
@@ -148,15 +236,25 @@ Interval fault_times(const config::Scenario& scenario) {
   return {grasp_s + kSettling, std::min(last_s, grasp_s + kLatest)};
 }
 
-FaultCase play_fault(const config::Scenario& scenario, const injection::Injection& injection,
+FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
                      const CampaignConfig& config, double clean_force,
                      const recording::RecordingInfo* recording) {
-  FaultCase result = {.injection = injection};
+  FaultCase result = std::move(drawn);
   config::Scenario played = scenario;
-  played.faults = {injection};
+  played.faults = {result.injection};
+  double from_s = result.injection.from_s;
+  double end_s = from_s + config.watched_s;
+  if (result.other) {
+    played.faults.push_back(*result.other);
+    from_s = std::min(from_s, result.other->from_s);
+    end_s = std::max(end_s, result.other->from_s + config.watched_s);
+  }
+  // a fault from the start on is in force when the device begins to run
+  if (result.phase == Phase::kStarting) end_s += scenario.script.script.grasp_s + kSettling;
   Player player(played);
   TrueLimits limits(scenario);
-  const double end_s = injection.from_s + config.watched_s;
+  Travel travel(scenario);
+  bool is_at_rest = false;
   double noticed_at_s = kNever;
   std::uint64_t cycles = 0;
   const auto recorder =
@@ -171,20 +269,23 @@ FaultCase play_fault(const config::Scenario& scenario, const injection::Injectio
     player.end();
     goes_on = record.time_s < end_s;
     ++cycles;
-    if (record.time_s < injection.from_s) continue;
+    if (record.time_s < from_s) continue;
 
     result.peak_force = std::max(result.peak_force, truth.w_H.head<3>().norm());
     result.worst_excess = std::max(result.worst_excess, limits.excess(truth));
-    if (record.mode == Mode::kRunning) {
+    if (record.mode == Mode::kRunning || record.mode == Mode::kStopping) {
       const double distance = (truth.T_B_H.p - record.T_B_E.p).norm();
       result.worst_distance = std::max(result.worst_distance, distance);
     }
     if (std::isnan(noticed_at_s) && has_reacted(record)) {
       noticed_at_s = record.time_s;
       result.outcome = Outcome::kNoticed;
-      result.noticed_s = record.time_s - injection.from_s;
+      result.noticed_s = record.time_s - from_s;
       result.fault = record.fault.code;
     }
+    const bool was_noticed = !std::isnan(noticed_at_s);
+    if (!is_at_rest) travel.add(truth, player.sample(), was_noticed);
+    is_at_rest = is_at_rest || (was_noticed && stands_still(truth));
     result.stop = std::max(result.stop, record.stop);
     if (std::isnan(noticed_at_s) || !stands_still(truth)) {
       result.stopped_s = kNever;
@@ -196,6 +297,8 @@ FaultCase play_fault(const config::Scenario& scenario, const injection::Injectio
     result.is_complete = has_all_cycles(recorder->close().file, cycles);
     std::filesystem::remove_all(recording->folder);
   }
+  result.travel_share = travel.share();
+  result.energy = travel.energy();
   const bool is_worse = result.worst_excess > config.harmless_excess ||
                         result.peak_force > clean_force + config.harmless_force ||
                         result.worst_distance > config.harmless_distance;
@@ -213,24 +316,22 @@ Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const Camp
          [&](std::size_t i) { clean[i] = std::make_unique<CleanRun>(scenarios[i]); }, {});
 
   campaign.cases.resize(static_cast<std::size_t>(config.cases));
-  const auto kinds = injection::kinds();
   do_all(
       campaign.cases.size(),
       [&](std::size_t i) {
         std::mt19937_64 random(config.seed * 1'000'003 + i);
         const std::size_t which = random() % scenarios.size();
-        const injection::Injection injection =
-            draw(kinds[i % kinds.size()], scenarios[which], random);
-        const double clean_force =
-            clean[which]->peak(injection.from_s, injection.from_s + config.watched_s);
+        FaultCase drawn = draw_case(i, scenarios[which], random);
+        drawn.scenario = which;
+        const double from_s = drawn.injection.from_s;
+        const double clean_force = clean[which]->peak(from_s, from_s + config.watched_s);
         recording::RecordingInfo recording;
         if (!recordings.empty()) {
           recording = recordings[which];
           recording.folder /= fmt::format("case_{}", i);
         }
-        campaign.cases[i] = play_fault(scenarios[which], injection, config, clean_force,
+        campaign.cases[i] = play_fault(scenarios[which], std::move(drawn), config, clean_force,
                                        recordings.empty() ? nullptr : &recording);
-        campaign.cases[i].scenario = which;
       },
       progress);
   return campaign;
@@ -240,7 +341,7 @@ namespace {
 
 bool is_within_bounds(const CampaignConfig& config, const FaultCase& result) {
   return result.worst_excess <= config.excess_bound && result.peak_force <= config.force_bound &&
-         result.is_complete;
+         result.travel_share <= 1.0 && result.energy <= config.energy_bound && result.is_complete;
 }
 
 bool is_good(const CampaignConfig& config, const FaultCase& result) {
@@ -259,15 +360,34 @@ std::string_view to_string(Outcome outcome) {
   return "unknown";
 }
 
+std::string_view to_string(Phase phase) {
+  switch (phase) {
+    case Phase::kRunning:
+      return "running";
+    case Phase::kPair:
+      return "pair";
+    case Phase::kStopping:
+      return "stopping";
+    case Phase::kStarting:
+      return "starting";
+  }
+  return "unknown";
+}
+
+std::string fault_text(const injection::Injection& injection) {
+  return fmt::format("{} of {} by {:.4g} {} at {:.3f} s", injection.kind->name, injection.index,
+                     injection.magnitude, injection.kind->unit, injection.from_s);
+}
+
 std::string case_text(const Campaign& campaign, std::size_t index) {
   const FaultCase& result = campaign.cases[index];
-  const injection::Injection& injection = result.injection;
   return fmt::format(
-      "case {}: {} of {} by {:.4g} {} at {:.3f} s in {}: {}, {:.0f} N, {:.3f} outside, {:.3f} "
-      "m{}\n",
-      index, injection.kind->name, injection.index, injection.magnitude, injection.kind->unit,
-      injection.from_s, campaign.scenarios[result.scenario], to_string(result.outcome),
-      result.peak_force, result.worst_excess, result.worst_distance,
+      "case {}: {}{} in {}, {}: {} {}, {:.0f} N, {:.3f} outside, {:.3f} m, way {:.0f} %, {:.1f} "
+      "J{}\n",
+      index, fault_text(result.injection), result.other ? " and " + fault_text(*result.other) : "",
+      campaign.scenarios[result.scenario], to_string(result.phase), to_string(result.outcome),
+      static_cast<int>(result.fault), result.peak_force, result.worst_excess, result.worst_distance,
+      100.0 * result.travel_share, result.energy,
       result.is_complete ? "" : ", its recording has lost cycles");
 }
 
@@ -277,7 +397,7 @@ struct Row {
   std::vector<double> noticed_ms, stopped_ms;
   std::map<FaultCode, int> faults;
   std::map<Stop, int> stops;
-  double peak_force = 0.0, worst_excess = 0.0;
+  double peak_force = 0.0, worst_excess = 0.0, travel_share = 0.0, energy = 0.0;
 };
 
 Row row_of(const Campaign& campaign, const injection::Kind& kind) {
@@ -287,6 +407,8 @@ Row row_of(const Campaign& campaign, const injection::Kind& kind) {
     ++row.cases;
     row.peak_force = std::max(row.peak_force, result.peak_force);
     row.worst_excess = std::max(row.worst_excess, result.worst_excess);
+    row.travel_share = std::max(row.travel_share, result.travel_share);
+    row.energy = std::max(row.energy, result.energy);
     if (result.outcome == Outcome::kHarmless) ++row.harmless;
     if (result.outcome == Outcome::kUnnoticed) ++row.unnoticed;
     if (result.outcome != Outcome::kNoticed) continue;
@@ -313,10 +435,11 @@ std::string range_text(const std::vector<double>& sorted) {
   return fmt::format("{:.0f} / {:.0f}", sorted[sorted.size() / 2], sorted.back());
 }
 
-using Cells = std::array<std::string, 11>;
+using Cells = std::array<std::string, 13>;
 
-const Cells kHead = {"fault",      "cases", "noticed", "harmless", "unnoticed", "noticed ms",
-                     "at rest ms", "stop",  "N",       "outside",  "most often"};
+const Cells kHead = {"fault",      "cases",      "noticed",   "harmless", "unnoticed",
+                     "noticed ms", "at rest ms", "stop",      "N",        "outside",
+                     "way %",      "J",          "most often"};
 
 Cells cells_of(const injection::Kind& kind, const Row& row) {
   const FaultCode fault = most_frequent(row.faults);
@@ -330,6 +453,8 @@ Cells cells_of(const injection::Kind& kind, const Row& row) {
           std::string(hg::to_string(most_frequent(row.stops))),
           fmt::format("{:.0f}", row.peak_force),
           fmt::format("{:.4f}", row.worst_excess),
+          fmt::format("{:.0f}", 100.0 * row.travel_share),
+          fmt::format("{:.1f}", row.energy),
           row.noticed == 0 ? ""
           : fault == FaultCode::kNone
               ? "no fault"
@@ -361,9 +486,12 @@ std::string verdict_of(const Campaign& campaign) {
   const auto bad = std::ranges::count_if(
       campaign.cases, [&](const FaultCase& result) { return !is_good(campaign.config, result); });
   return fmt::format(
-      "{} of {} faults went unnoticed, took the device farther than {:g} rad or m outside a limit, "
-      "pushed the person with more than {:g} N, or are missing from their recording",
-      bad, campaign.cases.size(), campaign.config.excess_bound, campaign.config.force_bound);
+      "{} of {} cases went unnoticed, took the device farther than {:g} rad or m outside a limit "
+      "or "
+      "an axis farther than its stopping distance, pushed the person with more than {:g} N, gave "
+      "more than {:g} J in a stop, or are missing from their recording",
+      bad, campaign.cases.size(), campaign.config.excess_bound, campaign.config.force_bound,
+      campaign.config.energy_bound);
 }
 
 }  // namespace
@@ -376,15 +504,18 @@ bool is_passed(const Campaign& campaign) {
 std::string to_text(const Campaign& campaign) {
   std::string text;
   const auto add = [&](const Cells& c) {
-    text += fmt::format("{:24} {:>5} {:>7} {:>8} {:>9}  {:>14} {:>14}  {:>5} {:>6} {:>8}  {}\n",
-                        c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], c[9], c[10]);
+    text += fmt::format(
+        "{:24} {:>5} {:>7} {:>8} {:>9}  {:>14} {:>14}  {:>5} {:>6} {:>8} {:>6} {:>6}  {}\n", c[0],
+        c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], c[9], c[10], c[11], c[12]);
   };
   add(kHead);
   for (const Cells& cells : table_of(campaign)) add(cells);
   text +=
       "\nnoticed and at rest: median / longest, in ms after the fault began and after it was "
       "noticed; N: largest force of the person;\noutside: furthest true position outside a "
-      "limit of the device, rad or m\n\n";
+      "limit of the device, rad or m; way: longest that nobody asked for, of the stopping "
+      "distance; "
+      "J: largest energy\ngiven to the person in a stop\n\n";
   for (std::size_t i = 0; i < campaign.cases.size(); ++i) {
     if (!is_good(campaign.config, campaign.cases[i])) text += case_text(campaign, i);
   }
@@ -401,7 +532,7 @@ std::string to_markdown(const Campaign& campaign) {
   text += line(rule);
   for (const Cells& cells : table_of(campaign)) text += line(cells);
   return fmt::format(
-      "# What became of {} faults on purpose\n\n"
+      "# What became of {} cases of faults on purpose\n\n"
       "Written by `hapticgiant faults --markdown`; [safety.md](safety.md) says what the columns "
       "mean.\n"
       "Seed {}; {}: {}.\n\n{}\n"
@@ -421,6 +552,7 @@ nlohmann::ordered_json to_json(const Campaign& campaign) {
                                     {"index", injection.index},
                                     {"magnitude", injection.magnitude},
                                     {"at_s", injection.from_s},
+                                    {"phase", to_string(result.phase)},
                                     {"outcome", to_string(result.outcome)}};
     if (result.outcome == Outcome::kNoticed) {
       entry["code"] = static_cast<int>(result.fault);
@@ -431,6 +563,9 @@ nlohmann::ordered_json to_json(const Campaign& campaign) {
     entry["peak_force_N"] = result.peak_force;
     entry["worst_excess"] = result.worst_excess;
     entry["worst_distance_m"] = result.worst_distance;
+    entry["travel_share"] = result.travel_share;
+    entry["energy_J"] = result.energy;
+    if (result.other) entry["and"] = fault_text(*result.other);
     entry["recording_complete"] = result.is_complete;
     json["cases"].push_back(std::move(entry));
   }

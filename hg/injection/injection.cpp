@@ -56,6 +56,20 @@ constexpr std::array kKinds = {
          {0.05, 0.5},
          "rad/s",
          true},
+    Kind{"joint_encoders_jump",
+         "both encoders of a joint have slipped alike",
+         Part::kJointEncoders,
+         Effect::kOffset,
+         {0.05, 0.5},
+         "rad",
+         true},
+    Kind{"joint_encoders_drift",
+         "both encoders of a joint count alike what does not move",
+         Part::kJointEncoders,
+         Effect::kDrift,
+         {0.02, 0.5},
+         "rad/s",
+         true},
     Kind{"torque_sensor_nan", "a joint torque is no number", Part::kTorqueSensor,
          Effect::kNotFinite},
     Kind{"torque_sensor_frozen", "a joint torque shows one value for ever", Part::kTorqueSensor,
@@ -220,6 +234,7 @@ int parts_of(Part part, int n_m, int n_p) noexcept {
     case Part::kTemperature:
     case Part::kMotor:
     case Part::kBrake:
+    case Part::kJointEncoders:
       return n_m;
     case Part::kGantryEncoder:
     case Part::kGantryDrive:

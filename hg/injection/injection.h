@@ -38,6 +38,7 @@ enum class Part : std::uint8_t {
   kSolver,
   kBrake,
   kSafetyChannel,
+  kJointEncoders,  ///< link side and motor side alike
 };
 
 /// What becomes of it.

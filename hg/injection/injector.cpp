@@ -89,6 +89,9 @@ void Injector::spoil_sensors(Fault& fault, SensorFrame& sensors) noexcept {
       return spoil_component(fault, sensors.dq_m);
     case Part::kMotorEncoder:
       return spoil_component(fault, sensors.theta_m);
+    case Part::kJointEncoders:
+      spoil_component(fault, sensors.theta_m);
+      return spoil_component(fault, sensors.q_m);
     case Part::kTorqueSensor:
       return spoil_component(fault, sensors.tau_m);
     case Part::kGantryEncoder:

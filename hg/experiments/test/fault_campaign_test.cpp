@@ -15,7 +15,7 @@ config::Scenario walk_scenario() { return config::load_scenario("models/scenario
 FaultCase play(const char* kind, int index = 0, double magnitude = 0.0) {
   const injection::Injection injection = {
       .kind = injection::find_kind(kind), .index = index, .magnitude = magnitude, .from_s = 2.5};
-  return play_fault(walk_scenario(), injection, {.watched_s = 1.0}, 10.0);
+  return play_fault(walk_scenario(), {.injection = injection}, {.watched_s = 1.0}, 10.0);
 }
 
 TEST(PlayFault, ASensorWithoutANumberIsNoticedInTheSameCycle) {
@@ -35,6 +35,52 @@ TEST(PlayFault, AnOpenDeadManStopsWithoutAFault) {
   EXPECT_LT(result.worst_excess, 1e-3);
 }
 
+FaultCase play_in_a_stop(const char* kind, int index, double magnitude, double after_s) {
+  const injection::Injection injection = {
+      .kind = injection::find_kind(kind), .index = index, .magnitude = magnitude, .from_s = 2.5};
+  const injection::Injection stop = {.kind = injection::find_kind("emergency_stop"),
+                                     .from_s = 2.5 - after_s};
+  return play_fault(walk_scenario(),
+                    {.phase = Phase::kStopping, .injection = injection, .other = stop},
+                    {.watched_s = 2.0}, 10.0);
+}
+
+TEST(PlayFault, AGantryThatRunsAwayIsStoppedByItsBrakesSoonAndNear) {
+  for (const int axis : {0, 1}) {
+    for (const double speed : {1.0, -1.0}) {
+      const FaultCase result = play("gantry_runaway", axis, speed);
+      EXPECT_EQ(result.outcome, Outcome::kNoticed);
+      EXPECT_EQ(result.stop, Stop::kSto);
+      EXPECT_LT(result.noticed_s, 0.1);
+      EXPECT_LT(result.travel_share, 0.3);
+      EXPECT_LT(result.energy, 1.0);
+    }
+  }
+}
+
+TEST(PlayFault, AGantryThatRunsAwayInAStopIsNotOnlyAskedToStop) {
+  for (const int axis : {0, 1}) {
+    const FaultCase result = play_in_a_stop("gantry_runaway", axis, 1.0, 0.02);
+    EXPECT_EQ(result.stop, Stop::kSto);
+    EXPECT_LT(result.travel_share, 0.3);
+  }
+}
+
+TEST(PlayFault, BothEncodersOfAJointThatDriftAlikeAreSeenByTheGyroscope) {
+  for (const int joint : {0, 2, 3, 5}) {
+    const FaultCase result = play("joint_encoders_drift", joint, 0.1);
+    EXPECT_EQ(result.fault, FaultCode::kTurnUnexplained) << joint;
+    EXPECT_LT(result.worst_distance, 0.06) << joint;
+  }
+}
+
+TEST(PlayFault, AnEncoderThatJumpsIsNamedAndNotTheCollisionThatItSeemsToBe) {
+  for (const int joint : {0, 1, 2, 3, 4}) {
+    EXPECT_EQ(play("link_encoder_zero", joint).fault, FaultCode::kSensorJump) << joint;
+    EXPECT_EQ(play("link_encoder_jump", joint, 0.4).fault, FaultCode::kSensorJump) << joint;
+  }
+}
+
 TEST(PlayFault, AMotorThatIsALittleWeakIsHarmless) {
   EXPECT_EQ(play("motor_weak", 2, 0.9).outcome, Outcome::kHarmless);
 }
@@ -44,7 +90,8 @@ TEST(PlayFault, WhatBecomesWorseWithoutAReactionIsUnnoticed) {
   const injection::Injection injection = {
       .kind = injection::find_kind("force_sensor_offset"), .magnitude = 5.0, .from_s = 2.5};
   const CampaignConfig strict = {.watched_s = 1.0, .harmless_force = -5.0};
-  EXPECT_EQ(play_fault(walk_scenario(), injection, strict, 0.0).outcome, Outcome::kUnnoticed);
+  EXPECT_EQ(play_fault(walk_scenario(), {.injection = injection}, strict, 0.0).outcome,
+            Outcome::kUnnoticed);
 }
 
 TEST(Campaign, IsTheSameForTheSameSeedAndTellsEveryCase) {
@@ -76,7 +123,8 @@ TEST(Campaign, FailsForAnUnnoticedFaultAndForAnExceededBound) {
   EXPECT_NE(to_text(campaign).find("case 1: motor_dead"), std::string::npos);
   for (const auto& spoil :
        {+[](FaultCase& c) { c.peak_force = 300.0; }, +[](FaultCase& c) { c.worst_excess = 0.2; },
-        +[](FaultCase& c) { c.is_complete = false; }}) {
+        +[](FaultCase& c) { c.is_complete = false; }, +[](FaultCase& c) { c.travel_share = 1.1; },
+        +[](FaultCase& c) { c.energy = 40.0; }}) {
     bad = good;
     spoil(bad);
     campaign.cases = {bad};
