@@ -179,7 +179,7 @@ int bench(const BenchArguments& arguments) {
     scenarios.push_back({name, bench_scenario(name)});
   const Effort& effort = arguments.is_quick ? kQuick : kFull;
   std::vector<bench::ProblemSource> reference;
-  for (const auto& file : bench::reference_files(data_root())) {
+  for (const auto& file : bench::reference_files(models_root())) {
     reference.emplace_back(file, effort.problems);
   }
   check_folder(arguments.out);

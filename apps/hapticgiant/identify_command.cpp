@@ -20,7 +20,7 @@ using identification::StaticPose;
 // as given, or among the data that comes with the program
 std::string find_device(const std::string& file) {
   if (std::ifstream(file)) return file;
-  return (data_root() / file).string();
+  return (models_root() / file).string();
 }
 
 std::vector<StaticPose> simulated_poses(const config::Device& device, int count) {

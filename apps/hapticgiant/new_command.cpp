@@ -45,7 +45,7 @@ int new_twin(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "twin");
   const bool is_own = !arguments.device.empty();
   const config::Device device = config::load_device(
-      is_own ? fs::path(arguments.device) : data_root() / "models/haptic_giant/device.yaml");
+      is_own ? fs::path(arguments.device) : models_root() / "models/haptic_giant/device.yaml");
   check_writable(output.string());
   write_output(output.string(), scaffold::twin_yaml(arguments.part, output.parent_path(), device));
   const std::string with = is_own ? " --device " + arguments.device : "";

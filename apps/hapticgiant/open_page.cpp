@@ -40,7 +40,7 @@ void open_browser(const std::string& url) {
 }  // namespace
 
 std::string find_page() {
-  const fs::path page = data_root() / "viewer" / "dist";
+  const fs::path page = installation_root() / "viewer" / "dist";
   std::error_code error;
   if (fs::is_regular_file(page / "index.html", error)) return page.string();
   print_out(

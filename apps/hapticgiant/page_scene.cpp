@@ -160,7 +160,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
 
 viewer_server::Choices page_choices(const RunArguments& arguments) {
   viewer_server::Choices choices;
-  const fs::path models = data_root() / "models";
+  const fs::path models = models_root() / "models";
   for (const auto& entry : fs::directory_iterator(models / "scenarios")) {
     const std::string stem = entry.path().stem().string();
     if (entry.path().extension() == ".yaml") choices.scenarios.push_back({stem, title_of(stem)});

@@ -6,27 +6,38 @@
 #include <algorithm>
 #include <vector>
 
+#include "apps/hapticgiant/build_folders.h"
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
 
 namespace hg::apps {
 namespace fs = std::filesystem;
 
-fs::path data_root() {
+fs::path installation_root() {
   std::error_code error;
-  fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  if (error) return {};
+  if (fs::equivalent(folder, kBuildFolder, error)) return kSourceFolder;
+  const fs::path share = folder.parent_path() / "share" / "hapticgiant";
+  return folder.filename() == "bin" && fs::is_directory(share, error) ? share : fs::path();
+}
+
+fs::path models_root() {
+  std::error_code error;
   if (fs::is_directory("models/scenarios", error)) return ".";
-  for (fs::path folder = program.parent_path(); folder.has_relative_path();
-       folder = folder.parent_path()) {
-    if (fs::is_directory(folder / "models" / "scenarios", error)) return folder;
+  const fs::path installation = installation_root();
+  if (!installation.empty() && fs::is_directory(installation / "models" / "scenarios", error)) {
+    return installation;
   }
-  throw SetupError("models/scenarios: not found in the working directory or above the program");
+  throw SetupError(
+      "models/scenarios: neither in the working directory nor where this program was built or "
+      "installed");
 }
 
 fs::path find_scenario(const std::string& name) {
   std::error_code error;  // a name may be longer than the system takes
   if (fs::is_regular_file(name, error)) return name;
-  const fs::path folder = data_root() / "models" / "scenarios";
+  const fs::path folder = models_root() / "models" / "scenarios";
   const fs::path known = folder / (name + ".yaml");
   if (fs::is_regular_file(known, error)) return known;
 

@@ -1,4 +1,7 @@
-/// Where the program finds its own data: models and the built page.
+/// Where the program finds what comes with it: models, the built page, Python code.
+///
+/// Code (the page, Python, its interpreter) is only ever taken from the installation, never from
+/// the working directory, which may hold anybody's files.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +9,13 @@
 
 namespace hg::apps {
 
-/// The folder that holds models/ and viewer/: the working directory, or one above the program.
-/// Throws SetupError when there is none.
-std::filesystem::path data_root();
+/// The folder of this program's viewer/, python/, .venv/ and models/: the sources of the build that
+/// the program lies in, or share/hapticgiant of the prefix whose bin/ it lies in. Empty if neither.
+std::filesystem::path installation_root();
+
+/// The folder that holds models/: the working directory, or the installation. Throws SetupError
+/// when neither has any.
+std::filesystem::path models_root();
 
 /// A scenario by file name, or by the name of one that comes with the program ("door").
 /// Throws SetupError naming the nearest one.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "hg/collision/distance.h"
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
 #include "hg/model/haptic_giant.h"
@@ -66,6 +67,34 @@ void check_limits(const config::Scenario& scenario, const Start& start) {
       violation->limits.q_max,
       scenario.device.kinematics == config::Kinematics::kGeneric ? " or the device's posture"
                                                                  : ""));
+}
+
+// throws SetupError when the handle or a part of the device would be in the floor at `start`: the
+// guard takes a device as it stands, so nothing else would say it
+void check_floor(const config::Scenario& scenario, const Start& start) {
+  const config::Device& device = scenario.device;
+  if (!device.has_floor) return;
+  const auto refuse = [&](const std::string& what) {
+    throw SetupError(
+        fmt::format("twin {}: at its start {} would be in the floor, at floor_z_m {:g} of the "
+                    "device; check the sign of floor_z_m, or move the twin's placement",
+                    scenario.twin.name, what, device.floor_z));
+  };
+  if (start.T_B_H.p.z() <= device.floor_z) {
+    refuse(fmt::format("the handle, at z {:.3f} m,", start.T_B_H.p.z()));
+  }
+  model::Chain chain = device.model.chain;
+  chain.update_poses(stacked(start.q_p, start.q_m));
+  const auto pose = [&](const collision::Shape& shape) {
+    return shape.frame < 0 ? Pose{} : chain.pose(shape.frame);
+  };
+  for (const collision::Pair& pair : device.collision.pairs.watched) {
+    const collision::Shape& a = device.collision.shapes[static_cast<std::size_t>(pair.a)];
+    const collision::Shape& b = device.collision.shapes[static_cast<std::size_t>(pair.b)];
+    if (!a.is_surrounding && !b.is_surrounding) continue;
+    if (collision::Distance(a, b)(pose(a), pose(b)) > 0.0) continue;
+    refuse((a.is_surrounding ? b : a).name + " of the device");
+  }
 }
 
 Start closed_form_start(const config::Scenario& scenario) {
@@ -159,6 +188,7 @@ Start find_start(const config::Scenario& scenario) {
                     ? closed_form_start(scenario)
                     : numeric_start(scenario);
   check_limits(scenario, start);
+  check_floor(scenario, start);
   return start;
 }
 

@@ -17,7 +17,8 @@ struct Start {
 Pose handle_start(const rendering::TwinModel& twin);
 
 /// The device in its best posture with the handle where the twin's end effector starts. Throws
-/// SetupError, saying what to change, when the device cannot be there within its limits.
+/// SetupError, saying what to change, when the device cannot be there within its limits and above
+/// its floor.
 Start find_start(const config::Scenario& scenario);
 
 }  // namespace hg::assembly

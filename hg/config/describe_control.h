@@ -22,9 +22,9 @@ void describe(V& v, ActuatorModel& actuator) {
   v.number("coulomb_friction_Nm", actuator.coulomb_friction, kNotNegative, "of motor and gear");
   v.number("viscous_friction_Nms_per_rad", actuator.viscous_friction, kNotNegative,
            "of motor and gear");
-  v.number("load_friction", actuator.load_friction, kNotNegative,
+  v.number("load_friction", actuator.load_friction, kShare,
            "further Coulomb friction per torque of the joint");
-  v.number("stiction", actuator.stiction, {.lb = 1.0}, "break-away torque over Coulomb friction");
+  v.number("stiction", actuator.stiction, kFromOne, "break-away torque over Coulomb friction");
   v.number("stribeck_rad_per_s", actuator.stribeck_speed, kPositive,
            "speed at which stiction has mostly gone");
   v.number("torque_max_Nm", actuator.torque_max, kPositive, "peak torque", kNeeded);
@@ -43,7 +43,7 @@ template <class V>
 void describe(V& v, control::Config& config) {
   v.choice("method", config.method, kMethods,
            "modal: all states of the arm in its modes; motor_pd: each motor for itself");
-  v.number("latency_s", config.loop.latency, kNotNegative,
+  v.number("latency_s", config.loop.latency, {.lb = 0.0, .ub = 0.64},
            "expected from a sample to the torque at the drive; the true one is measured");
   v.number("current_lag_s", config.loop.current_lag, kNotNegative, "time constant of the current");
   v.number("integral_1_per_s", config.integral_rate, kNotNegative,
@@ -80,6 +80,10 @@ void describe_control(V& v, DeviceDraft& d) {
       "control",
       [&](auto& child) {
         describe(child, d.control);
+        const double longest = control::kMostLatency / d.rate_Hz;
+        child.rule(d.control.loop.latency <= longest, "latency_s",
+                   "must be at most 64 periods, " + model::to_text(longest) + " s at this rate_Hz",
+                   model::to_text(d.control.loop.latency));
         const double most = control::largest_flatness_Hz(d.rate_Hz);
         child.rule(d.control.flatness_Hz < most, "flatness_Hz",
                    "must be below " + model::to_text(std::floor(10.0 * most) / 10.0) +

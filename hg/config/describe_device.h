@@ -121,7 +121,7 @@ void describe(V& v, rendering::VirtualJoint& joint, const std::vector<std::strin
   v.words("name", joint.name, "shown with the limit", Need::kRequired);
   joint.weights = per_joint(names.size(), 0.0);
   v.numbers_by_name(
-      "weights", names, "a manipulator joint", kAnyNumber,
+      "weights", names, "a manipulator joint", {.lb = -1e3, .ub = 1e3},
       [&](int index, double weight) { set_joint(joint.weights, index, weight); },
       "factor of each revolute joint in the sum");
   const bool is_complete = !names.empty() && names.size() <= kMaxManipulator;
@@ -161,7 +161,7 @@ void describe_limits(V& v, DeviceDraft& d) {
       "limits; what is not given is taken from the URDF");
   d.posture = per_joint(d.manipulator_names.size(), kNoDefault);
   v.numbers_by_name(
-      "posture", d.manipulator_names, "a manipulator joint", kAnyNumber,
+      "posture", d.manipulator_names, "a manipulator joint", kJointPosition,
       [&](int index, double goal) { set_joint(d.posture, index, goal); },
       "where these joints should be, rad or m: the gantry moves so that they are, a seventh joint "
       "goes there, and the start is chosen near it");

@@ -20,16 +20,16 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "beyond the limit of a prismatic joint");
   v.number("cartesian_tolerance_m", monitor.cartesian_tolerance, kPositive,
            "outside a Cartesian limit");
-  v.number("speed_tolerance", monitor.speed_tolerance, {.lb = 1.0}, "times the largest speed");
+  v.number("speed_tolerance", monitor.speed_tolerance, kFromOne, "times the largest speed");
   v.number("virtual_tolerance_rad", monitor.virtual_tolerance, kPositive,
            "beyond the limit of a virtual joint; m where its joints are prismatic");
-  v.number("acceleration_tolerance", monitor.acceleration_tolerance, {.lb = 1.0},
+  v.number("acceleration_tolerance", monitor.acceleration_tolerance, kFromOne,
            "times the largest acceleration of a joint, of its reference");
-  v.number("torque_tolerance", monitor.torque_tolerance, kPositive,
+  v.number("torque_tolerance", monitor.torque_tolerance, kTolerance,
            "times the peak torque of a joint");
-  v.number("unexplained_tolerance", monitor.unexplained_tolerance, kPositive,
+  v.number("unexplained_tolerance", monitor.unexplained_tolerance, kTolerance,
            "joint torque that motion and user's wrench do not explain, times its peak torque");
-  v.number("motor_tolerance", monitor.motor_tolerance, kPositive,
+  v.number("motor_tolerance", monitor.motor_tolerance, kTolerance,
            "torque of a motor off its command and friction, times its peak torque");
   v.number("sync_tolerance_m", monitor.sync_tolerance, kPositive, "between handle and twin");
   v.number("tracking_tolerance_rad", monitor.tracking_tolerance, kPositive,
@@ -44,12 +44,12 @@ void describe(V& v, safety::MonitorConfig& monitor) {
   v.number(
       "tilt_tolerance_rad", monitor.tilt_tolerance, kPositive,
       "by how much gravity may point elsewhere than the posture says when the device is armed");
-  v.number("jump_factor", monitor.jump_factor, {.lb = 1.0},
+  v.number("jump_factor", monitor.jump_factor, kFromOne,
            "times what the largest speed allows in a sample, of a measured position");
-  v.number("frozen_samples", monitor.frozen_samples, kNotNegative,
+  v.number("frozen_samples", monitor.frozen_samples, kCount,
            "in a row with the same bits of wrench, inertial unit or a joint torque; 0: these "
            "sensors have no noise, nobody can tell");
-  v.number("clock_tolerance", monitor.clock_tolerance, kPositive,
+  v.number("clock_tolerance", monitor.clock_tolerance, kTolerance,
            "mean error of the device's clock, periods per sample");
   v.number("temperature_max_C", monitor.temperature_max, kPositive, "of a motor");
   v.number("gantry_tolerance_m", monitor.gantry_tolerance, kPositive,
@@ -66,7 +66,7 @@ void describe(V& v, safety::MonitorConfig& monitor) {
   v.number("gantry_gap_rad", monitor.turn_gap, kPositive, "the same of a revolute axis");
   v.number("safe_speed_m_per_s", monitor.safe_speed, kPositive,
            "of handle and gantry while nobody holds the handle");
-  v.number("overruns_in_a_row", monitor.overruns_in_a_row, kNotNegative,
+  v.number("overruns_in_a_row", monitor.overruns_in_a_row, kCount,
            "cycles that may be late one after the other");
   v.number("overruns_per_s", monitor.overruns_per_s, kNotNegative,
            "cycles that may be late again and again");

@@ -77,7 +77,7 @@ void describe(V& v, InjectionsDraft& d) {
       "of", name, d.names, "a joint, a component or an input",
       "a joint; x, y, z, torque x, torque y, torque z of the sensor at the handle; stop buttons, "
       "operator enable, dead-man switch, override key of the safety controller");
-  v.number("magnitude", magnitude, kAnyNumber,
+  v.number("magnitude", magnitude, {.lb = -1e6, .ub = 1e6},
            "how much of it; unit and usual sizes in docs/fault_campaign.md");
 
   fault.kind = &injection::kinds()[static_cast<std::size_t>(kind)];

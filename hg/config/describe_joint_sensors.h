@@ -30,15 +30,15 @@ void describe_gantry_encoder(V& v, simulation::EncoderConfig& encoder) {
 
 template <class V>
 void describe(V& v, simulation::TorqueSensorConfig& sensor) {
-  v.number("noise", sensor.noise, kNotNegative,
+  v.number("noise", sensor.noise, kShare,
            "standard deviation of a sample, like all here a share of the full scale, which is the "
            "peak torque of the joint");
-  v.number("gain_error", sensor.gain_error, kNotNegative, "standard deviation");
-  v.number("offset", sensor.offset, kNotNegative, "standard deviation");
-  v.number("ripple", sensor.ripple, kNotNegative,
+  v.number("gain_error", sensor.gain_error, kShare, "standard deviation");
+  v.number("offset", sensor.offset, kShare, "standard deviation");
+  v.number("ripple", sensor.ripple, kShare,
            "amplitude of the ripple of the gear, twice per turn of the motor");
-  v.number("range", sensor.range, kPositiveOrNone, "where the reading ends");
-  v.number("resolution", sensor.resolution, kNotNegative, "one step");
+  v.number("range", sensor.range, kShareOrNone, "where the reading ends");
+  v.number("resolution", sensor.resolution, kShare, "one step");
 }
 
 }  // namespace hg::config

@@ -81,7 +81,7 @@ void describe_conditions(V& v, const EventNames& names, evaluation::EventRule& e
   const auto by_name = [&](const char* key, ConditionKind kind, const std::vector<std::string>& of,
                            const char* what, const char* text) {
     v.numbers_by_name(
-        key, of, what, kAnyNumber,
+        key, of, what, kJointPosition,
         [&](int index, double value) {
           const bool is_twin =
               kind == ConditionKind::kTwinAbove || kind == ConditionKind::kTwinBelow;

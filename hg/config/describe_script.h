@@ -150,7 +150,7 @@ void describe_segment(V& v, ScriptDraft& d) {
       "channels and what is added to them");
   if (v.covers(d.frame == user::ScriptFrame::kBase)) {
     double turns = kNoDefault;
-    const bool is_given = v.number("circle_turns", turns, kAnyNumber,
+    const bool is_given = v.number("circle_turns", turns, {.lb = -1e3, .ub = 1e3},
                                    "turns about the origin of B, walking tangentially");
     if (is_given) add(user::Blend::kCircle)(0, turns);
   }

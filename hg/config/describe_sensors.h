@@ -42,16 +42,16 @@ void describe(V& v, simulation::WrenchSensorConfig& sensor) {
   v.number("noise_N_per_sqrt_Hz", sensor.force_noise, kNotNegative,
            "random-walk coefficient: after a mean over T the deviation is noise / sqrt(T)");
   v.number("noise_Nm_per_sqrt_Hz", sensor.torque_noise, kNotNegative, "the same of torques");
-  v.number("gain_error", sensor.gain_error, kNotNegative, "standard deviation");
-  v.number("cross_talk", sensor.cross_talk, kNotNegative,
+  v.number("gain_error", sensor.gain_error, kShare, "standard deviation");
+  v.number("cross_talk", sensor.cross_talk, kShare,
            "standard deviation, full scale of one axis on full scale of another");
-  v.number("bias", sensor.bias, kNotNegative,
+  v.number("bias", sensor.bias, kShare,
            "when switched on: standard deviation, share of full scale");
   v.number("bias_walk_1_per_sqrt_s", sensor.bias_walk, kNotNegative, "share of full scale");
   v.number("temperature_drift_1_per_K", sensor.temperature_drift, kNotNegative,
            "standard deviation, share of full scale");
-  v.number("range", sensor.range, kPositiveOrNone, "where an axis ends, share of full scale");
-  v.number("resolution", sensor.resolution, kNotNegative, "one step, share of full scale");
+  v.number("range", sensor.range, kShareOrNone, "where an axis ends, share of full scale");
+  v.number("resolution", sensor.resolution, kShare, "one step, share of full scale");
   v.group(
       "filter", [&](auto& child) { describe(child, sensor.filter); }, "of the digital output");
 }
@@ -66,7 +66,7 @@ void describe(V& v, simulation::InertialSensorConfig& sensor, const InertialKeys
            "rate random walk: its Allan deviation after T is this times sqrt(T / 3)");
   v.number(keys.bias, sensor.bias, kNotNegative, "when switched on: standard deviation");
   v.number(keys.temperature_drift, sensor.temperature_drift, kNotNegative, "standard deviation");
-  v.number("scale_error", sensor.scale_error, kNotNegative, "standard deviation");
+  v.number("scale_error", sensor.scale_error, kShare, "standard deviation");
   v.number("misalignment_rad", sensor.misalignment, kNotNegative,
            "standard deviation of the mounting about each axis");
   v.number(keys.range, sensor.range, kPositiveOrNone, "where an axis ends");

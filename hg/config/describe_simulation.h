@@ -29,17 +29,17 @@ struct SimulationDraft {
 
 template <class V>
 void describe(V& v, RealityFactors& factors) {
-  v.number("stiffness", factors.stiffness, kPositive, "of the joints");
-  v.number("damping", factors.damping, kPositive, "parallel to the stiffness");
-  v.number("friction", factors.friction, kPositive, "Coulomb, viscous and load-dependent");
-  v.number("rotor_inertia", factors.rotor_inertia, kPositive, "of the motors");
-  v.number("mass", factors.mass, kPositive, "of all links, with their inertia");
+  v.number("stiffness", factors.stiffness, kFactor, "of the joints");
+  v.number("damping", factors.damping, kFactor, "parallel to the stiffness");
+  v.number("friction", factors.friction, kFactor, "Coulomb, viscous and load-dependent");
+  v.number("rotor_inertia", factors.rotor_inertia, kFactor, "of the motors");
+  v.number("mass", factors.mass, kFactor, "of all links, with their inertia");
   v.number(
-      "payload", factors.payload, kPositive,
+      "payload", factors.payload, kFactor,
       "mass and inertia of what hangs beyond the force/torque sensor, as that sensor feels it");
-  v.number("latency", factors.latency, kPositive, "of the torque loop");
-  v.number("current_lag", factors.current_lag, kPositive, "of the motors");
-  v.number("gantry_lag", factors.gantry_lag, kPositive, "of the drives of the gantry");
+  v.number("latency", factors.latency, kFactor, "of the torque loop");
+  v.number("current_lag", factors.current_lag, kFactor, "of the motors");
+  v.number("gantry_lag", factors.gantry_lag, kFactor, "of the drives of the gantry");
 }
 
 template <class V>
@@ -50,7 +50,7 @@ void describe_end_stops(V& v, Simulation& simulation) {
            "beyond the limits of prismatic joints, the gantry's too");
   v.number("stiffness_Nm_per_rad", simulation.end_stop.stiffness, kPositive,
            "of a prismatic joint in N/m; the manipulator's");
-  v.number("damping_ratio", simulation.end_stop.damping_ratio, kNotNegative,
+  v.number("damping_ratio", simulation.end_stop.damping_ratio, kShare,
            "with the joint's own inertia; 5 throws back 1 % of the energy");
 }
 
@@ -115,7 +115,7 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
       "buffers at the ends of all joints");
   draft.simulation.gear_ratio = per_joint(manipulator.size(), 1.0);
   v.numbers_by_name(
-      "gear_ratio", manipulator, "a joint of the manipulator", kPositive,
+      "gear_ratio", manipulator, "a joint of the manipulator", {.lb = 1e-3, .ub = 1e5},
       [&](int index, double ratio) { set_joint(draft.simulation.gear_ratio, index, ratio); },
       "turns of the motor per turn of the joint, 1 where not given");
   v.group(

@@ -53,7 +53,8 @@ void describe_shape(V& v, SurfaceDraft& d) {
   }
   if (v.covers(d.shape == SurfaceShape::kMesh)) {
     v.path("mesh", d.mesh, "STL file of a mesh, binary or text", Need::kRequired);
-    v.number("scale", d.scale, kPositive, "of a mesh, m per unit of the file; 0.001 for mm");
+    v.number("scale", d.scale, {.lb = 1e-9, .ub = 1e3},
+             "of a mesh, m per unit of the file; 0.001 for mm");
   }
 }
 

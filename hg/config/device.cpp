@@ -318,6 +318,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .urdf = draft.urdf,
                    .rate_Hz = draft.rate_Hz,
                    .floor_z = draft.floor_z,
+                   .has_floor = draft.has_floor,
                    .kinematics = draft.kinematics,
                    .drive = draft.drive,
                    .control = draft.control,

@@ -32,7 +32,8 @@ struct Device {
   std::string name;
   std::filesystem::path urdf;
   double rate_Hz = 1000.0;
-  double floor_z = 0.0;  ///< height of the floor in B, m
+  double floor_z = 0.0;    ///< height of the floor in B, m
+  bool has_floor = false;  ///< it is not only drawn but must not be hit
   Kinematics kinematics = Kinematics::kGeneric;
   DriveModel drive;
   control::Config control;  ///< its method is kDrives for a device without actuators

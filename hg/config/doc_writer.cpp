@@ -12,40 +12,39 @@ std::string default_of(double value) {
   return std::isinf(value) ? "none" : model::to_text(value);
 }
 
-std::string with_unit(const std::string& allowed, std::string_view key) {
+std::string allowed(const Range& range, std::string_view key) {
   const std::string_view unit = unit_of(key);
-  return unit.empty() ? allowed : allowed + " " + std::string(unit);
+  const std::string text = Bounds(range, key).text();
+  return unit.empty() ? text : text + " " + std::string(unit);
 }
 
 }  // namespace
 
 bool DocWriter::number(std::string_view key, const double& value, const Range& range,
                        std::string_view text, Need need) {
-  return row(key, default_of(value), need, with_unit(to_text(range), key), text);
+  return row(key, default_of(value), need, allowed(range, key), text);
 }
 
 bool DocWriter::joint_number(const JointKey& key, JointUnit unit, const double& value,
                              const Range& range, std::string_view text, Need need) {
   if (unit != JointUnit::kEither) return number(key.of(unit), value, range, text, need);
   const std::string keys = std::string(key.angle) + "` or `" + std::string(key.length);
-  const std::string allowed =
-      with_unit(to_text(range), key.angle) + " or " + std::string(unit_of(key.length));
-  return row(keys, default_of(value), need, allowed, text);
+  return row(keys, default_of(value), need,
+             allowed(range, key.angle) + "; " + allowed(range, key.length), text);
 }
 
 bool DocWriter::vector(std::string_view key, const Eigen::Vector3d& value, const Range& range,
                        std::string_view text) {
   if (value.hasNaN()) {
-    return row(key, "", Need::kOptional, "three numbers " + with_unit(to_text(range), key), text);
+    return row(key, "", Need::kOptional, "three numbers " + allowed(range, key), text);
   }
   std::string standard = "[";
   for (int i = 0; i < 3; ++i) (standard += default_of(value[i])) += i < 2 ? ", " : "]";
-  return row(key, standard, Need::kOptional, "three numbers " + with_unit(to_text(range), key),
-             text);
+  return row(key, standard, Need::kOptional, "three numbers " + allowed(range, key), text);
 }
 
 bool DocWriter::inertia(std::string_view key, const Eigen::Matrix3d&, std::string_view text) {
-  return row(key, "", Need::kOptional, "three or six numbers " + std::string(unit_of(key)), text);
+  return row(key, "", Need::kOptional, "three or six numbers " + allowed(kAnyNumber, key), text);
 }
 
 bool DocWriter::flag(std::string_view key, bool value, std::string_view text) {
@@ -97,8 +96,8 @@ bool DocWriter::groups_by_name(std::string_view key, Names, std::string_view kin
 bool DocWriter::numbers_by_name(std::string_view key, Names, std::string_view kind,
                                 const Range& range, const std::function<void(int, double)>&,
                                 std::string_view text) {
-  const std::string allowed = "a map of numbers, " + to_text(range) + ", each key ";
-  return row(key, "", Need::kOptional, allowed + std::string(kind), text);
+  const std::string numbers = "a map of numbers, " + Bounds(range, "").text() + ", each key ";
+  return row(key, "", Need::kOptional, numbers + std::string(kind), text);
 }
 
 std::string DocWriter::table() const {

@@ -120,7 +120,8 @@ void Loader::add_entry(const YAML::Node& key, const YAML::Node& value) {
 bool Loader::number(std::string_view key, double& value, const Range& range, std::string_view,
                     Need need) {
   const Entry* entry = find(key, need);
-  return entry != nullptr && read_number(entry->value, item_of(key), unit_of(key), range, value);
+  return entry != nullptr &&
+         read_number(entry->value, item_of(key), unit_of(key), {range, key}, value);
 }
 
 bool Loader::joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,
@@ -264,11 +265,11 @@ bool Loader::groups_by_name(std::string_view key, Names names, std::string_view 
 bool Loader::numbers_by_name(std::string_view key, Names names, std::string_view kind,
                              const Range& range, const std::function<void(int, double)>& read,
                              std::string_view) {
+  const Bounds bounds(range, "");
   return each_by_name(key, names, kind,
                       [&](const Entry& entry, const std::string& item, int index) {
                         double value = 0.0;
-                        if (read_number(entry.value, item, unit_of(entry.key), range, value))
-                          read(index, value);
+                        if (read_number(entry.value, item, "", bounds, value)) read(index, value);
                       });
 }
 
@@ -337,7 +338,7 @@ void Loader::read_map(const YAML::Node& node, const std::string& item,
 }
 
 bool Loader::read_number(const YAML::Node& node, const std::string& item, std::string_view unit,
-                         const Range& range, double& value) {
+                         const Bounds& bounds, double& value) {
   const std::optional<double> number = parse_number(node);
   if (!number) {
     fault(node, item,
@@ -345,10 +346,8 @@ bool Loader::read_number(const YAML::Node& node, const std::string& item, std::s
               ", got " + shown(node));
     return false;
   }
-  if (!contains(range, *number)) {
-    const bool is_infinite = std::isinf(*number) && !range.allows_infinity;
-    fault(node, item,
-          "must be " + (is_infinite ? "finite" : to_text(range)) + ", got " + node.Scalar());
+  if (!bounds.contains(*number)) {
+    fault(node, item, "must be " + bounds.text() + ", got " + node.Scalar());
     return false;
   }
   value = *number;
@@ -357,10 +356,11 @@ bool Loader::read_number(const YAML::Node& node, const std::string& item, std::s
 
 bool Loader::read_numbers(const YAML::Node& node, std::string_view key, const Range& range,
                           std::span<double> values) {
+  const Bounds bounds(range, key);
   bool is_right = true;
   for (std::size_t i = 0; i < values.size(); ++i) {
     is_right &= read_number(node[i], item_of(key) + "[" + std::to_string(i) + "]", unit_of(key),
-                            range, values[i]);
+                            bounds, values[i]);
   }
   return is_right;
 }

@@ -91,7 +91,7 @@ class Loader {
   /// A map of maps, keyed by some of `names`.
   bool groups_by_name(std::string_view key, Names names, std::string_view kind,
                       const std::function<void(Loader&, int index)>& read, std::string_view text);
-  /// A map of numbers, keyed by some of `names`.
+  /// A map of numbers without a unit, keyed by some of `names`.
   bool numbers_by_name(std::string_view key, Names names, std::string_view kind, const Range& range,
                        const std::function<void(int index, double value)>& read,
                        std::string_view text);
@@ -128,7 +128,7 @@ class Loader {
   void read_map(const YAML::Node& node, const std::string& item,
                 const std::function<void(Loader&)>& read);
   bool read_number(const YAML::Node& node, const std::string& item, std::string_view unit,
-                   const Range& range, double& value);
+                   const Bounds& bounds, double& value);
   bool read_numbers(const YAML::Node& node, std::string_view key, const Range& range,
                     std::span<double> values);
   bool read_name(const YAML::Node& node, const std::string& item, Names names,

@@ -1,7 +1,8 @@
 /// What a number in a configuration file may be, and the unit that its key carries.
 ///
 /// Keys end in their unit: `q_max_rad`, `stiffness_N_per_m`; a key without a known suffix has no
-/// unit.
+/// unit. A unit says how large and how small its values may be in any machine that makes sense; a
+/// description narrows that where a key needs it, and must do so where there is no unit.
 #pragma once
 
 #include <limits>
@@ -16,11 +17,11 @@ namespace hg::config {
 
 enum class Need { kOptional, kRequired };
 
-/// Allowed values of one number; NaN never is.
+/// What a description says about a number; the unit of its key does the rest.
 struct Range {
   double lb = -kInfinity;
   double ub = kInfinity;
-  bool excludes_lb = false;
+  bool excludes_lb = false;      ///< with lb 0: a positive number, from the least of its unit on
   bool allows_infinity = false;  ///< ".inf" stands for "no limit"
 };
 
@@ -33,10 +34,31 @@ inline constexpr Range kNotNegative = {.lb = 0.0};
 inline constexpr Range kUnlimited = {.allows_infinity = true};
 inline constexpr Range kPositiveOrNone = {.lb = 0.0, .excludes_lb = true, .allows_infinity = true};
 
-bool contains(const Range& range, double value) noexcept;
+// of numbers without a unit
+inline constexpr Range kFactor = {.lb = 1e-3, .ub = 1e3};     ///< true over told
+inline constexpr Range kTolerance = {.lb = 1e-6, .ub = 1e6};  ///< share or multiple of a rating
+inline constexpr Range kFromOne = {.lb = 1.0, .ub = 1e6};     ///< multiple of a rating
+inline constexpr Range kShare = {.lb = 0.0, .ub = 1e3};       ///< of a full scale, of a load
+inline constexpr Range kShareOrNone = {.lb = 1e-6, .ub = 1e3, .allows_infinity = true};
+inline constexpr Range kCount = {.lb = 0.0, .ub = 1e6};
+/// Position of a joint in rad or m, under a key that is its name.
+inline constexpr Range kJointPosition = {.lb = -1e3, .ub = 1e3};
 
-/// For example "> 0", "0 .. 1" or "finite".
-std::string to_text(const Range& range);
+/// The allowed values of a number: finite ends always, NaN never.
+class Bounds {
+ public:
+  /// `range` within what the unit of `key` allows. Throws std::logic_error where that leaves an end
+  /// open: the description must give it.
+  Bounds(const Range& range, std::string_view key);
+
+  bool contains(double value) const noexcept;
+  /// For example "0 .. 1" or "1e-09 .. 1000 or .inf".
+  std::string text() const;
+
+ private:
+  double lb_, ub_;
+  bool allows_infinity_;
+};
 
 /// "rad/s^2" for "ddq_max_rad_per_s2"; empty if the key names no unit.
 std::string_view unit_of(std::string_view key) noexcept;

@@ -27,6 +27,7 @@ Six kinds of YAML files set up a run. `models/` has complete examples.
 - A key ends in its unit: `q_max_rad`, `stiffness_N_per_m`, `k_ppu_1_per_s`. Values are plain
   numbers in that unit; `15 deg` is refused. Where the unit depends on the joint, revolute joints
   take the key with rad and prismatic joints the key with m.
+- Every number has a range: that of its unit, or a narrower one. The tables give it.
 - `.inf` stands for "no limit" where the table says that it may.
 - Unknown keys, keys given twice and everything outside the allowed values are errors. All errors
   of a file are reported at once, as `file:line:column: key: what is wrong`.
@@ -80,7 +81,7 @@ std::string twin_table() {
 
 std::string script_table() {
   ScriptDraft draft;
-  draft.channels = {{"CHANNEL", 0, kAnyNumber, "one of the channels below"}};
+  draft.channels = {{"CHANNEL", 0, kJointPosition, "one of the channels below"}};
   DocWriter writer;
   describe_frame(writer, draft);
   describe_segments(writer, draft);

@@ -27,7 +27,7 @@ void add_twin_channels(Loader& loader, const rendering::TwinModel& twin, ScriptD
     loader.rule(std::ranges::find(kReserved, joint.name) == kReserved.end(), "frame",
                 "twin_joints needs joints that are not named like a key of a segment",
                 "'" + joint.name + "'");
-    draft.channels.push_back({joint.name, joint.q_index, kAnyNumber, ""});
+    draft.channels.push_back({joint.name, joint.q_index, kJointPosition, ""});
   }
 }
 

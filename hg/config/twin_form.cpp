@@ -226,8 +226,8 @@ std::string refusal(const std::vector<FormField>& form, int field, double value,
                     const std::vector<double>& values) {
   const FormField& wanted = form[static_cast<std::size_t>(field)];
   if (!(value >= wanted.min && value <= wanted.max)) {
-    return wanted.name + ": must be " + to_text(Range{.lb = wanted.min, .ub = wanted.max}) + " " +
-           wanted.unit + ", got " + model::to_text(value);
+    return wanted.name + ": must be " + Bounds({.lb = wanted.min, .ub = wanted.max}, "").text() +
+           " " + wanted.unit + ", got " + model::to_text(value);
   }
   const ParameterChange& change = wanted.changes.front();
   const auto other = [&](Parameter parameter) {

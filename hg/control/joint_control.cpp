@@ -46,6 +46,12 @@ double largest_flatness_Hz(double rate_Hz) noexcept {
 
 void check(const Config& config) {
   if (config.method == Method::kDrives) return;
+  if (!(config.loop.latency <= kMostLatency * config.dt)) {
+    throw SetupError("control.latency_s: must be at most " + std::to_string(kMostLatency) +
+                     " periods, at " + model::to_text(1.0 / config.dt) + " Hz " +
+                     model::to_text(kMostLatency * config.dt) + " s, got " +
+                     model::to_text(config.loop.latency));
+  }
   const double most = largest_flatness_Hz(1.0 / config.dt);
   if (config.flatness_Hz < most) return;
   throw SetupError("control.flatness_Hz: at " + model::to_text(1.0 / config.dt) +

@@ -44,7 +44,10 @@ struct Config {
 /// Largest flatness_Hz of a loop with `rate_Hz`: beyond, what is fed forward oscillates by itself.
 double largest_flatness_Hz(double rate_Hz) noexcept;
 
-/// Throws SetupError where the period is too long for flatness_Hz.
+/// Largest expected latency: that a loop with more is stable nobody checks.
+inline constexpr int kMostLatency = 64;  // periods
+
+/// Throws SetupError where the period is too long for flatness_Hz or too short for the latency.
 void check(const Config& config);
 
 /// Part of the copyable state of a cycle.

@@ -249,6 +249,7 @@ Findings inspect(const config::Device& device, const Survey& survey) {
   inspect_stopping(device, out);
   inspect_singularities(device, survey, out);
   inspect_collisions(device, out);
+  inspect_floor(device, survey, out);
   return std::move(out.findings);
 }
 

@@ -29,6 +29,18 @@ constexpr std::array<std::pair<std::string_view, UrdfJointType>, 6> kJointTypes 
     {"planar", UrdfJointType::kPlanar},
 }};
 
+// What a machine that makes sense has at most; m, rad, kg, kg m^2, and a joint's own units.
+constexpr Interval kPosition = {-1e3, 1e3};
+constexpr Interval kAngle = {-1e3, 1e3};
+constexpr Interval kLength = {0.0, 1e3};
+constexpr Interval kMass = {-1e6, 1e6};  // below 0 only of links that do not move
+constexpr Interval kInertia = {-1e9, 1e9};
+constexpr Interval kDirection = {-1e6, 1e6};  // of any length
+constexpr Interval kVelocity = {0.0, 1e6};
+constexpr Interval kEffort = {0.0, 1e9};
+constexpr double kLeastMass = 1e-9;      // of a link that has one
+constexpr double kLeastInertia = 1e-15;  // principal moment
+
 std::string in_quotes(std::string_view text) {
   std::string result = "'";
   result += text;
@@ -71,9 +83,9 @@ class Reader {
     return text;
   }
 
-  // Numbers separated by blanks; exactly `count` of them.
+  // Numbers separated by blanks; exactly `count` of them, each in `range`.
   std::vector<double> numbers(const XMLElement& e, const char* key, std::size_t count,
-                              const std::string& item) const {
+                              const Interval& range, const std::string& item) const {
     const std::string text = attribute(e, key, item);
     std::vector<double> values;
     std::istringstream words(text);
@@ -85,6 +97,11 @@ class Reader {
       if (error != std::errc() || stop != end || !std::isfinite(value)) {
         fail(urdf_, e.GetLineNum(), item + ": " + key + " must be numbers, got " + in_quotes(text));
       }
+      if (!range.contains(value)) {
+        fail(urdf_, e.GetLineNum(),
+             item + ": " + key + " must be " + to_text(range.lb) + " .. " + to_text(range.ub) +
+                 ", got " + in_quotes(text));
+      }
       values.push_back(value);
     }
     if (values.size() != count) {
@@ -95,12 +112,14 @@ class Reader {
     return values;
   }
 
-  double number(const XMLElement& e, const char* key, const std::string& item) const {
-    return numbers(e, key, 1, item)[0];
+  double number(const XMLElement& e, const char* key, const Interval& range,
+                const std::string& item) const {
+    return numbers(e, key, 1, range, item)[0];
   }
 
-  Eigen::Vector3d vector3(const XMLElement& e, const char* key, const std::string& item) const {
-    return Eigen::Vector3d(numbers(e, key, 3, item).data());
+  Eigen::Vector3d vector3(const XMLElement& e, const char* key, const Interval& range,
+                          const std::string& item) const {
+    return Eigen::Vector3d(numbers(e, key, 3, range, item).data());
   }
 
   const XMLElement& child(const XMLElement& e, const char* name, const std::string& item) const {
@@ -116,9 +135,9 @@ class Reader {
     Pose pose;
     const XMLElement* e = parent.FirstChildElement("origin");
     if (e == nullptr) return pose;
-    if (e->Attribute("xyz")) pose.p = vector3(*e, "xyz", item);
+    if (e->Attribute("xyz")) pose.p = vector3(*e, "xyz", kPosition, item);
     if (e->Attribute("rpy")) {
-      const Eigen::Vector3d rpy = vector3(*e, "rpy", item);
+      const Eigen::Vector3d rpy = vector3(*e, "rpy", kAngle, item);
       pose.R = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
                 Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
                 Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
@@ -133,15 +152,15 @@ class Reader {
     const Pose pose = origin(e, item);
     const XMLElement& i = child(e, "inertia", item);
     // all before the matrix: Eigen does not bear an exception between its commas
-    const double ixy = number(i, "ixy", item);
-    const double ixz = number(i, "ixz", item);
-    const double iyz = number(i, "iyz", item);
-    const double ixx = number(i, "ixx", item);
-    const double iyy = number(i, "iyy", item);
-    const double izz = number(i, "izz", item);
+    const double ixy = number(i, "ixy", kInertia, item);
+    const double ixz = number(i, "ixz", kInertia, item);
+    const double iyz = number(i, "iyz", kInertia, item);
+    const double ixx = number(i, "ixx", kInertia, item);
+    const double iyy = number(i, "iyy", kInertia, item);
+    const double izz = number(i, "izz", kInertia, item);
     Eigen::Matrix3d inertia;
     inertia << ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz;
-    const Inertial result = {.mass = number(child(e, "mass", item), "value", item),
+    const Inertial result = {.mass = number(child(e, "mass", item), "value", kMass, item),
                              .p_com = pose.p,
                              .inertia = pose.R * inertia * pose.R.transpose()};
     if (result.mass == 0.0 && inertia.isZero(0.0)) return {};
@@ -160,26 +179,16 @@ class Reader {
     const XMLElement& geometry = child(e, "geometry", item);
     if (const XMLElement* sphere = geometry.FirstChildElement("sphere")) {
       result.shape = UrdfShape::kSphere;
-      result.size.x() = length(*sphere, "radius", item);
+      result.size.x() = number(*sphere, "radius", kLength, item);
     } else if (const XMLElement* cylinder = geometry.FirstChildElement("cylinder")) {
       result.shape = UrdfShape::kCylinder;
-      result.size.x() = length(*cylinder, "radius", item);
-      result.size.y() = length(*cylinder, "length", item);
+      result.size.x() = number(*cylinder, "radius", kLength, item);
+      result.size.y() = number(*cylinder, "length", kLength, item);
     } else if (const XMLElement* box = geometry.FirstChildElement("box")) {
       result.shape = UrdfShape::kBox;
-      result.size = vector3(*box, "size", item);
-      if (!(result.size.minCoeff() >= 0.0)) {
-        fail(urdf_, box->GetLineNum(),
-             item + ": size must not be negative, got " + in_quotes(box->Attribute("size")));
-      }
+      result.size = vector3(*box, "size", kLength, item);
     }
     return result;
-  }
-
-  double length(const XMLElement& e, const char* key, const std::string& item) const {
-    const double value = number(e, key, item);
-    if (value >= 0.0) return value;
-    fail(urdf_, e.GetLineNum(), item + ": " + key + " must not be negative, got " + to_text(value));
   }
 
   UrdfLink link(const XMLElement& e) const {
@@ -224,7 +233,7 @@ class Reader {
   Eigen::Vector3d axis(const XMLElement& e, const std::string& item) const {
     const XMLElement* a = e.FirstChildElement("axis");
     if (a == nullptr) return Eigen::Vector3d::UnitX();
-    const Eigen::Vector3d v = vector3(*a, "xyz", item);
+    const Eigen::Vector3d v = vector3(*a, "xyz", kDirection, item);
     if (v.norm() < 1e-6) {
       fail(urdf_, a->GetLineNum(),
            item + ": axis must have a direction, got " + in_quotes(a->Attribute("xyz")));
@@ -232,8 +241,9 @@ class Reader {
     return v.normalized();
   }
 
-  double positive(const XMLElement& e, const char* key, const std::string& item) const {
-    const double value = number(e, key, item);
+  double positive(const XMLElement& e, const char* key, const Interval& range,
+                  const std::string& item) const {
+    const double value = number(e, key, range, item);
     if (!(value > 0.0)) {
       fail(urdf_, e.GetLineNum(),
            item + ": limit " + key + " must be positive (leave it out for no limit), got " +
@@ -249,10 +259,12 @@ class Reader {
         joint.type == UrdfJointType::kRevolute || joint.type == UrdfJointType::kPrismatic;
     const XMLElement* limit = has_range ? &child(e, "limit", item) : e.FirstChildElement("limit");
     if (limit == nullptr) return;
-    if (limit->Attribute("velocity")) joint.velocity_max = positive(*limit, "velocity", item);
-    if (limit->Attribute("effort")) joint.effort_max = positive(*limit, "effort", item);
+    if (limit->Attribute("velocity"))
+      joint.velocity_max = positive(*limit, "velocity", kVelocity, item);
+    if (limit->Attribute("effort")) joint.effort_max = positive(*limit, "effort", kEffort, item);
     if (!has_range) return;
-    joint.position = {number(*limit, "lower", item), number(*limit, "upper", item)};
+    const Interval& range = joint.type == UrdfJointType::kPrismatic ? kPosition : kAngle;
+    joint.position = {number(*limit, "lower", range, item), number(*limit, "upper", range, item)};
     if (!(joint.position.lb < joint.position.ub)) {
       fail(urdf_, limit->GetLineNum(),
            item + ": limit lower must be below upper, got lower " + to_text(joint.position.lb) +
@@ -309,7 +321,8 @@ void check(const Inertial& inertial, std::string_view item) {
   const auto require = [&](bool holds, const std::string& rule, const std::string& value) {
     if (!holds) throw SetupError(std::string(item) + ": " + rule + ", got " + value);
   };
-  require(std::isfinite(inertial.mass) && inertial.mass > 0.0, "mass must be positive",
+  require(inertial.mass >= kLeastMass && inertial.mass <= kMass.ub,
+          "mass must be " + to_text(kLeastMass) + " .. " + to_text(kMass.ub) + " kg",
           to_text(inertial.mass));
   require(inertial.p_com.allFinite() && inertial.inertia.allFinite(), "inertia must be finite",
           "nan or inf");
@@ -318,7 +331,7 @@ void check(const Inertial& inertial, std::string_view item) {
   std::ostringstream got;
   got << std::setprecision(4) << "principal moments " << moments[0] << ", " << moments[1] << ", "
       << moments[2];
-  require(moments[0] > 0.0, "inertia must be positive definite", got.str());
+  require(moments[0] >= kLeastInertia, "inertia must be positive definite", got.str());
   require(moments[0] + moments[1] >= moments[2] * (1.0 - kRounding),
           "inertia is of no body, the two smaller principal moments must add up to the largest",
           got.str());

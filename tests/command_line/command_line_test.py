@@ -21,7 +21,7 @@ import time
 import unittest
 
 from mcap.reader import make_reader
-from program import MODELS, PROGRAM, TemporaryFolder, run
+from program import MODELS, PROGRAM, TemporaryFolder, install, run
 
 
 def drain(terminal):
@@ -162,13 +162,15 @@ class MainJob(TemporaryFolder):
         self.assertEqual(max(map(len, lines)), 39)
 
     def test_a_terminal_without_page_ends_after_the_script(self):
-        shutil.copytree(MODELS, self.folder / "models")  # the page is looked for beside models
+        shutil.copytree(MODELS, self.folder / "models")
+        program = install(self.folder / "prefix")
+        shutil.rmtree(self.folder / "prefix/share/hapticgiant/viewer")
         scenario = self.folder / "models/scenarios/door.yaml"
         scenario.write_text(scenario.read_text().replace("duration_s: 14", "duration_s: 0.5"))
         script = self.folder / "models/scripts/door.yaml"
         script.write_text(re.sub(r"(?m)^duration_s: .*", "duration_s: 1", script.read_text()))
         primary, secondary = pty.openpty()
-        process = subprocess.Popen([PROGRAM, "run", "door", "--no-recording"], stdout=secondary,
+        process = subprocess.Popen([program, "run", "door", "--no-recording"], stdout=secondary,
                                    cwd=self.folder)
         os.close(secondary)
         self.addCleanup(os.close, primary)

@@ -16,7 +16,7 @@ import threading
 import time
 import unittest
 
-from program import MODELS, PROGRAM, TemporaryFolder, run
+from program import MODELS, PROGRAM, TemporaryFolder, install, run
 from web_socket import Page
 
 
@@ -29,16 +29,14 @@ def drain(terminal):
 class PageTest(TemporaryFolder):
     def setUp(self):
         super().setUp()
-        shutil.copytree(MODELS, self.folder / "models")  # the page is looked for beside models
-        page = self.folder / "viewer/dist"
-        page.mkdir(parents=True)
-        (page / "index.html").write_text("the page")
+        shutil.copytree(MODELS, self.folder / "models")
+        self.installed = install(self.folder / "prefix")
 
     @contextlib.contextmanager
     def program(self, *arguments):
         """The running program and its link."""
-        process = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
-                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
+        process = subprocess.Popen([self.installed, *map(str, arguments)], cwd=self.folder,
+                                   text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
         try:
             while not (link := re.search(r"http://\S+", process.stdout.readline())):
                 self.assertIsNone(process.poll())
@@ -252,7 +250,7 @@ class PageTest(TemporaryFolder):
         """A run of the door there, and the link that it prints. Not read: Ctrl-S stands after it."""
         primary, secondary = pty.openpty()
         process = subprocess.Popen(
-            [PROGRAM, "run", "door", "--user", "mouse", "--no-recording", *options],
+            [self.installed, "run", "door", "--user", "mouse", "--no-recording", *options],
             stdout=secondary, cwd=self.folder, env={"PATH": os.environ["PATH"], **environment})
         self.addCleanup(os.close, primary)
         self.addCleanup(process.kill)
@@ -312,8 +310,8 @@ class PageTest(TemporaryFolder):
         self.assertIsNone(self.open_at_terminal("--no-browser", DISPLAY=":0")[1])
 
     def test_without_the_built_page_it_says_how_to_get_it(self):
-        shutil.rmtree(self.folder / "viewer")
-        done = subprocess.run([PROGRAM, "run", "door", "--user", "none", "--duration", "0.3",
+        shutil.rmtree(self.folder / "prefix/share/hapticgiant/viewer")
+        done = subprocess.run([self.installed, "run", "door", "--user", "none", "--duration", "0.3",
                                "--no-recording"], cwd=self.folder, capture_output=True, text=True,
                               timeout=60)
         self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)

@@ -9,7 +9,6 @@
 #include <cstdlib>
 
 #include "apps/hapticgiant/paths.h"
-#include "hg/core/error.h"
 
 namespace hg::apps {
 namespace {
@@ -18,23 +17,18 @@ namespace fs = std::filesystem;
 
 constexpr int kNoMatplotlib = 3;  // exit code of figures.py
 
-// root of the sources, where .venv and python/ are; empty: an installed program
-fs::path root() {
-  try {
-    return data_root();
-  } catch (const SetupError&) {
-    return {};
-  }
-}
-
 std::string interpreter(const fs::path& root) {
-  if (const char* chosen = std::getenv("HAPTICGIANT_PYTHON")) return chosen;
+  if (const char* chosen = std::getenv("HAPTICGIANT_PYTHON")) {
+    const std::string name = chosen;
+    return name.find('/') == std::string::npos ? name : fs::absolute(name).string();
+  }
   const fs::path own = root / ".venv" / "bin" / "python";
   std::error_code error;
   return !root.empty() && fs::exists(own, error) ? own.string() : "python3";
 }
 
-// exit code; 127: it could not be started
+// Exit code; 127: it could not be started. It starts in the root folder: Python would take modules
+// from the working directory.
 int run_program(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -42,6 +36,7 @@ int run_program(std::vector<std::string> words) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addchdir_np(&actions, "/");
   pid_t child = 0;
   const int error =
       posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
@@ -55,7 +50,7 @@ int run_program(std::vector<std::string> words) {
 }  // namespace
 
 std::string draw_figures(const fs::path& out, const std::vector<fs::path>& folders) {
-  const fs::path home = root();
+  const fs::path home = installation_root();
   const fs::path script = home / "python" / "hapticgiant" / "figures.py";
   const std::string python = interpreter(home);
   std::error_code error;
@@ -65,8 +60,8 @@ std::string draw_figures(const fs::path& out, const std::vector<fs::path>& folde
   } else {
     words.insert(words.end(), {"-m", "hapticgiant.figures"});
   }
-  words.push_back(out.string());
-  for (const fs::path& folder : folders) words.push_back(folder.string());
+  words.push_back(fs::absolute(out).string());
+  for (const fs::path& folder : folders) words.push_back(fs::absolute(folder).string());
   const int code = run_program(words);
   if (code == 0) return {};
   if (code == 127 || code == kNoMatplotlib) {

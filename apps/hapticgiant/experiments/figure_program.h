@@ -12,7 +12,7 @@ namespace hg::apps {
 /// how to get them, in one line; empty = they are drawn.
 ///
 /// The interpreter is that of the environment variable HAPTICGIANT_PYTHON, else .venv/bin/python
-/// beside models/, else python3.
+/// of the installation (paths.h), else python3.
 std::string draw_figures(const std::filesystem::path& out,
                          const std::vector<std::filesystem::path>& folders);
 

@@ -94,7 +94,7 @@ TEST(BadDevice, RatesGainsAndChoicesHaveRanges) {
   EXPECT_EQ(device_message(13, "prepositioning: {k_ppu: 4}"),
             "device.yaml:13:18: prepositioning.k_ppu: unknown key, did you mean 'k_ppu_1_per_s'?");
   EXPECT_EQ(device_message(13, "monitor: {speed_tolerance: 0.9}"),
-            "device.yaml:13:28: monitor.speed_tolerance: must be >= 1, got 0.9");
+            "device.yaml:13:28: monitor.speed_tolerance: must be 1 .. 1e+06, got 0.9");
   EXPECT_EQ(device_message(13, "prepositioning: {dq_max_m_per_s: 1.6}"),
             "device.yaml:13:34: prepositioning.dq_max_m_per_s: must not exceed the speed of the "
             "drive, 1.5, got 1.6");
@@ -172,8 +172,8 @@ TEST(BadScript, SegmentsMoveSomething) {
 TEST(BadScript, TimesAndValuesHaveRanges) {
   EXPECT_EQ(script_message("segments:\n  - {start_s: -1, duration_s: 0, grip: 2}\n"
                            "  - {duration_s: 1, x_m: 1}\n"),
-            "script.yaml:2:15: segments[0].start_s: must be >= 0, got -1\n"
-            "script.yaml:2:31: segments[0].duration_s: must be > 0, got 0\n"
+            "script.yaml:2:15: segments[0].start_s: must be 0 .. 1e+05, got -1\n"
+            "script.yaml:2:31: segments[0].duration_s: must be 1e-06 .. 1e+05, got 0\n"
             "script.yaml:2:40: segments[0].grip: must be 0 .. 1, got 2\n"
             "script.yaml:3:5: segments[1]: key 'start_s' is missing");
   EXPECT_EQ(script_message("hand: {stiffness_N_per_m: 200}\n"),
@@ -187,10 +187,10 @@ TEST(BadScript, AHandHasAPresetOrValuesOfAHand) {
             "you mean 'stiff'?");
   EXPECT_EQ(script_message("hand: {mass_kg: [1, 0, 1], grip_stiffness_N_per_m: 0, tremor_N: -1}\n"
                            "grasp_s: -1\n"),
-            "script.yaml:1:21: hand.mass_kg[1]: must be > 0, got 0\n"
-            "script.yaml:1:52: hand.grip_stiffness_N_per_m: must be > 0, got 0\n"
-            "script.yaml:1:65: hand.tremor_N: must be >= 0, got -1\n"
-            "script.yaml:2:10: grasp_s: must be >= 0, got -1");
+            "script.yaml:1:21: hand.mass_kg[1]: must be 1e-09 .. 1e+06, got 0\n"
+            "script.yaml:1:52: hand.grip_stiffness_N_per_m: must be 1e-06 .. 1e+10, got 0\n"
+            "script.yaml:1:65: hand.tremor_N: must be 0 .. 1e+07, got -1\n"
+            "script.yaml:2:10: grasp_s: must be 0 .. 1e+05, got -1");
 }
 
 TEST(BadScript, AWalkIsACircleOrCheckpointsAndNothingElseMovesTheHandAlong) {
@@ -283,7 +283,7 @@ TEST(BadScenario, FaultsOfItsFilesAreReportedTogether) {
   EXPECT_EQ(scenario_message("title: a\ndescription: b\ndevice: bad_device.yaml\n"
                              "twin: bad_twin.yaml\nperson: nobody.yaml\nduration_s: 0\n"),
             "run.yaml:5:9: person: no such file, got 'nobody.yaml'\n"
-            "run.yaml:6:13: duration_s: must be > 0, got 0\n"
+            "run.yaml:6:13: duration_s: must be 1e-06 .. 1e+05, got 0\n"
             "bad_device.yaml:5:9: handle: must be a link of the URDF, got 'handel', did you mean "
             "'handle'?\n"
             "bad_twin.yaml:4:10: gravity: must be true or false, got '9.81'");

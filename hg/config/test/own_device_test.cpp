@@ -172,7 +172,7 @@ TEST(OwnDevice, WithoutAChainTheRestOfTheFileIsReadAllTheSame) {
   const std::string faults = "rate_Hz: -5\nsynchronisation: {kD_tran_1_per_s: -10}\n";
   const std::string told =
       "device.yaml:9:10: rate_Hz: must be 100 .. 20000, got -5\n"
-      "device.yaml:10:36: synchronisation.kD_tran_1_per_s: must be > 0, got -10";
+      "device.yaml:10:36: synchronisation.kD_tran_1_per_s: must be 1e-06 .. 1e+05, got -10";
   const auto names = [&](const std::string& gantry) {
     return gantry + "tool: tool.yaml\nflange: l7\ndrive: {dq_max_rad_per_s: 1}\n" + faults +
            "virtual_joints:\n  - {name: sum, weights: {j2: 1}, dq_max_rad_per_s: 1, "

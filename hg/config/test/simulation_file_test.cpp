@@ -268,11 +268,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"StepInMilliseconds", "step_s: 0.25\n",
              "simulation.yaml:2:9: step_s: must be 1e-05 .. 0.002, got 0.25"},
         Case{"StiffnessOfNothing", "factors: {stiffness: 0}\n",
-             "simulation.yaml:2:22: factors.stiffness: must be > 0, got 0"},
+             "simulation.yaml:2:22: factors.stiffness: must be 0.001 .. 1000, got 0"},
         Case{"UnknownFactor", "factors: {frictoin: 1}\n",
              "simulation.yaml:2:11: factors.frictoin: unknown key, did you mean 'friction'?"},
         Case{"StopInsideTheLimits", "end_stops: {beyond_m: -1}\n",
-             "simulation.yaml:2:23: end_stops.beyond_m: must be >= 0, got -1"},
+             "simulation.yaml:2:23: end_stops.beyond_m: must be 0 .. 1000, got -1"},
         Case{"RatioOfAnUnknownJoint", "gear_ratio: {lit: 5}\n",
              "simulation.yaml:2:14: gear_ratio.lit: must be a joint of the manipulator, got 'lit', "
              "did you mean 'lift'?"},

@@ -148,6 +148,18 @@ INSTANTIATE_TEST_SUITE_P(
              "prepositioning.k_ppu_1_per_s",
              "overshoots",
              "k_ppu_1_per_s"},
+        Case{"FloorAboveTheHandle",
+             {"floor_z_m: -2.15", "floor_z_m: 0.9", "", ""},
+             Severity::kFault,
+             "floor_z_m",
+             "above every place",
+             "floor_z_m"},
+        Case{"FloorAroundTheArm",
+             {"floor_z_m: -2.15", "floor_z_m: -0.4", "", ""},
+             Severity::kWarning,
+             "floor_z_m",
+             "in every posture in the floor",
+             "floor_z_m"},
         Case{"GantryOscillates",
              {"k_ppu_1_per_s: 4", "k_ppu_1_per_s: 30", "", ""},
              Severity::kFault,
@@ -336,6 +348,17 @@ TEST(Pair, TwinOutOfReachIsAFaultAtItsPlacement) {
   EXPECT_EQ(findings.front().severity, Severity::kFault);
   EXPECT_EQ(findings.front().item, "placement");
   EXPECT_EQ(findings.front().place.line, 8);
+}
+
+TEST(Pair, StartInTheFloorIsAFault) {
+  config::SourceReader reader =
+      reader_of("models/haptic_giant/device.yaml", "models/haptic_giant/haptic_giant.urdf",
+                {"floor_z_m: -2.15", "floor_z_m: 0.9", "", ""});
+  const config::Device device = config::load_device("f.yaml", reader);
+  const Findings findings = inspect(device, door({}));
+  ASSERT_FALSE(findings.empty());
+  EXPECT_EQ(findings.front().severity, Severity::kFault);
+  EXPECT_NE(findings.front().what.find("would be in the floor"), std::string::npos);
 }
 
 TEST(Pair, AccelerationThatTheHandCannotBrakeIsNamedWithTheOneItCan) {

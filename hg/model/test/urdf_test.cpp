@@ -187,7 +187,7 @@ std::vector<Fault> faults_of_elements() {
       "arm.urdf:3: link arm: value must be numbers, got 'inf'");
   add(
       "negative mass", [&](Text& t) { t.arm = arm_with("-1", unit); },
-      "arm.urdf:3: link arm: mass must be positive, got -1");
+      "arm.urdf:3: link arm: mass must be 1e-09 .. 1e+06 kg, got -1");
   add(
       "inertia not positive",
       [](Text& t) { t.arm = arm_with("1", "ixx='1' iyy='1' izz='1' ixy='2' ixz='0' iyz='0'"); },
