@@ -127,6 +127,13 @@ void look_at_problems(Observers& observers, const hqp::KeptProblems& problems) {
   }
 }
 
+void look_at_recording(Observers& observers, double time_s) {
+  const std::string why = observers.recording.news();
+  if (!why.empty()) {
+    tell(observers, time_s, "recording", "has ended early, the run goes on: " + why);
+  }
+}
+
 // drains the runtime until it has finished and everything has been seen
 void watch(runtime::Runtime& runtime, Observers& observers) {
   auto sample = std::make_unique<Sample>();
@@ -139,6 +146,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
     }
     if (any && !observers.is_fast) show(observers, *sample);
     look_at_problems(observers, runtime.kept_problems());
+    look_at_recording(observers, sample->record.time_s);
     if (is_finished) break;
     if (observers.page != nullptr) {
       observers.page->follow(&runtime, note(observers, *sample));
@@ -283,18 +291,25 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const RunRecording::Result recorded = observers.recording.close();
   facts.recording = recorded.file;
   facts.unrecorded = recorded.unrecorded;
+  facts.recording_error = recorded.error;
   facts.fault_figures = observers.fault_figures;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
   const std::vector<std::string> missing = observers.detector.missing();
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
                         observers.dumps.summary(runtime.kept_problems())));
-  if (!arguments.summary.empty()) {
-    write_output(arguments.summary, observers.summary.to_json(facts, missing));
+  bool is_written = recorded.is_whole;
+  try {
+    if (!arguments.summary.empty()) {
+      write_output(arguments.summary, observers.summary.to_json(facts, missing));
+    }
+  } catch (const SetupError& error) {
+    print_error("{}\n", error.what());
+    is_written = false;
   }
   const bool was_ended = page != nullptr && (page->has_next() || page->stop_was_asked());
   const int code = exit_code(observers.summary, missing, interrupted.load() || was_ended);
   wait_for_next(observers, goes_on);
-  return code;
+  return code == 0 && !is_written ? kNotWritten : code;
 }
 
 }  // namespace
