@@ -33,12 +33,20 @@ using viewer_server::CommandName;
 constexpr double kFrame_s = 1.0 / 60.0;  // of the page
 constexpr std::chrono::milliseconds kIdle(4);
 
+config::Scenario scenario_of(const recording::RecordedRun& run) {
+  try {
+    return recorded_scenario(run.configuration());
+  } catch (const SetupError& error) {
+    throw SetupError(recording::to_text(run.losses()) + error.what());
+  }
+}
+
 /// One recording and, if it is compared, the other.
 class Show {
  public:
   explicit Show(const ReplayArguments& arguments)
       : run_(arguments.file, kFrame_s),
-        scenario_(recorded_scenario(run_.configuration())),
+        scenario_(scenario_of(run_)),
         names_(part_names(scenario_)),
         playback_(run_.duration_s()),
         sample_(std::make_unique<Sample>()) {
@@ -149,7 +157,8 @@ class Show {
 
 void print_content(const Show& show) {
   print_out(fmt::format("{}\n{}\n", show.scenario().title, show.scenario().description));
-  print_out(fmt::format("duration    {:.3f} s\n", show.run().duration_s()));
+  print_out("duration    {:.3f} s\n{}", show.run().duration_s(),
+            recording::to_text(show.run().losses()));
   for (const recording::Event& event : show.run().events()) {
     print_out(fmt::format("{:8.3f} s  {:<18} {}\n", event.time_s, event.name, event.text));
   }
