@@ -10,6 +10,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
@@ -76,7 +77,6 @@ class BackgroundOutput::Queue {
     const std::lock_guard lock(mutex_);
     if (waiting_bytes_ + text.size() > kMostBytes) {
       ++left_out_;
-      ++not_told_;
       return;
     }
     waiting_bytes_ += text.size();
@@ -87,10 +87,6 @@ class BackgroundOutput::Queue {
   bool is_behind() const {
     const std::lock_guard lock(mutex_);
     return !texts_.empty();
-  }
-  std::uint64_t left_out() const {
-    const std::lock_guard lock(mutex_);
-    return left_out_;
   }
 
   // until end(), and what was pushed before
@@ -131,9 +127,9 @@ class BackgroundOutput::Queue {
     text = std::move(texts_.front());
     texts_.pop_front();
     waiting_bytes_ -= text.text.size();
-    if (texts_.empty() && not_told_ > 0) {
+    if (texts_.empty() && left_out_ > 0) {
       texts_.push_back({text.file, fmt::format("\n({} texts left out: nobody read them)\n",
-                                               std::exchange(not_told_, 0))});
+                                               std::exchange(left_out_, 0))});
       waiting_bytes_ += texts_.back().text.size();
     }
     return true;
@@ -143,7 +139,7 @@ class BackgroundOutput::Queue {
   std::condition_variable news_;
   std::deque<Text> texts_;
   std::size_t waiting_bytes_ = 0;
-  std::uint64_t left_out_ = 0, not_told_ = 0;
+  std::uint64_t left_out_ = 0;  // texts, since that was last said
   bool is_ending_ = false, has_ended_ = false;
 };
 
@@ -217,7 +213,5 @@ BackgroundOutput::~BackgroundOutput() {
 void BackgroundOutput::push(int file, const std::string& text) { queue_->push(file, text); }
 
 bool BackgroundOutput::is_behind() const { return queue_->is_behind(); }
-
-std::uint64_t BackgroundOutput::left_out() const { return queue_->left_out(); }
 
 }  // namespace hg::apps

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -51,7 +50,7 @@ int code_after_output(int code);
 
 /// While it lives, print_out() and print_error() never wait for who reads them: a thread of its own
 /// writes. Of more than 64 KiB that wait, for example while a terminal is stopped with Ctrl-S, the
-/// rest is left out and counted.
+/// rest is left out; how many texts that were is said as soon as somebody reads again.
 ///
 /// One at a time, made and destroyed by one thread.
 class BackgroundOutput {
@@ -68,8 +67,6 @@ class BackgroundOutput {
 
   /// Whether something waits to be read: no time for what is only nice to know.
   bool is_behind() const;
-  /// Texts that were left out until now.
-  std::uint64_t left_out() const;
 
  private:
   class Queue;

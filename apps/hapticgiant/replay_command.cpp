@@ -194,14 +194,18 @@ int run_again(const std::string& file) {
 
 int replay(const ReplayArguments& arguments) {
   Show show(arguments);
+  if (!arguments.has_view) {
+    print_content(show);
+    return run_again(arguments.file);
+  }
+  const std::atomic<bool>& interrupted = watch_interruption();
+  const BackgroundOutput output(interrupted);
   print_content(show);
-  if (!arguments.has_view) return run_again(arguments.file);
   viewer_server::Options options;
   options.page = find_page();
   if (options.page.empty()) return 0;
   options.address = arguments.address;
   options.port = arguments.port;
-  const std::atomic<bool>& interrupted = watch_interruption();
   viewer_server::ViewerServer server(options, show.scene());
   present_page(server.url(), arguments.address, arguments.opens_browser);
   print_out("stop        Ctrl-C\n");

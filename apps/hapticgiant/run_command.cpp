@@ -120,11 +120,8 @@ void show(Observers& observers, const Sample& sample) {
       status_text(sample, observers.scenario.limits, observers.scenario.twin.model));
 }
 
-void look_at_problems(Observers& observers, const hqp::KeptProblems& problems) {
-  for (std::size_t i = 0; i < hqp::KeptProblems::kMost; ++i) {
-    const std::string text = observers.dumps.look_at(problems);
-    if (!text.empty()) observers.status_line.print(text);
-  }
+void tell_problems(Observers& observers, const std::string& text) {
+  if (!text.empty()) observers.status_line.print(text);
 }
 
 void look_at_recording(Observers& observers, double time_s) {
@@ -145,7 +142,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
       any = true;
     }
     if (any && !observers.is_fast) show(observers, *sample);
-    look_at_problems(observers, runtime.kept_problems());
+    tell_problems(observers, observers.dumps.look_at(runtime.kept_problems()));
     look_at_recording(observers, sample->record.time_s);
     if (is_finished) break;
     if (observers.page != nullptr) {
@@ -154,6 +151,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
     }
     if (!any) std::this_thread::sleep_for(kIdle);
   }
+  tell_problems(observers, observers.dumps.finish(runtime.kept_problems()));
   observers.status_line.clear();
 }
 
