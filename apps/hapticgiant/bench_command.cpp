@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "apps/hapticgiant/bench_files.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/run_setup.h"
@@ -48,10 +48,7 @@ struct NamedScenario {
   bool takes(Law law) const { return law != Law::kPaper || scenario.device.model.n_m == 6; }
 };
 
-void show(const std::string& text) {
-  fmt::print("{}", text);
-  std::fflush(stdout);
-}
+void show(const std::string& text) { print_out(text); }
 
 // Of what --quick measures, for a heading.
 std::string only_first(std::size_t most, const char* what) {
@@ -60,7 +57,7 @@ std::string only_first(std::size_t most, const char* what) {
 
 // Until the rows of what is being measured take its place.
 void announce(const std::string& what) {
-  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "measuring {} ...\r", what);
+  if (isatty(STDERR_FILENO) != 0) draw_error(fmt::format("measuring {} ...", what));
 }
 
 bool are_ours_right(const bench::SolverSet& set) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/print_datasheet.h"
 
 namespace hg::apps {
@@ -38,20 +39,20 @@ int count(const CheckReport& report, Severity severity) {
 }
 
 void print(const CheckReport& report) {
-  for (const CheckedFile& file : report.files) fmt::print("{}: {}\n", file.name, file.kind);
+  for (const CheckedFile& file : report.files) print_out("{}: {}\n", file.name, file.kind);
   for (const inspection::Datasheet& sheet : report.datasheets) print_datasheet(sheet);
-  if (!report.findings.empty()) fmt::print("\n");
+  if (!report.findings.empty()) print_out("\n");
   for (const Finding& finding : report.findings) {
-    fmt::print("{}:{}:{}: {}: {}{}{}\n", finding.file, finding.place.line, finding.place.column,
-               to_string(finding.severity), finding.item, finding.item.empty() ? "" : ": ",
-               finding.what);
-    if (!finding.mend.empty()) fmt::print("    to mend: {}\n", finding.mend);
+    print_out("{}:{}:{}: {}: {}{}{}\n", finding.file, finding.place.line, finding.place.column,
+              to_string(finding.severity), finding.item, finding.item.empty() ? "" : ": ",
+              finding.what);
+    if (!finding.mend.empty()) print_out("    to mend: {}\n", finding.mend);
   }
   const int faults = count(report, Severity::kFault);
-  fmt::print("\n{}: {}, {}, {}\n", counted(static_cast<int>(report.files.size()), "file"),
-             counted(faults, "fault"), counted(count(report, Severity::kWarning), "warning"),
-             counted(count(report, Severity::kNote), "note"));
-  if (faults > 0) fmt::print("Every key, its range and meaning: docs/configuration.md\n");
+  print_out("\n{}: {}, {}, {}\n", counted(static_cast<int>(report.files.size()), "file"),
+            counted(faults, "fault"), counted(count(report, Severity::kWarning), "warning"),
+            counted(count(report, Severity::kNote), "note"));
+  if (faults > 0) print_out("Every key, its range and meaning: docs/configuration.md\n");
 }
 
 std::string to_json(const CheckReport& report) {

@@ -78,12 +78,14 @@ void print(const explanation::Entry& entry) {
 
 int explain_recording(const std::string& file) {
   Reader reader;
-  const bool is_complete = recording::read_recording(file, reader);
-  print_out(fmt::format("{}\n{:.3f} .. {:.3f} s of the run, {} samples{}\n\n", reader.title(),
+  const recording::ReadResult read = recording::read_recording(file, reader);
+  print_out(fmt::format("{}\n{:.3f} .. {:.3f} s of the run, {} samples{}\n{}\n", reader.title(),
                         reader.first_s(), reader.last_s(), reader.samples(),
-                        is_complete ? ""
-                                    : "; CUT OFF: the program ended before it could complete the "
-                                      "file, at most its last second is missing"));
+                        read.is_complete
+                            ? ""
+                            : "; CUT OFF: the program ended before it could complete the "
+                              "file, at most its last second is missing",
+                        recording::to_text(read.losses)));
   const std::vector<explanation::Entry> entries = reader.entries();
   for (const explanation::Entry& entry : entries) print(entry);
   const bool has_fault = std::ranges::any_of(

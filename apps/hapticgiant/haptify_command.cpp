@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 void tell(const std::string& what, std::size_t done, std::size_t total) {
   const bool is_terminal = isatty(STDERR_FILENO) != 0;
   if (is_terminal) {
-    fmt::print(stderr, "{}: {} of {}{}", what, done, total, done < total ? " \r" : "\r\033[K");
+    draw_error(done < total ? fmt::format("{}: {} of {}", what, done, total) : "");
   } else if (done == total) {
-    fmt::print(stderr, "{}: {} runs\n", what, total);
+    print_error("{}: {} runs\n", what, total);
   }
 }
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
+#include "apps/hapticgiant/output.h"
 #include "hg/core/error.h"
 #include "hg/hqp/explanation.h"
 #include "hg/hqp/solver.h"
@@ -37,7 +37,7 @@ bool report(std::size_t index, const hqp::Problem& problem, const hqp::Solution&
     text += fmt::format(", {}: {}", hqp::to_string(problem, solution.bad_row),
                         hqp::broken_rule(problem, solution.bad_row));
   }
-  fmt::print(stderr, "{}\n", text);
+  print_error("{}\n", text);
   return false;
 }
 
@@ -48,18 +48,18 @@ void print_numbers(const hqp::Solution& solution) {
     line += fmt::format("{} ", level.slack_squared);
   }
   line.back() = '\n';
-  std::fputs(line.c_str(), stdout);
+  print_out(line);
 }
 
 void explain(std::size_t index, const hqp::RecordedProblem& recorded,
              const std::optional<int>& level, Player& player) {
   const auto& [problem, options, guess, name] = recorded;
-  fmt::print("problem {}{}{}\noptions: {}\n", index, name.empty() ? "" : ", ", name,
-             hqp::to_string(options));
-  fmt::print("{}", hqp::to_string(problem, player.solution));
+  print_out("problem {}{}{}\noptions: {}\n", index, name.empty() ? "" : ", ", name,
+            hqp::to_string(options));
+  print_out("{}", hqp::to_string(problem, player.solution));
   std::string x;
   for (const double value : player.solution.x) x += fmt::format(" {}", value);
-  fmt::print("x ={}\n", x);
+  print_out("x ={}\n", x);
   if (!level) return;
   if (*level >= problem.levels()) {
     throw SetupError(fmt::format("--level: problem {} has the levels 0..{}, got {}", index,
@@ -67,7 +67,7 @@ void explain(std::size_t index, const hqp::RecordedProblem& recorded,
   }
   std::vector<double> mu(static_cast<std::size_t>(problem.rows()));
   const double remainder = player.solver.multipliers(problem, options, player.solution, *level, mu);
-  fmt::print("{}", hqp::to_string(problem, *level, mu, remainder));
+  print_out("{}", hqp::to_string(problem, *level, mu, remainder));
 }
 
 bool print_solutions(const Problems& problems, std::size_t first,
@@ -122,8 +122,8 @@ bool print_times(const Problems& problems, std::size_t first, bool is_warm) {
     const auto index = static_cast<std::size_t>(std::ceil(share * count)) - 1;
     return times[std::min(index, times.size() - 1)];
   };
-  fmt::print("{:5} {:9.2f} {:9.2f} {:9.2f} {:9.2f}\n", is_warm ? "warm" : "cold", rank(0.5),
-             sum / count, rank(0.999), times.back());
+  print_out("{:5} {:9.2f} {:9.2f} {:9.2f} {:9.2f}\n", is_warm ? "warm" : "cold", rank(0.5),
+            sum / count, rank(0.999), times.back());
   return are_settled;
 }
 
@@ -152,9 +152,9 @@ int run_hqp_solve(const HqpSolveArguments& arguments) {
   const Problems problems = read(arguments, first);
   if (!arguments.has_timing) return print_solutions(problems, first, arguments) ? 0 : 1;
 
-  fmt::print("{} problem{}, microseconds per problem\n", problems.size(),
-             problems.size() == 1 ? "" : "s");
-  fmt::print("{:5} {:>9} {:>9} {:>9} {:>9}\n", "start", "median", "mean", "99.9 %", "max");
+  print_out("{} problem{}, microseconds per problem\n", problems.size(),
+            problems.size() == 1 ? "" : "s");
+  print_out("{:5} {:>9} {:>9} {:>9} {:>9}\n", "start", "median", "mean", "99.9 %", "max");
   const bool is_cold_settled = print_times(problems, first, false);
   const bool is_warm_settled = print_times(problems, first, true);
   return is_cold_settled && is_warm_settled ? 0 : 1;

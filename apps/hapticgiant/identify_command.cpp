@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/paths.h"
 #include "hg/config/device.h"
 #include "hg/core/error.h"
@@ -49,23 +50,23 @@ std::string row(const Eigen::Vector3d& v, int digits) {
 }
 
 void print_estimate(const PayloadEstimate& found) {
-  fmt::print("mass            {:.4f} kg, +-{:.4f}\n", found.mass, found.mass_deviation);
-  fmt::print("centre of mass  {} m in S, +-{:.4f}\n", row(found.com, 4), found.com_deviation);
-  fmt::print("sensor offset   {} N; {} Nm\n", row(found.offset.head<3>(), 2),
-             row(found.offset.tail<3>(), 4));
-  fmt::print("residuals       {:.3f} N, {:.4f} Nm rms\n", found.force_residual,
-             found.torque_residual);
-  fmt::print("condition       {:.1f}  (1 = every direction shows alike)\n", found.condition);
+  print_out("mass            {:.4f} kg, +-{:.4f}\n", found.mass, found.mass_deviation);
+  print_out("centre of mass  {} m in S, +-{:.4f}\n", row(found.com, 4), found.com_deviation);
+  print_out("sensor offset   {} N; {} Nm\n", row(found.offset.head<3>(), 2),
+            row(found.offset.tail<3>(), 4));
+  print_out("residuals       {:.3f} N, {:.4f} Nm rms\n", found.force_residual,
+            found.torque_residual);
+  print_out("condition       {:.1f}  (1 = every direction shows alike)\n", found.condition);
 }
 
 void print_comparison(const PayloadEstimate& found, const Payload& told) {
   if (!(told.mass > 0.0)) return;
-  fmt::print("device.yaml     {:+.2f} % mass, {:.1f} mm of centre away from what it says\n",
-             100.0 * (found.mass / told.mass - 1.0), 1e3 * (found.com - told.com).norm());
+  print_out("device.yaml     {:+.2f} % mass, {:.1f} mm of centre away from what it says\n",
+            100.0 * (found.mass / told.mass - 1.0), 1e3 * (found.com - told.com).norm());
 }
 
 void print_yaml(const PayloadEstimate& found) {
-  fmt::print(
+  print_out(
       "\nfor device.yaml:\npayload:\n  mass_kg: {:.4f}\n  centre_of_mass_m: [{}]\n"
       "  # inertia_kg_m2 does not show at rest: from the drawing\n",
       found.mass, row(found.com, 4));
@@ -78,14 +79,14 @@ int identify_payload(const IdentifyArguments& arguments) {
   const bool is_simulated = arguments.files.empty();
   const std::vector<StaticPose> poses =
       is_simulated ? simulated_poses(device, arguments.poses) : poses_of(arguments.files);
-  fmt::print("{} poses {}\n\n", poses.size(),
-             is_simulated ? "of the simulated " + device.name + ", nobody at the handle"
-                          : "from " + fmt::format("{}", fmt::join(arguments.files, ", ")));
+  print_out("{} poses {}\n\n", poses.size(),
+            is_simulated ? "of the simulated " + device.name + ", nobody at the handle"
+                         : "from " + fmt::format("{}", fmt::join(arguments.files, ", ")));
   const PayloadEstimate found = identification::identify_payload(poses);
   print_estimate(found);
   print_comparison(found, device.estimation.wrench.payload);
   if (!found.missing.empty()) {
-    fmt::print(stderr, "not usable: {}\n", found.missing);
+    print_error("not usable: {}\n", found.missing);
     return 2;
   }
   print_yaml(found);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <exception>
 #include <functional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,7 @@
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/new_command.h"
 #include "apps/hapticgiant/option_checks.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/replay_command.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/simulate_command.h"
@@ -31,6 +34,8 @@ namespace {
 
 using hg::apps::at_least;
 using hg::apps::number_that;
+using hg::apps::print_error;
+using hg::apps::print_out;
 using hg::apps::whole_number;
 
 constexpr int kInternalError = 1;
@@ -53,9 +58,14 @@ int explain(const CLI::App& app, const CLI::ParseError& error) {
   while (!last->get_subcommands().empty()) last = last->get_subcommands().back();
   if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr ||
       last->get_require_subcommand_min() == 0) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
+    std::ostringstream out;
+    std::ostringstream errors;
+    const int code = app.exit(error, out, errors);
+    print_out(out.str());
+    print_error(errors.str());
+    return code == 0 ? 0 : kBadInput;
   }
-  fmt::print(stderr, "{}\nRun with --help for more information.\n", missing_subcommand(*last));
+  print_error("{}\nRun with --help for more information.\n", missing_subcommand(*last));
   return kBadInput;
 }
 
@@ -389,14 +399,32 @@ void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::run_haptify(arguments); });
 }
 
+// `exit_code` is that of the subcommand that the command line names, which runs at once
+int parse(CLI::App& app, int argc, char** argv, const int& exit_code) {
+  try {
+    app.parse(argc, argv);
+    return exit_code;
+  } catch (const CLI::ParseError& error) {
+    return explain(app, error);
+  } catch (const hg::SetupError& error) {
+    print_error("{}\n", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    print_error("internal error: {}\n", error.what());
+    return kInternalError;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  hg::apps::open_standard_files();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that must not grow is an error of that file
+
   CLI::App app("HapticGiant: feel the digital twin of any serial chain.", "hapticgiant");
   app.set_version_flag("--version", hg::apps::kVersion);
   app.require_subcommand(1);
 
-  // a subcommand that has been parsed runs at once
   int exit_code = 0;
   hg::apps::RunArguments run;
   run.program = argv[0];
@@ -428,16 +456,5 @@ int main(int argc, char** argv) {
   add_faults(app, broken, exit_code);
   add_haptify(app, haptified, exit_code);
 
-  try {
-    app.parse(argc, argv);
-    return exit_code;
-  } catch (const CLI::ParseError& error) {
-    return explain(app, error);
-  } catch (const hg::SetupError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return kBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "internal error: {}\n", error.what());
-    return kInternalError;
-  }
+  return hg::apps::code_after_output(parse(app, argc, argv, exit_code));
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
 #include "hg/core/error.h"
@@ -33,7 +34,7 @@ int new_device(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "device");
   check_writable(output.string());
   write_output(output.string(), scaffold::device_yaml(arguments.part, output.parent_path()));
-  fmt::print(
+  print_out(
       "{0} written. Next:\n"
       "  hapticgiant check {0}\n"
       "  hapticgiant new twin TWIN.urdf --device {0}\n",
@@ -49,7 +50,7 @@ int new_twin(const NewArguments& arguments) {
   check_writable(output.string());
   write_output(output.string(), scaffold::twin_yaml(arguments.part, output.parent_path(), device));
   const std::string with = is_own ? " --device " + arguments.device : "";
-  fmt::print(
+  print_out(
       "{0} written. Next:\n"
       "  hapticgiant check {2}{0}\n"
       "  hapticgiant run{1} --twin {0}\n",

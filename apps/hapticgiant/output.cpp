@@ -1,7 +1,8 @@
 #include "apps/hapticgiant/output.h"
 
-#include <fmt/format.h>
+#include <fcntl.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,7 +10,9 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
-#include <cstdio>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <deque>
 #include <mutex>
 #include <string_view>
@@ -23,10 +26,46 @@ constexpr std::size_t kAtOnce = 512;       // a pipe that takes any takes as man
 constexpr int kLook_ms = 50;
 constexpr std::chrono::milliseconds kPatience(500);  // after an interruption
 
-void print_now(int file, const std::string& text) {
-  std::FILE* stream = file == STDOUT_FILENO ? stdout : stderr;
-  std::fputs(text.c_str(), stream);
-  std::fflush(stream);
+// why standard output could not be written; 0 = it could
+std::atomic<int> output_error{0};
+
+// no error of the program: a pipe is closed, a terminal hung up
+bool reader_has_gone(int file, int error) {
+  struct stat status {};
+  return error == EPIPE || (error == EIO && fstat(file, &status) == 0 && S_ISCHR(status.st_mode));
+}
+
+// waits until all is taken
+void write_all(int file, std::string_view text) {
+  while (!text.empty()) {
+    pollfd place = {.fd = file, .events = POLLOUT, .revents = 0};
+    if (poll(&place, 1, kLook_ms) == 0) continue;
+    const ssize_t written = ::write(file, text.data(), std::min(text.size(), kAtOnce));
+    if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (written < 0) {
+      if (file == STDOUT_FILENO && !reader_has_gone(file, errno)) output_error = errno;
+      return;
+    }
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+// how many bytes of `text` are one character that is shown as it is; 0: none are
+std::size_t shown_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return first == '\n' || first == '\t' || (first >= 0x20 && first != 0x7f);
+  const std::size_t size = first < 0xc2   ? 0
+                           : first < 0xe0 ? 2
+                           : first < 0xf0 ? 3
+                           : first < 0xf5 ? 4
+                                          : 0;
+  if (size == 0 || text.size() < size) return 0;
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  }
+  // U+0080 .. U+009F are control characters as well
+  return first == 0xc2 && byte(1) < 0xa0 ? 0 : size;
 }
 
 }  // namespace
@@ -38,7 +77,6 @@ class BackgroundOutput::Queue {
     const std::lock_guard lock(mutex_);
     if (waiting_bytes_ + text.size() > kMostBytes) {
       ++left_out_;
-      ++not_told_;
       return;
     }
     waiting_bytes_ += text.size();
@@ -50,15 +88,11 @@ class BackgroundOutput::Queue {
     const std::lock_guard lock(mutex_);
     return !texts_.empty();
   }
-  std::uint64_t left_out() const {
-    const std::lock_guard lock(mutex_);
-    return left_out_;
-  }
 
   // until end(), and what was pushed before
   void write_all() {
     Text text;
-    while (take(text)) write(text);
+    while (take(text)) apps::write_all(text.file, text.text);
   }
 
   // false: there is still something to write when `interrupted` and patience has ended
@@ -93,30 +127,19 @@ class BackgroundOutput::Queue {
     text = std::move(texts_.front());
     texts_.pop_front();
     waiting_bytes_ -= text.text.size();
-    if (texts_.empty() && not_told_ > 0) {
+    if (texts_.empty() && left_out_ > 0) {
       texts_.push_back({text.file, fmt::format("\n({} texts left out: nobody read them)\n",
-                                               std::exchange(not_told_, 0))});
+                                               std::exchange(left_out_, 0))});
       waiting_bytes_ += texts_.back().text.size();
     }
     return true;
-  }
-
-  static void write(const Text& text) {
-    std::string_view left = text.text;
-    while (!left.empty()) {
-      pollfd file = {.fd = text.file, .events = POLLOUT, .revents = 0};
-      if (poll(&file, 1, kLook_ms) == 0) continue;
-      const ssize_t written = ::write(text.file, left.data(), std::min(left.size(), kAtOnce));
-      if (written < 0 && errno != EINTR && errno != EAGAIN) return;  // nobody reads it any more
-      if (written > 0) left.remove_prefix(static_cast<std::size_t>(written));
-    }
   }
 
   mutable std::mutex mutex_;  // never held while writing
   std::condition_variable news_;
   std::deque<Text> texts_;
   std::size_t waiting_bytes_ = 0;
-  std::uint64_t left_out_ = 0, not_told_ = 0;
+  std::uint64_t left_out_ = 0;  // texts, since that was last said
   bool is_ending_ = false, has_ended_ = false;
 };
 
@@ -125,23 +148,55 @@ namespace {
 // that of the only BackgroundOutput
 std::atomic<BackgroundOutput*> background{nullptr};
 
-}  // namespace
-
-void print_out(const std::string& text) {
+// as it is
+void print(int file, const std::string& text) {
   BackgroundOutput* const output = background.load();
-  if (output == nullptr) return print_now(STDOUT_FILENO, text);
-  output->queue_->push(STDOUT_FILENO, text);
+  if (output == nullptr) return write_all(file, text);
+  output->push(file, text);
 }
 
-void print_error(const std::string& text) {
-  BackgroundOutput* const output = background.load();
-  if (output == nullptr) return print_now(STDERR_FILENO, text);
-  output->queue_->push(STDERR_FILENO, text);
+// the cursor back at its beginning: what is printed next takes its place
+std::string drawn(const std::string& line) { return "\r\033[K" + visible(line) + "\r"; }
+
+}  // namespace
+
+void open_standard_files() {
+  for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(file, F_GETFD) != -1) continue;
+    // the lowest that is free: `file`
+    if (open("/dev/null", file == STDIN_FILENO ? O_WRONLY : O_RDONLY) != file) std::abort();
+  }
+}
+
+std::string visible(std::string_view text) {
+  std::string shown;
+  shown.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t bytes = shown_bytes(text);
+    if (bytes == 0) shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+    shown += text.substr(0, bytes);
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return shown;
+}
+
+void print_out(const std::string& text) { print(STDOUT_FILENO, visible(text)); }
+
+void print_error(const std::string& text) { print(STDERR_FILENO, visible(text)); }
+
+void draw_out(const std::string& line) { print(STDOUT_FILENO, drawn(line)); }
+
+void draw_error(const std::string& line) { print(STDERR_FILENO, drawn(line)); }
+
+int code_after_output(int code) {
+  const int error = output_error.load();
+  if (error == 0) return code;
+  print_error("standard output could not be written: {}\n", std::strerror(error));
+  return code == 0 ? kNotWritten : code;
 }
 
 BackgroundOutput::BackgroundOutput(const std::atomic<bool>& interrupted)
     : interrupted_(interrupted), queue_(std::make_shared<Queue>()) {
-  std::fflush(stdout);
   thread_ = std::thread([queue = queue_] { queue->write_all(); });
   background.store(this);
 }
@@ -155,8 +210,8 @@ BackgroundOutput::~BackgroundOutput() {
   }
 }
 
-bool BackgroundOutput::is_behind() const { return queue_->is_behind(); }
+void BackgroundOutput::push(int file, const std::string& text) { queue_->push(file, text); }
 
-std::uint64_t BackgroundOutput::left_out() const { return queue_->left_out(); }
+bool BackgroundOutput::is_behind() const { return queue_->is_behind(); }
 
 }  // namespace hg::apps

@@ -45,7 +45,9 @@ void write_output(const std::string& file, const std::string& text) {
   stream.close();
   std::error_code error;
   if (stream && replaces) fs::rename(written, file, error);
-  if (!stream || error) throw SetupError(file + ": could not be written");
+  if (stream && !error) return;
+  if (replaces) fs::remove(written, error);
+  throw SetupError(file + ": could not be written");
 }
 
 void make_folder(const std::string& folder) {

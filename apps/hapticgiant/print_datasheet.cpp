@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/hapticgiant/output.h"
+
 namespace hg::apps {
 namespace {
 
@@ -32,8 +34,8 @@ void print_joints(const Datasheet& sheet) {
   const auto line = [&](const std::string& name, const std::string& positions,
                         const std::string& speed, const std::string& acceleration,
                         const std::string& rating, const std::string& gravity) {
-    fmt::print("  {:<{}}  {:<20}  {:<11}  {:<12}  {:<8}  {}\n", name, width, positions, speed,
-               acceleration, rating, gravity);
+    print_out("  {:<{}}  {:<20}  {:<11}  {:<12}  {:<8}  {}\n", name, width, positions, speed,
+              acceleration, rating, gravity);
   };
   line("joint", "range", "speed", "acceleration", "rating", "gravity");
   for (const JointLine& joint : sheet.joints) {
@@ -47,16 +49,16 @@ void print_joints(const Datasheet& sheet) {
 void print_workspace(const Datasheet& sheet) {
   const inspection::Workspace& space = sheet.workspace;
   if (sheet.reach > 0.0) {
-    fmt::print("  reach               {:.2f} m, handle from the axis of the arm's first joint\n",
-               sheet.reach);
+    print_out("  reach               {:.2f} m, handle from the axis of the arm's first joint\n",
+              sheet.reach);
   }
   const Eigen::Vector3d low = space.bounds.min(), high = space.bounds.max();
-  fmt::print(
+  print_out(
       "  workspace           {:.1f} m^3 within all limits; x {:.2f} .. {:.2f}, y {:.2f} .. "
       "{:.2f}, z {:.2f} .. {:.2f} m\n",
       space.volume, low.x(), high.x(), low.y(), high.y(), low.z(), high.z());
   if (!space.has_box) return;
-  fmt::print(
+  print_out(
       "  box of the handle   {:.2f} m^3: {:.0f} % reached in some orientation, {:.0f} % in "
       "the nominal one (handle axis {:.2f} {:.2f} {:.2f})\n",
       space.box_volume, 100.0 * space.share_any, 100.0 * space.share_nominal,
@@ -80,48 +82,47 @@ std::string by(const Bottleneck& bottleneck) {
 
 void print_capability(const Datasheet& sheet) {
   if (sheet.has_ratings) {
-    fmt::print("  force               {}{}\n", values(sheet.force, "N"),
-               by(sheet.force_bottleneck));
-    fmt::print("  torque              {}{}\n", values(sheet.torque, "Nm"),
-               by(sheet.torque_bottleneck));
-    fmt::print("  50 N and 10 Nm      at once, in any directions: {:.0f} % of the postures\n",
-               100.0 * sheet.share_paper_wrench);
+    print_out("  force               {}{}\n", values(sheet.force, "N"), by(sheet.force_bottleneck));
+    print_out("  torque              {}{}\n", values(sheet.torque, "Nm"),
+              by(sheet.torque_bottleneck));
+    print_out("  50 N and 10 Nm      at once, in any directions: {:.0f} % of the postures\n",
+              100.0 * sheet.share_paper_wrench);
   } else {
-    fmt::print("  force, torque       unknown: the URDF gives no effort\n");
+    print_out("  force, torque       unknown: the URDF gives no effort\n");
   }
-  fmt::print("  acceleration        {}{}\n", values(sheet.acceleration, "m/s^2"),
-             by(sheet.acceleration_bottleneck));
+  print_out("  acceleration        {}{}\n", values(sheet.acceleration, "m/s^2"),
+            by(sheet.acceleration_bottleneck));
   if (sheet.has_ratings) {
-    fmt::print(
+    print_out(
         "  free body           {:.0f} kg: what the force above moves with that acceleration\n",
         sheet.free_body_mass);
   }
 }
 
 void print_conditioning(const Datasheet& sheet) {
-  fmt::print(
+  print_out(
       "  conditioning        condition number {:.1f}, 5 % above {:.0f}; lengths in {:.2f} m\n",
       sheet.condition_median, sheet.condition_high, sheet.length);
-  fmt::print("  nearest singularity smallest singular value {:.2g} at",
-             sheet.most_singular.conditioning.smallest);
+  print_out("  nearest singularity smallest singular value {:.2g} at",
+            sheet.most_singular.conditioning.smallest);
   const Eigen::VectorXd& q = sheet.most_singular.q;
   for (std::size_t i = 0; i < sheet.joints.size(); ++i) {
     if (sheet.joints[i].is_gantry) continue;
-    fmt::print(" {} {:.2f}", sheet.joints[i].name, q[static_cast<Eigen::Index>(i)]);
+    print_out(" {} {:.2f}", sheet.joints[i].name, q[static_cast<Eigen::Index>(i)]);
   }
-  fmt::print("\n");
+  print_out("\n");
 }
 
 void print_bandwidth(const inspection::Bandwidth& bandwidth) {
-  fmt::print("  bandwidth           control {:g} Hz, handle onto twin {:.1f} Hz", bandwidth.rate_Hz,
-             bandwidth.synchronisation_Hz);
+  print_out("  bandwidth           control {:g} Hz, handle onto twin {:.1f} Hz", bandwidth.rate_Hz,
+            bandwidth.synchronisation_Hz);
   if (bandwidth.gantry_Hz > 0.0) {
-    fmt::print(", gantry {:.1f} Hz (its drive {:.1f} Hz)", bandwidth.gantry_Hz, bandwidth.drive_Hz);
+    print_out(", gantry {:.1f} Hz (its drive {:.1f} Hz)", bandwidth.gantry_Hz, bandwidth.drive_Hz);
   }
   if (bandwidth.wrench_delay_s > 0.0) {
-    fmt::print(", force {:.1f} ms behind", 1e3 * bandwidth.wrench_delay_s);
+    print_out(", force {:.1f} ms behind", 1e3 * bandwidth.wrench_delay_s);
   }
-  fmt::print("\n");
+  print_out("\n");
 }
 
 nlohmann::json finite(double value) {
@@ -164,7 +165,7 @@ void print_stopping(const Datasheet& sheet) {
     text += fmt::format(", {:g} {} ({} needs {:.2f} {} from full speed)", axis->distance, unit,
                         axis->name, axis->need.distance, unit);
   }
-  fmt::print("  stops               within {:g} s{}\n", sheet.stop_time, text);
+  print_out("  stops               within {:g} s{}\n", sheet.stop_time, text);
 }
 
 nlohmann::json stopping_json(const Datasheet& sheet) {
@@ -182,9 +183,9 @@ nlohmann::json stopping_json(const Datasheet& sheet) {
 }  // namespace
 
 void print_datasheet(const Datasheet& sheet) {
-  fmt::print("\n{}: datasheet\n", sheet.name);
+  print_out("\n{}: datasheet\n", sheet.name);
   if (sheet.postures == 0) {
-    fmt::print("  none: no posture was found within all limits\n");
+    print_out("  none: no posture was found within all limits\n");
     return;
   }
   print_joints(sheet);
@@ -193,7 +194,7 @@ void print_datasheet(const Datasheet& sheet) {
   print_conditioning(sheet);
   print_bandwidth(sheet.bandwidth);
   print_stopping(sheet);
-  fmt::print(
+  print_out(
       "  Of {} postures drawn uniformly in the joint ranges (seed {}), handle in the worst "
       "direction, at rest,\n  against the ratings less gravity. How to read it: docs/check.md\n",
       sheet.postures, sheet.options.seed);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <fstream>
 #include <string_view>
 #include <system_error>
@@ -49,17 +50,45 @@ std::string shell_word(const std::string& text) {
 
 ProblemDumps::ProblemDumps(Place place) : place_(std::move(place)) {}
 
+bool ProblemDumps::has_next(const hqp::KeptProblems& problems) const {
+  return !place_.folder.empty() && !has_failed_ && next_ < problems.size();
+}
+
 std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
-  if (place_.folder.empty() || has_failed_ || next_ == problems.size()) return {};
-  const hqp::KeptProblem& kept = problems[next_++];
-  const fs::path file = place_.folder / fmt::format("{}_hqp_{}.hqp", place_.stem, kept.cycle);
-  has_failed_ =
-      !write(file, kept, fmt::format("{}, cycle {}, {}", place_.origin, kept.cycle, ended(kept)));
-  if (has_failed_) return fmt::format("solver: {} cannot be written", file.string());
-  if (++files_ > 1) return {};
-  return fmt::format("solver: cycle {}, {}; to look at it:\n  {} hqp solve {} --explain",
-                     kept.cycle, ended(kept), shell_word(place_.program),
-                     shell_word(file.string()));
+  std::string text;
+  if (writing_.valid()) {
+    if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
+    const Written written = writing_.get();
+    const std::string file = written.file.string();
+    if (!written.is_whole) {
+      has_failed_ = true;
+      text = fmt::format("solver: {} cannot be written", file);
+    } else if (++files_ == 1) {
+      text =
+          fmt::format("solver: cycle {}, {}; to look at it:\n  {} hqp solve {} --explain",
+                      written.cycle, written.ended, shell_word(place_.program), shell_word(file));
+    }
+  }
+  if (!has_next(problems)) return text;
+  // a copy: the thread may outlive the run
+  writing_ = std::async(std::launch::async, [place = place_, kept = problems[next_++]] {
+    const fs::path file = place.folder / fmt::format("{}_hqp_{}.hqp", place.stem, kept.cycle);
+    const std::string how = ended(kept);
+    const std::string name = fmt::format("{}, cycle {}, {}", place.origin, kept.cycle, how);
+    return Written{file, kept.cycle, how, write(file, kept, name)};
+  });
+  return text;
+}
+
+std::string ProblemDumps::finish(const hqp::KeptProblems& problems) {
+  std::string texts;
+  while (writing_.valid() || has_next(problems)) {
+    if (writing_.valid()) writing_.wait();
+    const std::string text = look_at(problems);
+    if (!texts.empty() && !text.empty()) texts += '\n';
+    texts += text;
+  }
+  return texts;
 }
 
 std::string ProblemDumps::summary(const hqp::KeptProblems& problems) const {

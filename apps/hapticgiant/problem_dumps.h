@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <future>
 #include <string>
 
 #include "hg/hqp/kept_problems.h"
@@ -20,16 +22,27 @@ class ProblemDumps {
 
   explicit ProblemDumps(Place place);
 
-  /// Writes the next one of `problems`, if there is one. Returns what the user should know now: how
-  /// to look at the first file, or that a file cannot be written, after which no more is tried;
-  /// else empty.
+  /// Has the next one of `problems` written, if there is one, by a thread of its own. Returns what
+  /// the user should know now: how to look at the first file, or that a file cannot be written,
+  /// after which no more is tried; else empty.
   std::string look_at(const hqp::KeptProblems& problems);
+  /// The same until all are written.
+  std::string finish(const hqp::KeptProblems& problems);
 
   /// How many there were, for the end of a run; empty when there was none.
   std::string summary(const hqp::KeptProblems& problems) const;
 
  private:
+  struct Written {
+    std::filesystem::path file;
+    std::uint64_t cycle;
+    std::string ended;  ///< how the solve did
+    bool is_whole;
+  };
+  bool has_next(const hqp::KeptProblems& problems) const;
+
   Place place_;
+  std::future<Written> writing_;
   std::size_t next_ = 0;
   int files_ = 0;
   bool has_failed_ = false;

@@ -33,12 +33,20 @@ using viewer_server::CommandName;
 constexpr double kFrame_s = 1.0 / 60.0;  // of the page
 constexpr std::chrono::milliseconds kIdle(4);
 
+config::Scenario scenario_of(const recording::RecordedRun& run) {
+  try {
+    return recorded_scenario(run.configuration());
+  } catch (const SetupError& error) {
+    throw SetupError(recording::to_text(run.losses()) + error.what());
+  }
+}
+
 /// One recording and, if it is compared, the other.
 class Show {
  public:
   explicit Show(const ReplayArguments& arguments)
       : run_(arguments.file, kFrame_s),
-        scenario_(recorded_scenario(run_.configuration())),
+        scenario_(scenario_of(run_)),
         names_(part_names(scenario_)),
         playback_(run_.duration_s()),
         sample_(std::make_unique<Sample>()) {
@@ -149,7 +157,8 @@ class Show {
 
 void print_content(const Show& show) {
   print_out(fmt::format("{}\n{}\n", show.scenario().title, show.scenario().description));
-  print_out(fmt::format("duration    {:.3f} s\n", show.run().duration_s()));
+  print_out("duration    {:.3f} s\n{}", show.run().duration_s(),
+            recording::to_text(show.run().losses()));
   for (const recording::Event& event : show.run().events()) {
     print_out(fmt::format("{:8.3f} s  {:<18} {}\n", event.time_s, event.name, event.text));
   }
@@ -185,14 +194,18 @@ int run_again(const std::string& file) {
 
 int replay(const ReplayArguments& arguments) {
   Show show(arguments);
+  if (!arguments.has_view) {
+    print_content(show);
+    return run_again(arguments.file);
+  }
+  const std::atomic<bool>& interrupted = watch_interruption();
+  const BackgroundOutput output(interrupted);
   print_content(show);
-  if (!arguments.has_view) return run_again(arguments.file);
   viewer_server::Options options;
   options.page = find_page();
   if (options.page.empty()) return 0;
   options.address = arguments.address;
   options.port = arguments.port;
-  const std::atomic<bool>& interrupted = watch_interruption();
   viewer_server::ViewerServer server(options, show.scene());
   present_page(server.url(), arguments.address, arguments.opens_browser);
   print_out("stop        Ctrl-C\n");

@@ -120,10 +120,14 @@ void show(Observers& observers, const Sample& sample) {
       status_text(sample, observers.scenario.limits, observers.scenario.twin.model));
 }
 
-void look_at_problems(Observers& observers, const hqp::KeptProblems& problems) {
-  for (std::size_t i = 0; i < hqp::KeptProblems::kMost; ++i) {
-    const std::string text = observers.dumps.look_at(problems);
-    if (!text.empty()) observers.status_line.print(text);
+void tell_problems(Observers& observers, const std::string& text) {
+  if (!text.empty()) observers.status_line.print(text);
+}
+
+void look_at_recording(Observers& observers, double time_s) {
+  const std::string why = observers.recording.news();
+  if (!why.empty()) {
+    tell(observers, time_s, "recording", "has ended early, the run goes on: " + why);
   }
 }
 
@@ -138,7 +142,8 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
       any = true;
     }
     if (any && !observers.is_fast) show(observers, *sample);
-    look_at_problems(observers, runtime.kept_problems());
+    tell_problems(observers, observers.dumps.look_at(runtime.kept_problems()));
+    look_at_recording(observers, sample->record.time_s);
     if (is_finished) break;
     if (observers.page != nullptr) {
       observers.page->follow(&runtime, note(observers, *sample));
@@ -146,6 +151,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
     }
     if (!any) std::this_thread::sleep_for(kIdle);
   }
+  tell_problems(observers, observers.dumps.finish(runtime.kept_problems()));
   observers.status_line.clear();
 }
 
@@ -283,18 +289,25 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const RunRecording::Result recorded = observers.recording.close();
   facts.recording = recorded.file;
   facts.unrecorded = recorded.unrecorded;
+  facts.recording_error = recorded.error;
   facts.fault_figures = observers.fault_figures;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
   const std::vector<std::string> missing = observers.detector.missing();
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
                         observers.dumps.summary(runtime.kept_problems())));
-  if (!arguments.summary.empty()) {
-    write_output(arguments.summary, observers.summary.to_json(facts, missing));
+  bool is_written = recorded.is_whole;
+  try {
+    if (!arguments.summary.empty()) {
+      write_output(arguments.summary, observers.summary.to_json(facts, missing));
+    }
+  } catch (const SetupError& error) {
+    print_error("{}\n", error.what());
+    is_written = false;
   }
   const bool was_ended = page != nullptr && (page->has_next() || page->stop_was_asked());
   const int code = exit_code(observers.summary, missing, interrupted.load() || was_ended);
   wait_for_next(observers, goes_on);
-  return code;
+  return code == 0 && !is_written ? kNotWritten : code;
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ struct RunArguments {
 };
 
 /// Exit code: 0 fine, 1 an expected event is missing or a limit was exceeded, 3 a fault stopped the
-/// device. Throws SetupError for bad input.
+/// device, 4 (kNotWritten) recording or summary could not be written. Throws SetupError for bad
+/// input.
 int run(const RunArguments& arguments);
 
 }  // namespace hg::apps

@@ -52,33 +52,50 @@ void RunRecording::event(double time_s, std::string_view name, std::string_view 
   if (flight_) flight_->event(time_s, name, text);
 }
 
+std::string RunRecording::news() {
+  if (!recorder_ || has_told_) return {};
+  const std::string error = recorder_->error();
+  has_told_ = !error.empty();
+  return error;
+}
+
 RunRecording::Result RunRecording::close() {
   Result result;
-  if (flight_) {
-    if (cause_.empty() && writes_always_) cause_ = "stop";
-    if (!cause_.empty()) flight_->write(std::exchange(cause_, ""));
-    const recording::FlightRecorder::Result kept = flight_->close();
-    for (const auto& written : kept.files) {
-      print_out(fmt::format("the last seconds are kept; what happened:\n  {} explain {}\n",
-                            program_, written.string()));
-    }
-    if (!kept.error.empty()) {
-      print_error(fmt::format("the last seconds could not be written: {}\n", kept.error));
-    }
-    flight_.reset();
-  }
-  if (recorder_) {
-    const recording::RecordingSummary recorded = recorder_->close();
-    if (!recorded.error.empty()) {
-      print_error(fmt::format("recording ended early: {}\n", recorded.error));
-    }
-    for (const auto& name : recorded.deleted) {
-      print_out(fmt::format("recording {} deleted to keep within the disk budget\n", name));
-    }
-    result = {recorded.file.string(), recorded.dropped};
-    recorder_.reset();
-  }
+  if (recorder_) close_recorder(result);
+  // the last seconds stand in for a recording that has none
+  const bool is_wanted = writes_always_ || !result.error.empty();
+  if (flight_ && cause_.empty() && is_wanted) cause_ = "stop";
+  if (flight_) close_flight(result);
   return result;
+}
+
+void RunRecording::close_recorder(Result& result) {
+  const recording::RecordingSummary recorded = recorder_->close();
+  if (!recorded.error.empty()) {
+    print_error("recording ended early: {}\n", recorded.error);
+    result.is_whole = false;
+  }
+  for (const auto& name : recorded.deleted) {
+    print_out("recording {} deleted to keep within the disk budget\n", name);
+  }
+  result.file = recorded.file.string();
+  result.unrecorded = recorded.dropped;
+  result.error = recorded.error;
+  recorder_.reset();
+}
+
+void RunRecording::close_flight(Result& result) {
+  if (!cause_.empty()) flight_->write(std::exchange(cause_, ""));
+  const recording::FlightRecorder::Result kept = flight_->close();
+  for (const auto& written : kept.files) {
+    print_out("the last seconds are kept; what happened:\n  {} explain {}\n", program_,
+              written.string());
+  }
+  if (!kept.error.empty()) {
+    print_error("the last seconds could not be written: {}\n", kept.error);
+    result.is_whole = false;
+  }
+  flight_.reset();
 }
 
 }  // namespace hg::apps

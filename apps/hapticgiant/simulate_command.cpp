@@ -96,6 +96,7 @@ int simulate(const SimulateArguments& arguments) {
                                     .capture = arguments.capture};
   remote::DeviceServer server(remote::parse_address("--listen", arguments.listen), config);
   const std::atomic<bool>& stop = watch_interruption();
+  const BackgroundOutput output(stop);
 
   print_out(fmt::format("HapticGiant {}  {}, simulated\n", kVersion, scenario.title));
   print_out(fmt::format("address     {}\nstop        Ctrl-C\n", server.address()));

@@ -46,8 +46,7 @@ std::string status_text(const Sample& sample, const LimitCatalogue& limits,
 
 void StatusLine::show(const std::string& text) {
   if (!is_terminal_ || output_->is_behind()) return;
-  print_out(
-      fmt::format("\r\033[K{}", text.substr(0, terminal_width() - 1)));  // a full line would wrap
+  draw_out(text.substr(0, terminal_width() - 1));  // a full line would wrap
   is_drawn_ = true;
 }
 
@@ -57,7 +56,7 @@ void StatusLine::print(const std::string& text) {
 }
 
 void StatusLine::clear() {
-  if (is_drawn_) print_out("\r\033[K");
+  if (is_drawn_) draw_out("");
   is_drawn_ = false;
 }
 

@@ -144,6 +144,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["stop_timed_out"] = facts.stop_timed_out;
   if (facts.link.sent > 0) json["link"] = link_json(facts.link);
   json["recording"] = facts.recording;
+  json["recording_error"] = facts.recording_error;
   json["fault"] = {{"code", static_cast<int>(fault_.code)},
                    {"what", std::string(to_string(fault_.code))},
                    {"index", fault_.index}};
@@ -257,9 +258,10 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   if (facts.dropped > 0) {
     line("LOST", fmt::format("{} samples: neither judged nor recorded", facts.dropped));
   }
-  if (facts.unrecorded > 0) {
-    line("LOST", fmt::format("{} samples of the recording: the disk did not take them in time",
-                             facts.unrecorded));
+  if (facts.unrecorded > 0 || !facts.recording_error.empty()) {
+    line("LOST", fmt::format("{} samples of the recording: {}", facts.unrecorded,
+                             facts.recording_error.empty() ? "the disk did not take them in time"
+                                                           : facts.recording_error));
   }
   if (facts.stop_timed_out) line("STOP", "timed out: drives off while the device was moving");
   if (fault_.code != FaultCode::kNone) {

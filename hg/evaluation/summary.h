@@ -34,6 +34,7 @@ struct RunFacts {
   bool stop_timed_out = false;  ///< drives were disabled while the device was moving
   LinkCounts link;              ///< to a remote device; nothing was sent: there is none
   std::string recording;        ///< file, empty when off
+  std::string recording_error;  ///< why it ended before the run; empty = it did not
   double wall_time_s = 0.0;
 };
 

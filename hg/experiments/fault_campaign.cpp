@@ -222,7 +222,7 @@ class CycleCounter final : public recording::RecordingListener {
 bool has_all_cycles(const std::filesystem::path& file, std::uint64_t cycles) {
   CycleCounter counter;
   try {
-    return recording::read_recording(file, counter) && counter.has_all(cycles);
+    return recording::read_recording(file, counter).is_whole() && counter.has_all(cycles);
   } catch (const SetupError&) {
     return false;  // damaged
   }

@@ -1,9 +1,12 @@
 #include "hg/recording/flight_recorder.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "hg/core/error.h"
@@ -22,6 +25,14 @@ std::size_t slot_count(const RecordingInfo& info, double seconds) {
                      std::to_string(seconds) + " s and " + std::to_string(info.rate_Hz) + " Hz");
   }
   return static_cast<std::size_t>(std::ceil(seconds * info.rate_Hz));
+}
+
+// a new one of our own; throws std::exception
+std::filesystem::path temporary_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "hapticgiant_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr)
+    throw std::system_error(errno, std::generic_category(), name);
+  return name;
 }
 
 }  // namespace
@@ -59,22 +70,46 @@ void FlightRecorder::write(const std::string& cause) {
   if (thread_.joinable()) thread_.join();
   is_writing_.store(true);
   thread_ = std::thread([this, cause] {
+    std::string error;
     try {
-      write_file(cause);
+      error = write_file(cause);
     } catch (const std::exception& exception) {
-      result_.error = exception.what();
+      error = exception.what();
     }
-    pushed_ = 0;
+    if (error.empty()) {
+      pushed_ = 0;
+    } else {
+      result_.error = error;
+    }
     is_writing_.store(false, std::memory_order_release);
   });
 }
 
-void FlightRecorder::write_file(const std::string& cause) {
-  const std::uint64_t kept = std::min<std::uint64_t>(pushed_, slots_.size());
-  if (kept == 0) return;
+// Returns why it could not, empty if it could.
+std::string FlightRecorder::write_file(const std::string& cause) {
+  if (pushed_ == 0) return {};
+  const RecordingSummary first = write_to(info_.folder, cause);
+  if (first.error.empty()) {
+    result_.files.push_back(first.file);
+    return {};
+  }
+  const RecordingSummary second = write_to(temporary_folder(), cause);
+  const RecordingSummary& best = second.samples > first.samples ? second : first;
+  const RecordingSummary& other = &best == &first ? second : first;
+  std::error_code ignored;
+  std::filesystem::remove(other.file, ignored);
+  if (best.samples > 0) result_.files.push_back(best.file);
+  return second.error.empty() ? "" : first.error;
+}
+
+// Also what a file that cannot be made says is an error of the summary.
+RecordingSummary FlightRecorder::write_to(const std::filesystem::path& folder,
+                                          const std::string& cause) try {
   RecordingInfo info = info_;
+  info.folder = folder;
   info.name += "_" + cause;
   Recorder recorder(info);
+  const std::uint64_t kept = std::min<std::uint64_t>(pushed_, slots_.size());
   const auto sample = std::make_unique<Sample>();
   double first_s = 0.0;
   for (std::uint64_t i = pushed_ - kept; i < pushed_; ++i) {
@@ -85,9 +120,9 @@ void FlightRecorder::write_file(const std::string& cause) {
   for (const Event& event : events_) {
     if (event.time_s >= first_s) recorder.event(event.time_s, event.name, event.text);
   }
-  const RecordingSummary summary = recorder.close();
-  result_.files.push_back(summary.file);
-  if (!summary.error.empty()) result_.error = summary.error;
+  return recorder.close();
+} catch (const SetupError& error) {
+  return {.error = error.what()};
 }
 
 FlightRecorder::Result FlightRecorder::close() {

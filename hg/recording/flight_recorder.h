@@ -35,19 +35,21 @@ class FlightRecorder {
   void push(const Sample& sample);
   void event(double time_s, std::string_view name, std::string_view text);
 
-  /// Writes what is kept, `cause` (letters, digits, dashes) in its name. The next call waits until
-  /// it is done.
+  /// Writes what is kept, `cause` (letters, digits, dashes) in its name: to the folder of `info`
+  /// or, where that is full or gone, to a new folder hapticgiant_XXXXXX among the temporary files.
+  /// What fits nowhere is still kept. The next call waits until it is done.
   void write(const std::string& cause);
 
   struct Result {
     std::vector<std::filesystem::path> files;  ///< written, in their order
-    std::string error;  ///< of the last one that could not be written; empty = none
+    std::string error;  ///< of the last one that could not be written as a whole; empty = none
   };
   /// Waits until all is written.
   Result close();
 
  private:
-  void write_file(const std::string& cause);
+  std::string write_file(const std::string& cause);
+  RecordingSummary write_to(const std::filesystem::path& folder, const std::string& cause);
 
   RecordingInfo info_;
   CdrWriter cdr_;

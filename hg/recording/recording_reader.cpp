@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <memory>
 #include <span>
@@ -73,15 +74,67 @@ void hand_out(const std::filesystem::path& file, Receiver& receiver) {
   if (!is_read) refuse(file, error.data());
 }
 
+// Parts that cannot be read, and which messages they held.
+class Losses {
+ public:
+  void take(int kind, std::string_view name, std::uint64_t time_ns) {
+    if (kind == mcap_damage) {
+      parts_.push_back({.loss = {.part = std::string(name)}});
+      return;
+    }
+    if (kind != mcap_lost || parts_.empty()) return;
+    Part& part = parts_.back();
+    if (name == kEvents) ++part.loss.events;
+    if (name != kSamples) return;
+    if (++part.loss.samples == 1) part.first_ns = time_ns;
+    part.last_ns = time_ns;
+  }
+  bool empty() const { return parts_.empty(); }
+
+  // `start_ns`: log time at the time 0 of the run
+  std::vector<Loss> since(std::uint64_t start_ns) const {
+    const auto seconds = [&](std::uint64_t time_ns) {
+      return 1e-9 * static_cast<double>(static_cast<std::int64_t>(time_ns - start_ns));
+    };
+    std::vector<Loss> losses;
+    for (const Part& part : parts_) {
+      losses.push_back(part.loss);
+      if (part.loss.samples == 0) continue;
+      losses.back().from_s = seconds(part.first_ns);
+      losses.back().to_s = seconds(part.last_ns);
+    }
+    return losses;
+  }
+
+ private:
+  struct Part {
+    Loss loss;
+    std::uint64_t first_ns = 0, last_ns = 0;
+  };
+  std::vector<Part> parts_;
+};
+
+std::uint64_t start_ns(std::uint64_t time_ns, double time_s) {
+  return time_ns - static_cast<std::uint64_t>(std::llround(1e9 * time_s));
+}
+
+[[noreturn]] void refuse_without_topic(const std::filesystem::path& file, const Losses& losses) {
+  refuse(file, losses.empty() ? "it has no topic /hapticgiant/sample"
+                              : "what describes its samples is damaged");
+}
+
 // Tells a listener.
 struct Teller {
   RecordingListener& listener;
+  Losses losses = {};
+  std::uint64_t start = 0;  ///< log time of the run's time 0, ns
   bool has_samples = false, is_complete = false;
   std::uint64_t samples = 0;
   std::string error;
   Sample sample = {};
 
-  void take(int kind, std::string_view name, std::uint64_t, Bytes bytes) {
+  void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
+    losses.take(kind, name, time_ns);
     if (kind == mcap_end) is_complete = true;
     if (kind == mcap_attachment) {
       listener.configuration({std::string(name), std::string(text_of(bytes))});
@@ -97,6 +150,7 @@ struct Teller {
     }
     if (name != kSamples) return;
     if (CdrReader(bytes).decode(sample)) {
+      start = start_ns(time_ns, sample.record.time_s);
       listener.sample(sample);
     } else {
       error = "sample " + std::to_string(samples) + " is damaged";
@@ -107,13 +161,32 @@ struct Teller {
 
 }  // namespace
 
-bool read_recording(const std::filesystem::path& file, RecordingListener& listener) {
+std::string to_text(const std::vector<Loss>& losses) {
+  std::string text;
+  for (const Loss& loss : losses) {
+    std::array<char, 160> lost{" no sample is lost"};
+    if (loss.samples > 0) {
+      std::snprintf(lost.data(), lost.size(), " %llu samples from %.3f to %.3f s are lost",
+                    static_cast<unsigned long long>(loss.samples), loss.from_s, loss.to_s);
+    }
+    text += "DAMAGED     " + loss.part + ":" + lost.data();
+    if (loss.events > 0) text += ", and " + std::to_string(loss.events) + " events";
+    text += '\n';
+  }
+  return text;
+}
+
+ReadResult read_recording(const std::filesystem::path& file, RecordingListener& listener) {
   const auto teller = std::make_unique<Teller>(Teller{.listener = listener});
-  hand_out(file, *teller);
-  if (!teller->has_samples) refuse(file, "it has no topic /hapticgiant/sample");
+  try {
+    hand_out(file, *teller);
+  } catch (const SetupError& error) {
+    throw SetupError(to_text(teller->losses.since(teller->start)) + error.what());
+  }
+  if (!teller->has_samples) refuse_without_topic(file, teller->losses);
   if (!teller->error.empty()) refuse(file, teller->error);
   if (teller->samples == 0) refuse(file, "it has no sample");
-  return teller->is_complete;
+  return {teller->is_complete, teller->losses.since(teller->start)};
 }
 
 // Remembers the first thing that is wrong.
@@ -122,6 +195,7 @@ struct RecordedRun::Taker {
   std::uint64_t period_ns;
   std::uint64_t due_ns = 0;
   Moment last = {};  ///< that was not kept
+  Losses losses = {};
   bool has_samples = false;
   const char* error = "";
 
@@ -154,7 +228,7 @@ struct RecordedRun::Taker {
         run.configuration_.push_back({std::string(name), std::string(text_of(bytes))});
         return;
       default:
-        return;
+        return losses.take(kind, name, time_ns);
     }
   }
 };
@@ -162,13 +236,14 @@ struct RecordedRun::Taker {
 RecordedRun::RecordedRun(const std::filesystem::path& file, double period_s) : file_(file) {
   Taker taker{*this, static_cast<std::uint64_t>(std::llround(1e9 * period_s))};
   hand_out(file, taker);
-  if (!taker.has_samples) refuse(file, "it has no topic /hapticgiant/sample");
+  if (!taker.has_samples) refuse_without_topic(file, taker.losses);
   if (*taker.error != '\0') refuse(file, taker.error);
   if (!taker.last.bytes.empty()) moments_.push_back(std::move(taker.last));
   if (moments_.empty()) refuse(file, "it has no sample");
   const auto first = std::make_unique<Sample>();
   read(0, *first);
   begin_s_ = first->record.time_s;
+  losses_ = taker.losses.since(start_ns(moments_.front().time_ns, begin_s_));
 }
 
 double RecordedRun::time_s(std::size_t index) const {

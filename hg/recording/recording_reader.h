@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "hg/recording/recorder.h"
@@ -21,10 +22,27 @@ class RecordingListener {
   virtual void sample(const Sample& sample) = 0;
 };
 
-/// Hands out all of a recording and keeps nothing. False: it was not completed, a crash has cut it
-/// off. Throws SetupError as RecordedRun, and for a damaged sample; passes on what `listener`
-/// throws.
-bool read_recording(const std::filesystem::path& file, RecordingListener& listener);
+/// A part of a file that is not as it was written.
+struct Loss {
+  std::string part;  ///< "chunk at byte 81234", "attachment door.yaml"
+  std::uint64_t samples = 0, events = 0;
+  double from_s = 0.0, to_s = 0.0;  ///< time of the run of the first and the last of them
+};
+
+/// One line for each: what cannot be read, and which samples went with it. Empty for none.
+std::string to_text(const std::vector<Loss>& losses);
+
+struct ReadResult {
+  bool is_complete = false;  ///< false: a crash has cut it off
+  std::vector<Loss> losses;  ///< all else was handed out
+
+  bool is_whole() const noexcept { return is_complete && losses.empty(); }
+};
+
+/// Hands out all of a recording that is as it was written, and keeps nothing. Throws SetupError as
+/// RecordedRun, and for a damaged sample; passes on what `listener` throws, a SetupError behind the
+/// losses so far.
+ReadResult read_recording(const std::filesystem::path& file, RecordingListener& listener);
 
 class RecordedRun {
  public:
@@ -34,6 +52,7 @@ class RecordedRun {
 
   const std::vector<NamedText>& configuration() const noexcept { return configuration_; }
   const std::vector<Event>& events() const noexcept { return events_; }
+  const std::vector<Loss>& losses() const noexcept { return losses_; }
 
   /// Kept samples, at least one, in their order.
   std::size_t size() const noexcept { return moments_.size(); }
@@ -58,6 +77,7 @@ class RecordedRun {
   double begin_s_ = 0.0;
   std::vector<NamedText> configuration_;
   std::vector<Event> events_;
+  std::vector<Loss> losses_;
   std::vector<Moment> moments_;
 };
 

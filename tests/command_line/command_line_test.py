@@ -149,6 +149,48 @@ class MainJob(TemporaryFolder):
             self.assertEqual(told["dropped_samples"], 0)
             self.assertLess(told["duration_s"], 60.0)
 
+    def stopped_terminal(self):
+        primary, secondary = pty.openpty()
+        self.addCleanup(os.close, primary)
+        self.addCleanup(os.close, secondary)
+        termios.tcflow(secondary, termios.TCOOFF)  # as Ctrl-S
+        return secondary
+
+    def test_a_terminal_that_stands_still_holds_up_no_simulated_device(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+            free.bind(("127.0.0.1", 0))
+            address = "127.0.0.1:%d" % free.getsockname()[1]
+        process = subprocess.Popen([PROGRAM, "simulate", "door", "--fast", "--listen", address],
+                                   stdout=self.stopped_terminal())
+        self.addCleanup(process.kill)
+        for _ in range(2):  # the first one ends with lines that nobody reads
+            code, out, err = run("run", "door", "--fast", "--duration", "1", "--no-recording",
+                                 "--device-address", address)
+            self.assertEqual((code, err), (1, ""), out)  # events are missing
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=30), 0)
+
+    def test_a_terminal_that_stands_still_holds_up_no_page_of_a_recording(self):
+        code, out, _ = run("run", "door", "--fast", "--duration", "1", "--recordings", self.folder)
+        self.assertEqual(code, 1, out)
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        process = subprocess.Popen(
+            [PROGRAM, "replay", self.folder / "latest.mcap", "--view", "--no-browser", "--port",
+             str(port)], stdout=self.stopped_terminal())
+        self.addCleanup(process.kill)
+        for _ in range(600):
+            with socket.socket() as page:
+                if page.connect_ex(("127.0.0.1", port)) == 0:
+                    break
+            self.assertIsNone(process.poll())
+            time.sleep(0.1)
+        else:
+            self.fail("no page")
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=30), 0)
+
     def test_the_status_line_is_cut_to_the_terminal(self):
         primary, secondary = pty.openpty()
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 40, 0, 0))

@@ -7,6 +7,7 @@ import json
 import os
 import unittest
 
+from mcap.reader import make_reader
 from program import MODELS, TemporaryFolder, run
 
 
@@ -105,6 +106,58 @@ class FlightRecorder(TemporaryFolder):
         code, _, err = run("explain", part)
         self.assertEqual(code, 2)
         self.assertIn("must be a recording of this program", err)
+
+
+class Damaged(TemporaryFolder):
+    def setUp(self):
+        super().setUp()
+        code, out, _ = run("run", "door", "--fast", "--duration", "3", "--recordings", self.folder)
+        self.assertEqual(code, 1, out)  # events are missing
+        self.file, = (f for f in self.folder.glob("*.mcap") if not f.is_symlink())
+
+    def flipped(self, at):
+        whole = bytearray(self.file.read_bytes())
+        whole[at] ^= 4
+        file = self.folder / "damaged.mcap"
+        file.write_bytes(whole)
+        return file
+
+    def chunks(self):
+        """(start, samples) of each chunk that has any."""
+        with self.file.open("rb") as stream:
+            summary = make_reader(stream).get_summary()
+        topic, = (c.id for c in summary.channels.values() if c.topic == "/hapticgiant/sample")
+        return [(c.chunk_start_offset, c.chunk_length) for c in summary.chunk_indexes
+                if topic in c.message_index_offsets]
+
+    def test_a_damaged_chunk_is_left_out_and_named_by_all_that_read_recordings(self):
+        chunks = self.chunks()
+        self.assertEqual(len(chunks), 13)  # of 250 samples, 3 s and the cycles of the stop
+        for number in (0, 5):
+            start, length = chunks[number]
+            file = self.flipped(start + length // 2)
+            told = (f"DAMAGED     chunk at byte {start}: 250 samples from {number * 0.25:.3f} to "
+                    f"{number * 0.25 + 0.249:.3f} s are lost")
+            for command, expected in ((("explain", file), 0), (("compare", self.file, file), 1),
+                                      (("replay", file), 1),
+                                      (("plot", file, "--out", self.folder / "figures"), 0)):
+                code, out, err = run(*command)
+                self.assertEqual((code, err), (expected, ""), (command, out))
+                self.assertIn(told, out)
+                if command[0] == "replay" and number > 0:
+                    self.assertIn("1250 cycles are the same", out)
+
+    def test_a_damaged_description_is_named(self):
+        at = self.file.read_bytes().index(b"title: Door")
+        file = self.flipped(at)
+        code, out, err = run("explain", file)
+        self.assertEqual((code, err), (0, ""))
+        self.assertRegex(out, r"DAMAGED     attachment \S+door.yaml: no sample is lost")
+        self.assertIn("parts are numbered", out)
+        for command in (("replay", file), ("compare", file, file), ("plot", file)):
+            code, out, err = run(*command)
+            self.assertEqual((code, out), (2, ""), command)
+            self.assertRegex(err, r"^DAMAGED     attachment \S+door.yaml")
 
 
 class Priority(TemporaryFolder):

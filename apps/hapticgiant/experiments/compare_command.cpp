@@ -191,7 +191,8 @@ std::string head(const RecordedSignals& run) {
   return fmt::format(
       "{}, law {}, {} bounds, {:g} Hz, {:.1f} s{}", run.summary["scenario"].get<std::string>(),
       run.summary["law"].get<std::string>(), run.summary["bounds"].get<std::string>(),
-      run.rate_Hz(), run.summary["duration_s"].get<double>(), run.is_complete ? "" : ", cut off");
+      run.rate_Hz(), run.summary["duration_s"].get<double>(),
+      run.read.is_complete ? "" : ", cut off");
 }
 
 }  // namespace
@@ -199,8 +200,9 @@ std::string head(const RecordedSignals& run) {
 int compare(const CompareArguments& arguments) {
   const RecordedSignals a = read_signals(arguments.a, kFigurePeriod_s);
   const RecordedSignals b = read_signals(arguments.b, kFigurePeriod_s);
-  print_out(fmt::format("{:<14} {}: {}\n{:<14} {}: {}\n\n", "first", arguments.a, head(a), "second",
-                        arguments.b, head(b)));
+  print_out("{:<14} {}: {}\n{}{:<14} {}: {}\n{}\n", "first", arguments.a, head(a),
+            recording::to_text(a.read.losses), "second", arguments.b, head(b),
+            recording::to_text(b.read.losses));
   const std::pair<const char*, Findings> all[] = {{"configuration", configuration(a, b)},
                                                   {"state", state(a, b)},
                                                   {"events", events(a, b)},

@@ -33,13 +33,13 @@ std::string command_of(const PaperExperimentArguments& arguments, std::string_vi
 SimulatedTime shown_progress(std::string_view name) {
   if (isatty(STDERR_FILENO) == 0) return [](double, double) {};
   return [name](double done_s, double total_s) {
-    fmt::print(stderr, "{}: {:.0f} of {:.0f} s simulated \r", name, std::min(done_s, total_s),
-               total_s);
+    draw_error(
+        fmt::format("{}: {:.0f} of {:.0f} s simulated", name, std::min(done_s, total_s), total_s));
   };
 }
 
 void clear_progress() {
-  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\033[K");
+  if (isatty(STDERR_FILENO) != 0) draw_error("");
 }
 
 void print_result(const ReportedRun& run) {

@@ -41,9 +41,9 @@ int plot(const PlotArguments& arguments) {
         figure_data(*signals.scenario, *signals.table, signals.marks, "any",
                     fs::path(file).filename().string());
     write_output((folders[i] / "run.json").string(), facts.dump(2) + "\n");
-    print_out(fmt::format("{}: {}, {:.1f} s{}\n", file, signals.scenario->title,
-                          (*signals.table)["time_s"].back(),
-                          signals.is_complete ? "" : ", cut off"));
+    print_out(fmt::format(
+        "{}: {}, {:.1f} s{}\n{}", file, signals.scenario->title, (*signals.table)["time_s"].back(),
+        signals.read.is_complete ? "" : ", cut off", recording::to_text(signals.read.losses)));
   }
   const std::string why = draw_figures(arguments.out, folders);
   print_out(why.empty() ? fmt::format("figures     {0}/figure.svg, {0}/figure.png\n", arguments.out)

@@ -64,7 +64,7 @@ class Reader final : public recording::RecordingListener {
 RecordedSignals read_signals(const std::filesystem::path& file, double period_s) {
   RecordedSignals signals;
   Reader reader(signals, period_s);
-  signals.is_complete = recording::read_recording(file, reader);
+  signals.read = recording::read_recording(file, reader);
   reader.finish();
   return signals;
 }

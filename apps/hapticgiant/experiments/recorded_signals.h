@@ -26,7 +26,7 @@ struct RecordedSignals {
   std::vector<Mark> marks;         ///< events as recorded, by the names of the paper
   nlohmann::ordered_json summary;  ///< as of run --summary, of what the recording holds
   std::vector<CycleHash> hashes;
-  bool is_complete = true;  ///< false: a crash has cut it off
+  recording::ReadResult read;  ///< what of the file
   std::vector<recording::NamedText> configuration;
 
   double rate_Hz() const { return scenario->device.rate_Hz; }

@@ -126,7 +126,7 @@ class Runner final : public recording::RecordingListener {
     if (!cycle_) {
       cycle_.emplace(assembly::make_cycle(recorded_scenario(configuration_)));
     } else if (sample.record.cycle != result_.cycles) {
-      return end(fmt::format("cycle {} is missing: it was not recorded in time", result_.cycles));
+      return end(fmt::format("cycle {} is missing in the recording", result_.cycles));
     }
     now_->sensors = sample.sensors;
     now_->operator_input = sample.operator_input;

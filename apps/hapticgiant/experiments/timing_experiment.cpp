@@ -55,7 +55,7 @@ Row measure(const PaperExperimentArguments& arguments, const std::string& law, d
   run.bounds = arguments.bounds;
   config::Scenario scenario = make_scenario(run);
   if (arguments.duration_s) scenario.duration_s = *arguments.duration_s;
-  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "law {}, {:.0f} Hz ... \r", law, rate_Hz);
+  if (isatty(STDERR_FILENO) != 0) draw_error(fmt::format("law {}, {:.0f} Hz ...", law, rate_Hz));
   return {law, rate_Hz,
           bench::measure_cycle(scenario.title, scenario, kPasses, std::size_t{1} << 40U)};
 }
@@ -173,7 +173,7 @@ int timing_experiment(const PaperExperimentArguments& arguments) {
   for (const double rate_Hz : arguments.rates_Hz) {
     for (const std::string& law : laws) rows.push_back(measure(arguments, law, rate_Hz));
   }
-  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\033[K");
+  if (isatty(STDERR_FILENO) != 0) draw_error("");
 
   print_out(markdown_table(table(rows)) + "\n");
   const Json machine = bench::describe_machine();

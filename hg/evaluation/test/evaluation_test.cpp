@@ -198,7 +198,11 @@ TEST(Summary, TellsATimedOutStop) {
   EXPECT_EQ(text({}).find("LOST"), std::string::npos);
   EXPECT_NE(text({.dropped = 7}).find("7 samples: neither judged nor recorded"), std::string::npos);
   EXPECT_NE(text({.unrecorded = 8}).find("8 samples of the recording"), std::string::npos);
-  const auto json = nlohmann::json::parse(summary.to_json({.stop_timed_out = true}, {}));
+  EXPECT_NE(text({.recording_error = "disk full"}).find("0 samples of the recording: disk full"),
+            std::string::npos);
+  const auto json = nlohmann::json::parse(
+      summary.to_json({.stop_timed_out = true, .recording_error = "disk full"}, {}));
+  EXPECT_EQ(json["recording_error"].get<std::string>(), "disk full");
   EXPECT_TRUE(json["stop_timed_out"].get<bool>());
   EXPECT_FALSE(json["real_time"].get<bool>());
 }

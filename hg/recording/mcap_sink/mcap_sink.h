@@ -59,17 +59,20 @@ typedef enum {
   mcap_channel = 0,
   mcap_message = 1,
   mcap_attachment = 2,
-  mcap_end = 3
+  mcap_end = 3,
+  mcap_damage = 4,
+  mcap_lost = 5
 } mcap_item_kind;
 
 /// One thing in a file: a topic with the text of its schema, a message with its topic and log time,
-/// an attachment with its name, or the end of a file that was completed. Valid during the call;
+/// an attachment with its name, the end of a file that was completed, a part that cannot be read
+/// with its name, or a message of that part with its topic and log time. Valid during the call;
 /// `name` has no terminating zero.
 typedef void (*mcap_take_item)(void* context, int kind, const char* name, size_t name_size,
                                uint64_t time_ns, const uint8_t* data, size_t size);
 
-/// Hands out everything in a file, in its order; a file that a crash has cut off ends there. `take`
-/// must not throw. False: `error` (zero-terminated) says why.
+/// Hands out everything in a file that is as it was written, in its order; a file that a crash has
+/// cut off ends there. `take` must not throw. False: `error` (zero-terminated) says why.
 bool mcap_sink_read(const char* path, void* context, mcap_take_item take, char* error,
                     size_t error_size);
 

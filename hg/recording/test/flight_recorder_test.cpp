@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <memory>
+#include <string>
 
 #include "hg/core/error.h"
 #include "hg/core/test/temporary_folder.h"
@@ -74,11 +76,41 @@ TEST_F(FlightRecorderTest, WritesNothingOfNothingAndSaysWhyItCannotWrite) {
   empty.write("nothing");
   EXPECT_TRUE(empty.close().files.empty());
   EXPECT_THROW(FlightRecorder(info, 0.0), SetupError);
+}
+
+/// While it lives, temporary files go elsewhere.
+class TemporaryFiles {
+ public:
+  explicit TemporaryFiles(const std::filesystem::path& folder) {
+    if (const char* old = std::getenv("TMPDIR")) old_ = old;
+    setenv("TMPDIR", folder.c_str(), 1);
+  }
+  ~TemporaryFiles() { old_.empty() ? unsetenv("TMPDIR") : setenv("TMPDIR", old_.c_str(), 1); }
+  TemporaryFiles(const TemporaryFiles&) = delete;
+  TemporaryFiles& operator=(const TemporaryFiles&) = delete;
+
+ private:
+  std::string old_;
+};
+
+TEST_F(FlightRecorderTest, WritesAmongTheTemporaryFilesWhenItsFolderIsGone) {
+  RecordingInfo info = example_info(temporary_.path());
   info.folder = temporary_.write("file", "no folder");
   FlightRecorder recorder(info, 0.5);
   push(recorder, 0, 10);
-  recorder.write("fault");
-  EXPECT_NE(recorder.close().error, "");
+  {
+    const TemporaryFiles nowhere(temporary_.path() / "nowhere");
+    recorder.write("fault");
+    const FlightRecorder::Result result = recorder.close();
+    EXPECT_TRUE(result.files.empty());
+    EXPECT_NE(result.error, "");
+  }
+  const TemporaryFiles elsewhere(temporary_.path());
+  recorder.write("fault");  // it has kept them
+  const FlightRecorder::Result result = recorder.close();
+  ASSERT_EQ(result.files.size(), 1u);
+  EXPECT_EQ(result.files[0].parent_path().parent_path(), temporary_.path());
+  EXPECT_EQ(RecordedRun(result.files[0], 0.0).size(), 10u);
 }
 
 }  // namespace

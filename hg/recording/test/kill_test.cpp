@@ -72,7 +72,7 @@ TEST(Recorder, LeavesAReadableFileWheneverItIsKilled) {
     const std::uint64_t count = pushed.load();
     Counter counter;
     try {
-      EXPECT_FALSE(read_recording(temporary.path() / "latest.mcap", counter));
+      EXPECT_FALSE(read_recording(temporary.path() / "latest.mcap", counter).is_complete);
     } catch (const std::exception& error) {
       EXPECT_EQ(counter.samples, 0u) << error.what();
     }

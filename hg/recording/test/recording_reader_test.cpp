@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hg/core/error.h"
@@ -110,7 +112,7 @@ struct Counts final : RecordingListener {
 TEST_F(RecordedRunTest, IsHandedOutWholeAndInOrder) {
   const std::filesystem::path file = record(1005);
   Counts counts;
-  EXPECT_TRUE(read_recording(file, counts));
+  EXPECT_TRUE(read_recording(file, counts).is_whole());
   EXPECT_EQ(counts.samples, 1005u);
   EXPECT_EQ(counts.names, (std::vector<std::string>{"door.yaml", "arguments"}));
   EXPECT_EQ(counts.events, std::vector<std::string>{"unlocked"});
@@ -125,7 +127,7 @@ TEST_F(RecordedRunTest, IsReadableWhereverItIsCutOff) {
   const std::filesystem::path file = record(3000);
   const auto size = std::filesystem::file_size(file);
   Counts whole;
-  ASSERT_TRUE(read_recording(file, whole));
+  ASSERT_TRUE(read_recording(file, whole).is_whole());
   std::uint64_t last = 0;
   std::uint64_t readable = 0;
   std::mt19937 random(7);
@@ -138,7 +140,8 @@ TEST_F(RecordedRunTest, IsReadableWhereverItIsCutOff) {
     const auto part = temporary_.write("cut.mcap", good.substr(0, cut));
     Counts counts;
     try {
-      read_recording(part, counts);
+      const ReadResult result = read_recording(part, counts);
+      EXPECT_TRUE(result.losses.empty()) << cut << " of " << size << ": " << to_text(result.losses);
       ++readable;
     } catch (const SetupError& error) {
       // only before the first chunk is whole
@@ -148,6 +151,111 @@ TEST_F(RecordedRunTest, IsReadableWhereverItIsCutOff) {
     last = counts.samples;
   }
   EXPECT_GT(readable, 30u);
+}
+
+/// Samples with and without gaps.
+struct Gaps final : RecordingListener {
+  void configuration(const NamedText&) override { ++configurations; }
+  void event(const Event&) override { ++events; }
+  void sample(const Sample& sample) override {
+    if (sample.record.cycle < next) is_in_order = false;
+    if (sample.record.cycle > next) missing.push_back({next, sample.record.cycle});
+    next = sample.record.cycle + 1;
+    ++samples;
+  }
+  // after the last sample
+  void end(std::uint64_t count) {
+    if (next < count) missing.push_back({next, count});
+  }
+  std::uint64_t samples = 0, next = 0, events = 0, configurations = 0;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> missing;
+  bool is_in_order = true;
+};
+
+/// A file of `samples` samples with one bit flipped: all but what it hits is there, and named is
+/// what is not. True: samples are lost.
+bool check_flipped(const std::filesystem::path& file, std::uint64_t samples) {
+  Gaps gaps;
+  ReadResult result;
+  try {
+    result = read_recording(file, gaps);
+  } catch (const SetupError& error) {
+    ADD_FAILURE() << error.what();
+    return false;
+  }
+  gaps.end(samples);
+  const std::string told = to_text(result.losses);
+  EXPECT_TRUE(gaps.is_in_order);
+  EXPECT_TRUE(result.is_complete);
+  EXPECT_LE(result.losses.size(), 1u) << told;
+  const bool has_losses = !result.losses.empty() && result.losses[0].samples > 0;
+  EXPECT_EQ(gaps.missing.size(), has_losses ? 1u : 0u) << told;
+  if (gaps.missing.size() != 1 || !has_losses) return false;
+  const auto [first, end] = gaps.missing[0];
+  const Loss& loss = result.losses[0];
+  EXPECT_LE(loss.samples, 250u);  // a chunk
+  EXPECT_EQ(loss.samples, end - first);
+  EXPECT_NEAR(loss.from_s, static_cast<double>(first) / kRate_Hz, 1e-9);
+  EXPECT_NEAR(loss.to_s, static_cast<double>(end - 1) / kRate_Hz, 1e-9);
+  return true;
+}
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+// --gtest_random_seed says which bits
+std::mt19937 seeded_by_the_command_line() {
+  return std::mt19937(static_cast<unsigned>(GTEST_FLAG_GET(random_seed)));
+}
+
+TEST_F(RecordedRunTest, AFlippedBitCostsOneChunkAtMostAndIsNamed) {
+  const std::string good = content_of(record(3000));
+  std::mt19937 random = seeded_by_the_command_line();
+  int with_losses = 0;
+  for (int i = 0; i < 200; ++i) {
+    const std::size_t bit = random() % (8 * good.size());
+    SCOPED_TRACE("bit " + std::to_string(bit) + " of " + std::to_string(8 * good.size()));
+    std::string bad = good;
+    bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
+    with_losses += check_flipped(temporary_.write("bad.mcap", bad), 3000);
+  }
+  EXPECT_GT(with_losses, 100);
+}
+
+// opcodes and lengths, which say where everything is
+TEST_F(RecordedRunTest, AFlippedBitInAnyHeadOfARecordCostsNoMore) {
+  constexpr std::size_t kMagic = 8;
+  constexpr std::size_t kHead = 9;
+  const std::string good = content_of(record(600));
+  std::mt19937 random = seeded_by_the_command_line();
+  for (std::size_t at = kMagic; at + kMagic < good.size();) {
+    for (int i = 0; i < 3; ++i) {
+      const std::size_t bit = 8 * at + random() % (8 * kHead);
+      SCOPED_TRACE("bit " + std::to_string(bit - 8 * at) + " of the record at " +
+                   std::to_string(at));
+      std::string bad = good;
+      bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
+      check_flipped(temporary_.write("bad.mcap", bad), 600);
+    }
+    std::uint64_t length = 0;
+    std::memcpy(&length, &good[at + 1], sizeof(length));
+    at += kHead + length;
+  }
+}
+
+TEST_F(RecordedRunTest, NamesAConfigurationThatIsDamaged) {
+  const std::filesystem::path file = record(100);
+  std::string text = content_of(file);
+  text[text.find("title: Door")] ^= 1;
+  const std::filesystem::path bad = temporary_.write("bad.mcap", text);
+  Gaps gaps;
+  const ReadResult result = read_recording(bad, gaps);
+  EXPECT_EQ(to_text(result.losses), "DAMAGED     attachment door.yaml: no sample is lost\n");
+  EXPECT_EQ(gaps.samples, 100u);
+  EXPECT_EQ(gaps.configurations, 1u);  // the other one
+  EXPECT_EQ(RecordedRun(bad, 0.01).losses().size(), 1u);
 }
 
 TEST_F(RecordedRunTest, RefusesWhatIsNoRecordingAndSaysWhich) {

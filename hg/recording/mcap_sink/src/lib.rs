@@ -8,8 +8,6 @@ mod read;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ffi::{c_char, c_void, CStr, CString};
-use std::fs::File;
-use std::io::BufReader;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::path::Path;
 
@@ -228,8 +226,7 @@ pub unsafe extern "C" fn mcap_sink_free(sink: *mut mcap_sink) {
 }
 
 /// Kind of an item, its topic or name, its time, and its bytes.
-type TakeItem =
-    unsafe extern "C" fn(*mut c_void, i32, *const u8, usize, u64, *const u8, usize);
+type TakeItem = unsafe extern "C" fn(*mut c_void, i32, *const u8, usize, u64, *const u8, usize);
 
 /// # Safety
 /// `path` is a zero-terminated string; `take` may be called with `context`; `error` points to
@@ -249,12 +246,13 @@ pub unsafe extern "C" fn mcap_sink_read(
             Item::Message { topic, time_ns, data } => (1, topic, time_ns, data),
             Item::Attachment { name, data } => (2, name, 0, data),
             Item::End => (3, "", 0, &[]),
+            Item::Damage { part } => (4, part, 0, &[]),
+            Item::Lost { topic, time_ns } => (5, topic, time_ns, &[]),
         };
         take(context, kind, name.as_ptr(), name.len(), time_ns, data.as_ptr(), data.len());
     };
     let result = catch_unwind(AssertUnwindSafe(|| {
-        let file = File::open(Path::new(&*path)).map_err(|failure| failure.to_string())?;
-        read(BufReader::new(file), hand_over).map_err(|failure| root_cause(&*failure))
+        read(Path::new(&*path), hand_over).map_err(|failure| root_cause(&*failure))
     }));
     let message = match result {
         Ok(Ok(())) => return true,

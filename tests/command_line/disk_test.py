@@ -1,0 +1,79 @@
+"""A run whose disk takes no more: what is told, what is kept.
+
+Usage: disk_test.py PROGRAM   (from the repository root)
+"""
+
+import contextlib
+import json
+import os
+import re
+import resource
+import subprocess
+import unittest
+
+from program import PROGRAM, TemporaryFolder, run
+
+NOT_WRITTEN = 4
+
+
+class FullDisk(TemporaryFolder):
+    def setUp(self):
+        super().setUp()
+        self.temporary = self.folder / "temporary"
+        self.temporary.mkdir()
+
+    def play(self, recordings, *options, limit=resource.RLIM_INFINITY):
+        summary = self.folder / "summary.json"
+        done = subprocess.run(
+            [PROGRAM, "run", "door", "--fast", "--no-viewer", "--recordings", recordings,
+             "--summary", summary, *options], stdin=subprocess.DEVNULL, capture_output=True,
+            text=True, timeout=300, env={**os.environ, "TMPDIR": str(self.temporary)},
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        return done.returncode, done.stdout, done.stderr, json.loads(summary.read_text())
+
+    def is_told(self, why, code, out, err, told):
+        self.assertEqual(code, NOT_WRITTEN, out + err)
+        told_at, = (n for n, line in enumerate(out.splitlines())
+                    if "has ended early, the run goes on: " + why in line)
+        self.assertTrue(any(" unlocked " in line for line in out.splitlines()[told_at:]), out)
+        self.assertIn(f"{told['unrecorded_samples']} samples of the recording: {why}", out)
+        self.assertIn("recording ended early: " + why, err)
+        self.assertTrue(told["recording_error"].startswith(why))
+        self.assertEqual(told["missing_events"], [])
+        code, out, err = run("explain", told["recording"])
+        self.assertEqual((code, err), (0, ""))
+        kept = int(re.search(r" (\d+) samples; CUT OFF", out)[1])
+        # a chunk of 250 samples without its index counts as lost and can be read all the same
+        self.assertIn(kept - told["cycles"] + told["unrecorded_samples"], range(0, 251))
+
+    def test_a_limit_of_file_sizes_ends_the_recording_not_the_run(self):
+        result = self.play(self.folder / "r", limit=1_000_000)
+        self.is_told("File too large", *result)
+        self.assertIn("the last seconds could not be written", result[2])
+
+    def test_the_last_seconds_go_among_the_temporary_files(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "none", disk],
+                          capture_output=True).returncode != 0:
+            self.skipTest("may not mount")
+        with contextlib.ExitStack() as stack:
+            stack.callback(subprocess.run, ["umount", disk], check=True)
+            result = self.play(disk)
+            self.is_told("No space left on device", *result)
+            self.assertNotIn("the last seconds could not be written", result[2])
+            file, = self.temporary.glob("hapticgiant_*/door_stop_*.mcap")
+            self.assertIn(f"explain {file}", result[1])
+            code, out, err = run("explain", file)
+            self.assertEqual((code, err), (0, ""))
+            self.assertIn(" 10000 samples\n", out)
+            self.assertEqual(len([f for f in disk.glob("*.mcap") if not f.is_symlink()]), 1)
+
+    def test_a_summary_that_cannot_be_written_takes_nothing_else_along(self):
+        code, out, err = run("run", "door", "--fast", "--no-recording", "--summary", "/dev/full")
+        self.assertEqual(code, NOT_WRITTEN, out)
+        self.assertEqual(err, "/dev/full: could not be written\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
