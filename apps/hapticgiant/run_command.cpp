@@ -235,7 +235,7 @@ void wait_for_next(Observers& observers, bool goes_on) {
   RunPage* page = observers.page;
   if (page == nullptr || page->has_next()) return;
   const bool has_fault = observers.summary.fault().code != FaultCode::kNone;
-  if (!page->stop_was_asked() && !(goes_on && has_fault)) return;
+  if (!page->stop_was_asked() && !page->is_preparing() && !(goes_on && has_fault)) return;
   print_out("the run is over; start it again in the page, or end with Ctrl-C\n");
   const Sample none;
   while (!observers.interrupted.load() && !page->has_next() && (goes_on || page->clients() > 0)) {
@@ -253,6 +253,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const bool goes_on = is_terminal && page != nullptr;
   runtime::Options options = runtime_options(scenario, arguments, goes_on, interrupted);
   const auto is_reset = [](const TimedPanel& p) { return p.request == ModeRequest::kReset; };
+  if (page != nullptr) options.desk = &page->desk();
   options.stays_in_fault = page != nullptr || std::ranges::any_of(scenario.panel, is_reset);
   RunRecording recording(scenario, arguments);  // last: a refused run leaves no file
   const recording::Recorder* recorder = recording.recorder();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "apps/hapticgiant/page_scene.h"
@@ -24,21 +25,13 @@ std::vector<double> values_of(const std::vector<config::FormField>& form) {
 }
 
 // commands that a run follows whatever its device is
-constexpr CommandName kAlways[] = {CommandName::kStop, CommandName::kSet, CommandName::kMode};
+constexpr CommandName kAlways[] = {CommandName::kStop, CommandName::kSet, CommandName::kMode,
+                                   CommandName::kEmergencyStop, CommandName::kReleaseStop};
 // and those that need a simulated device, which waits and can begin anew
 constexpr CommandName kSimulated[] = {
     CommandName::kPause,   CommandName::kResume,   CommandName::kStep, CommandName::kSpeed,
     CommandName::kRestart, CommandName::kScenario, CommandName::kTwin, CommandName::kLaw,
     CommandName::kPerson,  CommandName::kPanel};
-
-struct NamedButton {
-  std::string_view name;
-  bool SafetyPanel::*is_on;
-};
-constexpr NamedButton kButtons[] = {{"emergency_stop", &SafetyPanel::emergency_stop},
-                                    {"operator_enable", &SafetyPanel::operator_enable},
-                                    {"override_key", &SafetyPanel::override_key},
-                                    {"person_in_field", &SafetyPanel::person_in_field}};
 
 struct NamedRequest {
   std::string_view name;
@@ -47,12 +40,23 @@ struct NamedRequest {
 constexpr NamedRequest kRequests[] = {{"arm", ModeRequest::kArm},
                                       {"run", ModeRequest::kRun},
                                       {"run_alone", ModeRequest::kAutonomous},
-                                      {"hold", ModeRequest::kStop},
                                       {"reset", ModeRequest::kReset}};
 
 std::string refusal_of_device(const PreparedRun& run) {
   if (run.remote == nullptr) return {};
   return "the device at " + run.arguments.device_address + " keeps its own time";
+}
+
+constexpr std::string_view kStopped = "a stop came after it";
+
+bool is_choice_of_run(CommandName name) {
+  return name == CommandName::kRestart || name == CommandName::kScenario ||
+         name == CommandName::kTwin || name == CommandName::kLaw || name == CommandName::kPerson;
+}
+
+viewer_server::Options with(OperatorDesk* desk, viewer_server::Options options) {
+  options.desk = desk;
+  return options;
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -63,7 +67,7 @@ RunPage::RunPage(const viewer_server::Options& options, const PreparedRun& first
     : run_(&first),
       form_(config::twin_form(first.scenario.twin.model)),
       values_(values_of(form_)),
-      server_(options, scene_of(first)),
+      server_(with(desk_.get(), options), scene_of(first)),
       newest_(std::make_unique<Sample>()) {}
 
 viewer_server::Scene RunPage::scene_of(const PreparedRun& run) const {
@@ -138,8 +142,19 @@ void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
   HandTarget target;
   if (server_.take_hand_target(target) && runtime != nullptr) runtime->set_hand_target(target);
   for (const Command& command : server_.take_commands()) {
-    server_.answer(command, obey(command, runtime, note));
+    has_news_ = true;
+    if (command.is_done) {
+      tell_done(command, note);
+      continue;
+    }
+    const std::string refusal = obey(command, runtime, note);
+    const bool is_under_way = is_choice_of_run(command.name) && refusal.empty();
+    if (!is_under_way) server_.answer(command, refusal);
   }
+  take_prepared(note);
+  const std::uint32_t lost = desk_->take_lost();
+  if ((lost & 1u) != 0) note("operator_enable", "let go: its page is gone or silent");
+  if ((lost & 2u) != 0) note("override_key", "turned off: its page is gone or silent");
   viewer_server::RunState& state = view_.run_state;
   const bool is_paused = runtime != nullptr && runtime->pace().is_paused();
   const double speed = runtime != nullptr ? runtime->pace().speed() : state.speed;
@@ -152,52 +167,44 @@ void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
   if (has_news_ && server_.is_due()) publish();
 }
 
-// why not; empty = followed
+void RunPage::tell_done(const Command& command, const Note& note) const {
+  const std::string page = fmt::format("page {}", command.page);
+  const std::string_view on_off = command.value != 0.0 ? "on" : "off";
+  switch (command.name) {
+    case CommandName::kEmergencyStop:
+      return note("emergency_stop", "pressed by " + page);
+    case CommandName::kReleaseStop:
+      return note("release_stop",
+                  fmt::format("of {} by {}",
+                              command.value == 0.0 ? std::string("the script")
+                                                   : fmt::format("page {}", command.value),
+                              page));
+    case CommandName::kPanel:
+      return note(command.argument, fmt::format("{} by {}", on_off, page));
+    default:
+      return note(command.argument, "asked for in the page");
+  }
+}
+
+// why not; empty = followed, or another run is being prepared
 std::string RunPage::obey(const Command& command, runtime::Runtime* runtime, const Note& note) {
   const std::string refusal = refusal_of_device(*run_);
   const bool needs_simulation =
       std::find(std::begin(kSimulated), std::end(kSimulated), command.name) != std::end(kSimulated);
   if (needs_simulation && !refusal.empty()) return refusal;
-  switch (command.name) {
-    case CommandName::kRestart:
-    case CommandName::kScenario:
-    case CommandName::kTwin:
-    case CommandName::kLaw:
-    case CommandName::kPerson: {
-      const std::string why_not = choose(command);
-      if (why_not.empty()) note("restart", command.argument.empty() ? "again" : command.argument);
-      return why_not;
-    }
-    case CommandName::kSeek:
-      return "this is a run, not a recording";
-    default:
-      break;
-  }
+  if (is_choice_of_run(command.name)) return choose(command);
+  if (command.name == CommandName::kSeek) return "this is a run, not a recording";
   if (runtime == nullptr) return "the run is over: start it again";
   if (command.name == CommandName::kSet) return set(command, *runtime, note);
-  if (command.name == CommandName::kPanel) return obey_panel(command, *runtime, note);
   if (command.name == CommandName::kMode) return obey_mode(command, *runtime, note);
   if (command.name == CommandName::kStop) {
     runtime->request_stop();
     stop_was_asked_ = true;
+    next_.reset();  // what was chosen before
     note("stop", "asked for in the page");
     return {};
   }
   return obey_pace(command, runtime->pace(), note);
-}
-
-std::string RunPage::obey_panel(const Command& command, runtime::Runtime& runtime,
-                                const Note& note) {
-  SafetyPanel panel = newest_->operator_input.panel;
-  const auto button = std::find_if(std::begin(kButtons), std::end(kButtons),
-                                   [&](const auto& b) { return b.name == command.argument; });
-  if (button == std::end(kButtons)) return "there is no such button: " + command.argument;
-  panel.*button->is_on = command.value != 0.0;
-  panel.reset = false;
-  newest_->operator_input.panel = panel;  // for a command that comes before the next sample
-  if (!runtime.set_panel(panel)) return "too many commands are waiting";
-  note(command.argument, command.value != 0.0 ? "on" : "off");
-  return {};
 }
 
 std::string RunPage::obey_mode(const Command& command, runtime::Runtime& runtime,
@@ -205,14 +212,12 @@ std::string RunPage::obey_mode(const Command& command, runtime::Runtime& runtime
   const auto named = std::find_if(std::begin(kRequests), std::end(kRequests),
                                   [&](const auto& r) { return r.name == command.argument; });
   if (named == std::end(kRequests)) return "there is no such mode: " + command.argument;
+  if (command.stops != desk_->stops()) return std::string(kStopped);
   // one button resets the safety controller as well, and first
-  if (named->request == ModeRequest::kReset) {
-    SafetyPanel panel = newest_->operator_input.panel;
-    panel.reset = true;
-    if (!runtime.set_panel(panel)) return "too many commands are waiting";
-  }
-  const bool is_taken = runtime.request(ModeRequest::kNone) &&
-                        runtime.request(ModeRequest::kNone) && runtime.request(named->request);
+  if (named->request == ModeRequest::kReset) runtime.press_reset();
+  const bool is_taken = runtime.request(ModeRequest::kNone, command.stops) &&
+                        runtime.request(ModeRequest::kNone, command.stops) &&
+                        runtime.request(named->request, command.stops);
   if (!is_taken) return "too many commands are waiting";
   note(command.argument, "asked for in the page");
   return {};
@@ -243,8 +248,9 @@ std::string RunPage::obey_pace(const Command& command, runtime::Pace& pace, cons
   }
 }
 
-// prepares the run that follows; the present one goes on when that fails
+// prepares the run that follows; the present one goes on meanwhile, and when that fails
 std::string RunPage::choose(const Command& command) {
+  if (is_preparing()) return "another run is being prepared";
   RunArguments arguments = run_->arguments;
   const viewer_server::Choices choices = page_choices(arguments);
   const auto take = [&](const std::vector<viewer_server::Choice>& list, std::string& value) {
@@ -266,12 +272,28 @@ std::string RunPage::choose(const Command& command) {
   if (command.name == CommandName::kLaw) is_known = take(choices.laws, arguments.law);
   if (command.name == CommandName::kPerson) is_known = take(choices.people, world.user);
   if (!is_known) return "there is no such choice: " + command.argument;
-  try {
-    next_ = std::make_unique<PreparedRun>(arguments);
-    return {};
-  } catch (const SetupError& error) {
-    return first_line(error.what());
+  chosen_ = command;
+  prepared_ = std::async(std::launch::async, [arguments]() -> Prepared {
+    try {
+      return {std::make_unique<PreparedRun>(arguments), {}};
+    } catch (const SetupError& error) {
+      return {nullptr, first_line(error.what())};
+    }
+  });
+  return {};
+}
+
+void RunPage::take_prepared(const Note& note) {
+  if (!is_preparing() || prepared_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    return;
   }
+  auto [run, refusal] = prepared_.get();
+  if (refusal.empty() && chosen_.stops != desk_->stops()) refusal = kStopped;
+  if (refusal.empty()) {
+    next_ = std::move(run);
+    note("restart", chosen_.argument.empty() ? "again" : chosen_.argument);
+  }
+  server_.answer(chosen_, refusal);
 }
 
 std::string RunPage::set(const Command& command, runtime::Runtime& runtime, const Note& note) {

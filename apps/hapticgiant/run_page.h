@@ -1,10 +1,12 @@
 /// The page of a run: what it is shown, and what its commands change. Stays while runs follow each
-/// other.
+/// other. Stops do not wait for it: the server takes them to the operator's desk, where the control
+/// loop finds them; here they are told.
 ///
 /// For the observer thread.
 #pragma once
 
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +18,7 @@
 #include "hg/config/twin_form.h"
 #include "hg/explanation/fault_figures.h"
 #include "hg/runtime/runtime.h"
+#include "hg/signals/operator_desk.h"
 #include "hg/viewer_server/viewer_server.h"
 
 namespace hg::apps {
@@ -30,6 +33,9 @@ class RunPage {
   std::string url() const { return server_.url(); }
   /// Number of pages connected.
   std::uint64_t clients() const { return server_.counters().clients; }
+
+  /// Where the control loop finds what pages do.
+  OperatorDesk& desk() { return *desk_; }
 
   /// Shows `run` from now on; it outlives the next call. `recording` is the name of its file.
   void begin(const PreparedRun& run, const std::string& recording);
@@ -47,19 +53,27 @@ class RunPage {
 
   bool stop_was_asked() const { return stop_was_asked_; }
   bool has_next() const { return next_ != nullptr; }
+  /// One has been chosen, and is not ready yet.
+  bool is_preparing() const { return prepared_.valid(); }
   /// The run that was chosen to follow, once.
   std::unique_ptr<PreparedRun> take_next() { return std::move(next_); }
 
  private:
+  /// A run that was chosen, or why there is none.
+  struct Prepared {
+    std::unique_ptr<PreparedRun> run;
+    std::string refusal;
+  };
+
+  void tell_done(const viewer_server::Command& command, const Note& note) const;
   std::string obey(const viewer_server::Command& command, runtime::Runtime* runtime,
                    const Note& note);
-  std::string obey_panel(const viewer_server::Command& command, runtime::Runtime& runtime,
-                         const Note& note);
   std::string obey_mode(const viewer_server::Command& command, runtime::Runtime& runtime,
                         const Note& note);
   std::string obey_pace(const viewer_server::Command& command, runtime::Pace& pace,
                         const Note& note);
   std::string choose(const viewer_server::Command& command);
+  void take_prepared(const Note& note);
   std::string set(const viewer_server::Command& command, runtime::Runtime& runtime,
                   const Note& note);
   viewer_server::Scene scene_of(const PreparedRun& run) const;
@@ -69,6 +83,7 @@ class RunPage {
   std::uint64_t number_ = 1;
   std::vector<config::FormField> form_;
   std::vector<double> values_;  ///< of the form, as targets
+  std::unique_ptr<OperatorDesk> desk_ = std::make_unique<OperatorDesk>();
   viewer_server::ViewerServer server_;
   explanation::Names names_;
   std::optional<HandAnalysis> analysis_;
@@ -77,6 +92,8 @@ class RunPage {
   bool has_news_ = false;  ///< that no page has seen
   bool stop_was_asked_ = false;
   std::unique_ptr<PreparedRun> next_;
+  viewer_server::Command chosen_;   ///< what `prepared_` comes from
+  std::future<Prepared> prepared_;  ///< by a thread of its own: it takes seconds
 };
 
 /// The page's server for `run`, or nullptr: not wanted, or not built, which is said.

@@ -105,7 +105,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
 
   // supervisor: may this sample be used, and what is the device allowed to do
   if (state_.cycle == 0) state_.next_sequence = sensors.sequence;
-  supervise(sensors, operator_input.request, record);
+  supervise(sensors, operator_input, record);
 
   record.change = rendering_.change(operator_input.change, state_.rendering);
   rendering_.limit_solver(operator_input.most_active_sets);
@@ -161,9 +161,13 @@ void Cycle::watch(const StageProbe& probe) noexcept {
   rendering_.watch(probe);
 }
 
-void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
+void Cycle::supervise(const SensorFrame& sensors, const OperatorFrame& operator_input,
                       CycleRecord& record) noexcept {
   safety::SupervisorState& supervisor = state_.supervisor;
+  const ModeRequest request = operator_input.request;
+  // whatever the device makes of the panel
+  SafetyInputs safety = sensors.safety;
+  safety.emergency_stop = safety.emergency_stop || operator_input.panel.emergency_stop;
   const bool is_new = request != supervisor.last_request;
   const bool was_fault = supervisor.state == safety::State::kFault;
   const bool is_arming = is_new && request == ModeRequest::kArm;
@@ -171,10 +175,10 @@ void Cycle::supervise(const SensorFrame& sensors, ModeRequest request,
   safety::SupervisorInput input = {
       .request = request,
       .is_held = is_held(sensors),
-      .safety = sensors.safety,
+      .safety = safety,
       .to_arm = is_arming ? refusal_to_arm() : Refusal::kNone,
       .is_broken = state_.monitor.is_broken,
-      .fault = safety::check_safety_inputs(sensors.safety, supervisor),
+      .fault = safety::check_safety_inputs(safety, supervisor),
       // such a sample cannot be controlled with
       .reaction = fault.code != FaultCode::kNone ? Stop::kSto : Stop::kNone};
   if (input.fault.code == FaultCode::kNone) input.fault = fault;

@@ -91,7 +91,8 @@ class Cycle {
   }
 
  private:
-  void supervise(const SensorFrame& sensors, ModeRequest request, CycleRecord& record) noexcept;
+  void supervise(const SensorFrame& sensors, const OperatorFrame& operator_input,
+                 CycleRecord& record) noexcept;
   Fault check(const SensorFrame& sensors) noexcept;
   Refusal refusal_to_arm() const noexcept;
   void begin_anew() noexcept;

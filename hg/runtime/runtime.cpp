@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
@@ -63,7 +64,6 @@ Runtime::Runtime(const Options& options, cycle::Cycle& cycle, device::Device& de
       samples_(options.ring),
       hand_targets_(256),
       parameter_changes_(256),
-      panels_(64),
       requests_(64),
       changes_(options.changes),
       timed_panels_(options.panel) {}
@@ -74,6 +74,12 @@ Runtime::~Runtime() {
 }
 
 void Runtime::start() {
+  if (options_.desk != nullptr) {
+    options_.desk->open();
+    stops_ = options_.desk->stops();
+    holds_ = options_.desk->holds();
+    script_releases_ = options_.desk->script_releases();
+  }
   thread_ = std::thread([this] { loop(); });
 }
 
@@ -92,6 +98,7 @@ void Runtime::run_cycle(Sample& sample) noexcept HG_NONBLOCKING {
   while (hand_targets_.pop(sample.operator_input.hand_target)) {
   }
   sample.operator_input.change = next_change();
+  look_at_desk(sample.operator_input);
   cycle_.step(sample.sensors, sample.operator_input, sample.command, sample.record);
   const std::int64_t end_ns = now_ns();
   device_.write(sample.command);
@@ -126,7 +133,8 @@ ParameterChange Runtime::next_change() noexcept {
 
 bool Runtime::stop_is_requested() const noexcept {
   return stop_requested_.load(std::memory_order_relaxed) ||
-         (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed));
+         (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) ||
+         (options_.desk != nullptr && options_.desk->end_was_asked());
 }
 
 Schedule Runtime::new_schedule() const noexcept {
@@ -184,24 +192,60 @@ void Runtime::prepare_thread() noexcept {
   cycle_.watch({.ended = &Runtime::stage_ended, .listener = this});
 }
 
+// An emergency stop that somebody has pulled out stays so until the script presses it again.
+void Runtime::play_script(const TimedPanel& due) noexcept {
+  const bool stays_pressed = timed_panel_.emergency_stop && due.panel.emergency_stop;
+  const bool was_pressed = script_panel_.emergency_stop;
+  timed_panel_ = script_panel_ = due.panel;
+  if (stays_pressed) script_panel_.emergency_stop = was_pressed;
+}
+
 // What the operator does before the next cycle: by a script, by somebody, or by itself.
 void Runtime::operate(const Sample& sample, bool is_stopping, OperatorFrame& input) noexcept {
   const CycleRecord& record = sample.record;
-  input.panel.reset = false;
+  script_panel_.reset = false;
   input.late_cycles = 0;
-  if (panels_.pop(input.panel)) is_operated_ = is_operated_ || !input.panel.operator_enable;
-  ModeRequest request = ModeRequest::kNone;
-  if (requests_.pop(request)) is_operated_ = true;
+  Request next;
+  request_stops_.reset();
+  if (requests_.pop(next)) {
+    is_operated_ = true;
+    request_stops_ = next.stops;
+  }
   const double time_s = static_cast<double>(report_.cycles) / options_.rate_Hz;
   if (const TimedPanel* due = timed_panels_.due(time_s)) {
-    input.panel = due->panel;
-    if (due->request != ModeRequest::kNone) request = due->request;
-    is_operated_ = is_operated_ || due->request != ModeRequest::kNone;
+    play_script(*due);
+    if (due->request != ModeRequest::kNone) {
+      next.request = due->request;
+      request_stops_.reset();
+      is_operated_ = true;
+    }
   }
   is_operated_ = is_operated_ || (options_.stays_in_fault && record.mode == Mode::kFault);
   input.request = is_operated_ && !is_stopping
-                      ? request
+                      ? next.request
                       : next_request(record, cycle_.is_held(sample.sensors), is_stopping);
+}
+
+// The panel of this cycle, and stops of pages: nothing that was asked for before one of them
+// starts anything after it.
+void Runtime::look_at_desk(OperatorFrame& input) noexcept {
+  input.panel = script_panel_;
+  if (is_reset_pressed_.load(std::memory_order_relaxed)) {
+    input.panel.reset = is_reset_pressed_.exchange(false) || input.panel.reset;
+  }
+  if (options_.desk == nullptr) return;
+  OperatorDesk& desk = *options_.desk;
+  const std::uint32_t releases = desk.script_releases();
+  if (std::exchange(script_releases_, releases) != releases) {
+    script_panel_.emergency_stop = input.panel.emergency_stop = false;
+  }
+  desk.tell_script_stop(script_panel_.emergency_stop);
+  desk.look(now_ns(), input.panel);
+  const std::uint32_t stops = desk.stops(), holds = desk.holds();
+  is_operated_ = is_operated_ || stops != stops_;
+  stops_ = stops;
+  if (request_stops_ && *request_stops_ != stops) input.request = ModeRequest::kNone;
+  if (std::exchange(holds_, holds) != holds) input.request = ModeRequest::kStop;
 }
 
 void Runtime::loop() noexcept {
@@ -240,6 +284,7 @@ void Runtime::loop() noexcept {
   cycle_.watch({});
   report_.page_faults = page_faults() - faults_before;
   report_.allocations = allocations.count();
+  if (options_.desk != nullptr) options_.desk->close();
   finished_.store(true);
 }
 

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "hg/runtime/control_thread.h"
 #include "hg/runtime/pace.h"
 #include "hg/runtime/schedule.h"
+#include "hg/signals/operator_desk.h"
 #include "hg/signals/state.h"
 #include "hg/signals/timed_changes.h"
 #include "hg/signals/timed_panel.h"
@@ -47,6 +49,8 @@ struct Options {
   /// Once true, the same as request_stop(), without anybody in between; for a signal handler.
   /// nullptr: there is none.
   const std::atomic<bool>* stop = nullptr;
+  /// What pages do: looked at in every cycle, and open while there are any. nullptr: no page.
+  OperatorDesk* desk = nullptr;
   /// For a machine that does not wait for its controller: the cycle is told how many cycles were
   /// late, so that too many of them stop the device, and none is made up for. Only where the
   /// thread is real time; of an ordinary one, and with a device that waits, they are counted.
@@ -96,17 +100,24 @@ class Runtime {
   [[nodiscard]] bool change(const ParameterChange& change) noexcept {
     return parameter_changes_.push(change);
   }
-  /// The same thread: the panel of a simulated operator, for one cycle after the other. False when
-  /// too many are waiting.
-  [[nodiscard]] bool set_panel(const SafetyPanel& panel) noexcept { return panels_.push(panel); }
+  /// The same thread: presses the reset button of a simulated safety controller, for one cycle.
+  void press_reset() noexcept { is_reset_pressed_.store(true); }
   /// The same thread: asks for a mode, in one of the next cycles. From the first one on nothing is
-  /// asked for by itself, except to stop at the end. False when too many are waiting.
-  [[nodiscard]] bool request(ModeRequest request) noexcept { return requests_.push(request); }
+  /// asked for by itself, except to stop at the end. `stops` is what the desk counted when it was
+  /// wanted: one that has been stopped since is left out. False when too many are waiting.
+  [[nodiscard]] bool request(ModeRequest request, std::uint32_t stops = 0) noexcept {
+    return requests_.push({request, stops});
+  }
   /// The same thread: slow motion and pause. Not for a device that is a clock of its own, nor for
   /// a real one: it does not wait.
   Pace& pace() noexcept { return pace_; }
 
  private:
+  struct Request {
+    ModeRequest request = ModeRequest::kNone;
+    std::uint32_t stops = 0;  ///< that the desk had counted
+  };
+
   void loop() noexcept;
   bool stop_is_requested() const noexcept;
   void run_cycle(Sample& sample) noexcept HG_NONBLOCKING;
@@ -114,6 +125,8 @@ class Runtime {
   void release(CommandFrame& command) noexcept;
   ParameterChange next_change() noexcept;
   void operate(const Sample& sample, bool is_stopping, OperatorFrame& input) noexcept;
+  void play_script(const TimedPanel& due) noexcept;
+  void look_at_desk(OperatorFrame& input) noexcept;
   void prepare_thread() noexcept;
   Schedule new_schedule() const noexcept;
   void wait_for_turn(Schedule& schedule) noexcept;
@@ -128,11 +141,15 @@ class Runtime {
   SpscRing<Sample> samples_;
   SpscRing<HandTarget> hand_targets_;
   SpscRing<ParameterChange> parameter_changes_;
-  SpscRing<SafetyPanel> panels_;
-  SpscRing<ModeRequest> requests_;
+  SpscRing<Request> requests_;
+  std::atomic<bool> is_reset_pressed_{false};
   TimedChanges changes_;
   TimedPanels timed_panels_;
-  bool is_operated_ = false;  ///< somebody else asks for modes
+  SafetyPanel timed_panel_;   ///< the last one that was due
+  SafetyPanel script_panel_;  ///< what the script holds, without what pages do
+  std::uint32_t stops_ = 0, holds_ = 0, script_releases_ = 0;  ///< of the desk, that were seen
+  std::optional<std::uint32_t> request_stops_;  ///< of the page's request for the next cycle
+  bool is_operated_ = false;                    ///< somebody else asks for modes
   Pace pace_;
   double speed_ = 1.0;                       ///< that the schedule was made for
   std::int64_t read_ns_ = 0, stage_ns_ = 0;  ///< end of the last read() and of the last stage

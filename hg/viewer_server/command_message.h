@@ -15,13 +15,21 @@ namespace hg::viewer_server {
 template <>
 inline constexpr auto kWords<CommandName> = std::to_array<std::string_view>(
     {"pause", "resume", "step", "speed", "restart", "stop", "scenario", "twin", "law", "person",
-     "set", "seek", "panel", "mode"});
+     "set", "seek", "panel", "mode", "emergency_stop", "release_stop"});
 
 struct HandMessage {
   bool active = false;
   Vec3 p_B{};
   std::optional<Quaternion> quaternion_B_H;
   double press = 0.0;
+};
+
+struct HoldMessage {
+  double sequence = 0.0;
+};
+
+struct WelcomeMessage {
+  std::uint64_t page = 0;
 };
 
 struct CommandMessage {
@@ -51,6 +59,12 @@ template <>
 inline constexpr Interface kInterface<HandMessage> = {
     "Hand", "page -> program, and what the program made of it (inside a frame)"};
 template <>
+inline constexpr Interface kInterface<HoldMessage> = {
+    "Hold", "page -> program: it is there and holds what it holds, every 30 ms"};
+template <>
+inline constexpr Interface kInterface<WelcomeMessage> = {
+    "Welcome", "program -> page: the first message of a connection"};
+template <>
 inline constexpr Interface kInterface<CommandMessage> = {"Command", "page -> program"};
 template <>
 inline constexpr Interface kInterface<AnswerMessage> = {
@@ -70,13 +84,26 @@ void fields(Archive& a, T& hand) {
   a("press", hand.press, "of the lever, 0..1");
 }
 
+template <typename Archive, Is<HoldMessage> T>
+void fields(Archive& a, T& hold) {
+  a.type("hold");
+  a("sequence", hold.sequence, "rises within a connection; others are left out");
+}
+
+template <typename Archive, Is<WelcomeMessage> T>
+void fields(Archive& a, T& welcome) {
+  a.type("welcome");
+  a("page", welcome.page, "number of this connection");
+}
+
 template <typename Archive, Is<CommandMessage> T>
 void fields(Archive& a, T& command) {
   a.type("command");
   a("id", command.id, "0..2^53, comes back in the answer");
   a("command", command.command);
   a("name", command.name, "of what is chosen or set; else empty");
-  a("value", command.value, "step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value");
+  a("value", command.value,
+    "step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value, release_stop: page");
 }
 
 template <typename Archive, Is<AnswerMessage> T>

@@ -17,11 +17,16 @@ enum class CommandName : std::uint8_t {
   kTwin,
   kLaw,
   kPerson,
-  kSet,    ///< the setting `name` gets `value`
-  kSeek,   ///< second `value` of a recording
-  kPanel,  ///< button, switch or key `name` of the operator's panel: `value` 1 on, 0 off
-  kMode,   ///< asks for the mode `name`: arm, run, run_alone, hold or reset
+  kSet,            ///< the setting `name` gets `value`
+  kSeek,           ///< second `value` of a recording
+  kPanel,          ///< switch or key `name` of the operator's panel: `value` 1 on, 0 off
+  kMode,           ///< asks for the mode `name`: arm, run, run_alone, hold or reset
+  kEmergencyStop,  ///< presses it
+  kReleaseStop,    ///< takes back what page `value` has pressed; 0: the script
 };
+
+/// Whole numbers of JavaScript: 2^53.
+inline constexpr double kLargestPage = 9007199254740992;
 
 /// One that has been read and whose numbers are finite; `page` and `id` go back with the answer.
 struct Command {
@@ -30,6 +35,8 @@ struct Command {
   CommandName name = CommandName::kPause;
   std::string argument;
   double value = 0.0;
+  std::uint32_t stops = 0;  ///< that the operator's desk had counted when it came
+  bool is_done = false;     ///< followed and answered by the server already: to be told only
 };
 
 }  // namespace hg::viewer_server

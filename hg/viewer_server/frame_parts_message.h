@@ -1,6 +1,7 @@
 /// What a Frame is made of. See message.h for the rules.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -60,8 +61,9 @@ struct SafetyMessage {
   bool is_autonomous = false;
   int fault = 0;
   std::string cause, release, warning;
-  bool emergency_stop = false, operator_enable = true, override_key = false;
-  bool person_in_field = false;
+  bool emergency_stop = false;
+  std::vector<std::uint64_t> stop_pressed_by;
+  bool operator_enable = true, override_key = false, person_in_field = false;
 };
 
 struct RunStateMessage {
@@ -168,7 +170,8 @@ void fields(Archive& a, T& safety) {
   a("cause", safety.cause, "with value and limit; empty = none");
   a("release", safety.release, "what has to happen before a reset");
   a("warning", safety.warning, "the rule nearest to its threshold; empty = all are far from it");
-  a("emergency_stop", safety.emergency_stop, "the button is pressed");
+  a("emergency_stop", safety.emergency_stop, "a button is pressed");
+  a("stop_pressed_by", safety.stop_pressed_by, "pages, which may be gone; 0 = the script");
   a("operator_enable", safety.operator_enable, "the switch is held");
   a("override_key", safety.override_key, "the key is turned");
   a("person_in_field", safety.person_in_field, "besides the user");

@@ -18,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hg/signals/operator_desk.h"
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/commands.h"
 #include "hg/viewer_server/hand_target_box.h"
@@ -36,8 +37,14 @@ using Request = http::request<http::empty_body>;
 constexpr auto kRequestTimeout = std::chrono::seconds(15);
 constexpr std::size_t kMaxEvents = 200;   // kept for pages that connect later, and per page
 constexpr std::size_t kMaxCommands = 64;  // that wait for the program
+constexpr std::size_t kMaxDone = 256;     // with those that are only to be told
 
 inline std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// Of the clock of OperatorDesk.
+inline std::int64_t now_ns() {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 /// Of the clock that all times of the server are measured with.
 inline double now_s() {
@@ -63,6 +70,8 @@ struct Hub {
   Listener listener;
   std::string token;
   AssetTable assets;
+  OperatorDesk* desk = nullptr;       ///< nullptr: there is no operator
+  std::vector<CommandName> followed;  ///< of the scene
   std::set<std::shared_ptr<Page>> pages;
   std::deque<Text> events;
   Text newest_frame;

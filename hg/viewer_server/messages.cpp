@@ -14,10 +14,10 @@
 namespace hg::viewer_server {
 namespace {
 
-constexpr double kFarthestTarget = 100.0;        // m; beyond any device
-constexpr double kLargestId = 9007199254740992;  // 2^53: whole numbers of JavaScript
-constexpr std::size_t kLongestName = 200;        // bytes
-constexpr int kFirstPriority = 2;                // 1 is the coupling of hand and twin
+constexpr double kFarthestTarget = 100.0;  // m; beyond any device
+constexpr double kLargestId = kLargestPage;
+constexpr std::size_t kLongestName = 200;  // bytes
+constexpr int kFirstPriority = 2;          // 1 is the coupling of hand and twin
 
 template <typename Vector>
 std::vector<double> list(const Vector& vector) {
@@ -177,10 +177,12 @@ bool is_in_range(const HandMessage& hand) {
   return hand.press >= 0.0 && hand.press <= 1.0;
 }
 
+bool is_id(double number) {
+  return number == std::floor(number) && number >= 0.0 && number <= kLargestId;
+}
+
 bool is_in_range(const CommandMessage& command) {
-  const bool is_whole = command.id == std::floor(command.id);
-  const bool is_id = is_whole && command.id >= 0.0 && command.id <= kLargestId;
-  return is_id && command.name.size() <= kLongestName;
+  return is_id(command.id) && command.name.size() <= kLongestName;
 }
 
 }  // namespace
@@ -222,7 +224,8 @@ SafetyMessage safety_message(const View& view) {
           safety.cause,
           safety.release,
           safety.warning,
-          safety.panel.emergency_stop,
+          safety.panel.emergency_stop || !safety.stop_pressed_by.empty(),
+          safety.stop_pressed_by,
           safety.panel.operator_enable,
           safety.panel.override_key,
           safety.panel.person_in_field};
@@ -277,6 +280,8 @@ std::string encode_answer(double id, std::string_view reason) {
   return to_json(AnswerMessage{id, reason.empty(), std::string(reason)});
 }
 
+std::string encode_welcome(std::uint64_t page) { return to_json(WelcomeMessage{page}); }
+
 DecodeStatus decode(std::string_view text, PageMessage& message) {
   const auto json = nlohmann::json::parse(text, nullptr, false);  // no exceptions: discarded
   HandMessage hand;
@@ -284,6 +289,11 @@ DecodeStatus decode(std::string_view text, PageMessage& message) {
     if (!is_in_range(hand)) return DecodeStatus::kOutOfRange;
     message.hand = hand_target(hand);
     return DecodeStatus::kHand;
+  }
+  HoldMessage hold;
+  if (JsonReader(json).read(hold)) {
+    message.hold = hold.sequence;
+    return is_id(hold.sequence) ? DecodeStatus::kHold : DecodeStatus::kOutOfRange;
   }
   CommandMessage command;
   if (!JsonReader(json).read(command)) return DecodeStatus::kMalformed;
@@ -296,6 +306,7 @@ DecodeStatus decode(std::string_view text, PageMessage& message) {
 std::string_view refusal_text(DecodeStatus status) noexcept {
   switch (status) {
     case DecodeStatus::kHand:
+    case DecodeStatus::kHold:
     case DecodeStatus::kCommand:
       return "";
     case DecodeStatus::kMalformed:

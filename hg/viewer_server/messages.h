@@ -33,17 +33,22 @@ std::string encode_values(const std::vector<double>& values);
 /// `reason` is empty when the command was accepted.
 std::string encode_answer(double id, std::string_view reason);
 
-enum class DecodeStatus { kHand, kCommand, kMalformed, kOutOfRange };
+/// The first message of a connection: the number of its page.
+std::string encode_welcome(std::uint64_t page);
 
-/// What a page has sent; which of the two counts says the status.
+enum class DecodeStatus { kHand, kHold, kCommand, kMalformed, kOutOfRange };
+
+/// What a page has sent; which of them counts says the status.
 struct PageMessage {
   HandTarget hand;
+  double hold = 0.0;  ///< its sequence number
   Command command;
 };
 
-/// Refuses anything but exactly the fields of Hand or Command and numbers that are not finite
+/// Refuses anything but exactly the fields of Hand, Hold or Command and numbers that are not finite
 /// (kMalformed); positions beyond 100 m, press outside 0..1, quaternions that are not of length 1,
-/// names of more than 200 bytes, and ids that are not whole numbers of 0..2^53 (kOutOfRange).
+/// names of more than 200 bytes, and ids or sequence numbers that are not whole numbers of 0..2^53
+/// (kOutOfRange).
 [[nodiscard]] DecodeStatus decode(std::string_view text, PageMessage& message);
 
 /// For the page, of a message that was refused.

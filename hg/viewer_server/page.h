@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "hg/viewer_server/desk_commands.h"
 #include "hg/viewer_server/hub.h"
 #include "hg/viewer_server/message_rate.h"
 #include "hg/viewer_server/messages.h"
@@ -76,6 +77,8 @@ class Page : public std::enable_shared_from_this<Page> {
       refuse(-1.0, refusal_text(DecodeStatus::kMalformed));
     } else if (const DecodeStatus status = decode(text, message); status == DecodeStatus::kHand) {
       hub_.put_hand(number, message.hand);
+    } else if (status == DecodeStatus::kHold) {
+      hold(message.hold);
     } else if (status == DecodeStatus::kCommand) {
       listen(message.command);
     } else {
@@ -86,10 +89,31 @@ class Page : public std::enable_shared_from_this<Page> {
 
   void listen(Command& command) {
     command.page = number;
+    if (hub_.desk != nullptr) {
+      const auto refusal = obey_at_desk(command, hub_.followed, now_ns(), *hub_.desk);
+      command.stops = hub_.desk->stops();
+      if (refusal) return tell_done(command, *refusal);
+    }
     if (!command_rate_.admit(now_s())) {
       refuse(command.id, "too many commands");
     } else if (!hub_.put_command(command)) {
       refuse(command.id, "too many commands are waiting");
+    }
+  }
+
+  // what has been followed already is told where there is room for it
+  void tell_done(Command& command, const std::string& refusal) {
+    if (!refusal.empty()) return refuse(command.id, refusal);
+    command.is_done = true;
+    hub_.put_command(command);
+    tell(std::make_shared<const std::string>(encode_answer(command.id, {})));
+  }
+
+  void hold(double sequence) {
+    if (sequence <= last_hold_) {
+      ++hub_.refused;
+    } else if (last_hold_ = sequence; hub_.desk != nullptr) {
+      hub_.desk->hear(number, now_ns());
     }
   }
 
@@ -122,6 +146,7 @@ class Page : public std::enable_shared_from_this<Page> {
   beast::flat_buffer buffer_;
   MessageRate rate_{kMessageRate_Hz};
   MessageRate command_rate_{kCommandRate_Hz};
+  double last_hold_ = -1.0;  // sequence number
   std::deque<Text> events_;  // waiting
   Text frame_;               // waiting
   Text current_;             // on its way

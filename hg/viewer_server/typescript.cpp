@@ -117,7 +117,8 @@ std::string typescript_text() {
           SceneSurfaceMessage, Choices, Choice, SettingMessage>(text);
   add_all<FrameMessage, FeltLimitMessage, ActiveLimitMessage, ContactMessage, BudgetMessage,
           WrenchMessage, SingularityMessage, RunStateMessage, SafetyMessage, GhostMessage>(text);
-  add_all<HandMessage, CommandMessage, AnswerMessage, ValuesMessage, EventMessage>(text);
+  add_all<HandMessage, HoldMessage, CommandMessage, WelcomeMessage, AnswerMessage, ValuesMessage,
+          EventMessage>(text);
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hg/signals/frames.h"
 #include "hg/signals/state.h"
@@ -45,6 +46,7 @@ struct SafetyView {
   std::string release;  ///< what has to happen before a reset
   std::string warning;  ///< the rule nearest to its threshold; empty = all is far from it
   SafetyPanel panel;
+  std::vector<std::uint64_t> stop_pressed_by;  ///< of OperatorDesk; filled by the server
 };
 
 struct View {

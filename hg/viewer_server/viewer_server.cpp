@@ -39,6 +39,7 @@ void Hub::join(const std::shared_ptr<Page>& page) {
   page->number = next_page++;
   pages.insert(page);
   clients = pages.size();
+  page->tell(std::make_shared<const std::string>(encode_welcome(page->number)));
   for (const Text& event : events) page->tell(event);
   if (values) page->tell(values);
   if (newest_frame) page->show(newest_frame);
@@ -47,6 +48,7 @@ void Hub::join(const std::shared_ptr<Page>& page) {
 void Hub::leave(const std::shared_ptr<Page>& page) {
   pages.erase(page);
   clients = pages.size();
+  if (desk != nullptr) desk->leave(page->number);
   const std::lock_guard lock(input_mutex);
   hand.leave(page->number);
 }
@@ -58,7 +60,7 @@ void Hub::put_hand(std::uint64_t page, const HandTarget& target) {
 
 bool Hub::put_command(Command command) {
   const std::lock_guard lock(input_mutex);
-  if (commands.size() == kMaxCommands) return false;
+  if (commands.size() >= (command.is_done ? kMaxDone : kMaxCommands)) return false;
   commands.push_back(std::move(command));
   return true;
 }
@@ -139,6 +141,7 @@ struct ViewerServer::Impl {
         acceptor(listen_on(context, options)),
         retry(context) {
     hub.listener = {options.address, acceptor.local_endpoint().port()};
+    hub.desk = options.desk;
     hub.token = options.token.empty() ? random_token() : options.token;
     hub.assets = load_page(options.page);
     take({scene, assets_of(scene, update_rate_hz)});
@@ -197,6 +200,7 @@ struct ViewerServer::Impl {
                   [](const auto& asset) { return asset.first.starts_with("/models/"); });
     for (auto& [path, asset] : scene.assets) hub.assets[path] = std::move(asset);
     limits = scene.scene.limits;
+    hub.followed = scene.scene.commands;
     hub.events.clear();
     hub.newest_frame.reset();
     const std::lock_guard lock(hub.input_mutex);
@@ -219,6 +223,9 @@ struct ViewerServer::Impl {
     if (outbox.values) {
       hub.values = to_text(std::move(*outbox.values));
       for (const auto& page : hub.pages) page->tell(hub.values);
+    }
+    if (outbox.view && hub.desk != nullptr) {
+      outbox.view->safety.stop_pressed_by = hub.desk->stop_pressed_by();
     }
     if (outbox.view) hub.show(to_text(encode_frame(*outbox.view, limits, hub.pages.size())));
   }

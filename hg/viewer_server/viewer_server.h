@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "hg/signals/frames.h"
+#include "hg/signals/operator_desk.h"
 #include "hg/viewer_server/commands.h"
 #include "hg/viewer_server/scene.h"
 #include "hg/viewer_server/view.h"
@@ -30,6 +31,9 @@ struct Options {
   std::filesystem::path page;         ///< folder of the built page, with index.html
   double update_rate_hz = 60.0;       ///< frames per second sent to each client, > 0
   std::string token;                  ///< hexadecimal digits; empty = 128 random bits
+  /// What pages do to the run at once, without take_commands(). Outlives the server; nullptr:
+  /// nothing does.
+  OperatorDesk* desk = nullptr;
 };
 
 /// What happened so far; `clients` is the present number.
@@ -74,7 +78,7 @@ class ViewerServer {
   /// A page that closes or is silent for 0.5 s gives one last, inactive target.
   bool take_hand_target(HandTarget& target);
 
-  /// The commands since the last call, in their order. Each wants one answer().
+  /// The commands since the last call, in their order. Each that is not done wants one answer().
   std::vector<Command> take_commands();
 
   /// `refusal` says why the command was not followed; empty: it was.

@@ -5,6 +5,7 @@ import os
 import re
 import socket
 import struct
+import threading
 import time
 
 PATIENCE_S = 30.0
@@ -27,6 +28,9 @@ class Page:
         assert head.startswith(b"HTTP/1.1 101"), head
         self.last_id = 0
         self.skipped = []  # messages other than frames that nobody has asked for yet
+        self.sending = threading.Lock()
+        self.number = self.next("welcome")["page"]
+        self.sequence = 0  # of the last heartbeat
 
     def close(self):
         self.socket.close()
@@ -79,8 +83,15 @@ class Page:
         mask = os.urandom(4)
         length = bytes([0x80 | len(data)]) if len(data) < 126 else b"\xfe" + struct.pack(
             ">H", len(data))
-        self.socket.sendall(bytes([0x80 | opcode]) + length + mask +
-                            bytes(byte ^ mask[i % 4] for i, byte in enumerate(data)))
+        with self.sending:
+            self.socket.sendall(bytes([0x80 | opcode]) + length + mask +
+                                bytes(byte ^ mask[i % 4] for i, byte in enumerate(data)))
+
+    def hold(self, until):
+        """Tells every 30 ms that it is there, until the event is set; from another thread."""
+        while not until.wait(0.03):
+            self.sequence += 1
+            self.send({"type": "hold", "sequence": self.sequence})
 
     def next(self, kind, when=lambda message: True):
         """The next message of this type for which `when` holds; others but frames are kept."""

@@ -1,5 +1,6 @@
 // Puts the page together: store, scene, panels, hand.
 
+import { TICK_MS } from "./data/freshness";
 import { Store } from "./data/store";
 import { Drag } from "./hand/drag";
 import { HandControls } from "./hand/hand_controls";
@@ -19,6 +20,7 @@ import { Layers } from "./scene/layers";
 import { type Pixel, Stage } from "./scene/stage";
 import { World } from "./scene/world";
 import { connection_text } from "./text";
+import { StopButton } from "./stop_button";
 import { current_theme, on_theme_change, start_theme } from "./theme";
 import { Toolbar, build_view_tools } from "./toolbar";
 import { Headset } from "./xr/headset";
@@ -33,6 +35,7 @@ export interface PageState {
   readonly frames_per_second: number;
   readonly frames: number; // since the page was loaded
   readonly is_connected: boolean;
+  readonly page: number; // of this connection
   readonly is_drawn: boolean; // the scene of the newest run
   readonly unreadable: number;
   readonly is_hand_tracked: boolean; // by a headset
@@ -60,12 +63,17 @@ class Page {
   private readonly hand_controls = new HandControls(this.drag);
   private readonly headset: Headset;
   private readonly tabs = new Tabs();
+  private readonly stop = new StopButton(this.store.commands, () => this.tabs.show("safety"));
   private readonly toolbar = new Toolbar(this.store, () => this.tabs.show("safety"));
   private readonly replay = new ReplayBar(this.store);
   private readonly feel = new FeelPanel(element("feel"));
   private readonly joints = new JointsPanel(element("joints"));
   private readonly change = new ChangePanel(element("change"), this.store.commands);
-  private readonly safety = new SafetyPanel(element("safety"), this.store.commands);
+  private readonly safety = new SafetyPanel(
+    element("safety"),
+    this.store.commands,
+    () => this.store.page,
+  );
   private readonly events = new EventsPanel(element("events"));
   private readonly notices = new Notices();
   private readonly plots = new PlotDrawer(element("plots"), this.store);
@@ -86,6 +94,10 @@ class Page {
     this.stage.on_resize = () => this.cameras.resize();
     this.listen();
     this.stage.run((now_ms) => this.draw(now_ms));
+    setInterval(() => this.show_link(), TICK_MS); // also while nothing is drawn
+    document.addEventListener("visibilitychange", () => {
+      if (document.hidden) this.store.holder.end();
+    });
   }
 
   private listen(): void {
@@ -103,6 +115,7 @@ class Page {
       on_connection: (is_connected) => {
         if (!is_connected) this.let_go();
         show_connection(is_connected);
+        this.show_link();
       },
       on_refusal: (refusal) => {
         this.change.refuse(refusal);
@@ -130,6 +143,7 @@ class Page {
     this.let_go(); // the handle is elsewhere now
     const is_first = this.world === null;
     this.toolbar.furnish(scene);
+    this.stop.furnish(scene);
     this.replay.furnish(scene);
     this.joints.furnish(scene);
     this.change.furnish(scene);
@@ -149,6 +163,14 @@ class Page {
     this.world = world;
     world.paint(current_theme());
     this.stage.scene.add(world.root);
+  }
+
+  // What has to be right whatever is drawn: whether it is known, the state, and the stop.
+  private show_link(): void {
+    const { link, frame, page } = this.store;
+    document.body.dataset.stale = String(link !== "open");
+    this.toolbar.show_mode(frame, link);
+    this.stop.show(link, frame?.safety ?? null, page);
   }
 
   private note(frame: Frame): void {
@@ -176,6 +198,7 @@ class Page {
   }
 
   private show_panels(scene: Scene, frame: Frame): void {
+    this.show_link();
     this.toolbar.show(frame);
     this.replay.show(scene, frame);
     if (!element("feel").hidden) this.feel.show(scene, frame);
@@ -206,6 +229,9 @@ class Page {
       },
       get is_connected() {
         return store.is_connected;
+      },
+      get page() {
+        return store.page;
       },
       get is_drawn() {
         return is_drawn();

@@ -24,7 +24,7 @@ export interface Scene {
   surfaces: SceneSurface[];
   choices: Choices;
   settings: Setting[];
-  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode")[]; // that are followed
+  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "release_stop")[]; // that are followed
   refusal: string; // why others are not; empty = all are
 }
 
@@ -219,7 +219,8 @@ export interface Safety {
   cause: string; // with value and limit; empty = none
   release: string; // what has to happen before a reset
   warning: string; // the rule nearest to its threshold; empty = all are far from it
-  emergency_stop: boolean; // the button is pressed
+  emergency_stop: boolean; // a button is pressed
+  stop_pressed_by: number[]; // pages, which may be gone; 0 = the script
   operator_enable: boolean; // the switch is held
   override_key: boolean; // the key is turned
   person_in_field: boolean; // besides the user
@@ -243,13 +244,25 @@ export interface Hand {
   press: number; // of the lever, 0..1
 }
 
+// page -> program: it is there and holds what it holds, every 30 ms
+export interface Hold {
+  type: "hold";
+  sequence: number; // rises within a connection; others are left out
+}
+
 // page -> program
 export interface Command {
   type: "command";
   id: number; // 0..2^53, comes back in the answer
-  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode";
+  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "release_stop";
   name: string; // of what is chosen or set; else empty
-  value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value
+  value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value, release_stop: page
+}
+
+// program -> page: the first message of a connection
+export interface Welcome {
+  type: "welcome";
+  page: number; // number of this connection
 }
 
 // program -> page: one for each Command, and for what was refused

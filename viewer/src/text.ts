@@ -1,5 +1,6 @@
 // Numbers and states in words. Pure functions.
 
+import type { Link } from "./data/freshness";
 import type { Frame, Scene, SceneJoint } from "./messages";
 
 export function time_text(time_s: number): string {
@@ -83,6 +84,24 @@ export function note_text(frame: Frame, is_run: boolean): string {
   }
   if (cause !== "") return cause;
   return frame.is_clamped ? "The device lost track of its reference and catches up." : "";
+}
+
+export interface ModeText {
+  text: string;
+  kind: string; // how it is painted
+}
+
+// The state in the bar. What is not known any more is not told.
+export function mode_text(frame: Frame | null, link: Link): ModeText {
+  if (link === "lost") return { text: "no connection", kind: "unknown" };
+  if (link === "silent") return { text: "no data", kind: "unknown" };
+  if (!frame) return { text: "-", kind: "off" };
+  if (frame.run_state.is_over) return { text: "over", kind: "over" };
+  const is_alone = frame.mode === "running" && frame.safety.is_autonomous;
+  if (frame.run_state.is_paused) {
+    return { text: is_alone ? "paused, alone" : "paused", kind: "paused" };
+  }
+  return is_alone ? { text: "running alone", kind: "alone" } : { text: frame.mode, kind: frame.mode };
 }
 
 export function connection_text(is_connected: boolean): string {

@@ -1,6 +1,7 @@
 // The bar at the top: scenario, time, state, and how the scene is seen.
 
 import type { CommandName } from "./data/commands";
+import type { Link } from "./data/freshness";
 import type { Store } from "./data/store";
 import { type Icon, icon } from "./icons";
 import type { Frame, Scene } from "./messages";
@@ -9,7 +10,7 @@ import { fill_choice } from "./panels/change";
 import type { Cameras, View } from "./scene/cameras";
 import { VIEWS } from "./scene/cameras";
 import { LAYERS, LAYER_NAMES, type Layers } from "./scene/layers";
-import { note_text, time_text } from "./text";
+import { mode_text, note_text, time_text } from "./text";
 import { choose_theme, current_theme, on_theme_change } from "./theme";
 
 const RUN_SPEEDS = [0.1, 0.25, 0.5, 1];
@@ -88,13 +89,17 @@ export class Toolbar {
     if (this.store.frame) this.show_speed(this.store.frame.run_state.speed);
   }
 
+  show_mode(frame: Frame | null, link: Link): void {
+    const mode = element("mode");
+    const { text, kind } = mode_text(frame, link);
+    write(mode, text);
+    mode.dataset.mode = kind;
+    const title = link === "open" && frame ? frame.mode_text : "";
+    if (mode.title !== title) mode.title = title;
+  }
+
   show(frame: Frame): void {
     const { run_state } = frame;
-    const mode = element("mode");
-    const text = run_state.is_over ? "over" : run_state.is_paused ? "paused" : frame.mode;
-    write(mode, text);
-    mode.dataset.mode = text;
-    if (mode.title !== frame.mode_text) mode.title = frame.mode_text;
     write(element("time"), time_text(frame.time_s));
     this.show_note(frame);
     if (this.is_paused !== run_state.is_paused) this.show_pause(run_state.is_paused);

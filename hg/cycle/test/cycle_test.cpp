@@ -352,6 +352,24 @@ TEST(Cycle, AFaultLastsUntilItIsResetAndThenRunsAgain) {
   EXPECT_EQ(loop.record.fault.code, FaultCode::kNone);
 }
 
+TEST(Cycle, TheEmergencyStopOfThePanelStopsADeviceThatKnowsNothingOfIt) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[0] = 5.0;
+  loop.run(300);
+  loop.operator_input.panel.emergency_stop = true;
+  expect_controlled_stop(loop, FaultCode::kEmergencyStop, Stop::kSs1);
+  loop.operator_input.request = ModeRequest::kReset;
+  loop.step();
+  EXPECT_EQ(loop.record.refusal, Refusal::kCauseRemains);
+  loop.operator_input.request = ModeRequest::kNone;
+  loop.operator_input.panel.emergency_stop = false;
+  loop.run(10);
+  reset(loop);
+  loop.start_running();
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kNone);
+}
+
 TEST(Cycle, AnEmergencyStopThatCutsTheSensorsOffDoesNotSpoilTheEstimation) {
   Loop loop;
   loop.start_running();

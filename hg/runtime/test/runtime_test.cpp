@@ -3,15 +3,18 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <semaphore>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "hg/core/error.h"
 #include "hg/rendering/test/test_models.h"
+#include "hg/runtime/monotonic_clock.h"
 #include "hg/runtime/schedule.h"
 
 namespace hg::runtime {
@@ -20,7 +23,7 @@ namespace {
 const VectorM kPosture = rendering::posture({0.3, 1.5, -0.6, 1.3, 0.2, 0.4});
 
 // Follows perfectly; the gantry stands still whatever it is told.
-class StillDevice final : public device::Device {
+class StillDevice : public device::Device {
  public:
   StillDevice() {
     sensors_.q_m = kPosture;
@@ -231,6 +234,134 @@ TEST(Runtime, TheLastCommandDisablesTheDrives) {
     EXPECT_EQ(parts.device.last_command.dq_p.norm(), 0.0);
     EXPECT_EQ(parts.device.last_command.dq_m.norm(), 0.0);
   }
+}
+
+// Cycle by cycle, with what pages do in between: the device keeps the time, and waits.
+class PagesAtWork : public ::testing::Test {
+ protected:
+  class Device : public StillDevice {
+   public:
+    void read(SensorFrame& sensors) noexcept override {
+      if (!is_free) turns.acquire();
+      StillDevice::read(sensors);
+    }
+    bool is_clock() const noexcept override { return true; }
+    std::counting_semaphore<> turns{0};
+    std::atomic<bool> is_free = false;
+  };
+
+  void begin(std::vector<TimedPanel> script = {}) {
+    runtime_ = std::make_unique<Runtime>(
+        Options{.panel = std::move(script), .stays_in_fault = true, .desk = &desk_}, *parts_.cycle,
+        device_);
+    runtime_->start();
+  }
+  // The sample of the next cycle.
+  const Sample& next() {
+    device_.turns.release();
+    while (!runtime_->pop(*sample_)) std::this_thread::yield();
+    return *sample_;
+  }
+  Mode after(int cycles) {
+    for (int i = 1; i < cycles; ++i) next();
+    return next().record.mode;
+  }
+  void TearDown() override {
+    device_.is_free = true;
+    device_.turns.release();
+    runtime_.reset();
+  }
+
+  Parts parts_;
+  Device device_;
+  OperatorDesk desk_;
+  std::unique_ptr<Runtime> runtime_;
+  std::unique_ptr<Sample> sample_ = std::make_unique<Sample>();
+};
+
+// The cycle that waits for its sample has not looked yet: the stop is in force in that one.
+TEST_F(PagesAtWork, AnEmergencyStopIsInForceInTheNextCycle) {
+  begin();
+  ASSERT_EQ(after(100), Mode::kRunning);
+  desk_.press_stop(1);
+  const Sample& sample = next();
+  EXPECT_TRUE(sample.operator_input.panel.emergency_stop);
+  EXPECT_EQ(sample.record.mode, Mode::kFault);
+  EXPECT_EQ(sample.record.fault.code, FaultCode::kEmergencyStop);  // at rest, so at once
+  ASSERT_EQ(after(500), Mode::kFault);
+  EXPECT_TRUE(runtime_->request(ModeRequest::kReset, desk_.stops()));
+  EXPECT_EQ(after(3), Mode::kFault) << "the stop is pressed";
+  EXPECT_TRUE(desk_.release_stop(1));
+  EXPECT_TRUE(runtime_->request(ModeRequest::kNone, desk_.stops()));
+  EXPECT_TRUE(runtime_->request(ModeRequest::kReset, desk_.stops()));
+  EXPECT_EQ(after(4), Mode::kReady);
+  EXPECT_EQ(after(100), Mode::kReady) << "nothing is asked for by itself after a stop";
+}
+
+TEST_F(PagesAtWork, HoldAndSwitchesStopItInTheNextCycle) {
+  begin();
+  ASSERT_EQ(after(100), Mode::kRunning);
+  desk_.ask_to_hold();
+  EXPECT_EQ(next().record.mode, Mode::kStopping);
+  ASSERT_EQ(after(500), Mode::kArmed);
+  desk_.set(OperatorDesk::Input::kOperatorEnable, 1, false, now_ns());
+  EXPECT_FALSE(next().operator_input.panel.operator_enable);
+}
+
+TEST_F(PagesAtWork, WhatWasAskedForBeforeAStopStartsNothingAfterIt) {
+  begin();
+  ASSERT_EQ(after(100), Mode::kRunning);
+  desk_.ask_to_hold();
+  ASSERT_EQ(after(500), Mode::kArmed);
+  const std::uint32_t before = desk_.stops();
+  // a stop overtakes what the program has not handed on yet
+  desk_.set(OperatorDesk::Input::kOverrideKey, 1, false, now_ns());
+  EXPECT_TRUE(runtime_->request(ModeRequest::kNone, before));
+  EXPECT_TRUE(runtime_->request(ModeRequest::kRun, before));
+  EXPECT_EQ(after(100), Mode::kArmed);
+  EXPECT_TRUE(runtime_->request(ModeRequest::kRun, desk_.stops()));
+  EXPECT_EQ(after(3), Mode::kRunning);
+}
+
+TEST_F(PagesAtWork, TheRunEndsWhenAPageAsksForIt) {
+  begin();
+  ASSERT_EQ(after(100), Mode::kRunning);
+  desk_.ask_to_end();
+  device_.is_free = true;
+  device_.turns.release();
+  runtime_->join();
+  EXPECT_FALSE(desk_.is_open());
+  EXPECT_FALSE(device_.last_command.enable);
+}
+
+TEST_F(PagesAtWork, AScriptsStopIsReleasedByNameAndPressedAgainByTheScriptOnly) {
+  SafetyPanel pressed;
+  pressed.emergency_stop = true;
+  begin({{0.1, pressed}, {0.3, pressed, ModeRequest::kNone}, {0.4, {}}, {0.5, pressed}});
+  const auto is_pressed = [&](int cycles) {
+    after(cycles);
+    return sample_->operator_input.panel.emergency_stop;
+  };
+  ASSERT_FALSE(is_pressed(50));
+  ASSERT_TRUE(is_pressed(100));
+  EXPECT_EQ(desk_.stop_pressed_by(), std::vector<std::uint64_t>{OperatorDesk::kScript});
+  EXPECT_TRUE(desk_.release_stop(OperatorDesk::kScript));
+  EXPECT_FALSE(is_pressed(1));
+  EXPECT_FALSE(is_pressed(200)) << "what is not given in the script stays as it is";
+  EXPECT_TRUE(is_pressed(200));
+}
+
+// Wall time: a page that is silent, while cycles go on.
+TEST_F(PagesAtWork, WhatASilentPageHoldsIsLetGoByTheLoop) {
+  begin();
+  after(100);
+  desk_.set(OperatorDesk::Input::kOverrideKey, 1, true, now_ns());
+  const std::int64_t taken_ns = now_ns();
+  while (next().operator_input.panel.override_key) {
+    ASSERT_LT(now_ns() - taken_ns, 60 * kNanoseconds);
+  }
+  EXPECT_GT(desk_.stops(), 0u);
+  EXPECT_EQ(sample_->record.mode, Mode::kRunning) << "by hand the key does not matter";
 }
 
 TEST(Schedule, MakesUpForAShortDelayAndGivesUpALongOne) {

@@ -312,6 +312,23 @@ TEST(DecodeCommand, RefusesIdsAndNamesOutOfRange) {
   EXPECT_EQ(decode(command.dump(), message), DecodeStatus::kOutOfRange);
 }
 
+TEST(DecodeHold, TakesWholeSequenceNumbersOnly) {
+  const Json good = {{"type", "hold"}, {"sequence", 12}};
+  expect_interface(good, "Hold", "hold");
+  expect_interface(Json::parse(encode_welcome(3)), "Welcome", "welcome");
+  PageMessage message;
+  ASSERT_EQ(decode(good.dump(), message), DecodeStatus::kHold);
+  EXPECT_EQ(message.hold, 12.0);
+  for (const char* text :
+       {R"({"type":"hold","sequence":-1})", R"({"type":"hold","sequence":0.5})"}) {
+    EXPECT_EQ(decode(text, message), DecodeStatus::kOutOfRange) << text;
+  }
+  for (const char* text : {R"({"type":"hold"})", R"({"type":"hold","sequence":"1"})",
+                           R"({"type":"hold","sequence":1,"more":1})"}) {
+    EXPECT_EQ(decode(text, message), DecodeStatus::kMalformed) << text;
+  }
+}
+
 TEST(DecodeHand, ReadsWhatThePageSends) {
   const Json json = {{"type", "hand"},
                      {"active", true},

@@ -48,16 +48,19 @@ class ViewerServerTest : public ::testing::Test {
                                     folder_.path() / "page" / "link.txt");
   }
 
-  Options make_options() const {
+  Options make_options() {
     Options options;
     options.page = folder_.path() / "page";
     options.update_rate_hz = 1e6;  // tests publish faster than pages are shown
+    options.desk = &desk_;
     return options;
   }
 
   static Scene make_scene() {
     Scene scene;
     scene.title = "Test";
+    scene.commands = {CommandName::kStop, CommandName::kPanel, CommandName::kMode,
+                      CommandName::kEmergencyStop, CommandName::kReleaseStop};
     scene.twin.urdf = "hg/viewer_server/test/hinge.urdf";
     scene.twin.joints = {{"hinge", JointType::kRevolute}};
     scene.box = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -2, -1.4), Eigen::Vector3d(1, 2, -0.4));
@@ -75,6 +78,9 @@ class ViewerServerTest : public ::testing::Test {
     const std::string answer = client->upgrade(with_token("/ws"), host_ + origin_);
     EXPECT_TRUE(answer.starts_with("HTTP/1.1 101")) << answer;
     EXPECT_TRUE(eventually([&] { return server_.counters().clients > before; }));
+    const auto welcome = nlohmann::json::parse(client->read_message().text);
+    EXPECT_EQ(welcome["type"], "welcome");
+    newest_page_ = welcome["page"];
     return client;
   }
 
@@ -107,9 +113,11 @@ class ViewerServerTest : public ::testing::Test {
   }
 
   const TemporaryFolder folder_;
+  OperatorDesk desk_;
   ViewerServer server_;
   std::uint16_t port_ = 0;
   std::string token_, host_, origin_;
+  std::uint64_t newest_page_ = 0;  ///< its number
 };
 
 TEST_F(ViewerServerTest, TheLinkHasATokenOf128Bits) {
@@ -203,6 +211,156 @@ TEST_F(ViewerServerTest, EventsReachAlsoPagesThatConnectLater) {
   EXPECT_NE(first->read_message().text.find("\"unlocked\""), std::string::npos);
   const auto late = open_page();
   EXPECT_NE(late->read_message().text.find("\"unlocked\""), std::string::npos);
+}
+
+// Pages that stop and hold, while the program takes no command.
+class DeskTest : public ViewerServerTest {
+ protected:
+  DeskTest() { desk_.open(); }
+
+  static std::string command(const std::string& name, const std::string& argument, double value) {
+    return nlohmann::json{
+        {"type", "command"}, {"id", 1}, {"command", name}, {"name", argument}, {"value", value}}
+        .dump();
+  }
+  // Why not; empty: done.
+  std::string ask(RawClient& page, const std::string& name, const std::string& argument,
+                  double value = 0.0) const {
+    page.send_message(command(name, argument, value));
+    return next(page, "answer")["reason"];
+  }
+  static void hold(RawClient& page, int sequence) {
+    page.send_message(R"({"type":"hold","sequence":)" + std::to_string(sequence) + "}");
+  }
+  static std::int64_t now_ns() {
+    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+  SafetyPanel look() {
+    SafetyPanel panel;
+    desk_.look(now_ns(), panel);
+    return panel;
+  }
+  // How long it is held, with `heartbeat` called every 20 ms; gives up after `most`.
+  double held_s(double most, const std::function<void()>& heartbeat) {
+    const std::int64_t begin = now_ns();
+    while (look().override_key && 1e-9 * static_cast<double>(now_ns() - begin) < most) {
+      heartbeat();
+      for (int i = 0; i < 10 && look().override_key; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      }
+    }
+    return 1e-9 * static_cast<double>(now_ns() - begin);
+  }
+};
+
+TEST_F(DeskTest, StopsAreInForceWithoutTheProgram) {
+  const auto page = open_page();
+  EXPECT_EQ(ask(*page, "emergency_stop", ""), "");
+  EXPECT_TRUE(look().emergency_stop);
+  EXPECT_EQ(ask(*page, "panel", "operator_enable", 0.0), "");
+  EXPECT_FALSE(look().operator_enable);
+  EXPECT_EQ(ask(*page, "mode", "hold"), "");
+  EXPECT_EQ(desk_.holds(), 1u);
+  page->send_message(command("stop", "", 0.0));  // answered by the program
+  EXPECT_TRUE(eventually([&] { return desk_.end_was_asked(); }));
+  EXPECT_EQ(desk_.stops(), 4u);
+
+  const std::vector<Command> told = server_.take_commands();
+  ASSERT_EQ(told.size(), 4u);
+  EXPECT_TRUE(told[0].is_done && told[1].is_done && told[2].is_done);
+  EXPECT_FALSE(told[3].is_done);
+  EXPECT_EQ(told[0].page, newest_page_);
+  EXPECT_EQ(told[1].stops, 2u);
+}
+
+TEST_F(DeskTest, AStopIsNeverOneCommandTooMany) {
+  const auto page = open_page();
+  for (int i = 0; i < 120; ++i) page->send_message(kPause);
+  ASSERT_TRUE(eventually([&] { return server_.counters().refused > 20; }));
+  page->send_message(command("emergency_stop", "", 0.0));
+  EXPECT_TRUE(eventually([&] { return look().emergency_stop; }));
+}
+
+TEST_F(DeskTest, AnotherPageReleasesAStopByNameOnly) {
+  const auto first = open_page();
+  const auto number = static_cast<double>(newest_page_);
+  const auto second = open_page();
+  const auto other = static_cast<double>(newest_page_);
+  EXPECT_NE(number, other);
+  EXPECT_EQ(ask(*first, "emergency_stop", ""), "");
+  EXPECT_NE(ask(*second, "release_stop", "", other), "");
+  EXPECT_NE(ask(*second, "release_stop", "", 0.0), "");
+  EXPECT_NE(ask(*second, "release_stop", "", -1.0), "");
+  EXPECT_NE(ask(*second, "release_stop", "", 0.5), "");
+  EXPECT_NE(ask(*second, "panel", "emergency_stop", 0.0), "");
+  EXPECT_TRUE(look().emergency_stop);
+  publish(1.0);
+  const nlohmann::json safety = next(*second, "frame")["safety"];
+  EXPECT_EQ(safety["stop_pressed_by"], nlohmann::json({number}));
+  EXPECT_EQ(safety["emergency_stop"], true);
+  first->close();
+  ASSERT_TRUE(eventually([&] { return server_.counters().clients == 1; }));
+  EXPECT_TRUE(look().emergency_stop);
+  EXPECT_EQ(ask(*second, "release_stop", "", number), "");
+  EXPECT_FALSE(look().emergency_stop);
+}
+
+TEST_F(DeskTest, FortyEditsOfTwoPagesNeverReleaseTheStop) {
+  const auto first = open_page();
+  const auto second = open_page();
+  EXPECT_EQ(ask(*first, "emergency_stop", ""), "");
+  for (int i = 0; i < 40; ++i) {
+    const bool is_on = i % 4 < 2;
+    RawClient& page = i % 2 == 0 ? *first : *second;
+    EXPECT_EQ(ask(page, "panel", "person_in_field", is_on ? 1.0 : 0.0), "");
+    const SafetyPanel panel = look();
+    EXPECT_TRUE(panel.emergency_stop) << i;
+    EXPECT_EQ(panel.person_in_field, is_on) << i;
+  }
+}
+
+TEST_F(DeskTest, WhatAPageHoldsIsLetGoWhenItIsSilent) {
+  const auto page = open_page();
+  int sequence = 0;
+  // a page that a busy machine keeps from being heard loses what it holds, too: try again
+  bool has_held = false;
+  for (int i = 0; i < 50 && !has_held; ++i) {
+    EXPECT_EQ(ask(*page, "panel", "override_key", 1.0), "");
+    has_held = held_s(0.5, [&] { hold(*page, ++sequence); }) > 0.45;
+  }
+  EXPECT_TRUE(has_held) << "heartbeats hold it beyond 100 ms";
+  EXPECT_LT(held_s(60.0, [] {}), 50.0) << "silence without closing lets go";
+  EXPECT_EQ(desk_.take_lost() & 2u, 2u);
+}
+
+TEST_F(DeskTest, OldSequenceNumbersHoldNothing) {
+  const auto page = open_page();
+  for (int sequence = 1; sequence <= 50; ++sequence) hold(*page, sequence);
+  EXPECT_EQ(ask(*page, "panel", "override_key", 1.0), "");
+  const std::uint64_t refused = server_.counters().refused;
+  int old = 0;
+  EXPECT_LT(held_s(60.0, [&] { hold(*page, old = old % 50 + 1); }), 50.0);
+  EXPECT_TRUE(eventually([&] { return server_.counters().refused > refused; }));
+  EXPECT_FALSE(look().override_key);
+}
+
+TEST_F(DeskTest, AClosedPageLetsGoAtOnce) {
+  const auto page = open_page();
+  EXPECT_EQ(ask(*page, "panel", "operator_enable", 1.0), "");
+  page->close();
+  ASSERT_TRUE(eventually([&] { return server_.counters().clients == 0; }));
+  SafetyPanel panel;
+  desk_.look(0, panel);  // no time has passed
+  EXPECT_FALSE(panel.operator_enable);
+}
+
+TEST_F(DeskTest, BetweenRunsOnlyTheEmergencyStopIsTaken) {
+  const auto page = open_page();
+  desk_.close();
+  EXPECT_NE(ask(*page, "panel", "operator_enable", 0.0), "");
+  EXPECT_NE(ask(*page, "mode", "hold"), "");
+  EXPECT_EQ(ask(*page, "emergency_stop", ""), "");
+  EXPECT_TRUE(look().emergency_stop);
 }
 
 TEST_F(ViewerServerTest, AHandTargetArrivesAndSilenceMakesItInactive) {
@@ -410,6 +568,7 @@ TEST_F(ViewerServerTest, FramesAreThinnedToTheUpdateRate) {
     server.publish(view);
   }
   server.announce_event(0.0, "end", "");
+  page.read_message();  // the welcome
   const std::string first = page.read_message().text;
   const std::string second = page.read_message().text;
   EXPECT_NE((first + second).find("\"time_s\":1,"), std::string::npos) << first << second;

@@ -1,6 +1,6 @@
 // The WebSocket to the program: hands messages on, reconnects by itself.
 
-import type { Command, Hand } from "../messages";
+import type { Command, Hand, Hold } from "../messages";
 import { type Message, read_message } from "./read_message";
 
 const RETRY_MS = 1000;
@@ -23,7 +23,7 @@ export class Connection {
   }
 
   // False when there is nobody to take it.
-  send(message: Hand | Command): boolean {
+  send(message: Hand | Hold | Command): boolean {
     if (!this.is_connected) return false;
     this.socket!.send(JSON.stringify(message));
     return true;

@@ -1,8 +1,8 @@
 // Reads what comes over the socket. Nothing that is not as messages.ts says reaches the views.
 
-import type { Answer, Event, Frame, Values } from "../messages";
+import type { Answer, Event, Frame, Values, Welcome } from "../messages";
 
-export type Message = Frame | Event | Answer | Values;
+export type Message = Welcome | Frame | Event | Answer | Values;
 
 type Test = (value: unknown) => boolean;
 
@@ -60,6 +60,7 @@ const FRAME: Record<keyof Omit<Frame, "type">, Test> = {
 };
 
 const FIELDS: Record<Message["type"], Record<string, Test>> = {
+  welcome: { page: is_number },
   frame: FRAME,
   event: { run: is_number, time_s: is_number, name: is_text, text: is_text },
   answer: { id: is_number, is_accepted: is_flag, reason: is_text },

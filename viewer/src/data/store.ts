@@ -3,7 +3,9 @@
 import type { Event, Frame, Scene, Values } from "../messages";
 import { Commands, type Refusal } from "./commands";
 import { Connection } from "./connection";
+import { Freshness, type Link, TICK_MS } from "./freshness";
 import { Table, history_of, row_of } from "./history";
+import { Holder } from "./holder";
 import { RateMeter } from "./rate_meter";
 import type { Message } from "./read_message";
 
@@ -27,8 +29,11 @@ export class Store {
   history = new Table(["time_s"]);
   private values: Values | null = null; // may come before their scene
   unreadable = 0; // messages that were not as expected
+  page = -1; // number of this connection
   readonly commands: Commands;
   readonly connection: Connection;
+  readonly holder: Holder;
+  private readonly freshness = new Freshness();
   private readonly rate = new RateMeter();
   private readonly listeners: Listener[] = [];
   private is_loading = false;
@@ -39,14 +44,27 @@ export class Store {
       on_refused: (reason) => this.note_unreadable(reason),
       on_state: (is_connected) => this.note_state(is_connected),
     });
+    this.holder = new Holder((hold) => this.connection.send(hold));
     this.commands = new Commands(
-      (command) => this.connection.send(command),
+      (command) => {
+        const is_sent = this.connection.send(command);
+        if (is_sent) this.holder.note(command);
+        return is_sent;
+      },
       (refusal) => this.tell((listener) => listener.on_refusal?.(refusal)),
     );
+    setInterval(() => this.freshness.tick(), TICK_MS);
   }
 
   get is_connected(): boolean {
     return this.connection.is_connected;
+  }
+
+  // Whether what the frame says is still so.
+  get link(): Link {
+    const state = this.frame?.run_state;
+    const is_expected = state !== undefined && !state.is_paused && !state.is_over;
+    return this.freshness.link(this.is_connected, is_expected);
   }
 
   frames_per_second(): number {
@@ -66,6 +84,7 @@ export class Store {
     if (message.type === "frame") this.take_frame(message);
     else if (message.type === "event") this.tell((listener) => listener.on_event?.(message));
     else if (message.type === "values") this.take_values(message);
+    else if (message.type === "welcome") this.page = message.page;
     else this.commands.take(message);
   }
 
@@ -80,6 +99,7 @@ export class Store {
     const problem = mismatch(this.scene, frame);
     if (problem) return this.note_unreadable(problem);
     this.rate.tick(performance.now() / 1000);
+    this.freshness.note();
     this.frame = frame;
     this.note(this.scene, frame);
     this.tell((listener) => listener.on_frame?.(frame));
@@ -99,6 +119,8 @@ export class Store {
 
   private note_state(is_connected: boolean): void {
     this.commands.forget();
+    this.holder.end();
+    this.freshness.note();
     if (is_connected) {
       this.tell((listener) => listener.on_events_cleared?.()); // all are sent again
       void this.load_scene(); // the program may be another one now

@@ -3,12 +3,13 @@
 import type { Commands } from "../data/commands";
 import type { Frame, Safety, Scene } from "../messages";
 import { make, make_button, make_check_box, write } from "../page";
+import { presser_text } from "../stop_button";
 
-type Switch = "emergency_stop" | "operator_enable" | "override_key" | "person_in_field";
+type Switch = "operator_enable" | "override_key" | "person_in_field";
 
 const SWITCHES: readonly [Switch, string, string][] = [
-  ["operator_enable", "Enabling switch held", "The operator lets go: braked, then drives off"],
-  ["override_key", "Override key", "May move slowly with nobody at the handle"],
+  ["operator_enable", "Enabling switch held", "While this page is open and seen. Let go: braked, then drives off"],
+  ["override_key", "Override key", "May move slowly with nobody at the handle, while this page is open and seen"],
   ["person_in_field", "Somebody in the field", "Of the scanner, besides the user"],
 ];
 
@@ -42,16 +43,31 @@ export class SafetyPanel {
   private readonly panel = make("div", "safety-panel");
   private readonly requests = make("div", "buttons");
   private readonly by_request = new Map<Request, HTMLButtonElement>();
+  private readonly question = make("p");
+  private readonly answers = make("div", "buttons safety-answers");
+  private pressed_by: number[] = [];
   private is_pressed = false;
+  private asks = false; // whether to release what somebody else has pressed
 
-  constructor(section: HTMLElement, commands: Commands) {
+  constructor(
+    section: HTMLElement,
+    private readonly commands: Commands,
+    private readonly own_page: () => number,
+  ) {
     const flip = (name: Switch, is_on: boolean): void => {
       commands.send("panel", name, is_on ? 1 : 0);
     };
     this.stop = make_button("Emergency stop", "Press it, and press it again to pull it out", () =>
-      flip("emergency_stop", !this.is_pressed),
+      this.press_or_release(),
     );
     this.stop.className = "emergency-stop";
+    this.answers.append(
+      make_button("Release it", "The stop of somebody else", () => {
+        this.pull_out(this.pressed_by[0] ?? 0);
+      }),
+      make_button("Leave it", "It stays pressed", () => this.ask(false)),
+    );
+    this.ask(false);
     for (const [name, text, title] of SWITCHES) {
       const box = make_check_box(text, name === "operator_enable", (is_on) => flip(name, is_on));
       box.title = title;
@@ -66,6 +82,8 @@ export class SafetyPanel {
     section.append(
       make("h2", "", "Safety"),
       this.stop, // where no text moves it
+      this.question,
+      this.answers,
       this.mode,
       make("div", "safety-texts", this.how, this.cause, this.release, this.warning),
       this.panel,
@@ -75,7 +93,8 @@ export class SafetyPanel {
   }
 
   furnish(scene: Scene): void {
-    this.stop.hidden = this.panel.hidden = !scene.commands.includes("panel");
+    this.stop.hidden = !scene.commands.includes("emergency_stop");
+    this.panel.hidden = !scene.commands.includes("panel");
     this.requests.hidden = !scene.commands.includes("mode");
   }
 
@@ -89,6 +108,9 @@ export class SafetyPanel {
     write(this.release, safety.release === "" ? "" : `Release: ${safety.release}.`);
     write(this.warning, safety.warning === "" ? "" : `Near: ${safety.warning}`);
     this.is_pressed = safety.emergency_stop;
+    this.pressed_by = safety.stop_pressed_by;
+    if (!this.is_pressed) this.ask(false);
+    if (this.asks) this.ask(true); // it may be somebody else's by now
     write(this.stop, this.is_pressed ? "Emergency stop: pull it out" : "Emergency stop");
     this.stop.setAttribute("aria-pressed", String(this.is_pressed));
     for (const [name, box] of this.boxes) {
@@ -97,5 +119,24 @@ export class SafetyPanel {
     this.stop.dataset.next = String(this.is_pressed);
     const next = this.is_pressed || run_state.is_over ? undefined : NEXT[mode];
     for (const [name, button] of this.by_request) button.dataset.next = String(name === next);
+  }
+
+  // What somebody else has pressed is released by name, after a question.
+  private press_or_release(): void {
+    if (!this.is_pressed) this.commands.send("emergency_stop");
+    else if (this.pressed_by.includes(this.own_page())) this.pull_out(this.own_page());
+    else this.ask(true);
+  }
+
+  private pull_out(page: number): void {
+    this.ask(false);
+    this.commands.send("release_stop", "", page);
+  }
+
+  private ask(asks: boolean): void {
+    this.asks = asks;
+    this.question.hidden = this.answers.hidden = !asks;
+    const by = presser_text(this.pressed_by[0] ?? 0, this.own_page());
+    write(this.question, `The stop was pressed by ${by}. Release it?`);
   }
 }

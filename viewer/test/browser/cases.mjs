@@ -220,7 +220,7 @@ export async function operator_stops_it_and_starts_it_again({ browser, program, 
     page_comes_to(page, (part) => document.querySelector("#safety").textContent.includes(part), text);
   expect(await comes_true(page, (f) => f.mode === "running"), "somebody holds it: it runs");
   await page.click("#tab-safety");
-  await press("Emergency stop");
+  await page.locator("#safety .emergency-stop").click();
   const stops = await comes_true(page, (f) => f.mode === "fault" && f.safety.fault === 102);
   expect(stops, "the emergency stop ends in a fault");
   expect(await says("Release: the button is pulled out"), "the page says what releases it");
@@ -246,6 +246,128 @@ export async function operator_stops_it_and_starts_it_again({ browser, program, 
     expect(await comes_true(page, (f) => f.mode === mode), `${name} leads to ${mode}`);
   }
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+}
+
+// With the key wherever the focus is, and by touch on a phone.
+export async function stop_is_always_at_hand({ browser, program, expect }) {
+  const { page, problems, close } = await open_page(browser, cheap(program.link));
+  if (!(await follows(page, "emergency_stop"))) return close();
+  const { page: phone, close: close_phone } = await open_page(browser, cheap(program.link), {
+    viewport: { width: 360, height: 640 },
+    hasTouch: true,
+  });
+  for (const [name, view] of [
+    ["wide", page],
+    ["360 px wide", phone],
+  ]) {
+    const { width, height } = view.viewportSize();
+    const box = await view.locator("#emergency-stop").boundingBox();
+    const is_seen =
+      box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height;
+    const size = `${box.width.toFixed(0)} x ${box.height.toFixed(0)}`;
+    expect(is_seen && box.width >= 100 && box.height >= 44, `${name}: the stop is seen, ${size} px`);
+  }
+  const own = await page.evaluate(() => window.hapticgiant.page);
+  const bar = () => page.textContent("#emergency-stop");
+  const pull_out = async () => {
+    await page.getByRole("button", { name: "Emergency stop: pull it out", exact: true }).click();
+    await comes_true(page, (f) => !f.safety.emergency_stop);
+  };
+  await page.click("#tab-change");
+  for (const focus of [".setting input[type=text]", "#scenario", ".setting input[type=range]"]) {
+    await page.locator(`${focus} >> visible=true`).first().focus();
+    await page.keyboard.press("Escape");
+    const stops = await comes_true(page, (f) => f.safety.emergency_stop && f.safety.fault === 102);
+    expect(stops, `Esc stops it, focus in ${focus}`);
+    expect((await frame_of(page)).safety.stop_pressed_by[0] === own, "a stop of this page");
+    await page_comes_to(page, () => document.querySelector("#emergency-stop").ariaPressed === "true");
+    expect(/STOPPED.*this page/.test(await bar()), `the bar says so: ${await bar()}`);
+    const told = await page.textContent("#stop-announcement");
+    expect(/Emergency stop pressed/.test(told), `it is announced: ${told}`);
+    await page.click("#tab-safety");
+    await pull_out();
+    await page.click("#tab-change");
+  }
+  await phone.tap("#emergency-stop");
+  expect(await comes_true(page, (f) => f.safety.emergency_stop), "a tap on the phone presses it");
+  await close_phone();
+  await page.click("#tab-safety");
+  await page.getByRole("button", { name: "Emergency stop: pull it out", exact: true }).click();
+  const asked = await page.textContent("#safety");
+  expect(/was pressed by page \d+\. Release it\?/.test(asked), "who pressed it is asked about");
+  expect((await frame_of(page)).safety.emergency_stop, "it is still pressed");
+  await page.getByRole("button", { name: "Release it", exact: true }).click();
+  expect(await comes_true(page, (f) => !f.safety.emergency_stop), "and released then");
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+}
+
+export async function old_figures_are_marked({ browser, program, expect }) {
+  let [cut, is_silent] = [null, false];
+  const { page, close } = await open_page(browser, cheap(program.link), {}, async (opened) => {
+    await opened.routeWebSocket(/\/ws/, (socket) => {
+      if (cut) return; // a program that is gone
+      const server = socket.connectToServer();
+      server.onMessage((text) => is_silent || socket.send(text));
+      cut = () => Promise.all([socket.close(), server.close()]);
+    });
+  });
+  const can_stop = await follows(page, "emergency_stop");
+  const shown = () =>
+    page.evaluate(() => ({
+      mode: document.querySelector("#mode").textContent,
+      stop: document.querySelector("#stop-note").textContent,
+      filter: getComputedStyle(document.querySelector("#panel")).filter,
+    }));
+  const becomes = (mode) =>
+    page_comes_to(page, (text) => document.querySelector("#mode").textContent === text, mode);
+  expect((await shown()).filter === "none", "figures are in colour");
+  is_silent = true;
+  expect(await becomes("no data"), "nothing comes although it is connected: no data");
+  let now = await shown();
+  expect(now.filter === "grayscale(1)", "figures are grey");
+  expect(!can_stop || /may not reach/.test(now.stop), `the stop says: ${now.stop}`);
+  is_silent = false;
+  expect(await becomes("running"), "they come again: running");
+  await cut();
+  expect(await becomes("no connection"), "the connection is lost: no connection");
+  now = await shown();
+  expect(now.filter === "grayscale(1)", "figures are grey");
+  expect(!can_stop || /cannot reach/.test(now.stop), `the stop says: ${now.stop}`);
+  await close();
+}
+
+export async function a_hidden_page_holds_nothing({ browser, program, expect }) {
+  let holds = 0;
+  const { page, close } = await open_page(browser, cheap(program.link), {}, async (opened) => {
+    await opened.routeWebSocket(/\/ws/, (socket) => {
+      const server = socket.connectToServer();
+      server.onMessage((text) => socket.send(text));
+      socket.onMessage((text) => {
+        if (JSON.parse(text).type === "hold") holds += 1;
+        server.send(text);
+      });
+    });
+  });
+  if (!(await follows(page, "panel"))) return close();
+  expect(holds === 0, "a page that holds nothing says nothing");
+  await page.click("#tab-safety");
+  await page.getByText("Override key").click();
+  const many = async (count) => {
+    for (let i = 0; i < 600 && holds < count; i++) await page.waitForTimeout(50);
+    return holds >= count;
+  };
+  expect(await many(10), "with the key turned it says that it is there");
+  await page.evaluate(() => {
+    Object.defineProperty(document, "hidden", { value: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+  });
+  await page.waitForTimeout(500); // what is under way
+  const before = holds;
+  await page.waitForTimeout(500);
+  expect(holds === before, "hidden, it says nothing");
+  expect(await comes_true(page, (f) => !f.safety.override_key), "and the key is turned off");
   await close();
 }
 

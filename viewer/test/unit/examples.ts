@@ -133,6 +133,7 @@ export const frame: Frame = {
     release: "",
     warning: "",
     emergency_stop: false,
+    stop_pressed_by: [],
     operator_enable: true,
     override_key: false,
     person_in_field: false,

@@ -37,6 +37,8 @@ class FakeElement extends EventTarget {
   }
 }
 
+const OWN_PAGE = 4;
+
 describe("SafetyPanel", () => {
   let section: FakeElement;
   let panel: SafetyPanel;
@@ -49,8 +51,8 @@ describe("SafetyPanel", () => {
       createElement: (tag: string) => new FakeElement(tag),
     });
     section = new FakeElement("section");
-    panel = new SafetyPanel(section as never, { send } as unknown as Commands);
-    panel.furnish({ commands: ["panel", "mode"] } as unknown as Scene);
+    panel = new SafetyPanel(section as never, { send } as unknown as Commands, () => OWN_PAGE);
+    panel.furnish({ commands: ["panel", "mode", "emergency_stop"] } as unknown as Scene);
   });
 
   const show = (safety: Partial<Safety>, mode: Frame["mode"] = "running"): void => {
@@ -80,14 +82,43 @@ describe("SafetyPanel", () => {
     box.dispatchEvent(new Event("change"));
     const button = section.all().find((part) => part.textContent === "Emergency stop")!;
     button.dispatchEvent(new Event("click"));
-    show({ emergency_stop: true });
+    show({ emergency_stop: true, stop_pressed_by: [OWN_PAGE] });
     button.dispatchEvent(new Event("click"));
     expect(send.mock.calls).toEqual([
       ["panel", "operator_enable", 0],
-      ["panel", "emergency_stop", 1],
-      ["panel", "emergency_stop", 0],
+      ["emergency_stop"],
+      ["release_stop", "", OWN_PAGE],
     ]);
     expect(button.attributes.get("aria-pressed")).toBe("true");
+  });
+
+  it("asks before it releases what somebody else has pressed", () => {
+    const button = (text: string): FakeElement =>
+      section.all().find((part) => part.tag === "button" && part.textContent === text)!;
+    for (const [page, by] of [
+      [7, "page 7"],
+      [0, "the script"],
+    ] as const) {
+      const question = `The stop was pressed by ${by}. Release it?`;
+      send.mockClear();
+      show({ emergency_stop: true, stop_pressed_by: [page] });
+      expect(is_hidden("Release it")).toBe(true);
+      button("Emergency stop: pull it out").dispatchEvent(new Event("click"));
+      expect(send).not.toHaveBeenCalled();
+      expect(is_hidden("Release it")).toBe(false);
+      expect(texts()).toContain(question);
+      button("Leave it").dispatchEvent(new Event("click"));
+      expect(is_hidden("Release it")).toBe(true);
+      button("Emergency stop: pull it out").dispatchEvent(new Event("click"));
+      button("Release it").dispatchEvent(new Event("click"));
+      expect(send.mock.calls).toEqual([["release_stop", "", page]]);
+    }
+  });
+
+  it("keeps the stop for a device that has no simulated panel", () => {
+    panel.furnish({ commands: ["mode", "emergency_stop"] } as unknown as Scene);
+    expect(is_hidden("Emergency stop")).toBe(false);
+    expect(is_hidden("Override key")).toBe(true);
   });
 
   it("says that drives stay on after a stop, and go off after a fault", () => {
