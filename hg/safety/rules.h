@@ -146,6 +146,14 @@ inline constexpr Rule kRules[] = {
      .debounce = {.seconds = 0.02},
      .reaction = Stop::kSs1,
      .release = "at once; look what touches the arm, and tare the force sensor"},
+    {.code = FaultCode::kCommandsLost,
+     .name = "commands lost",
+     .meaning =
+         "No new command has reached the device for too long: lost or held up on the way, or "
+         "this computer was late.",
+     .threshold = "50 ms; 5 ms once the device does not move as commanded",
+     .reaction = Stop::kSto,
+     .release = "at once; look at the connection, and at what else this computer does"},
     {.code = FaultCode::kOperatorReleased,
      .name = "operator let go",
      .meaning = "The operator let go of the enabling switch, or squeezed it through.",

@@ -36,6 +36,8 @@ std::string_view to_string(FaultCode code) noexcept {
       return "joint torque that motion and user do not explain";
     case FaultCode::kMotorDeviates:
       return "motor does not give the torque it is told";
+    case FaultCode::kCommandsLost:
+      return "no new commands reached the device: lost or held up";
     case FaultCode::kOperatorReleased:
       return "operator released the enabling switch";
     case FaultCode::kScannerField:
