@@ -47,7 +47,7 @@ find_python() {  # prints the first python3 that can make a .venv
 }
 [ -n "$(find_python)" ] || need python3-venv
 for package in ca-certificates libyaml-cpp-dev libcli11-dev libfmt-dev \
-  libzstd-dev nlohmann-json3-dev pkg-config zlib1g-dev; do
+  libsodium-dev libzstd-dev nlohmann-json3-dev pkg-config zlib1g-dev; do
   need "$package"
 done
 if [ "$purpose" = test ]; then

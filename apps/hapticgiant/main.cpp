@@ -107,6 +107,10 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       "--device-address", run.device_address,
       "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one");
   command
+      ->add_option("--key-file", run.key_file,
+                   "secret that the remote device has, too (docs/device_protocol.md)")
+      ->needs("--device-address");
+  command
       ->add_option("--duration", run.duration_s,
                    "seconds; default: until the script has played, with a page at a terminal until "
                    "Ctrl-C")
@@ -217,9 +221,13 @@ void add_simulate(CLI::App& app, hg::apps::SimulateArguments& simulate, int& exi
       "  hapticgiant run door --device-address 127.0.0.1:4810");
   add_scenario_options(*command, simulate.world);
   command
-      ->add_option("--listen", simulate.listen,
-                   "HOST:PORT to serve at; whoever can reach it can move the device")
+      ->add_option(
+          "--listen", simulate.listen,
+          "HOST:PORT to serve at; whoever can reach it can move the device, or has to have "
+          "the key")
       ->required();
+  command->add_option("--key-file", simulate.key_file,
+                      "secret that clients must have, too (docs/device_protocol.md)");
   command->add_flag("--fast", simulate.is_fast,
                     "lock-step: each side waits for the other (run --fast) instead of real time");
   command->add_option("--capture", simulate.capture,

@@ -12,7 +12,8 @@ PreparedRun::PreparedRun(const RunArguments& a)
     device = std::make_unique<device::SimulatedDevice>(assembly::make_simulated_device(scenario));
     return;
   }
-  auto connected = connect_device(arguments.device_address, scenario, arguments.is_fast);
+  auto connected = connect_device(arguments.device_address, key_of(arguments.key_file), scenario,
+                                  arguments.is_fast);
   remote = connected.get();
   device = std::move(connected);
 }

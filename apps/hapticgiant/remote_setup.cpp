@@ -15,11 +15,17 @@ remote::Description describe(const config::Scenario& scenario, bool is_lock_step
           .is_lock_step = is_lock_step};
 }
 
+remote::Key key_of(const std::string& file) {
+  return file.empty() ? remote::Key() : remote::Key::from_file(file);
+}
+
 std::unique_ptr<remote::RemoteDevice> connect_device(const std::string& address,
+                                                     const remote::Key& key,
                                                      const config::Scenario& scenario,
                                                      bool is_lock_step) {
   const remote::ClientConfig config{.expected = describe(scenario, is_lock_step),
-                                    .client = std::string("hapticgiant run ") + kVersion};
+                                    .client = std::string("hapticgiant run ") + kVersion,
+                                    .key = key};
   return std::make_unique<remote::RemoteDevice>(remote::parse_address("--device-address", address),
                                                 config);
 }

@@ -12,8 +12,12 @@ namespace hg::apps {
 /// What the scenario's device must be, or is.
 remote::Description describe(const config::Scenario& scenario, bool is_lock_step);
 
+/// The key of --key-file; none without a file. Throws SetupError.
+remote::Key key_of(const std::string& file);
+
 /// The scenario's device behind `address` (HOST:PORT of --device-address). Throws SetupError.
 std::unique_ptr<remote::RemoteDevice> connect_device(const std::string& address,
+                                                     const remote::Key& key,
                                                      const config::Scenario& scenario,
                                                      bool is_lock_step);
 

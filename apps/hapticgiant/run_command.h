@@ -13,6 +13,7 @@ struct RunArguments {
   std::string program = "hapticgiant";  ///< as it was called, for commands that it prints
   ScenarioArguments world;
   std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
+  std::string key_file;        ///< of the key that it must have, too; empty = none
   /// Unset: until the script has played; on a terminal with a page until Ctrl-C.
   std::optional<double> duration_s;
   bool is_fast = false;   ///< as fast as it can, without page

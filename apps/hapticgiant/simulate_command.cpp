@@ -82,6 +82,10 @@ std::string closing_lines(const remote::SessionReport& report, double rate_Hz) {
        fmt::format("{:.3f} ms after the frame, at most {:.3f} ms; {} periods late",
                    1e3 * report.mean_answer_s, 1e3 * report.max_answer_s, report.overruns));
   line("link", evaluation::link_text(report.link));
+  if (!report.other.empty()) {
+    line("others", fmt::format("{} datagrams of somebody else ignored, the first from {}",
+                               report.link.from_others, report.other));
+  }
   return text;
 }
 
@@ -93,7 +97,8 @@ int simulate(const SimulateArguments& arguments) {
   const device::SimulatedDevice world = assembly::make_simulated_device(scenario);
   const remote::ServerConfig config{.actual = describe(scenario, arguments.is_fast),
                                     .server = std::string("hapticgiant simulate ") + kVersion,
-                                    .capture = arguments.capture};
+                                    .capture = arguments.capture,
+                                    .key = key_of(arguments.key_file)};
   remote::DeviceServer server(remote::parse_address("--listen", arguments.listen), config);
   const std::atomic<bool>& stop = watch_interruption();
   const BackgroundOutput output(stop);

@@ -11,6 +11,7 @@ namespace hg::apps {
 struct SimulateArguments {
   ScenarioArguments world;
   std::string listen;    ///< HOST:PORT
+  std::string key_file;  ///< of the key that clients must have; empty = none
   bool is_fast = false;  ///< lock-step instead of real time
   std::string capture;   ///< pcap file of all datagrams; empty = none
 };

@@ -7,15 +7,20 @@ device as it is, prints what its sensors say, and holds the arm where it is.
 """
 
 import argparse
+import hmac
 import math
+import os
+import pathlib
 import random
 import socket
+import stat
 import struct
 import time
 import zlib
 
 HELLO, WELCOME, READY, SENSORS, COMMAND, GOODBYE = range(1, 7)
 MAGIC, VERSION = 0x50444748, 2
+TAG_SIZE = 16
 HEADER = struct.Struct("<IHHIIQQ")  # magic, version, type, length, session, number, time_ns
 DESCRIPTION = "64sIIdII"  # device, n_p, n_m, rate_Hz, interface, is_lock_step
 FIELDS = {
@@ -28,24 +33,52 @@ FIELDS = {
 }
 
 
-def encode(kind, session, number, *values):
+def read_key(file):
+    """The shared key, which nobody but its owner may read."""
+    mode = stat.S_IMODE(os.stat(file).st_mode)
+    if mode & 0o077:
+        raise SystemExit(f"{file}: the key must be its owner's only, got mode {mode:04o}: chmod 600 {file}")
+    key = pathlib.Path(file).read_bytes()
+    if not 32 <= len(key) <= 4096:
+        raise SystemExit(f"{file}: a key has 32 to 4096 bytes, got {len(key)}")
+    return key
+
+
+def tag_of(key, data):
+    """What a datagram carries behind its fields; nothing without a key."""
+    return hmac.digest(key, data, "sha256")[:TAG_SIZE] if key else b""
+
+
+def encode(kind, session, number, *values, key=None):
     """One datagram."""
     fields = FIELDS[kind].pack(*values)
-    length = HEADER.size + len(fields) + 4
+    length = HEADER.size + len(fields) + (TAG_SIZE if key else 0) + 4
     data = HEADER.pack(MAGIC, VERSION, kind, length, session, number, time.monotonic_ns()) + fields
+    data += tag_of(key, data)
     return data + struct.pack("<I", zlib.crc32(data))
 
 
-def decode(data):
-    """Type, session, number and fields of a datagram; None if it is not a good one."""
+def decode_any(data, key):
+    """Type, session, number and fields of a datagram, and whether its tag is the one of the key, or
+    there is neither; None, False if it is not a good one."""
+    bad = None, False
     if len(data) < HEADER.size + 4 or zlib.crc32(data[:-4]) != struct.unpack("<I", data[-4:])[0]:
-        return None
+        return bad
     magic, version, kind, length, session, number, _ = HEADER.unpack_from(data)
     if (magic, version, length) != (MAGIC, VERSION, len(data)) or kind not in FIELDS:
-        return None
-    if len(data) != HEADER.size + FIELDS[kind].size + 4:
-        return None
-    return kind, session, number, FIELDS[kind].unpack_from(data, HEADER.size)
+        return bad
+    size = HEADER.size + FIELDS[kind].size
+    tag = data[size:-4]
+    if len(data) != size + len(tag) + 4 or len(tag) not in (0, TAG_SIZE):
+        return bad
+    message = kind, session, number, FIELDS[kind].unpack_from(data, HEADER.size)
+    return message, hmac.compare_digest(tag, tag_of(key, data[:size]))
+
+
+def decode(data, key=None):
+    """The same of a datagram with the right tag; None of all others."""
+    message, is_tag_good = decode_any(data, key)
+    return message if is_tag_good else None
 
 
 def text(field):
@@ -110,7 +143,8 @@ def pack_command(sequence, enable, q_m, dq_m, ddq_m, tau_m, dq_p):
 
 
 class Client:
-    def __init__(self, host, port, name):
+    def __init__(self, host, port, name, key=None):
+        self.key = key
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.connect((host, port))
         self.session = self.number = 0
@@ -130,11 +164,13 @@ class Client:
         for _ in range(30):
             self.send(HELLO, nonce, *description, name.encode())
             try:
-                message = decode(self.socket.recv(2048))
+                message, is_tag_good = decode_any(self.socket.recv(2048), self.key)
             except (TimeoutError, ConnectionRefusedError):
                 time.sleep(0.1)
                 continue
             if message and message[0] == WELCOME and message[3][0] == nonce:
+                if not is_tag_good and message[3][1] == 0:  # only a refusal needs none
+                    raise SystemExit("the device's answer is not of the key that was given (--key-file)")
                 self.session = message[1]
                 return message[3]
         raise SystemExit("no device answers there")
@@ -142,14 +178,14 @@ class Client:
     def send(self, kind, *values):
         self.number += 1
         self.last = (kind, values)
-        self.socket.send(encode(kind, self.session, self.number, *values))
+        self.socket.send(encode(kind, self.session, self.number, *values, key=self.key))
 
     def sensors(self, timeout_s=1.0):
         """The next frame; says the last message again when nothing comes."""
         self.socket.settimeout(0.02)
         for _ in range(int(timeout_s / 0.02)):
             try:
-                message = decode(self.socket.recv(2048))
+                message = decode(self.socket.recv(2048), self.key)
             except TimeoutError:
                 self.send(self.last[0], *self.last[1])
                 continue
@@ -166,9 +202,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("address", metavar="HOST:PORT")
     parser.add_argument("--seconds", type=float, default=5.0)
+    parser.add_argument("--key-file", help="the secret that the device has, too")
     arguments = parser.parse_args()
     host, port = arguments.address.rsplit(":", 1)
-    client = Client(host, int(port), "device_client.py")
+    key = read_key(arguments.key_file) if arguments.key_file else None
+    client = Client(host, int(port), "device_client.py", key)
     mode = "lock-step" if client.is_lock_step else "real time"
     print(f"{client.device}: {client.n_p} gantry axes, {client.n_m} joints, {client.rate_Hz:g} Hz, {mode}")
 

@@ -10,6 +10,7 @@ handle. Sensors are exact. Needs the packages hapticgiant and mujoco.
 
 import argparse
 import collections
+import secrets
 import socket
 import time
 
@@ -17,12 +18,13 @@ import mujoco
 import numpy as np
 
 import hapticgiant as hg
-from device_client import (COMMAND, GOODBYE, HELLO, READY, SENSORS, WELCOME, decode, encode, text,
-                           unpack_command, vector)
+from device_client import (COMMAND, GOODBYE, HELLO, READY, SENSORS, WELCOME, decode_any, encode, read_key,
+                           text, unpack_command, vector)
 
 STEP_S = 0.5e-3
 LATENCY_S, CURRENT_LAG_S = 1e-3, 0.5e-3  # from a command's frame to the motors
 TORQUE, LOCK_STEP_TIMEOUT_S, COMMAND_TIMEOUT_S = 2, 5.0, 0.05
+READY_TIMEOUT_S = 5.0  # a client that has said hello and no more keeps others out for as long
 # rotor inertia, stiffness, damping, Coulomb and viscous friction, peak torque, rad/s with full
 # torque and with none; sizes of joints m1..m6
 SIZES = {
@@ -212,17 +214,21 @@ def off(sequence):
 
 
 class Server:
-    def __init__(self, address, scenario, is_lock_step):
+    def __init__(self, address, scenario, is_lock_step, key=None):
         host, port = address.rsplit(":", 1)
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.bind((host, int(port)))
         self.scenario, self.is_lock_step = scenario, is_lock_step
         self.device = (b"HapticGiant", 2, 6, scenario.rate_Hz, TORQUE, int(is_lock_step))
-        self.client, self.session, self.number, self.seen = None, 1, 0, 0
+        self.client, self.session, self.number, self.seen = None, 0, 0, 0
+        self.sequence, self.key = 0, key  # of the newest frame that was sent
 
     def send(self, kind, *values):
         self.number += 1
-        self.socket.sendto(encode(kind, self.session, self.number, *values), self.client)
+        self.socket.sendto(encode(kind, self.session, self.number, *values, key=self.key),
+                           self.client)
+        if kind == SENSORS:
+            self.sequence = values[0]
 
     def receive(self, until_s):
         """Type and fields of the next message of the client; None when the time has come.
@@ -236,23 +242,27 @@ class Server:
                 data, sender = self.socket.recvfrom(2048)
             except (TimeoutError, BlockingIOError):
                 return None
-            message = decode(data)
+            message, is_tag_good = decode_any(data, self.key)
             if message and message[0] == HELLO:
-                self.answer(message[3], sender)
-            elif message and sender == self.client and message[1] == self.session:
+                self.answer(message[3], sender, is_tag_good)
+            elif is_tag_good and sender == self.client and message[1] == self.session:
                 if message[2] <= self.seen:  # a newer one has overtaken it
                     continue
                 self.seen, fields = message[2], message[3]
                 if message[0] == COMMAND:
                     n_p, n_m = self.device[1:3]
                     fields = unpack_command(fields, n_m, n_p, TORQUE)
+                    if fields and fields["sequence"] > self.sequence:  # of a frame that never was
+                        fields = None
                 if fields is not None:
                     return message[0], fields
 
-    def answer(self, hello, sender):
+    def answer(self, hello, sender, is_tag_good):
         actual = (self.device[0].ljust(64, b"\0"), *self.device[1:])
         refusal, reason = 0, b""
-        if self.client not in (None, sender):
+        if not is_tag_good:
+            refusal, reason = 4, b"its key is another one, or only one side has one (--key-file)"
+        elif self.client not in (None, sender):
             refusal, reason = 1, b"another client has the device"
         elif hello[1:7] != actual:
             refusal, reason = 3, b"this is the HapticGiant in MuJoCo: %d joints, %g Hz, torques, %s" % (
@@ -262,17 +272,17 @@ class Server:
         timeout_s = LOCK_STEP_TIMEOUT_S if self.is_lock_step else COMMAND_TIMEOUT_S
         self.number += 1
         self.socket.sendto(encode(WELCOME, 0 if refusal else self.session, self.number, hello[0],
-                                  refusal, 0, *actual, timeout_s, b"mujoco_device.py", reason),
-                           sender)
+                                  refusal, 0, *actual, timeout_s, b"mujoco_device.py", reason,
+                                  key=None if refusal else self.key), sender)
 
     def serve(self):
         """One session after the other."""
         while True:
             self.client, self.number, self.seen = None, 0, 0
-            self.session += 1
+            self.session = secrets.randbelow(2**32 - 1) + 1
             while self.client is None:
                 self.receive(time.monotonic() + 1.0)
-            message = self.receive(time.monotonic() + 30.0)
+            message = self.receive(time.monotonic() + READY_TIMEOUT_S)
             if message is None or message[0] != READY:
                 continue
             world = World(self.scenario)
@@ -326,11 +336,13 @@ def main():
     parser.add_argument("--listen", metavar="HOST:PORT", required=True)
     parser.add_argument("--fast", action="store_true", help="lock-step instead of real time")
     parser.add_argument("--rate-hz", type=float, default=1000.0)
+    parser.add_argument("--key-file", help="the secret that clients must have, too")
     arguments = parser.parse_args()
     scenario = hg.load_scenario(arguments.scenario)
     scenario.rate_Hz = arguments.rate_hz
     try:
-        Server(arguments.listen, scenario, arguments.fast).serve()
+        key = read_key(arguments.key_file) if arguments.key_file else None
+        Server(arguments.listen, scenario, arguments.fast, key).serve()
     except KeyboardInterrupt:
         pass
 

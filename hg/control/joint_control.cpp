@@ -15,6 +15,7 @@ namespace {
 constexpr double kLatencyMemory = 0.05;    // share of the newest sample in the mean
 constexpr double kLatencyMargin = 0.5;     // periods; with gains for one period two are unstable
 constexpr double kLateFor = 0.05;          // s; a device hears no command for as long, too
+constexpr double kDisturbedFor = 0.005;    // s; three frames that were filled in are less
 constexpr double kFeedforwardShare = 0.7;  // of the peak torque, the rest is for feedback
 constexpr double kUnexplained_s = 0.1;     // over which unexplained torques are averaged
 const double kFastestFilter = std::sqrt(5.0) - 1.0;  // rad per period, see largest_flatness_Hz()
@@ -113,9 +114,22 @@ void JointControl::listen(const SensorFrame& sensors, bool on, State& state) con
 }
 
 Fault JointControl::check_latency(const SensorFrame& sensors, const State& state) const noexcept {
-  if (state.late * config_.dt < kLateFor) return {};
-  return {FaultCode::kLatencyGrew, -1, age_of(sensors) * config_.dt,
-          (state.latency + kLatencyMargin) * config_.dt};
+  return state.late * config_.dt < kLateFor ? Fault{} : link_fault(sensors, state);
+}
+
+Fault JointControl::link_disturbance(const SensorFrame& sensors,
+                                     const State& state) const noexcept {
+  return state.late * config_.dt < kDisturbedFor ? Fault{} : link_fault(sensors, state);
+}
+
+// The command at work is from before it became late: none has come since. Where it is younger they
+// come, but late; where it is not late at all they come again.
+Fault JointControl::link_fault(const SensorFrame& sensors, const State& state) const noexcept {
+  const double age = age_of(sensors), most = state.latency + kLatencyMargin;
+  const bool has_grown = age < 0.0 || (age > most && age < state.late);
+  if (has_grown) return {FaultCode::kLatencyGrew, -1, age * config_.dt, most * config_.dt};
+  return {FaultCode::kCommandsLost, -1, std::max<double>(age, state.late) * config_.dt,
+          most * config_.dt};
 }
 
 void JointControl::rest(const ReferenceState& reference, State& state,

@@ -86,9 +86,11 @@ class JointControl {
   bool is_stable(const State& state) const noexcept {
     return state.latency * config_.dt <= config_.latency_max;
   }
-  /// kLatencyGrew when the command at work was half a period older than the latency that the gains
-  /// know in 50 ms more of samples than it was not; kNone otherwise.
+  /// kCommandsLost or kLatencyGrew when the command at work was half a period older than the
+  /// latency that the gains know in 50 ms more of samples than it was not; kNone otherwise.
   Fault check_latency(const SensorFrame& sensors, const State& state) const noexcept;
+  /// The same from 5 ms on: enough to be why the device does not move as commanded.
+  Fault link_disturbance(const SensorFrame& sensors, const State& state) const noexcept;
   /// Drives are off: the next step begins anew.
   void rest(const ReferenceState& reference, State& state, CommandFrame& command) const noexcept;
   /// Fills the manipulator part of `command`: `now` is the reference at the time of the sample,
@@ -105,6 +107,7 @@ class JointControl {
   struct Feedforward {
     VectorM tau, dtheta, ddtheta;
   };
+  Fault link_fault(const SensorFrame& sensors, const State& state) const noexcept;
   VectorM link_torque(const ReferenceState& reference, const RobotState& robot) noexcept;
   VectorM fed(const VectorM& tau) const noexcept {
     return tau.cwiseMin(feed_max_).cwiseMax(-feed_max_);

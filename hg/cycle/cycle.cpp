@@ -63,6 +63,25 @@ prepositioning::TargetConfig target_of(const prepositioning::Config& gantry,
   return target;
 }
 
+// What a device does that no longer hears its commands.
+bool follows_from_link(FaultCode code) noexcept {
+  switch (code) {
+    case FaultCode::kJointTorqueExceeded:
+    case FaultCode::kMotorDeviates:
+    case FaultCode::kTorqueUnexplained:
+    case FaultCode::kLimitExceeded:
+    case FaultCode::kSpeedExceeded:
+    case FaultCode::kTrackingLost:
+    case FaultCode::kSyncLost:
+    case FaultCode::kGantryExceeded:
+    case FaultCode::kGantryDeviates:
+    case FaultCode::kAccelerationExceeded:
+      return true;
+    default:
+      return false;
+  }
+}
+
 // Whether the end of a range or a surface pushes back. Limits of acceleration do so in every
 // oscillation, so that only limits that are near count.
 bool is_pushed_back(const CycleRecord& record) noexcept {
@@ -374,7 +393,11 @@ void Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
                                                   .turned = state_.estimation.inertial.turned},
                                                  state_.monitor);
   record.warning = verdict.warning;
-  if (state_.monitor.is_broken) safety::break_rule(verdict.fault, state_.supervisor);
+  if (!state_.monitor.is_broken) return;
+  const Fault link = follows_from_link(verdict.fault.code)
+                         ? control_.link_disturbance(sensors, state_.control)
+                         : Fault{};
+  safety::break_rule(link.code != FaultCode::kNone ? link : verdict.fault, state_.supervisor);
 }
 
 void Cycle::sanitise(CommandFrame& command, CycleRecord& record) noexcept {

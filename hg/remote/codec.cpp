@@ -35,7 +35,7 @@ std::uint32_t checksum(std::span<const std::byte> bytes) noexcept {
       ::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
 }
 
-Verdict read_header(std::span<const std::byte> datagram, Header& header) noexcept {
+Verdict read_header(std::span<const std::byte> datagram, Header& header, const Key& key) noexcept {
   if (datagram.size() < kHeaderSize + kChecksumSize) return Verdict::kTruncated;
   Decoder decoder(datagram.data());
   fields(decoder, header);
@@ -47,7 +47,14 @@ Verdict read_header(std::span<const std::byte> datagram, Header& header) noexcep
   if (header.version != kVersion) return Verdict::kWrongVersion;
   const std::size_t length = length_of(header.type);
   if (length == 0) return Verdict::kForeign;
-  return length == datagram.size() ? Verdict::kGood : Verdict::kTruncated;
+  const bool has_tag = datagram.size() == length + Key::kTagSize;
+  if (!has_tag && datagram.size() != length) return Verdict::kTruncated;
+  if (has_tag != key.is_set()) return Verdict::kForged;
+  if (!has_tag) return Verdict::kGood;
+  const std::size_t tagged = length - kChecksumSize;
+  return key.fits(datagram.first(tagged), datagram.subspan(tagged).first<Key::kTagSize>())
+             ? Verdict::kGood
+             : Verdict::kForged;
 }
 
 }  // namespace hg::remote

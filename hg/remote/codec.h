@@ -1,4 +1,5 @@
-/// Messages to datagrams and back: header, fields, CRC-32 (as zlib has it) over both.
+/// Messages to datagrams and back: header, fields, the tag of a shared key if there is one, CRC-32
+/// (as zlib has it) over all of them.
 ///
 /// No allocation, noexcept. Bytes from anywhere may be decoded: nothing is read beyond them.
 #pragma once
@@ -13,6 +14,7 @@
 #include <type_traits>
 
 #include "hg/core/types.h"
+#include "hg/remote/key.h"
 #include "hg/remote/message_fields.h"
 
 namespace hg::remote {
@@ -144,26 +146,36 @@ enum class Verdict {
   kForeign,       ///< another magic, or a type that does not exist
   kCorrupted,     ///< the checksum does not fit
   kWrongVersion,  ///< of the protocol; only header and checksum are understood
+  kForged,  ///< a tag that the key does not give, none though there is a key, or a needless one
 };
 
 /// CRC-32 of ISO-HDLC, the one of zlib, zip and PNG.
 std::uint32_t checksum(std::span<const std::byte> bytes) noexcept;
 
 /// Looks at everything but the fields of the message; `header` is filled in unless kTruncated.
-Verdict read_header(std::span<const std::byte> datagram, Header& header) noexcept;
+Verdict read_header(std::span<const std::byte> datagram, Header& header,
+                    const Key& key = {}) noexcept;
 
-/// Fills in type and length of `header` and the checksum.
+/// Fills in type and length of `header`, the tag and the checksum.
 template <typename Message>
-void encode(Header header, const Message& message, Datagram& datagram) noexcept {
+void encode(Header header, const Message& message, Datagram& datagram,
+            const Key& key = {}) noexcept {
   static_assert(sizeof(Message) + 256 < kLargestDatagram);
+  const std::size_t tag_size = key.is_set() ? Key::kTagSize : 0;
   Encoder encoder(datagram.bytes.data());
   header.type = static_cast<std::uint16_t>(kTypeOf<Message>);
-  header.length = static_cast<std::uint32_t>(size_of<Header>() + size_of<Message>() + 4);
+  header.length = static_cast<std::uint32_t>(size_of<Header>() + size_of<Message>() + tag_size + 4);
   fields(encoder, header);
   fields(encoder, message);
-  const std::uint32_t crc = checksum({datagram.bytes.data(), encoder.size()});
-  std::memcpy(datagram.bytes.data() + encoder.size(), &crc, sizeof crc);
-  datagram.size = encoder.size() + sizeof crc;
+  std::size_t size = encoder.size();
+  if (key.is_set()) {
+    const Key::Tag tag = key.tag({datagram.bytes.data(), size});
+    std::memcpy(datagram.bytes.data() + size, tag.data(), tag.size());
+    size += tag.size();
+  }
+  const std::uint32_t crc = checksum({datagram.bytes.data(), size});
+  std::memcpy(datagram.bytes.data() + size, &crc, sizeof crc);
+  datagram.size = size + sizeof crc;
 }
 
 /// The fields of a datagram that read_header() found good and of this type. False: impossible

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kLook = 100'000'000;  // ns, between two looks whether to stop
 constexpr int kGoodbyes = 3;                 // nobody answers them: one may be lost
+constexpr std::size_t kMostCandidates = 16;  // that are welcomed at the same time
 
 std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
@@ -24,11 +25,14 @@ DeviceServer::DeviceServer(const Address& address, const ServerConfig& config)
   if (!config.capture.empty()) capture_ = std::make_unique<Capture>(config.capture);
 }
 
-template <typename Message>
-void DeviceServer::send(const Message& message) {
-  const std::span<const std::byte> datagram = outbox_.encode(message);
-  socket_.send(datagram, client_);
+void DeviceServer::send_bytes(std::span<const std::byte> datagram, const Peer& to) {
+  socket_.send(datagram, to);
   if (capture_) capture_->add(now_ns(), datagram);
+}
+
+template <typename Message>
+void DeviceServer::send(const Message& message, Outbox& outbox, const Peer& to) {
+  send_bytes(outbox.encode(message), to);
 }
 
 // one datagram, if any waits
@@ -37,14 +41,74 @@ DeviceServer::Event DeviceServer::receive() {
   if (!socket_.receive(datagram_, from)) return Event::kNone;
   if (capture_) capture_->add(now_ns(), datagram_.view());
   Header header;
-  const Verdict verdict = read_header(datagram_.view(), header);
-  const bool is_whole = verdict == Verdict::kGood || verdict == Verdict::kWrongVersion;
+  const Verdict verdict = read_header(datagram_.view(), header, config_.key);
+  const bool is_whole =
+      verdict == Verdict::kGood || verdict == Verdict::kWrongVersion || verdict == Verdict::kForged;
   if (is_whole && header.type == static_cast<std::uint16_t>(MessageType::kHello)) {
     on_hello(header, verdict, from);
     return Event::kNone;
   }
-  // a session begins with a hello, and what is left of an old one is not for the next
-  return has_client_ && inbox_.accept(verdict, header) ? take(header) : Event::kNone;
+  return hear(verdict, header, from);
+}
+
+// a session begins with a hello, and what is left of an old one is not for the next
+DeviceServer::Event DeviceServer::hear(Verdict verdict, const Header& header, const Peer& from) {
+  if (!has_client_) return hear_candidate(verdict, header, from);
+  if (!(from == client_)) {
+    if (from_others_++ == 0) first_other_ = from;
+    return Event::kNone;
+  }
+  return inbox_.accept(verdict, header) ? take(header) : Event::kNone;
+}
+
+DeviceServer::Event DeviceServer::hear_candidate(Verdict verdict, const Header& header,
+                                                 const Peer& from) {
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    Candidate& candidate = candidates_[i];
+    if (!(from == candidate.peer) || !candidate.inbox.accept(verdict, header)) continue;
+    const auto type = static_cast<MessageType>(header.type);
+    if (type == MessageType::kReady) {
+      begin_session(candidate);
+      return Event::kReady;
+    }
+    if (type == MessageType::kGoodbye) {
+      candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    return Event::kNone;
+  }
+  return Event::kNone;
+}
+
+// the others are told that they came too late
+void DeviceServer::begin_session(const Candidate& chosen) {
+  has_client_ = true;
+  client_ = chosen.peer;
+  hello_ = chosen.hello;
+  outbox_ = chosen.outbox;
+  inbox_ = chosen.inbox;
+  const std::string reason = hello_.client.printable() + " has the device";
+  for (Candidate& other : candidates_) {
+    if (&other == &chosen) continue;
+    for (int i = 0; i < kGoodbyes; ++i) {
+      send(Goodbye{Farewell::kDone, reason}, other.outbox, other.peer);
+    }
+  }
+  candidates_.clear();
+}
+
+// a hello that comes again is of the same candidate
+DeviceServer::Candidate& DeviceServer::candidate_of(const Hello& hello, const Peer& from) {
+  for (Candidate& candidate : candidates_) {
+    if (candidate.peer == from && candidate.hello.nonce == hello.nonce) return candidate;
+  }
+  if (candidates_.size() == kMostCandidates) candidates_.erase(candidates_.begin());
+  std::random_device random;
+  const std::uint32_t session = random() | 1U;  // never 0
+  return candidates_.emplace_back(Candidate{.peer = from,
+                                            .hello = hello,
+                                            .outbox = Outbox(session, config_.key),
+                                            .inbox = Inbox(session),
+                                            .give_up_ns = now_ns() + ns(config_.ready_timeout_s)});
 }
 
 DeviceServer::Event DeviceServer::take(const Header& header) {
@@ -52,7 +116,8 @@ DeviceServer::Event DeviceServer::take(const Header& header) {
     case MessageType::kReady:
       return Event::kReady;
     case MessageType::kCommand:
-      if (!decode(datagram_.view(), arrived_) || !fits(config_.actual, arrived_)) {
+      if (!decode(datagram_.view(), arrived_) || !fits(config_.actual, arrived_) ||
+          arrived_.sequence > frame_.sequence) {  // answers what was never asked
         ++malformed_;
         return Event::kNone;
       }
@@ -84,7 +149,15 @@ void DeviceServer::on_hello(const Header& header, Verdict verdict, const Peer& f
     ++malformed_;
     return;
   }
-  if (has_client_ && !(from == client_ && hello.nonce == hello_.nonce)) {
+  if (verdict == Verdict::kForged) {
+    refuse(Refusal::kKey,
+           config_.key.is_set() ? "its key is another one, or none was given (--key-file)"
+                                : "it has no key (--key-file), and none may be given",
+           hello.nonce, from);
+    return;
+  }
+  const bool is_client = has_client_ && from == client_ && hello.nonce == hello_.nonce;
+  if (has_client_ && !is_client) {
     refuse(Refusal::kBusy,
            fmt::format("{} at {} has the device", hello_.client.printable(), to_string(client_)),
            hello.nonce, from);
@@ -95,45 +168,39 @@ void DeviceServer::on_hello(const Header& header, Verdict verdict, const Peer& f
     refuse(Refusal::kMismatch, unlike, hello.nonce, from);
     return;
   }
-  if (!has_client_) {
-    std::random_device random;
-    const std::uint32_t session = random() | 1U;  // never 0
-    outbox_ = Outbox(session);
-    inbox_ = Inbox(session);
-    has_client_ = true;
-    client_ = from;
-    hello_ = hello;
+  const Welcome welcome{.nonce = hello.nonce,
+                        .actual = config_.actual,
+                        .command_timeout_s = config_.actual.is_lock_step
+                                                 ? config_.lock_step_timeout_s
+                                                 : config_.command_timeout_s,
+                        .server = config_.server};
+  if (is_client) {
+    send(welcome);
+  } else {
+    Candidate& candidate = candidate_of(hello, from);
+    send(welcome, candidate.outbox, candidate.peer);
   }
-  send(Welcome{.nonce = hello.nonce,
-               .actual = config_.actual,
-               .command_timeout_s = config_.actual.is_lock_step ? config_.lock_step_timeout_s
-                                                                : config_.command_timeout_s,
-               .server = config_.server});
 }
 
 void DeviceServer::refuse(Refusal refusal, const std::string& reason, std::uint64_t nonce,
                           const Peer& to) {
   ++refused_;
-  Outbox outbox(0);
-  const auto datagram = outbox.encode(Welcome{.nonce = nonce,
-                                              .refusal = refusal,
-                                              .actual = config_.actual,
-                                              .server = config_.server,
-                                              .reason = reason});
-  socket_.send(datagram, to);
-  if (capture_) capture_->add(now_ns(), datagram);
+  Outbox outbox(0);  // without a tag, so that a client with another key or none can read it
+  send(Welcome{.nonce = nonce,
+               .refusal = refusal,
+               .actual = config_.actual,
+               .server = config_.server,
+               .reason = reason},
+       outbox, to);
 }
 
 bool DeviceServer::wait_for_client(const std::atomic<bool>& stop) {
   has_client_ = false;
-  std::int64_t give_up_ns = 0;
   while (!stop.load()) {
-    const bool had_client = has_client_;
-    const Event event = receive();
-    if (event == Event::kReady) return true;
-    if (has_client_ && !had_client) give_up_ns = now_ns() + ns(config_.ready_timeout_s);
-    const bool is_over = event == Event::kGoodbye || now_ns() > give_up_ns;
-    if (has_client_ && is_over) has_client_ = false;
+    if (receive() == Event::kReady) return true;
+    std::erase_if(candidates_, [now = now_ns()](const Candidate& candidate) {
+      return now > candidate.give_up_ns;
+    });
     socket_.wait(now_ns() + kLook);
   }
   return false;
@@ -143,7 +210,7 @@ SessionReport DeviceServer::serve(device::Device& device, const std::atomic<bool
   report_ = {};
   report_.client = fmt::format("{} at {}", hello_.client.printable(), to_string(client_));
   answers_ = answers_ns_ = longest_answer_ns_ = 0;
-  refused_ = late_ = malformed_ = foreign_ = 0;
+  refused_ = late_ = malformed_ = foreign_ = from_others_ = 0;
   command_ = off_command(config_.actual);
   has_command_ = false;
   heard_ns_ = now_ns();
@@ -183,6 +250,8 @@ void DeviceServer::close_session(bool is_stopped) {
   report_.link.malformed = malformed_;
   report_.link.foreign += foreign_;
   report_.link.refused = refused_;
+  report_.link.from_others = from_others_;
+  if (from_others_ > 0) report_.other = to_string(first_other_);
   has_client_ = false;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hg/device/device.h"
 #include "hg/remote/capture.h"
@@ -28,6 +29,7 @@ struct ServerConfig {
   double lock_step_timeout_s = 5.0;
   double ready_timeout_s = 30.0;  ///< between welcome and ready: the client sets itself up
   std::string capture;            ///< every datagram into this file, see Capture; empty = none
+  Key key;                        ///< that clients must have, too
 };
 
 enum class SessionEnd {
@@ -41,6 +43,7 @@ struct SessionReport {
   SessionEnd end = SessionEnd::kStopped;
   std::string client;         ///< name and address, printable
   std::string farewell;       ///< the client's, printable
+  std::string other;          ///< address of the first that sent into this session; empty = none
   std::uint64_t periods = 0;  ///< that the device has lived
   std::uint64_t overruns = 0;
   double mean_answer_s = 0.0, max_answer_s = 0.0;  ///< from a frame to the command that answers it
@@ -62,7 +65,19 @@ class DeviceServer {
 
  private:
   enum class Event { kNone, kReady, kCommand, kGoodbye };
+  /// Welcomed and not ready yet. Several may be: the first that is ready has the device.
+  struct Candidate {
+    Peer peer;
+    Hello hello;
+    Outbox outbox;
+    Inbox inbox;
+    std::int64_t give_up_ns = 0;
+  };
   Event receive();
+  Event hear(Verdict verdict, const Header& header, const Peer& from);
+  Event hear_candidate(Verdict verdict, const Header& header, const Peer& from);
+  void begin_session(const Candidate& chosen);
+  Candidate& candidate_of(const Hello& hello, const Peer& from);
   Event take(const Header& header);
   void on_hello(const Header& header, Verdict verdict, const Peer& from);
   void refuse(Refusal refusal, const std::string& reason, std::uint64_t nonce, const Peer& to);
@@ -72,11 +87,17 @@ class DeviceServer {
   bool answered(const std::atomic<bool>& stop);
   void measure_answer();
   template <typename Message>
-  void send(const Message& message);
+  void send(const Message& message) {
+    send(message, outbox_, client_);
+  }
+  template <typename Message>
+  void send(const Message& message, Outbox& outbox, const Peer& to);
+  void send_bytes(std::span<const std::byte> datagram, const Peer& to);
 
   ServerConfig config_;
   UdpSocket socket_;
   std::unique_ptr<Capture> capture_;
+  std::vector<Candidate> candidates_;  ///< the oldest first
   bool has_client_ = false;
   Peer client_;
   Hello hello_;
@@ -89,7 +110,8 @@ class DeviceServer {
   bool has_left_ = false;           ///< the client has said goodbye
   std::int64_t frame_ns_ = 0, heard_ns_ = 0;
   std::int64_t answers_ = 0, answers_ns_ = 0, longest_answer_ns_ = 0;
-  std::uint64_t refused_ = 0, late_ = 0, malformed_ = 0, foreign_ = 0;
+  std::uint64_t refused_ = 0, late_ = 0, malformed_ = 0, foreign_ = 0, from_others_ = 0;
+  Peer first_other_;
   SessionReport report_;
 };
 

@@ -38,6 +38,9 @@ bool Inbox::accept(Verdict verdict, const Header& header) noexcept {
     case Verdict::kWrongVersion:
       ++counts_.wrong_version;
       return false;
+    case Verdict::kForged:
+      ++counts_.forged;
+      return false;
   }
   if (header.session != session_) {
     ++counts_.wrong_session;

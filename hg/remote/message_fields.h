@@ -48,7 +48,7 @@ void fields(Archive& a, T& hello) {
 template <typename Archive, Is<Welcome> T>
 void fields(Archive& a, T& welcome) {
   a("nonce", welcome.nonce, "of the hello that it answers");
-  a("refusal", welcome.refusal, "0 none, 1 busy, 2 version, 3 descriptions do not fit");
+  a("refusal", welcome.refusal, "0 none, 1 busy, 2 version, 3 descriptions do not fit, 4 key");
   a.zeros("zero");
   fields(a, welcome.actual);
   a("command_timeout_s", welcome.command_timeout_s, "without a command for so long: drives off");

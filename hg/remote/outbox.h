@@ -8,14 +8,14 @@ namespace hg::remote {
 
 class Outbox {
  public:
-  explicit Outbox(std::uint32_t session) : session_(session) {}
+  explicit Outbox(std::uint32_t session, const Key& key = {}) : session_(session), key_(key) {}
 
   /// The bytes are valid until the next call.
   template <typename Message>
   std::span<const std::byte> encode(const Message& message) noexcept {
     const Header header{
         .session = session_, .number = ++number_, .time_ns = static_cast<std::uint64_t>(now_ns())};
-    remote::encode(header, message, datagram_);
+    remote::encode(header, message, datagram_, key_);
     return datagram_.view();
   }
   /// Datagrams encoded so far.
@@ -25,6 +25,7 @@ class Outbox {
 
  private:
   std::uint32_t session_;
+  Key key_;
   std::uint64_t number_ = 0;
   Datagram datagram_;
 };

@@ -71,6 +71,7 @@ enum class Refusal : std::uint32_t {
   kBusy = 1,      ///< another client has the device
   kProtocol = 2,  ///< of another version
   kMismatch = 3,  ///< of the descriptions
+  kKey = 4,       ///< the tag of the shared key is wrong, missing or not expected
 };
 
 enum class Farewell : std::uint32_t {

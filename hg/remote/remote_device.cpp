@@ -27,7 +27,7 @@ std::uint64_t random_number() {
 }  // namespace
 
 RemoteDevice::RemoteDevice(const Address& address, const ClientConfig& config)
-    : config_(config), socket_(UdpSocket::talking_to(address)) {
+    : config_(config), socket_(UdpSocket::talking_to(address)), outbox_(0, config.key) {
   connect(address.host + ":" + address.port);
 }
 
@@ -57,15 +57,22 @@ bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce) {
   Peer from;
   if (!socket_.receive(datagram_, from)) return false;
   Header header;
-  const Verdict verdict = read_header(datagram_.view(), header);
+  const Verdict verdict = read_header(datagram_.view(), header, config_.key);
   if (verdict == Verdict::kWrongVersion) {
     throw SetupError(
         fmt::format("{}: the device speaks version {} of the protocol, this program {}", at,
                     header.version, kVersion));
   }
-  if (verdict != Verdict::kGood || header.type != static_cast<std::uint16_t>(MessageType::kWelcome))
+  // a server with another key or none can say so, and no more
+  const bool is_forged = verdict == Verdict::kForged;
+  if (!(verdict == Verdict::kGood || is_forged) ||
+      header.type != static_cast<std::uint16_t>(MessageType::kWelcome)) {
     return false;
+  }
   if (!decode(datagram_.view(), welcome_) || welcome_.nonce != nonce) return false;
+  if (is_forged && welcome_.refusal == Refusal::kNone) {
+    throw SetupError(at + ": the device's answer is not of the key that was given (--key-file)");
+  }
   if (welcome_.refusal != Refusal::kNone) {
     throw SetupError(fmt::format("{}: the device refuses: {}", at, welcome_.reason.printable()));
   }
@@ -91,6 +98,7 @@ void RemoteDevice::read(SensorFrame& sensors) noexcept {
     take_in();
     if (queue_.pop(sensors)) {
       is_started_ = true;
+      newest_ = sensors.sequence;
       return;
     }
     if (has_left_) return stop(FaultCode::kDeviceGone, sensors);
@@ -110,7 +118,7 @@ void RemoteDevice::take_in() noexcept {
   for (int i = 0; i < kMostAtOnce; ++i) {
     if (queue_.is_full() || !socket_.receive(datagram_, from)) return;
     Header header;
-    const Verdict verdict = read_header(datagram_.view(), header);
+    const Verdict verdict = read_header(datagram_.view(), header, config_.key);
     if (inbox_.accept(verdict, header)) take(header);
   }
 }
@@ -164,6 +172,8 @@ void RemoteDevice::write(const CommandFrame& command) noexcept {
   const bool is_answered = has_command_ && command.sequence == last_command_.sequence;
   if (config_.expected.is_lock_step && is_answered) return;
   last_command_ = command;
+  // behind a fault the frames are made here: the server takes no answer to what it has not sent
+  last_command_.sequence = std::min(command.sequence, newest_);
   has_command_ = true;
   send(command);
 }

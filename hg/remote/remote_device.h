@@ -27,6 +27,7 @@ struct ClientConfig {
   /// lock-step the patience with a slow simulator.
   double frame_timeout_s = 0.05;
   double lock_step_timeout_s = 5.0;
+  Key key;  ///< that the server must have, too
 };
 
 class RemoteDevice final : public device::Device {
@@ -63,13 +64,14 @@ class RemoteDevice final : public device::Device {
 
   ClientConfig config_;
   UdpSocket socket_;
-  Outbox outbox_{0};
+  Outbox outbox_;
   Inbox inbox_{0};
   FrameQueue queue_;
   Welcome welcome_;
   Goodbye goodbye_;
   SensorFrame arrived_;
   CommandFrame last_command_;
+  std::uint64_t newest_ = 0;  ///< frame that has come
   Datagram datagram_;
   bool is_started_ = false;  ///< the first frame has come
   bool has_command_ = false;

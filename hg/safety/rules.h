@@ -157,6 +157,14 @@ inline constexpr Rule kRules[] = {
      .reaction = Stop::kSto,
      .release =
          "at once, and look at encoders and gyroscope: the joints may not be where they seem"},
+    {.code = FaultCode::kCommandsLost,
+     .name = "commands lost",
+     .meaning =
+         "No new command has reached the device for too long: lost or held up on the way, or "
+         "this computer was late.",
+     .threshold = "50 ms; 5 ms once the device does not move as commanded",
+     .reaction = Stop::kSto,
+     .release = "at once; look at the connection, and at what else this computer does"},
     {.code = FaultCode::kOperatorReleased,
      .name = "operator let go",
      .meaning = "The operator let go of the enabling switch, or squeezed it through.",

@@ -38,6 +38,8 @@ std::string_view to_string(FaultCode code) noexcept {
       return "gyroscope and encoders contradict each other";
     case FaultCode::kMotorDeviates:
       return "motor does not give the torque it is told";
+    case FaultCode::kCommandsLost:
+      return "no new commands reached the device: lost or held up";
     case FaultCode::kOperatorReleased:
       return "operator released the enabling switch";
     case FaultCode::kScannerField:

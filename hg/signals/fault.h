@@ -24,7 +24,8 @@ enum class FaultCode : std::uint16_t {
   kDriveFault = 113,           ///< a drive says that it has a fault
   kMotorDeviates = 114,        ///< a motor does not give the torque that it is told
   kTorqueUnexplained = 115,    ///< motion and user's wrench do not explain a joint torque
-  kTurnUnexplained = 120,      ///< the gyroscope turns otherwise than the encoders say
+  kTurnUnexplained = 116,      ///< the gyroscope turns otherwise than the encoders say
+  kCommandsLost = 120,         ///< no new commands have reached the device
   kOperatorReleased = 130,     ///< the operator let go of the enabling switch
   kScannerField = 131,         ///< somebody is in the scanner's field while nobody holds the handle
   kSafetyInputsDisagree = 132,  ///< the two channels of a safety input differ for too long

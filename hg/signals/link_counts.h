@@ -23,6 +23,8 @@ struct LinkCounts {
   std::uint64_t wrong_version = 0;  ///< of another version of the protocol
   std::uint64_t wrong_session = 0;  ///< of another session
   std::uint64_t refused = 0;        ///< attempts of other clients to connect
+  std::uint64_t forged = 0;         ///< the tag of the shared key is wrong or missing
+  std::uint64_t from_others = 0;    ///< not from the address of the client
 };
 
 struct LinkCount {
@@ -31,7 +33,7 @@ struct LinkCount {
 };
 
 /// Everything in LinkCounts that is not as it should be, for texts and files.
-inline constexpr std::array<LinkCount, 13> kLinkTroubles = {{
+inline constexpr std::array<LinkCount, 15> kLinkTroubles = {{
     {"lost", &LinkCounts::lost},
     {"reordered", &LinkCounts::reordered},
     {"duplicate", &LinkCounts::duplicate},
@@ -45,6 +47,8 @@ inline constexpr std::array<LinkCount, 13> kLinkTroubles = {{
     {"wrong version", &LinkCounts::wrong_version},
     {"wrong session", &LinkCounts::wrong_session},
     {"refused", &LinkCounts::refused},
+    {"forged", &LinkCounts::forged},
+    {"from others", &LinkCounts::from_others},
 }};
 
 }  // namespace hg

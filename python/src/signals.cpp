@@ -82,6 +82,7 @@ void bind_fault_codes(nb::module_& module) {
       .value("DRIVE_FAULT", FaultCode::kDriveFault)
       .value("MOTOR_DEVIATES", FaultCode::kMotorDeviates)
       .value("TORQUE_UNEXPLAINED", FaultCode::kTorqueUnexplained)
+      .value("COMMANDS_LOST", FaultCode::kCommandsLost)
       .value("OPERATOR_RELEASED", FaultCode::kOperatorReleased)
       .value("SCANNER_FIELD", FaultCode::kScannerField)
       .value("SAFETY_INPUTS_DISAGREE", FaultCode::kSafetyInputsDisagree)

@@ -5,6 +5,7 @@
 
 import json
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -171,6 +172,49 @@ class Commands(unittest.TestCase):
         self.assertEqual(result.returncode, 2)
         self.assertIn("--device-address: expected HOST:PORT", result.stderr)
 
+    def make_key(self, folder, name="key", mode=0o600):
+        file = pathlib.Path(folder, name)
+        file.write_bytes(os.urandom(32))
+        file.chmod(mode)
+        return file
+
+    def test_a_key_keeps_out_who_has_another_one_or_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            key, other = self.make_key(folder), self.make_key(folder, "other")
+            with Server("free_space", "--fast", "--key-file", key) as server:
+                address = server.address
+                short = ("free_space", "--fast", "--duration", "1", "--device-address", address)
+                refusal = (f"{address}: the device refuses: its key is another one, or none was given "
+                           "(--key-file)\n")
+                for arguments in ((), ("--key-file", other)):
+                    result = run(*short, *arguments)
+                    self.assertEqual((result.returncode, result.stderr), (2, refusal))
+                result = run(*short, "--key-file", key)
+                self.assertEqual(result.returncode, 1, result.stderr)  # too short for its events
+                self.assertRegex(result.stdout, r"allocations +0 in the loop")
+                said = server.session()
+                self.assertRegex(said, r"link +\d+ sent, \d+ received\n")
+                client = subprocess.run(
+                    [sys.executable, CLIENT, address, "--seconds", "0.1", "--key-file", key],
+                    text=True, capture_output=True, timeout=100)
+                self.assertEqual(client.returncode, 0, client.stdout + client.stderr)
+                client = subprocess.run([sys.executable, CLIENT, address], text=True,
+                                        capture_output=True, timeout=100)
+                self.assertNotEqual(client.returncode, 0)
+                self.assertIn("its key is another one", client.stderr)
+            with Server("free_space", "--fast") as server:
+                result = run("free_space", "--fast", "--device-address", server.address,
+                             "--key-file", key)
+                self.assertEqual(result.returncode, 2)
+                self.assertIn("it has no key (--key-file), and none may be given", result.stderr)
+            open_key = self.make_key(folder, "open", 0o640)
+            result = run("door", "--device-address", "127.0.0.1:1", "--key-file", open_key)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("the key must be its owner's only, got mode 0640", result.stderr)
+        result = run("door", "--key-file", "key")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("--device-address", result.stderr)
+
     def test_the_python_client_holds_the_arm(self):
         with Server("door", "--fast") as server:
             result = subprocess.run([sys.executable, CLIENT, server.address, "--seconds", "0.5"],
@@ -182,6 +226,20 @@ class Commands(unittest.TestCase):
 
 
 class PythonCodec(unittest.TestCase):
+    def test_a_datagram_with_a_tag_is_good_with_its_key_only(self):
+        key = bytes(range(32))
+        document = (ROOT / "docs" / "device_protocol.md").read_text()
+        shown = re.search(r"```text\n([0-9a-f]{64})\n([0-9a-f]{32})\n([0-9a-f]{8})\n```", document)
+        datagram = bytes.fromhex("".join(shown.groups()))
+        self.assertEqual(device_client.decode(datagram, key),
+                         (device_client.READY, 0x01020305, 2, ()))
+        self.assertIsNone(device_client.decode(datagram))
+        self.assertIsNone(device_client.decode(datagram, key[1:] + b"x"))
+        plain = device_client.encode(device_client.READY, 7, 1)
+        self.assertIsNone(device_client.decode(plain, key))
+        again = device_client.encode(device_client.GOODBYE, 7, 1, 1, 0, b"done", key=key)
+        self.assertEqual(device_client.decode(again, key)[3][2].rstrip(b"\0"), b"done")
+
     def test_it_understands_a_captured_session_and_writes_the_same_bytes(self):
         data = (ROOT / "tests" / "remote" / "session.pcap").read_bytes()
         at, kinds = 24, []

@@ -488,6 +488,36 @@ TEST(Cycle, ALatencyThatGrowsWhileTheDrivesAreOnStopsTheDevice) {
   EXPECT_EQ(cycles_until_latency_fault(1, {2, 3, 4, 1, 1, 1, 1}), -1);
 }
 
+// Commands of so many periods do not reach the device, and from the period `at` on (-1: never) a
+// joint comes away from its reference. The fault; kNone: it goes on.
+FaultCode fault_of_lost_commands(int periods, int at) {
+  Loop loop(false, true);
+  loop.run(200);
+  loop.start_running();
+  loop.run(100);
+  for (int k = 0; k < 300; ++k) {
+    loop.latency = k < periods ? static_cast<std::uint64_t>(k) + 2 : 1;
+    if (at >= 0 && k >= at) loop.sensors.q_m[2] += std::min(0.02 * (k - at), 0.5);
+    loop.step();
+    if (loop.record.fault.code == FaultCode::kNone) continue;
+    EXPECT_GT(loop.record.fault.value, loop.record.fault.limit);
+    return loop.record.fault.code;
+  }
+  return FaultCode::kNone;
+}
+
+TEST(Cycle, CommandsThatDoNotReachTheDeviceAreTheCauseThatIsNamed) {
+  EXPECT_EQ(fault_of_lost_commands(300, -1), FaultCode::kCommandsLost);
+  EXPECT_EQ(fault_of_lost_commands(40, -1), FaultCode::kNone);
+  // and not what they lead to, while they are lost and soon after
+  EXPECT_EQ(fault_of_lost_commands(40, 10), FaultCode::kCommandsLost);
+  EXPECT_EQ(fault_of_lost_commands(40, 40), FaultCode::kCommandsLost);
+  // another cause is told all the same
+  EXPECT_EQ(fault_of_lost_commands(0, 10), FaultCode::kSpeedExceeded);
+  EXPECT_EQ(fault_of_lost_commands(3, 3), FaultCode::kSpeedExceeded);
+  EXPECT_EQ(fault_of_lost_commands(40, 150), FaultCode::kSpeedExceeded);
+}
+
 TEST(Cycle, TheTwinMeetsTheHandleAgainAfterAFaultInMotion) {
   Loop loop;
   loop.start_running();

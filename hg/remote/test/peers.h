@@ -67,11 +67,12 @@ inline CommandFrame answer(const SensorFrame& sensors) {
 class Serving {
  public:
   explicit Serving(bool is_lock_step, double command_timeout_s = kLong,
-                   std::uint64_t first_sequence = 0)
+                   std::uint64_t first_sequence = 0, const Key& key = {})
       : server_({"127.0.0.1", "0"}, {.actual = description(is_lock_step),
                                      .server = "test server",
                                      .command_timeout_s = command_timeout_s,
-                                     .lock_step_timeout_s = command_timeout_s}),
+                                     .lock_step_timeout_s = command_timeout_s,
+                                     .key = key}),
         thread_([this, first_sequence] {
           while (server_.wait_for_client(stop_)) {
             TestDevice device(first_sequence);
@@ -103,13 +104,14 @@ class Serving {
   std::thread thread_;
 };
 
-inline ClientConfig client(bool is_lock_step) {
+inline ClientConfig client(bool is_lock_step, const Key& key = {}) {
   return {.expected = description(is_lock_step),
           .client = "test client",
           .answer_timeout_s = kLong,
           .first_timeout_s = kLong,
           .frame_timeout_s = kLong,
-          .lock_step_timeout_s = kLong};
+          .lock_step_timeout_s = kLong,
+          .key = key};
 }
 
 inline std::string message_of(const std::function<void()>& what) {
@@ -135,6 +137,11 @@ class Script {
              header.type != static_cast<std::uint16_t>(type));
     return header;
   }
+  /// Whatever it is.
+  void await_any(Header& header) {
+    while (!socket_.receive(datagram, client_)) socket_.wait(now_ns() + 1'000'000'000);
+    (void)read_header(datagram.view(), header);
+  }
   template <typename Message>
   void send(const Message& message, const Header& header) {
     Datagram out;
@@ -158,10 +165,15 @@ class Script {
 /// A client that says what a test wants
 class Voice {
  public:
-  Voice(const Address& server, std::uint64_t nonce)
-      : socket_(UdpSocket::talking_to(server)), nonce_(nonce) {}
+  Voice(const Address& server, std::uint64_t nonce, const Key& key = {})
+      : socket_(UdpSocket::talking_to(server)), nonce_(nonce), key_(key) {}
   template <typename Message>
   void send(const Message& message, const Header& header) {
+    encode(header, message, out_, key_);
+    socket_.send(out_.view());
+  }
+  template <typename Message>
+  void send_without_tag(const Message& message, const Header& header) {
     encode(header, message, out_);
     socket_.send(out_.view());
   }
@@ -174,7 +186,7 @@ class Voice {
     Message message;
     Header header;
     Peer from;
-    while (!socket_.receive(in_, from) || read_header(in_.view(), header) != Verdict::kGood ||
+    while (!socket_.receive(in_, from) || read_header(in_.view(), header, key_) != Verdict::kGood ||
            header.type != static_cast<std::uint16_t>(kTypeOf<Message>) ||
            !decode(in_.view(), message)) {
       socket_.wait(now_ns() + 1'000'000'000);
@@ -191,6 +203,7 @@ class Voice {
  private:
   UdpSocket socket_;
   std::uint64_t nonce_, number_ = 1;
+  Key key_;
   Datagram in_, out_;
 };
 

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <memory>
 #include <random>
 #include <thread>
+#include <vector>
 
 #include "hg/remote/test/example_messages.h"
 #include "hg/remote/test/peers.h"
@@ -87,6 +89,57 @@ TEST(Session, AClientThatWorksThroughOldFramesIsSilent) {
   EXPECT_EQ(serving.reports[0].end, SessionEnd::kClientSilent);
 }
 
+TEST(Session, NothingThatIsSentFromElsewhereCounts) {
+  Serving serving(false, kLong, 100);
+  Voice voice(serving.address(), 1), other(serving.address(), 2);
+  voice.hello(false);
+  voice.send(Ready{});
+  const std::uint64_t first = voice.await<SensorFrame>().sequence;
+  other.session = voice.session;  // overheard
+  for (std::uint64_t number = 50; number < 53; ++number) {
+    other.send(command_for(first), {.session = other.session, .number = number});
+  }
+  other.send(Goodbye{}, {.session = other.session, .number = 60});
+  voice.await<SensorFrame>();
+  EXPECT_EQ(other.hello(false).refusal, Refusal::kBusy);  // so that all before has been read
+  voice.send(Goodbye{.reason = "of the client"});
+  serving.await_sessions(1);
+  const SessionReport& report = serving.reports[0];
+  EXPECT_EQ(report.farewell, "of the client");
+  EXPECT_EQ(report.link.from_others, 4U);
+  EXPECT_EQ(report.link.duplicate, 0U);  // nor do their numbers count
+  EXPECT_TRUE(report.other.starts_with("127.0.0.1:")) << report.other;
+  EXPECT_FALSE(serving.was_enabled);
+}
+
+TEST(Session, ACommandThatAnswersAFrameOfTheFutureIsMalformed) {
+  Serving serving(false, kLong, 100);
+  Voice voice(serving.address(), 1);
+  voice.hello(false);
+  voice.send(Ready{});
+  const std::uint64_t first = voice.await<SensorFrame>().sequence;
+  voice.send(command_for(first + 1'000'000'000));
+  voice.send(command_for(~std::uint64_t{0}));
+  voice.send(Goodbye{});
+  serving.await_sessions(1);
+  EXPECT_EQ(serving.reports[0].link.malformed, 2U);
+  EXPECT_FALSE(serving.was_enabled);
+}
+
+TEST(Session, HalfAHandshakeKeepsNobodyOut) {
+  Serving serving(true);
+  std::vector<std::unique_ptr<Voice>> silent;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    silent.push_back(std::make_unique<Voice>(serving.address(), i));
+    EXPECT_EQ(silent.back()->hello(true).refusal, Refusal::kNone);
+  }
+  RemoteDevice there(serving.address(), client(true));
+  SensorFrame sensors;
+  there.read(sensors);
+  EXPECT_EQ(sensors.driver_fault, FaultCode::kNone);
+  EXPECT_EQ(silent.back()->await<Goodbye>().reason.view(), "test client has the device");
+}
+
 TEST(Session, NothingBeginsWithoutAHello) {
   Serving serving(false);
   Voice voice(serving.address(), 1);
@@ -110,9 +163,11 @@ TEST(Session, AReadyOfAnEndedSessionBeginsNothing) {
   old.send(Ready{});
   EXPECT_EQ(young.hello(false, "young").refusal, Refusal::kNone);
   old.send(Ready{});  // nor does it stand for the one of the next client
-  EXPECT_EQ(third.hello(false).refusal, Refusal::kBusy);
+  EXPECT_EQ(third.hello(false).refusal, Refusal::kNone);  // not even half a session
   young.send(Ready{});
   young.await<SensorFrame>();
+  EXPECT_EQ(third.await<Goodbye>().reason.view(), "young has the device");
+  EXPECT_EQ(third.hello(false).refusal, Refusal::kBusy);
   young.send(Goodbye{});
   serving.await_sessions(2);
   serving.stop();
@@ -124,8 +179,9 @@ TEST(Session, WordsFromTheNetworkCannotCommandATerminal) {
   Serving serving(false);
   Voice voice(serving.address(), 1), second(serving.address(), 2);
   voice.hello(false, "\x1B[2Jvoice");
-  EXPECT_TRUE(second.hello(false).reason.view().starts_with("?[2Jvoice at "));
   voice.send(Ready{});
+  voice.await<SensorFrame>();
+  EXPECT_TRUE(second.hello(false).reason.view().starts_with("?[2Jvoice at "));
   voice.send(Goodbye{.reason = "bye\r\x07"});
   serving.await_sessions(1);
   EXPECT_TRUE(serving.reports[0].client.starts_with("?[2Jvoice at ")) << serving.reports[0].client;
