@@ -60,6 +60,9 @@ struct Records {
 impl Records {
     fn open(path: &Path) -> io::Result<Self> {
         let file = File::open(path)?;
+        if !file.metadata()?.is_file() {
+            return Err(io::Error::other("it is no regular file"));
+        }
         let size = file.metadata()?.len();
         Ok(Self { file: BufReader::with_capacity(WINDOW_BYTES, file), size, position: 0 })
     }
@@ -244,7 +247,9 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
 
     fn tell_damage(&mut self, opcode: u8, body: &[u8], at: u64, end: u64) -> io::Result<()> {
         let part = match (opcode, attachment_name(body)) {
-            _ if self.has_ended => "index".to_string(),
+            _ if self.has_ended => format!("index at byte {at}"),
+            (op::MESSAGE_INDEX | op::DATA_END, _) => format!("index at byte {at}"),
+            (op::HEADER | op::METADATA, _) => format!("metadata at byte {at}"),
             (op::CHUNK, _) => format!("chunk at byte {at}"),
             (op::ATTACHMENT, Some(name)) => format!("attachment {name}"),
             _ => format!("bytes {at} to {end}"),
