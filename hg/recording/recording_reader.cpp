@@ -80,12 +80,14 @@ class Losses {
   void take(int kind, std::string_view name, std::uint64_t time_ns) {
     if (kind == mcap_damage) {
       parts_.push_back({.loss = {.part = std::string(name)}});
-      return;
+      is_open_ = true;
     }
+    if (kind == mcap_message && name == kSamples) return take_whole(time_ns);
     if (kind != mcap_lost || parts_.empty()) return;
     Part& part = parts_.back();
     if (name == kEvents) ++part.loss.events;
     if (name != kSamples) return;
+    ++open_samples_;
     if (++part.loss.samples == 1) part.first_ns = time_ns;
     part.last_ns = time_ns;
   }
@@ -99,6 +101,9 @@ class Losses {
     std::vector<Loss> losses;
     for (const Part& part : parts_) {
       losses.push_back(part.loss);
+      if (is_open_ && &part == &parts_.back() && !is_known(part.loss)) {
+        losses.back().is_counted = false;
+      }
       if (part.loss.samples == 0) continue;
       losses.back().from_s = seconds(part.first_ns);
       losses.back().to_s = seconds(part.last_ns);
@@ -111,7 +116,35 @@ class Losses {
     Loss loss;
     std::uint64_t first_ns = 0, last_ns = 0;
   };
+  static bool is_known(const Loss& loss) {
+    return loss.samples > 0 || !(loss.part.starts_with("chunk") || loss.part.starts_with("bytes"));
+  }
+
+  // What was lost between two samples tells their distance, also where the index of the chunk is
+  // lost with it.
+  void take_whole(std::uint64_t time_ns) {
+    const std::uint64_t distance = time_ns - std::exchange(last_ns_, time_ns);
+    if (distance == time_ns) {  // the first one
+      for (Part& part : parts_) part.loss.is_counted = is_known(part.loss);
+      is_open_ = false;
+      open_samples_ = 0;
+      return;
+    }
+    if (distance > 0 && (period_ns_ == 0 || distance < period_ns_)) period_ns_ = distance;
+    const std::uint64_t known = std::exchange(open_samples_, 0);
+    if (!std::exchange(is_open_, false) || period_ns_ == 0) return;
+    const std::uint64_t between = (distance + period_ns_ / 2) / period_ns_;
+    if (between < 2 || between - 1 <= known) return;
+    Part& part = parts_.back();
+    part.loss.samples += between - 1 - known;
+    part.first_ns = time_ns - distance + period_ns_;
+    part.last_ns = time_ns - period_ns_;
+  }
+
   std::vector<Part> parts_;
+  std::uint64_t last_ns_ = 0, period_ns_ = 0;  // of samples that are whole
+  std::uint64_t open_samples_ = 0;             // lost since the last of them
+  bool is_open_ = false;                       // a part has been lost since then
 };
 
 std::uint64_t start_ns(std::uint64_t time_ns, double time_s) {
@@ -170,6 +203,7 @@ std::string to_text(const std::vector<Loss>& losses) {
                     static_cast<unsigned long long>(loss.samples), loss.from_s, loss.to_s);
     }
     text += "DAMAGED     " + loss.part + ":" + lost.data();
+    if (!loss.is_counted) text += " that is known of";
     if (loss.events > 0) text += ", and " + std::to_string(loss.events) + " events";
     text += '\n';
   }

@@ -26,6 +26,7 @@ class RecordingListener {
 struct Loss {
   std::string part;  ///< "chunk at byte 81234", "attachment door.yaml"
   std::uint64_t samples = 0, events = 0;
+  bool is_counted = true;           ///< false: there may be more, at an end of the recording
   double from_s = 0.0, to_s = 0.0;  ///< time of the run of the first and the last of them
 };
 

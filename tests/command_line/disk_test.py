@@ -8,10 +8,13 @@ import json
 import os
 import re
 import resource
+import shutil
+import signal
 import subprocess
 import unittest
 
-from program import PROGRAM, TemporaryFolder, run
+from program import MODELS, PROGRAM, TemporaryFolder, run
+from web_socket import Page
 
 NOT_WRITTEN = 4
 
@@ -68,6 +71,29 @@ class FullDisk(TemporaryFolder):
             self.assertEqual((code, err), (0, ""))
             self.assertIn(" 10000 samples\n", out)
             self.assertEqual(len([f for f in disk.glob("*.mcap") if not f.is_symlink()]), 1)
+
+    def test_the_page_is_told_when_it_happens(self):
+        shutil.copytree(MODELS, self.folder / "models")  # the page is looked for beside models
+        (self.folder / "viewer/dist").mkdir(parents=True)
+        (self.folder / "viewer/dist/index.html").write_text("the page")
+        process = subprocess.Popen(
+            [PROGRAM, "run", "door", "--no-browser", "--duration", "600", "--recordings",
+             self.folder / "r"], cwd=self.folder, text=True, stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (500_000, 500_000)))
+        try:
+            while not (link := re.search(r"http://\S+", process.stdout.readline())):
+                self.assertIsNone(process.poll())
+            page = Page(link[0])
+            self.addCleanup(page.close)
+            event = page.next("event", lambda event: event["name"] == "recording")
+            self.assertIn("has ended early, the run goes on: File too large", json.dumps(event))
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=60)
+            self.assertEqual(process.returncode, NOT_WRITTEN)
+        finally:
+            process.kill()
+            process.communicate()
 
     def test_a_summary_that_cannot_be_written_takes_nothing_else_along(self):
         code, out, err = run("run", "door", "--fast", "--no-recording", "--summary", "/dev/full")

@@ -245,6 +245,36 @@ TEST_F(RecordedRunTest, AFlippedBitInAnyHeadOfARecordCostsNoMore) {
   }
 }
 
+// as after a bad sector or a file system that has lost a block; it may cover the index of a chunk
+TEST_F(RecordedRunTest, ABlockOfZerosCostsTheChunksThatItTouches) {
+  constexpr std::size_t kBlock = 4096;
+  const std::string good = content_of(record(3000));
+  const std::size_t begin = good.find("--law paper") + kBlock;  // behind the attachments
+  std::mt19937 random = seeded_by_the_command_line();
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t at = begin + random() % (good.size() * 8 / 10 - begin);
+    SCOPED_TRACE("block at " + std::to_string(at));
+    std::string bad = good;
+    std::fill_n(bad.begin() + static_cast<std::ptrdiff_t>(at), kBlock, '\0');
+    Gaps gaps;
+    const ReadResult result = read_recording(temporary_.write("bad.mcap", bad), gaps);
+    gaps.end(3000);
+    std::uint64_t lost = 0;
+    for (const Loss& loss : result.losses) lost += loss.samples;
+    if (!result.losses.empty() && !result.losses.front().is_counted) {
+      EXPECT_EQ(gaps.missing.front().first, 0u);  // there is no sample before
+      continue;
+    }
+    EXPECT_EQ(gaps.samples + lost, 3000u) << to_text(result.losses);
+    EXPECT_LE(lost, 500u) << to_text(result.losses);
+    if (gaps.missing.empty()) continue;  // only the index of a chunk
+    EXPECT_NEAR(result.losses.front().from_s,
+                static_cast<double>(gaps.missing.front().first) / kRate_Hz, 1e-6);
+    EXPECT_NEAR(result.losses.back().to_s,
+                static_cast<double>(gaps.missing.back().second - 1) / kRate_Hz, 1e-6);
+  }
+}
+
 TEST_F(RecordedRunTest, NamesAConfigurationThatIsDamaged) {
   const std::filesystem::path file = record(100);
   std::string text = content_of(file);

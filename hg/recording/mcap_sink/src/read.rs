@@ -60,6 +60,9 @@ struct Records {
 impl Records {
     fn open(path: &Path) -> io::Result<Self> {
         let file = File::open(path)?;
+        if !file.metadata()?.is_file() {
+            return Err(io::Error::other("it is no regular file"));
+        }
         let size = file.metadata()?.len();
         Ok(Self { file: BufReader::with_capacity(WINDOW_BYTES, file), size, position: 0 })
     }
@@ -174,6 +177,7 @@ struct Reader<'a, Take: FnMut(Item)> {
     /// Something was damaged since the last chunk: that may have been a chunk.
     may_lack_chunk: bool,
     has_ended: bool,
+    has_read_index: bool,
 }
 
 impl<Take: FnMut(Item)> Reader<'_, Take> {
@@ -244,7 +248,9 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
 
     fn tell_damage(&mut self, opcode: u8, body: &[u8], at: u64, end: u64) -> io::Result<()> {
         let part = match (opcode, attachment_name(body)) {
-            _ if self.has_ended => "index".to_string(),
+            _ if self.has_ended => format!("index at byte {at}"),
+            (op::MESSAGE_INDEX | op::DATA_END, _) => format!("index at byte {at}"),
+            (op::HEADER | op::METADATA, _) => format!("metadata at byte {at}"),
             (op::CHUNK, _) => format!("chunk at byte {at}"),
             (op::ATTACHMENT, Some(name)) => format!("attachment {name}"),
             _ => format!("bytes {at} to {end}"),
@@ -254,7 +260,8 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
         if opcode == op::CHUNK {
             self.unindexed.clear();
         }
-        if self.topics.is_empty() {
+        if self.topics.is_empty() && !self.has_read_index {
+            self.has_read_index = true;
             self.learn_from_index()?;
         }
         Ok(())
@@ -264,7 +271,10 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
     fn learn_from_index(&mut self) -> io::Result<()> {
         let mut records = Records::open(self.path)?;
         let mut at = MAGIC.len() as u64;
-        while let Some(start) = records.find(at)? {
+        loop {
+            let has_record = records.is_chain(at, 1)? && at + HEAD_BYTES <= records.size;
+            let next = if has_record { Some(at) } else { records.find(at + 1)? };
+            let Some(start) = next else { break };
             at = records.end(start)?.unwrap_or(records.size);
             let opcode = records.read(start, 1)?[0];
             if opcode == op::SCHEMA || opcode == op::CHANNEL {
@@ -289,6 +299,7 @@ pub fn read(path: &Path, take: impl FnMut(Item)) -> Result<(), Failure> {
         unindexed: BTreeMap::new(),
         may_lack_chunk: false,
         has_ended: false,
+        has_read_index: false,
     };
     let mut at = MAGIC.len() as u64;
     let has_magic = records.size >= at && records.read(0, MAGIC.len())? == MAGIC;
