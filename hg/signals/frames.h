@@ -51,7 +51,8 @@ struct HandTarget {
   Eigen::Matrix3d R_B = Eigen::Matrix3d::Identity();  ///< target orientation of the handle, if so
 };
 
-/// Buttons and keys of a simulated operator's panel. Only simulated devices look at it.
+/// Buttons and keys of an operator's panel. Only simulated devices look at it; its emergency stop
+/// acts whatever the device is.
 struct SafetyPanel {
   bool emergency_stop = false;
   bool operator_enable = true;

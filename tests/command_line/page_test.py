@@ -195,6 +195,20 @@ class PageTest(TemporaryFolder):
         process.send_signal(signal.SIGINT)
         process.wait(timeout=30)
 
+    def test_a_stop_overtakes_what_is_being_prepared(self):
+        with self.run_of("door", "--user", "mouse", "--no-recording") as (process, page):
+            for identifier, command, name in ((100, "scenario", "excavator"),
+                                              (101, "emergency_stop", "")):
+                page.send({"type": "command", "id": identifier, "command": command,
+                           "name": name, "value": 0})
+            answers = [page.next("answer") for _ in range(2)]
+            self.assertEqual([answer["id"] for answer in answers], [101, 100])
+            self.assertEqual([answer["is_accepted"] for answer in answers], [True, False])
+            self.assertEqual(answers[1]["reason"], "a stop came after it")
+            self.assertEqual(self.fault_of_stop(page), 102)
+            self.assertEqual(page.next("frame")["run"], 1)
+            self.end_after_fault(process)
+
     def fault_of_stop(self, page):
         return page.next("frame", lambda frame: frame["mode"] == "fault")["safety"]["fault"]
 
