@@ -33,6 +33,9 @@ constexpr CommandName kSimulated[] = {
     CommandName::kRestart, CommandName::kScenario, CommandName::kTwin, CommandName::kLaw,
     CommandName::kPerson,  CommandName::kPanel};
 
+constexpr std::string_view kRunIsOver = "the run is over: start it again";
+constexpr std::uint32_t kMostSamples = 10'000;  // in which a request must be seen
+
 struct NamedRequest {
   std::string_view name;
   ModeRequest request;
@@ -101,10 +104,32 @@ void RunPage::begin(const PreparedRun& run, const std::string& recording) {
   view_.run = number_;
   view_.run_state.recording = recording;
   stop_was_asked_ = false;
+  refuse_asked(kRunIsOver);
   has_news_ = false;
 }
 
+// The device's supervisor has the last word. Where that sample was lost nobody knows it.
+void RunPage::answer_asked(const Sample& sample) {
+  if (asked_.empty()) return;
+  Asked& first = asked_.front();
+  const ModeRequest request = sample.operator_input.request;
+  first.is_next = first.is_next || request == ModeRequest::kNone;
+  const bool is_seen = first.is_next && request == first.request;
+  if (!is_seen && ++first.samples < kMostSamples) return;
+  const Refusal refusal = sample.record.refusal;
+  server_.answer(first.command, !is_seen ? "it is not known whether it was followed"
+                                : refusal != Refusal::kNone ? to_string(refusal)
+                                                            : std::string_view{});
+  asked_.pop_front();
+}
+
+void RunPage::refuse_asked(std::string_view why) {
+  for (const Asked& asked : asked_) server_.answer(asked.command, why);
+  asked_.clear();
+}
+
 void RunPage::observe(const Sample& sample, const Note& note) {
+  answer_asked(sample);
   view_.cycle_time_max_us = std::max(view_.cycle_time_max_us, sample.cycle_time_us);
   if (sample.record.change == ChangeStatus::kNone) return;
   const int field = config::field_of(form_, sample.operator_input.change);
@@ -147,10 +172,12 @@ void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
       tell_done(command, note);
       continue;
     }
-    const std::string refusal = obey(command, runtime, note);
-    const bool is_under_way = is_choice_of_run(command.name) && refusal.empty();
-    if (!is_under_way) server_.answer(command, refusal);
+    const std::string why_not = obey(command, runtime, note);
+    const bool is_asked = command.name == CommandName::kMode || is_choice_of_run(command.name);
+    if (!is_asked || !why_not.empty()) server_.answer(command, why_not);
   }
+  if (!asked_.empty() && asked_.back().command.stops != desk_->stops()) refuse_asked(kStopped);
+  if (runtime == nullptr) refuse_asked(kRunIsOver);
   take_prepared(note);
   const std::uint32_t lost = desk_->take_lost();
   if ((lost & 1u) != 0) note("operator_enable", "let go: its page is gone or silent");
@@ -194,7 +221,7 @@ std::string RunPage::obey(const Command& command, runtime::Runtime* runtime, con
   if (needs_simulation && !refusal.empty()) return refusal;
   if (is_choice_of_run(command.name)) return choose(command);
   if (command.name == CommandName::kSeek) return "this is a run, not a recording";
-  if (runtime == nullptr) return "the run is over: start it again";
+  if (runtime == nullptr) return std::string(kRunIsOver);
   if (command.name == CommandName::kSet) return set(command, *runtime, note);
   if (command.name == CommandName::kMode) return obey_mode(command, *runtime, note);
   if (command.name == CommandName::kStop) {
@@ -220,6 +247,7 @@ std::string RunPage::obey_mode(const Command& command, runtime::Runtime& runtime
                         runtime.request(named->request, command.stops);
   if (!is_taken) return "too many commands are waiting";
   note(command.argument, "asked for in the page");
+  asked_.push_back({command, named->request});
   return {};
 }
 

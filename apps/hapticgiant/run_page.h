@@ -5,6 +5,7 @@
 /// For the observer thread.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <future>
 #include <memory>
@@ -64,8 +65,17 @@ class RunPage {
     std::unique_ptr<PreparedRun> run;
     std::string refusal;
   };
+  /// A mode that a page has asked for, until a cycle has followed or refused it.
+  struct Asked {
+    viewer_server::Command command;
+    ModeRequest request = ModeRequest::kNone;
+    bool is_next = false;  ///< the pause before the request has been seen: they act on their edge
+    std::uint32_t samples = 0;  ///< seen since it is the first
+  };
 
   void tell_done(const viewer_server::Command& command, const Note& note) const;
+  void answer_asked(const Sample& sample);
+  void refuse_asked(std::string_view why);
   std::string obey(const viewer_server::Command& command, runtime::Runtime* runtime,
                    const Note& note);
   std::string obey_mode(const viewer_server::Command& command, runtime::Runtime& runtime,
@@ -91,6 +101,7 @@ class RunPage {
   std::unique_ptr<Sample> newest_;
   bool has_news_ = false;  ///< that no page has seen
   bool stop_was_asked_ = false;
+  std::deque<Asked> asked_;  ///< in their order
   std::unique_ptr<PreparedRun> next_;
   viewer_server::Command chosen_;   ///< what `prepared_` comes from
   std::future<Prepared> prepared_;  ///< by a thread of its own: it takes seconds

@@ -24,6 +24,11 @@ std::uint64_t random_number() {
   return std::uint64_t{random()} << 32U | random();
 }
 
+// a device that heard nothing has not left by itself
+FaultCode reason_of(const Goodbye& goodbye) noexcept {
+  return goodbye.farewell == Farewell::kSilent ? FaultCode::kCommandsLost : FaultCode::kDeviceGone;
+}
+
 }  // namespace
 
 RemoteDevice::RemoteDevice(const Address& address, const ClientConfig& config)
@@ -101,7 +106,7 @@ void RemoteDevice::read(SensorFrame& sensors) noexcept {
       newest_ = sensors.sequence;
       return;
     }
-    if (has_left_) return stop(FaultCode::kDeviceGone, sensors);
+    if (has_left_) return stop(reason_of(goodbye_), sensors);
     const std::int64_t now = now_ns();
     if (now >= deadline) return stop(FaultCode::kDeviceSilent, sensors);
     const bool says_again = is_lock_step || !is_started_;

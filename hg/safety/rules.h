@@ -164,7 +164,8 @@ inline constexpr Rule kRules[] = {
          "this computer was late.",
      .threshold = "50 ms; 5 ms once the device does not move as commanded",
      .reaction = Stop::kSto,
-     .release = "at once; look at the connection, and at what else this computer does"},
+     .release = "at once, or with the run where the device has ended it; look at the connection, "
+                "and at what else this computer does"},
     {.code = FaultCode::kOperatorReleased,
      .name = "operator let go",
      .meaning = "The operator let go of the enabling switch, or squeezed it through.",

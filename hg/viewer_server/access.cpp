@@ -35,20 +35,6 @@ std::string content_type(const std::filesystem::path& file) {
   return "application/octet-stream";
 }
 
-// Value of `name` in a list of name=value pairs.
-std::string_view pair_value(std::string_view pairs, char separator, std::string_view name) {
-  while (!pairs.empty()) {
-    const std::size_t end = std::min(pairs.find(separator), pairs.size());
-    std::string_view pair = pairs.substr(0, end);
-    pairs.remove_prefix(std::min(end + 1, pairs.size()));
-    while (pair.starts_with(' ')) pair.remove_prefix(1);
-    if (pair.starts_with(name) && pair.substr(name.size()).starts_with('=')) {
-      return pair.substr(name.size() + 1);
-    }
-  }
-  return {};
-}
-
 bool is_address(const std::string& text, int family) {
   in6_addr address;  // large enough for both
   return inet_pton(family, text.c_str(), &address) == 1;
@@ -112,14 +98,20 @@ std::string_view path_of(std::string_view target) noexcept {
   return target.substr(0, target.find('?'));
 }
 
-std::string_view query_value(std::string_view target, std::string_view name) noexcept {
-  const std::size_t start = target.find('?');
-  if (start == std::string_view::npos) return {};
-  return pair_value(target.substr(start + 1), '&', name);
+std::string_view bearer_token(std::string_view authorization) noexcept {
+  constexpr std::string_view kScheme = "Bearer ";
+  if (!authorization.starts_with(kScheme)) return {};
+  return authorization.substr(kScheme.size());
 }
 
-std::string_view cookie_value(std::string_view cookies, std::string_view name) noexcept {
-  return pair_value(cookies, ';', name);
+std::string_view protocol_token(std::string_view protocols) noexcept {
+  constexpr std::string_view kToken = "token.";
+  const std::size_t comma = protocols.find(',');
+  if (comma == std::string_view::npos || protocols.substr(0, comma) != kProtocol) return {};
+  protocols.remove_prefix(comma + 1);
+  while (protocols.starts_with(' ')) protocols.remove_prefix(1);
+  if (!protocols.starts_with(kToken)) return {};
+  return protocols.substr(kToken.size());
 }
 
 std::string read_file(const std::filesystem::path& file) {
@@ -142,7 +134,7 @@ AssetTable load_page(const std::filesystem::path& page) {
       throw SetupError("viewer: page folder must hold at most 64 MB, got more in " + page.string());
     }
     const auto path = std::filesystem::path("/") / entry.path().lexically_relative(page);
-    assets[path.generic_string()] = {content_type(entry.path()), read_file(entry.path())};
+    assets[path.generic_string()] = {content_type(entry.path()), read_file(entry.path()), true};
   }
   assets["/"] = assets["/index.html"];
   return assets;

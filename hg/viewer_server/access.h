@@ -35,24 +35,30 @@ bool is_own_origin(std::string_view origin, const Listener& listener);
 /// The path of a request target, without its query.
 std::string_view path_of(std::string_view target) noexcept;
 
-/// Value of `name` in the query of a request target, as it stands; empty if missing.
-std::string_view query_value(std::string_view target, std::string_view name) noexcept;
+/// The token in an Authorization header, "Bearer TOKEN"; empty if missing.
+std::string_view bearer_token(std::string_view authorization) noexcept;
 
-/// Value of `name` in a Cookie header; empty if missing.
-std::string_view cookie_value(std::string_view cookies, std::string_view name) noexcept;
+/// The protocol of the WebSocket that a page speaks.
+inline constexpr std::string_view kProtocol = "hapticgiant";
+
+/// The token in a Sec-WebSocket-Protocol header, "hapticgiant, token.TOKEN": what a browser can
+/// send with a WebSocket; empty if missing or of another protocol.
+std::string_view protocol_token(std::string_view protocols) noexcept;
 
 /// One thing that can be asked for.
 struct Asset {
   std::string content_type;
   std::string content;
+  bool is_public = false;  ///< also for who has no token
 };
 
 /// By path, for example "/assets/index.js". Only what is in the table can ever be served: there is
 /// no path arithmetic at request time.
 using AssetTable = std::map<std::string, Asset, std::less<>>;
 
-/// Reads all files below `page`; links are not followed. "/" is index.html. Throws SetupError when
-/// the folder has no index.html or holds more than 64 MB.
+/// Reads all files below `page`, which are public: a browser cannot send the token with what it
+/// loads for a page. Links are not followed. "/" is index.html. Throws SetupError when the folder
+/// has no index.html or holds more than 64 MB.
 AssetTable load_page(const std::filesystem::path& page);
 
 /// Throws SetupError when the file cannot be read.

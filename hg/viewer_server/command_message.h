@@ -110,7 +110,7 @@ template <typename Archive, Is<AnswerMessage> T>
 void fields(Archive& a, T& answer) {
   a.type("answer");
   a("id", answer.id, "of the command; -1 = it could not be read");
-  a("is_accepted", answer.is_accepted);
+  a("is_accepted", answer.is_accepted, "a mode: the cycle followed it; set, panel: handed over");
   a("reason", answer.reason, "why not; empty = accepted");
 }
 

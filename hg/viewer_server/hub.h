@@ -35,9 +35,12 @@ using Text = std::shared_ptr<const std::string>;
 using Request = http::request<http::empty_body>;
 
 constexpr auto kRequestTimeout = std::chrono::seconds(15);
-constexpr std::size_t kMaxEvents = 200;   // kept for pages that connect later, and per page
-constexpr std::size_t kMaxCommands = 64;  // that wait for the program
-constexpr std::size_t kMaxDone = 256;     // with those that are only to be told
+constexpr auto kStrangerTimeout = std::chrono::seconds(5);  // to say a whole request
+constexpr std::size_t kMostStrangers = 32;  // connections that have not shown the token
+constexpr long kMostKnown = 64;             // those that have
+constexpr std::size_t kMaxEvents = 200;     // kept for pages that connect later, and per page
+constexpr std::size_t kMaxCommands = 64;    // that wait for the program
+constexpr std::size_t kMaxDone = 256;       // with those that are only to be told
 
 inline std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -52,12 +55,18 @@ inline double now_s() {
 }
 
 class Page;
+class Visitor;
 
 /// Everything but the counters, the hand target and the commands belongs to the server's thread.
 struct Hub {
   explicit Hub(const Eigen::AlignedBox3d& limits) : hand(limits) {}
 
   bool has_token(const Request& request) const;
+  /// One that has not shown the token; the oldest of too many goes. Not by address: behind a
+  /// router, or on this machine, all have the same.
+  void admit_stranger(const std::shared_ptr<Visitor>& visitor);
+  /// It has shown the token. What it is to keep; null: there are too many.
+  std::shared_ptr<int> make_known(const Visitor* visitor);
   void join(const std::shared_ptr<Page>& page);
   void leave(const std::shared_ptr<Page>& page);
   void put_hand(std::uint64_t page, const HandTarget& target);
@@ -77,7 +86,8 @@ struct Hub {
   Text newest_frame;
   Text values;  ///< of the settings
   std::uint64_t next_page = 1;
-  std::shared_ptr<int> connections = std::make_shared<int>();  // one more owner per connection
+  std::deque<std::weak_ptr<Visitor>> strangers;          ///< the oldest first
+  std::shared_ptr<int> known = std::make_shared<int>();  ///< one more owner per connection
 
   std::atomic<std::uint64_t> clients{0};
   std::atomic<std::uint64_t> sent{0};

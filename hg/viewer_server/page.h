@@ -29,6 +29,9 @@ class Page : public std::enable_shared_from_this<Page> {
     socket_.set_option(websocket::stream_base::timeout{kRequestTimeout, kRequestTimeout, true});
     socket_.read_message_max(kLargestMessage);
     socket_.text(true);
+    socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+      response.set(http::field::sec_websocket_protocol, kProtocol);
+    }));
     socket_.async_accept(request, [self = shared_from_this()](error_code error) {
       if (error) return;
       self->hub_.join(self);

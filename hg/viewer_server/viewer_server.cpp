@@ -30,9 +30,26 @@
 namespace hg::viewer_server {
 
 bool Hub::has_token(const Request& request) const {
-  if (is_same_secret(query_value(view(request.target()), "token"), token)) return true;
-  const std::string cookie = "hapticgiant_" + std::to_string(listener.port);
-  return is_same_secret(cookie_value(view(request[http::field::cookie]), cookie), token);
+  return websocket::is_upgrade(request)
+             ? is_same_secret(protocol_token(view(request[http::field::sec_websocket_protocol])),
+                              token)
+             : is_same_secret(bearer_token(view(request[http::field::authorization])), token);
+}
+
+void Hub::admit_stranger(const std::shared_ptr<Visitor>& visitor) {
+  std::erase_if(strangers, [](const auto& stranger) { return stranger.expired(); });
+  if (strangers.size() == kMostStrangers) {
+    ++refused;
+    if (const auto oldest = strangers.front().lock()) oldest->drop();
+    strangers.pop_front();
+  }
+  strangers.push_back(visitor);
+}
+
+std::shared_ptr<int> Hub::make_known(const Visitor* visitor) {
+  if (known.use_count() > kMostKnown) return {};
+  std::erase_if(strangers, [=](const auto& one) { return one.lock().get() == visitor; });
+  return known;
 }
 
 void Hub::join(const std::shared_ptr<Page>& page) {
@@ -87,7 +104,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kSendBuffer = 64 * 1024;  // bytes; small, so that what arrives is fresh
-constexpr long kMaxConnections = 64;
 
 tcp::acceptor listen_on(asio::io_context& context, const Options& options) {
   tcp::acceptor acceptor(context);
@@ -163,14 +179,12 @@ struct ViewerServer::Impl {
         retry.async_wait([this](error_code) { accept(); });
         return;
       }
-      if (hub.connections.use_count() > kMaxConnections) {
-        ++hub.refused;
-      } else {
-        error_code ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
-        socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
-        std::make_shared<Visitor>(hub, std::move(socket))->read();
-      }
+      error_code ignored;
+      socket.set_option(tcp::no_delay(true), ignored);
+      socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
+      const auto visitor = std::make_shared<Visitor>(hub, std::move(socket));
+      hub.admit_stranger(visitor);
+      visitor->read();
       accept();
     });
   }
@@ -279,7 +293,7 @@ std::string ViewerServer::url() const {
   const Listener& listener = impl_->hub.listener;
   const bool is_open = listener.address == "0.0.0.0" || listener.address == "::";
   return "http://" + host_text(is_open ? "127.0.0.1" : listener.address, listener.port) +
-         "/?token=" + impl_->hub.token;
+         "/#token=" + impl_->hub.token;
 }
 
 void ViewerServer::set_scene(const Scene& scene) {

@@ -1,9 +1,9 @@
 /// Serves the browser page and streams what a running cycle does to it; takes the dragged handle
 /// and commands back.
 ///
-/// HTTP and WebSocket, on 127.0.0.1 unless told otherwise. Every request needs the token of url()
-/// (or the cookie that the first page load sets) and a Host of this server; the WebSocket also an
-/// Origin of this server (against DNS rebinding). Protocol: docs/viewer.md, fields:
+/// HTTP and WebSocket, on 127.0.0.1 unless told otherwise. Every request but those for the files of
+/// the page needs the token of url(), and all a Host of this server; the WebSocket also an Origin
+/// of this server (against DNS rebinding). Protocol: docs/viewer.md, fields:
 /// viewer/src/messages.ts.
 ///
 /// One thread of its own does all the work. The functions below may be called from one other thread
@@ -53,7 +53,7 @@ class ViewerServer {
   ViewerServer(const ViewerServer&) = delete;
   ViewerServer& operator=(const ViewerServer&) = delete;
 
-  /// The link to open: "http://127.0.0.1:PORT/?token=TOKEN", with the address that is listened at.
+  /// The link to open: "http://127.0.0.1:PORT/#token=TOKEN", with the address that is listened at.
   std::string url() const;
 
   /// Another run begins: pages fetch its scene. Events of the one before are forgotten. Throws
@@ -81,7 +81,7 @@ class ViewerServer {
   /// The commands since the last call, in their order. Each that is not done wants one answer().
   std::vector<Command> take_commands();
 
-  /// `refusal` says why the command was not followed; empty: it was.
+  /// `refusal` says why the command was not followed; empty: it was. Later where the cycle decides.
   void answer(const Command& command, std::string_view refusal);
 
   Counters counters() const;

@@ -21,14 +21,17 @@ constexpr std::string_view kContentPolicy =
 /// Lives as long as its connection, or until that becomes a page.
 class Visitor : public std::enable_shared_from_this<Visitor> {
  public:
-  Visitor(Hub& hub, tcp::socket&& socket)
-      : hub_(hub), stream_(std::move(socket)), connection_(hub.connections) {}
+  Visitor(Hub& hub, tcp::socket&& socket) : hub_(hub), stream_(std::move(socket)) {}
 
   void read() {
     parser_.emplace();
     parser_->header_limit(kLargestHeader);
     parser_->body_limit(0);
-    stream_.expires_after(kRequestTimeout);
+    if (known_) {
+      stream_.expires_after(kRequestTimeout);
+    } else {
+      stream_.expires_after(kStrangerTimeout);
+    }
     http::async_read(stream_, buffer_, *parser_,
                      [self = shared_from_this()](error_code error, std::size_t) {
                        if (!error) {
@@ -39,6 +42,9 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
                        }
                      });
   }
+
+  /// To make room for another one.
+  void drop() { stream_.close(); }
 
  private:
   void answer() {
@@ -52,25 +58,30 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
       refuse(http::status::forbidden, "wrong origin");
     } else if (request.method() != http::verb::get) {
       refuse(http::status::method_not_allowed, "only GET");
-    } else if (!hub_.has_token(request)) {
-      refuse(http::status::forbidden, "Open the link that the program printed: it has the token.");
     } else if (is_upgrade && (origin.empty() || path_of(view(request.target())) != "/ws")) {
       refuse(http::status::forbidden, "wrong origin or path");
+    } else if (const Asset* asset = found(); !is_upgrade && asset != nullptr && asset->is_public) {
+      serve(*asset);
+    } else if (!hub_.has_token(request)) {
+      refuse(http::status::forbidden, "Open the link that the program printed: it has the token.");
+    } else if (!known_ && !(known_ = hub_.make_known(this))) {
+      refuse(http::status::service_unavailable, "too many connections");
     } else if (is_upgrade) {
-      std::make_shared<Page>(hub_, std::move(stream_), std::move(connection_))->start(request);
+      std::make_shared<Page>(hub_, std::move(stream_), std::move(known_))->start(request);
+    } else if (asset != nullptr) {
+      serve(*asset);
     } else {
-      serve(view(request.target()));
+      respond(http::status::not_found, "text/plain", "not found\n");
     }
   }
 
-  void serve(std::string_view target) {
-    const auto asset = hub_.assets.find(path_of(target));
-    if (asset == hub_.assets.end()) {
-      respond(http::status::not_found, "text/plain", "not found\n");
-    } else {
-      respond(http::status::ok, asset->second.content_type, asset->second.content);
-    }
+  // What the request asks for; null: there is no such thing.
+  const Asset* found() const {
+    const auto asset = hub_.assets.find(path_of(view(parser_->get().target())));
+    return asset == hub_.assets.end() ? nullptr : &asset->second;
   }
+
+  void serve(const Asset& asset) { respond(http::status::ok, asset.content_type, asset.content); }
 
   void refuse(http::status status, std::string_view reason) {
     ++hub_.refused;
@@ -94,14 +105,10 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     response_.set("Cross-Origin-Resource-Policy", "same-origin");
     response_.set("Referrer-Policy", "no-referrer");
     response_.set("X-Content-Type-Options", "nosniff");
-    if (status == http::status::ok && path_of(view(request.target())) == "/") {
-      response_.set(http::field::set_cookie, "hapticgiant_" + std::to_string(hub_.listener.port) +
-                                                 "=" + hub_.token +
-                                                 "; Path=/; HttpOnly; SameSite=Strict");
-    }
     response_.body() = std::move(body);
     response_.keep_alive(status == http::status::ok && request.keep_alive());
     response_.prepare_payload();
+    stream_.expires_after(kRequestTimeout);
     http::async_write(stream_, response_,
                       [self = shared_from_this()](error_code error, std::size_t) {
                         if (!error && self->response_.keep_alive()) return self->read();
@@ -112,7 +119,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
 
   Hub& hub_;
   beast::tcp_stream stream_;
-  std::shared_ptr<int> connection_;
+  std::shared_ptr<int> known_;  ///< it has shown the token
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
   http::response<http::string_body> response_;

@@ -157,6 +157,22 @@ class PageTest(TemporaryFolder):
             page.next("frame", lambda frame: frame["run"] == 2 and frame["mode"] == "running")
             self.end(process)
 
+    def test_a_mode_is_accepted_only_when_the_cycle_has_followed_it(self):
+        with self.run_of("door", "--user", "mouse", "--no-recording") as (process, page):
+            self.assertIn("no fault", self.refuse(page, "mode", "reset"))
+            self.assertIn("not ready", self.refuse(page, "mode", "arm"))  # it runs
+            self.accept(page, "mode", "hold")
+            page.next("frame", lambda frame: frame["mode"] == "armed")
+            self.assertIn("override", self.refuse(page, "mode", "run_alone"))
+            self.accept(page, "mode", "run")
+            page.next("frame", lambda frame: frame["mode"] == "running")
+            self.assertIn("no such mode", self.refuse(page, "mode", "fly"))
+            self.accept(page, "pause")
+            page.send({"type": "command", "id": 77, "command": "mode", "name": "hold", "value": 0})
+            self.accept(page, "resume")
+            self.assertTrue(page.next("answer", lambda answer: answer["id"] == 77)["is_accepted"])
+            self.end(process)
+
     def test_the_parts_of_the_force_add_up_and_frames_are_small(self):
         with self.run_of("door", "--no-recording") as (process, page):
             def is_pushed(frame):

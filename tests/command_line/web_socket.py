@@ -15,14 +15,15 @@ class Page:
     """Connected to the page of a program that printed `link`."""
 
     def __init__(self, link):
-        self.host, self.token = re.match(r"http://([^/]+)/\?token=(\w+)", link).groups()
+        self.host, self.token = re.match(r"http://([^/]+)/#token=(\w+)", link).groups()
         name, _, port = self.host.rpartition(":")
         self.address = (name, int(port))
         self.socket = socket.create_connection(self.address, timeout=PATIENCE_S)
         self.received = b""
-        self.send_text(f"GET /ws?token={self.token} HTTP/1.1\r\nHost: {self.host}\r\n"
+        self.send_text(f"GET /ws HTTP/1.1\r\nHost: {self.host}\r\n"
                        f"Origin: http://{self.host}\r\nConnection: Upgrade\r\n"
                        "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+                       f"Sec-WebSocket-Protocol: hapticgiant, token.{self.token}\r\n"
                        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n")
         head = self.read_until(b"\r\n\r\n")
         assert head.startswith(b"HTTP/1.1 101"), head
@@ -37,7 +38,8 @@ class Page:
 
     def get(self, path):
         with socket.create_connection(self.address, timeout=PATIENCE_S) as connection:
-            connection.sendall(f"GET {path}?token={self.token} HTTP/1.1\r\nHost: {self.host}\r\n"
+            connection.sendall(f"GET {path} HTTP/1.1\r\nHost: {self.host}\r\n"
+                               f"Authorization: Bearer {self.token}\r\n"
                                "Connection: close\r\n\r\n".encode())
             answer = b""
             while chunk := connection.recv(65536):

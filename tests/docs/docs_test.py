@@ -3,7 +3,8 @@
 In docs/**/*.md a block ```yaml NAME or ```hqp NAME is a file, ```yaml +NAME is more of it; a block
 ```sh holds commands. Both are taken in the order of the document, in a folder of its own that
 starts as a copy of models/examples. Every command must end with exit code 0, or with N where its line ends with
-`# exit N`. Lines that a ```text block shows after a command are not compared.
+`# exit N`. Lines that a ```text block shows after a command are not compared. The tests that
+docs/threats.md names must be there.
 
     docs_test.py PROGRAM
 """
@@ -50,6 +51,19 @@ def run_document(document, program, folder):
     return count, faults
 
 
+def missing_tests(document):
+    """What the document calls a test and is none: `Suite.Case` of GoogleTest, or a file."""
+    sources = "".join(path.read_text() for folder in ("hg", "tests")
+                      for path in (ROOT / folder).rglob("*_test.cpp"))
+    for line in document.read_text().splitlines():
+        for name in re.findall(r"`([^`]+)`", line.split("|")[-2] if line.startswith("|") else ""):
+            suite, _, case = name.partition(".")
+            is_there = (ROOT / name).is_file() if "/" in name else re.search(
+                rf"TEST(_F|_P)?\({suite},\s+{case}\)", sources)
+            if not is_there:
+                yield f"{document.name}: there is no test {name}"
+
+
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
     total, faults = 0, []
@@ -59,6 +73,7 @@ def main():
             count, found = run_document(document, program, pathlib.Path(folder))
         total += count
         faults += found
+    faults += missing_tests(ROOT / "docs" / "threats.md")
     for fault in faults:
         print(fault, file=sys.stderr)
     print(f"{total} commands ran, {len(faults)} were wrong")

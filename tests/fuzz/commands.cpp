@@ -59,8 +59,8 @@ void commands(Bytes bytes) {
   const bool is_own = is_own_host(text, listener);
   require(!is_own || text == "127.0.0.1:8080" || text == "localhost:8080", "somebody else's host");
   is_own_origin(text, listener);
-  query_value(text, "token");
-  cookie_value(text, "token");
+  bearer_token(text);
+  protocol_token(text);
   path_of(text);
 }
 

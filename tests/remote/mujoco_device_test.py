@@ -1,4 +1,4 @@
-"""A scenario on a device in MuJoCo, behind the wire: the same events as with our own plant.
+"""A scenario on a device in MuJoCo, behind the wire and with a key: the same events as with our own plant.
 
     mujoco_device_test.py BUILD PROGRAM SCENARIO [RATE_HZ ...]
 
@@ -49,13 +49,17 @@ def run(program, summary, *arguments):
 
 def events_in_mujoco(program, scenario, rate_Hz, folder):
     address, summary = f"127.0.0.1:{free_port()}", folder / "there.json"
+    key = folder / "key"
+    key.touch(0o600)
+    key.write_bytes(os.urandom(32))
     server = subprocess.Popen(
         [sys.executable, ROOT / "examples" / "python" / "mujoco_device.py", scenario, "--listen",
-         address, "--fast", "--rate-hz", rate_Hz],
+         address, "--fast", "--rate-hz", rate_Hz, "--key-file", key],
         env={**os.environ, "PYTHONPATH": str(folder / "package")}, cwd=folder)
     try:
         for _ in range(20):  # the server needs its time to begin
-            code = run(program, summary, scenario, "--rate-hz", rate_Hz, "--device-address", address)
+            code = run(program, summary, scenario, "--rate-hz", rate_Hz, "--device-address", address,
+                       "--key-file", key)
             if code != 2:
                 break
     finally:

@@ -2,6 +2,7 @@
 
 import { TICK_MS } from "./data/freshness";
 import { Store } from "./data/store";
+import { token, watch_token } from "./data/token";
 import { Drag } from "./hand/drag";
 import { HandControls } from "./hand/hand_controls";
 import type { Frame, Scene, Vec3 } from "./messages";
@@ -262,5 +263,7 @@ function show_connection(is_connected: boolean): void {
   write(light, connection_text(is_connected));
 }
 
+watch_token();
 start_theme();
+if (token() === "") write(element("story"), "Open the link that the program printed: it has the token.");
 window.hapticgiant = new Page().state();

@@ -269,7 +269,7 @@ export interface Welcome {
 export interface Answer {
   type: "answer";
   id: number; // of the command; -1 = it could not be read
-  is_accepted: boolean;
+  is_accepted: boolean; // a mode: the cycle followed it; set, panel: handed over
   reason: string; // why not; empty = accepted
 }
 

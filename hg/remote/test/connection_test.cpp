@@ -82,7 +82,7 @@ TEST(Connection, ASilentClientSwitchesTheDrivesOffAndIsToldSo) {
   EXPECT_EQ(serving.reports[0].end, SessionEnd::kClientSilent);
   EXPECT_TRUE(serving.was_enabled && serving.ends_off);
   for (int i = 0; i < 10000 && sensors.driver_fault == FaultCode::kNone; ++i) there.read(sensors);
-  EXPECT_EQ(sensors.driver_fault, FaultCode::kDeviceGone);
+  EXPECT_EQ(sensors.driver_fault, FaultCode::kCommandsLost);
   EXPECT_EQ(there.farewell(), "no command came in time: drives off, brakes closed");
 }
 

@@ -69,19 +69,24 @@ TEST(IsOwnOrigin, AcceptsPlainHttpOfThisServerOnly) {
   }
 }
 
-TEST(QueryAndCookie, AreFoundByTheirWholeName) {
+TEST(Token, IsFoundInTheHeadersOfRequestAndWebSocket) {
   EXPECT_EQ(path_of("/a/b?token=1"), "/a/b");
-  EXPECT_EQ(query_value("/?x=1&token=abc&y=2", "token"), "abc");
-  EXPECT_EQ(query_value("/?xtoken=abc", "token"), "");
-  EXPECT_EQ(query_value("/token=abc", "token"), "");
-  EXPECT_EQ(cookie_value("a=1; hapticgiant_80=xyz", "hapticgiant_80"), "xyz");
-  EXPECT_EQ(cookie_value("a=1; hapticgiant_8080=xyz", "hapticgiant_80"), "");
+  EXPECT_EQ(bearer_token("Bearer abc"), "abc");
+  EXPECT_EQ(bearer_token("bearer abc"), "");
+  EXPECT_EQ(bearer_token("Basic abc"), "");
+  EXPECT_EQ(bearer_token("Bearer"), "");
+  EXPECT_EQ(protocol_token("hapticgiant, token.abc"), "abc");
+  EXPECT_EQ(protocol_token("hapticgiant,token.abc"), "abc");
+  for (const char* other : {"", "hapticgiant", "token.abc", "hapticgiant, abc", "other, token.abc",
+                            "token.abc, hapticgiant"}) {
+    EXPECT_EQ(protocol_token(other), "") << other;
+  }
 }
 
-TEST(QueryValue, EndsForAnyInput) {
+TEST(Token, IsPartOfAnyInput) {
   rc::check([](const std::string& text) {
-    RC_ASSERT(query_value(text, "token").size() <= text.size());
-    RC_ASSERT(cookie_value(text, "token").size() <= text.size());
+    RC_ASSERT(bearer_token(text).size() <= text.size());
+    RC_ASSERT(protocol_token(text).size() <= text.size());
   });
 }
 

@@ -2,6 +2,7 @@
 
 import type { Command, Hand, Hold } from "../messages";
 import { type Message, read_message } from "./read_message";
+import { protocols } from "./token";
 
 const RETRY_MS = 1000;
 
@@ -30,9 +31,7 @@ export class Connection {
   }
 
   private open(): void {
-    const token = new URLSearchParams(location.search).get("token");
-    const query = token ? `?token=${encodeURIComponent(token)}` : "";
-    const socket = new WebSocket(`ws://${location.host}/ws${query}`);
+    const socket = new WebSocket(`ws://${location.host}/ws`, protocols());
     this.socket = socket;
     socket.onopen = () => this.receiver.on_state(true);
     socket.onmessage = ({ data }) => {

@@ -8,6 +8,7 @@ import { Table, history_of, row_of } from "./history";
 import { Holder } from "./holder";
 import { RateMeter } from "./rate_meter";
 import type { Message } from "./read_message";
+import { authorization } from "./token";
 
 const RETRY_MS = 1000; // of the scene
 const BACK_S = 0.05; // time that goes back by less has been rounded
@@ -132,7 +133,7 @@ export class Store {
     if (this.is_loading) return;
     this.is_loading = true;
     try {
-      const response = await fetch("/scene.json");
+      const response = await fetch("/scene.json", { headers: authorization() });
       if (!response.ok) throw new Error(await response.text());
       const scene = (await response.json()) as Scene;
       this.frame = null;

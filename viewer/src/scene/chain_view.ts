@@ -4,13 +4,18 @@ import {
   type Object3D,
   BoxGeometry,
   Group,
+  type LoadingManager,
+  type Material,
   Mesh,
   MeshStandardMaterial,
   Quaternion,
   Vector3,
 } from "three";
+import { ColladaLoader } from "three/examples/jsm/loaders/ColladaLoader.js";
+import { STLLoader } from "three/examples/jsm/loaders/STLLoader.js";
 import URDFLoader, { type URDFJoint, type URDFRobot } from "urdf-loader";
 
+import { authorization } from "../data/token";
 import type { SceneChain, SceneJoint } from "../messages";
 import { current_theme } from "../theme";
 import { add_skeleton, has_shapes } from "./skeleton";
@@ -110,9 +115,23 @@ export class ChainView {
 
 export async function load_chain(chain: SceneChain, paint: Paint): Promise<ChainView> {
   if (chain.urdf === "") return new ChainView(chain, "", paint);
-  const response = await fetch(chain.urdf);
+  const response = await fetch(chain.urdf, { headers: authorization() });
   if (!response.ok) throw new Error(`${chain.urdf}: ${response.statusText}`);
   return new ChainView(chain, await response.text(), paint);
+}
+
+// As the urdf library does it, with the token.
+async function load_mesh(
+  address: string,
+  manager: LoadingManager,
+  material: Material,
+): Promise<Object3D> {
+  if (/\.stl$/i.test(address)) {
+    const loader = new STLLoader(manager).setRequestHeader(authorization());
+    return new Mesh(await loader.loadAsync(address), material);
+  }
+  const loader = new ColladaLoader(manager).setRequestHeader(authorization());
+  return (await loader.loadAsync(address))!.scene;
 }
 
 // Mesh files arrive later; those that the program has not found stay away.
@@ -120,10 +139,13 @@ function parse(urdf: string, paint: Paint): URDFRobot {
   const loader = new URDFLoader();
   loader.loadMeshCb = (address, manager, material, done) => {
     if (!address.startsWith(MESHES)) return;
-    loader.defaultMeshLoader(address, manager, material, (mesh, error) => {
-      if (mesh) paint(mesh);
-      done(mesh, error);
-    });
+    load_mesh(address, manager, material).then(
+      (mesh) => {
+        paint(mesh);
+        done(mesh);
+      },
+      (error) => done(null as unknown as Object3D, error),
+    );
   };
   return loader.parse(urdf);
 }

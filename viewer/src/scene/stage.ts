@@ -23,6 +23,7 @@ import {
 } from "three";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
 
+import { page_options } from "../data/token";
 import type { SceneBox, Vec3 } from "../messages";
 import { current_theme, on_theme_change } from "../theme";
 import { dispose_of } from "./dispose";
@@ -178,6 +179,6 @@ export class Stage {
 }
 
 function wished_quality(): Wish {
-  const wish = new URLSearchParams(location.search).get("quality");
+  const wish = page_options().get("quality");
   return wish === "best" || wish === "fast" ? wish : null;
 }

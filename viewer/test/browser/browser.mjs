@@ -30,7 +30,7 @@ export function start_program(command) {
     let output = "";
     program.stdout.on("data", (text) => {
       output += text;
-      const link = /http:\/\/127\.0\.0\.1:\d+\/\?token=[0-9a-f]+/.exec(output);
+      const link = /http:\/\/127\.0\.0\.1:\d+\/#token=[0-9a-f]+/.exec(output);
       if (link) found({ link: link[0], stop });
     });
     program.once("error", failed);

@@ -439,6 +439,27 @@ export async function recording_is_played({ browser, program, command, expect })
   rmSync(folder, { recursive: true });
 }
 
+export async function token_leaves_the_address({ browser, program, expect }) {
+  const { page, problems, close } = await open_page(browser, cheap(program.link));
+  const address = new URL(page.url());
+  expect(!page.url().includes("token"), `the token has left the address: ${address.hash}`);
+  expect((await page.context().cookies()).length === 0, "there is no cookie");
+  await page.reload(PATIENCE);
+  await drawn(page);
+  expect(true, "the page can be loaded again");
+  const other = await page.context().newPage();
+  await other.goto(address.origin, PATIENCE);
+  await other.waitForFunction(
+    () => /Open the link/.test(document.querySelector("#story").textContent),
+    null,
+    PATIENCE,
+  );
+  expect(await other.evaluate(() => !window.hapticgiant.is_connected), "another tab needs the link");
+  await other.close();
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+}
+
 export async function program_is_restarted({ browser, program, command, expect }) {
   const { page, close } = await open_page(browser, cheap(program.link));
   if (!(await follows(page, "restart"))) return close();

@@ -47,7 +47,8 @@ describe("Store", () => {
     served = { ...scene, settings: [SETTING] };
     FakeSocket.all = [];
     vi.stubGlobal("WebSocket", FakeSocket);
-    vi.stubGlobal("location", { search: "?token=1f", host: "127.0.0.1:1" });
+    vi.stubGlobal("location", { host: "127.0.0.1:1" });
+    vi.stubGlobal("sessionStorage", { getItem: () => "1f" });
     vi.stubGlobal("fetch", async () => ({ ok: true, json: async () => served }));
   });
   afterEach(() => {
