@@ -16,6 +16,7 @@
 #                SANITIZER_CXX: clang 20 or newer, for rtsan and fuzz, too
 #   make rtsan   builds with RealtimeSanitizer and runs the control loop: what allocates, locks or
 #                waits in it ends the program. make rtsan-tests: without scenarios
+#   make audit   asks advisory databases about the crates and the page's packages, where they answer
 #   make headers checks that every header compiles alone
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
 #                FUZZ_SECONDS=600 of random bytes each, under sanitizers. What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
@@ -53,7 +54,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz soak format check headers clean
+.PHONY: demo audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz soak format check headers clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -127,6 +128,9 @@ format:
 check:
 	@git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
 	@.venv/bin/python tools/check_modules.py
+
+audit:
+	@.venv/bin/python tools/third_party.py --audit
 
 headers:
 	@[ -f $(BUILD)/compile_commands.json ] || \

@@ -1,0 +1,218 @@
+"""Everything of others that the program, its page or its Python package is made of: THIRD_PARTY.md.
+
+    third_party.py            writes it; needs what `tools/setup.sh test` installs
+    third_party.py --check    compares it with the lists that say what is installed: quick, offline
+    third_party.py --audit    asks advisory databases (cargo audit, npm audit) where they answer
+
+Exit codes: 0 fine, 1 a component without an entry, an entry without a component, a licence that is
+not in ALLOWED, or an advisory.
+"""
+
+import argparse
+import importlib.metadata
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "THIRD_PARTY.md"
+SINK = ROOT / "hg/recording/mcap_sink"
+
+# what a program that links all of it may be given away with
+ALLOWED = {"0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause",
+           "BSL-1.0", "GPL-3.0-only WITH GCC-exception-3.1", "LGPL-2.1-or-later", "LGPL-2.1+", "MIT",
+           "MPL-2.0", "Qhull", "Unicode-3.0", "Unicode-DFS-2016", "Unlicense", "Zlib"}
+# where the metadata of a wheel is wrong or says nothing
+CORRECTED = {"cmeel-eigen": "MPL-2.0", "cmeel-qhull": "Qhull"}
+# packages of Debian: licence of what is linked, and how
+SYSTEM = {
+    "g++": ("GPL-3.0-only WITH GCC-exception-3.1", "libstdc++ and libgcc, linked dynamically"),
+    "libc6": ("LGPL-2.1-or-later", "linked dynamically"),
+    "libcli11-dev": ("BSD-3-Clause", "headers"),
+    "libfmt-dev": ("MIT", "linked dynamically"),
+    "libyaml-cpp-dev": ("MIT", "linked dynamically"),
+    "libzstd-dev": ("BSD-3-Clause", "linked dynamically"),
+    "nlohmann-json3-dev": ("MIT", "headers"),
+    "zlib1g-dev": ("Zlib", "linked dynamically"),
+}
+SPDX_TEXT = "that of this name in the SPDX list"
+IMPLIED = ["g++", "libc6"]  # not in the list of setup.sh that libraries are in
+
+
+def system_names():
+    """Libraries among the packages that setup.sh installs for a build."""
+    setup = (ROOT / "tools/setup.sh").read_text()
+    listed = re.search(r"for package in ((?:[^;]|\\\n)*?); do", setup)[1].replace("\\\n", " ")
+    tools = {"ca-certificates", "pkg-config"}
+    return sorted(set(listed.split()) - tools | set(IMPLIED))
+
+
+def wheel_names():
+    text = (ROOT / "tools/requirements-linked.txt").read_text()
+    wheels = re.findall(r"(?m)^([\w-]+)==([\w.]+)", text)
+    requires = tomllib.loads((ROOT / "pyproject.toml").read_text())["build-system"]["requires"]
+    return sorted(wheels + [tuple(entry.split("==")) for entry in requires
+                            if entry.startswith("nanobind==")])
+
+
+def crate_names():
+    packages = tomllib.loads((SINK / "Cargo.lock").read_text())["package"]
+    return sorted((package["name"], package["version"]) for package in packages
+                  if "source" in package)
+
+
+def npm_names():
+    lock = json.loads((ROOT / "viewer/package-lock.json").read_text())["packages"]
+    return sorted((path.rpartition("node_modules/")[2], entry["version"])
+                  for path, entry in lock.items() if path and not entry.get("dev"))
+
+
+def expected():
+    """(where from, name, version) of every component; system packages have no version."""
+    return ([("Debian", name, "") for name in system_names()] +
+            [("PyPI", *wheel) for wheel in wheel_names()] +
+            [("crates.io", *crate) for crate in crate_names()] +
+            [("npm", *package) for package in npm_names()])
+
+
+def alternatives(licence):
+    """The ways to fulfil an expression of SPDX, each a set; AND binds tighter than OR."""
+    plain = licence.replace("/", " OR ")
+    group = re.fullmatch(r"\((.*)\) AND (.*)", plain)  # "(A OR B) AND C"
+    if group:
+        return [left | right for left in alternatives(group[1]) for right in alternatives(group[2])]
+    return [set(re.split(r"\s+AND\s+", option.strip(" ()")))
+            for option in re.split(r"\s+OR\s+", plain)]
+
+
+def is_allowed(licence):
+    return any(option <= ALLOWED for option in alternatives(licence))
+
+
+def text_in(folder):
+    found = sorted(path.name for path in folder.iterdir()
+                   if re.match(r"(?i)(un)?licen[cs]e|copying", path.name))
+    return ", ".join(found)
+
+
+def system_rows():
+    for name in system_names():
+        licence, how = SYSTEM[name]
+        yield "Debian", name, "", licence, how, f"/usr/share/doc/{name}/copyright"
+
+
+def wheel_rows():
+    for name, version in wheel_names():
+        found = importlib.metadata.distribution(name)
+        if found.version != version:
+            sys.exit(f"third_party: {name} {found.version} is installed, expected {version}")
+        classifiers = found.metadata.get_all("Classifier") or []
+        licence = CORRECTED.get(name) or found.metadata.get("License-Expression")
+        if not licence and "License :: OSI Approved :: BSD License" in classifiers:
+            licence = "BSD-3-Clause"
+        texts = [str(path) for path in found.files or []
+                 if re.match(r"(?i)licen[cs]e|copying", path.name)]
+        how = "Python extension" if name == "nanobind" else "linked or headers"
+        text = f"in the wheel: {texts[0]}" if texts else SPDX_TEXT
+        yield "PyPI", name, version, licence or "unknown", how, text
+
+
+def crate_rows():
+    done = subprocess.run(
+        ["cargo", "metadata", "--format-version", "1", "--offline", "--locked", "--manifest-path",
+         SINK / "Cargo.toml"], capture_output=True, text=True, check=True)
+    for package in sorted(json.loads(done.stdout)["packages"],
+                          key=lambda package: (package["name"], package["version"])):
+        if package["source"] is None:
+            continue
+        folder = pathlib.Path(package["manifest_path"]).parent
+        is_macro = any("proc-macro" in target["kind"] for target in package["targets"])
+        yield ("crates.io", package["name"], package["version"], package["license"],
+               "while compiling" if is_macro else "linked, as far as used",
+               "in the crate: " + text_in(folder) if text_in(folder)
+               else SPDX_TEXT)
+
+
+def npm_rows():
+    lock = json.loads((ROOT / "viewer/package-lock.json").read_text())["packages"]
+    for name, version in npm_names():
+        folder = ROOT / "viewer/node_modules" / name
+        yield ("npm", name, version, lock[f"node_modules/{name}"]["license"], "in the page's bundle",
+               "in the package: " + text_in(folder) if text_in(folder) else SPDX_TEXT)
+
+
+def write():
+    rows = [*system_rows(), *wheel_rows(), *crate_rows(), *npm_rows()]
+    lines = [
+        "# Third parties", "",
+        "<!-- Generated by tools/third_party.py: run it after a change of dependencies. -->", "",
+        "What the program, its page and its Python package are made of besides our own code, with",
+        "licences as SPDX names them. What only builds, tests or draws figures is not listed: nothing",
+        "of it is given away. Debian's packages have the version of the system.", "",
+        "| from | component | version | licence | how | text |", "| --- | --- | --- | --- | --- | --- |",
+    ]
+    lines += ["| " + " | ".join(row) + " |" for row in rows]
+    PAGE.write_text("\n".join(lines) + "\n")
+
+
+def faults():
+    rows = [tuple(cell.strip() for cell in line.strip("|\n").split("|"))
+            for line in PAGE.read_text().splitlines() if line.startswith("| ")][2:]
+    listed = {row[:3] for row in rows}
+    wanted = set(expected())
+    found = [f"{' '.join(component).strip()}: has no entry in THIRD_PARTY.md, run tools/third_party.py"
+             for component in sorted(wanted - listed)]
+    found += [f"{' '.join(component).strip()}: is in THIRD_PARTY.md but no longer used"
+              for component in sorted(listed - wanted)]
+    found += [f"{row[1]}: licence '{row[3]}' is not among those allowed" for row in rows
+              if not is_allowed(row[3])]
+    hashes = (ROOT / "tools/requirements-linked.txt").read_text()
+    for block in re.split(r"(?m)^(?=[\w-]+==)", hashes)[1:]:
+        if "--hash=sha256:" not in block:
+            found.append(f"tools/requirements-linked.txt: {block.split()[0]} has no hash")
+    return found
+
+
+def audit():
+    """What advisory databases say; False after an advisory."""
+    is_fine = True
+    tools = [("cargo audit", ["cargo", "audit"], SINK, "cargo-audit"),
+             ("npm audit", ["npm", "audit", "--omit=dev"], ROOT / "viewer", "npm")]
+    for name, command, folder, program in tools:
+        if shutil.which(program) is None:
+            print(f"{name}: not installed, not asked")
+            continue
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+        answer = done.stdout + done.stderr
+        if re.search(r"(?i)vulnerabilit(y|ies) found|severity:|\d+ (low|moderate|high|critical)",
+                     answer) and "found 0 vulnerabilities" not in answer:
+            print(f"{name}:\n{answer}")
+            is_fine = False
+        else:
+            print(f"{name}: {'nothing known' if done.returncode == 0 else 'no answer'}")
+    return is_fine
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--audit", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.audit:
+        sys.exit(0 if audit() else 1)
+    if not arguments.check:
+        write()
+    found = faults()
+    for fault in found:
+        print(f"third_party: {fault}")
+    if not found:
+        print(f"third_party: {len(expected())} components, licences allowed")
+    sys.exit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()
