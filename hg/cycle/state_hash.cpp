@@ -1,7 +1,5 @@
 #include "hg/cycle/state_hash.h"
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <type_traits>
@@ -151,12 +149,7 @@ void mix(const safety::SupervisorState& state, Hash& hash) noexcept {
 }
 
 void mix(const safety::MonitorState& state, Hash& hash) noexcept {
-  // the monitor does not count this one, so that recordings from before that rule still replay
-  constexpr std::size_t kNotCounted = safety::rule_index(FaultCode::kCommandsLost);
-  std::array<std::uint16_t, safety::kRuleCount - 1> broken;
-  const auto rest = std::copy_n(state.broken.begin(), kNotCounted, broken.begin());
-  std::copy(state.broken.begin() + kNotCounted + 1, state.broken.end(), rest);
-  hash.mix_packed(broken.data(), broken.size());
+  hash.mix_packed(state.broken.data(), state.broken.size());
   hash.mix_packed(state.same.data(), state.same.size());
   hash.mix(static_cast<std::uint64_t>(state.late_in_a_row) |
            std::uint64_t{state.has_sample} << 62U | std::uint64_t{state.is_broken} << 63U);
