@@ -24,7 +24,7 @@ SINK = ROOT / "hg/recording/mcap_sink"
 
 # what a program that links all of it may be given away with
 ALLOWED = {"0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause",
-           "BSL-1.0", "GPL-3.0-only WITH GCC-exception-3.1", "LGPL-2.1-or-later", "LGPL-2.1+", "MIT",
+           "BSL-1.0", "GPL-3.0-only WITH GCC-exception-3.1", "ISC", "LGPL-2.1-or-later", "LGPL-2.1+", "MIT",
            "MPL-2.0", "Qhull", "Unicode-3.0", "Unicode-DFS-2016", "Unlicense", "Zlib"}
 # where the metadata of a wheel is wrong or says nothing
 CORRECTED = {"cmeel-eigen": "MPL-2.0", "cmeel-qhull": "Qhull"}
@@ -34,6 +34,7 @@ SYSTEM = {
     "libc6": ("LGPL-2.1-or-later", "linked dynamically"),
     "libcli11-dev": ("BSD-3-Clause", "headers"),
     "libfmt-dev": ("MIT", "linked dynamically"),
+    "libsodium-dev": ("ISC", "linked dynamically"),
     "libyaml-cpp-dev": ("MIT", "linked dynamically"),
     "libzstd-dev": ("BSD-3-Clause", "linked dynamically"),
     "nlohmann-json3-dev": ("MIT", "headers"),

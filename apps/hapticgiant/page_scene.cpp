@@ -138,6 +138,22 @@ void add_own(const std::string& name, std::vector<Choice>& choices) {
   if (!is_choice(choices, name)) choices.push_back({name, fs::path(name).filename().string()});
 }
 
+std::string stopping_text(const config::Device& device) {
+  const safety::MonitorConfig& stated = device.monitor;
+  const auto is_slide = [](bool slide) { return slide; };
+  const bool has_turns = !std::ranges::all_of(stated.is_slide, is_slide);
+  const bool has_slides = std::ranges::any_of(stated.is_slide, is_slide);
+  std::string text = fmt::format("A stop takes at most {:g} s", stated.stop_time);
+  if (has_turns) text += fmt::format(", {:g} rad of a joint", stated.stop_distance);
+  if (has_slides) text += fmt::format(", {:g} m of a sliding joint", stated.slide_stop_distance);
+  if (device.model.n_p > 0) {
+    text += stated.is_gantry_slide
+                ? fmt::format(", {:g} m of the gantry", stated.gantry_stop_distance)
+                : fmt::format(", {:g} rad of the gantry", stated.turn_stop_distance);
+  }
+  return text + "; then brakes close.";
+}
+
 }  // namespace
 
 viewer_server::Scene page_scene(const config::Scenario& scenario) {
@@ -151,6 +167,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   scene.rate_hz = scenario.device.rate_Hz;
   scene.box = box_of(scenario);
   scene.floor_z = scenario.device.floor_z;
+  scene.stopping = stopping_text(scenario.device);
   scene.environment = environment_of(scenario.twin.surroundings);
   for (const environment::Surface& surface : scenario.surfaces) {
     scene.surfaces.push_back(scene_surface(surface));

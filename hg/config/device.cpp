@@ -1,6 +1,7 @@
 #include "hg/config/device.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "hg/config/read_chain.h"
 #include "hg/config/tool.h"
 #include "hg/core/error.h"
+#include "hg/safety/stopping.h"
 
 namespace hg::config {
 namespace {
@@ -210,6 +212,26 @@ Simulation ideal_simulation(const DeviceDraft& draft) {
   return simulation;
 }
 
+// Stopping distances that device.yaml does not give, from the ratings.
+void state_stopping(Device& device) {
+  constexpr double kSpare = 1.25;
+  safety::MonitorConfig& monitor = device.monitor;
+  std::array<double, 2> need{};  // of revolute and prismatic joints
+  for (std::size_t i = 0; i < device.model.joint_limits.size(); ++i) {
+    const limits::JointLimits& joint = device.model.joint_limits[i];
+    double& most = need[monitor.is_slide[i] ? 1 : 0];
+    most = std::max(most, safety::stopping_need(joint.dq_max, joint.ddq_max).distance);
+  }
+  const double gantry = safety::stopping_need(device.drive).distance;
+  const auto state = [](double& distance, double least) {
+    if (std::isnan(distance)) distance = least > 0.0 ? kSpare * least : kInfinity;
+  };
+  state(monitor.stop_distance, need[0]);
+  state(monitor.slide_stop_distance, need[1]);
+  state(monitor.gantry_stop_distance, gantry);
+  state(monitor.turn_stop_distance, gantry);
+}
+
 // What follows from other values: periods, the drive in all its roles, monitored ranges.
 void derive(Device& device, const DeviceDraft& draft) {
   if (device.control.method != control::Method::kDrives) {
@@ -244,6 +266,7 @@ void derive(Device& device, const DeviceDraft& draft) {
     device.monitor.joint_speed_max.push_back(joint.dq_max);
     device.monitor.joint_acceleration.push_back(joint.ddq_max);
   }
+  state_stopping(device);
   device.monitor.first_cartesian =
       device.model.n_m + static_cast<int>(device.model.virtual_joints.size());
   device.monitor.end_cartesian =

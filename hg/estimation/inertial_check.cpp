@@ -26,9 +26,11 @@ void advance(double dt, const Eigen::Matrix3d& R_B_S, const Eigen::Vector3d& ome
   check.turn = kept * check.turn + dt * (omega_S - check.bias) - by_encoders;
   check.turned = kept * check.turned + by_encoders.norm();
   if (is_moving) return;
-  check.bias += dt / kMemoryAtRest_s * (omega_S - by_encoders / dt - check.bias);
+  if (check.rest_samples * dt < kMemoryAtRest_s) ++check.rest_samples;
+  const double newest = 1.0 / check.rest_samples;
+  check.bias += newest * (omega_S - by_encoders / dt - check.bias);
   check.bias = check.bias.cwiseMax(-kMostBias).cwiseMin(kMostBias);
-  check.up_S += dt / kMemoryAtRest_s * (a_S - check.up_S);
+  check.up_S += newest * (a_S - check.up_S);
 }
 
 double tilt(const InertialCheck& check) noexcept {

@@ -17,7 +17,8 @@ struct InertialCheck {
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();       ///< of the gyroscope, from rest, rad/s
   /// By how much the gyroscope has turned more than the encoders, forgotten slowly, in S, rad.
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();
-  double turned = 0.0;  ///< by how much it has turned at all, forgotten likewise, rad
+  double turned = 0.0;   ///< by how much it has turned at all, forgotten likewise, rad
+  int rest_samples = 0;  ///< that zero and gravity are the mean of, until it is a moving one
   /// Specific force at rest, a moving mean, in S, m/s^2.
   Eigen::Vector3d up_S = Eigen::Vector3d::Zero();
 };

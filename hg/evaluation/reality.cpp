@@ -46,19 +46,22 @@ Reality::Reality(const LimitCatalogue& catalogue, LimitPositions positions, doub
 void Reality::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
   const Truth& truth = sample.truth;
-  if (!truth.is_known || record.mode != Mode::kRunning) return;
-  ++cycles_;
+  if (!truth.is_known) return;
   positions_of_(truth, positions_);
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     const double inside = std::clamp(positions_[i], ranges_[i].lb, ranges_[i].ub);
     worst_excess_[i] = std::max(worst_excess_[i], std::abs(positions_[i] - inside));
   }
+  if (record.mode != Mode::kRunning && record.mode != Mode::kStopping) return;
   int joint = -1;
   const double error = (record.reference.q_m - truth.q_m).cwiseAbs().maxCoeff(&joint);
   if (error > max_joint_error_) {
     max_joint_error_ = error;
     worst_joint_ = joint;
   }
+  // what follows is about what the user feels
+  if (record.mode != Mode::kRunning) return;
+  ++cycles_;
   max_hand_distance_ = std::max(max_hand_distance_, (record.T_B_E.p - truth.T_B_H.p).norm());
   if (record.tracking.is_clamped) ++clamped_cycles_;
   const VectorM& share = record.tracking.torque_share;

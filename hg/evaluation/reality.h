@@ -1,7 +1,8 @@
 /// What a simulated device really did, beside what its controller believed: errors of the links,
 /// distance of handle and twin, limits, torques, forces and vibration at the handle.
 ///
-/// Fed with samples whose truth is known, outside the control loop. While running only.
+/// Fed with samples whose truth is known, outside the control loop. Limits count in every mode,
+/// joints while running or stopping, and what the user feels while running.
 #pragma once
 
 #include <cstdint>

@@ -47,7 +47,7 @@ void inspect_stopping(const config::Device& device, Collector& out) {
           "raise it, or lower the speed of the joint");
     }
     if (std::isfinite(s.need.time) && s.need.time > device.monitor.stop_time) {
-      out.add(Severity::kFault, "monitor.stop_time_s",
+      out.add(Severity::kWarning, "monitor.stop_time_s",
               fmt::format("{:g} s, but {} needs {:.3g} s to stop from full speed",
                           device.monitor.stop_time, s.name, s.need.time),
               "raise it, or lower the speed of the joint");

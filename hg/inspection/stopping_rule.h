@@ -22,7 +22,7 @@ struct Stopping {
 /// Gantry first.
 std::vector<Stopping> stopping_of(const config::Device& device);
 
-/// Adds a fault for every limit that a stop without any fault would break.
+/// Adds a fault for every distance, and a warning for a time, that an ordinary stop would exceed.
 void inspect_stopping(const config::Device& device, Collector& out);
 
 }  // namespace hg::inspection

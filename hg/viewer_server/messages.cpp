@@ -207,7 +207,8 @@ std::string encode_scene(const Scene& scene, double update_rate_hz) {
                        .choices = scene.choices,
                        .settings = {},
                        .commands = scene.commands,
-                       .refusal = scene.refusal};
+                       .refusal = scene.refusal,
+                       .stopping = scene.stopping};
   for (const Setting& s : scene.settings) {
     message.settings.push_back(
         {s.name, s.group, s.label, s.unit, s.min, s.max, bounded(s.value), s.step, s.help});

@@ -93,6 +93,7 @@ struct Scene {
   std::vector<Setting> settings;
   std::vector<CommandName> commands;  ///< that are followed
   std::string refusal;                ///< why others are not; empty: all are
+  std::string stopping;               ///< how long and far a stop takes; empty: not known
 };
 
 /// Number of coordinates of all joints.

@@ -26,7 +26,7 @@ struct SceneMessage {
   Choices choices;
   std::vector<SettingMessage> settings;
   std::vector<CommandName> commands;
-  std::string refusal;
+  std::string refusal, stopping;
 };
 
 template <>
@@ -54,6 +54,7 @@ void fields(Archive& a, T& scene) {
   a("settings", scene.settings);
   a("commands", scene.commands, "that are followed");
   a("refusal", scene.refusal, "why others are not; empty = all are");
+  a("stopping", scene.stopping, "how long and far a stop takes; empty = not known");
 }
 
 }  // namespace hg::viewer_server

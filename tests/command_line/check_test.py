@@ -84,7 +84,7 @@ class Check(unittest.TestCase):
                             ("joint: hinge", "joint: hing"))
         code, out, _ = check(device, twin)
         self.assertEqual(code, 2)
-        for line in (r"device\.yaml:\d+:\d+: fault: drive\.lag_s: must be > 0, got -1",
+        for line in (r"device\.yaml:\d+:\d+: fault: drive\.lag_s: must be 1e-06 \.\. 1e\+05, got -1",
                      r"device\.yaml:\d+:\d+: fault: synchronisation\.kD_rot: unknown key, did you "
                      r"mean 'kD_rot_1_per_s'\?",
                      r"twin\.yaml:\d+:\d+: fault: joints\.hinge\.preload: unknown key, did you mean "
@@ -141,7 +141,7 @@ class Check(unittest.TestCase):
         odd = self.changed(DEVICE.parent, "device.yaml", ("lag_s: 0.040", "lag_s: -1"))
         code, out, _ = check(odd, "--map", self.folder / "map.svg")
         self.assertEqual(code, 2)
-        self.assertIn("drive.lag_s: must be > 0", out)  # told although there is no map
+        self.assertIn("drive.lag_s: must be 1e-06 .. 1e+05", out)  # told although there is no map
         code, _, err = check(DEVICE, "--json", self.folder / "none" / "x.json")
         self.assertEqual(code, 2)
         self.assertIn("cannot be written", err)

@@ -42,6 +42,9 @@ void commands(Bytes bytes) {
     case DecodeStatus::kHand:
       check_hand(message.hand);
       break;
+    case DecodeStatus::kHold:
+      require(std::isfinite(message.hold), "sequence number");
+      break;
     case DecodeStatus::kCommand:
       require(std::isfinite(message.command.value), "value");
       require(message.command.id >= 0.0 && message.command.id <= 0x1p53 &&

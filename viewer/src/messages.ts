@@ -26,6 +26,7 @@ export interface Scene {
   settings: Setting[];
   commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "release_stop")[]; // that are followed
   refusal: string; // why others are not; empty = all are
+  stopping: string; // how long and far a stop takes; empty = not known
 }
 
 // a robot or a twin

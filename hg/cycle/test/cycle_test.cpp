@@ -38,6 +38,7 @@ struct Loop {
         rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
     Config config;
     config.estimation.wrench.tare.is_needed = needs_tare;
+    config.estimation.wrench.has_imu = false;
     config.prepositioning.n_p = 2;
     config.prepositioning.has_closed_form = true;
     config.prepositioning.q_limits.fill({-1.4, 1.4});

@@ -159,6 +159,20 @@ TEST(Reality, JudgesTheTrueLinksNotTheBelievedOnes) {
   EXPECT_NEAR(truly.max_hand_distance(), 3e-3, 1e-12);
 }
 
+TEST(Reality, LimitsCountInEveryModeAndJointsWhileTheyAreStopped) {
+  Reality truly = reality();
+  for (const Mode mode : {Mode::kRunning, Mode::kStopping, Mode::kFault}) {
+    Sample sample = known(0);
+    sample.record.mode = mode;
+    const double beyond = mode == Mode::kFault ? 0.02 : 0.0;
+    sample.truth.q_m << 2.45 + beyond, (mode == Mode::kStopping ? 0.3 : 0.0);
+    sample.record.reference.q_m << 2.45, 0.0;
+    truly.add(sample);
+  }
+  EXPECT_NEAR(truly.worst_excess()[0], 0.02, 1e-12);
+  EXPECT_NEAR(truly.max_joint_error(), 0.3, 1e-12);
+}
+
 TEST(Reality, TorquesAreComparedWithWhatTheMotorsCanGiveForEver) {
   Reality truly = reality();
   EXPECT_EQ(truly.rated_torque_share().size(), 0);

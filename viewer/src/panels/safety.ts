@@ -43,6 +43,7 @@ export class SafetyPanel {
   private readonly panel = make("div", "safety-panel");
   private readonly requests = make("div", "buttons");
   private readonly by_request = new Map<Request, HTMLButtonElement>();
+  private readonly stopping = make("p", "quiet");
   private readonly question = make("p");
   private readonly answers = make("div", "buttons safety-answers");
   private pressed_by: number[] = [];
@@ -88,6 +89,7 @@ export class SafetyPanel {
       make("div", "safety-texts", this.how, this.cause, this.release, this.warning),
       this.panel,
       this.requests,
+      this.stopping,
       make("p", "quiet", "Simulated. Nothing here is a certified safety function."),
     );
   }
@@ -96,6 +98,7 @@ export class SafetyPanel {
     this.stop.hidden = !scene.commands.includes("emergency_stop");
     this.panel.hidden = !scene.commands.includes("panel");
     this.requests.hidden = !scene.commands.includes("mode");
+    write(this.stopping, scene.stopping);
   }
 
   show({ mode, safety, run_state }: Frame): void {

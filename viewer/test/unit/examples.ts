@@ -64,6 +64,7 @@ export const scene: Scene = {
   settings: [],
   commands: [],
   refusal: "",
+  stopping: "",
 };
 
 export function wrench(force_N: Wrench["force_N"] = [0, 0, 0]): Wrench {
