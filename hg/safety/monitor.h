@@ -46,8 +46,8 @@ struct MonitorConfig {
   double turn_tolerance = 0.03;            ///< beyond the range of a revolute axis, rad
   double gantry_deviation = 0.25;          ///< from the speed of the drive model, m/s
   double turn_deviation = 0.25;            ///< the same of a revolute axis, rad/s
-  double gantry_gap = 0.02;                ///< from where its drive model takes it, m
-  double turn_gap = 0.02;                  ///< the same of a revolute axis, rad
+  double gantry_gap = 0.03;                ///< from where its drive model takes it, m
+  double turn_gap = 0.03;                  ///< the same of a revolute axis, rad
   double safe_speed = 0.25;                ///< of handle and gantry with nobody at it, m/s
   double stop_time = 1.0;                  ///< that a controlled stop may take, s
   double stop_distance = 0.8;              ///< that a revolute joint may move in a stop, rad

@@ -247,15 +247,10 @@ class PageTest(TemporaryFolder):
             self.accept(first, "speed", "", 1)
             first.close()  # leaves it pressed
             self.accept(second, "panel", "person_in_field", 0)
-            self.assertIn("not reset", self.reset(second))
+            self.assertIn("not reset", self.refuse(second, "mode", "reset"))
             self.accept(second, "release_stop", "", first.number)
             self.wait_and_reset(second)
             self.end_after_fault(process)
-
-    def reset(self, page):
-        """Why not."""
-        self.accept(page, "mode", "reset")
-        return page.next("event", lambda event: event["name"] == "request")["text"]
 
     def wait_and_reset(self, page):
         """The safety controller sees that the button is out after its time of response."""
@@ -336,7 +331,7 @@ class PageTest(TemporaryFolder):
 
     def test_a_closed_page_holds_nothing(self):
         with self.running_alone() as (page, be_silent):
-            other = Page(f"http://{page.host}/?token={page.token}")
+            other = Page(f"http://{page.host}/#token={page.token}")
             self.addCleanup(other.close)
             be_silent()
             page.close()

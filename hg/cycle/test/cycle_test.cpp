@@ -31,14 +31,14 @@ struct Loop {
 
   std::uint64_t latency = 1;  // periods; 0: the device does not answer
 
-  explicit Loop(bool needs_tare = false, bool has_torque_loop = false) {
+  explicit Loop(bool needs_tare = false, bool has_torque_loop = false, bool has_imu = true) {
     rendering::TwinModel twin = rendering::unlimited_twin(
         model::Chain::free_body({.mass = 6.0}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
     Config config;
     config.estimation.wrench.tare.is_needed = needs_tare;
-    config.estimation.wrench.has_imu = false;
+    config.estimation.wrench.has_imu = has_imu;
     config.prepositioning.n_p = 2;
     config.prepositioning.has_closed_form = true;
     config.prepositioning.q_limits.fill({-1.4, 1.4});
@@ -492,7 +492,7 @@ TEST(Cycle, ALatencyThatGrowsWhileTheDrivesAreOnStopsTheDevice) {
 // Commands of so many periods do not reach the device, and from the period `at` on (-1: never) a
 // joint comes away from its reference. The fault; kNone: it goes on.
 FaultCode fault_of_lost_commands(int periods, int at) {
-  Loop loop(false, true);
+  Loop loop(false, true, false);
   loop.run(200);
   loop.start_running();
   loop.run(100);

@@ -533,7 +533,7 @@ TEST(Monitor, AGantryThatSlowlyComesAwayFromItsDriveModelDeviates) {
   Bench bench;  // its encoder counts 0.1 m/s while it should stand
   const int until =
       bench.until_fault(FaultCode::kGantryDeviates, [&] { bench.sensors.q_p[0] += 1e-3 * 0.1; });
-  EXPECT_NEAR(until, 10 + 200 + 12, 10);  // debounce, and 0.02 m of which some is forgotten
+  EXPECT_NEAR(until, 10 + 300 + 25, 10);  // debounce, and 0.03 m of which some is forgotten
   Bench slow;
   EXPECT_EQ(
       slow.until_fault(FaultCode::kGantryDeviates, [&] { slow.sensors.q_p[0] += 1e-3 * 0.01; }),
