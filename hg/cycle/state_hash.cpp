@@ -116,8 +116,8 @@ void mix(const estimation::State& state, Hash& hash) noexcept {
   hash.mix(state.wrench.w_S);
   mix(state.wrench.tare, hash);
   const estimation::InertialCheck& inertial = state.inertial;
-  hash.mix(std::uint64_t{inertial.is_started} |
-           static_cast<std::uint64_t>(inertial.rest_samples) << 1U);
+  hash.mix(std::uint64_t{inertial.is_started} | static_cast<std::uint64_t>(inertial.rest_samples)
+                                                    << 1U);
   for (int axis = 0; axis < 3; ++axis) {
     hash.mix(Eigen::Vector3d(inertial.R_B_S.col(axis)));
   }

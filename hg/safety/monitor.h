@@ -37,7 +37,7 @@ struct MonitorConfig {
   double slide_tracking_tolerance = 0.02;  ///< the same of a prismatic joint, m
   double sync_tolerance = 0.02;            ///< between handle and twin, m
   double plausibility = 0.02;              ///< motor side minus spring minus link side, rad or m
-  double gyroscope_tolerance = 0.015;       ///< of the gyroscope from the encoders, rad
+  double gyroscope_tolerance = 0.015;      ///< of the gyroscope from the encoders, rad
   double tilt_tolerance = 0.1;             ///< of gravity from the posture when armed, rad
   double jump_factor = 3.0;                ///< times what the speed rating allows in a sample
   double clock_tolerance = 0.2;            ///< mean error of the clock, periods per sample
