@@ -176,9 +176,13 @@ void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
     const bool is_asked = command.name == CommandName::kMode || is_choice_of_run(command.name);
     if (!is_asked || !why_not.empty()) server_.answer(command, why_not);
   }
-  if (!asked_.empty() && asked_.back().command.stops != desk_->stops()) refuse_asked(kStopped);
+  while (!asked_.empty() && asked_.front().command.stops != desk_->stops()) {
+    server_.answer(asked_.front().command, kStopped);
+    asked_.pop_front();
+  }
   if (runtime == nullptr) refuse_asked(kRunIsOver);
   take_prepared(note);
+  drop_overtaken(note);
   const std::uint32_t lost = desk_->take_lost();
   if ((lost & 1u) != 0) note("operator_enable", "let go: its page is gone or silent");
   if ((lost & 2u) != 0) note("override_key", "turned off: its page is gone or silent");
@@ -322,6 +326,19 @@ void RunPage::take_prepared(const Note& note) {
     note("restart", chosen_.argument.empty() ? "again" : chosen_.argument);
   }
   server_.answer(chosen_, refusal);
+}
+
+// A stop that came after a run was chosen is one for that run as well.
+void RunPage::drop_overtaken(const Note& note) {
+  if (!next_ || chosen_.stops == desk_->stops()) return;
+  next_.reset();
+  stop_was_asked_ = true;
+  note("restart", "left out: a stop came after it");
+}
+
+std::unique_ptr<PreparedRun> RunPage::take_next() {
+  if (chosen_.stops != desk_->stops()) next_.reset();
+  return std::move(next_);
 }
 
 std::string RunPage::set(const Command& command, runtime::Runtime& runtime, const Note& note) {

@@ -57,7 +57,7 @@ class RunPage {
   /// One has been chosen, and is not ready yet.
   bool is_preparing() const { return prepared_.valid(); }
   /// The run that was chosen to follow, once.
-  std::unique_ptr<PreparedRun> take_next() { return std::move(next_); }
+  std::unique_ptr<PreparedRun> take_next();
 
  private:
   /// A run that was chosen, or why there is none.
@@ -76,6 +76,7 @@ class RunPage {
   void tell_done(const viewer_server::Command& command, const Note& note) const;
   void answer_asked(const Sample& sample);
   void refuse_asked(std::string_view why);
+  void drop_overtaken(const Note& note);
   std::string obey(const viewer_server::Command& command, runtime::Runtime* runtime,
                    const Note& note);
   std::string obey_mode(const viewer_server::Command& command, runtime::Runtime& runtime,

@@ -76,6 +76,9 @@ bool follows_from_link(FaultCode code) noexcept {
     case FaultCode::kGantryExceeded:
     case FaultCode::kGantryDeviates:
     case FaultCode::kAccelerationExceeded:
+    case FaultCode::kBrakingPosition:
+    case FaultCode::kBrakingSpeed:
+    case FaultCode::kStopTooFar:
       return true;
     default:
       return false;
@@ -135,7 +138,8 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
     record.robot =
         estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
     trust_wrench(sensors, record.robot);
-    estimation_.check_motion(sensors, is_moving(state_.supervisor.mode()), state_.estimation);
+    estimation_.check_motion(sensors, safety::is_powered(state_.supervisor.state),
+                             state_.estimation);
     state_.is_coasting = is_coasting(record.robot);
     ended_(Stage::kEstimation);
     // what has jumped says nothing about where parts are, and is itself the fault
@@ -231,8 +235,12 @@ Refusal Cycle::refusal_to_arm() const noexcept {
 // Whatever a fault has left in estimation and control goes; what was measured at rest stays.
 void Cycle::begin_anew() noexcept {
   const estimation::TareState tare = state_.estimation.wrench.tare;
+  const estimation::InertialCheck& before = state_.estimation.inertial;
+  const estimation::InertialCheck inertial = {.bias = before.bias,
+                                              .rest_samples = before.rest_samples};
   state_.estimation = {};
   state_.estimation.wrench.tare = tare;
+  state_.estimation.inertial = inertial;
   control_.restart(state_.control);
   const TwinState& twin = state_.rendering.twin;
   if (twin.q_a.allFinite() && twin.dq_a.allFinite()) return;

@@ -116,8 +116,9 @@ void mix(const estimation::State& state, Hash& hash) noexcept {
   hash.mix(state.wrench.w_S);
   mix(state.wrench.tare, hash);
   const estimation::InertialCheck& inertial = state.inertial;
-  hash.mix(std::uint64_t{inertial.is_started} | static_cast<std::uint64_t>(inertial.rest_samples)
-                                                    << 1U);
+  hash.mix(std::uint64_t{inertial.is_started} |
+           static_cast<std::uint64_t>(inertial.rest_samples) << 1U |
+           static_cast<std::uint64_t>(inertial.gravity_samples) << 32U);
   for (int axis = 0; axis < 3; ++axis) {
     hash.mix(Eigen::Vector3d(inertial.R_B_S.col(axis)));
   }
@@ -168,6 +169,7 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
   hash.mix(std::uint64_t{state.is_stopping});
   hash.mix(state.stop_from);
   hash.mix(state.braking_ramp);
+  hash.mix(state.ramp_speed);
 }
 
 void mix(const passivity::State& state, Hash& hash) noexcept {

@@ -49,9 +49,9 @@ class Estimation {
   RobotState step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
                   const VectorM& ddq_m_reference, State& state) noexcept;
 
-  /// Compares inertial unit and encoders, after step(); nothing without one. `is_moving`: the
-  /// device may move.
-  void check_motion(const SensorFrame& sensors, bool is_moving, State& state) const noexcept;
+  /// Compares inertial unit and encoders, after step(); nothing without one. `is_on`: the
+  /// drives have power.
+  void check_motion(const SensorFrame& sensors, bool is_on, State& state) const noexcept;
 
   /// Starts a tare of the wrench when asked for; ends one under way unless the device is at rest.
   void tare(bool is_asked_for, bool is_at_rest, State& state) const noexcept;

@@ -55,9 +55,9 @@ bool stands_still(const Truth& truth) {
 }
 
 // Whether the machine no longer does what was asked for.
-bool has_reacted(const CycleRecord& record) {
+bool has_reacted(const CycleRecord& record, bool was_on) {
   return record.fault.code != FaultCode::kNone || record.mode == Mode::kStopping ||
-         record.mode == Mode::kReady || record.mode == Mode::kFault;
+         (was_on && record.mode == Mode::kReady) || record.mode == Mode::kFault;
 }
 
 // Ways of axes that nobody asked for, see FaultCase::travel_share.
@@ -174,6 +174,7 @@ injection::Injection draw(const injection::Kind& kind, const config::Scenario& s
 }
 
 constexpr std::size_t kPhases = 4;
+constexpr double kStartingWatch = 2.0;  // s longer: the device is to be armed and to run
 constexpr double kFirst = 0.1;  // s: what is wrong from the first sample on is no fault that begins
 
 FaultCase draw_case(std::size_t number, const config::Scenario& scenario, std::mt19937_64& random) {
@@ -250,11 +251,11 @@ FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
     end_s = std::max(end_s, result.other->from_s + config.watched_s);
   }
   // a fault from the start on is in force when the device begins to run
-  if (result.phase == Phase::kStarting) end_s += scenario.script.script.grasp_s + kSettling;
+  if (result.phase == Phase::kStarting) end_s += kStartingWatch;
   Player player(played);
   TrueLimits limits(scenario);
   Travel travel(scenario);
-  bool is_at_rest = false;
+  bool is_at_rest = false, was_on = false;
   double noticed_at_s = kNever;
   std::uint64_t cycles = 0;
   const auto recorder =
@@ -277,7 +278,8 @@ FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
       const double distance = (truth.T_B_H.p - record.T_B_E.p).norm();
       result.worst_distance = std::max(result.worst_distance, distance);
     }
-    if (std::isnan(noticed_at_s) && has_reacted(record)) {
+    was_on = was_on || record.mode == Mode::kArmed || record.mode == Mode::kRunning;
+    if (std::isnan(noticed_at_s) && has_reacted(record, was_on)) {
       noticed_at_s = record.time_s;
       result.outcome = Outcome::kNoticed;
       result.noticed_s = record.time_s - from_s;
@@ -324,7 +326,9 @@ Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const Camp
         FaultCase drawn = draw_case(i, scenarios[which], random);
         drawn.scenario = which;
         const double from_s = drawn.injection.from_s;
-        const double clean_force = clean[which]->peak(from_s, from_s + config.watched_s);
+        const double until_s =
+            from_s + config.watched_s + (drawn.phase == Phase::kStarting ? kStartingWatch : 0.0);
+        const double clean_force = clean[which]->peak(from_s, until_s);
         recording::RecordingInfo recording;
         if (!recordings.empty()) {
           recording = recordings[which];

@@ -5,11 +5,6 @@
 #include <cmath>
 
 namespace hg::inspection {
-namespace {
-
-constexpr double kUntilBrakes = 0.9;  // of a stopping distance; then the monitor closes them
-
-}  // namespace
 
 std::vector<Stopping> stopping_of(const config::Device& device) {
   const rendering::DeviceModel& model = device.model;
@@ -37,7 +32,7 @@ std::vector<Stopping> stopping_of(const config::Device& device) {
 
 void inspect_stopping(const config::Device& device, Collector& out) {
   for (const Stopping& s : stopping_of(device)) {
-    if (std::isfinite(s.need.distance) && s.need.distance > kUntilBrakes * s.distance) {
+    if (std::isfinite(s.need.distance) && s.need.distance > safety::kUntilBrakes * s.distance) {
       const char* unit = s.is_angle ? "rad" : "m";
       out.add(
           Severity::kFault, s.key,

@@ -253,6 +253,7 @@ struct RecordedRun::Taker {
   }
 
   void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
+    losses.take(kind, name, time_ns);
     switch (kind) {
       case mcap_channel:
         return channel(name, text_of(bytes));
@@ -262,7 +263,7 @@ struct RecordedRun::Taker {
         run.configuration_.push_back({std::string(name), std::string(text_of(bytes))});
         return;
       default:
-        return losses.take(kind, name, time_ns);
+        return;
     }
   }
 };

@@ -180,7 +180,7 @@ void RemoteDevice::write(const CommandFrame& command) noexcept {
   // behind a fault the frames are made here: the server takes no answer to what it has not sent
   last_command_.sequence = std::min(command.sequence, newest_);
   has_command_ = true;
-  send(command);
+  send(last_command_);
 }
 
 void RemoteDevice::close(FaultCode reason) noexcept {

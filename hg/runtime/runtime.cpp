@@ -75,10 +75,10 @@ Runtime::~Runtime() {
 
 void Runtime::start() {
   if (options_.desk != nullptr) {
-    options_.desk->open();
     stops_ = options_.desk->stops();
     holds_ = options_.desk->holds();
     script_releases_ = options_.desk->script_releases();
+    options_.desk->open();
   }
   thread_ = std::thread([this] { loop(); });
 }

@@ -7,6 +7,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/first_not_finite.h"
+#include "hg/safety/stopping.h"
 
 namespace hg::safety {
 namespace {
@@ -15,7 +16,6 @@ constexpr double kClockMemory = 0.02;    // share of the newest sample in the cl
 constexpr double kPullMemory_s = 0.2;    // after which a reference that came back is forgotten
 constexpr double kGapMemory_s = 2.0;     // after which an error of the drive model is forgotten
 constexpr double kMotorMemory_s = 0.02;  // over which the torque of a motor is observed
-constexpr double kRoomForBrakes = 0.1;   // of a stopping distance, for what brakes take
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -269,8 +269,9 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& reco
   }
 }
 
-// Every axis of a controlled stop against its ramp: a joint against its reference, an axis of the
-// gantry against its drive model. Whatever does not brake as it is asked to needs its brakes.
+// Every axis of a controlled stop against its ramp: an axis of the gantry against its drive model,
+// a joint against the accelerations that are asked of it; its reference itself comes back to a
+// joint that does not follow. Whatever does not brake as it is asked to needs its brakes.
 void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
                               MonitorState& state) noexcept {
   const bool is_new = !state.is_stopping;
@@ -279,22 +280,23 @@ void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
   const RobotState& robot = record.robot;
   if (is_new) {
     state.stop_from = state.braking_ramp = robot.q_m;
+    state.ramp_speed = record.reference.dq_m;
     state.stop_from_p = state.braking_ramp_p = robot.q_p;
   } else {
-    state.braking_ramp += config_.dt * record.reference.dq_m;
+    state.ramp_speed += config_.dt * record.reference.ddq_m;
+    state.braking_ramp += config_.dt * state.ramp_speed;
     state.braking_ramp_p += config_.dt * state.dq_p_model;
   }
-  constexpr double until_brakes = 1.0 - kRoomForBrakes;
   for (int i = 0; i < n_m_; ++i) {
     const bool is_slide = config_.is_slide[at(i)];
     look<FaultCode::kBrakingPosition>(i, std::abs(robot.q_m[i] - state.braking_ramp[i]),
                                       is_slide ? config_.slide_braking_gap : config_.braking_gap);
     look<FaultCode::kBrakingSpeed>(
-        i, std::abs(robot.dq_m[i] - record.reference.dq_m[i]),
+        i, std::abs(robot.dq_m[i] - state.ramp_speed[i]),
         is_slide ? config_.slide_braking_deviation : config_.braking_deviation);
     look<FaultCode::kStopTooFar>(
         i, std::abs(robot.q_m[i] - state.stop_from[i]),
-        until_brakes * (is_slide ? config_.slide_stop_distance : config_.stop_distance));
+        kUntilBrakes * (is_slide ? config_.slide_stop_distance : config_.stop_distance));
   }
   const bool is_slide = config_.is_gantry_slide;
   const double gap = is_slide ? config_.gantry_gap : config_.turn_gap;
@@ -308,7 +310,7 @@ void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
                                    off + by_dead_time);
     look<FaultCode::kStopTooFar>(
         n_m_ + i, moved,
-        until_brakes * (is_slide ? config_.gantry_stop_distance : config_.turn_stop_distance));
+        kUntilBrakes * (is_slide ? config_.gantry_stop_distance : config_.turn_stop_distance));
   }
 }
 

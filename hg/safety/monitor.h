@@ -127,8 +127,9 @@ struct MonitorState {
   VectorM momentum;         ///< of the motors, as their commands and springs make it, Nms
   VectorM lowest, highest;  ///< where joints may be: limits, or where they stood when armed
   VectorP lowest_p, highest_p;
-  bool is_stopping = false;             ///< what follows is of the present stop
-  VectorM stop_from, braking_ramp;      ///< joints: where it began, where the reference has led
+  bool is_stopping = false;         ///< what follows is of the present stop
+  VectorM stop_from, braking_ramp;  ///< joints: where it began, where the ramp has led
+  VectorM ramp_speed;  ///< of the joints, by the accelerations of the reference since it began
   VectorP stop_from_p, braking_ramp_p;  ///< gantry: where it began, where the drive model has led
 };
 

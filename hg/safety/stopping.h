@@ -17,7 +17,10 @@ struct StoppingNeed {
   double time = 0.0, distance = 0.0;
 };
 
-/// Of a joint at speed `v`, of which `ddq` is surely available; infinite without ratings.
+/// What of a stopping distance is left to the axis; then the monitor closes the brakes.
+inline constexpr double kUntilBrakes = 0.9;
+
+/// Of a joint at speed `v` with the acceleration `ddq` of its rating; both finite.
 inline StoppingNeed stopping_need(double v, double ddq) noexcept {
   const double slow = std::min(v, ddq / kBrakingRate);  // from here on it decays with the rate
   return {.time = kRampOut + (v - slow) / ddq +

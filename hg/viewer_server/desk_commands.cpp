@@ -21,7 +21,8 @@ std::string obey_panel(const Command& command, std::int64_t now_ns, OperatorDesk
   const auto named = std::find_if(std::begin(kInputs), std::end(kInputs),
                                   [&](const auto& i) { return i.name == command.argument; });
   if (named == std::end(kInputs)) return "there is no such switch: " + command.argument;
-  if (!desk.is_open()) return std::string(kOver);
+  // what lets go counts between runs as well: it overtakes a run that is being prepared
+  if (!desk.is_open() && command.value != 0.0) return std::string(kOver);
   const std::uint64_t holder = desk.set(named->input, command.page, command.value != 0.0, now_ns);
   return holder == 0 ? "" : "page " + std::to_string(holder) + " holds it";
 }
@@ -52,11 +53,10 @@ std::optional<std::string> obey_at_desk(const Command& command,
       return obey_panel(command, now_ns, desk);
     case CommandName::kMode:
       if (command.argument != "hold") return {};
-      if (!desk.is_open()) return std::string(kOver);
       desk.ask_to_hold();
       return "";
     case CommandName::kStop:
-      if (desk.is_open()) desk.ask_to_end();
+      desk.ask_to_end();
       return {};
     default:
       return {};

@@ -74,16 +74,16 @@ class Page : public std::enable_shared_from_this<Page> {
     const auto bytes = buffer_.cdata();
     const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
     PageMessage message;
-    if (!rate_.admit(now_s())) {
+    const DecodeStatus status =
+        socket_.got_text() ? decode(text, message) : DecodeStatus::kMalformed;
+    if (status == DecodeStatus::kCommand) {
+      listen(message.command);  // whatever has piled up before it: it may be a stop
+    } else if (!rate_.admit(now_s())) {
       ++hub_.refused;  // without an answer: a flood would only grow by it
-    } else if (!socket_.got_text()) {
-      refuse(-1.0, refusal_text(DecodeStatus::kMalformed));
-    } else if (const DecodeStatus status = decode(text, message); status == DecodeStatus::kHand) {
+    } else if (status == DecodeStatus::kHand) {
       hub_.put_hand(number, message.hand);
     } else if (status == DecodeStatus::kHold) {
       hold(message.hold);
-    } else if (status == DecodeStatus::kCommand) {
-      listen(message.command);
     } else {
       refuse(-1.0, refusal_text(status));
     }

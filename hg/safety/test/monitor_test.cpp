@@ -570,10 +570,12 @@ struct BrakingBench : Bench {
   // one period; the axes are faster than their ramps by so much
   void brake(double joint_excess, double gantry_excess) {
     reference = std::max(0.0, reference - 2e-3);
-    record.reference.dq_m[2] = reference;
     record.robot.dq_m[2] = reference + joint_excess;
+    // its acceleration is the ramp; the reference itself is brought back to the device
+    record.reference.ddq_m[2] = reference > 0.0 ? -2.0 : 0.0;
+    record.reference.dq_m[2] = state.is_stopping ? record.robot.dq_m[2] : reference;
     record.robot.q_m[2] += 1e-3 * record.robot.dq_m[2];
-    record.reference.q_m[2] = record.robot.q_m[2];  // it is brought back to the device
+    record.reference.q_m[2] = record.robot.q_m[2];
     record.robot.dq_p[1] = state.dq_p_model[1] + gantry_excess;
     record.robot.q_p[1] += 1e-3 * record.robot.dq_p[1];
     sensors.q_p[1] = record.robot.q_p[1] - 1e-3 * state.dq_p_model[1];  // step() adds this

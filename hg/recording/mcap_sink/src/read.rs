@@ -83,8 +83,9 @@ impl Records {
     fn end_of(&self, at: u64, head: &[u8]) -> Option<u64> {
         let length = u64::from_le_bytes(head[1..HEAD_BYTES as usize].try_into().ok()?);
         let is_one = (op::HEADER..=op::DATA_END).contains(&head[0]) && length <= LONGEST_BYTES;
-        let end = at + HEAD_BYTES + length;
-        (is_one && end <= self.size).then_some(end)
+        // a damaged length may be any number
+        let end = is_one.then(|| at + HEAD_BYTES + length)?;
+        (end <= self.size).then_some(end)
     }
 
     /// The place behind the record at `at`, if there may be one.
