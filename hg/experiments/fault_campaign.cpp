@@ -301,9 +301,10 @@ FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
   }
   result.travel_share = travel.share();
   result.energy = travel.energy();
-  const bool is_worse = result.worst_excess > config.harmless_excess ||
-                        result.peak_force > clean_force + config.harmless_force ||
-                        result.worst_distance > config.harmless_distance;
+  // a device that was never armed is held by its brakes, whatever the person does
+  const bool is_worse = was_on && (result.worst_excess > config.harmless_excess ||
+                                   result.peak_force > clean_force + config.harmless_force ||
+                                   result.worst_distance > config.harmless_distance);
   if (result.outcome != Outcome::kNoticed && is_worse) result.outcome = Outcome::kUnnoticed;
   return result;
 }

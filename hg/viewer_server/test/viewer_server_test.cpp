@@ -400,12 +400,15 @@ TEST_F(DeskTest, AClosedPageLetsGoAtOnce) {
   EXPECT_FALSE(panel.operator_enable);
 }
 
-TEST_F(DeskTest, BetweenRunsOnlyTheEmergencyStopIsTaken) {
+TEST_F(DeskTest, BetweenRunsStopsCountForTheNextOneAndNothingElseIsTaken) {
   const auto page = open_page();
   desk_.close();
-  EXPECT_NE(ask(*page, "panel", "operator_enable", 0.0), "");
-  EXPECT_NE(ask(*page, "mode", "hold"), "");
+  EXPECT_NE(ask(*page, "panel", "operator_enable", 1.0), "");
+  EXPECT_EQ(desk_.stops(), 0u);
+  EXPECT_EQ(ask(*page, "panel", "operator_enable", 0.0), "");
+  EXPECT_EQ(ask(*page, "mode", "hold"), "");
   EXPECT_EQ(ask(*page, "emergency_stop", ""), "");
+  EXPECT_EQ(desk_.stops(), 3u);
   EXPECT_TRUE(look().emergency_stop);
 }
 
