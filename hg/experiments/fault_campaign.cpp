@@ -255,7 +255,7 @@ FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
   Player player(played);
   TrueLimits limits(scenario);
   Travel travel(scenario);
-  bool is_at_rest = false, was_on = false;
+  bool is_at_rest = false, was_on = false, has_run = false;
   double noticed_at_s = kNever;
   std::uint64_t cycles = 0;
   const auto recorder =
@@ -278,7 +278,8 @@ FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
       const double distance = (truth.T_B_H.p - record.T_B_E.p).norm();
       result.worst_distance = std::max(result.worst_distance, distance);
     }
-    was_on = was_on || record.mode == Mode::kArmed || record.mode == Mode::kRunning;
+    has_run = has_run || record.mode == Mode::kRunning;
+    was_on = was_on || has_run || record.mode == Mode::kArmed;
     if (std::isnan(noticed_at_s) && has_reacted(record, was_on)) {
       noticed_at_s = record.time_s;
       result.outcome = Outcome::kNoticed;
@@ -301,10 +302,10 @@ FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
   }
   result.travel_share = travel.share();
   result.energy = travel.energy();
-  // a device that was never armed is held by its brakes, whatever the person does
-  const bool is_worse = was_on && (result.worst_excess > config.harmless_excess ||
-                                   result.peak_force > clean_force + config.harmless_force ||
-                                   result.worst_distance > config.harmless_distance);
+  // a device that did not run held still, however the person pulled
+  const bool is_worse = has_run && (result.worst_excess > config.harmless_excess ||
+                                    result.peak_force > clean_force + config.harmless_force ||
+                                    result.worst_distance > config.harmless_distance);
   if (result.outcome != Outcome::kNoticed && is_worse) result.outcome = Outcome::kUnnoticed;
   return result;
 }
