@@ -115,9 +115,11 @@ class Damaged(TemporaryFolder):
         self.assertEqual(code, 1, out)  # events are missing
         self.file, = (f for f in self.folder.glob("*.mcap") if not f.is_symlink())
 
-    def flipped(self, at):
+    def flipped(self, at, length=1):
+        """A copy of the recording with a bit flipped in each of some bytes."""
         whole = bytearray(self.file.read_bytes())
-        whole[at] ^= 4
+        for place in range(at, at + length):
+            whole[place] ^= 4
         file = self.folder / "damaged.mcap"
         file.write_bytes(whole)
         return file
@@ -135,7 +137,8 @@ class Damaged(TemporaryFolder):
         self.assertEqual(len(chunks), 13)  # of 250 samples, 3 s and the cycles of the stop
         for number in (0, 5):
             start, length = chunks[number]
-            file = self.flipped(start + length // 2)
+            # One bit alone may tell the decompressor of another copy of the same bytes: no damage.
+            file = self.flipped(start + length // 2, 32)
             told = (f"DAMAGED     chunk at byte {start}: 250 samples from {number * 0.25:.3f} to "
                     f"{number * 0.25 + 0.249:.3f} s are lost")
             for command, expected in ((("explain", file), 0), (("compare", self.file, file), 1),
