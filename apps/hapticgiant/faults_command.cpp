@@ -2,17 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/process_faults.h"
 #include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/scratch_folder.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
@@ -20,27 +19,17 @@
 namespace hg::apps {
 namespace {
 
-// Where recordings are until they are read back.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    path_ = (std::filesystem::temp_directory_path() / "hapticgiant_XXXXXX").string();
-    if (mkdtemp(path_.data()) == nullptr) {
-      throw SetupError(path_ + ": cannot be created: " + std::strerror(errno));
-    }
+int process_faults(const FaultsArguments& arguments) {
+  const std::vector<ProcessCase> cases =
+      play_process_faults(arguments.scenarios, arguments.repetitions, arguments.campaign.seed);
+  print_out(to_text(cases));
+  if (!arguments.json.empty()) {
+    nlohmann::ordered_json json = to_json(cases);
+    json["version"] = kVersion;
+    write_output(arguments.json, json.dump(2) + "\n");
   }
-  ~ScratchFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
+  return std::ranges::all_of(cases, &ProcessCase::is_good) ? 0 : 1;
+}
 
 }  // namespace
 
@@ -58,6 +47,7 @@ int faults(const FaultsArguments& arguments) {
   }
   check_writable(arguments.json);
   check_writable(arguments.markdown);
+  if (arguments.plays_processes) return process_faults(arguments);
   const ScratchFolder scratch;
   std::vector<recording::RecordingInfo> recordings;
   if (recording::recording_available()) {

@@ -11,8 +11,10 @@ namespace hg::apps {
 struct FaultsArguments {
   std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
   experiments::CampaignConfig campaign;
-  std::string json;      ///< file for all cases; empty = none
-  std::string markdown;  ///< file for the table as a page; empty = none
+  bool plays_processes = false;  ///< faults of the controller's process instead, in real time
+  int repetitions = 1;           ///< of these
+  std::string json;              ///< file for all cases; empty = none
+  std::string markdown;          ///< file for the table as a page; empty = none
 };
 
 /// Prints a table. Returns the exit code: 1 when a fault was unnoticed or went beyond the bounds;

@@ -380,8 +380,15 @@ void add_faults(CLI::App& app, hg::apps::FaultsArguments& arguments, int& exit_c
   command->add_option("--seed", arguments.campaign.seed, "of scenarios, times and sizes")
       ->check(whole_number(0.0));
   command->add_option("--scenario", arguments.scenarios, "scenarios with a script");
+  CLI::Option* processes = command->add_flag(
+      "--processes", arguments.plays_processes,
+      "faults of the controller's process (terminal, disk, memory, ...) instead, in real time");
+  command->add_option("--repetitions", arguments.repetitions, "of the faults of processes")
+      ->check(whole_number(1.0, 1e6))
+      ->needs(processes);
   command->add_option("--json", arguments.json, "write all cases as JSON to this file");
-  command->add_option("--markdown", arguments.markdown, "write the table as a page to this file");
+  command->add_option("--markdown", arguments.markdown, "write the table as a page to this file")
+      ->excludes(processes);
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::faults(arguments); });
 }
 

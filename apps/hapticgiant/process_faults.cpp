@@ -1,0 +1,442 @@
+#include "apps/hapticgiant/process_faults.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/remote_setup.h"
+#include "apps/hapticgiant/scratch_folder.h"
+#include "hg/assembly/assembly.h"
+#include "hg/core/error.h"
+#include "hg/experiments/fault_campaign.h"
+#include "hg/recording/recording_reader.h"
+#include "hg/remote/device_server.h"
+
+extern char** environ;
+
+namespace hg::apps {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kUntilRunning = std::chrono::seconds(120);
+constexpr auto kUntilEnded = std::chrono::seconds(30);
+constexpr auto kFaultToStop = milliseconds(300);
+constexpr auto kFrozen = std::chrono::seconds(1);
+constexpr double kStandstill = 0.02;        // rad/s and m/s, of the truth
+constexpr double kWatchedAfter_s = 1.0;     // beyond the session: the device lives on by itself
+constexpr std::uint64_t kUnwritten = 1000;  // samples that a recording may lack at its end
+
+struct Description {
+  ProcessFault fault;
+  std::string_view name, what;
+  bool may_die = false;     ///< by a signal
+  bool is_recorded = true;  ///< its recording has all but the end
+  int exit_code = -1;       ///< that it must have; -1: any
+};
+
+constexpr auto kDescriptions = std::to_array<Description>({
+    {ProcessFault::kNone, "none", "only the stop"},
+    {ProcessFault::kTerminalStalled, "terminal_stalled", "nobody reads what it prints"},
+    {ProcessFault::kTerminalClosed, "terminal_closed", "its terminal has gone"},
+    {ProcessFault::kDiskFull, "disk_full", "no file may grow", false, false, 4},
+    {ProcessFault::kFolderGone, "folder_gone", "its recording is deleted", false, false},
+    {ProcessFault::kNoDescriptors, "no_descriptors", "it may open nothing more"},
+    {ProcessFault::kNoMemory, "no_memory", "it gets no more memory", true, false},
+    {ProcessFault::kBusy, "processors_busy", "others take all processors", false, false},
+    {ProcessFault::kFrozen, "frozen", "it is suspended for a second"},
+    {ProcessFault::kSuspended, "suspended", "it is suspended for good", true},
+    {ProcessFault::kKilled, "killed", "kill -9", true},
+});
+
+const Description& description_of(ProcessFault fault) {
+  return *std::ranges::find(kDescriptions, fault, &Description::fault);
+}
+
+// The simulated device, and what its axes really do from a moment on. Written by the thread that
+// serves it; the atomics are for others, the rest is read when that thread has ended.
+class Witness final : public device::Device {
+ public:
+  Witness(const config::Scenario& scenario)
+      : device_(assembly::make_simulated_device(scenario)), scenario_(scenario) {}
+
+  void read(SensorFrame& sensors) noexcept override { device_.read(sensors); }
+  void write(const CommandFrame& command) noexcept override {
+    device_.write(command);
+    periods.fetch_add(1, std::memory_order_relaxed);
+    is_on.store(command.enable, std::memory_order_relaxed);
+    if (is_watched.load(std::memory_order_relaxed)) watch(*device_.truth());
+  }
+
+  void watch(const Truth& truth) noexcept {
+    const safety::MonitorConfig& stated = scenario_.device.monitor;
+    const double dt = scenario_.device.rendering.dt;
+    if (from_m_.size() == 0) {
+      from_m_ = truth.q_m;
+      from_p_ = truth.q_p;
+    }
+    for (Eigen::Index i = 0; i < from_m_.size(); ++i) {
+      const bool is_slide =
+          !stated.is_slide.empty() && stated.is_slide[static_cast<std::size_t>(i)];
+      look(truth.q_m[i] - from_m_[i], is_slide ? stated.slide_stop_distance : stated.stop_distance);
+    }
+    for (Eigen::Index i = 0; i < from_p_.size(); ++i) {
+      look(truth.q_p[i] - from_p_[i],
+           stated.is_gantry_slide ? stated.gantry_stop_distance : stated.turn_stop_distance);
+    }
+    energy_ -= dt * truth.w_H.dot(truth.twist);
+    most_energy = std::max(most_energy, energy_);
+    watched_s_ += dt;
+    const VectorM& motors = truth.dtheta_m.size() > 0 ? truth.dtheta_m : truth.dq_m;
+    const bool is_still =
+        motors.lpNorm<Eigen::Infinity>() < kStandstill &&
+        (truth.dq_p.size() == 0 || truth.dq_p.lpNorm<Eigen::Infinity>() < kStandstill);
+    if (!is_still) rest_s = std::numeric_limits<double>::quiet_NaN();
+    if (is_still && std::isnan(rest_s)) rest_s = watched_s_;
+  }
+
+  std::atomic<std::uint64_t> periods{0};
+  std::atomic<bool> is_on{false};       ///< the drives were told to be
+  std::atomic<bool> is_watched{false};  ///< from the stop on
+  double share = 0.0, most_energy = 0.0;
+  double rest_s = std::numeric_limits<double>::quiet_NaN();
+
+ private:
+  void look(double way, double stated) noexcept { share = std::max(share, std::abs(way) / stated); }
+
+  device::SimulatedDevice device_;
+  const config::Scenario& scenario_;
+  VectorM from_m_;
+  VectorP from_p_;
+  double energy_ = 0.0, watched_s_ = 0.0;
+};
+
+// Serves the device to one controller, and lets it live on by itself afterwards.
+void serve(remote::DeviceServer& server, Witness& witness, double dt,
+           const std::atomic<bool>& stop) {
+  if (!server.wait_for_client(stop)) return;
+  server.serve(witness, stop);
+  SensorFrame sensors;
+  for (double t = 0.0; t < kWatchedAfter_s; t += dt) {
+    witness.read(sensors);
+    witness.write({});
+  }
+}
+
+// Program and terminal of a controller.
+class Controller {
+ public:
+  Controller(const std::string& scenario, const std::string& address, const std::string& folder) {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw SetupError("no pipe for the controller");
+    terminal_ = ends[0];
+    program_end_ = ends[1];
+    std::vector<std::string> words = {
+        "hapticgiant", "run",    scenario, "--device-address", address,      "--recordings",
+        folder,        "--port", "0",      "--no-browser",     "--priority", "0"};
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, program_end_, 1);
+    posix_spawn_file_actions_adddup2(&actions, program_end_, 2);
+    const int failed =
+        posix_spawn(&pid_, "/proc/self/exe", &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed != 0) throw SetupError("the controller cannot be started");
+    reader_ = std::thread([this] { read(); });
+  }
+
+  ~Controller() {
+    if (!has_ended()) send(SIGKILL);
+    while (!has_ended()) std::this_thread::sleep_for(milliseconds(5));
+    is_read_ = false;
+    reader_.join();
+    if (terminal_ >= 0) close(terminal_);
+    if (program_end_ >= 0) close(program_end_);
+  }
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+
+  void send(int signal) const { kill(pid_, signal); }
+
+  void limit(__rlimit_resource what) const {
+    const rlimit none = {0, 0};
+    prlimit(pid_, what, &none, nullptr);
+  }
+
+  // Nobody reads any more, and the pipe is full.
+  void stall() {
+    stop_reading();
+    const int other = open(fmt::format("/proc/self/fd/{}", program_end_).c_str(),
+                           O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+    const std::array<char, 4096> text{};
+    while (write(other, text.data(), text.size()) > 0) continue;
+    while (write(other, text.data(), 1) > 0) continue;
+    close(other);
+  }
+
+  void hang_up() {
+    stop_reading();
+    close(terminal_);
+    terminal_ = -1;
+  }
+
+  bool has_ended() {
+    if (!has_ended_) has_ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
+    return has_ended_;
+  }
+  int exit_code() const { return has_ended_ && WIFEXITED(status_) ? WEXITSTATUS(status_) : -1; }
+
+ private:
+  void stop_reading() {
+    is_read_ = false;
+    reader_.join();
+    reader_ = std::thread([] {});
+  }
+  void read() {
+    std::array<char, 4096> text{};
+    fcntl(terminal_, F_SETFL, O_NONBLOCK);
+    while (is_read_) {
+      if (::read(terminal_, text.data(), text.size()) <= 0) {
+        std::this_thread::sleep_for(milliseconds(5));
+      }
+    }
+  }
+
+  int terminal_ = -1, program_end_ = -1;
+  pid_t pid_ = 0;
+  int status_ = 0;
+  bool has_ended_ = false;
+  std::atomic<bool> is_read_{true};
+  std::thread reader_;
+};
+
+// Threads that take what processors give.
+class Load {
+ public:
+  void begin() {
+    for (unsigned i = 0; i < 4 * std::max(1U, std::thread::hardware_concurrency()); ++i) {
+      threads_.emplace_back([this] {
+        while (goes_on_.load(std::memory_order_relaxed)) continue;
+      });
+    }
+  }
+  ~Load() {
+    goes_on_ = false;
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+ private:
+  std::atomic<bool> goes_on_{true};
+  std::vector<std::thread> threads_;
+};
+
+void apply(ProcessFault fault, Controller& controller, const std::string& folder, Load& load) {
+  switch (fault) {
+    case ProcessFault::kNone:
+      return;
+    case ProcessFault::kTerminalStalled:
+      return controller.stall();
+    case ProcessFault::kTerminalClosed:
+      return controller.hang_up();
+    case ProcessFault::kDiskFull:
+      return controller.limit(RLIMIT_FSIZE);
+    case ProcessFault::kFolderGone:
+      std::filesystem::remove_all(folder);
+      return;
+    case ProcessFault::kNoDescriptors:
+      return controller.limit(RLIMIT_NOFILE);
+    case ProcessFault::kNoMemory:
+      return controller.limit(RLIMIT_AS);
+    case ProcessFault::kBusy:
+      return load.begin();
+    case ProcessFault::kFrozen:
+    case ProcessFault::kSuspended:
+      return controller.send(SIGSTOP);
+    case ProcessFault::kKilled:
+      return controller.send(SIGKILL);
+  }
+}
+
+bool wait_for(std::chrono::seconds longest, const auto& is_so) {
+  const Clock::time_point end = Clock::now() + longest;
+  while (!is_so()) {
+    if (Clock::now() > end) return false;
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  return true;
+}
+
+class SampleCounter final : public recording::RecordingListener {
+ public:
+  void configuration(const recording::NamedText& /*text*/) override {}
+  void event(const recording::Event& /*event*/) override {}
+  void sample(const Sample& /*sample*/) override { ++count; }
+  std::uint64_t count = 0;
+};
+
+std::uint64_t samples_in(const std::filesystem::path& folder) {
+  std::uint64_t most = 0;  // beside it lie the last seconds of a fault
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.is_symlink() || entry.path().extension() != ".mcap") continue;
+    SampleCounter counter;
+    try {
+      recording::read_recording(entry.path(), counter);
+    } catch (const SetupError&) {
+      // counted as far as it was read
+    }
+    most = std::max(most, counter.count);
+  }
+  return most;
+}
+
+bool has_done_well(const ProcessCase& result) {
+  const Description& expected = description_of(result.fault);
+  return result.has_run && !std::isnan(result.rest_s) && result.travel_share <= 1.0 &&
+         result.energy <= experiments::CampaignConfig{}.energy_bound &&
+         (expected.may_die || (result.has_ended && result.exit_code >= 0)) &&
+         (expected.exit_code < 0 || result.exit_code == expected.exit_code) &&
+         (!expected.is_recorded || result.recorded + kUnwritten >= result.periods);
+}
+
+ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& random) {
+  ProcessCase result = {.fault = fault, .scenario = name};
+  const config::Scenario scenario = config::load_scenario(find_scenario(name));
+  const Interval times = experiments::fault_times(scenario);
+  const double at_s = std::uniform_real_distribution<double>(times.lb, times.ub)(random);
+  const double dt = scenario.device.rendering.dt;
+  const ScratchFolder scratch;
+  const std::string folder = scratch.path() + "/recordings";
+
+  remote::DeviceServer server(
+      remote::parse_address("--listen", "127.0.0.1:0"),
+      {.actual = hg::apps::describe(scenario, false), .server = "hapticgiant faults"});
+  Witness witness(scenario);
+  std::atomic<bool> gives_up{false}, has_served{false};
+  std::thread device([&] {
+    serve(server, witness, dt, gives_up);
+    has_served = true;
+  });
+  {
+    Load load;
+    Controller controller(name, server.address(), folder);
+    result.has_run =
+        wait_for(kUntilRunning,
+                 [&] {
+                   return controller.has_ended() ||
+                          (witness.is_on && static_cast<double>(witness.periods) * dt > at_s);
+                 }) &&
+        !controller.has_ended();
+    const bool is_stopped_by_fault = fault == ProcessFault::kFrozen ||
+                                     fault == ProcessFault::kSuspended ||
+                                     fault == ProcessFault::kKilled;
+    if (is_stopped_by_fault) witness.is_watched = true;
+    apply(fault, controller, folder, load);
+    if (fault == ProcessFault::kFrozen) {
+      std::this_thread::sleep_for(kFrozen);
+      controller.send(SIGCONT);
+    } else if (!is_stopped_by_fault) {
+      std::this_thread::sleep_for(kFaultToStop);
+      witness.is_watched = true;
+    }
+    result.periods = witness.periods;
+    controller.send(SIGTERM);
+    const auto has_ended = [&] { return has_served && controller.has_ended(); };
+    const bool ends = fault != ProcessFault::kSuspended;
+    result.has_ended = ends ? wait_for(kUntilEnded, has_ended)
+                            : wait_for(kUntilEnded, [&] { return has_served.load(); });
+    gives_up = true;
+    result.exit_code = controller.exit_code();
+  }
+  device.join();
+  result.rest_s = witness.rest_s;
+  result.travel_share = witness.share;
+  result.energy = witness.most_energy;
+  result.recorded = samples_in(folder);
+  result.is_good = has_done_well(result);
+  return result;
+}
+
+}  // namespace
+
+std::vector<ProcessCase> play_process_faults(const std::vector<std::string>& scenarios,
+                                             int repetitions, std::uint64_t seed) {
+  std::vector<ProcessCase> cases;
+  std::mt19937_64 random(seed);
+  for (int k = 0; k < repetitions; ++k) {
+    for (const Description& description : kDescriptions) {
+      cases.push_back(play(scenarios[cases.size() % scenarios.size()], description.fault, random));
+    }
+  }
+  return cases;
+}
+
+std::string to_text(const std::vector<ProcessCase>& cases) {
+  std::string text =
+      fmt::format("{:17} {:11} {:>10} {:>6} {:>6} {:>5} {:>9} {:>9}  {}\n", "fault", "scenario",
+                  "at rest ms", "way %", "J", "exit", "lived", "recorded", "what goes wrong");
+  for (const ProcessCase& result : cases) {
+    const Description& expected = description_of(result.fault);
+    text += fmt::format("{:17} {:11} {:>10.0f} {:>6.0f} {:>6.1f} {:>5} {:>9} {:>9}  {}{}\n",
+                        expected.name, result.scenario, 1e3 * result.rest_s,
+                        100.0 * result.travel_share, result.energy,
+                        result.exit_code < 0 ? "-" : std::to_string(result.exit_code),
+                        result.periods, result.recorded, expected.what,
+                        result.is_good   ? ""
+                        : result.has_run ? "  BAD"
+                                         : "  BAD: it did not run");
+  }
+  const auto bad = std::ranges::count(cases, false, &ProcessCase::is_good);
+  return text +
+         fmt::format(
+             "\nat rest: from the stop (SIGTERM 0.3 s after the fault; the fault itself where the "
+             "controller is frozen, suspended or killed)\nuntil all axes of the device stood "
+             "still; "
+             "way: from there on, of the stopping distance; J: given to the person\n\n{} of {} "
+             "cases moved an axis farther than its stopping distance, did not come to rest, did "
+             "not end, or lost more of\ntheir recording than its last second\n",
+             bad, cases.size());
+}
+
+nlohmann::ordered_json to_json(const std::vector<ProcessCase>& cases) {
+  nlohmann::ordered_json json = {{"passed", std::ranges::all_of(cases, &ProcessCase::is_good)}};
+  for (const ProcessCase& result : cases) {
+    json["cases"].push_back({{"fault", description_of(result.fault).name},
+                             {"scenario", result.scenario},
+                             {"passed", result.is_good},
+                             {"has_run", result.has_run},
+                             {"at_rest_after_s", result.rest_s},
+                             {"travel_share", result.travel_share},
+                             {"energy_J", result.energy},
+                             {"has_ended", result.has_ended},
+                             {"exit_code", result.exit_code},
+                             {"periods", result.periods},
+                             {"recorded", result.recorded}});
+  }
+  return json;
+}
+
+}  // namespace hg::apps
