@@ -40,7 +40,9 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "motor side minus twist of the spring minus link side of a joint; m where prismatic");
   v.number("gyroscope_tolerance_rad", monitor.gyroscope_tolerance, kPositive,
            "by how much the gyroscope may turn otherwise than the encoders within some seconds, "
-           "besides 2 % of what it turns");
+           "besides 1.5 % of how far it turns and 0.3 % of its way there and back");
+  v.number("accelerometer_tolerance_m_per_s", monitor.accelerometer_tolerance, kPositive,
+           "by how much the handle may get faster than the encoders say, within half a second");
   v.number(
       "tilt_tolerance_rad", monitor.tilt_tolerance, kPositive,
       "by how much gravity may point elsewhere than the posture says when the device is armed");

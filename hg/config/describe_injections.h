@@ -46,6 +46,7 @@ inline int part_index(const InjectionsDraft& d, const injection::Kind& kind, int
   switch (kind.part) {
     case injection::Part::kGantryEncoder:
     case injection::Part::kGantryDrive:
+    case injection::Part::kGantryCoupling:
       first = n_m;
       break;
     case injection::Part::kForceSensor:

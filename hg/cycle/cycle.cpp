@@ -390,16 +390,18 @@ void Cycle::brake_joints(CycleRecord& record) noexcept {
 
 void Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
                     CycleRecord& record) noexcept {
-  const safety::Verdict verdict = monitor_.watch(sensors, record,
-                                                 {.state = state_.supervisor.state,
-                                                  .late_cycles = late_cycles,
-                                                  .dq_p_command = state_.dq_p,
-                                                  .tau_m = state_.tau_m,
-                                                  .pulled_back = pulled_back_,
-                                                  .unexplained = state_.control.unexplained,
-                                                  .turn = state_.estimation.inertial.turn.norm(),
-                                                  .turned = state_.estimation.inertial.turned},
-                                                 state_.monitor);
+  const safety::Verdict verdict =
+      monitor_.watch(sensors, record,
+                     {.state = state_.supervisor.state,
+                      .late_cycles = late_cycles,
+                      .dq_p_command = state_.dq_p,
+                      .tau_m = state_.tau_m,
+                      .pulled_back = pulled_back_,
+                      .unexplained = state_.control.unexplained,
+                      .turn = state_.estimation.inertial.turn.norm(),
+                      .turn_uncertainty = estimation::turn_uncertainty(state_.estimation.inertial),
+                      .slip = state_.estimation.inertial.slip.norm()},
+                     state_.monitor);
   record.warning = verdict.warning;
   if (!state_.monitor.is_broken) return;
   const Fault link = follows_from_link(verdict.fault.code)

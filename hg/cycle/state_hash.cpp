@@ -122,8 +122,12 @@ void mix(const estimation::State& state, Hash& hash) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     hash.mix(Eigen::Vector3d(inertial.R_B_S.col(axis)));
   }
-  for (const Eigen::Vector3d* v : {&inertial.bias, &inertial.turn, &inertial.up_S}) hash.mix(*v);
-  hash.mix(inertial.turned);
+  for (const Eigen::Vector3d* v :
+       {&inertial.bias, &inertial.turn, &inertial.turned, &inertial.up_S, &inertial.offset_S,
+        &inertial.p_S, &inertial.v_S, &inertial.slip}) {
+    hash.mix(*v);
+  }
+  hash.mix(inertial.turned_in_all);
 }
 
 void mix(const collision::State& state, Hash& hash) noexcept {
@@ -162,8 +166,9 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
                            &state.lowest, &state.highest}) {
     hash.mix(*v);
   }
-  for (const VectorP* v : {&state.q_p, &state.dq_p_model, &state.gantry_gap, &state.lowest_p,
-                           &state.highest_p, &state.stop_from_p, &state.braking_ramp_p}) {
+  for (const VectorP* v :
+       {&state.q_p, &state.dq_p_model, &state.gantry_gap, &state.gantry_drift, &state.gantry_way,
+        &state.lowest_p, &state.highest_p, &state.stop_from_p, &state.braking_ramp_p}) {
     hash.mix(*v);
   }
   hash.mix(std::uint64_t{state.is_stopping});

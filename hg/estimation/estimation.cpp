@@ -37,8 +37,10 @@ void Estimation::tare(bool is_asked_for, bool is_at_rest, State& state) const no
 
 void Estimation::check_motion(const SensorFrame& sensors, bool is_on, State& state) const noexcept {
   if (!config_.wrench.has_imu) return;
-  const Eigen::Matrix3d R_B_S = chain_.pose(handle_).R * config_.T_H_S.R;
-  advance(config_.dt, R_B_S, sensors.omega_S, sensors.a_S, is_on, state.inertial);
+  const Pose T_B_S = chain_.pose(handle_) * config_.T_H_S;
+  advance(config_.dt,
+          {.R_B_S = T_B_S.R, .p_S = T_B_S.p, .omega_S = sensors.omega_S, .a_S = sensors.a_S}, is_on,
+          state.inertial);
 }
 
 RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,

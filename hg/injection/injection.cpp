@@ -97,7 +97,7 @@ constexpr std::array kKinds = {
          "a gantry encoder counts what does not move",
          Part::kGantryEncoder,
          Effect::kDrift,
-         {0.05, 0.5},
+         {0.005, 0.5},
          "m/s",
          true},
     Kind{"force_sensor_nan", "the force/torque sensor gives no number", Part::kForceSensor,
@@ -191,6 +191,13 @@ constexpr std::array kKinds = {
          {0.1, 1.0},
          "m/s",
          true},
+    Kind{"gantry_slips",
+         "a gantry axis moves while its encoder says that it does as told",
+         Part::kGantryCoupling,
+         Effect::kDrift,
+         {0.2, 1.0},
+         "m/s",
+         true},
     Kind{"gantry_frozen", "a gantry axis keeps its speed", Part::kGantryDrive, Effect::kFrozen},
     Kind{"brake_closes", "the brake of a joint closes by itself", Part::kBrake, Effect::kRaised},
     Kind{"brake_weak", "the brake of a joint does not hold", Part::kBrake, Effect::kDropped},
@@ -238,6 +245,7 @@ int parts_of(Part part, int n_m, int n_p) noexcept {
       return n_m;
     case Part::kGantryEncoder:
     case Part::kGantryDrive:
+    case Part::kGantryCoupling:
       return n_p;
     case Part::kForceSensor:
       return 6;

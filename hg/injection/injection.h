@@ -38,7 +38,8 @@ enum class Part : std::uint8_t {
   kSolver,
   kBrake,
   kSafetyChannel,
-  kJointEncoders,  ///< link side and motor side alike
+  kJointEncoders,   ///< link side and motor side alike
+  kGantryCoupling,  ///< an axis moves while its encoder says that it does as told
 };
 
 /// What becomes of it.

@@ -1,5 +1,6 @@
 #include "hg/injection/injector.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -96,6 +97,11 @@ void Injector::spoil_sensors(Fault& fault, SensorFrame& sensors) noexcept {
       return spoil_component(fault, sensors.tau_m);
     case Part::kGantryEncoder:
       return spoil_component(fault, sensors.q_p);
+    case Part::kGantryCoupling: {
+      const int axis = fault.injection.index;
+      if (axis < sensors.q_p.size()) sensors.q_p[axis] -= slip_of(fault.injection).way;
+      return;
+    }
     case Part::kForceSensor:
       return spoil_component(fault, sensors.w_S);
     case Part::kAccelerometer:
@@ -178,7 +184,13 @@ void Injector::spoil(CommandFrame& command) noexcept {
   past_[newest_] = command;
   hardware_ = {};
   for (Fault& fault : faults_) {
-    if (!is_of_command(fault.injection.kind->part) || !is_active(fault)) continue;
+    const Part part = fault.injection.kind->part;
+    if (!is_active(fault)) continue;
+    const int index = fault.injection.index;
+    if (part == Part::kGantryCoupling && index < command.dq_p.size()) {
+      command.dq_p[index] += slip_of(fault.injection).speed;
+    }
+    if (!is_of_command(part)) continue;
     spoil_command(fault, command);
     spoil_hardware(fault.injection);
     fault.has_begun = true;
@@ -197,6 +209,16 @@ void Injector::spoil_command(Fault& fault, CommandFrame& command) const noexcept
                   ? past_[(newest_ + past_.size() - age) % past_.size()]
                   : fault.command;
   }
+}
+
+// An axis that comes away from its drive does so with an acceleration: as fast as its drive follows
+// nobody could tell its encoder from a jump.
+Injector::Slip Injector::slip_of(const Injection& injection) const noexcept {
+  constexpr double kAcceleration = 1.0;  // m/s^2 or rad/s^2
+  const double since_s = now_s_ - injection.from_s;
+  const double ramp_s = std::min(since_s, std::abs(injection.magnitude) / kAcceleration);
+  const double speed = std::copysign(kAcceleration * ramp_s, injection.magnitude);
+  return {.speed = speed, .way = speed * (since_s - 0.5 * ramp_s)};
 }
 
 void Injector::spoil_hardware(const Injection& injection) noexcept {

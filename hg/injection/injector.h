@@ -37,6 +37,11 @@ class Injector {
     CommandFrame command;       ///< when it began
   };
 
+  /// Of an axis beyond what its drive does, now: m/s and m, or rad/s and rad.
+  struct Slip {
+    double speed, way;
+  };
+
   bool is_active(const Fault& fault) const noexcept;
   double spoilt(const Fault& fault, double value) const noexcept;
   template <typename Vector>
@@ -46,6 +51,7 @@ class Injector {
   void spoil_samples(const Fault& fault, SensorFrame& sensors) const noexcept;
   void spoil_computer(const Fault& fault) noexcept;
   void spoil_command(Fault& fault, CommandFrame& command) const noexcept;
+  Slip slip_of(const Injection& injection) const noexcept;
   void spoil_hardware(const Injection& injection) noexcept;
 
   std::vector<Fault> faults_;

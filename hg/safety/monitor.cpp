@@ -15,6 +15,8 @@ namespace {
 constexpr double kClockMemory = 0.02;    // share of the newest sample in the clock's mean error
 constexpr double kPullMemory_s = 0.2;    // after which a reference that came back is forgotten
 constexpr double kGapMemory_s = 2.0;     // after which an error of the drive model is forgotten
+constexpr double kDriftMemory_s = 60.0;  // the same where it adds up
+constexpr double kDriveError = 0.005;    // of its way, that a drive may add up to
 constexpr double kMotorMemory_s = 0.02;  // over which the torque of a motor is observed
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
@@ -141,11 +143,12 @@ Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
     state.lowest_p = state.highest_p = record.robot.q_p;
     state.pulled_back = VectorM::Zero(n_m_);
     state.dq_p_model = state.gantry_gap = VectorP::Zero(n_p_);
+    state.gantry_drift = state.gantry_way = VectorP::Zero(n_p_);
   }
   for (int i = 0; i < n_m_; ++i) look_at_joint(i, record, watched, state);
   look_at_motors(record.robot, watched, state);
   look_at_torques(watched);
-  look_at_turn(watched);
+  look_at_inertial_unit(watched);
   look_at_gantry(sensors, record, watched, state);
   look_at_braking(record, watched, state);
   look_at_frames(record, watched);
@@ -227,12 +230,12 @@ void Monitor::look_at_torques(const Watched& watched) noexcept {
   }
 }
 
-// Scale and direction of a gyroscope are known to some per cent of what it has turned.
-void Monitor::look_at_turn(const Watched& watched) noexcept {
-  constexpr double kScale = 0.02;
+// The inertial unit at the handle against the encoders.
+void Monitor::look_at_inertial_unit(const Watched& watched) noexcept {
   if (!is_powered(watched.state)) return;
   look<FaultCode::kTurnUnexplained>(-1, watched.turn,
-                                    config_.gyroscope_tolerance + kScale * watched.turned);
+                                    config_.gyroscope_tolerance + watched.turn_uncertainty);
+  look<FaultCode::kMotionUnexplained>(-1, watched.slip, config_.accelerometer_tolerance);
 }
 
 void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& record,
@@ -243,6 +246,7 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& reco
   const double off = config_.is_gantry_slide ? config_.gantry_deviation : config_.turn_deviation;
   const double gap = config_.is_gantry_slide ? config_.gantry_gap : config_.turn_gap;
   const double kept = 1.0 - config_.dt / kGapMemory_s;
+  const double kept_long = 1.0 - config_.dt / kDriftMemory_s;
   const double while_dead = config_.drive.dead_time * config_.drive.ddq_max;
   for (int axis = 0; axis < n_p_; ++axis) {
     const double q = robot.q_p[axis], dq = robot.dq_p[axis];
@@ -250,15 +254,20 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& reco
     follow(config_.gantry_range[at(axis)], q, is_on, state.lowest_p[axis], state.highest_p[axis]);
     if (!is_on) {
       model = dq;
-      state.gantry_gap[axis] = 0.0;
+      state.gantry_gap[axis] = state.gantry_drift[axis] = state.gantry_way[axis] = 0.0;
       continue;
     }
     if (state.has_sample) {
       const double moved = sensors.q_p[axis] - state.q_p[axis];
-      state.gantry_gap[axis] = kept * state.gantry_gap[axis] + moved - config_.dt * model;
+      const double error = moved - config_.dt * model;
+      state.gantry_gap[axis] = kept * state.gantry_gap[axis] + error;
+      state.gantry_drift[axis] = kept_long * state.gantry_drift[axis] + error;
+      state.gantry_way[axis] = kept_long * state.gantry_way[axis] + config_.dt * std::abs(model);
       // a drive that is as fast again as its model thinks is still no fault
       const double by_lag = config_.drive.lag * std::abs(model);
       look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_gap[axis]), gap + by_lag);
+      look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_drift[axis]),
+                                       2.0 * gap + kDriveError * state.gantry_way[axis]);
     }
     look<FaultCode::kGantryExceeded>(
         axis, std::max(q - state.highest_p[axis], state.lowest_p[axis] - q), beyond);

@@ -38,6 +38,7 @@ struct MonitorConfig {
   double sync_tolerance = 0.02;            ///< between handle and twin, m
   double plausibility = 0.02;              ///< motor side minus spring minus link side, rad or m
   double gyroscope_tolerance = 0.015;      ///< of the gyroscope from the encoders, rad
+  double accelerometer_tolerance = 0.15;   ///< of the handle's speed from the encoders, m/s
   double tilt_tolerance = 0.1;             ///< of gravity from the posture when armed, rad
   double jump_factor = 3.0;                ///< times what the speed rating allows in a sample
   double clock_tolerance = 0.2;            ///< mean error of the clock, periods per sample
@@ -104,7 +105,8 @@ struct Watched {
   VectorM pulled_back;  ///< by how much the reference had to come back to the device; empty = not
   VectorM unexplained;  ///< joint torques, TrackingReport::torque_unexplained; empty = none
   double turn = 0.0;    ///< of the gyroscope beyond what the encoders say, rad
-  double turned = 0.0;  ///< of the handle at all in that time, rad
+  double turn_uncertainty = 0.0;  ///< of it, by the gyroscope's own errors, rad
+  double slip = 0.0;              ///< speed of the handle beyond what the encoders say, m/s
 };
 
 /// Part of the copyable state of a cycle.
@@ -122,7 +124,9 @@ struct MonitorState {
   double late = 0.0;         ///< late cycles, less what may come
   int late_in_a_row = 0;
   VectorP dq_p_model;       ///< of the gantry by its drive model
-  VectorP gantry_gap;       ///< how far it is from where the model takes it; forgotten slowly
+  VectorP gantry_gap;       ///< how far it is from where the model takes it; forgotten soon
+  VectorP gantry_drift;     ///< the same, forgotten slowly
+  VectorP gantry_way;       ///< that the model has made in that time
   VectorM pulled_back;      ///< in all, while it lasts
   VectorM momentum;         ///< of the motors, as their commands and springs make it, Nms
   VectorM lowest, highest;  ///< where joints may be: limits, or where they stood when armed
@@ -168,7 +172,7 @@ class Monitor {
                      MonitorState& state) noexcept;
   void look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept;
   void look_at_torques(const Watched& watched) noexcept;
-  void look_at_turn(const Watched& watched) noexcept;
+  void look_at_inertial_unit(const Watched& watched) noexcept;
   void look_at_motors(const RobotState& robot, const Watched& watched,
                       MonitorState& state) noexcept;
   void look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept;

@@ -157,6 +157,17 @@ inline constexpr Rule kRules[] = {
      .reaction = Stop::kSto,
      .release =
          "at once, and look at encoders and gyroscope: the joints may not be where they seem"},
+    {.code = FaultCode::kMotionUnexplained,
+     .name = "accelerometer contradicts",
+     .meaning =
+         "The handle gets faster than the encoders of gantry and joints say: a coupling or belt "
+         "slips, encoders drift, or the accelerometer is wrong.",
+     .threshold = "monitor.accelerometer_tolerance_m_per_s",
+     .warn_from = 0.6,
+     .debounce = {.samples = 5},
+     .reaction = Stop::kSto,
+     .release = "at once, and look at couplings, encoders and accelerometer: the device may not be "
+                "where it seems"},
     {.code = FaultCode::kCommandsLost,
      .name = "commands lost",
      .meaning =

@@ -36,6 +36,8 @@ std::string_view to_string(FaultCode code) noexcept {
       return "joint torque that motion and user do not explain";
     case FaultCode::kTurnUnexplained:
       return "gyroscope and encoders contradict each other";
+    case FaultCode::kMotionUnexplained:
+      return "accelerometer and encoders contradict each other";
     case FaultCode::kMotorDeviates:
       return "motor does not give the torque it is told";
     case FaultCode::kCommandsLost:

@@ -25,6 +25,7 @@ enum class FaultCode : std::uint16_t {
   kMotorDeviates = 114,        ///< a motor does not give the torque that it is told
   kTorqueUnexplained = 115,    ///< motion and user's wrench do not explain a joint torque
   kTurnUnexplained = 116,      ///< the gyroscope turns otherwise than the encoders say
+  kMotionUnexplained = 117,    ///< the handle gets faster than the encoders say
   kCommandsLost = 120,         ///< no new commands have reached the device
   kOperatorReleased = 130,     ///< the operator let go of the enabling switch
   kScannerField = 131,         ///< somebody is in the scanner's field while nobody holds the handle

@@ -104,6 +104,7 @@ void bind_fault_codes(nb::module_& module) {
       .value("STOP_TOO_SLOW", FaultCode::kStopTooSlow)
       .value("ACCELERATION_EXCEEDED", FaultCode::kAccelerationExceeded)
       .value("TURN_UNEXPLAINED", FaultCode::kTurnUnexplained)
+      .value("MOTION_UNEXPLAINED", FaultCode::kMotionUnexplained)
       .value("BRAKING_POSITION", FaultCode::kBrakingPosition)
       .value("BRAKING_SPEED", FaultCode::kBrakingSpeed)
       .value("STOP_TOO_FAR", FaultCode::kStopTooFar);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hg/config/scenario.h"
+#include "hg/core/error.h"
 #include "hg/core/test/message_of.h"
 
 namespace hg::config {
@@ -21,6 +22,23 @@ Scenario load_faults(const std::string& faults) {
     if (source.name != "models/scenarios/door.yaml") texts.push_back(source);
   }
   return load_scenario(texts);
+}
+
+TEST(ScenarioFaults, EveryKindThatHasPartsTakesTheNameOfOne) {
+  for (const injection::Kind& kind : injection::kinds()) {
+    int taken = injection::parts_of(kind.part, 6, 2) == 0 ? 1 : 0;
+    for (const char* part : {"m1", "ppu1", "x", "stop buttons"}) {
+      if (taken > 0) break;
+      try {
+        load_faults("  - {at_s: 1, fault: " + std::string(kind.name) + ", of: " + part +
+                    (kind.unit.empty() ? "}\n" : ", magnitude: 1}\n"));
+        ++taken;
+      } catch (const SetupError&) {
+        continue;  // it is one of the others
+      }
+    }
+    EXPECT_EQ(taken, 1) << kind.name;
+  }
 }
 
 std::string message(const std::string& fault) {

@@ -31,7 +31,7 @@ struct Loop {
 
   std::uint64_t latency = 1;  // periods; 0: the device does not answer
 
-  explicit Loop(bool needs_tare = false, bool has_torque_loop = false, bool has_imu = true) {
+  explicit Loop(bool needs_tare = false, bool has_torque_loop = false, bool has_imu = false) {
     rendering::TwinModel twin = rendering::unlimited_twin(
         model::Chain::free_body({.mass = 6.0}, {.gravity = false}), "handle");
     twin.q_start =
@@ -53,6 +53,10 @@ struct Loop {
     sensors.dq_m = VectorM::Zero(6);
     sensors.q_p = VectorP::Zero(2);
     sensors.dead_man = true;
+    if (has_imu) {
+      const Pose handle = rendering::handle_pose(device, sensors.q_p, kPosture);
+      sensors.a_S = handle.R.transpose() * Eigen::Vector3d(0.0, 0.0, 9.81);
+    }
     if (!has_torque_loop) return;
     sensors.theta_m = kPosture;
     sensors.tau_m = VectorM::Zero(6);
@@ -409,7 +413,7 @@ TEST(Cycle, ANanOfAnySensorOfATorqueLoopIsAFaultAndLeavesNothingBehind) {
                                        [](SensorFrame& s, double x) { s.a_S[1] += x; },
                                        [](SensorFrame& s, double x) { s.omega_S[2] += x; }};
   for (const Spoil spoil : spoils) {
-    Loop loop(false, true);
+    Loop loop(false, true, true);
     loop.run(110);
     loop.start_running();
     const SensorFrame good = loop.sensors;

@@ -74,6 +74,29 @@ TEST(PlayFault, BothEncodersOfAJointThatDriftAlikeAreSeenByTheGyroscope) {
   }
 }
 
+TEST(PlayFault, AGantryWhoseCouplingSlipsIsSeenByTheAccelerometer) {
+  for (const int axis : {0, 1}) {
+    for (const double speed : {0.3, -1.0}) {
+      const FaultCase result = play("gantry_slips", axis, speed);
+      EXPECT_EQ(result.fault, FaultCode::kMotionUnexplained);
+      EXPECT_EQ(result.stop, Stop::kSto);
+      EXPECT_LT(result.noticed_s, 0.3);
+      EXPECT_LT(result.travel_share, 0.5);
+    }
+  }
+}
+
+TEST(PlayFault, AGantryEncoderThatDriftsSlowlyIsSeenInTime) {
+  for (const double speed : {0.005, -0.02}) {
+    const injection::Injection injection = {
+        .kind = injection::find_kind("gantry_encoder_drift"), .magnitude = speed, .from_s = 2.5};
+    const FaultCase result =
+        play_fault(walk_scenario(), {.injection = injection}, {.watched_s = 40.0}, 10.0);
+    EXPECT_EQ(result.fault, FaultCode::kGantryDeviates);
+    EXPECT_LT(result.travel_share, 0.5);
+  }
+}
+
 TEST(PlayFault, AnEncoderThatJumpsIsNamedAndNotTheCollisionThatItSeemsToBe) {
   for (const int joint : {0, 1, 2, 3, 4}) {
     EXPECT_EQ(play("link_encoder_zero", joint).fault, FaultCode::kSensorJump) << joint;

@@ -215,8 +215,10 @@ const Case kCases[] = {
     {FaultCode::kTurnUnexplained, "gyroscope", 3, -1, 0.0252, 0.0248,
      [](Bench& b, double x) {
        b.watched.turn = x;
-       b.watched.turned = 0.5;
+       b.watched.turn_uncertainty = 0.01;
      }},
+    {FaultCode::kMotionUnexplained, "accelerometer", 5, -1, 0.152, 0.148,
+     [](Bench& b, double x) { b.watched.slip = x; }},
     {FaultCode::kSensorImplausible, "contradiction", 3, 2, 0.0202, 0.0198,
      [](Bench& b, double x) { b.sensors.theta_m[2] = x; }},
     {FaultCode::kWrenchTooLarge, "force", 5, 0, 151.0, 149.0,
