@@ -151,7 +151,7 @@ std::string stopping_text(const config::Device& device) {
                 ? fmt::format(", {:g} m of the gantry", stated.gantry_stop_distance)
                 : fmt::format(", {:g} rad of the gantry", stated.turn_stop_distance);
   }
-  return text + "; then brakes close.";
+  return text + "; brakes close at 90 % of these distances.";
 }
 
 }  // namespace
