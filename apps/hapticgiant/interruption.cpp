@@ -16,9 +16,12 @@ const std::atomic<bool>& watch_interruption() {
   interrupted.store(false);
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
+  std::signal(SIGQUIT, interrupt);
   if (std::signal(SIGHUP, interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
-  std::signal(SIGPIPE, SIG_IGN);
+  for (const int ignored : {SIGPIPE, SIGUSR1, SIGUSR2}) std::signal(ignored, SIG_IGN);
   return interrupted;
 }
+
+bool was_interrupted() noexcept { return interrupted.load(); }
 
 }  // namespace hg::apps

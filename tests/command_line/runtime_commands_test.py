@@ -5,10 +5,13 @@ Usage: runtime_commands_test.py PROGRAM   (from the repository root)
 
 import json
 import os
+import signal
+import subprocess
+import time
 import unittest
 
 from mcap.reader import make_reader
-from program import MODELS, TemporaryFolder, run
+from program import MODELS, PROGRAM, TemporaryFolder, run
 
 
 class Doctor(TemporaryFolder):
@@ -161,6 +164,28 @@ class Damaged(TemporaryFolder):
             code, out, err = run(*command)
             self.assertEqual((code, out), (2, ""), command)
             self.assertRegex(err, r"^DAMAGED     attachment \S+door.yaml")
+
+
+class Signals(TemporaryFolder):
+    def test_those_of_a_terminal_end_a_run_as_ctrl_c_does_and_those_for_users_nothing(self):
+        for number in (signal.SIGQUIT, signal.SIGHUP, signal.SIGTERM):
+            folder = self.folder / number.name
+            process = subprocess.Popen(
+                [PROGRAM, "run", "door", "--user", "none", "--duration", "600", "--no-viewer",
+                 "--recordings", folder], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT, text=True)
+            self.addCleanup(process.kill)
+            process.stdout.readline()
+            process.send_signal(signal.SIGUSR1)
+            process.send_signal(signal.SIGUSR2)
+            time.sleep(0.3)
+            self.assertIsNone(process.poll(), number)
+            process.send_signal(number)
+            out = process.communicate(timeout=60)[0]
+            self.assertEqual(process.returncode, 0, out)
+            self.assertIn("  state ", out)
+            file, = (f for f in folder.glob("*.mcap") if not f.is_symlink())
+            self.assertNotIn("partial", file.name)
 
 
 class Priority(TemporaryFolder):
