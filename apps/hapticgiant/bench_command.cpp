@@ -180,7 +180,7 @@ int bench(const BenchArguments& arguments) {
     reference.emplace_back(file, effort.problems);
   }
   check_folder(arguments.out);
-  check_writable(arguments.json);
+  check_writable(arguments.json, kJson);
 
   results.machine = bench::describe_machine();
   results.machine["version"] = kVersion;

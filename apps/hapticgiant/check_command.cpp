@@ -154,8 +154,8 @@ void check_twins(Check& check) {
 }  // namespace
 
 int run_check(const CheckArguments& arguments) {
-  check_writable(arguments.json);
-  check_writable(arguments.map);
+  check_writable(arguments.json, kJson);
+  check_writable(arguments.map, kSvg);
   Check check;
   for (const std::string& file : arguments.files) load(file, check);
   check_scripts(check);

@@ -59,7 +59,7 @@ nlohmann::ordered_json to_json(const std::vector<Line>& lines,
 }  // namespace
 
 int doctor(const DoctorArguments& arguments) {
-  check_writable(arguments.json);
+  check_writable(arguments.json, kJson);
   runtime::check({.priority = arguments.priority, .cpu = arguments.cpu});
   print_out(
       fmt::format("HapticGiant {}: is this computer ready for a control loop?\n\n", kVersion));

@@ -20,8 +20,8 @@ namespace {
 config::Scenario walk_scenario() { return config::load_scenario(find_scenario("walk")); }
 
 void begin(const ExperimentArguments& arguments, const std::string& what) {
-  check_writable(arguments.json);
-  check_writable(arguments.svg);
+  check_writable(arguments.json, kJson);
+  check_writable(arguments.svg, kSvg);
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, what));
 }
 

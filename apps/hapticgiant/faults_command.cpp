@@ -45,8 +45,8 @@ int faults(const FaultsArguments& arguments) {
           "after the grasp");
     }
   }
-  check_writable(arguments.json);
-  check_writable(arguments.markdown);
+  check_writable(arguments.json, kJson);
+  check_writable(arguments.markdown, kMarkdown);
   if (arguments.plays_processes) return process_faults(arguments);
   const ScratchFolder scratch;
   std::vector<recording::RecordingInfo> recordings;

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
+#include <filesystem>
+#include <system_error>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/paths.h"
 #include "hg/config/device.h"
-#include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/identification/payload.h"
 #include "hg/identification/static_poses.h"
 
@@ -20,7 +20,8 @@ using identification::StaticPose;
 
 // as given, or among the data that comes with the program
 std::string find_device(const std::string& file) {
-  if (std::ifstream(file)) return file;
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) return file;
   return (models_root() / file).string();
 }
 
@@ -35,10 +36,7 @@ std::vector<StaticPose> simulated_poses(const config::Device& device, int count)
 std::vector<StaticPose> poses_of(const std::vector<std::string>& files) {
   std::vector<StaticPose> poses;
   for (const std::string& file : files) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw SetupError(file + ": cannot be read");
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    for (const StaticPose& pose : identification::read_static_poses(file, text)) {
+    for (const StaticPose& pose : identification::read_static_poses(file, read_file(file))) {
       poses.push_back(pose);
     }
   }

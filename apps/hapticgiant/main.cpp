@@ -414,6 +414,17 @@ void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::run_haptify(arguments); });
 }
 
+// an empty text (a variable of a script that is not set) is no file, key or name
+void refuse_empty_values(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() > 0) {
+      option->check(
+          [](const std::string& text) { return text.empty() ? "must not be empty" : ""; });
+    }
+  }
+  for (CLI::App* command : app.get_subcommands({})) refuse_empty_values(*command);
+}
+
 // `exit_code` is that of the subcommand that the command line names, which runs at once
 int parse(CLI::App& app, int argc, char** argv, const int& exit_code) {
   try {
@@ -470,6 +481,7 @@ int main(int argc, char** argv) {
   add_bench(app, compared, exit_code);
   add_faults(app, broken, exit_code);
   add_haptify(app, haptified, exit_code);
+  refuse_empty_values(app);
 
   return hg::apps::code_after_output(parse(app, argc, argv, exit_code));
 }

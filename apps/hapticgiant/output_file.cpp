@@ -1,17 +1,27 @@
 #include "apps/hapticgiant/output_file.h"
 
+#include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
+#include "apps/hapticgiant/interruption.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 
 namespace hg::apps {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kAtOnce = 512;  // a pipe that takes any takes as many
+constexpr int kLook_ms = 50;
+constexpr std::chrono::milliseconds kPatience(500);  // after an interruption
 
 // only what is, or becomes, a regular file is replaced
 bool is_replaced(const std::string& file) {
@@ -20,32 +30,60 @@ bool is_replaced(const std::string& file) {
   return type == fs::file_type::regular || type == fs::file_type::not_found;
 }
 
+bool is_whole(const OpenFile& file, std::string_view text) {
+  auto patient_until = Clock::time_point::max();
+  while (!text.empty()) {
+    pollfd place = {.fd = file.descriptor(), .events = POLLOUT, .revents = 0};
+    if (poll(&place, 1, kLook_ms) == 0) {
+      if (was_interrupted()) patient_until = std::min(patient_until, Clock::now() + kPatience);
+      if (Clock::now() >= patient_until) return false;
+      continue;
+    }
+    const ssize_t written = write(file.descriptor(), text.data(), std::min(text.size(), kAtOnce));
+    if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (written < 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+// what is there of another kind stays
+void check_replaced(const std::string& file, std::string_view beginning) {
+  std::error_code error;
+  if (beginning.empty() || !fs::is_regular_file(file, error)) return;
+  const OpenFile present = open_to_read(file);
+  std::string found(beginning.size(), '\0');
+  const ssize_t size = read(present.descriptor(), found.data(), found.size());
+  if (size == 0 || found == beginning) return;
+  throw SetupError(file +
+                   ": exists already and is no file of the kind that would be written there; it is "
+                   "not replaced");
+}
+
 }  // namespace
 
-void check_writable(const std::string& file) {
+void check_writable(const std::string& file, std::string_view beginning) {
   if (file.empty()) return;
-  const std::string partial = file + ".partial";
+  check_replaced(file, beginning);
   std::error_code error;
-  bool is_writable = false;
-  if (is_replaced(file)) {
-    const bool existed = fs::exists(partial, error);
-    is_writable = std::ofstream(partial, std::ios::app).good();
-    if (!existed) fs::remove(partial, error);
-  } else {
-    is_writable = !fs::is_directory(file, error) && access(file.c_str(), W_OK) == 0;
+  if (!is_replaced(file)) {
+    if (!fs::exists(file, error)) throw SetupError(file + ": cannot be written there");
+    open_to_write(file, Content::kKept);
+    return;
   }
-  if (!is_writable) throw SetupError(file + ": cannot be written there");
+  const std::string partial = file + ".partial";
+  const bool existed = fs::exists(partial, error);
+  open_to_write(partial, Content::kKept);
+  if (!existed) fs::remove(partial, error);
 }
 
 void write_output(const std::string& file, const std::string& text) {
   const bool replaces = is_replaced(file);
   const std::string written = replaces ? file + ".partial" : file;
-  std::ofstream stream(written);
-  stream << text;
-  stream.close();
+  const bool is_written = is_whole(open_to_write(written, Content::kEmptied), text);
   std::error_code error;
-  if (stream && replaces) fs::rename(written, file, error);
-  if (stream && !error) return;
+  if (is_written && replaces) fs::rename(written, file, error);
+  if (is_written && !error) return;
   if (replaces) fs::remove(written, error);
   throw SetupError(file + ": could not be written");
 }

@@ -314,7 +314,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
 }  // namespace
 
 int run(const RunArguments& arguments) {
-  check_writable(arguments.summary);
+  check_writable(arguments.summary, kJson);
   auto present = std::make_unique<PreparedRun>(arguments);
   const std::atomic<bool>& interrupted = watch_interruption();
   const BackgroundOutput output(interrupted);

@@ -92,7 +92,7 @@ std::string closing_lines(const remote::SessionReport& report, double rate_Hz) {
 }  // namespace
 
 int simulate(const SimulateArguments& arguments) {
-  check_writable(arguments.capture);
+  check_writable(arguments.capture, kCapture);
   const config::Scenario scenario = make_scenario(arguments.world);
   const device::SimulatedDevice world = assembly::make_simulated_device(scenario);
   const remote::ServerConfig config{.actual = describe(scenario, arguments.is_fast),
@@ -105,13 +105,21 @@ int simulate(const SimulateArguments& arguments) {
 
   print_out(fmt::format("HapticGiant {}  {}, simulated\n", kVersion, scenario.title));
   print_out(fmt::format("address     {}\nstop        Ctrl-C\n", server.address()));
+  std::string lost;  // of the capture
+  const auto look_at_capture = [&] {
+    if (!lost.empty()) return;
+    lost = server.capture_error();
+    if (!lost.empty()) print_error("{}: the capture ended early: {}\n", arguments.capture, lost);
+  };
   while (server.wait_for_client(stop)) {
     WatchedDevice device(world, scenario.device.model);
     const remote::SessionReport report = server.serve(device, stop);
     print_out(fmt::format("\n{}  {:<12} {}\n", closing_lines(report, scenario.device.rate_Hz),
                           "truth", device.truth_text()));
+    look_at_capture();
   }
-  return 0;
+  look_at_capture();
+  return lost.empty() ? 0 : kNotWritten;
 }
 
 }  // namespace hg::apps

@@ -16,7 +16,8 @@ struct SimulateArguments {
   std::string capture;   ///< pcap file of all datagrams; empty = none
 };
 
-/// Serves one client after the other until Ctrl-C, each with a world that begins anew. Exit code 0.
+/// Serves one client after the other until Ctrl-C, each with a world that begins anew. Exit code
+/// 0, or 4 (kNotWritten) where the capture does not hold everything.
 /// Throws SetupError for bad input.
 int simulate(const SimulateArguments& arguments);
 

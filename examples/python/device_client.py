@@ -10,7 +10,6 @@ import argparse
 import hmac
 import math
 import os
-import pathlib
 import random
 import socket
 import stat
@@ -35,12 +34,22 @@ FIELDS = {
 
 def read_key(file):
     """The shared key, which nobody but its owner may read."""
-    mode = stat.S_IMODE(os.stat(file).st_mode)
+    try:
+        with open(file, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as stream:
+            facts, key = os.fstat(stream.fileno()), stream.read(4097)
+    except OSError as error:
+        raise SystemExit(f"{file}: cannot be read: {error.strerror}") from None
+    mode = stat.S_IMODE(facts.st_mode)
+    if not stat.S_ISREG(facts.st_mode):
+        raise SystemExit(f"{file}: the key must be a file")
+    if facts.st_uid not in (os.geteuid(), 0):
+        raise SystemExit(f"{file}: the key must be a file of yours or of root")
     if mode & 0o077:
         raise SystemExit(f"{file}: the key must be its owner's only, got mode {mode:04o}: chmod 600 {file}")
-    key = pathlib.Path(file).read_bytes()
     if not 32 <= len(key) <= 4096:
         raise SystemExit(f"{file}: a key has 32 to 4096 bytes, got {len(key)}")
+    if not any(key):
+        raise SystemExit(f"{file}: a key of zeros is none")
     return key
 
 
@@ -205,7 +214,7 @@ def main():
     parser.add_argument("--key-file", help="the secret that the device has, too")
     arguments = parser.parse_args()
     host, port = arguments.address.rsplit(":", 1)
-    key = read_key(arguments.key_file) if arguments.key_file else None
+    key = None if arguments.key_file is None else read_key(arguments.key_file)
     client = Client(host, int(port), "device_client.py", key)
     mode = "lock-step" if client.is_lock_step else "real time"
     print(f"{client.device}: {client.n_p} gantry axes, {client.n_m} joints, {client.rate_Hz:g} Hz, {mode}")

@@ -341,7 +341,7 @@ def main():
     scenario = hg.load_scenario(arguments.scenario)
     scenario.rate_Hz = arguments.rate_hz
     try:
-        key = read_key(arguments.key_file) if arguments.key_file else None
+        key = None if arguments.key_file is None else read_key(arguments.key_file)
         Server(arguments.listen, scenario, arguments.fast, key).serve()
     except KeyboardInterrupt:
         pass

@@ -1,11 +1,10 @@
 #include "hg/config/sources.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 
 namespace hg::config {
 namespace {
@@ -53,9 +52,7 @@ std::string SourceReader::read(const std::filesystem::path& file) {
     if (std::filesystem::file_size(file, ignored) > kSizeMax) {
       throw SetupError(name + ": a configuration file has at most 4 MB");
     }
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw SetupError(name + ": cannot be opened for reading");
-    content.assign(std::istreambuf_iterator<char>(stream), {});
+    content = read_file(file, kSizeMax);
   }
   texts_.push_back({name, content});
   return content;

@@ -15,6 +15,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
+#include "hg/core/open_file.h"
 
 namespace hg::hqp {
 namespace {
@@ -421,8 +422,10 @@ std::vector<Problem> parse_problems(std::string_view text, const std::string& na
 }
 
 std::string read_text(const std::string& file) {
-  const gzFile handle = gzopen(file.c_str(), "rb");
-  if (handle == nullptr) throw SetupError(file + ": cannot be opened for reading");
+  OpenFile opened = open_to_read(file);
+  const gzFile handle = gzdopen(opened.descriptor(), "rb");
+  if (handle == nullptr) throw SetupError(file + ": cannot be read: out of memory");
+  opened.release();  // closed with the handle
   std::string text;
   std::vector<char> buffer(1 << 16);
   int count = 0;
@@ -430,7 +433,7 @@ std::string read_text(const std::string& file) {
     text.append(buffer.data(), static_cast<std::size_t>(count));
   }
   const bool is_complete = gzclose(handle) == Z_OK && count == 0;
-  if (!is_complete) throw SetupError(file + ": is damaged, or not a file");
+  if (!is_complete) throw SetupError(file + ": is damaged");
   return text;
 }
 

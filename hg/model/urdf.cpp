@@ -6,14 +6,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
-#include <iterator>
 #include <sstream>
 
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/nearest_name.h"
+#include "hg/core/open_file.h"
 
 namespace hg::model {
 namespace {
@@ -356,10 +355,7 @@ Urdf read_urdf_text(std::string_view text, std::string_view source) {
 }
 
 Urdf read_urdf_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw SetupError(file.string() + ": cannot be read as a URDF file, is it there?");
-  return read_urdf_text(text, file.string());
+  return read_urdf_text(read_file(file), file.string());
 }
 
 }  // namespace hg::model

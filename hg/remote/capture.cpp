@@ -1,9 +1,12 @@
 #include "hg/remote/capture.h"
 
 #include <array>
+#include <cerrno>
 #include <cstring>
+#include <sstream>
 
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 
 namespace hg::remote {
 namespace {
@@ -18,21 +21,30 @@ using PacketHeader = std::array<std::uint32_t, 4>;  // s, ns, captured bytes, by
 
 }  // namespace
 
-Capture::Capture(const std::string& file) : file_(file, std::ios::binary) {
-  file_.write(reinterpret_cast<const char*>(kFileHeader.data()), sizeof kFileHeader);
-  if (!file_) throw SetupError(file + ": cannot be written");
+Capture::Capture(const std::string& file)
+    : file_(fdopen(open_to_write(file, Content::kEmptied).release(), "wb"), &std::fclose) {
+  write(kFileHeader.data(), sizeof kFileHeader);
+}
+
+void Capture::write(const void* data, std::size_t size) {
+  if (error_ == 0 && std::fwrite(data, 1, size, file_.get()) != size) error_ = errno;
+}
+
+std::string Capture::flush() {
+  if (error_ == 0 && std::fflush(file_.get()) != 0) error_ = errno;
+  return error_ == 0 ? "" : std::strerror(error_);
 }
 
 void Capture::add(std::int64_t time_ns, std::span<const std::byte> datagram) {
   const auto size = static_cast<std::uint32_t>(datagram.size());
   const PacketHeader header = {static_cast<std::uint32_t>(time_ns / 1'000'000'000),
                                static_cast<std::uint32_t>(time_ns % 1'000'000'000), size, size};
-  file_.write(reinterpret_cast<const char*>(header.data()), sizeof header);
-  file_.write(reinterpret_cast<const char*>(datagram.data()), size);
+  write(header.data(), sizeof header);
+  write(datagram.data(), size);
 }
 
 std::vector<std::vector<std::byte>> read_capture(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
+  std::istringstream in(read_file(file));
   std::array<std::uint32_t, 6> found{};
   in.read(reinterpret_cast<char*>(found.data()), sizeof found);
   if (!in || found != kFileHeader) throw SetupError(file + ": is no capture of this program");

@@ -4,7 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
+#include <cstdio>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,12 +14,18 @@ namespace hg::remote {
 
 class Capture {
  public:
-  /// Throws SetupError when the file cannot be written.
+  /// Throws SetupError when the file cannot be opened.
   explicit Capture(const std::string& file);
+  /// Nothing after a write has failed: what is in the file is a beginning of the capture.
   void add(std::int64_t time_ns, std::span<const std::byte> datagram);
+  /// Hands everything to the system. Returns why the file does not hold all of it; empty: it does.
+  std::string flush();
 
  private:
-  std::ofstream file_;
+  void write(const void* data, std::size_t size);
+
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  int error_ = 0;  ///< of the first write that has failed; 0 = none
 };
 
 /// The datagrams of such a file. Throws SetupError.

@@ -58,6 +58,9 @@ class DeviceServer {
   /// HOST:PORT, with the port that the system chose for 0.
   std::string address() const { return to_string(socket_.own_address()); }
 
+  /// Why the capture does not hold every datagram so far; empty: it does, or there is none.
+  std::string capture_error() { return capture_ ? capture_->flush() : ""; }
+
   /// Until a client has been welcomed and is ready. False: `stop` has come.
   bool wait_for_client(const std::atomic<bool>& stop);
   /// The session of this client. Whatever ends it, the last command disables the drives.

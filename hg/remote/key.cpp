@@ -1,6 +1,5 @@
 #include "hg/remote/key.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sodium/utils.h>
 #include <sys/stat.h>
@@ -11,6 +10,7 @@
 #include <cstring>
 
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 
 namespace hg::remote {
 namespace {
@@ -21,17 +21,6 @@ const unsigned char* raw(std::span<const std::byte> bytes) noexcept {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
-// closed at the end
-struct File {
-  explicit File(const std::string& name) : number(open(name.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~File() {
-    if (number >= 0) close(number);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  int number;
-};
-
 }  // namespace
 
 Key::Key(std::span<const std::byte> secret) : is_set_(true) {
@@ -40,12 +29,15 @@ Key::Key(std::span<const std::byte> secret) : is_set_(true) {
 
 Key Key::from_file(const std::string& name) {
   const auto refuse = [&](const std::string& why) { throw SetupError(name + ": " + why); };
-  const File file(name);
+  const OpenFile file = open_to_read(name);
   struct stat facts {};
-  if (file.number < 0 || fstat(file.number, &facts) != 0) {
+  if (fstat(file.descriptor(), &facts) != 0) {
     refuse(fmt::format("the key must be readable: {}", std::strerror(errno)));
   }
-  if (!S_ISREG(facts.st_mode)) refuse("the key must be a file");
+  if (facts.st_uid != geteuid() && facts.st_uid != 0) {
+    refuse(fmt::format("the key must be a file of yours or of root, got one of user {}",
+                       facts.st_uid));
+  }
   if ((facts.st_mode & 077U) != 0) {
     refuse(fmt::format("the key must be its owner's only, got mode {:04o}: chmod 600 {}",
                        facts.st_mode & 07777U, name));
@@ -54,7 +46,7 @@ Key Key::from_file(const std::string& name) {
   std::size_t size = 0;
   ssize_t more = 0;
   do {
-    more = read(file.number, bytes.data() + size, bytes.size() - size);
+    more = read(file.descriptor(), bytes.data() + size, bytes.size() - size);
     if (more < 0) refuse(fmt::format("the key must be readable: {}", std::strerror(errno)));
     size += static_cast<std::size_t>(more);
   } while (more > 0);
@@ -62,7 +54,11 @@ Key Key::from_file(const std::string& name) {
     refuse(fmt::format("a key has {} to {} bytes, got {}{}", kLeastSize, kMostSize,
                        size > kMostSize ? "more than " : "", std::min(size, kMostSize)));
   }
-  const Key key{std::span(bytes).first(size)};
+  const std::span secret = std::span(bytes).first(size);
+  if (std::ranges::all_of(secret, [](std::byte byte) { return byte == std::byte{}; })) {
+    refuse("a key of zeros is none: head -c 32 /dev/urandom makes one");
+  }
+  const Key key{secret};
   sodium_memzero(bytes.data(), bytes.size());
   return key;
 }

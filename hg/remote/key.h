@@ -26,7 +26,8 @@ class Key {
   explicit Key(std::span<const std::byte> secret);
 
   /// All bytes of the file. Throws SetupError: it cannot be read, is no file, may be read by others
-  /// than its owner, or has less than kLeastSize or more than kMostSize bytes.
+  /// than its owner, who must be this user or root, has less than kLeastSize or more than kMostSize
+  /// bytes, or only zeros.
   static Key from_file(const std::string& file);
 
   bool is_set() const noexcept { return is_set_; }

@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 
 namespace hg::viewer_server {
 namespace {
@@ -112,12 +111,6 @@ std::string_view protocol_token(std::string_view protocols) noexcept {
   while (protocols.starts_with(' ')) protocols.remove_prefix(1);
   if (!protocols.starts_with(kToken)) return {};
   return protocols.substr(kToken.size());
-}
-
-std::string read_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw SetupError("viewer: " + file.string() + " must be readable");
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 AssetTable load_page(const std::filesystem::path& page) {

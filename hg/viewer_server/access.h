@@ -61,7 +61,4 @@ using AssetTable = std::map<std::string, Asset, std::less<>>;
 /// has no index.html or holds more than 64 MB.
 AssetTable load_page(const std::filesystem::path& page);
 
-/// Throws SetupError when the file cannot be read.
-std::string read_file(const std::filesystem::path& file);
-
 }  // namespace hg::viewer_server

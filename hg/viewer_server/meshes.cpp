@@ -6,6 +6,8 @@
 #include <system_error>
 #include <vector>
 
+#include "hg/core/open_file.h"
+
 namespace hg::viewer_server {
 namespace {
 

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/hub.h"
 #include "hg/viewer_server/meshes.h"

@@ -211,9 +211,25 @@ class Commands(unittest.TestCase):
             result = run("door", "--device-address", "127.0.0.1:1", "--key-file", open_key)
             self.assertEqual(result.returncode, 2)
             self.assertIn("the key must be its owner's only, got mode 0640", result.stderr)
+            for bad in ("", open_key):
+                client = subprocess.run(
+                    [sys.executable, CLIENT, "127.0.0.1:1", "--key-file", bad], text=True,
+                    capture_output=True, timeout=100)
+                self.assertNotEqual(client.returncode, 0)
+                self.assertRegex(client.stderr, "cannot be read|its owner's only")
         result = run("door", "--key-file", "key")
         self.assertEqual(result.returncode, 2)
         self.assertIn("--device-address", result.stderr)
+
+    def test_a_capture_on_a_full_disk_is_told(self):
+        with Server("door", "--fast", "--capture", "/dev/full") as server:
+            subprocess.run([sys.executable, CLIENT, server.address, "--seconds", "0.1"], check=True,
+                           capture_output=True, timeout=100)
+            server.session()
+            server.process.send_signal(signal.SIGINT)
+            said = server.process.stdout.read()
+            self.assertEqual(server.process.wait(timeout=60), 4)
+            self.assertIn("/dev/full: the capture ended early: No space left on device", said)
 
     def test_the_python_client_holds_the_arm(self):
         with Server("door", "--fast") as server:

@@ -1,11 +1,10 @@
 #include "apps/hapticgiant/experiments/docs_page.h"
 
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "apps/hapticgiant/output_file.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 
 namespace hg::apps {
 namespace {
@@ -19,10 +18,9 @@ constexpr std::string_view kBegin = "<!-- figures: begin -->\n", kEnd = "<!-- fi
 void refresh_page(const fs::path& docs, const std::string& name, const std::string& text,
                   const fs::path& svg) {
   const fs::path page = docs / (name + ".md");
-  std::ifstream stream(page);
-  std::string content{std::istreambuf_iterator<char>(stream), {}};
+  std::string content = read_file(page);
   const std::size_t begin = content.find(kBegin), end = content.find(kEnd);
-  if (!stream || begin == std::string::npos || end == std::string::npos || end < begin) {
+  if (begin == std::string::npos || end == std::string::npos || end < begin) {
     throw SetupError(page.string() +
                      ": must have the lines '<!-- figures: begin -->' and '<!-- figures: end -->'");
   }

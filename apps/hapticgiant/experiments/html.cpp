@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
+#include <system_error>
+
+#include "hg/core/open_file.h"
 
 namespace hg::apps {
 namespace {
@@ -76,13 +77,12 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string html_figure(const std::filesystem::path& svg, const std::string& caption) {
-  std::ifstream stream(svg, std::ios::binary);
-  if (!stream) return {};
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  std::error_code error;
+  if (!std::filesystem::exists(svg, error)) return {};
   return fmt::format(
       "<figure><img alt=\"{0}\" src=\"data:image/svg+xml;base64,{1}\">"
       "<figcaption>{0}</figcaption></figure>\n",
-      escaped(caption), base64(bytes));
+      escaped(caption), base64(read_file(svg)));
 }
 
 std::string html_page(const std::string& title, const std::string& body) {

@@ -145,7 +145,7 @@ TEST(ReadProblems, SaysWhichFileCannotBeRead) {
     read_problems("no/such/file.hqp");
     FAIL();
   } catch (const SetupError& error) {
-    EXPECT_STREQ(error.what(), "no/such/file.hqp: cannot be opened for reading");
+    EXPECT_STREQ(error.what(), "no/such/file.hqp: cannot be read: No such file or directory");
   }
   EXPECT_THROW(read_problems("tests"), SetupError);  // a folder
 }

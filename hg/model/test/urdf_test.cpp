@@ -341,7 +341,7 @@ TEST(Urdf, AMissingFileIsNamed) {
     Chain::from_urdf_file("models/no_such.urdf");
     FAIL();
   } catch (const SetupError& error) {
-    EXPECT_STREQ(error.what(), "models/no_such.urdf: cannot be read as a URDF file, is it there?");
+    EXPECT_STREQ(error.what(), "models/no_such.urdf: cannot be read: No such file or directory");
   }
 }
 

@@ -107,8 +107,17 @@ TEST(Key, AFileThatIsNoGoodKeyIsRefused) {
   EXPECT_EQ(refusal(file), file + ": a key has 32 to 4096 bytes, got 0");
   file = write("longer", 4097, 0600);
   EXPECT_EQ(refusal(file), file + ": a key has 32 to 4096 bytes, got more than 4096");
-  EXPECT_EQ(refusal("/no/such"), "/no/such: the key must be readable: No such file or directory");
-  EXPECT_EQ(refusal(folder.path()), folder.path().string() + ": the key must be a file");
+  EXPECT_EQ(refusal("/no/such"), "/no/such: cannot be read: No such file or directory");
+  EXPECT_EQ(refusal(folder.path()),
+            folder.path().string() + ": cannot be read: expected a file, got a folder");
+  file = folder.write("zeros", std::string(32, '\0')).string();
+  chmod(file.c_str(), 0600);
+  EXPECT_EQ(refusal(file), file + ": a key of zeros is none: head -c 32 /dev/urandom makes one");
+  file = write("stranger's", 32, 0600);
+  if (chown(file.c_str(), 12345, 12345) == 0) {
+    EXPECT_EQ(refusal(file),
+              file + ": the key must be a file of yours or of root, got one of user 12345");
+  }
 }
 
 TEST(Key, WithTheSameKeyASessionIsASessionAndTheLoopAllocatesNothing) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/core/test/temporary_folder.h"
 
 namespace hg::viewer_server {

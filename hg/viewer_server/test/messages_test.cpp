@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "hg/core/open_file.h"
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/limit_text.h"
 #include "hg/viewer_server/typescript.h"

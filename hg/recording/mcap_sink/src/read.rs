@@ -3,8 +3,9 @@
 //! written, and behind a record whose head is wrong the next one is searched for.
 
 use std::collections::BTreeMap;
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
 use mcap::parse_record;
@@ -21,6 +22,8 @@ const HEAD_BYTES: u64 = 9;
 /// Records that must follow each other for the first to be believed.
 const CHAIN: usize = 3;
 const WINDOW_BYTES: usize = 64 * 1024;
+/// O_NONBLOCK of Linux.
+const NONBLOCK: i32 = 0o4000;
 
 /// What a file holds, in its order.
 pub enum Item<'a> {
@@ -59,7 +62,8 @@ struct Records {
 
 impl Records {
     fn open(path: &Path) -> io::Result<Self> {
-        let file = File::open(path)?;
+        // a named pipe would be waited for; of regular files it means nothing
+        let file = OpenOptions::new().read(true).custom_flags(NONBLOCK).open(path)?;
         if !file.metadata()?.is_file() {
             return Err(io::Error::other("it is no regular file"));
         }

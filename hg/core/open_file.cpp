@@ -1,0 +1,117 @@
+#include "hg/core/open_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "hg/core/error.h"
+
+namespace hg {
+namespace {
+
+constexpr mode_t kNewFile = 0666;  // less the umask
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const char* what,
+                         const std::string& why) {
+  throw SetupError(file.string() + ": cannot be " + what + ": " + why);
+}
+
+// the descriptor of standard output or error of which these are the facts; -1: neither's
+int standard_output(const struct stat& facts) noexcept {
+  for (const int standard : {STDOUT_FILENO, STDERR_FILENO}) {
+    struct stat own {};
+    if (fstat(standard, &own) == 0 && own.st_dev == facts.st_dev && own.st_ino == facts.st_ino) {
+      return standard;
+    }
+  }
+  return -1;
+}
+
+}  // namespace
+
+OpenFile::~OpenFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+int OpenFile::release() noexcept { return std::exchange(descriptor_, -1); }
+
+const char* kind_of_file(unsigned mode) noexcept {
+  switch (mode & S_IFMT) {
+    case S_IFREG:
+      return "a file";
+    case S_IFDIR:
+      return "a folder";
+    case S_IFIFO:
+      return "a named pipe";
+    case S_IFSOCK:
+      return "a socket";
+    case S_IFCHR:
+    case S_IFBLK:
+      return "a device";
+    default:
+      return "no file";
+  }
+}
+
+OpenFile open_to_read(const std::filesystem::path& file) {
+  // a named pipe would be waited for; of regular files O_NONBLOCK means nothing
+  OpenFile opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK));
+  struct stat facts {};
+  if (opened.descriptor() < 0 || fstat(opened.descriptor(), &facts) != 0) {
+    refuse(file, "read", std::strerror(errno));
+  }
+  if (!S_ISREG(facts.st_mode)) {
+    refuse(file, "read", std::string("expected a file, got ") + kind_of_file(facts.st_mode));
+  }
+  return opened;
+}
+
+std::string read_file(const std::filesystem::path& file, std::uintmax_t most_bytes) {
+  const OpenFile opened = open_to_read(file);
+  std::string content;
+  std::array<char, 1 << 16> bytes;
+  while (true) {
+    const ssize_t count = read(opened.descriptor(), bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) refuse(file, "read", std::strerror(errno));
+    if (count == 0) return content;
+    content.append(bytes.data(), static_cast<std::size_t>(count));
+    if (content.size() > most_bytes) {
+      refuse(file, "read", "it has more than " + std::to_string(most_bytes) + " bytes");
+    }
+  }
+}
+
+OpenFile open_to_write(const std::filesystem::path& file, Content content) {
+  // without O_TRUNC: what is refused stays as it is
+  OpenFile opened(
+      open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, kNewFile));
+  const int error = errno;
+  struct stat facts {};
+  if (opened.descriptor() < 0) {
+    const bool is_there = stat(file.c_str(), &facts) == 0;
+    const bool has_kind = is_there && (S_ISFIFO(facts.st_mode) || S_ISSOCK(facts.st_mode));
+    refuse(file, "written",
+           has_kind ? std::string("expected a file, got ") + kind_of_file(facts.st_mode)
+                    : std::strerror(error));
+  }
+  if (fstat(opened.descriptor(), &facts) != 0) refuse(file, "written", std::strerror(errno));
+  if (S_ISCHR(facts.st_mode)) return opened;
+  // behind what has been printed
+  const int standard = standard_output(facts);
+  if (standard >= 0) return OpenFile(fcntl(standard, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+  if (!S_ISREG(facts.st_mode)) {
+    refuse(file, "written", std::string("expected a file, got ") + kind_of_file(facts.st_mode));
+  }
+  if (content == Content::kEmptied && ftruncate(opened.descriptor(), 0) != 0) {
+    refuse(file, "written", std::strerror(errno));
+  }
+  return opened;
+}
+
+}  // namespace hg
