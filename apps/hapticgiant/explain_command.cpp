@@ -79,13 +79,14 @@ void print(const explanation::Entry& entry) {
 int explain_recording(const std::string& file) {
   Reader reader;
   const recording::ReadResult read = recording::read_recording(file, reader);
+  const char* cut_off =
+      read.losses.empty()
+          ? "; CUT OFF: the program ended before it could complete the file, at most its last "
+            "second is missing"
+          : "; CUT OFF: the program ended before it could complete the file";
   print_out(fmt::format("{}\n{:.3f} .. {:.3f} s of the run, {} samples{}\n{}\n", reader.title(),
                         reader.first_s(), reader.last_s(), reader.samples(),
-                        read.is_complete
-                            ? ""
-                            : "; CUT OFF: the program ended before it could complete the "
-                              "file, at most its last second is missing",
-                        recording::to_text(read.losses)));
+                        read.is_complete ? "" : cut_off, recording::to_text(read.losses)));
   const std::vector<explanation::Entry> entries = reader.entries();
   for (const explanation::Entry& entry : entries) print(entry);
   const bool has_fault = std::ranges::any_of(

@@ -75,6 +75,12 @@ void RunRecording::close_recorder(Result& result) {
     print_error("recording ended early: {}\n", recorded.error);
     result.is_whole = false;
   }
+  if (!recorded.not_renamed.empty()) {
+    print_error("the recording is complete, but keeps its name {}: {}\n", recorded.file.string(),
+                recorded.not_renamed);
+    result.is_whole = false;
+  }
+  if (!recorded.not_linked.empty()) print_out("recording   {}\n", recorded.not_linked);
   for (const auto& name : recorded.deleted) {
     print_out("recording {} deleted to keep within the disk budget\n", name);
   }

@@ -254,7 +254,8 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   if (facts.link.sent > 0) line("link", link_text(facts.link));
   line("state",
        fmt::format("{:016x} (hash of the last cycle: the same run has the same)", last_hash_));
-  line("recording", facts.recording.empty() ? "off" : facts.recording);
+  const char* none = facts.recording_error.empty() ? "off" : "none";
+  line("recording", facts.recording.empty() ? none : facts.recording);
   if (facts.dropped > 0) {
     line("LOST", fmt::format("{} samples: neither judged nor recorded", facts.dropped));
   }

@@ -38,6 +38,10 @@ std::string McapFile::error() const { return mcap_sink_error(sink_.get()); }
 
 bool McapFile::has_failed() const { return *mcap_sink_error(sink_.get()) != '\0'; }
 
+mcap_file_state McapFile::state() const {
+  return static_cast<mcap_file_state>(mcap_sink_state(sink_.get()));
+}
+
 std::uint64_t McapFile::bytes() const { return mcap_sink_bytes(sink_.get()); }
 
 }  // namespace hg::recording

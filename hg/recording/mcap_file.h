@@ -39,6 +39,7 @@ class McapFile {
   std::string error() const;  ///< empty while everything went well
   bool has_failed() const;
   std::uint64_t bytes() const;  ///< on the way to the disk
+  mcap_file_state state() const;
 
  private:
   std::unique_ptr<mcap_sink, decltype(&mcap_sink_free)> sink_;

@@ -31,6 +31,7 @@ static_assert(kRingSeconds + kFlushSeconds < 1.0, "the promise of docs/recording
 constexpr double kToolRate_Hz = 100.0;  // of the messages for other tools
 constexpr auto kPollPeriod = 5ms;       // the loop may not wake the thread: that is a system call
 constexpr int kIdlePolls = 50;          // then a loop that stands still is flushed, too
+constexpr int kLookPolls = 200;         // 1 s: is the file still there?
 constexpr int kTouchPolls = 2000;  // 10 s: no other run takes the file of a paused one for broken
 constexpr auto kWaitForPlace = 100us;
 constexpr double kBudgetStep = 0.01;  // of the budget: how far a file grows between two looks at it
@@ -181,7 +182,7 @@ Recorder::Writer::Writer(const RecordingInfo& info)
     throw SetupError("recording file " + path_.string() +
                      ": must be writable, got: " + file_.error());
   }
-  folder_.link_latest(path_);
+  summary_.not_linked = folder_.link_latest(path_);
   keep_budget();
   thread_ = std::thread([this] { run(); });
 }
@@ -246,7 +247,8 @@ void Recorder::Writer::run() {
       const bool has_written = write_waiting_samples();
       if (!is_reproducible_) write_events();
       idle_polls = has_written ? 0 : idle_polls % kTouchPolls + 1;
-      if (idle_polls == kIdlePolls && !is_reproducible_) flush();
+      const bool is_look = idle_polls > 0 && idle_polls % kLookPolls == 0;
+      if ((idle_polls == kIdlePolls || is_look) && !is_reproducible_) flush();
       if (idle_polls == kTouchPolls) show_that_it_is_written();
       if (!has_written) std::this_thread::sleep_for(kPollPeriod);
     }
@@ -330,13 +332,16 @@ void Recorder::Writer::end(const std::string& why) {
   has_ended_ = true;
   file_.finish();
   keep_budget();
+  const mcap_file_state state = file_.state();
   if (file_.has_failed()) {
-    summary_.dropped += summary_.samples - flushed_samples_;
-    summary_.samples = flushed_samples_;
+    // nobody knows what is left of a file that somebody else has changed
+    const std::uint64_t kept = state == mcap_file_whole ? flushed_samples_ : 0;
+    summary_.dropped += summary_.samples - kept;
+    summary_.samples = kept;
   } else {
-    path_ = folder_.complete(path_);
+    path_ = folder_.complete(path_, summary_.not_renamed);
   }
-  summary_.file = path_;
+  if (state != mcap_file_gone) summary_.file = path_;
   summary_.bytes = file_.bytes();
 
   const std::lock_guard lock(mutex_);

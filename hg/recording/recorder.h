@@ -48,12 +48,14 @@ struct RecordingInfo {
 };
 
 struct RecordingSummary {
-  std::filesystem::path file;        ///< ends in .partial.mcap after a write error
+  std::filesystem::path file;        ///< ends in .partial.mcap after a write error; empty = gone
   std::uint64_t samples = 0;         ///< written
   std::uint64_t dropped = 0;         ///< not written: the ring was full, or recording had ended
   std::uint64_t bytes = 0;           ///< size of the file
   std::vector<std::string> deleted;  ///< old recordings that went for the disk budget
   std::string error;                 ///< why recording ended early; empty = it did not
+  std::string not_renamed;  ///< why a complete file still ends in .partial.mcap; empty = no
+  std::string not_linked;   ///< why latest.mcap is not this file; empty = it is
 };
 
 class Recorder {

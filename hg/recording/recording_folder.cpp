@@ -1,7 +1,12 @@
 #include "hg/recording/recording_folder.h"
 
+#include <fcntl.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
+#include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <regex>
 #include <string_view>
@@ -56,6 +61,17 @@ std::vector<Recording> oldest_first(const fs::path& folder) {
   return recordings;
 }
 
+// Returns errno, 0: it is renamed.
+int rename_to_free_name(const fs::path& from, const fs::path& to) {
+  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  // a file system without that
+  std::error_code error;
+  if (fs::symlink_status(to, error).type() != fs::file_type::not_found) return EEXIST;
+  fs::rename(from, to, error);
+  return error.value();
+}
+
 }  // namespace
 
 std::string stamped(const std::string& name, std::chrono::system_clock::time_point time) {
@@ -95,24 +111,33 @@ fs::path RecordingFolder::new_path(const std::string& name,
   }
 }
 
-fs::path RecordingFolder::complete(const fs::path& partial) const {
+fs::path RecordingFolder::complete(const fs::path& partial, std::string& why) const {
   std::string name = partial.filename().string();
   name.erase(name.rfind(kPartial), kPartial.size());
   const fs::path complete = folder_ / name;
-  std::error_code error;
-  fs::rename(partial, complete, error);
-  if (error) return partial;
+  const int error = rename_to_free_name(partial, complete);
+  if (error != 0) {
+    why = complete.string() + ": " + std::strerror(error);
+    return partial;
+  }
   link_latest(complete);
   return complete;
 }
 
-void RecordingFolder::link_latest(const fs::path& file) const {
+std::string RecordingFolder::link_latest(const fs::path& file) const {
+  const fs::path fresh = folder_ / "latest.new", latest = folder_ / "latest.mcap";
+  for (const fs::path& name : {fresh, latest}) {
+    std::error_code ignored;
+    const fs::file_type type = fs::symlink_status(name, ignored).type();
+    if (type == fs::file_type::symlink || type == fs::file_type::not_found) continue;
+    return name.string() + " is no link of this program and stays as it is";
+  }
   // renaming replaces an old link in one step: there is always a link
-  const fs::path fresh = folder_ / "latest.new";
   std::error_code ignored;
   fs::remove(fresh, ignored);
   fs::create_symlink(file.filename(), fresh, ignored);
-  fs::rename(fresh, folder_ / "latest.mcap", ignored);
+  fs::rename(fresh, latest, ignored);
+  return {};
 }
 
 std::vector<std::string> RecordingFolder::make_room(const fs::path& current, double current_bytes,

@@ -26,11 +26,12 @@ class RecordingFolder {
                                  std::chrono::system_clock::time_point start) const;
 
   /// Takes .partial out of the name and points `latest.mcap` at the file. Returns the new path, or
-  /// the old one where renaming fails.
-  std::filesystem::path complete(const std::filesystem::path& partial) const;
+  /// the old one where something has the name already or renaming fails; then `why` is filled.
+  std::filesystem::path complete(const std::filesystem::path& partial, std::string& why) const;
 
   /// Points `latest.mcap` at a file of this folder; does nothing where links are not supported.
-  void link_latest(const std::filesystem::path& file) const;
+  /// Returns why it did not, where `latest.mcap` is no link: that is somebody else's; else empty.
+  std::string link_latest(const std::filesystem::path& file) const;
 
   /// Deletes the oldest recordings until all together, `current` with `current_bytes`, take at most
   /// `budget_bytes`; never `current`. Returns the names of the deleted files.

@@ -117,6 +117,7 @@ class Losses {
     std::uint64_t first_ns = 0, last_ns = 0;
   };
   static bool is_known(const Loss& loss) {
+    if (loss.part.starts_with("bytes 0 ")) return false;  // with the first sample
     return loss.samples > 0 || !(loss.part.starts_with("chunk") || loss.part.starts_with("bytes"));
   }
 

@@ -6,11 +6,13 @@ Usage: disk_test.py PROGRAM   (from the repository root)
 import contextlib
 import json
 import os
+import pathlib
 import re
 import resource
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 
 from program import MODELS, PROGRAM, TemporaryFolder, run
@@ -71,6 +73,61 @@ class FullDisk(TemporaryFolder):
             self.assertEqual((code, err), (0, ""))
             self.assertIn(" 10000 samples\n", out)
             self.assertEqual(len([f for f in disk.glob("*.mcap") if not f.is_symlink()]), 1)
+
+    def harm(self, harm):
+        """What a run says whose recording is harmed after half a second."""
+        recordings, summary = self.folder / "r", self.folder / "summary.json"
+        process = subprocess.Popen(
+            [PROGRAM, "run", "door", "--user", "none", "--duration", "5", "--no-viewer",
+             "--recordings", recordings, "--summary", summary], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True, env={**os.environ, "TMPDIR": str(self.temporary)})
+        self.addCleanup(process.kill)
+        while not (files := list(recordings.glob("*.partial.mcap"))) or (
+                files[0].stat().st_size < 50_000):
+            self.assertIsNone(process.poll())
+            time.sleep(0.05)
+        harm(files[0])
+        out, err = process.communicate(timeout=120)
+        return process.returncode, out, err, json.loads(summary.read_text())
+
+    def test_a_recording_that_somebody_deletes_or_cuts_off_is_lost(self):
+        for harm, why, named in (
+                (pathlib.Path.unlink, "the file was deleted, moved or replaced", "none"),
+                (lambda file: os.truncate(file, 3000), "the file was changed: it had", ".partial.mcap"),
+                (lambda file: shutil.rmtree(file.parent), "the file was deleted", "none")):
+            code, out, err, told = self.harm(harm)
+            self.assertEqual(code, NOT_WRITTEN, out + err)
+            self.assertIn("has ended early, the run goes on: " + why, out)
+            self.assertRegex(out, rf"recording +(\S+{named}|{named})\n")
+            self.assertIn(f"{told['cycles']} samples of the recording: {why}", out)
+            self.assertEqual(told["unrecorded_samples"], told["cycles"])
+            kept = re.search(r"explain (\S+)", out)[1]  # the last seconds
+            code, out, err = run("explain", kept)
+            self.assertEqual((code, err), (0, ""))
+            self.assertIn(f" {told['cycles']} samples\n", out)
+            shutil.rmtree(self.folder / "r", ignore_errors=True)
+
+    def test_what_has_the_name_of_a_recording_or_of_the_link_stays(self):
+        recordings = self.folder / "r"
+        recordings.mkdir()
+        (recordings / "latest.mcap").write_text("mine")
+        process = subprocess.Popen(
+            [PROGRAM, "run", "door", "--user", "none", "--duration", "600", "--no-viewer",
+             "--recordings", recordings], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        process.stdout.readline()
+        partial, = recordings.glob("*.partial.mcap")
+        (recordings / partial.name.replace(".partial", "")).mkdir()
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, NOT_WRITTEN, out + err)
+        self.assertIn(f"the recording is complete, but keeps its name {partial}: ", err)
+        self.assertIn("latest.mcap is no link of this program and stays as it is", out)
+        self.assertEqual((recordings / "latest.mcap").read_text(), "mine")
+        code, out, err = run("explain", partial)
+        self.assertEqual((code, err), (0, ""))
+        self.assertNotIn("CUT OFF", out)
 
     def test_the_page_is_told_when_it_happens(self):
         shutil.copytree(MODELS, self.folder / "models")  # the page is looked for beside models

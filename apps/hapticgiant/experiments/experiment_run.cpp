@@ -65,7 +65,8 @@ std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scena
 void settle(recording::Recorder& recorder, const fs::path& folder, ExperimentResult& result) {
   const recording::RecordingSummary recorded = recorder.close();
   std::error_code error, ignored;
-  fs::remove(folder / "latest.mcap", ignored);
+  const fs::path link = folder / "latest.mcap";
+  if (fs::is_symlink(link, ignored)) fs::remove(link, ignored);
   fs::rename(recorded.file, folder / "recording.mcap", error);
   for (const std::string& why : {recorded.error, error ? error.message() : std::string()}) {
     if (!why.empty()) result.failures.push_back("recording.mcap: " + why);

@@ -43,11 +43,21 @@ bool mcap_sink_add_metadata(mcap_sink* sink, const char* name, const char* const
                             size_t count);
 
 /// Ends the chunk and hands everything to the operating system: a crash of this program loses
-/// nothing that was written before.
+/// nothing that was written before. A file that somebody has deleted, moved, replaced or cut off
+/// since is an error; so it is for all that write.
 bool mcap_sink_flush(mcap_sink* sink);
 
 /// Bytes handed to the operating system so far.
 uint64_t mcap_sink_bytes(const mcap_sink* sink);
+
+typedef enum {
+  mcap_file_whole = 0,    ///< it has what was written, or was never opened
+  mcap_file_changed = 1,  ///< somebody has cut it off or written to it
+  mcap_file_gone = 2      ///< its name stands for nothing, or another file
+} mcap_file_state;
+
+/// What has become of the file, a mcap_file_state.
+int mcap_sink_state(const mcap_sink* sink);
 
 /// Writes the index and waits until the file is on the disk.
 bool mcap_sink_finish(mcap_sink* sink);

@@ -5,6 +5,8 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <fstream>
+#include <functional>
 #include <thread>
 
 #include "hg/core/allocation_counter.h"
@@ -207,6 +209,61 @@ TEST_F(RecorderTest, OutlivesAFullDisk) {
   EXPECT_GT(summary.samples, 0u);
   EXPECT_LT(summary.samples, 2000u);  // about 760 bytes each
   EXPECT_LE(std::filesystem::file_size(summary.file), 1'000'000u);
+}
+
+// what a run is told when `harm` is done to its file in the middle
+RecordingSummary harmed(const RecordingInfo& info, bool pauses,
+                        const std::function<void(const std::filesystem::path&)>& harm) {
+  Recorder recorder(info);
+  const auto path = info.folder / "door_20270115_080000.partial.mcap";
+  const std::uintmax_t head = std::filesystem::file_size(path);
+  for (std::uint64_t cycle = 0; cycle < 1000; ++cycle) {
+    recorder.push_waiting(example_sample(cycle, kRate_Hz));
+  }
+  constexpr int kPatience = 3000;
+  for (int i = 0; i < kPatience && std::filesystem::file_size(path) == head; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  harm(path);
+  for (int i = 0; pauses && i < kPatience && recorder.error().empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_TRUE(!pauses || !recorder.error().empty()) << "while no samples come";
+  for (std::uint64_t cycle = 1000; cycle < 3000; ++cycle) {
+    recorder.push_waiting(example_sample(cycle, kRate_Hz));
+  }
+  return recorder.close();
+}
+
+TEST_F(RecorderTest, AFileThatIsDeletedMovedReplacedOrChangedIsLost) {
+  namespace fs = std::filesystem;
+  const std::vector<std::function<void(const fs::path&)>> gone = {
+      [](const fs::path& file) { fs::remove(file); },
+      [](const fs::path& file) { fs::rename(file, file.string() + ".moved"); },
+      [](const fs::path& file) {
+        fs::remove(file);
+        std::ofstream(file) << "another";
+      }};
+  for (const bool pauses : {false, true}) {
+    for (const auto& harm : gone) {
+      const RecordingSummary summary = harmed(info(), pauses, harm);
+      EXPECT_EQ(summary.error, "the file was deleted, moved or replaced");
+      EXPECT_EQ(summary.file, "");
+      EXPECT_EQ(summary.samples, 0u);
+      EXPECT_EQ(summary.dropped, 3000u);
+      for (const auto& entry : fs::directory_iterator(temporary_.path())) fs::remove(entry);
+    }
+    for (const std::uintmax_t bytes : {0U, 5000U}) {
+      const RecordingSummary summary =
+          harmed(info(), pauses, [=](const fs::path& file) { fs::resize_file(file, bytes); });
+      EXPECT_TRUE(summary.error.starts_with("the file was changed: it had ")) << summary.error;
+      EXPECT_EQ(summary.file.filename(), "door_20270115_080000.partial.mcap");
+      EXPECT_EQ(fs::file_size(summary.file), bytes);  // no hole behind it
+      EXPECT_EQ(summary.samples, 0u);
+      EXPECT_EQ(summary.dropped, 3000u);
+      for (const auto& entry : fs::directory_iterator(temporary_.path())) fs::remove(entry);
+    }
+  }
 }
 
 TEST_F(RecorderTest, SaysAtOnceThatTheDiskIsFull) {

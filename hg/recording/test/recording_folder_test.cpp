@@ -54,12 +54,40 @@ TEST(RecordingFolder, CompletesAFileAndLinksIt) {
   const TemporaryFolder temporary;
   const RecordingFolder folder(temporary.path());
   temporary.write("door_20270115_080000.partial.mcap", 1);
-  temporary.write("latest.mcap", 1);
-  const auto path = folder.complete(temporary.path() / "door_20270115_080000.partial.mcap");
+  std::filesystem::create_symlink("older.mcap", temporary.path() / "latest.mcap");
+  std::string why;
+  const auto path = folder.complete(temporary.path() / "door_20270115_080000.partial.mcap", why);
+  EXPECT_EQ(why, "");
   EXPECT_EQ(path, temporary.path() / "door_20270115_080000.mcap");
   EXPECT_EQ(temporary.names(), (std::set<std::string>{"door_20270115_080000.mcap", "latest.mcap"}));
   EXPECT_EQ(std::filesystem::read_symlink(temporary.path() / "latest.mcap"),
             "door_20270115_080000.mcap");
+}
+
+TEST(RecordingFolder, LeavesAloneWhatHasTheNameOfARecordingOrOfTheLink) {
+  const TemporaryFolder temporary;
+  const RecordingFolder folder(temporary.path());
+  const auto partial = temporary.write("door_20270115_080000.partial.mcap", "ours");
+  const auto mine = temporary.write("latest.mcap", "mine");
+  EXPECT_EQ(folder.link_latest(partial),
+            mine.string() + " is no link of this program and stays as it is");
+  EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(mine)));
+  EXPECT_EQ(std::filesystem::file_size(mine), 4U);
+  std::filesystem::remove(mine);
+  temporary.write("latest.new", "mine");
+  EXPECT_NE(folder.link_latest(partial), "");
+  EXPECT_EQ(std::filesystem::file_size(temporary.path() / "latest.new"), 4U);
+
+  const auto taken = temporary.path() / "door_20270115_080000.mcap";
+  for (const bool is_folder : {true, false}) {
+    if (is_folder) std::filesystem::create_directory(taken);
+    if (!is_folder) temporary.write("door_20270115_080000.mcap", "another");
+    std::string why;
+    EXPECT_EQ(folder.complete(partial, why), partial);
+    EXPECT_EQ(why, taken.string() + ": File exists");
+    EXPECT_EQ(std::filesystem::file_size(partial), 4U);
+    std::filesystem::remove(taken);
+  }
 }
 
 TEST(RecordingFolder, DeletesTheOldestUntilTheBudgetHolds) {

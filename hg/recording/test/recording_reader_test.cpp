@@ -281,6 +281,46 @@ TEST_F(RecordedRunTest, ABlockOfZerosOrOnesCostsTheChunksThatItTouches) {
   }
 }
 
+// as where a file was cut off while it was written, or a loss of power has taken its end
+TEST_F(RecordedRunTest, AHoleIsToldWhereverItIs) {
+  const std::string good = content_of(record(3000));
+  struct Case {
+    double from, to;
+    bool is_counted, is_complete;
+  };
+  for (const Case& hole :
+       {Case{0.0, 0.4, false, true}, Case{0.4, 0.7, true, true}, Case{0.4, 1.0, false, false}}) {
+    SCOPED_TRACE(hole.from);
+    std::string bad = good;
+    const auto place = [&](double part) {
+      return bad.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(bad.size()));
+    };
+    std::fill(place(hole.from), place(hole.to), '\0');
+    Gaps gaps;
+    const ReadResult result = read_recording(temporary_.write("bad.mcap", bad), gaps);
+    gaps.end(3000);
+    EXPECT_EQ(result.is_complete, hole.is_complete);
+    ASSERT_FALSE(result.losses.empty());
+    std::uint64_t lost = 0;
+    for (const Loss& loss : result.losses) lost += loss.samples;
+    EXPECT_EQ(result.losses.back().is_counted, hole.is_counted) << to_text(result.losses);
+    EXPECT_EQ(gaps.samples + lost == 3000u, hole.is_counted);
+    EXPECT_GT(gaps.samples, 500u);
+    EXPECT_LT(gaps.samples, 2500u);
+  }
+}
+
+TEST_F(RecordedRunTest, AnEndlessHoleIsSkipped) {
+  const std::filesystem::path file = record(600);
+  std::error_code error;
+  std::filesystem::resize_file(file, 4'000'000'000'000U, error);
+  if (error) GTEST_SKIP() << "no files with holes here: " << error.message();
+  Gaps gaps;
+  const ReadResult result = read_recording(file, gaps);
+  EXPECT_EQ(gaps.samples, 600u);
+  EXPECT_EQ(result.losses.size(), 1u);
+}
+
 TEST_F(RecordedRunTest, NamesAConfigurationThatIsDamaged) {
   const std::filesystem::path file = record(100);
   std::string text = content_of(file);

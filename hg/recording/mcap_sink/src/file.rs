@@ -2,9 +2,10 @@
 //! disk stays a clean beginning of the file.
 
 use std::cell::Cell;
-use std::fs::{File, OpenOptions};
+use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 const BUFFER_BYTES: usize = 64 * 1024;
@@ -15,13 +16,13 @@ pub struct FailFastFile {
 }
 
 struct CountedFile {
-    file: File,
-    written: Rc<Cell<u64>>,
+    handle: FileHandle,
 }
 
 /// What stays reachable while a writer owns the file.
 pub struct FileHandle {
     file: File,
+    path: PathBuf,
     written: Rc<Cell<u64>>,
 }
 
@@ -29,9 +30,9 @@ impl FailFastFile {
     /// Creates a file that must not exist.
     pub fn create(path: &Path) -> io::Result<(Self, FileHandle)> {
         let file = OpenOptions::new().write(true).create_new(true).open(path)?;
-        let written = Rc::new(Cell::new(0));
-        let handle = FileHandle { file: file.try_clone()?, written: written.clone() };
-        let buffer = BufWriter::with_capacity(BUFFER_BYTES, CountedFile { file, written });
+        let handle = FileHandle { file, path: path.to_path_buf(), written: Rc::default() };
+        let file = CountedFile { handle: handle.another()? };
+        let buffer = BufWriter::with_capacity(BUFFER_BYTES, file);
         Ok((Self { buffer, has_failed: false }, handle))
     }
 
@@ -60,17 +61,44 @@ impl Write for FailFastFile {
 
 impl Write for CountedFile {
     fn write(&mut self, data: &[u8]) -> io::Result<usize> {
-        let size = self.file.write(data)?;
-        self.written.set(self.written.get() + size as u64);
+        // behind what somebody has cut off a hole would follow
+        self.handle.check()?;
+        let size = self.handle.file.write(data)?;
+        self.handle.written.set(self.handle.written.get() + size as u64);
         Ok(size)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
+        self.handle.file.flush()
     }
 }
 
 impl FileHandle {
+    fn another(&self) -> io::Result<Self> {
+        let (path, written) = (self.path.clone(), self.written.clone());
+        Ok(Self { file: self.file.try_clone()?, path, written })
+    }
+
+    /// Whether the name still stands for this file.
+    pub fn is_in_place(&self) -> bool {
+        let place = |facts: Metadata| (facts.dev(), facts.ino());
+        let own = self.file.metadata().map(place);
+        std::fs::symlink_metadata(&self.path).map(place).is_ok_and(|found| own.is_ok_and(|own| own == found))
+    }
+
+    /// Fails unless it does, and the file has as many bytes as were written.
+    pub fn check(&self) -> io::Result<()> {
+        if !self.is_in_place() {
+            return Err(io::Error::other("the file was deleted, moved or replaced"));
+        }
+        let (written, found) = (self.written(), self.file.metadata()?.len());
+        if found != written {
+            let message = format!("the file was changed: it had {written} bytes and has {found}");
+            return Err(io::Error::other(message));
+        }
+        Ok(())
+    }
+
     /// Bytes handed to the operating system so far.
     pub fn written(&self) -> u64 {
         self.written.get()

@@ -195,7 +195,11 @@ pub unsafe extern "C" fn mcap_sink_add_metadata(
 /// `sink` comes from `mcap_sink_open`.
 #[no_mangle]
 pub unsafe extern "C" fn mcap_sink_flush(sink: *mut mcap_sink) -> bool {
-    (*sink).run(|file| Ok(file.writer.flush()?)).is_some()
+    let flushed = (*sink).run(|file| {
+        file.writer.flush()?;
+        Ok(file.handle.check()?)
+    });
+    flushed.is_some()
 }
 
 /// # Safety
@@ -209,10 +213,22 @@ pub unsafe extern "C" fn mcap_sink_bytes(sink: *const mcap_sink) -> u64 {
 /// # Safety
 /// `sink` comes from `mcap_sink_open`.
 #[no_mangle]
+pub unsafe extern "C" fn mcap_sink_state(sink: *const mcap_sink) -> i32 {
+    match (*sink).open.as_ref() {
+        Some(file) if !file.handle.is_in_place() => 2,
+        Some(file) if file.handle.check().is_err() => 1,
+        _ => 0,
+    }
+}
+
+/// # Safety
+/// `sink` comes from `mcap_sink_open`.
+#[no_mangle]
 pub unsafe extern "C" fn mcap_sink_finish(sink: *mut mcap_sink) -> bool {
     let finished = (*sink).run(|file| {
         file.writer.finish()?;
-        Ok(file.handle.sync()?)
+        file.handle.sync()?;
+        Ok(file.handle.check()?)
     });
     finished.is_some()
 }

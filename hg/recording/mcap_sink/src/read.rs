@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::os::fd::AsRawFd;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
@@ -22,8 +23,14 @@ const HEAD_BYTES: u64 = 9;
 /// Records that must follow each other for the first to be believed.
 const CHAIN: usize = 3;
 const WINDOW_BYTES: usize = 64 * 1024;
-/// O_NONBLOCK of Linux.
+/// O_NONBLOCK, SEEK_DATA and ENXIO of Linux.
 const NONBLOCK: i32 = 0o4000;
+const SEEK_DATA: i32 = 3;
+const ENXIO: i32 = 6;
+
+extern "C" {
+    fn lseek(file: i32, offset: i64, whence: i32) -> i64;
+}
 
 /// What a file holds, in its order.
 pub enum Item<'a> {
@@ -85,10 +92,7 @@ impl Records {
 
     /// The place behind a record that may begin at `at`; `head` are the bytes there.
     fn end_of(&self, at: u64, head: &[u8]) -> Option<u64> {
-        let length = u64::from_le_bytes(head[1..HEAD_BYTES as usize].try_into().ok()?);
-        let is_one = (op::HEADER..=op::DATA_END).contains(&head[0]) && length <= LONGEST_BYTES;
-        // a damaged length may be any number
-        let end = is_one.then(|| at + HEAD_BYTES + length)?;
+        let end = at + HEAD_BYTES + length_of(head)?;
         (end <= self.size).then_some(end)
     }
 
@@ -118,11 +122,37 @@ impl Records {
         Ok(true)
     }
 
+    /// Whether what is at `at` was a record before the file was cut off there.
+    fn is_cut_off(&mut self, at: u64) -> io::Result<bool> {
+        if at + HEAD_BYTES > self.size {
+            return Ok(true);
+        }
+        let head = self.read(at, HEAD_BYTES as usize)?;
+        let length = length_of(&head);
+        Ok(length.is_some_and(|length| at + HEAD_BYTES + length > self.size))
+    }
+
+    /// The first place from `at` on that is not in a hole of the file.
+    fn data_from(&mut self, at: u64) -> io::Result<u64> {
+        let found = unsafe { lseek(self.file.get_ref().as_raw_fd(), at as i64, SEEK_DATA) };
+        let next = match u64::try_from(found) {
+            Ok(place) => place,
+            Err(_) if io::Error::last_os_error().raw_os_error() == Some(ENXIO) => self.size,
+            Err(_) => at,
+        };
+        self.position = self.file.seek(SeekFrom::Start(next))?;
+        Ok(next)
+    }
+
     /// The first place from `at` on where records begin.
     fn find(&mut self, mut at: u64) -> io::Result<Option<u64>> {
         while at + HEAD_BYTES <= self.size {
             let count = (self.size - at).min(WINDOW_BYTES as u64) as usize;
             let window = self.read(at, count)?;
+            if window.iter().all(|byte| *byte == 0) {
+                at = self.data_from(at + count as u64)?;
+                continue;
+            }
             let places = count - HEAD_BYTES as usize + 1;
             for i in 0..places {
                 let place = at + i as u64;
@@ -134,6 +164,13 @@ impl Records {
         }
         Ok(None)
     }
+}
+
+/// The length behind the head of a record. A damaged one may be any number.
+fn length_of(head: &[u8]) -> Option<u64> {
+    let length = u64::from_le_bytes(head[1..HEAD_BYTES as usize].try_into().ok()?);
+    let is_one = (op::HEADER..=op::DATA_END).contains(&head[0]) && length <= LONGEST_BYTES;
+    is_one.then_some(length)
 }
 
 /// The record in `body`, if it fills it and holds what was written as far as that can be told.
@@ -307,18 +344,28 @@ pub fn read(path: &Path, take: impl FnMut(Item)) -> Result<(), Failure> {
         has_read_index: false,
     };
     let mut at = MAGIC.len() as u64;
-    let has_magic = records.size >= at && records.read(0, MAGIC.len())? == MAGIC;
-    if !has_magic && !(records.size > at && records.is_chain(at, CHAIN)?) {
-        return Err(McapError::BadMagic.into());
-    }
-    if !has_magic {
-        reader.tell_damage(0, &[], 0, at)?;
+    let magic = if records.size >= at { records.read(0, MAGIC.len())? } else { Vec::new() };
+    if magic != MAGIC {
+        // zeros: it was cut off to nothing while it was written
+        let is_hole = !magic.is_empty() && magic.iter().all(|byte| *byte == 0);
+        let begins = if is_hole { records.find(at)? } else { Some(at) };
+        let Some(begin) = begins else { return Err(McapError::BadMagic.into()) };
+        if !(records.size > begin && records.is_chain(begin, CHAIN)?) {
+            return Err(McapError::BadMagic.into());
+        }
+        reader.tell_damage(0, &[], 0, begin)?;
+        at = begin;
     }
     loop {
         let Some(end) = records.end(at)? else {
-            let next = if records.is_end_of_file(at)? { None } else { records.find(at + 1)? };
+            if records.is_end_of_file(at)? {
+                break;
+            }
+            let next = records.find(at + 1)?;
+            if next.is_some() || !records.is_cut_off(at)? {
+                reader.tell_damage(0, &[], at, next.unwrap_or(records.size))?;
+            }
             let Some(next) = next else { break };
-            reader.tell_damage(0, &[], at, next)?;
             at = next;
             continue;
         };
@@ -342,8 +389,8 @@ pub fn read(path: &Path, take: impl FnMut(Item)) -> Result<(), Failure> {
             at = end;
             continue;
         }
+        reader.tell_damage(opcode, body, at, next.unwrap_or(records.size))?;
         let Some(next) = next else { break };
-        reader.tell_damage(opcode, body, at, next)?;
         at = next;
     }
     if reader.has_ended || records.size > at && records.is_end_of_file(at)? {
