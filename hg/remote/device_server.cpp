@@ -1,10 +1,11 @@
 #include "hg/remote/device_server.h"
 
 #include <fmt/format.h>
+#include <sodium/randombytes.h>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <cstring>
 
 #include "hg/remote/agreement.h"
 #include "hg/runtime/schedule.h"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kLook = 100'000'000;  // ns, between two looks whether to stop
 constexpr int kGoodbyes = 3;                 // nobody answers them: one may be lost
-constexpr std::size_t kMostCandidates = 16;  // that are welcomed at the same time
+constexpr std::size_t kMostCandidates = 16;  // that are remembered
 
 std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
@@ -22,6 +23,7 @@ std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
 DeviceServer::DeviceServer(const Address& address, const ServerConfig& config)
     : config_(config), socket_(UdpSocket::listening_at(address)) {
+  randombytes_buf(secret_.data(), secret_.size());
   if (!config.capture.empty()) capture_ = std::make_unique<Capture>(config.capture);
 }
 
@@ -76,12 +78,45 @@ DeviceServer::Event DeviceServer::hear_candidate(Verdict verdict, const Header& 
     }
     return Event::kNone;
   }
-  return Event::kNone;
+  const bool is_ready =
+      verdict == Verdict::kGood && header.type == static_cast<std::uint16_t>(MessageType::kReady);
+  if (!is_ready || !was_welcomed(from, header.session)) return Event::kNone;
+  // its hello is forgotten: many have come since
+  Candidate candidate{.peer = from,
+                      .hello = {.client = "a client"},
+                      .outbox = Outbox(header.session, config_.key),
+                      .inbox = Inbox(header.session)};
+  if (!candidate.inbox.accept(verdict, header)) return Event::kNone;
+  begin_session(candidate);
+  return Event::kReady;
+}
+
+// Number of the next session, should it be that of `peer`, who is welcomed at that time. Whoever
+// knows it got the welcome: nothing has to be remembered of the others, however many there are.
+std::uint32_t DeviceServer::session_for(const Peer& peer, std::int64_t time_ns) const noexcept {
+  const std::int64_t slot = time_ns / std::max<std::int64_t>(1, ns(config_.ready_timeout_s));
+  std::array<unsigned char, sizeof sessions_ + sizeof slot + sizeof peer.address> facts{};
+  std::memcpy(facts.data(), &sessions_, sizeof sessions_);
+  std::memcpy(facts.data() + sizeof sessions_, &slot, sizeof slot);
+  std::memcpy(facts.data() + sizeof sessions_ + sizeof slot, &peer.address, peer.length);
+  std::array<unsigned char, crypto_shorthash_BYTES> hash{};
+  crypto_shorthash(hash.data(), facts.data(), facts.size(), secret_.data());
+  std::uint32_t session = 0;
+  std::memcpy(&session, hash.data(), sizeof session);
+  return session | 1U;  // never 0
+}
+
+// not longer ago than twice the time to get ready
+bool DeviceServer::was_welcomed(const Peer& peer, std::uint32_t session) const noexcept {
+  const std::int64_t now = now_ns();
+  return session == session_for(peer, now) ||
+         session == session_for(peer, now - ns(config_.ready_timeout_s));
 }
 
 // the others are told that they came too late
 void DeviceServer::begin_session(const Candidate& chosen) {
   has_client_ = true;
+  ++sessions_;
   client_ = chosen.peer;
   hello_ = chosen.hello;
   outbox_ = chosen.outbox;
@@ -98,12 +133,12 @@ void DeviceServer::begin_session(const Candidate& chosen) {
 
 // a hello that comes again is of the same candidate
 DeviceServer::Candidate& DeviceServer::candidate_of(const Hello& hello, const Peer& from) {
+  const std::uint32_t session = session_for(from, now_ns());
   for (Candidate& candidate : candidates_) {
     if (candidate.peer == from && candidate.hello.nonce == hello.nonce) return candidate;
   }
+  std::erase_if(candidates_, [&](const Candidate& other) { return other.peer == from; });
   if (candidates_.size() == kMostCandidates) candidates_.erase(candidates_.begin());
-  std::random_device random;
-  const std::uint32_t session = random() | 1U;  // never 0
   return candidates_.emplace_back(Candidate{.peer = from,
                                             .hello = hello,
                                             .outbox = Outbox(session, config_.key),

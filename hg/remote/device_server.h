@@ -4,6 +4,9 @@
 /// Lock-step: it lives a period when the command that answers its last frame has come.
 #pragma once
 
+#include <sodium/crypto_shorthash.h>
+
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -68,7 +71,8 @@ class DeviceServer {
 
  private:
   enum class Event { kNone, kReady, kCommand, kGoodbye };
-  /// Welcomed and not ready yet. Several may be: the first that is ready has the device.
+  /// Welcomed and not ready yet. Several may be: the first that is ready has the device, also when
+  /// it is not among those that are remembered.
   struct Candidate {
     Peer peer;
     Hello hello;
@@ -81,6 +85,8 @@ class DeviceServer {
   Event hear_candidate(Verdict verdict, const Header& header, const Peer& from);
   void begin_session(const Candidate& chosen);
   Candidate& candidate_of(const Hello& hello, const Peer& from);
+  std::uint32_t session_for(const Peer& peer, std::int64_t time_ns) const noexcept;
+  bool was_welcomed(const Peer& peer, std::uint32_t session) const noexcept;
   Event take(const Header& header);
   void on_hello(const Header& header, Verdict verdict, const Peer& from);
   void refuse(Refusal refusal, const std::string& reason, std::uint64_t nonce, const Peer& to);
@@ -100,7 +106,10 @@ class DeviceServer {
   ServerConfig config_;
   UdpSocket socket_;
   std::unique_ptr<Capture> capture_;
-  std::vector<Candidate> candidates_;  ///< the oldest first
+  /// Of the sessions' numbers: whoever answers with his has been welcomed at his address.
+  std::array<unsigned char, crypto_shorthash_KEYBYTES> secret_{};
+  std::uint64_t sessions_ = 0;         ///< that have begun: a number is for one only
+  std::vector<Candidate> candidates_;  ///< the oldest first, one per address
   bool has_client_ = false;
   Peer client_;
   Hello hello_;

@@ -194,6 +194,26 @@ class Voice {
     session = header.session;
     return message;
   }
+  /// Says that it is ready until the first frame comes. False: none came in ten seconds.
+  bool begins() {
+    const std::int64_t deadline = now_ns() + 10'000'000'000;
+    std::int64_t again = 0;
+    Header header;
+    Peer from;
+    while (now_ns() < deadline) {
+      if (now_ns() >= again) {
+        send(Ready{});
+        again = now_ns() + 20'000'000;
+      }
+      while (socket_.receive(in_, from)) {
+        const bool is_good = read_header(in_.view(), header, key_) == Verdict::kGood;
+        if (is_good && header.type == static_cast<std::uint16_t>(MessageType::kSensors))
+          return true;
+      }
+      socket_.wait(again);
+    }
+    return false;
+  }
   Welcome hello(bool is_lock_step, const char* name = "voice") {
     send(Hello{.nonce = nonce_, .expected = description(is_lock_step), .client = name}, {});
     return await<Welcome>();

@@ -140,6 +140,39 @@ TEST(Session, HalfAHandshakeKeepsNobodyOut) {
   EXPECT_EQ(silent.back()->await<Goodbye>().reason.view(), "test client has the device");
 }
 
+// somebody who has no key repeats what he has heard; somebody who needs none makes hellos up
+TEST(Session, AFloodOfHellosBetweenWelcomeAndReadyKeepsNobodyOut) {
+  const std::vector<std::byte> secret(32, std::byte{'k'});
+  for (const Key& key : {Key(), Key(secret)}) {
+    for (const bool is_replay : {false, true}) {
+      Serving serving(true, kLong, 0, key);
+      Voice client(serving.address(), 1'000, key);
+      EXPECT_EQ(client.hello(true, "the client").refusal, Refusal::kNone);
+      std::vector<std::unique_ptr<Voice>> flood;
+      for (std::uint64_t i = 0; i < 100; ++i) {
+        flood.push_back(
+            std::make_unique<Voice>(serving.address(), is_replay ? 1'000 : 2'000 + i, key));
+        EXPECT_EQ(flood.back()->hello(true).refusal, Refusal::kNone);
+      }
+      EXPECT_TRUE(client.begins());
+      client.send(Goodbye{});
+      serving.await_sessions(1);
+      EXPECT_TRUE(serving.reports[0].client.starts_with("a client at 127.0.0.1:"));
+    }
+  }
+}
+
+TEST(Session, ANumberIsForOneAddress) {
+  Serving serving(true);
+  Voice client(serving.address(), 1), thief(serving.address(), 2);
+  client.hello(true);
+  thief.session = client.session;
+  thief.send(Ready{});
+  thief.hello(true);
+  EXPECT_NE(thief.session, client.session);
+  EXPECT_TRUE(client.begins());
+}
+
 TEST(Session, NothingBeginsWithoutAHello) {
   Serving serving(false);
   Voice voice(serving.address(), 1);
