@@ -5,17 +5,21 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
-#include <fstream>
+#include <sstream>
 #include <string_view>
-#include <system_error>
+#include <thread>
 #include <utility>
 
+#include "apps/hapticgiant/output_file.h"
+#include "hg/core/error.h"
 #include "hg/hqp/text.h"
 
 namespace hg::apps {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds kPatience(2);  // for one file, at the end
 
 std::string ended(const hqp::KeptProblem& kept) {
   const std::string time =
@@ -24,14 +28,19 @@ std::string ended(const hqp::KeptProblem& kept) {
                      kept.iterations == 1 ? "" : "s", time);
 }
 
-bool write(const fs::path& file, const hqp::KeptProblem& kept, const std::string& name) {
-  std::error_code ignored;
-  fs::create_directories(file.parent_path(), ignored);
-  std::ofstream out(file);
+std::string text_of(const hqp::KeptProblem& kept, const std::string& name) {
+  std::ostringstream out;
   hqp::write_problem(
       out, {.problem = kept.problem, .options = kept.options, .guess = kept.guess, .name = name});
-  out.close();
-  return out.good();
+  return out.str();
+}
+
+bool write_file(const fs::path& file, const std::string& text) try {
+  make_folder(file.parent_path().string());
+  write_output(file.string(), text);
+  return true;
+} catch (const SetupError&) {
+  return false;
 }
 
 // A word of a command, as a shell takes it.
@@ -48,7 +57,10 @@ std::string shell_word(const std::string& text) {
 
 }  // namespace
 
-ProblemDumps::ProblemDumps(Place place) : place_(std::move(place)) {}
+ProblemDumps::ProblemDumps(Place place) : ProblemDumps(std::move(place), write_file) {}
+
+ProblemDumps::ProblemDumps(Place place, Write write)
+    : place_(std::move(place)), write_(std::move(write)) {}
 
 bool ProblemDumps::has_next(const hqp::KeptProblems& problems) const {
   return !place_.folder.empty() && !has_failed_ && next_ < problems.size();
@@ -70,20 +82,31 @@ std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
     }
   }
   if (!has_next(problems)) return text;
-  // a copy: the thread may outlive the run
-  writing_ = std::async(std::launch::async, [place = place_, kept = problems[next_++]] {
+  // with copies: the thread may outlive the run, or for ever wait for a disk
+  std::promise<Written> promise;
+  writing_ = promise.get_future();
+  std::thread([promise = std::move(promise), write = write_, place = place_,
+               kept = problems[next_++]]() mutable {
     const fs::path file = place.folder / fmt::format("{}_hqp_{}.hqp", place.stem, kept.cycle);
     const std::string how = ended(kept);
     const std::string name = fmt::format("{}, cycle {}, {}", place.origin, kept.cycle, how);
-    return Written{file, kept.cycle, how, write(file, kept, name)};
-  });
+    promise.set_value({file, kept.cycle, how, write(file, text_of(kept, name))});
+  }).detach();
   return text;
 }
 
 std::string ProblemDumps::finish(const hqp::KeptProblems& problems) {
   std::string texts;
   while (writing_.valid() || has_next(problems)) {
-    if (writing_.valid()) writing_.wait();
+    if (writing_.valid() && writing_.wait_for(kPatience) != std::future_status::ready) {
+      const std::size_t lost = problems.size() - next_ + 1;
+      next_ = problems.size();
+      writing_ = {};
+      if (!texts.empty()) texts += '\n';
+      return texts + fmt::format("solver: {} problem{} NOT written: {} has not taken them in {} s",
+                                 lost, lost == 1 ? "" : "s", place_.folder.string(),
+                                 kPatience.count());
+    }
     const std::string text = look_at(problems);
     if (!texts.empty() && !text.empty()) texts += '\n';
     texts += text;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <string>
 
@@ -20,13 +21,19 @@ class ProblemDumps {
     std::string program;           ///< how it was called, for the command that shows a file
   };
 
+  /// Writes a file whole or not at all; false: not. On a thread of its own.
+  using Write = std::function<bool(const std::filesystem::path& file, const std::string& text)>;
+
   explicit ProblemDumps(Place place);
+  /// With another way to write.
+  ProblemDumps(Place place, Write write);
 
   /// Has the next one of `problems` written, if there is one, by a thread of its own. Returns what
   /// the user should know now: how to look at the first file, or that a file cannot be written,
   /// after which no more is tried; else empty.
   std::string look_at(const hqp::KeptProblems& problems);
-  /// The same until all are written.
+  /// The same until all are written, or until one has not been within two seconds (a network disk
+  /// that hangs): then it says how many are lost.
   std::string finish(const hqp::KeptProblems& problems);
 
   /// How many there were, for the end of a run; empty when there was none.
@@ -42,6 +49,7 @@ class ProblemDumps {
   bool has_next(const hqp::KeptProblems& problems) const;
 
   Place place_;
+  Write write_;
   std::future<Written> writing_;
   std::size_t next_ = 0;
   int files_ = 0;
