@@ -26,6 +26,7 @@
 #include "apps/hapticgiant/replay_command.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/simulate_command.h"
+#include "apps/hapticgiant/stack.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
@@ -67,6 +68,12 @@ int explain(const CLI::App& app, const CLI::ParseError& error) {
   }
   print_error("{}\nRun with --help for more information.\n", missing_subcommand(*last));
   return kBadInput;
+}
+
+// an IPv6 address as it stands in a link
+std::string without_brackets(const std::string& text) {
+  const bool has_both = text.size() > 2 && text.starts_with('[') && text.ends_with(']');
+  return has_both ? text.substr(1, text.size() - 2) : text;
 }
 
 // what run and simulate share
@@ -115,8 +122,8 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
                    "seconds; default: until the script has played, with a page at a terminal until "
                    "Ctrl-C")
       ->check(number_that("more than 0", [](double value) { return value > 0.0; }));
-  command->add_flag("--fast", run.is_fast,
-                    "as fast as it can instead of in real time; without the page");
+  CLI::Option* fast = command->add_flag(
+      "--fast", run.is_fast, "as fast as it can instead of in real time; without the page");
   command->add_option("--law", run.law, "gauss or paper; default: the device's")
       ->check(CLI::IsMember({"gauss", "paper"}));
   command->add_option("--bounds", run.bounds, "recoverable or paper; default: the device's")
@@ -127,12 +134,17 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
                    "device's")
       ->check(CLI::IsMember({"off", "observe", "act"}));
   command->add_option("--summary", run.summary, "write the closing summary as JSON to this file");
-  command->add_flag("!--no-viewer", run.has_viewer, "without the page");
+  CLI::Option* no_viewer = command->add_flag("!--no-viewer", run.has_viewer, "without the page");
   command
       ->add_option("--bind", run.address,
                    "IP address that the page is served at; 0.0.0.0: all of this machine")
+      ->excludes(fast)
+      ->excludes(no_viewer)
+      ->transform(without_brackets)
       ->capture_default_str();
   command->add_option("--port", run.port, "port of the page; default: any free one")
+      ->excludes(fast)
+      ->excludes(no_viewer)
       ->check(whole_number(0.0, 65535.0));
   command->add_flag("!--no-browser", run.opens_browser, "print the link only");
   command->add_option("--recordings", run.recordings, "folder of the recordings")
@@ -196,8 +208,13 @@ void add_replay(CLI::App& app, hg::apps::ReplayArguments& replay, int& exit_code
   command->add_option("--speed", replay.speed, "recorded seconds per second, 0.1..8")
       ->needs(view)
       ->check(number_that("from 0.1 to 8", [](double v) { return v >= 0.1 && v <= 8.0; }));
-  command->add_option("--bind", replay.address, "as in run")->capture_default_str();
-  command->add_option("--port", replay.port, "as in run")->check(whole_number(0.0, 65535.0));
+  command->add_option("--bind", replay.address, "as in run")
+      ->needs(view)
+      ->transform(without_brackets)
+      ->capture_default_str();
+  command->add_option("--port", replay.port, "as in run")
+      ->needs(view)
+      ->check(whole_number(0.0, 65535.0));
   command->add_flag("!--no-browser", replay.opens_browser, "as in run");
   command->callback([&replay, &exit_code] { exit_code = hg::apps::replay(replay); });
 }
@@ -445,6 +462,10 @@ int parse(CLI::App& app, int argc, char** argv, const int& exit_code) {
 
 int main(int argc, char** argv) {
   hg::apps::open_standard_files();
+  if (const std::string lack = hg::apps::provide_stack(); !lack.empty()) {
+    print_error("{}\n", lack);
+    return kBadInput;
+  }
   std::signal(SIGXFSZ, SIG_IGN);  // a file that must not grow is an error of that file
 
   CLI::App app("HapticGiant: feel the digital twin of any serial chain.", "hapticgiant");

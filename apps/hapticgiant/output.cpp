@@ -18,6 +18,8 @@
 #include <string_view>
 #include <utility>
 
+#include "hg/core/visible.h"
+
 namespace hg::apps {
 namespace {
 
@@ -48,24 +50,6 @@ void write_all(int file, std::string_view text) {
     }
     text.remove_prefix(static_cast<std::size_t>(written));
   }
-}
-
-// how many bytes of `text` are one character that is shown as it is; 0: none are
-std::size_t shown_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return first == '\n' || first == '\t' || (first >= 0x20 && first != 0x7f);
-  const std::size_t size = first < 0xc2   ? 0
-                           : first < 0xe0 ? 2
-                           : first < 0xf0 ? 3
-                           : first < 0xf5 ? 4
-                                          : 0;
-  if (size == 0 || text.size() < size) return 0;
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  }
-  // U+0080 .. U+009F are control characters as well
-  return first == 0xc2 && byte(1) < 0xa0 ? 0 : size;
 }
 
 }  // namespace
@@ -166,18 +150,6 @@ void open_standard_files() {
     // the lowest that is free: `file`
     if (open("/dev/null", file == STDIN_FILENO ? O_WRONLY : O_RDONLY) != file) std::abort();
   }
-}
-
-std::string visible(std::string_view text) {
-  std::string shown;
-  shown.reserve(text.size());
-  while (!text.empty()) {
-    const std::size_t bytes = shown_bytes(text);
-    if (bytes == 0) shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
-    shown += text.substr(0, bytes);
-    text.remove_prefix(std::max<std::size_t>(bytes, 1));
-  }
-  return shown;
 }
 
 void print_out(const std::string& text) { print(STDOUT_FILENO, visible(text)); }

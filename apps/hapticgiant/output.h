@@ -21,12 +21,8 @@ inline constexpr int kNotWritten = 4;
 /// anything else is opened.
 void open_standard_files();
 
-/// `text` with control characters (all but line feeds and tabs) and bytes that are no UTF-8 as
-/// escapes such as \x1b: titles, names and recordings say nothing to a terminal but text.
-std::string visible(std::string_view text);
-
-/// To standard output, made visible(). Nothing happens when nobody reads it any more: the run goes
-/// on.
+/// To standard output, made visible() (hg/core/visible.h). Nothing happens when nobody reads it any
+/// more: the run goes on.
 void print_out(const std::string& text);
 /// To standard error, made visible().
 void print_error(const std::string& text);

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -74,7 +73,7 @@ OpenFile open_to_read(const std::filesystem::path& file) {
 std::string read_file(const std::filesystem::path& file, std::uintmax_t most_bytes) {
   const OpenFile opened = open_to_read(file);
   std::string content;
-  std::array<char, 1 << 16> bytes;
+  std::string bytes(1 << 16, '\0');
   while (true) {
     const ssize_t count = read(opened.descriptor(), bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;

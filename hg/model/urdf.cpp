@@ -37,6 +37,7 @@ constexpr Interval kInertia = {-1e9, 1e9};
 constexpr Interval kDirection = {-1e6, 1e6};  // of any length
 constexpr Interval kVelocity = {0.0, 1e6};
 constexpr Interval kEffort = {0.0, 1e9};
+constexpr int kMostParts = 1000;         // links or joints; a chain has at most 30 that move
 constexpr double kLeastMass = 1e-9;      // of a link that has one
 constexpr double kLeastInertia = 1e-15;  // principal moment
 
@@ -61,6 +62,8 @@ class Reader {
 
   void read(const XMLElement& robot) {
     urdf_.name = attribute(robot, "name", "robot");
+    refuse_too_many(robot, "link");
+    refuse_too_many(robot, "joint");
     for (auto* e = robot.FirstChildElement("link"); e; e = e->NextSiblingElement("link")) {
       urdf_.links.push_back(link(*e));
       refuse_second(urdf_.links, "link");
@@ -73,6 +76,17 @@ class Reader {
   }
 
  private:
+  // each is looked for among all others
+  void refuse_too_many(const XMLElement& robot, const char* kind) const {
+    int count = 0;
+    for (auto* e = robot.FirstChildElement(kind); e; e = e->NextSiblingElement(kind)) {
+      if (++count <= kMostParts) continue;
+      fail(urdf_, e->GetLineNum(),
+           std::string("robot: at most ") + std::to_string(kMostParts) + " elements <" + kind +
+               "> are read, got more");
+    }
+  }
+
   std::string attribute(const XMLElement& e, const char* key, const std::string& item) const {
     const char* text = e.Attribute(key);
     if (text == nullptr) {

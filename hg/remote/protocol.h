@@ -31,7 +31,8 @@ enum class MessageType : std::uint16_t {
   kGoodbye = 6,  ///< either: the session is over
 };
 
-/// Text from elsewhere for a terminal: a '?' for each byte of a control character.
+/// Text from elsewhere for a terminal, in one line: a '?' for each byte of what is not shown
+/// (hg/core/visible.h).
 std::string printable(std::string_view text);
 
 /// Fixed room for text; what does not fit is cut.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hg/core/visible.h"
+
 namespace hg::viewer_server {
 
 void JsonWriter::number(double value) {
@@ -18,9 +20,6 @@ void JsonWriter::number(double value) {
   text.append(digits.data(), end);
 }
 
-void JsonWriter::quoted(std::string_view words) {
-  using Json = nlohmann::json;
-  text += Json(words).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+void JsonWriter::quoted(std::string_view words) { text += nlohmann::json(visible(words)).dump(); }
 
 }  // namespace hg::viewer_server

@@ -1,7 +1,7 @@
 /// The archive that writes a message as JSON. Use to_json().
 ///
-/// Numbers are rounded to 1e-5 of their unit; what is not finite becomes null; bytes that are not
-/// UTF-8 are replaced.
+/// Numbers are rounded to 1e-5 of their unit; what is not finite becomes null; texts are made
+/// visible() (hg/core/visible.h).
 #pragma once
 
 #include <array>

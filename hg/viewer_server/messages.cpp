@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "hg/viewer_server/command_message.h"
 #include "hg/viewer_server/frame_message.h"
@@ -185,6 +188,24 @@ bool is_in_range(const CommandMessage& command) {
   return is_id(command.id) && command.name.size() <= kLongestName;
 }
 
+// Discarded where the text is no JSON, or an object has a key twice: which of the two counts is
+// read differently by others.
+nlohmann::json parsed(std::string_view text) {
+  using Json = nlohmann::json;
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  bool is_unique = true;
+  const auto look = [&](int, Json::parse_event_t event, const Json& value) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key) {
+      is_unique = keys.back().insert(value.get<std::string>()).second && is_unique;
+    }
+    return true;
+  };
+  Json json = Json::parse(text, look, false);  // no exceptions
+  return is_unique ? json : Json(Json::value_t::discarded);
+}
+
 }  // namespace
 
 std::string encode_scene(const Scene& scene, double update_rate_hz) {
@@ -284,7 +305,7 @@ std::string encode_answer(double id, std::string_view reason) {
 std::string encode_welcome(std::uint64_t page) { return to_json(WelcomeMessage{page}); }
 
 DecodeStatus decode(std::string_view text, PageMessage& message) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);  // no exceptions: discarded
+  const nlohmann::json json = parsed(text);
   HandMessage hand;
   if (JsonReader(json).read(hand)) {
     if (!is_in_range(hand)) return DecodeStatus::kOutOfRange;

@@ -157,7 +157,8 @@ struct ViewerServer::Impl {
         hub(scene.box),
         acceptor(listen_on(context, options)),
         retry(context) {
-    hub.listener = {options.address, acceptor.local_endpoint().port()};
+    const tcp::endpoint own = acceptor.local_endpoint();
+    hub.listener = {own.address().to_string(), own.port()};
     hub.desk = options.desk;
     hub.token = options.token.empty() ? random_token() : options.token;
     hub.assets = load_page(options.page);

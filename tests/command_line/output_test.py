@@ -118,6 +118,9 @@ class Escapes(TemporaryFolder):
             self.assertIn(r"event\x1b]0;x\x07", out)
         self.assertIn(r"door\x1b]0;x\x07.yaml: scenario", self.prints_text_only("check", scenario))
         self.assertIn(r"\x1b]0;x\x07", self.prints_text_only("run", ESCAPE))
+        self.assertIn(r"\xe0\x80\x9b\xe2\x80\xae",
+                      self.prints_text_only("run", b"\xe0\x80\x9b".decode(errors="surrogateescape")
+                                            + "\u202e"))
         self.assertIn(r"\x1b]0;x\x07", self.prints_text_only(ESCAPE))
         self.assertIn(r"\x1b]0;x\x07", self.prints_text_only("run", f"--{ESCAPE}"))
 

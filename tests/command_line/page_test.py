@@ -10,6 +10,7 @@ import pty
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import termios
 import threading
@@ -470,6 +471,26 @@ class PageTest(TemporaryFolder):
             page = Page(link)
             self.addCleanup(page.close)
             page.next("frame")
+        try:
+            with socket.socket(socket.AF_INET6) as any_port:
+                any_port.bind(("::1", 0))
+        except OSError:
+            return  # no IPv6 here
+        for address in ("::1", "[::1]", "0:0:0:0:0:0:0:1"):
+            with self.program("run", "door", "--user", "mouse", "--no-recording", "--bind",
+                              address) as (_, link):
+                self.assertRegex(link, r"^http://\[::1\]:\d+/#token=")
+
+    def test_an_address_without_a_page_is_refused(self):
+        for arguments in (("run", "door", "--fast", "--bind", "0.0.0.0"),
+                          ("run", "door", "--no-viewer", "--port", "8080"),
+                          ("run", "door", "--fast", "--port", "8080"),
+                          ("replay", MODELS / "scenarios/door.yaml", "--port", "8080")):
+            code, out, err = run(*arguments)
+            self.assertEqual((code, out), (2, ""), arguments)
+            self.assertIn(arguments[-2], err)
+
+    def test_a_name_is_no_address(self):
         code, out, err = run("run", "door", "--bind", "nowhere", "--duration", "1",
                              "--no-recording")
         self.assertEqual(code, 2, out)

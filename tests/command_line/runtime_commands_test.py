@@ -5,6 +5,7 @@ Usage: runtime_commands_test.py PROGRAM   (from the repository root)
 
 import json
 import os
+import resource
 import signal
 import subprocess
 import time
@@ -186,6 +187,25 @@ class Signals(TemporaryFolder):
             self.assertIn("  state ", out)
             file, = (f for f in folder.glob("*.mcap") if not f.is_symlink())
             self.assertNotIn("partial", file.name)
+
+
+class Stack(TemporaryFolder):
+    def play(self, soft, hard):
+        kilobytes = [each if each < 0 else 1024 * each for each in (soft, hard)]
+        done = subprocess.run(
+            [PROGRAM, "run", "door", "--user", "none", "--duration", "0.3", "--no-recording"],
+            stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, kilobytes))
+        return done.returncode, done.stdout, done.stderr
+
+    def test_a_small_limit_is_raised_or_told(self):
+        for soft, hard in ((64, -1), (64, 2048), (2048, 2048), (512, 8192)):
+            code, out, err = self.play(soft, hard)
+            self.assertEqual((code, err), (0, ""), (soft, hard, out))
+        for hard in (64, 1024):
+            self.assertEqual(self.play(64, hard),
+                             (2, "", f"stack: needs 2048 kB, allowed are {hard} kB; ulimit -s 8192 "
+                              "allows more\n"))
 
 
 class Priority(TemporaryFolder):

@@ -357,6 +357,15 @@ TEST(Urdf, MoreJointsThanTheCapacityAreRefused) {
   EXPECT_EQ(message_of(text.str()), "arm.urdf: a chain has at most 30 degrees of freedom, got 31");
 }
 
+TEST(Urdf, EndlesslyManyPartsAreRefusedBeforeTheyAreRead) {
+  for (const std::string kind : {"link", "joint"}) {
+    std::string text = "<robot name='snake'>\n";
+    for (int i = 0; i < 1001; ++i) text += "<" + kind + " name='x'/>\n";
+    EXPECT_EQ(message_of(text + "</robot>"),
+              "arm.urdf:1002: robot: at most 1000 elements <" + kind + "> are read, got more");
+  }
+}
+
 TEST(ToText, IsShortAndReadsBack) {
   EXPECT_EQ(to_text(0.1), "0.1");
   EXPECT_EQ(to_text(-2.0), "-2");

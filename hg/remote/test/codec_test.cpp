@@ -43,6 +43,7 @@ TEST(Printable, KeepsTextAndReplacesWhatATerminalWouldObey) {
                       "31m\x9B"
                       "31m"),
             "a??31m?31m");  // CSI, in UTF-8 and as one byte
+  EXPECT_EQ(printable("\xC0\x9B \xE0\x80\x9B a\u202Eb"), "?? ??? a???b");
   EXPECT_EQ((Text<4>{"\n\nabc"}.printable()), "??ab");
 }
 

@@ -301,6 +301,22 @@ TEST(DecodeCommand, RefusesEveryMissingWrongOrAdditionalField) {
   EXPECT_EQ(decode(unknown.dump(), message), DecodeStatus::kMalformed);
 }
 
+TEST(DecodeCommand, RefusesAFieldThatIsThereTwice) {
+  const std::string good = good_command().dump();
+  PageMessage message;
+  ASSERT_EQ(decode(good, message), DecodeStatus::kCommand);
+  for (const char* twice : {R"("id":1,)", R"("command":"stop",)", R"("type":"command",)"}) {
+    EXPECT_EQ(decode("{" + (twice + good.substr(1)), message), DecodeStatus::kMalformed) << twice;
+  }
+  EXPECT_EQ(decode(R"({"type":"hold","sequence":1,"sequence":2})", message),
+            DecodeStatus::kMalformed);
+}
+
+TEST(EncodeAnswer, ShowsNothingButText) {
+  const Json answer = Json::parse(encode_answer(1.0, "no \u202Eoirnecs \x1b[2J\xc0\x9b"));
+  EXPECT_EQ(answer["reason"], "no \\xe2\\x80\\xaeoirnecs \\x1b[2J\\xc0\\x9b");
+}
+
 TEST(DecodeCommand, RefusesIdsAndNamesOutOfRange) {
   PageMessage message;
   for (const Json& id : {Json(-1), Json(0.5), Json(1e300)}) {

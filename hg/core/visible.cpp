@@ -1,0 +1,64 @@
+#include "hg/core/visible.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace hg {
+namespace {
+
+// first and last character of what is not shown beyond ASCII
+constexpr std::array<std::pair<char32_t, char32_t>, 9> kHidden = {{
+    {0x80, 0x9f},        // control characters
+    {0x61c, 0x61c},      // directions of writing, here and below
+    {0x200e, 0x200f},    //
+    {0x2028, 0x202e},    // with the separators of lines
+    {0x2066, 0x2069},    //
+    {0xd800, 0xdfff},    // surrogates: no characters
+    {0xfeff, 0xfeff},    // byte order mark
+    {0xfff9, 0xfffb},    // annotations
+    {0xe0000, 0xe007f},  // tags
+}};
+
+}  // namespace
+
+std::size_t shown_bytes(std::string_view text) noexcept {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return first == '\n' || first == '\t' || (first >= 0x20 && first != 0x7f);
+  const std::size_t size = first < 0xc0   ? 0
+                           : first < 0xe0 ? 2
+                           : first < 0xf0 ? 3
+                           : first < 0xf8 ? 4
+                                          : 0;
+  if (size == 0 || text.size() < size) return 0;
+  char32_t character = first & (0x7fU >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+    character = character << 6U | (byte(i) & 0x3fU);
+  }
+  constexpr std::array<char32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};  // by size
+  const bool is_character = character >= kLeast[size] && character <= 0x10ffff;
+  const bool is_hidden = std::ranges::any_of(kHidden, [=](const auto& range) {
+    return character >= range.first && character <= range.second;
+  });
+  return is_character && !is_hidden ? size : 0;
+}
+
+std::string visible(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string shown;
+  shown.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t bytes = shown_bytes(text);
+    if (bytes == 0) {
+      const auto first = static_cast<unsigned char>(text[0]);
+      shown.append("\\x").append({kDigits[first >> 4U], kDigits[first & 15U]});
+    }
+    shown += text.substr(0, bytes);
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return shown;
+}
+
+}  // namespace hg
