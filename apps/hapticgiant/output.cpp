@@ -23,13 +23,17 @@
 namespace hg::apps {
 namespace {
 
-constexpr std::size_t kMostBytes = 65536;  // that wait
-constexpr std::size_t kAtOnce = 512;       // a pipe that takes any takes as many
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostBytes = 1 << 20;  // that wait
+constexpr std::size_t kAtOnce = 512;         // a pipe that takes any takes as many
 constexpr int kLook_ms = 50;
 constexpr std::chrono::milliseconds kPatience(500);  // after an interruption
 
 // why standard output could not be written; 0 = it could
 std::atomic<int> output_error{0};
+// texts for it that nobody read in time
+std::atomic<std::uint64_t> lost_texts{0};
 
 // no error of the program: a pipe is closed, a terminal hung up
 bool reader_has_gone(int file, int error) {
@@ -37,11 +41,15 @@ bool reader_has_gone(int file, int error) {
   return error == EPIPE || (error == EIO && fstat(file, &status) == 0 && S_ISCHR(status.st_mode));
 }
 
-// waits until all is taken
-void write_all(int file, std::string_view text) {
+// waits until all is taken, or until `patient_until`
+void write_all(int file, std::string_view text,
+               Clock::time_point patient_until = Clock::time_point::max()) {
   while (!text.empty()) {
     pollfd place = {.fd = file, .events = POLLOUT, .revents = 0};
-    if (poll(&place, 1, kLook_ms) == 0) continue;
+    if (poll(&place, 1, kLook_ms) == 0) {
+      if (Clock::now() >= patient_until) return;
+      continue;
+    }
     const ssize_t written = ::write(file, text.data(), std::min(text.size(), kAtOnce));
     if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (written < 0) {
@@ -57,14 +65,15 @@ void write_all(int file, std::string_view text) {
 /// Texts between the thread that prints and the one that writes.
 class BackgroundOutput::Queue {
  public:
-  void push(int file, const std::string& text) {
+  void push(int file, const std::string& text, Worth worth) {
     const std::lock_guard lock(mutex_);
-    if (waiting_bytes_ + text.size() > kMostBytes) {
+    if (!texts_.empty() && waiting_bytes_ + text.size() > kMostBytes) {
       ++left_out_;
+      lose({file, text, worth});
       return;
     }
     waiting_bytes_ += text.size();
-    texts_.push_back({file, text});
+    texts_.push_back({file, text, worth});
     news_.notify_all();
   }
 
@@ -84,24 +93,33 @@ class BackgroundOutput::Queue {
     std::unique_lock lock(mutex_);
     is_ending_ = true;
     news_.notify_all();
-    auto patient_until = std::chrono::steady_clock::time_point::max();
+    auto patient_until = Clock::time_point::max();
     while (!has_ended_) {
       news_.wait_for(lock, std::chrono::milliseconds(kLook_ms));
-      const auto now = std::chrono::steady_clock::now();
+      const auto now = Clock::now();
       if (interrupted.load()) patient_until = std::min(patient_until, now + kPatience);
-      if (now >= patient_until) return has_ended_;
+      if (now >= patient_until) break;
     }
-    return true;
+    if (has_ended_) return true;
+    lose(under_way_);
+    for (const Text& text : texts_) lose(text);
+    return false;
   }
 
  private:
   struct Text {
     int file;
     std::string text;
+    Worth worth;
   };
+
+  static void lose(const Text& text) {
+    if (text.file == STDOUT_FILENO && text.worth == BackgroundOutput::Worth::kText) ++lost_texts;
+  }
 
   bool take(Text& text) {
     std::unique_lock lock(mutex_);
+    under_way_ = {};
     news_.wait(lock, [this] { return is_ending_ || !texts_.empty(); });
     if (texts_.empty()) {
       has_ended_ = true;
@@ -110,10 +128,13 @@ class BackgroundOutput::Queue {
     }
     text = std::move(texts_.front());
     texts_.pop_front();
+    under_way_ = {text.file, {}, text.worth};
     waiting_bytes_ -= text.text.size();
     if (texts_.empty() && left_out_ > 0) {
-      texts_.push_back({text.file, fmt::format("\n({} texts left out: nobody read them)\n",
-                                               std::exchange(left_out_, 0))});
+      texts_.push_back(
+          {text.file,
+           fmt::format("\n({} texts left out: nobody read them)\n", std::exchange(left_out_, 0)),
+           BackgroundOutput::Worth::kText});
       waiting_bytes_ += texts_.back().text.size();
     }
     return true;
@@ -122,6 +143,7 @@ class BackgroundOutput::Queue {
   mutable std::mutex mutex_;  // never held while writing
   std::condition_variable news_;
   std::deque<Text> texts_;
+  Text under_way_ = {};  // that is being written, without its words
   std::size_t waiting_bytes_ = 0;
   std::uint64_t left_out_ = 0;  // texts, since that was last said
   bool is_ending_ = false, has_ended_ = false;
@@ -133,10 +155,10 @@ namespace {
 std::atomic<BackgroundOutput*> background{nullptr};
 
 // as it is
-void print(int file, const std::string& text) {
+void print(int file, const std::string& text, BackgroundOutput::Worth worth) {
   BackgroundOutput* const output = background.load();
   if (output == nullptr) return write_all(file, text);
-  output->push(file, text);
+  output->push(file, text, worth);
 }
 
 // the cursor back at its beginning: what is printed next takes its place
@@ -152,18 +174,32 @@ void open_standard_files() {
   }
 }
 
-void print_out(const std::string& text) { print(STDOUT_FILENO, visible(text)); }
+void print_out(const std::string& text) {
+  print(STDOUT_FILENO, visible(text), BackgroundOutput::Worth::kText);
+}
 
-void print_error(const std::string& text) { print(STDERR_FILENO, visible(text)); }
+void print_error(const std::string& text) {
+  print(STDERR_FILENO, visible(text), BackgroundOutput::Worth::kText);
+}
 
-void draw_out(const std::string& line) { print(STDOUT_FILENO, drawn(line)); }
+void draw_out(const std::string& line) {
+  print(STDOUT_FILENO, drawn(line), BackgroundOutput::Worth::kDecoration);
+}
 
-void draw_error(const std::string& line) { print(STDERR_FILENO, drawn(line)); }
+void draw_error(const std::string& line) {
+  print(STDERR_FILENO, drawn(line), BackgroundOutput::Worth::kDecoration);
+}
 
 int code_after_output(int code) {
   const int error = output_error.load();
-  if (error == 0) return code;
-  print_error("standard output could not be written: {}\n", std::strerror(error));
+  const std::uint64_t lost = lost_texts.load();
+  if (error == 0 && lost == 0) return code;
+  const std::string why =
+      error != 0 ? std::strerror(error)
+                 : fmt::format("nobody read {} text{} of it", lost, lost == 1 ? "" : "s");
+  // who reads none of it may be the same
+  write_all(STDERR_FILENO, fmt::format("standard output could not be written: {}\n", why),
+            Clock::now() + kPatience);
   return code == 0 ? kNotWritten : code;
 }
 
@@ -182,7 +218,9 @@ BackgroundOutput::~BackgroundOutput() {
   }
 }
 
-void BackgroundOutput::push(int file, const std::string& text) { queue_->push(file, text); }
+void BackgroundOutput::push(int file, const std::string& text, Worth worth) {
+  queue_->push(file, text, worth);
+}
 
 bool BackgroundOutput::is_behind() const { return queue_->is_behind(); }
 

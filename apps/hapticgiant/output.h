@@ -41,12 +41,13 @@ void draw_out(const std::string& line);
 void draw_error(const std::string& line);
 
 /// The exit code of a program that would end with `code`. Says on standard error when standard
-/// output could not be written; a reader that has gone is none of that.
+/// output could not be written, or did not get all; a reader that has gone is none of that.
 int code_after_output(int code);
 
 /// While it lives, print_out() and print_error() never wait for who reads them: a thread of its own
-/// writes. Of more than 64 KiB that wait, for example while a terminal is stopped with Ctrl-S, the
-/// rest is left out; how many texts that were is said as soon as somebody reads again.
+/// writes. Of more than 1 MiB that wait, for example while a terminal is stopped with Ctrl-S, the
+/// rest is left out; how many texts that were is said as soon as somebody reads again. What
+/// standard output has not got at the end, code_after_output() tells.
 ///
 /// One at a time, made and destroyed by one thread.
 class BackgroundOutput {
@@ -58,8 +59,10 @@ class BackgroundOutput {
   BackgroundOutput(const BackgroundOutput&) = delete;
   BackgroundOutput& operator=(const BackgroundOutput&) = delete;
 
+  /// Nobody misses a decoration, for example a line that shows how far it is.
+  enum class Worth { kText, kDecoration };
   /// Takes a text for descriptor `file`, as it is.
-  void push(int file, const std::string& text);
+  void push(int file, const std::string& text, Worth worth);
 
   /// Whether something waits to be read: no time for what is only nice to know.
   bool is_behind() const;

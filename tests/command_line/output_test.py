@@ -5,6 +5,7 @@ Usage: output_test.py PROGRAM   (from the repository root)
 
 import os
 import re
+import signal
 import subprocess
 import unittest
 
@@ -87,6 +88,37 @@ class Unwritable(TemporaryFolder):
             self.assertEqual((code, err), (0, ""))  # goes on
         finally:
             os.close(writes)
+
+
+class Bursts(TemporaryFolder):
+    """More text at once than a pipe takes."""
+
+    def play(self, *arguments, letters, **options):
+        text = (MODELS / "scenarios/door.yaml").read_text().replace("../", f"{MODELS}/")
+        scenario = self.folder / "door.yaml"
+        scenario.write_text(re.sub(r"(?m)^title:.*$", "title: " + letters * "x", text))
+        process = subprocess.Popen(
+            [PROGRAM, "run", scenario, "--no-viewer", "--user", "none", "--no-recording",
+             *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_a_long_text_is_whole(self):
+        process = self.play("--fast", "--duration", "0.5", letters=100_000)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, err), (0, ""))
+        self.assertEqual(out.count("x" * 100_000), 2)  # at the beginning and in the summary
+
+    def test_a_summary_that_nobody_read_is_told(self):
+        process = self.play("--duration", "600", letters=100_000)
+        process.stdout.read(1)  # no more than that, and what the reader takes along
+        process.send_signal(signal.SIGINT)
+        err = process.stderr.read()
+        self.assertEqual(process.wait(timeout=60), NOT_WRITTEN)
+        self.assertRegex(err, "^standard output could not be written: nobody read 2 texts of it\n$")
+        process.stdout.close()
+        process.stderr.close()
 
 
 class Escapes(TemporaryFolder):
