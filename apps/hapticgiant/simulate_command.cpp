@@ -97,6 +97,7 @@ int simulate(const SimulateArguments& arguments) {
   const device::SimulatedDevice world = assembly::make_simulated_device(scenario);
   const remote::ServerConfig config{.actual = describe(scenario, arguments.is_fast),
                                     .server = std::string("hapticgiant simulate ") + kVersion,
+                                    .is_simulated = true,
                                     .capture = arguments.capture,
                                     .key = key_of(arguments.key_file)};
   remote::DeviceServer server(remote::parse_address("--listen", arguments.listen), config);

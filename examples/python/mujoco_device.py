@@ -272,7 +272,7 @@ class Server:
         timeout_s = LOCK_STEP_TIMEOUT_S if self.is_lock_step else COMMAND_TIMEOUT_S
         self.number += 1
         self.socket.sendto(encode(WELCOME, 0 if refusal else self.session, self.number, hello[0],
-                                  refusal, 0, *actual, timeout_s, b"mujoco_device.py", reason,
+                                  refusal, 1, *actual, timeout_s, b"mujoco_device.py", reason,
                                   key=None if refusal else self.key), sender)
 
     def serve(self):

@@ -204,6 +204,7 @@ void DeviceServer::on_hello(const Header& header, Verdict verdict, const Peer& f
     return;
   }
   const Welcome welcome{.nonce = hello.nonce,
+                        .is_simulated = config_.is_simulated,
                         .actual = config_.actual,
                         .command_timeout_s = config_.actual.is_lock_step
                                                  ? config_.lock_step_timeout_s

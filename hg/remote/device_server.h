@@ -26,7 +26,8 @@ namespace hg::remote {
 /// Set-up data.
 struct ServerConfig {
   Description actual;
-  std::string server;  ///< program and version, for the client
+  std::string server;         ///< program and version, for the client
+  bool is_simulated = false;  ///< no machine moves: nobody has to test its brakes
   /// Real time: without a good command, drives off; one that answers an older frame is none.
   double command_timeout_s = 0.05;
   double lock_step_timeout_s = 5.0;

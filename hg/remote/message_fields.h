@@ -49,7 +49,7 @@ template <typename Archive, Is<Welcome> T>
 void fields(Archive& a, T& welcome) {
   a("nonce", welcome.nonce, "of the hello that it answers");
   a("refusal", welcome.refusal, "0 none, 1 busy, 2 version, 3 descriptions do not fit, 4 key");
-  a.zeros("zero");
+  a("is_simulated", welcome.is_simulated, "1: a simulation, where no machine moves");
   fields(a, welcome.actual);
   a("command_timeout_s", welcome.command_timeout_s, "without a command for so long: drives off");
   a("server", welcome.server, "for the log, UTF-8");

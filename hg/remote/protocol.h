@@ -101,6 +101,7 @@ struct Hello {
 struct Welcome {
   std::uint64_t nonce = 0;
   Refusal refusal = Refusal::kNone;
+  bool is_simulated = false;  ///< no machine moves there, whatever is commanded
   Description actual;
   double command_timeout_s = 0.0;
   Text<64> server;

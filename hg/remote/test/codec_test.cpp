@@ -108,11 +108,13 @@ TEST(Codec, TheHandshakeComesBack) {
   EXPECT_EQ(hello.expected.interface, Interface::kTorque);
   EXPECT_TRUE(hello.expected.is_lock_step);
   EXPECT_EQ(hello.client.view(), "a client");
-  encode({}, Welcome{77, Refusal::kBusy, description, 0.05, "a server", std::string(300, 'x')},
+  encode({},
+         Welcome{77, Refusal::kBusy, true, description, 0.05, "a server", std::string(300, 'x')},
          datagram);
   Welcome welcome;
   ASSERT_TRUE(decode(datagram.view(), welcome));
   EXPECT_EQ(welcome.refusal, Refusal::kBusy);
+  EXPECT_TRUE(welcome.is_simulated);
   EXPECT_EQ(welcome.actual.rate_Hz, 2000.0);
   EXPECT_EQ(welcome.command_timeout_s, 0.05);
   EXPECT_EQ(welcome.reason.view(), std::string(192, 'x'));  // what does not fit is cut
