@@ -27,6 +27,7 @@
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/simulate_command.h"
 #include "apps/hapticgiant/stack.h"
+#include "apps/hapticgiant/start_test_command.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
@@ -116,6 +117,17 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
   command
       ->add_option("--key-file", run.key_file,
                    "secret that the remote device has, too (docs/device_protocol.md)")
+      ->needs("--device-address");
+  command
+      ->add_flag("--without-start-test", run.without_start_test,
+                 "drive a machine whose brakes and stop inputs were not tested today")
+      ->needs("--device-address");
+  command
+      ->add_option("--posture-confirmed", run.confirmed_joints,
+                   "joints of a machine that do stand elsewhere than the last run has left them, "
+                   "as NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false)
       ->needs("--device-address");
   command
       ->add_option("--duration", run.duration_s,
@@ -250,6 +262,33 @@ void add_simulate(CLI::App& app, hg::apps::SimulateArguments& simulate, int& exi
   command->add_option("--capture", simulate.capture,
                       "write every datagram to this pcap file (docs/device_protocol.md)");
   command->callback([&simulate, &exit_code] { exit_code = hg::apps::simulate(simulate); });
+}
+
+void add_start_test(CLI::App& app, hg::apps::StartTestArguments& test, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "start-test",
+      "Brakes and stop inputs, step by step, before the first run of a day (docs/start_test.md).");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant start-test                   the simulated device, with a simulated operator\n"
+      "  hapticgiant start-test --device my_arm_device.yaml --device-address 192.168.1.20:4810");
+  add_scenario_options(*command, test.world);
+  command->add_option("--device-address", test.device_address,
+                      "HOST:PORT of a remote device instead of a simulated one");
+  command
+      ->add_option("--key-file", test.key_file,
+                   "secret that the remote device has, too (docs/device_protocol.md)")
+      ->needs("--device-address");
+  command->add_flag("--fast", test.is_fast, "lock-step with a remote device that is simulated")
+      ->needs("--device-address");
+  command
+      ->add_option("--priority", test.priority,
+                   "SCHED_FIFO priority with a remote device, 1..99; 0: an ordinary thread")
+      ->check(number_that("from 0 to 99", [](double v) { return v >= 0.0 && v <= 99.0; }))
+      ->capture_default_str();
+  command->add_option("--recordings", test.recordings, "folder that keeps the result")
+      ->capture_default_str();
+  command->callback([&test, &exit_code] { exit_code = hg::apps::start_test(test); });
 }
 
 void add_new(CLI::App& app, hg::apps::NewArguments& arguments, int& exit_code) {
@@ -479,6 +518,7 @@ int main(int argc, char** argv) {
   hg::apps::ReplayArguments replayed;
   std::string explained;
   hg::apps::SimulateArguments simulate;
+  hg::apps::StartTestArguments tested;
   hg::apps::CheckArguments check;
   hg::apps::NewArguments created;
   hg::apps::HqpSolveArguments hqp;
@@ -493,6 +533,7 @@ int main(int argc, char** argv) {
   add_replay(app, replayed, exit_code);
   add_explain(app, explained, exit_code);
   add_simulate(app, simulate, exit_code);
+  add_start_test(app, tested, exit_code);
   add_check(app, check, exit_code);
   add_new(app, created, exit_code);
   add_hqp(app, hqp, exit_code);

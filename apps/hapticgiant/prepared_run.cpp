@@ -1,5 +1,6 @@
 #include "apps/hapticgiant/prepared_run.h"
 
+#include "apps/hapticgiant/device_memory.h"
 #include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "hg/assembly/assembly.h"
@@ -12,8 +13,17 @@ PreparedRun::PreparedRun(const RunArguments& a)
     device = std::make_unique<device::SimulatedDevice>(assembly::make_simulated_device(scenario));
     return;
   }
-  auto connected = connect_device(arguments.device_address, key_of(arguments.key_file), scenario,
-                                  arguments.is_fast);
+  const auto connect = [&] {
+    return connect_device(arguments.device_address, key_of(arguments.key_file), scenario,
+                          arguments.is_fast);
+  };
+  auto connected = connect();
+  is_machine = !connected->welcome().is_simulated;
+  if (is_machine) {
+    start_test = check_start_test(arguments, scenario.device);
+    posture = check_posture(arguments, scenario.device, *connected);
+    connected = connect();
+  }
   remote = connected.get();
   device = std::move(connected);
 }

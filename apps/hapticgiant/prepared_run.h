@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "apps/hapticgiant/run_command.h"
 #include "hg/config/scenario.h"
@@ -20,6 +21,8 @@ struct PreparedRun {
   cycle::Cycle cycle;
   std::unique_ptr<device::Device> device;
   remote::RemoteDevice* remote = nullptr;  ///< the same; nullptr: it is simulated here
+  bool is_machine = false;                 ///< nothing is simulated
+  std::string start_test, posture;         ///< of a machine, in words; see device_memory.h
 };
 
 }  // namespace hg::apps

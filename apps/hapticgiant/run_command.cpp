@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "apps/hapticgiant/device_memory.h"
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
@@ -278,12 +279,20 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
         "have no noise, or monitor.frozen_samples is 0\n");
   }
   if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
+  if (run.is_machine) {
+    tell(observers, 0.0, "start test", run.start_test);
+    tell(observers, 0.0, "posture", run.posture);
+  } else if (run.remote != nullptr) {
+    print_out("note        the device says that it is a simulation: no start test is asked for\n");
+  }
 
   runtime::Runtime runtime(options, run.cycle, *run.device);
   const auto begin = Clock::now();
   runtime.start();
   watch(runtime, observers);
   const runtime::Report report = runtime.join();
+  const std::string not_kept =
+      run.is_machine ? keep_posture(arguments, scenario.device, *run.remote) : "";
   if (run.remote != nullptr) close_device(*run.remote, observers.summary.fault());
 
   evaluation::RunFacts facts = facts_of(run, options, report);
@@ -296,6 +305,8 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const std::vector<std::string> missing = observers.detector.missing();
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
                         observers.dumps.summary(runtime.kept_problems())));
+  if (run.is_machine) print_out(fmt::format("  start test   {}\n", run.start_test));
+  if (!not_kept.empty()) print_out(fmt::format("  posture      {}\n", not_kept));
   bool is_written = recorded.is_whole;
   try {
     if (!arguments.summary.empty()) {

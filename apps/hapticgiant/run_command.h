@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/hapticgiant/scenario_arguments.h"
 
@@ -22,10 +23,12 @@ struct RunArguments {
   std::string passivity;  ///< "off", "observe" or "act"; empty = the device's
   std::string summary;    ///< JSON file; empty = none
   bool has_viewer = true;
-  std::string address = "127.0.0.1";  ///< at which the page is served
-  std::uint16_t port = 0;             ///< of the page; 0 = any free one
-  bool opens_browser = true;          ///< where there is a display
-  std::string recordings = "recordings";
+  std::string address = "127.0.0.1";          ///< at which the page is served
+  std::uint16_t port = 0;                     ///< of the page; 0 = any free one
+  bool opens_browser = true;                  ///< where there is a display
+  std::string recordings = "recordings";      ///< also keeps what is known of a machine
+  bool without_start_test = false;            ///< a machine whose brakes nobody has tested
+  std::vector<std::string> confirmed_joints;  ///< of a machine that do stand elsewhere than before
   bool has_recording = true;              ///< and problems of the solver that failed or were slow
   std::string flight_recorder = "fault";  ///< when the last seconds are written: fault, always, off
   int slow_solve = 100;                   ///< active sets from which on a problem is slow

@@ -50,6 +50,8 @@ struct DeviceDraft {
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
   passivity::Config passivity;
+  StartTestConfig start_test;
+  std::vector<std::string> input_names{kSafetyInputNames.begin(), kSafetyInputNames.end()};
   bool watches_collisions = true;
   bool has_floor = false;
   double safe_distance = collision::Config{}.safe_distance;

@@ -104,6 +104,24 @@ void describe(V& v, safety::SanitiserConfig& sanitiser) {
 }
 
 template <class V>
+void describe(V& v, StartTestConfig& test, const std::vector<std::string>& input_names) {
+  std::vector<int> inputs;
+  if (v.names("inputs", inputs, input_names, "an input of the safety controller",
+              "that this device has and a person operates in the test; without it all, but for the "
+              "dead-man switch of a tool that has none")) {
+    test.has_input.fill(false);
+    for (const int input : inputs) test.has_input[static_cast<std::size_t>(input)] = true;
+  }
+  v.number("valid_for_s", test.valid_for_s, kPositive, "how long the result of a test counts");
+  v.number("brake_motion_rad", test.brake_motion, kPositive,
+           "that a braked revolute joint or axis may move under its load");
+  v.number("brake_motion_m", test.slide_brake_motion, kPositive, "the same of a prismatic one");
+  v.number("posture_rad", test.posture, kPositive,
+           "that a revolute joint or axis may stand elsewhere than the last run has left it");
+  v.number("posture_m", test.slide_posture, kPositive, "the same of a prismatic one");
+}
+
+template <class V>
 void describe(V& v, rendering::Options& options, std::size_t manipulator_joints) {
   v.choice("law", options.law, kLaws, "how limits become forces; paper needs six joints");
   v.choice("bounds", options.bounds, kBounds, "how limits become bounds on accelerations");
@@ -205,6 +223,9 @@ void describe_behaviour(V& v, DeviceDraft& d) {
   v.group(
       "sanitiser", [&](auto& child) { describe(child, d.sanitiser); },
       "what is taken out of commands near and beyond limits, docs/safety.md");
+  v.group(
+      "start_test", [&](auto& child) { describe(child, d.start_test, d.input_names); },
+      "brakes and stop inputs before the first run of a day, docs/start_test.md");
 }
 
 }  // namespace hg::config

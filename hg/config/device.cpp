@@ -353,6 +353,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .monitor = draft.monitor,
                    .sanitiser = draft.sanitiser,
                    .passivity = draft.passivity,
+                   .start_test = draft.start_test,
                    .collision = {.safe_distance = draft.safe_distance},
                    .unknown_links = {},
                    .simulation = simulation.value_or(ideal_simulation(draft)),
@@ -361,6 +362,8 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
   if (tool) {
     device.T_H_S = tool->T_H_S;
     device.monitor.has_dead_man = tool->has_dead_man;
+    constexpr auto kDeadMan = static_cast<std::size_t>(SafetyInput::kDeadMan);
+    if (!tool->has_dead_man) device.start_test.has_input[kDeadMan] = false;
   }
   derive(device, draft);
   if (draft.watches_collisions) watch_collisions(*urdf, options, draft, device);

@@ -19,6 +19,7 @@
 #include "hg/safety/monitor.h"
 #include "hg/safety/sanitiser.h"
 #include "hg/signals/drive_model.h"
+#include "hg/signals/start_test_config.h"
 
 namespace hg::config {
 
@@ -45,6 +46,7 @@ struct Device {
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
   passivity::Config passivity;
+  StartTestConfig start_test;
   collision::Config collision;             ///< no shapes: not watched
   std::vector<std::string> unknown_links;  ///< moving, whose shape nobody knows
   Simulation simulation;                   ///< of this device; without a file its defaults

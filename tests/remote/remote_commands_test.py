@@ -8,12 +8,15 @@ import math
 import os
 import pathlib
 import re
+import select
 import shutil
 import signal
+import socket
 import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -239,6 +242,180 @@ class Commands(unittest.TestCase):
             self.assertIn("HapticGiant: 2 gantry axes, 6 joints, 1000 Hz, lock-step", result.stdout)
             moved = float(re.search(r"moved by at most (\S+) rad", result.stdout)[1])
             self.assertLess(moved, 0.02)
+
+
+class StartTest(unittest.TestCase):
+    """`hapticgiant start-test` at a simulated device with a simulated operator, through UDP."""
+
+    def start_test(self, *faults):
+        """Its process, what it kept, and the server's words."""
+        with tempfile.TemporaryDirectory() as folder:
+            text = (ROOT / "models/scenarios/free_space.yaml").read_text()
+            text = text.replace(": ../", f": {ROOT}/models/") + "faults:\n"
+            scenario = pathlib.Path(folder, "scenario.yaml")
+            scenario.write_text(text + "".join(f"  - {fault}\n" for fault in faults)
+                                if faults else text.removesuffix("faults:\n"))
+            with Server(scenario, "--fast") as server:
+                result = subprocess.run(
+                    [PROGRAM, "start-test", "--fast", "--device-address", server.address,
+                     "--recordings", folder], cwd=ROOT, text=True, capture_output=True, timeout=500)
+            kept = json.loads(pathlib.Path(folder, "start_test_HapticGiant.json").read_text())
+        return result, kept, {item["name"]: item for item in kept["items"]}
+
+    def test_a_good_device_passes_and_the_result_is_kept(self):
+        result, kept, items = self.start_test()
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertIn("with a simulated operator", result.stdout)
+        self.assertIn("-> press the emergency stop (30 s)", result.stdout)
+        self.assertTrue(kept["passed"])
+        self.assertTrue(kept["simulated"])
+        self.assertEqual(len(kept["files_sha256"]), 64)
+        failed = [name for name, item in items.items() if item["outcome"] == "failed"]
+        self.assertEqual(failed, [])
+        for name in ("emergency stop", "enabling switch", "override key", "scanner", "brake ppu1",
+                     "brake m1", "brake m4"):
+            self.assertEqual(items[name]["outcome"], "passed", name)
+        self.assertLess(items["brake m1"]["motion_rad_or_m"], 1e-3)
+        self.assertGreater(items["brake m1"]["load_Nm_or_N"], 9.6)
+        # no hand can twist through the protocol
+        self.assertEqual(items["brake m6"]["outcome"], "not tested")
+
+    def test_a_brake_that_does_not_hold_is_named(self):
+        result, kept, items = self.start_test("{at_s: 0, fault: brake_weak, of: m1}")
+        self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+        self.assertFalse(kept["passed"])
+        self.assertEqual(items["brake m1"]["outcome"], "failed")
+        self.assertIn("SLIPS: moved by", items["brake m1"]["found"])
+        self.assertIn("brake m1           SLIPS", result.stdout)
+        self.assertEqual(items["emergency stop"]["outcome"], "not tested")
+
+    def test_a_wire_of_the_emergency_stop_that_stays_on_is_named(self):
+        for of, name in (("stop buttons", "emergency stop"), ("operator enable", "enabling switch")):
+            result, kept, items = self.start_test(
+                f"{{at_s: 0, fault: safety_channel_stuck, of: {of}}}")
+            self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+            failed = [name for name, item in items.items() if item["outcome"] == "failed"]
+            self.assertEqual(failed, [name])
+            self.assertIn("only one of its two channels did", items[name]["found"])
+
+    def test_a_server_that_goes_is_exit_code_3(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with Server("free_space") as server:
+                process = subprocess.Popen(
+                    [PROGRAM, "start-test", "--device-address", server.address, "--recordings",
+                     folder], cwd=ROOT, text=True, stdout=subprocess.PIPE)
+                while "->" not in process.stdout.readline():
+                    pass
+                server.close()
+                said = process.communicate(timeout=100)[0]
+            kept = json.loads(pathlib.Path(folder, "start_test_HapticGiant.json").read_text())
+        self.assertEqual(process.returncode, 3, said)
+        self.assertIn("the test has ended early: remote device has ended the session", said)
+        self.assertFalse(kept["passed"])
+
+
+class Machine:
+    """Between a server and its clients: makes a machine of the simulation there, and is the person
+    who does what `start-test` asks for."""
+
+    ACTS = [("turn the override key on", "override_key", 1), ("turn the override key off", "override_key", 0),
+            ("step into the field", "is_field_clear", 0), ("leave the field", "is_field_clear", 1),
+            ("take the handle", "dead_man", 1), ("let go of the handle", "dead_man", 0),
+            ("press the emergency stop", "emergency_stop", 1),
+            ("pull the emergency stop out", "emergency_stop", 0),
+            ("let go of the enabling switch", "operator_enable", 0),
+            ("hold the enabling switch", "operator_enable", 1)]
+    FLAGS = ["dead_man", "emergency_stop", "operator_enable", "override_key", "is_field_clear"]
+    Q_P = 11 + 4 * 9 + 2  # field of the first gantry axis
+
+    def __init__(self, server):
+        self.there = server.rsplit(":", 1)[0], int(server.rsplit(":", 1)[1])
+        self.front = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.front.bind(("127.0.0.1", 0))
+        self.address = "127.0.0.1:%d" % self.front.getsockname()[1]
+        self.inputs = {"is_field_clear": 1, "operator_enable": 1}
+        self.homing_error = 0.0
+        self.backs = {}  # a socket for each client
+        self.is_over = False
+        self.thread = threading.Thread(target=self.serve)
+        self.thread.start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.is_over = True
+        self.thread.join()
+        for each in (self.front, *self.backs.values()):
+            each.close()
+
+    def serve(self):
+        while not self.is_over:
+            sockets = [self.front, *self.backs.values()]
+            for ready in select.select(sockets, [], [], 0.1)[0]:
+                if ready is self.front:
+                    data, client = ready.recvfrom(2048)
+                    if client not in self.backs:
+                        self.backs[client] = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+                        self.backs[client].connect(self.there)
+                    self.backs[client].send(data)
+                else:
+                    client = next(c for c, back in self.backs.items() if back is ready)
+                    self.front.sendto(self.changed(ready.recv(2048)), client)
+
+    def changed(self, data):
+        kind, session, number, fields = device_client.decode(data)
+        fields = list(fields)
+        if kind == device_client.WELCOME:
+            fields[2] = 0
+        if kind == device_client.SENSORS:
+            for at, flag in enumerate(self.FLAGS, 3):
+                fields[at] = self.inputs.get(flag, 0)
+            fields[self.Q_P] += self.homing_error
+        return device_client.encode(kind, session, number, *fields)
+
+    def obey(self, words):
+        for begin, flag, value in self.ACTS:
+            if words.startswith(begin):
+                self.inputs[flag] = value
+
+
+class MachineTest(unittest.TestCase):
+    def test_a_person_tests_a_machine_and_then_it_runs_until_its_homing_is_wrong(self):
+        with tempfile.TemporaryDirectory() as folder, Server("free_space", "--fast") as server, \
+                Machine(server.address) as machine:
+            here = ("--fast", "--device-address", machine.address, "--recordings", folder)
+            result = run("free_space", *here)
+            self.assertEqual(result.returncode, 2, result.stdout)
+            self.assertIn("no start test of HapticGiant that counts: there is none", result.stderr)
+
+            process = subprocess.Popen([PROGRAM, "start-test", *here], cwd=ROOT, text=True,
+                                       stdout=subprocess.PIPE)
+            said = ""
+            with process.stdout:
+                for line in process.stdout:
+                    said += line
+                    if "-> " in line:
+                        machine.obey(line.split("-> ")[1])
+            self.assertEqual(process.wait(timeout=300), 0, said)
+            kept = json.loads(pathlib.Path(folder, "start_test_HapticGiant.json").read_text())
+            self.assertFalse(kept["simulated"])
+            self.assertEqual({item["outcome"] for item in kept["items"]}, {"passed"}, said)
+
+            machine.inputs["dead_man"] = 0
+            result = run("free_space", *here, "--duration", "1")
+            self.assertRegex(result.stdout, r"start test +passed \d{4}-\d\d-\d\d \d\d:\d\d UTC\n")
+            self.assertIn("nothing is known of the last run: homing was not compared", result.stdout)
+            result = run("free_space", *here, "--duration", "1")
+            self.assertIn("stands where the last run has left it", result.stdout, result.stderr)
+
+            machine.homing_error = 0.3
+            result = run("free_space", *here, "--duration", "1")
+            self.assertEqual(result.returncode, 2, result.stdout)
+            self.assertRegex(result.stderr, r"ppu1: \S+ m, the last run has left it at \S+ m\n")
+            self.assertIn("--posture-confirmed ppu1\n", result.stderr)
+            result = run("free_space", *here, "--duration", "1", "--posture-confirmed", "ppu1")
+            self.assertIn("as was confirmed", result.stdout, result.stderr)
 
 
 class PythonCodec(unittest.TestCase):

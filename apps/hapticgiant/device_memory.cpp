@@ -1,0 +1,155 @@
+#include "apps/hapticgiant/device_memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+
+#include "apps/hapticgiant/output_file.h"
+#include "hg/core/error.h"
+#include "hg/remote/agreement.h"
+
+namespace hg::apps {
+namespace {
+
+constexpr double kBraked = 0.2;  // s after which brakes have closed and nothing moves any more
+
+std::optional<std::string> text_of(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(stream), {});
+}
+
+std::string posture_file(const std::string& folder, const config::Device& device) {
+  return start_test::file_of(folder, "posture", device.name);
+}
+
+std::vector<start_test::Position> posture_of(const config::Device& device,
+                                             const SensorFrame& sensors) {
+  std::vector<start_test::Position> posture;
+  const std::vector<model::Joint>& joints = device.model.chain.joints();
+  for (int i = 0; i < device.model.n_p + device.model.n_m; ++i) {
+    const model::Joint& joint = joints[static_cast<std::size_t>(i)];
+    const bool is_gantry = i < device.model.n_p;
+    posture.push_back({.name = joint.name,
+                       .value = is_gantry ? sensors.q_p[i] : sensors.q_m[i - device.model.n_p],
+                       .is_slide = joint.type == model::JointType::kPrismatic,
+                       .is_endless = joint.type == model::JointType::kContinuous});
+  }
+  return posture;
+}
+
+// With drives off and brakes closed. Nothing: the device has gone.
+std::optional<std::vector<start_test::Position>> braked_posture(const config::Device& device,
+                                                                remote::RemoteDevice& remote) {
+  SensorFrame sensors;
+  CommandFrame off = remote::off_command(remote.welcome().actual);
+  for (double time_s = 0.0; time_s < kBraked; time_s += 1.0 / device.rate_Hz) {
+    remote.read(sensors);
+    if (sensors.driver_fault != FaultCode::kNone) return std::nullopt;
+    off.sequence = sensors.sequence;
+    off.q_m = sensors.q_m;
+    remote.write(off);
+  }
+  return posture_of(device, sensors);
+}
+
+}  // namespace
+
+std::string sha256_of(const config::Device& device) {
+  std::vector<std::string_view> texts;
+  for (const config::SourceText& source : device.sources) texts.push_back(source.content);
+  return start_test::sha256(texts);
+}
+
+std::string start_test_file(const std::string& folder, const config::Device& device) {
+  return start_test::file_of(folder, "start_test", device.name);
+}
+
+std::string check_start_test(const RunArguments& arguments, const config::Device& device) {
+  const std::string file = start_test_file(arguments.recordings, device);
+  const std::optional<std::string> kept = text_of(file);
+  start_test::Verdict verdict = {.objection = "there is none"};
+  if (kept) {
+    verdict = start_test::judge(*kept, {.device = device.name,
+                                        .files_sha256 = sha256_of(device),
+                                        .valid_for_s = device.start_test.valid_for_s,
+                                        .now = std::time(nullptr)});
+  }
+  if (verdict.objection.empty()) {
+    return verdict.untested.empty() ? fmt::format("passed {}", verdict.ended)
+                                    : fmt::format("passed {}; not tested: {}", verdict.ended,
+                                                  fmt::join(verdict.untested, ", "));
+  }
+  if (arguments.without_start_test) {
+    return fmt::format("BRAKES AND STOP INPUTS ARE NOT TESTED: {}", verdict.objection);
+  }
+  throw SetupError(fmt::format(
+      "{}: no start test of {} that counts: {}; test brakes and stop inputs with 'hapticgiant "
+      "start-test --device-address {}' and the same device, or run with --without-start-test",
+      file, device.name, verdict.objection, arguments.device_address));
+}
+
+std::string check_posture(const RunArguments& arguments, const config::Device& device,
+                          remote::RemoteDevice& remote) {
+  const auto now = braked_posture(device, remote);
+  const std::string farewell = remote.farewell();
+  remote.close(FaultCode::kNone);
+  if (!now) {
+    throw SetupError(fmt::format("{}: the device has gone before it was armed {}",
+                                 arguments.device_address, farewell));
+  }
+  for (const std::string& name : arguments.confirmed_joints) {
+    if (std::ranges::find(*now, name, &start_test::Position::name) != now->end()) continue;
+    throw SetupError(fmt::format("--posture-confirmed: {} has no joint '{}'", device.name, name));
+  }
+  const std::string file = posture_file(arguments.recordings, device);
+  const std::optional<std::string> kept = text_of(file);
+  if (!kept) return "nothing is known of the last run: homing was not compared";
+  std::vector<start_test::Moved> moved;
+  try {
+    moved = start_test::compare_posture(*kept, *now, device.start_test);
+  } catch (const SetupError& error) {
+    throw SetupError(fmt::format("{}: {}; look where the machine stands, then delete the file",
+                                 file, error.what()));
+  }
+  std::string lines, names;
+  for (const start_test::Moved& joint : moved) {
+    if (std::ranges::find(arguments.confirmed_joints, joint.name) !=
+        arguments.confirmed_joints.end()) {
+      continue;
+    }
+    lines += "  " + joint.words + "\n";
+    names += (names.empty() ? "" : ",") + joint.name;
+  }
+  if (names.empty()) {
+    return moved.empty() ? "stands where the last run has left it"
+                         : "stands elsewhere than the last run has left it, as was confirmed";
+  }
+  throw SetupError(
+      fmt::format("{}: {} stands elsewhere than the last run has left it:\n{}look at the machine: "
+                  "home it where "
+                  "these values are wrong; where they are right run with --posture-confirmed {}",
+                  file, device.name, lines, names));
+}
+
+std::string keep_posture(const RunArguments& arguments, const config::Device& device,
+                         remote::RemoteDevice& remote) {
+  const auto now = braked_posture(device, remote);
+  if (!now) return "not kept, because the device has gone: the next run compares with an older one";
+  try {
+    make_folder(arguments.recordings);
+    write_output(posture_file(arguments.recordings, device),
+                 start_test::posture_to_json(device.name, std::time(nullptr), *now));
+  } catch (const SetupError& error) {
+    return fmt::format("not kept: {}", error.what());
+  }
+  return {};
+}
+
+}  // namespace hg::apps

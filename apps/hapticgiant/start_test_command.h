@@ -1,0 +1,23 @@
+/// Tests brakes and stop inputs of a device, with a person at it.
+#pragma once
+
+#include <string>
+
+#include "apps/hapticgiant/scenario_arguments.h"
+
+namespace hg::apps {
+
+struct StartTestArguments {
+  ScenarioArguments world{.scenario = "free_space"};
+  std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
+  std::string key_file;        ///< of the key that it must have, too; empty = none
+  bool is_fast = false;        ///< lock-step with a remote device
+  int priority = 80;           ///< SCHED_FIFO, with a remote device in real time; 0 = ordinary
+  std::string recordings = "recordings";  ///< folder that keeps the result
+};
+
+/// Exit code: 0 passed, 1 something failed or the test was broken off, 3 the device has gone.
+/// Throws SetupError for bad input.
+int start_test(const StartTestArguments& arguments);
+
+}  // namespace hg::apps

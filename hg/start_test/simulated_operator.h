@@ -1,0 +1,29 @@
+/// Who operates a simulated device in its test: does what a person is asked to do, by the panel and
+/// the hand target of a command, which machines do not look at.
+#pragma once
+
+#include "hg/core/types.h"
+#include "hg/signals/frames.h"
+#include "hg/start_test/procedure.h"
+
+namespace hg::start_test {
+
+class SimulatedOperator {
+ public:
+  /// Does so a little later.
+  void ask(Act act) noexcept;
+  /// Puts what is done into the command of this period; `T_B_H` is the handle.
+  void operate(double time_s, const Pose& T_B_H, CommandFrame& command) noexcept;
+
+ private:
+  void begin(Act act) noexcept;
+  HandTarget lean(double for_s) const noexcept;
+
+  SafetyPanel panel_;
+  Act act_ = Act::kNone, next_ = Act::kNone;
+  double next_s_ = 0.0, since_s_ = 0.0;
+  bool is_asked_ = false, has_seen_ = false;
+  Pose start_;  ///< of the handle: the hand rests there
+};
+
+}  // namespace hg::start_test
