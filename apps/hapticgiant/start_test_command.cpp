@@ -201,6 +201,19 @@ int start_test(const StartTestArguments& arguments) {
   }
   const bool is_simulated = remote == nullptr || remote->welcome().is_simulated;
 
+  const auto keep = [&](const std::vector<start_test::Item>& items) {
+    const start_test::Result result = {.device = scenario.device.name,
+                                       .address = arguments.device_address,
+                                       .version = kVersion,
+                                       .files_sha256 = sha256_of(scenario.device),
+                                       .ended = std::time(nullptr),
+                                       .is_simulated = is_simulated,
+                                       .has_passed = start_test::has_passed(items),
+                                       .items = items};
+    write_output(file, to_json(result));
+  };
+  keep({});  // whatever ends this program: an older result counts no more
+
   const std::atomic<bool>& interrupted = watch_interruption();
   DeviceStation station(scenario, *device, is_simulated, interrupted);
   std::vector<start_test::Item> items;
@@ -218,14 +231,7 @@ int start_test(const StartTestArguments& arguments) {
   }
 
   const bool has_passed = start_test::has_passed(items);
-  write_output(file, to_json(start_test::Result{.device = scenario.device.name,
-                                                .address = arguments.device_address,
-                                                .version = kVersion,
-                                                .files_sha256 = sha256_of(scenario.device),
-                                                .ended = std::time(nullptr),
-                                                .is_simulated = is_simulated,
-                                                .has_passed = has_passed,
-                                                .items = items}));
+  keep(items);
   const auto count = [&](start_test::Outcome outcome) {
     return std::ranges::count(items, outcome, &start_test::Item::outcome);
   };

@@ -306,9 +306,11 @@ class StartTest(unittest.TestCase):
                      folder], cwd=ROOT, text=True, stdout=subprocess.PIPE)
                 while "->" not in process.stdout.readline():
                     pass
+                file = pathlib.Path(folder, "start_test_HapticGiant.json")
+                self.assertFalse(json.loads(file.read_text())["passed"])  # should it be killed now
                 server.close()
                 said = process.communicate(timeout=100)[0]
-            kept = json.loads(pathlib.Path(folder, "start_test_HapticGiant.json").read_text())
+            kept = json.loads(file.read_text())
         self.assertEqual(process.returncode, 3, said)
         self.assertIn("the test has ended early: remote device has ended the session", said)
         self.assertFalse(kept["passed"])
