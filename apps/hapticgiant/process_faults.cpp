@@ -59,7 +59,7 @@ constexpr auto kDescriptions = std::to_array<Description>({
     {ProcessFault::kTerminalStalled, "terminal_stalled", "nobody reads what it prints"},
     {ProcessFault::kTerminalClosed, "terminal_closed", "its terminal has gone"},
     {ProcessFault::kDiskFull, "disk_full", "no file may grow", false, false, 4},
-    {ProcessFault::kFolderGone, "folder_gone", "its recording is deleted", false, false},
+    {ProcessFault::kFolderGone, "folder_gone", "its recording is deleted", false, false, 4},
     {ProcessFault::kNoDescriptors, "no_descriptors", "it may open nothing more"},
     {ProcessFault::kNoMemory, "no_memory", "it gets no more memory", true, false},
     {ProcessFault::kBusy, "processors_busy", "others take all processors", false, false},
@@ -331,9 +331,10 @@ ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& r
   const ScratchFolder scratch;
   const std::string folder = scratch.path() + "/recordings";
 
-  remote::DeviceServer server(
-      remote::parse_address("--listen", "127.0.0.1:0"),
-      {.actual = hg::apps::describe(scenario, false), .server = "hapticgiant faults"});
+  remote::DeviceServer server(remote::parse_address("--listen", "127.0.0.1:0"),
+                              {.actual = hg::apps::describe(scenario, false),
+                               .server = "hapticgiant faults",
+                               .is_simulated = true});
   Witness witness(scenario);
   std::atomic<bool> gives_up{false}, has_served{false};
   std::thread device([&] {
