@@ -316,6 +316,20 @@ class StartTest(unittest.TestCase):
         self.assertFalse(kept["passed"])
 
 
+    def test_ctrl_c_is_a_test_that_failed(self):
+        with tempfile.TemporaryDirectory() as folder, Server("free_space") as server:
+            process = subprocess.Popen(
+                [PROGRAM, "start-test", "--device-address", server.address, "--recordings", folder],
+                cwd=ROOT, text=True, stdout=subprocess.PIPE)
+            while "->" not in process.stdout.readline():
+                pass
+            process.send_signal(signal.SIGINT)
+            said = process.communicate(timeout=100)[0]
+            self.assertEqual(process.returncode, 1, said)
+            self.assertIn("the test has ended early: interrupted", said)
+            self.assertIn("the client left: done", server.session())
+
+
 class Machine:
     """Between a server and its clients: makes a machine of the simulation there, and is the person
     who does what `start-test` asks for."""
@@ -418,6 +432,25 @@ class MachineTest(unittest.TestCase):
             self.assertIn("--posture-confirmed ppu1\n", result.stderr)
             result = run("free_space", *here, "--duration", "1", "--posture-confirmed", "ppu1")
             self.assertIn("as was confirmed", result.stdout, result.stderr)
+
+    def test_a_machine_that_goes_leaves_the_posture_of_the_run_before(self):
+        with tempfile.TemporaryDirectory() as folder, Server("free_space", "--fast") as server, \
+                Machine(server.address) as machine:
+            here = ("free_space", "--fast", "--device-address", machine.address, "--recordings",
+                    folder, "--without-start-test")
+            run(*here, "--duration", "0.1")
+            kept = pathlib.Path(folder, "posture_HapticGiant.json").read_text()
+            process = subprocess.Popen(
+                [PROGRAM, "run", *here, "--duration", "100000", "--no-viewer", "--no-recording"],
+                cwd=ROOT, text=True, stdout=subprocess.PIPE)
+            said = ""
+            while "tare" not in said:
+                said += process.stdout.readline()
+            server.close()
+            said += process.communicate(timeout=100)[0]
+            self.assertEqual(process.returncode, 3, said)
+            self.assertIn("posture      not kept, because the device has gone", said)
+            self.assertEqual(pathlib.Path(folder, "posture_HapticGiant.json").read_text(), kept)
 
 
 class PythonCodec(unittest.TestCase):
