@@ -1,6 +1,7 @@
 #include "apps/hapticgiant/output_file.h"
 
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <system_error>
 
 #include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/output.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 
@@ -47,6 +49,13 @@ bool is_whole(const OpenFile& file, std::string_view text) {
   return true;
 }
 
+// what goes there has its place behind what was printed before
+bool is_standard_output(const std::string& file) {
+  struct stat named {}, standard {};
+  return stat(file.c_str(), &named) == 0 && fstat(STDOUT_FILENO, &standard) == 0 &&
+         named.st_dev == standard.st_dev && named.st_ino == standard.st_ino;
+}
+
 // what is there of another kind stays
 void check_replaced(const std::string& file, std::string_view beginning) {
   std::error_code error;
@@ -78,6 +87,7 @@ void check_writable(const std::string& file, std::string_view beginning) {
 }
 
 void write_output(const std::string& file, const std::string& text) {
+  if (is_standard_output(file)) return print_out(text);
   const bool replaces = is_replaced(file);
   const std::string written = replaces ? file + ".partial" : file;
   const bool is_written = is_whole(open_to_write(written, Content::kEmptied), text);

@@ -15,7 +15,8 @@ inline constexpr std::string_view kJson = "{", kSvg = "<svg", kMarkdown = "# ",
 /// SetupError; `file` may be empty, which means "no file".
 void check_writable(const std::string& file, std::string_view beginning = {});
 
-/// Replaces a regular file in one step; others (/dev/stdout) are written to. Throws SetupError.
+/// Replaces a regular file in one step; others are written to, and what goes to standard
+/// output (/dev/stdout) is printed. Throws SetupError.
 /// Where nobody reads it waits, after an interruption for half a second.
 void write_output(const std::string& file, const std::string& text);
 

@@ -85,13 +85,27 @@ std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
   // with copies: the thread may outlive the run, or for ever wait for a disk
   std::promise<Written> promise;
   writing_ = promise.get_future();
-  std::thread([promise = std::move(promise), write = write_, place = place_,
-               kept = problems[next_++]]() mutable {
-    const fs::path file = place.folder / fmt::format("{}_hqp_{}.hqp", place.stem, kept.cycle);
-    const std::string how = ended(kept);
-    const std::string name = fmt::format("{}, cycle {}, {}", place.origin, kept.cycle, how);
-    promise.set_value({file, kept.cycle, how, write(file, text_of(kept, name))});
-  }).detach();
+  const auto write_one = [promise = std::move(promise), write = write_, place = place_,
+                          kept = problems[next_++]]() mutable noexcept {
+    Written written = {.cycle = kept.cycle};
+    try {
+      written.file = place.folder / fmt::format("{}_hqp_{}.hqp", place.stem, kept.cycle);
+      written.ended = ended(kept);
+      const std::string name =
+          fmt::format("{}, cycle {}, {}", place.origin, kept.cycle, written.ended);
+      written.is_whole = write(written.file, text_of(kept, name));
+    } catch (const std::exception&) {
+      written.is_whole = false;  // no memory: told as any file that cannot be written
+    }
+    promise.set_value(std::move(written));
+  };
+  try {
+    std::thread(std::move(write_one)).detach();
+  } catch (const std::system_error&) {
+    writing_ = {};
+    has_failed_ = true;
+    text += "solver: its problems cannot be written: no more threads";
+  }
   return text;
 }
 

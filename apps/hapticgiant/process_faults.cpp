@@ -38,7 +38,7 @@ using std::chrono::duration;
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kUntilRunning = std::chrono::seconds(120);
+constexpr auto kUntilRunning = std::chrono::seconds(60);
 constexpr auto kUntilEnded = std::chrono::seconds(30);
 constexpr auto kFaultToStop = milliseconds(300);
 constexpr auto kFrozen = std::chrono::seconds(1);
@@ -51,15 +51,15 @@ struct Description {
   std::string_view name, what;
   bool may_die = false;     ///< by a signal
   bool is_recorded = true;  ///< its recording has all but the end
-  int exit_code = -1;       ///< that it must have; -1: any
+  bool is_told = false;     ///< by an exit code other than 0
 };
 
 constexpr auto kDescriptions = std::to_array<Description>({
     {ProcessFault::kNone, "none", "only the stop"},
     {ProcessFault::kTerminalStalled, "terminal_stalled", "nobody reads what it prints"},
-    {ProcessFault::kTerminalClosed, "terminal_closed", "its terminal has gone"},
-    {ProcessFault::kDiskFull, "disk_full", "no file may grow", false, false, 4},
-    {ProcessFault::kFolderGone, "folder_gone", "its recording is deleted", false, false, 4},
+    {ProcessFault::kTerminalClosed, "terminal_closed", "what it prints has no reader"},
+    {ProcessFault::kDiskFull, "disk_full", "no file may grow", false, false, true},
+    {ProcessFault::kFolderGone, "folder_gone", "its recording is deleted", false, false, true},
     {ProcessFault::kNoDescriptors, "no_descriptors", "it may open nothing more"},
     {ProcessFault::kNoMemory, "no_memory", "it gets no more memory", true, false},
     {ProcessFault::kBusy, "processors_busy", "others take all processors", false, false},
@@ -263,9 +263,11 @@ void apply(ProcessFault fault, Controller& controller, const std::string& folder
       return controller.hang_up();
     case ProcessFault::kDiskFull:
       return controller.limit(RLIMIT_FSIZE);
-    case ProcessFault::kFolderGone:
-      std::filesystem::remove_all(folder);
+    case ProcessFault::kFolderGone: {
+      std::error_code error;  // something may be written there just now: then once more
+      for (int k = 0; k < 3; ++k) std::filesystem::remove_all(folder, error);
       return;
+    }
     case ProcessFault::kNoDescriptors:
       return controller.limit(RLIMIT_NOFILE);
     case ProcessFault::kNoMemory:
@@ -318,9 +320,21 @@ bool has_done_well(const ProcessCase& result) {
   return result.has_run && !std::isnan(result.rest_s) && result.travel_share <= 1.0 &&
          result.energy <= experiments::CampaignConfig{}.energy_bound &&
          (expected.may_die || (result.has_ended && result.exit_code >= 0)) &&
-         (expected.exit_code < 0 || result.exit_code == expected.exit_code) &&
+         (!expected.is_told || result.exit_code != 0) &&
          (!expected.is_recorded || result.recorded + kUnwritten >= result.periods);
 }
+
+// Says so at the end of a scope, however it is left.
+class GivesUp {
+ public:
+  explicit GivesUp(std::atomic<bool>& flag) : flag_(flag) {}
+  ~GivesUp() { flag_ = true; }
+  GivesUp(const GivesUp&) = delete;
+  GivesUp& operator=(const GivesUp&) = delete;
+
+ private:
+  std::atomic<bool>& flag_;
+};
 
 ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& random) {
   ProcessCase result = {.fault = fault, .scenario = name};
@@ -337,11 +351,12 @@ ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& r
                                .is_simulated = true});
   Witness witness(scenario);
   std::atomic<bool> gives_up{false}, has_served{false};
-  std::thread device([&] {
-    serve(server, witness, dt, gives_up);
-    has_served = true;
-  });
   {
+    const std::jthread device([&] {
+      serve(server, witness, dt, gives_up);
+      has_served = true;
+    });
+    const GivesUp at_last(gives_up);
     Load load;
     Controller controller(name, server.address(), folder);
     result.has_run =
@@ -369,10 +384,8 @@ ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& r
     const bool ends = fault != ProcessFault::kSuspended;
     result.has_ended = ends ? wait_for(kUntilEnded, has_ended)
                             : wait_for(kUntilEnded, [&] { return has_served.load(); });
-    gives_up = true;
     result.exit_code = controller.exit_code();
   }
-  device.join();
   result.rest_s = witness.rest_s;
   result.travel_share = witness.share;
   result.energy = witness.most_energy;
@@ -389,7 +402,13 @@ std::vector<ProcessCase> play_process_faults(const std::vector<std::string>& sce
   std::mt19937_64 random(seed);
   for (int k = 0; k < repetitions; ++k) {
     for (const Description& description : kDescriptions) {
-      cases.push_back(play(scenarios[cases.size() % scenarios.size()], description.fault, random));
+      const std::string& scenario = scenarios[cases.size() % scenarios.size()];
+      ProcessCase result;
+      // a computer that is busy with other things may stop the run before its fault begins
+      for (int tries = 0; tries < 3 && !result.has_run; ++tries) {
+        result = play(scenario, description.fault, random);
+      }
+      cases.push_back(std::move(result));
     }
   }
   return cases;

@@ -66,6 +66,10 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "of a prismatic axis of the gantry from where its drive should have taken it; an error "
            "is forgotten within two seconds");
   v.number("gantry_gap_rad", monitor.turn_gap, kPositive, "the same of a revolute axis");
+  v.number("gantry_drift_m", monitor.gantry_drift, kPositive,
+           "the same of a prismatic axis, besides 0.5 % of its way, where an error is forgotten "
+           "within a minute: encoders that drift, drives that creep");
+  v.number("gantry_drift_rad", monitor.turn_drift, kPositive, "the same of a revolute axis");
   v.number("safe_speed_m_per_s", monitor.safe_speed, kPositive,
            "of handle and gantry while nobody holds the handle");
   v.number("overruns_in_a_row", monitor.overruns_in_a_row, kCount,

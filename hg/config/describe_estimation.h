@@ -20,7 +20,8 @@ void describe_wrench(V& v, estimation::WrenchConfig& wrench) {
            "first-order low-pass of the user's wrench, 0 = none; 50 for a noisy sensor");
   v.flag("has_imu", wrench.has_imu,
          "whether accelerometer and gyroscope in the sensor take part: then the payload's inertia "
-         "is compensated, otherwise its weight alone");
+         "is compensated, otherwise its weight alone, and they are compared with the "
+         "encoders (rules 116, 117): they must be within 1 cm of the sensor's origin");
   v.number("angular_low_pass_Hz", wrench.alpha_low_pass_Hz, kNotNegative,
            "first-order low-pass of the gyroscope's differences, 0 = none");
   v.flag("needs_tare", wrench.tare.is_needed,

@@ -400,7 +400,8 @@ void Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
                       .unexplained = state_.control.unexplained,
                       .turn = state_.estimation.inertial.turn.norm(),
                       .turn_uncertainty = estimation::turn_uncertainty(state_.estimation.inertial),
-                      .slip = state_.estimation.inertial.slip.norm()},
+                      .slip = state_.estimation.inertial.slip.norm(),
+                      .slip_uncertainty = estimation::slip_uncertainty(state_.estimation.inertial)},
                      state_.monitor);
   record.warning = verdict.warning;
   if (!state_.monitor.is_broken) return;

@@ -61,6 +61,12 @@ double turn_uncertainty(const InertialCheck& check) noexcept {
   return kScale * check.turned.norm() + kOther * check.turned_in_all;
 }
 
+double slip_uncertainty(const InertialCheck& check) noexcept {
+  constexpr double kOwn = 0.2;      // m/s^2
+  constexpr double kPeak_s = 0.74;  // of `slip` after a step of 2 m/s^2, with both memories
+  return kPeak_s * std::fmax(0.0, check.offset_S.norm() - kOwn);
+}
+
 double tilt(const InertialCheck& check) noexcept {
   if (!check.is_started) return 0.0;
   if (check.up_S.norm() < 0.5 * kTypicalGravity) return std::numbers::pi;

@@ -50,6 +50,11 @@ void advance(double dt, const InertialSample& sample, bool is_on, InertialCheck&
 /// 0.3 % of its way there and back, rad.
 double turn_uncertainty(const InertialCheck& check) noexcept;
 
+/// What of `slip` is explained by a base that is not level or a joint that was homed wrongly, m/s:
+/// a turn of the handle by half a turn makes twice the error of gravity's direction of it. Up to
+/// 20 mg of `offset_S` are taken for the unit's own.
+double slip_uncertainty(const InertialCheck& check) noexcept;
+
 /// Angle between gravity as measured and as the posture says, rad, 0..pi; pi where an accelerometer
 /// measures less than half of gravity at rest, 0 before there is any sample.
 double tilt(const InertialCheck& check) noexcept;

@@ -37,6 +37,7 @@ constexpr Interval kInertia = {-1e9, 1e9};
 constexpr Interval kDirection = {-1e6, 1e6};  // of any length
 constexpr Interval kVelocity = {0.0, 1e6};
 constexpr Interval kEffort = {0.0, 1e9};
+constexpr std::uintmax_t kMostBytes = 64'000'000;
 constexpr int kMostParts = 1000;         // links or joints; a chain has at most 30 that move
 constexpr double kLeastMass = 1e-9;      // of a link that has one
 constexpr double kLeastInertia = 1e-15;  // principal moment
@@ -369,7 +370,7 @@ Urdf read_urdf_text(std::string_view text, std::string_view source) {
 }
 
 Urdf read_urdf_file(const std::filesystem::path& file) {
-  return read_urdf_text(read_file(file), file.string());
+  return read_urdf_text(read_file(file, kMostBytes), file.string());
 }
 
 }  // namespace hg::model

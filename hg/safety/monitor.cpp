@@ -235,7 +235,8 @@ void Monitor::look_at_inertial_unit(const Watched& watched) noexcept {
   if (!is_powered(watched.state)) return;
   look<FaultCode::kTurnUnexplained>(-1, watched.turn,
                                     config_.gyroscope_tolerance + watched.turn_uncertainty);
-  look<FaultCode::kMotionUnexplained>(-1, watched.slip, config_.accelerometer_tolerance);
+  look<FaultCode::kMotionUnexplained>(-1, watched.slip,
+                                      config_.accelerometer_tolerance + watched.slip_uncertainty);
 }
 
 void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& record,
@@ -245,6 +246,7 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& reco
   const double beyond = config_.is_gantry_slide ? config_.gantry_tolerance : config_.turn_tolerance;
   const double off = config_.is_gantry_slide ? config_.gantry_deviation : config_.turn_deviation;
   const double gap = config_.is_gantry_slide ? config_.gantry_gap : config_.turn_gap;
+  const double drift = config_.is_gantry_slide ? config_.gantry_drift : config_.turn_drift;
   const double kept = 1.0 - config_.dt / kGapMemory_s;
   const double kept_long = 1.0 - config_.dt / kDriftMemory_s;
   const double while_dead = config_.drive.dead_time * config_.drive.ddq_max;
@@ -267,7 +269,7 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& reco
       const double by_lag = config_.drive.lag * std::abs(model);
       look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_gap[axis]), gap + by_lag);
       look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_drift[axis]),
-                                       2.0 * gap + kDriveError * state.gantry_way[axis]);
+                                       drift + kDriveError * state.gantry_way[axis] + by_lag);
     }
     look<FaultCode::kGantryExceeded>(
         axis, std::max(q - state.highest_p[axis], state.lowest_p[axis] - q), beyond);

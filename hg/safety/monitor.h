@@ -49,19 +49,21 @@ struct MonitorConfig {
   double turn_deviation = 0.25;            ///< the same of a revolute axis, rad/s
   double gantry_gap = 0.03;                ///< from where its drive model takes it, m
   double turn_gap = 0.03;                  ///< the same of a revolute axis, rad
-  double safe_speed = 0.25;                ///< of handle and gantry with nobody at it, m/s
-  double stop_time = 1.0;                  ///< that a controlled stop may take, s
-  double stop_distance = 0.8;              ///< that a revolute joint may move in a stop, rad
-  double slide_stop_distance = 0.6;        ///< the same of a prismatic joint, m
-  double gantry_stop_distance = 0.6;       ///< of a prismatic axis of the gantry, m
-  double turn_stop_distance = 0.8;         ///< of a revolute axis of the gantry, rad
-  double braking_gap = 0.025;              ///< of a joint that is stopped from its reference, rad
-  double slide_braking_gap = 0.02;         ///< the same of a prismatic joint, m
-  double braking_deviation = 0.25;         ///< of its speed from the reference's, rad/s
-  double slide_braking_deviation = 0.25;   ///< the same of a prismatic joint, m/s
-  double frozen_samples = 0;               ///< with the same bits; 0: sensors have no noise
-  double overruns_in_a_row = 2;            ///< late cycles that may follow each other
-  double overruns_per_s = 5;               ///< late cycles that may come again and again
+  double gantry_drift = 0.06;             ///< the same within a minute, besides 0.5 % of its way, m
+  double turn_drift = 0.06;               ///< the same of a revolute axis, rad
+  double safe_speed = 0.25;               ///< of handle and gantry with nobody at it, m/s
+  double stop_time = 1.0;                 ///< that a controlled stop may take, s
+  double stop_distance = 0.8;             ///< that a revolute joint may move in a stop, rad
+  double slide_stop_distance = 0.6;       ///< the same of a prismatic joint, m
+  double gantry_stop_distance = 0.6;      ///< of a prismatic axis of the gantry, m
+  double turn_stop_distance = 0.8;        ///< of a revolute axis of the gantry, rad
+  double braking_gap = 0.025;             ///< of a joint that is stopped from its reference, rad
+  double slide_braking_gap = 0.02;        ///< the same of a prismatic joint, m
+  double braking_deviation = 0.25;        ///< of its speed from the reference's, rad/s
+  double slide_braking_deviation = 0.25;  ///< the same of a prismatic joint, m/s
+  double frozen_samples = 0;              ///< with the same bits; 0: sensors have no noise
+  double overruns_in_a_row = 2;           ///< late cycles that may follow each other
+  double overruns_per_s = 5;              ///< late cycles that may come again and again
 
   // what the device is
   double dt = 1e-3;                        ///< period, s
@@ -107,6 +109,7 @@ struct Watched {
   double turn = 0.0;    ///< of the gyroscope beyond what the encoders say, rad
   double turn_uncertainty = 0.0;  ///< of it, by the gyroscope's own errors, rad
   double slip = 0.0;              ///< speed of the handle beyond what the encoders say, m/s
+  double slip_uncertainty = 0.0;  ///< of it, by what is off level, m/s
 };
 
 /// Part of the copyable state of a cycle.

@@ -286,7 +286,8 @@ inline constexpr Rule kRules[] = {
      .name = "gantry deviates",
      .meaning = "An axis of the gantry does not move as commanded.",
      .threshold = "monitor.gantry_deviation_m_per_s, monitor.gantry_deviation_rad_per_s, "
-                  "monitor.gantry_gap_m, monitor.gantry_gap_rad",
+                  "monitor.gantry_gap_m, monitor.gantry_gap_rad, monitor.gantry_drift_m, "
+                  "monitor.gantry_drift_rad",
      .warn_from = 0.6,
      .debounce = {.seconds = 0.01},
      .reaction = Stop::kSto,

@@ -89,6 +89,17 @@ TEST(InertialCheck, ASlipThatEncodersDoNotSeeIsSeenByTheAccelerometer) {
   EXPECT_NEAR(bench.most_slip, 0.33, 0.03);  // 0.5 m/s, of which some is forgotten
 }
 
+TEST(InertialCheck, ABaseThatIsNotLevelIsNoSlip) {
+  Bench level, tilted;
+  level.a_error_S = {0.1, 0.1, 0.05};  // of the unit: 15 mg
+  level.run(2.0, 0.0, 0.0, false);
+  EXPECT_EQ(slip_uncertainty(level.check), 0.0);
+  tilted.encoder += 0.08;  // the encoders miss that the base leans by 80 mrad
+  tilted.run(2.0, 0.0, 0.0, false);
+  tilted.run(1.0, std::numbers::pi, 0.0, true);
+  EXPECT_LT(tilted.check.slip.norm(), 0.15 + slip_uncertainty(tilted.check));
+}
+
 TEST(InertialCheck, AnErrorThatBeginsWithPowerIsLearntInSomeSeconds) {
   Bench bench;
   bench.run(2.0, 0.0, 0.0, false);
