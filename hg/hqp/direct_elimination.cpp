@@ -403,6 +403,34 @@ bool DirectElimination::find_point(double* x) const noexcept {
   return VectorView(x, n_).cwiseAbs().maxCoeff() <= kLargestGrowth * largest_term;  // false for NaN
 }
 
+double DirectElimination::reduce_to_free(const Problem& problem, int row, double* y) noexcept {
+  const int variable = problem.variable(row);
+  if (variable >= 0) return reduce_to_free(variable, y);
+  load(problem.coefficients(row).data(), y);
+  Rest rest;
+  subtract_pivots(0, rank_, y, factors(rank_), rest);
+  return -rest.value;
+}
+
+double DirectElimination::reduce_to_free(int variable, double* y) noexcept {
+  std::fill_n(y, stride_, 0.0);
+  y[variable] = 1.0;
+  const int t = pivot_of_variable_[index(variable)];
+  if (t < 0) return 0.0;
+  Rest rest;
+  subtract_pivots(t, rank_, y, factors(rank_), rest);
+  return -rest.value;
+}
+
+void DirectElimination::complete(double* x) const noexcept {
+  for (int t = rank_ - 1; t >= 0; --t) {
+    const Pivot& pivot = pivots_[index(t)];
+    x[pivot.variable] = 0.0;
+    const double others = pivot.is_unit ? 0.0 : dot(n_, reduced_row(t), x);
+    x[pivot.variable] = (pivot.value - others) * pivot.inverse;
+  }
+}
+
 double DirectElimination::find_multipliers(const double* g, int rank, int first,
                                            double* mu) noexcept {
   double* y = reduced_row(n_);

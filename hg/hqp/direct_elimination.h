@@ -53,6 +53,17 @@ class DirectElimination {
   /// doubt, because it is so much larger than what the rows ask for that a rank may be wrong.
   [[nodiscard]] bool find_point(double* x) const noexcept;
 
+  bool is_free(int variable) const noexcept { return pivot_of_variable_[index(variable)] < 0; }
+
+  /// What is left of a row where the pivots have their values: c x = y x + the result. y has
+  /// n numbers and zeros up to a multiple of 4, and meets only free variables.
+  double reduce_to_free(const Problem& problem, int row, double* y) noexcept;
+  /// The same of a single variable.
+  double reduce_to_free(int variable, double* y) noexcept;
+
+  /// The taken variables of x from the free ones.
+  void complete(double* x) const noexcept;
+
   /// mu with g + sum over t < rank of mu_t c_t = 0, of which only those from `first` on are
   /// written. Returns the largest component of the sum.
   double find_multipliers(const double* g, int rank, int first, double* mu) noexcept;

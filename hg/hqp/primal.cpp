@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kParallel = 1e-12;    // cosine below which a direction does not change a row
 constexpr double kResolution = 1e-16;  // share of |x| below which a step does not change x
+constexpr double kCorrection = 1e-3;   // share of the tolerance that is a gain, near the optimum
 constexpr int kExchangesPerRow = 3;    // rows released in a corner, per row that meets there
 
 // Sides of a row that do not stop a step, as bits.
@@ -69,8 +70,12 @@ PrimalOutcome LevelByLevel::run(int& completed) noexcept {
   const int end = rows_of(problem_, levels_);
   std::fill_n(work_.point.state.begin(), end, RowState::kInactive);
   std::fill_n(work_.is_fixed.begin(), end, false);
-  work_.point.x.head(n_).setZero();
-  work_.x_norm = 0.0;
+  if (work_.has_dual_point) {
+    work_.point.x.head(n_) = work_.dual.point().head(n_);
+  } else {
+    work_.point.x.head(n_).setZero();
+  }
+  work_.x_norm = work_.point.x.head(n_).norm();
   work_.elimination.reset(n_);
   update_values(problem_, levels_, work_);
 
@@ -128,12 +133,14 @@ bool LevelByLevel::aim(int level) noexcept {
 // Whether a step of `length` along the direction changes a slack that the level wants changed by
 // more than the tolerance.
 bool LevelByLevel::gains(int level, double length) const noexcept {
+  const double share = work_.has_dual_point ? kCorrection : 1.0;
   if (is_norm_level(level)) {
-    return length * work_.direction.head(n_).norm() > options_.feasibility_tolerance * work_.x_norm;
+    return length * work_.direction.head(n_).norm() >
+           share * options_.feasibility_tolerance * work_.x_norm;
   }
   return std::any_of(work_.targets.begin(), work_.targets.end(), [&](const TargetRow& t) {
     return std::abs(length * work_.slope[at(t.row)]) >
-           tolerance(problem_, options_, work_, t.row, t.target);
+           share * tolerance(problem_, options_, work_, t.row, t.target);
   });
 }
 
@@ -303,7 +310,9 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
     elimination.truncate(base_);
 
     size_ = level_gradient(problem_, options_, level, work_);
-    is_held_back_ = !size_.is_zero && elimination.freedom() > 0;
+    // what the dual method has met up to the tolerance is met up to rounding here
+    const bool is_zero = work_.has_dual_point ? size_.scale <= size_.rounding : size_.is_zero;
+    is_held_back_ = !is_zero && elimination.freedom() > 0;
     if (!is_held_back_) return PrimalOutcome::kOptimal;
     if (!is_norm_level(level)) collect_pulling(level);
     work_.touched.clear();

@@ -14,12 +14,14 @@ namespace hg::hqp {
 namespace {
 
 // Efforts are counted in direct eliminations.
-constexpr int kEffortOfGuess = 3;        // itself, and one row in exchange for another,
-constexpr int kEffortOfSecondGuess = 1;  // what differs more is found faster from zero,
-constexpr int kEffort = 32;              // with this and so much per variable. More is
-constexpr int kEffortPerVariable = 2;    // taken for a cycle
-constexpr int kOrthogonalEffort = 4;     // of one orthogonal elimination
-constexpr int kProofEffort = 12;  // on the result of that method, which is almost always right
+constexpr int kEffortOfGuess = 2;        // itself, and one row more or less,
+constexpr int kEffortFromZero = 4;       // when there is none,
+constexpr int kEffortOfSecondGuess = 1;  // what differs more is found faster by the dual method,
+constexpr int kEffortOfDual = 8;       // which is almost always right. Where it gives up: from zero
+constexpr int kEffort = 32;            // with this and so much per variable. More is
+constexpr int kEffortPerVariable = 2;  // taken for a cycle
+constexpr int kOrthogonalEffort = 4;   // of one orthogonal elimination
+constexpr int kProofEffort = 12;       // on the result of that method, which is almost always right
 
 // A mistake of the program around the solver, which would overwrite memory.
 void require(bool is_right, const char* what) noexcept {
@@ -64,7 +66,7 @@ bool try_guesses(const Problem& problem, const Options& options, int levels, int
   return false;
 }
 
-// The guesses of `active`, then the method from zero.
+// The guesses of `active`, then that of the dual method, then the method from zero.
 bool solve_by_guesses(const Problem& problem, const Options& options, const ActiveSet& active,
                       int levels, int& iterations, Workspace& work) noexcept {
   std::vector<RowState>& guess = work.point.state;
@@ -82,20 +84,18 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
                                      [](RowState state) { return state != RowState::kInactive; });
   load_guess(problem, levels, active.state, guess);
   const bool has_second = load_guess(problem, levels, active.before, second);
-  start_from_zero(problem, work);
-  if (has_first) {
+  if (!has_first) guess_from_zero(problem, levels, guess);
+  start_solve(problem, work);
+  for (int i = 0; i < (has_first ? kEffortOfGuess : kEffortFromZero); ++i) {
     if (try_for(1)) return true;
-    const bool is_near = !misses_rows(problem, options, levels, work);
-    if (is_near && try_for(kEffortOfGuess - 1)) return true;
+    if (has_first && misses_rows(problem, options, levels, work)) break;
   }
-
   load_guess(problem, levels, active.state, first);
   if (has_second && !std::equal(first.begin(), first.begin() + rows, second.begin())) {
     start_from_zero_with(problem, second, work);
     if (try_for(kEffortOfSecondGuess)) return true;
-  } else if (is_guess_from_zero(problem, levels, first)) {
-    return try_for(effort_from_zero);
   }
+  if (start_from_dual(problem, options, levels, active.state, work)) return try_for(kEffortOfDual);
   guess_from_zero(problem, levels, second);
   start_from_zero_with(problem, second, work);
   return try_for(effort_from_zero);

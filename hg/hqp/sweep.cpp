@@ -10,6 +10,7 @@ namespace {
 constexpr double kSmallRest = 1e-10;
 // Steps from the first point, docs/hqp.md: more help where few rows act, and harm where many do.
 constexpr int kVariablesPerEarlyStep = 6;
+constexpr double kNoWay = 1e-9;  // share of the way to a point that is none
 
 // The smallest |x| is a level below all others.
 bool wants_smallest_norm(const Problem& problem, const Options& options, int levels) noexcept {
@@ -134,7 +135,7 @@ int judge_multipliers(const Problem& problem, const LevelGradient& size, int lev
       work.point.blocking_row[at(level)] = row;
     }
     if (work.is_frozen[at(t)]) continue;
-    if (push > size.surely_pushing()) {
+    if (push > (work.is_needed[at(row)] ? size.surely_pulling() : size.surely_pushing())) {
       work.is_frozen[at(t)] = true;
     } else if (-push > largest_pull) {
       largest_pull = -push;
@@ -188,6 +189,7 @@ bool hold_obstacle(const Problem& problem, const Options& options, int rows, dou
     distance_there = distance;
   }
   if (obstacle < 0) return false;
+  if (obstacle == work.released_row && way <= kNoWay) work.is_needed[at(obstacle)] = true;
   set_guess(problem, obstacle, distance_there > 0.0 ? RowState::kUpper : RowState::kLower, work);
   return true;
 }
@@ -256,6 +258,8 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
     }
     const int pulling_row = judge_multipliers(problem, size, level, first_held, work);
     if (pulling_row < 0) continue;
+    work.released_row = pulling_row;
+    work.released_state = work.point.state[at(pulling_row)];
     set_guess(problem, pulling_row, RowState::kInactive, work);
     return Judgement::kCorrected;
   }
@@ -292,6 +296,13 @@ RowState state_at_zero(const Problem& problem, int row) noexcept {
   const double distance = problem.norm(row) > 0.0 ? excess(bounds, 0.0) : 0.0;
   if (distance == 0.0) return RowState::kInactive;
   return distance > 0.0 ? RowState::kUpper : RowState::kLower;
+}
+
+bool has_inequality(const Problem& problem, int level) noexcept {
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    if (!is_equality(problem.bounds(row))) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -353,6 +364,47 @@ void start_from_zero_with(const Problem& problem, std::vector<RowState>& guess,
   work.direct_levels = kept;
 }
 
+void start_solve(const Problem& problem, Workspace& work) noexcept {
+  start_from_zero(problem, work);
+  work.released_row = -1;
+  work.has_dual_point = false;
+  std::fill_n(work.is_needed.begin(), problem.rows(), std::uint8_t{0});
+}
+
+bool start_from_dual(const Problem& problem, const Options& options, int levels,
+                     std::span<const RowState> hint, Workspace& work) noexcept {
+  int top = 0;  // levels that the guesses so far have in common
+  while (top < work.direct_levels && !has_inequality(problem, top)) ++top;
+  if (top == 0) {
+    work.direct.reset(problem);
+  } else {
+    work.direct.truncate(work.direct_rank_at_level[at(top)]);
+  }
+  work.direct_levels = top;
+  if (!work.dual.find_guess(problem, options, levels, top, hint, work.direct, work.point.state)) {
+    return false;
+  }
+  work.has_dual_point = true;
+  work.steps = 0;
+  work.released_row = -1;
+  const int rows = rows_of(problem, levels);
+  for (int row = 0; row < rows; ++row) {
+    work.last_value[at(row)] = dot(problem, row, work.dual.point().data());
+    work.is_needed[at(row)] = work.dual.is_pushing(row);
+  }
+  return true;
+}
+
+// When the last step has let go of a row and lost all digits by it, the row comes back for good.
+bool take_back(const Problem& problem, Workspace& work) noexcept {
+  const int row = work.released_row;
+  if (row < 0 || work.is_needed[at(row)]) return false;
+  if (work.point.state[at(row)] != RowState::kInactive) return false;
+  work.is_needed[at(row)] = true;
+  set_guess(problem, row, work.released_state, work);
+  return true;
+}
+
 Judgement solve_guess(const Problem& problem, const Options& options, int levels,
                       Workspace& work) noexcept {
   ++work.steps;
@@ -363,6 +415,7 @@ Judgement solve_guess(const Problem& problem, const Options& options, int levels
     if (judgement != Judgement::kInDoubt) return judgement;
     work.is_direct = false;
   }
+  if (take_back(problem, work)) return Judgement::kCorrected;
   work.direct_levels = 0;
   if (!eliminate_orthogonally(problem, options, levels, work)) return Judgement::kInDoubt;
   update_values(problem, levels, work);

@@ -34,6 +34,14 @@ void start_from_zero(const Problem& problem, Workspace& work) noexcept;
 void start_from_zero_with(const Problem& problem, std::vector<RowState>& guess,
                           Workspace& work) noexcept;
 
+/// The same at the beginning of a solve.
+void start_solve(const Problem& problem, Workspace& work) noexcept;
+
+/// The guess of the dual method into work.point.state, its point being the last one. False: it has
+/// none, and work.point.state is as it was. `hint`: the states of the last solve.
+bool start_from_dual(const Problem& problem, const Options& options, int levels,
+                     std::span<const RowState> hint, Workspace& work) noexcept;
+
 enum class Judgement {
   kProven,     ///< work.point is optimal for each level
   kCorrected,  ///< it is not; work.point.state is the next guess

@@ -18,6 +18,7 @@ Point::Point(const Capacity& c)
 Workspace::Workspace(const Capacity& c)
     : elimination(c.variables, c.rows),
       direct(c.variables, c.rows),
+      dual(c),
       cone(c.variables, 2 * c.rows),
       point(c),
       saved(c),
@@ -25,6 +26,7 @@ Workspace::Workspace(const Capacity& c)
       value(at(c.rows)),
       last_value(at(c.rows)),
       is_frozen(at(c.variables)),
+      is_needed(at(c.rows)),
       direct_rank_at_level(at(c.levels) + 1),
       has_violated(at(c.levels) + 1),
       fit(at(c.levels) + 1),

@@ -8,6 +8,7 @@
 
 #include "hg/hqp/cone.h"
 #include "hg/hqp/direct_elimination.h"
+#include "hg/hqp/dual.h"
 #include "hg/hqp/elimination.h"
 #include "hg/hqp/problem.h"
 #include "hg/hqp/rows.h"
@@ -39,6 +40,7 @@ struct Workspace {
 
   Elimination elimination;
   DirectElimination direct;
+  DualMethod dual;
   Cone cone;
 
   Point point;
@@ -50,6 +52,11 @@ struct Workspace {
   std::vector<double> last_value;       ///< same, of the point that the next step starts from
   int steps = 0;                        ///< since that point was x = 0
   std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
+  int released_row = -1;  ///< by the last step that let go of a row that pulled, and its state
+  RowState released_state = RowState::kInactive;
+  std::vector<std::uint8_t> is_needed;  ///< by row: pushes by however little, as the dual method or
+                                        ///< letting go of it has shown
+  bool has_dual_point = false;          ///< dual.point() is of this solve
   bool is_direct = false;               ///< the pivots of `point` are those of `direct`
   int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state
   std::vector<int> direct_rank_at_level;

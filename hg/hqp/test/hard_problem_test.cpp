@@ -138,8 +138,8 @@ TEST(HardProblem, ActiveSetsAreTriedInASensibleOrder) {
     iterations += solution.iterations;
     most = std::max(most, solution.iterations);
   }
-  EXPECT_LT(iterations, 2800);  // 2639
-  EXPECT_LT(most, 40);          // 25
+  EXPECT_LT(iterations, 1600);  // 1443
+  EXPECT_LT(most, 20);          // 12
 }
 
 }  // namespace
