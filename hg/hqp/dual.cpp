@@ -18,6 +18,8 @@ constexpr double kMet = 1e-9;         // share of its terms up to which a gradie
 constexpr double kRegularisation = 1e-6;
 constexpr double kSingular = 1e-7;  // pivots below this share of the largest need it
 
+constexpr int kMoreActive = 32;  // rows that can be active at once, beyond 2 n
+
 int padded(int n) noexcept { return (n + 3) / 4 * 4; }
 
 // y += factor x
@@ -31,7 +33,7 @@ DualMethod::DualMethod(const Capacity& c)
     : rank_at_level_(at(c.levels) + 1),
       is_pushing_(at(c.rows)),
       side_(at(c.rows)),
-      max_active_(2 * c.variables),
+      max_active_(2 * c.variables + kMoreActive),
       objective_(at((std::max(c.rows, c.variables) + c.variables) * c.variables)),
       objective_rhs_(at(std::max(c.rows, c.variables) + c.variables)),
       candidate_rows_(at(c.rows * padded(c.variables))),
@@ -138,20 +140,29 @@ int DualMethod::collect_objective(DirectElimination& direct, bool is_regular) no
     double offset = 0.0;
     double weight = 1.0;
     double target = 0.0;
+    double norm = 1.0;
     if (is_norm) {
       offset = direct.reduce_to_free(i, reduced_.data());
     } else {
       const TargetRow& row = targets_[at(i)];
       offset = direct.reduce_to_free(*problem_, row.row, reduced_.data());
       weight = problem_->weight(row.row);
+      norm = problem_->norm(row.row);
       target = row.target;
     }
+    double largest_of_row = 0.0;
     for (int k = 0; k < freedom_; ++k) {
       const double number = weight * reduced_[free_[at(k)]];
       objective_[at(k * rows + i)] = number;
-      largest = std::max(largest, std::abs(number));
+      largest_of_row = std::max(largest_of_row, std::abs(number));
     }
     objective_rhs_[at(i)] = weight * (target - offset);
+    if (largest_of_row <= options_->rank_tolerance * weight * norm) {  // nothing can change it
+      for (int k = 0; k < freedom_; ++k) objective_[at(k * rows + i)] = 0.0;
+      objective_rhs_[at(i)] = 0.0;
+      continue;
+    }
+    largest = std::max(largest, largest_of_row);
   }
   if (!is_regular) return rows;
 
@@ -160,7 +171,8 @@ int DualMethod::collect_objective(DirectElimination& direct, bool is_regular) no
       largest = std::max(largest, problem_->weight(candidate.row) * problem_->norm(candidate.row));
     }
   }
-  regularisation_ = largest > 0.0 ? kRegularisation * largest : 1.0;
+  has_objective_ = largest > 0.0;
+  regularisation_ = has_objective_ ? kRegularisation * largest : 1.0;
   for (int k = 0; k < freedom_; ++k) {
     double* column = objective_.data() + k * rows + wanted;
     std::fill_n(column, freedom_, 0.0);
@@ -182,6 +194,7 @@ bool DualMethod::set_up_metric(DirectElimination& direct) noexcept {
   collect_candidates();
   bool is_regular = false;
   regularisation_ = 0.0;
+  has_objective_ = true;
   int rows = 0;
   for (int attempt = 0; attempt < 2; ++attempt, is_regular = true) {
     rows = collect_objective(direct, is_regular);
@@ -341,11 +354,6 @@ DualMethod::Outcome DualMethod::run(DirectElimination& direct) noexcept {
     if (static_cast<int>(active_.size()) == max_active_) return Outcome::kGivenUp;
     Candidate& candidate = candidates_[at(best)];
     if (candidate.slot < 0) reduce(best, direct);
-    const bool is_fixed = candidate.length == 0.0;
-    if (is_fixed && problem_->level_of(candidate.row) < first_) {
-      candidate.is_barred = true;  // it is rounding
-      continue;
-    }
     const Interval bounds = problem_->bounds(candidate.row);
     double rest = excess(bounds, dot(*problem_, candidate.row, x_.data()));
     entering_ = {
@@ -361,7 +369,7 @@ DualMethod::Outcome DualMethod::run(DirectElimination& direct) noexcept {
     }
 
     bool is_full = false;
-    while (!is_full) {
+    while (!is_full && !candidate.is_barred) {
       if (++changes_ > max_changes_) return Outcome::kGivenUp;
       const double z_squared = project(entering_);
       const int active = static_cast<int>(active_.size());
@@ -374,7 +382,13 @@ DualMethod::Outcome DualMethod::run(DirectElimination& direct) noexcept {
         length = length_j;
         leaving = j;
       }
-      if (length == kInfinity) return Outcome::kContradiction;
+      if (length == kInfinity) {
+        contradiction_ = level_of_contradiction(direct);
+        if (contradiction_ >= level_) return Outcome::kGivenUp;
+        if (contradiction_ >= first_) return Outcome::kContradiction;
+        candidate.is_barred = true;  // settled levels contradict each other by rounding only
+        continue;
+      }
       if (z_squared > 0.0) {
         add(stride_ + used_slots_, -length, z_.data(), u_.data());
         rest -= length * z_squared;
@@ -449,7 +463,7 @@ void DualMethod::freeze(DirectElimination& direct) noexcept {
       size += factor * (norm * x_norm_ + std::abs(value - distance));
     }
   }
-  const bool is_met = scale <= kMet * size;
+  const bool is_met = !has_objective_ || scale <= kMet * size;
   double x_free = 0.0;
   for (const int v : free_) x_free = std::max(x_free, std::abs(x_[v]));
   const double pushing = kPushes * scale + 10.0 * regularisation_ * regularisation_ * x_free;
@@ -523,10 +537,8 @@ bool DualMethod::find_guess(const Problem& problem, const Options& options, int 
     const Outcome outcome = run(direct);
     if (outcome == Outcome::kGivenUp) return false;
     if (outcome == Outcome::kContradiction) {
-      const int lowest = level_of_contradiction(direct);
-      if (lowest < first_ || lowest >= level_) return false;
-      direct.truncate(rank_at_level_[at(lowest)]);
-      level_ = last_ = lowest;
+      direct.truncate(rank_at_level_[at(contradiction_)]);
+      level_ = last_ = contradiction_;
       continue;
     }
     freeze(direct);

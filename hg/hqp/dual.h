@@ -104,6 +104,7 @@ class DualMethod {
   std::vector<int> free_;
   std::vector<double> objective_;      ///< M, its columns freedom_ apart
   std::vector<double> objective_rhs_;  ///< y0
+  bool has_objective_ = false;         ///< level s can change what it wants
   double regularisation_ = 0.0;  ///< weight of the smallest |x| beside a level that leaves freedom
   double x_norm_ = 0.0;
   std::vector<Candidate> candidates_;
@@ -117,6 +118,7 @@ class DualMethod {
   int slots_ = 0;
   int used_slots_ = 0;
   Active entering_ = {};
+  int contradiction_ = 0;  ///< lowest level in it
   std::vector<Active> active_;
   std::vector<std::uint8_t> is_slot_used_;
   std::vector<double> Q_;

@@ -132,6 +132,7 @@ std::string to_string(const Options& options) {
   return joined({"rank_tolerance ", number(options.rank_tolerance), ", feasibility_tolerance ",
                  number(options.feasibility_tolerance), ", max_iterations ",
                  std::to_string(options.max_iterations),
+                 options.budget > 0 ? ", budget " + std::to_string(options.budget) : "",
                  options.minimum_norm ? ", freedom left goes to the smallest |x|"
                                       : ", freedom left is left"});
 }

@@ -27,6 +27,7 @@ void check(const Options& options) {
   require(is_small(options.feasibility_tolerance),
           "feasibility_tolerance must be in 0 .. 1e-3, above 0");
   require(options.max_iterations > 0, "max_iterations must be above 0");
+  require(options.budget >= 0, "budget must not be negative");
 }
 
 Solution::Solution(const Capacity& capacity) {

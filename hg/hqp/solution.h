@@ -49,11 +49,15 @@ struct Options {
   double feasibility_tolerance = 1e-10;
   /// Active sets tried before the solver stops, > 0; a warm start mostly needs 1 or 2.
   int max_iterations = 1000;
+  /// Active sets tried before the solve is brought to an end with what is known by then; 0: no such
+  /// limit. The end costs the dual method and one active set more.
+  int budget = 0;
   /// Freedom left by the last level goes to the smallest |x|; otherwise x is any optimal point.
   bool minimum_norm = true;
 };
 
-/// Throws SetupError, naming the field, unless 0 < tolerances <= 1e-3 and max_iterations > 0.
+/// Throws SetupError, naming the field, unless 0 < tolerances <= 1e-3 max_iterations > 0 and
+/// budget >= 0.
 void check(const Options& options);
 
 struct LevelResult {

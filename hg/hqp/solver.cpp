@@ -20,6 +20,7 @@ constexpr int kEffortOfSecondGuess = 1;  // what differs more is found faster by
 constexpr int kEffortOfDual = 8;       // which is almost always right. Where it gives up: from zero
 constexpr int kEffort = 32;            // with this and so much per variable. More is
 constexpr int kEffortPerVariable = 2;  // taken for a cycle
+constexpr int kClosing = 4;            // active sets per level after the budget, where that gave up
 constexpr int kOrthogonalEffort = 4;   // of one orthogonal elimination
 constexpr int kProofEffort = 12;       // on the result of that method, which is almost always right
 
@@ -72,7 +73,8 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
   std::vector<RowState>& guess = work.point.state;
   const int effort_from_zero = kEffort + kEffortPerVariable * problem.variables();
   // the other half is for the method that completes level by level
-  const int max_iterations = (options.max_iterations + 1) / 2;
+  const int half = (options.max_iterations + 1) / 2;
+  const int max_iterations = options.budget > 0 ? std::min(options.budget, half) : half;
   const auto try_for = [&](int effort) {
     return try_guesses(problem, options, levels, effort, max_iterations, iterations, work);
   };
@@ -95,7 +97,13 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
     start_from_zero_with(problem, second, work);
     if (try_for(kEffortOfSecondGuess)) return true;
   }
-  if (start_from_dual(problem, options, levels, active.state, work)) return try_for(kEffortOfDual);
+  if (start_from_dual(problem, options, levels, active.state, work)) {
+    if (try_for(kEffortOfDual)) return true;
+    if (options.budget == 0 || iterations < options.budget) return false;
+    work.is_last = true;
+    const int last = std::min(options.budget + 1, options.max_iterations);
+    return try_guesses(problem, options, levels, 1, last, iterations, work);
+  }
   guess_from_zero(problem, levels, second);
   start_from_zero_with(problem, second, work);
   return try_for(effort_from_zero);
@@ -107,8 +115,18 @@ Status solve_levels(const Problem& problem, const Options& options, const Active
   const int all_levels = levels;
   if (solve_by_guesses(problem, options, active, levels, iterations, work)) return Status::kSolved;
 
+  Options limited = options;
+  if (options.budget > 0) {
+    if (work.is_last) {
+      levels = take_better_point(problem, options, all_levels, work);
+      if (levels > 0) return Status::kIterationLimit;
+    }
+    work.is_last = false;
+    limited.max_iterations =
+        std::min(options.max_iterations, options.budget + kClosing * all_levels);
+  }
   const PrimalOutcome outcome =
-      solve_level_by_level(problem, options, all_levels, iterations, levels, work);
+      solve_level_by_level(problem, limited, all_levels, iterations, levels, work);
   if (outcome == PrimalOutcome::kIterationLimit) return Status::kIterationLimit;
   if (outcome == PrimalOutcome::kNotFinite) return Status::kNumericalFailure;
 
@@ -117,7 +135,7 @@ Status solve_levels(const Problem& problem, const Options& options, const Active
   load_guess(problem, levels, work.saved.state, work.point.state);
   start_from_zero(problem, work);
   std::copy_n(work.value.begin(), problem.rows(), work.last_value.begin());
-  if (!try_guesses(problem, options, levels, kProofEffort, options.max_iterations, iterations,
+  if (!try_guesses(problem, options, levels, kProofEffort, limited.max_iterations, iterations,
                    work)) {
     work.point = work.saved;
     update_values(problem, levels, work);
@@ -206,9 +224,12 @@ Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& 
     solution.status = Status::kNumericalFailure;
     solution.completed_levels = level;
   }
+  work.budgets_spent += options.budget > 0 && solution.status == Status::kIterationLimit;
   update(problem, solution.state, active);
   return solution.status;
 }
+
+std::uint64_t Solver::budgets_spent() const noexcept { return workspace_->budgets_spent; }
 
 double Solver::multipliers(const Problem& problem, const Options& options, const Solution& solution,
                            int level, std::span<double> mu) noexcept {

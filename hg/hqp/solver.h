@@ -5,11 +5,12 @@
 /// Differs from [HG]: no cascade of QPs. One elimination, level after level in the null space
 /// (3)-(4) of those above, solves a guessed active set and proves or mends it; what cannot be
 /// settled that way goes through a primal method level by level. No normal equations, no
-/// regularisation. Contract: solve() keeps nothing between calls except its workspace, is a pure
-/// function of its arguments, does not allocate, and tries at most options.max_iterations active
-/// sets.
+/// regularisation. Contract: solve() keeps nothing between calls except its workspace and a count,
+/// is a pure function of its arguments, does not allocate, and tries at most options.max_iterations
+/// active sets.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -33,6 +34,9 @@ class Solver {
   /// less capacity than the problem needs.
   Status solve(const Problem& problem, const Options& options, ActiveSet& active,
                Solution& solution) noexcept;
+
+  /// Solves since construction that their budget has ended before they were proven.
+  std::uint64_t budgets_spent() const noexcept;
 
   /// Lagrange multipliers of level `level` at `solution`, one per row of the problem, into `mu`
   /// (problem.rows() entries): with f = 1/2 sum (weight * slack)^2 over the level's rows,

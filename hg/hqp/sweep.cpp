@@ -10,7 +10,8 @@ namespace {
 constexpr double kSmallRest = 1e-10;
 // Steps from the first point, docs/hqp.md: more help where few rows act, and harm where many do.
 constexpr int kVariablesPerEarlyStep = 6;
-constexpr double kNoWay = 1e-9;  // share of the way to a point that is none
+constexpr double kSameSlack = 1e-9;  // share of 1 + slack up to which two points are as good
+constexpr double kNoWay = 1e-9;      // share of the way to a point that is none
 
 // The smallest |x| is a level below all others.
 bool wants_smallest_norm(const Problem& problem, const Options& options, int levels) noexcept {
@@ -248,6 +249,7 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
     work.point.blocking_row[at(level)] = -1;
     // a level that should be met is not: direct elimination has lost digits
     const Fit fit = work.is_direct ? work.fit[at(level)] : Fit::kLeastSquares;
+    if (work.is_last) work.proven_levels = std::min(level, levels);
     if (fit == Fit::kMet && work.has_violated[at(level)]) return Judgement::kInDoubt;
     const bool can_push = work.point.rank_at_level[at(level)] > first_held;
     if (!can_push && fit != Fit::kLeastSquares) continue;
@@ -263,14 +265,19 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
     set_guess(problem, pulling_row, RowState::kInactive, work);
     return Judgement::kCorrected;
   }
+  if (work.is_last) work.proven_levels = levels;
   return Judgement::kProven;
 }
+
+Judgement judge_last(const Problem& problem, const Options& options, int levels,
+                     Workspace& work) noexcept;
 
 // One step of an active-set method. The first ones all start at the same point, and let go of rows
 // before they hold others: where few rows act, that is one step for each. It could cycle, so after
 // that the last point moves, and the slacks fall.
 Judgement judge_guess(const Problem& problem, const Options& options, int levels,
                       Workspace& work) noexcept {
+  if (work.is_last) return judge_last(problem, options, levels, work);
   const int rows = rows_of(problem, levels);
   const bool is_early = work.steps <= problem.variables() / kVariablesPerEarlyStep;
   double way = 1.0;
@@ -288,6 +295,43 @@ Judgement judge_guess(const Problem& problem, const Options& options, int levels
   const bool is_blocked = judgement == Judgement::kProven && is_early &&
                           hold_obstacle(problem, options, rows, way, work);
   return is_blocked ? Judgement::kCorrected : judgement;
+}
+
+// States of all rows as their values tell: what is at its bound is held where the guess says so.
+void read_states(const Problem& problem, const Options& options, int levels,
+                 Workspace& work) noexcept {
+  const int rows = rows_of(problem, levels);
+  for (int row = 0; row < rows; ++row) {
+    RowState& state = work.point.state[at(row)];
+    if (state != RowState::kInactive) {
+      state = found_state(problem, options, row, work);
+    } else if (const double distance = violation(problem, options, work, row); distance != 0.0) {
+      state = distance > 0.0 ? RowState::kAbove : RowState::kBelow;
+    }
+  }
+}
+
+// No step follows: how many levels the point is optimal for, into work.proven_levels.
+Judgement judge_last(const Problem& problem, const Options& options, int levels,
+                     Workspace& work) noexcept {
+  int settled = levels;
+  for (int row = 0; row < rows_of(problem, settled); ++row) {
+    const RowState state = work.point.state[at(row)];
+    if (problem.norm(row) == 0.0 || is_equality(problem.bounds(row))) continue;
+    const bool is_right =
+        state == RowState::kInactive
+            ? violation(problem, options, work, row) == 0.0
+            : as_guess(found_state(problem, options, row, work)) == as_guess(state);
+    if (!is_right) settled = problem.level_of(row);
+  }
+  drop_rows(problem, options, settled, work);  // has nothing to drop, but reads states
+  const Judgement judgement = judge_levels(problem, options, settled, work);
+  if (judgement == Judgement::kCorrected) {
+    work.point.state[at(work.released_row)] = work.released_state;
+  }
+  read_states(problem, options, levels, work);
+  if (settled == levels || judgement == Judgement::kInDoubt) return judgement;
+  return Judgement::kCorrected;
 }
 
 RowState state_at_zero(const Problem& problem, int row) noexcept {
@@ -368,7 +412,36 @@ void start_solve(const Problem& problem, Workspace& work) noexcept {
   start_from_zero(problem, work);
   work.released_row = -1;
   work.has_dual_point = false;
+  work.is_last = false;
+  work.proven_levels = 0;
   std::fill_n(work.is_needed.begin(), problem.rows(), std::uint8_t{0});
+}
+
+int take_better_point(const Problem& problem, const Options& options, int levels,
+                      Workspace& work) noexcept {
+  const double* x = work.dual.point().data();
+  for (int level = 0; level < levels; ++level) {
+    double at_guess = 0.0;
+    double at_dual = 0.0;
+    for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+      const Interval bounds = problem.bounds(row);
+      const double weight = problem.weight(row);
+      const double slack = weight * excess(bounds, work.value[at(row)]);
+      const double dual_slack = weight * excess(bounds, dot(problem, row, x));
+      at_guess += slack * slack;
+      at_dual += dual_slack * dual_slack;
+    }
+    const double difference = std::sqrt(at_dual) - std::sqrt(at_guess);
+    if (std::abs(difference) <= kSameSlack * (1.0 + std::sqrt(at_guess))) continue;
+    if (difference > 0.0) break;
+    work.point.x.head(problem.variables()) = work.dual.point().head(problem.variables());
+    work.x_norm = work.point.x.head(problem.variables()).norm();
+    update_values(problem, levels, work);
+    work.proven_levels = std::min(work.proven_levels, level);
+    break;
+  }
+  read_states(problem, options, levels, work);
+  return work.proven_levels;
 }
 
 bool start_from_dual(const Problem& problem, const Options& options, int levels,
@@ -415,7 +488,7 @@ Judgement solve_guess(const Problem& problem, const Options& options, int levels
     if (judgement != Judgement::kInDoubt) return judgement;
     work.is_direct = false;
   }
-  if (take_back(problem, work)) return Judgement::kCorrected;
+  if (!work.is_last && take_back(problem, work)) return Judgement::kCorrected;
   work.direct_levels = 0;
   if (!eliminate_orthogonally(problem, options, levels, work)) return Judgement::kInDoubt;
   update_values(problem, levels, work);

@@ -42,6 +42,11 @@ void start_solve(const Problem& problem, Workspace& work) noexcept;
 bool start_from_dual(const Problem& problem, const Options& options, int levels,
                      std::span<const RowState> hint, Workspace& work) noexcept;
 
+/// After a last guess that was not proven: the better one of its point and that of the dual method,
+/// level by level, into work.point. Returns the number of levels that it is optimal for.
+int take_better_point(const Problem& problem, const Options& options, int levels,
+                      Workspace& work) noexcept;
+
 enum class Judgement {
   kProven,     ///< work.point is optimal for each level
   kCorrected,  ///< it is not; work.point.state is the next guess
@@ -52,7 +57,8 @@ enum class Judgement {
 /// where that leaves no doubt, else by the orthogonal one (work.is_direct). Proven means that no
 /// inactive row is violated, active ones are at their bound or outside, multipliers have the right
 /// sign and cancel the gradient of each level. Leaves work.value of the point. The first
-/// work.direct_levels levels are taken from the last guess.
+/// work.direct_levels levels are taken from the last guess. With work.is_last, the guess is not
+/// corrected, and work.proven_levels tells how far its point is optimal.
 Judgement solve_guess(const Problem& problem, const Options& options, int levels,
                       Workspace& work) noexcept;
 

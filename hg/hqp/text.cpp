@@ -206,7 +206,7 @@ int single_variable(std::span<const double> coefficients) {
 
 Options parse_options(Reader& reader) {
   Options options;
-  std::vector<std::string> names = {"max_iterations", "minimum_norm"};
+  std::vector<std::string> names = {"max_iterations", "budget", "minimum_norm"};
   for (const auto& [name, member] : kTolerances) names.emplace_back(name);
   names.emplace_back();
   while (true) {
@@ -214,6 +214,9 @@ Options parse_options(Reader& reader) {
     if (name.empty()) break;
     if (name == "max_iterations") {
       options.max_iterations = reader.need_integer(name, 1, std::numeric_limits<int>::max());
+    }
+    if (name == "budget") {
+      options.budget = reader.need_integer(name, 0, std::numeric_limits<int>::max());
     }
     if (name == "minimum_norm") options.minimum_norm = reader.need_integer(name, 0, 1) == 1;
     for (const auto& [tolerance, member] : kTolerances) {
@@ -366,6 +369,7 @@ void write_options(std::ostream& out, const Options& options) {
   if (options.max_iterations != standard.max_iterations) {
     text += " max_iterations " + std::to_string(options.max_iterations);
   }
+  if (options.budget != standard.budget) text += " budget " + std::to_string(options.budget);
   if (options.minimum_norm != standard.minimum_norm) {
     text += std::string(" minimum_norm ") + (options.minimum_norm ? "1" : "0");
   }

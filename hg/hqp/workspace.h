@@ -43,6 +43,8 @@ struct Workspace {
   DualMethod dual;
   Cone cone;
 
+  std::uint64_t budgets_spent = 0;
+
   Point point;
   Point saved;  ///< the same, put aside
   std::vector<RowState> second_guess;
@@ -56,6 +58,8 @@ struct Workspace {
   RowState released_state = RowState::kInactive;
   std::vector<std::uint8_t> is_needed;  ///< by row: pushes by however little, as the dual method or
                                         ///< letting go of it has shown
+  bool is_last = false;                 ///< no step follows the guess
+  int proven_levels = 0;                ///< levels that the point of that guess is optimal for
   bool has_dual_point = false;          ///< dual.point() is of this solve
   bool is_direct = false;               ///< the pivots of `point` are those of `direct`
   int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state

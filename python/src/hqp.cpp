@@ -252,6 +252,8 @@ void bind_options(nb::module_& module) {
       .def_rw("rank_tolerance", &hqp::Options::rank_tolerance)
       .def_rw("feasibility_tolerance", &hqp::Options::feasibility_tolerance)
       .def_rw("max_iterations", &hqp::Options::max_iterations)
+      .def_rw("budget", &hqp::Options::budget,
+              "active sets before the solve is brought to an end, 0: no such limit")
       .def_rw("minimum_norm", &hqp::Options::minimum_norm,
               "freedom left by the last level goes to the smallest |x|");
 

@@ -95,7 +95,7 @@ TEST(ParseProblems, NamesTheNearestKeyword) {
   EXPECT_EQ(message_of("hqp 1 1\nlevel 1 0\n1 2 weight\n"),
             "x.hqp:3: expected a weight, got the end of the line");
   EXPECT_EQ(message_of("hqp 1 1\noptions max_iteration 3\n"),
-            "x.hqp:2: expected 'max_iterations', 'minimum_norm', 'rank_tolerance', "
+            "x.hqp:2: expected 'max_iterations', 'budget', 'minimum_norm', 'rank_tolerance', "
             "'feasibility_tolerance' or the end of the line, got 'max_iteration', nearest is "
             "'max_iterations'");
   EXPECT_EQ(message_of("hqp 1 1\noptions max_iterations 0\n"),
