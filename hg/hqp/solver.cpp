@@ -85,7 +85,6 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
   const bool has_first = std::any_of(active.state.begin(), active.state.begin() + rows,
                                      [](RowState state) { return state != RowState::kInactive; });
   load_guess(problem, levels, active.state, guess);
-  const bool has_second = load_guess(problem, levels, active.before, second);
   if (!has_first) guess_from_zero(problem, levels, guess);
   start_solve(problem, work);
   for (int i = 0; i < (has_first ? kEffortOfGuess : kEffortFromZero); ++i) {
@@ -93,6 +92,7 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
     if (has_first && misses_rows(problem, options, levels, work)) break;
   }
   load_guess(problem, levels, active.state, first);
+  const bool has_second = load_guess(problem, levels, active.before, second);
   if (has_second && !std::equal(first.begin(), first.begin() + rows, second.begin())) {
     start_from_zero_with(problem, second, work);
     if (try_for(kEffortOfSecondGuess)) return true;
