@@ -17,7 +17,7 @@ namespace {
 constexpr int kEffortOfGuess = 2;        // itself, and one row more or less,
 constexpr int kEffortFromZero = 4;       // when there is none,
 constexpr int kEffortOfSecondGuess = 1;  // what differs more is found faster by the dual method,
-constexpr int kEffortOfDual = 8;       // which is almost always right. Where it gives up: from zero
+constexpr int kEffortOfDual = 4;       // which is almost always right. Where it gives up: from zero
 constexpr int kEffort = 32;            // with this and so much per variable. More is
 constexpr int kEffortPerVariable = 2;  // taken for a cycle
 constexpr int kClosing = 4;            // active sets per level after the budget, where that gave up
