@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kViolated = 1e-9;    // a row is, beyond this share of |bound| + norm |x|
 constexpr double kDependent = 1e-11;  // what is left of a row that depends on the active ones
+constexpr double kLittleLost = 1e-3;  // share of a row (squared) from which digits are left
 constexpr double kTakesPart = 1e-8;   // share of a contradiction from which a row belongs to it
 constexpr double kTurns = 1e-12;      // ratio from which a multiplier falls
 constexpr double kPushes = 1e-10;     // share of the gradient from which a row surely pushes
@@ -287,7 +288,7 @@ double DualMethod::project(const Active& entering) noexcept {
       add(size, -ratio_[j], q(j), z);
     }
     z_squared = dot(size, z, z);
-    if (z_squared > 0.5 * before) break;
+    if (z_squared > kLittleLost * before) break;
   }
   std::copy_n(d_.data(), active, ratio_.data());
   for (int j = active - 1; j >= 0; --j) {

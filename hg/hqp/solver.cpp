@@ -20,6 +20,7 @@ constexpr int kEffortOfSecondGuess = 1;  // what differs more is found faster by
 constexpr int kEffortOfDual = 4;       // which is almost always right. Where it gives up: from zero
 constexpr int kEffort = 32;            // with this and so much per variable. More is
 constexpr int kEffortPerVariable = 2;  // taken for a cycle
+constexpr double kFar = 10.0;          // |x| of the dual method's point beside that of the result
 constexpr int kClosing = 4;            // active sets per level after the budget, where that gave up
 constexpr int kOrthogonalEffort = 4;   // of one orthogonal elimination
 constexpr int kProofEffort = 12;       // on the result of that method, which is almost always right
@@ -109,6 +110,36 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
   return try_for(effort_from_zero);
 }
 
+// Level by level, and the proof of what that finds. `levels` becomes the number of levels that are
+// optimal.
+Status complete_levels(const Problem& problem, const Options& options, int all_levels, int& levels,
+                       int& iterations, Workspace& work) noexcept {
+  const PrimalOutcome outcome =
+      solve_level_by_level(problem, options, all_levels, iterations, levels, work);
+  if (outcome == PrimalOutcome::kIterationLimit) return Status::kIterationLimit;
+  if (outcome == PrimalOutcome::kNotFinite) return Status::kNumericalFailure;
+
+  // tolerances are relative to the largest x on the way: from far away they were too large
+  const double x_norm = work.point.x.head(problem.variables()).norm();
+  const bool came_from_afar = work.has_dual_point && work.x_norm > kFar * x_norm;
+
+  // the same active set always gives the same bits, whichever way it was found
+  work.saved = work.point;
+  load_guess(problem, levels, work.saved.state, work.point.state);
+  start_from_zero(problem, work);
+  std::copy_n(work.value.begin(), problem.rows(), work.last_value.begin());
+  if (!try_guesses(problem, options, levels, kProofEffort, options.max_iterations, iterations,
+                   work)) {
+    if (came_from_afar) {
+      work.has_dual_point = false;
+      return complete_levels(problem, options, all_levels, levels, iterations, work);
+    }
+    work.point = work.saved;
+    update_values(problem, levels, work);
+  }
+  return Status::kSolved;
+}
+
 // Leaves the result in work; `levels` becomes the number of levels that are optimal.
 Status solve_levels(const Problem& problem, const Options& options, const ActiveSet& active,
                     int& levels, int& iterations, Workspace& work) noexcept {
@@ -125,22 +156,7 @@ Status solve_levels(const Problem& problem, const Options& options, const Active
     limited.max_iterations =
         std::min(options.max_iterations, options.budget + kClosing * all_levels);
   }
-  const PrimalOutcome outcome =
-      solve_level_by_level(problem, limited, all_levels, iterations, levels, work);
-  if (outcome == PrimalOutcome::kIterationLimit) return Status::kIterationLimit;
-  if (outcome == PrimalOutcome::kNotFinite) return Status::kNumericalFailure;
-
-  // the same active set always gives the same bits, whichever way it was found
-  work.saved = work.point;
-  load_guess(problem, levels, work.saved.state, work.point.state);
-  start_from_zero(problem, work);
-  std::copy_n(work.value.begin(), problem.rows(), work.last_value.begin());
-  if (!try_guesses(problem, options, levels, kProofEffort, limited.max_iterations, iterations,
-                   work)) {
-    work.point = work.saved;
-    update_values(problem, levels, work);
-  }
-  return Status::kSolved;
+  return complete_levels(problem, limited, all_levels, levels, iterations, work);
 }
 
 // Receives the states of a solution; what was there before is kept when it is another guess.
