@@ -96,12 +96,13 @@ class DeviceStation final : public start_test::Station {
     sample_.command.dq_p.setZero();
   }
 
-  // by what the last cycle said; requests act on their edge
+  // By what the last cycle said; requests act on their edge. Nothing resets what was armed.
   ModeRequest request(Wish wish) const {
     const CycleRecord& record = sample_.record;
     const bool is_pause = record.cycle / kResetEdge % 2 == 0;
+    if (wish == Wish::kStay) return ModeRequest::kNone;
     if (record.mode == Mode::kFault) {
-      return wish == Wish::kOff || is_pause ? ModeRequest::kNone : ModeRequest::kReset;
+      return wish != Wish::kTare || is_pause ? ModeRequest::kNone : ModeRequest::kReset;
     }
     if (record.mode == Mode::kReady && wish != Wish::kOff) {
       const ModeRequest next =
@@ -120,8 +121,6 @@ class DeviceStation final : public start_test::Station {
     Observation seen = {.time_s = sensors.time_s,
                         .safety = sensors.safety,
                         .dead_man = sensors.dead_man,
-                        .q_m = sensors.q_m,
-                        .q_p = sensors.q_p,
                         .load_m = VectorM::Zero(model_.n_m),
                         .load_p = VectorP::Zero(model_.n_p),
                         .is_powered = sample_.command.enable,
@@ -130,7 +129,11 @@ class DeviceStation final : public start_test::Station {
                         .refusal = record.refusal};
     if (wish == Wish::kArm && !record.is_tared) seen.refusal = Refusal::kNotTared;
     if (robot.q_m.size() != model_.n_m) return seen;  // the sample was no good
-    seen.q_m = robot.theta_m.size() == model_.n_m ? robot.theta_m : robot.q_m;
+    const bool has_motor_side = robot.theta_m.size() == model_.n_m;
+    if (had_motor_side_ && !has_motor_side) return seen;  // nor is this one: another side
+    had_motor_side_ = has_motor_side;
+    seen.q_m = has_motor_side ? robot.theta_m : robot.q_m;
+    seen.q_p = sensors.q_p;
     const Eigen::VectorXd q = stacked(sensors.q_p, robot.q_m);
     const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(model_.n_p + model_.n_m);
     chain_.update(q, at_rest);
@@ -149,6 +152,7 @@ class DeviceStation final : public start_test::Station {
   const std::atomic<bool>& interrupted_;
   start_test::SimulatedOperator operator_;
   Sample sample_;
+  bool had_motor_side_ = false;
   FaultCode end_ = FaultCode::kNone;
 };
 

@@ -30,21 +30,36 @@ void BrakeWatch::each(const Observation& seen, F&& f) {
   }
 }
 
-void BrakeWatch::begin(const Observation& seen) {
+bool BrakeWatch::is_good(const Observation& seen) const {
+  const auto n_p = static_cast<Eigen::Index>(n_p_);
+  const auto n_m = static_cast<Eigen::Index>(brakes_.size()) - n_p;
+  return seen.q_p.size() == n_p && seen.load_p.size() == n_p && seen.q_m.size() == n_m &&
+         seen.load_m.size() == n_m && seen.q_p.allFinite() && seen.load_p.allFinite() &&
+         seen.q_m.allFinite() && seen.load_m.allFinite();
+}
+
+void BrakeWatch::start(const Observation& seen) {
+  has_start_ = is_good(seen);
+  if (has_start_) each(seen, [](Brake& brake, double q, double) { brake.start = q; });
+}
+
+void BrakeWatch::begin(const Observation& from, double time_s) {
   has_begun_ = true;
-  last_s_ = seen.time_s;
-  each(seen, [](Brake& brake, double q, double) { brake.start = q; });
+  last_s_ = time_s;
+  start(from);
 }
 
 std::vector<std::string> BrakeWatch::look(const Observation& seen) {
+  if (!has_start_) start(seen);
   const double dt = seen.time_s - last_s_;
   last_s_ = seen.time_s;
+  if (!is_good(seen)) return {};
   std::vector<std::string> slipped;
   each(seen, [&](Brake& brake, double q, double load) {
     const double motion = std::abs(q - brake.start), size = std::abs(load);
     brake.motion = std::max(brake.motion, motion);
     brake.load = std::max(brake.load, size);
-    if (size >= brake.joint.least_load) brake.loaded_s += dt;
+    if (!seen.is_powered && size >= brake.joint.least_load) brake.loaded_s += dt;
     if (motion <= brake.bound || brake.has_slipped) return;
     brake.has_slipped = true;
     brake.slipped_under = size;

@@ -12,9 +12,10 @@ class BrakeWatch {
  public:
   explicit BrakeWatch(const Setup& setup);
 
-  /// From here on nothing may move.
-  void begin(const Observation& seen);
-  /// One more period. Names of brakes that have slipped since the last call, once each.
+  /// From `time_s` on nothing may move away from where it was in `from`.
+  void begin(const Observation& from, double time_s);
+  /// One more period; a sample that is no good says nothing. Names of brakes that have slipped
+  /// since the last call, once each.
   std::vector<std::string> look(const Observation& seen);
   /// Names of brakes that have not carried their least load for kLoaded seconds yet.
   std::vector<std::string> without_load() const;
@@ -35,6 +36,8 @@ class BrakeWatch {
     bool has_slipped = false;
   };
 
+  bool is_good(const Observation& seen) const;
+  void start(const Observation& seen);
   template <typename F>
   void each(const Observation& seen, F&& f);
 
@@ -42,7 +45,7 @@ class BrakeWatch {
   std::size_t n_p_;
   Outcome without_load_;  ///< a simulated hand cannot twist through the device protocol
   double last_s_ = 0.0;
-  bool has_begun_ = false;
+  bool has_begun_ = false, has_start_ = false;
 };
 
 }  // namespace hg::start_test

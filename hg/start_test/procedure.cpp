@@ -17,9 +17,10 @@ constexpr double kHold = 1.0;       // s; longer than channels may usually diffe
 constexpr double kRest = 1.5;       // s at the start; a tare takes 0.5 s of it
 constexpr double kWarning = 3.0;    // s before the drives come on
 constexpr double kArming = 20.0;    // s
-constexpr double kReaction = 0.05;  // s from a stop to drives that are off
+constexpr double kReaction = 0.05;  // s from a stop to drives that are commanded off
 constexpr double kLeaning = 90.0;   // s for all brakes
 constexpr double kReminder = 5.0;   // s between two lists of what is still to be loaded
+constexpr const char* kSlips = "a brake slips, so that nothing more is asked for";
 constexpr const char* kOneWire = "only one of its two channels did: a wire or contact is broken";
 
 /// One input: how it looks in a sample, and how it is operated.
@@ -37,11 +38,11 @@ constexpr Operation kOperations[] = {
      "step into the field of the scanner and stay there",
      "leave the field, and press the reset button if there is one"},
     {SafetyInput::kDeadMan, Act::kTakeHandle, Act::kLetGoOfHandle,
-     "take the handle, so that its dead-man switch closes", "let go of the handle"},
+     "take the handle and hold it, so that its dead-man switch closes", "let go of the handle"},
     {SafetyInput::kEmergencyStop, Act::kPressStop, Act::kReleaseStop, "press the emergency stop",
      "pull the emergency stop out, and press the reset button of the safety controller"},
     {SafetyInput::kEnablingSwitch, Act::kLetGoOfSwitch, Act::kHoldSwitch,
-     "let go of the enabling switch", "hold the enabling switch again"},
+     "let go of the enabling switch until it is asked for again", "hold the enabling switch again"},
 };
 
 // whether the input is as it is after Operation::act
@@ -102,6 +103,8 @@ class Procedure {
 
   void live(Wish wish) {
     seen_ = station_.live(wish);
+    if (seen_.is_powered) powered_ = seen_;
+    has_disagreed_ = has_disagreed_ || seen_.safety.has_disagreement;
     if (!watches_) return;
     for (const std::string& name : brakes_.look(seen_)) {
       has_slipped_ = true;
@@ -122,12 +125,15 @@ class Procedure {
     wait(wish, seconds, [] { return false; });
   }
 
-  // Asked for one input. Others that answer instead are told by name.
-  bool wait_for(SafetyInput wanted, bool is_on, Wish wish, std::string& wrong) {
+  // Until the input that was asked for is operated; others that answer instead are told by name.
+  // Why it was not; empty: it was.
+  std::string wait_for(SafetyInput wanted) {
     const Observation before = seen_;
+    const bool is_armed = stops_drives(wanted);
+    const auto is_lost = [&] { return is_armed && seen_.mode != Mode::kArmed; };
     std::array<bool, kSafetyInputCount> is_told{};
-    return wait(wish, kPatience, [&] {
-      if (is_operated(wanted, seen_) == is_on) return true;
+    std::string wrong;
+    wait(is_armed ? Wish::kStay : Wish::kOff, kPatience, [&] {
       for (std::size_t i = 0; i < kSafetyInputCount; ++i) {
         const auto other = static_cast<SafetyInput>(i);
         const bool has_changed = is_operated(other, seen_) != is_operated(other, before);
@@ -136,8 +142,20 @@ class Procedure {
         wrong = to_string(other);
         station_.tell(fmt::format("that was the {}, not the {}", wrong, to_string(wanted)));
       }
-      return seen_.safety.has_disagreement && !before.safety.has_disagreement;
+      return is_operated(wanted, seen_) || has_disagreed_ || is_lost();
     });
+    if (is_operated(wanted, seen_)) return {};
+    if (is_lost() && !has_disagreed_) {
+      return fmt::format("the drives went off before it was operated: {}{}", why_off(),
+                         wrong.empty() ? "" : fmt::format("; the {} answered", wrong));
+    }
+    if (!wrong.empty()) return fmt::format("not seen, the {} answered instead", wrong);
+    return has_disagreed_ ? kOneWire : fmt::format("nothing came within {:g} s", kPatience);
+  }
+
+  std::string why_off() const {
+    return seen_.fault == FaultCode::kNone ? fmt::format("mode {}", to_string(seen_.mode))
+                                           : std::string(to_string(seen_.fault));
   }
 
   void ask(Act act, const std::string& words, double at_most_s = kPatience) {
@@ -154,6 +172,10 @@ class Procedure {
     item.outcome = Outcome::kPassed;
     item.found = std::move(found);
     station_.tell(fmt::format("{:<18} {}", item.name, item.found));
+  }
+  void leave_out(Item& item, std::string why) {
+    item.found = std::move(why);
+    station_.tell(fmt::format("{:<18} not tested: {}", item.name, item.found));
   }
 
   // of the first input that is not as it is when nobody touches anything; empty: none
@@ -178,6 +200,10 @@ class Procedure {
     watch_brakes();
     stay(Wish::kTare, kRest);
     watches_ = false;
+    if (has_slipped_) {
+      leave_out(item, kSlips);
+      return false;
+    }
     std::string asked;
     const bool is_at_rest = wait(Wish::kTare, kPatience, [&] {
       const std::string words = not_at_rest();
@@ -201,43 +227,50 @@ class Procedure {
       item.found = "this device has none (start_test.inputs of device.yaml)";
       return;
     }
-    if (operation.input == SafetyInput::kDeadMan && setup_.is_simulated) {
-      item.found = "a simulated hand holds for good";
-      station_.tell(fmt::format("{:<18} not tested: {}", item.name, item.found));
+    if (has_slipped_) {
+      leave_out(item, kSlips);
       return;
     }
-    if (stops_drives(operation.input) && has_slipped_) {
-      item.found = "a brake slips, so that the drives stay off";
-      station_.tell(fmt::format("{:<18} not tested: {}", item.name, item.found));
+    if (operation.input == SafetyInput::kDeadMan && setup_.is_simulated) {
+      leave_out(item, "a simulated hand holds for good");
       return;
     }
     operate(operation, item);
     watches_ = false;
   }
 
+  // A disagreement of channels on the way fails it for good, also one that goes again.
   void operate(const Operation& operation, Item& item) {
-    const bool is_stop = stops_drives(operation.input);
-    const Wish wish = is_stop ? Wish::kArm : Wish::kOff;
-    if (is_stop && !arm(item)) return;
-    const Observation armed = seen_;
-    ask(operation.act, operation.words);
-    const double asked_s = seen_.time_s;
-    std::string wrong;
-    const bool has_answered = wait_for(operation.input, true, wish, wrong);
-    if (!has_answered) {
-      fail(item, wrong.empty() ? fmt::format("nothing came within {:g} s", kPatience)
-                               : fmt::format("not seen, the {} answered instead", wrong));
-      live(Wish::kOff);
+    if (seen_.safety.has_disagreement) {
+      fail(item, "two channels of an input disagree before it was asked for");
       return;
     }
-    item.answered_s = seen_.time_s - asked_s;
-    bool is_good = true;
-    if (is_stop) is_good = look_at_stop(armed, item);
+    const bool is_stop = stops_drives(operation.input);
+    if (is_stop && !arm(item)) return;
+    has_disagreed_ = false;
+    ask(operation.act, operation.words);
+    const double asked_s = seen_.time_s;
+    const std::string why_not = wait_for(operation.input);
+    bool is_good = why_not.empty();
+    if (is_good) {
+      item.answered_s = seen_.time_s - asked_s;
+      if (is_stop) is_good = look_at_stop(item);
+    } else {
+      fail(item, why_not);
+      live(Wish::kOff);
+      if (!has_disagreed_) return;
+    }
     stay(Wish::kOff, kHold);
     watches_ = false;
-    if (is_good && seen_.safety.has_disagreement) is_good = fail(item, kOneWire);
-    const bool needs_reset = seen_.safety.has_disagreement;
-    ask(operation.undo, needs_reset && operation.undo != Act::kReleaseStop
+    if (is_good && has_disagreed_) is_good = fail(item, kOneWire);
+    if (is_good && !is_operated(operation.input, seen_)) {
+      is_good = fail(item, fmt::format("it did not stay so for {:g} s", kHold));
+    }
+    if (has_slipped_) {
+      if (is_good) leave_out(item, kSlips);
+      return;
+    }
+    ask(operation.undo, has_disagreed_ && operation.undo != Act::kReleaseStop
                             ? fmt::format("{}, and press the reset button", operation.undo_words)
                             : std::string(operation.undo_words));
     const auto is_released = [&] {
@@ -252,19 +285,24 @@ class Procedure {
                        seen_.safety.has_disagreement ? ", or one of its channels did not" : ""));
       return;
     }
-    pass(item, is_stop ? fmt::format("seen, drives off {:.0f} ms later, and back",
+    if (has_disagreed_) {
+      fail(item, kOneWire);
+      return;
+    }
+    pass(item, is_stop ? fmt::format("seen, commanded off {:.0f} ms later, and back",
                                      1e3 * item.power_off_s.value_or(0.0))
                        : "seen, and back");
   }
 
-  // The stop itself: the supervisor takes the power, and the brakes catch what the drives held.
-  bool look_at_stop(const Observation& armed, Item& item) {
+  // The stop itself: the supervisor takes the power, which nobody requests meanwhile, and the
+  // brakes catch what the drives held.
+  bool look_at_stop(Item& item) {
     const double seen_s = seen_.time_s;
-    brakes_.begin(armed);
+    brakes_.begin(powered_, seen_s);
     watches_ = was_stopped_ = true;
-    const bool is_off = wait(Wish::kOff, kReaction, [&] { return !seen_.is_powered; });
+    const bool is_off = wait(Wish::kStay, kReaction, [&] { return !seen_.is_powered; });
     if (!is_off) {
-      return fail(item, fmt::format("the drives were still on {:g} ms later (mode {})",
+      return fail(item, fmt::format("the drives were still commanded on {:g} ms later (mode {})",
                                     1e3 * kReaction, to_string(seen_.mode)));
     }
     item.power_off_s = seen_.time_s - seen_s;
@@ -272,7 +310,7 @@ class Procedure {
   }
 
   void watch_brakes() {
-    brakes_.begin(seen_);
+    brakes_.begin(seen_, seen_.time_s);
     watches_ = true;
   }
 
@@ -286,18 +324,23 @@ class Procedure {
     station_.tell(fmt::format(
         "in {:g} s the drives come on and hold the arm where it stands: keep clear", kWarning));
     stay(Wish::kOff, kWarning);
+    // the only reset of this item: what happens to a standing arm from here on ends it
+    wait(Wish::kTare, kArming, [&] { return seen_.mode != Mode::kFault; });
     Refusal refusal = Refusal::kNone;
-    const bool is_armed = wait(Wish::kArm, kArming, [&] {
-      if (seen_.refusal != Refusal::kNone) refusal = seen_.refusal;
-      return seen_.mode == Mode::kArmed;
-    });
-    if (is_armed) {
-      stay(Wish::kArm, kHold);
-      if (seen_.mode == Mode::kArmed) return true;
+    if (seen_.mode != Mode::kFault) {
+      wait(Wish::kArm, kArming, [&] {
+        if (seen_.refusal != Refusal::kNone) refusal = seen_.refusal;
+        return seen_.mode == Mode::kArmed || seen_.mode == Mode::kFault;
+      });
     }
-    const std::string_view why = seen_.fault != FaultCode::kNone ? to_string(seen_.fault)
-                                 : refusal != Refusal::kNone     ? to_string(refusal)
-                                                                 : "it took too long";
+    if (seen_.mode == Mode::kArmed) {
+      const bool is_lost = wait(Wish::kStay, kHold, [&] { return seen_.mode != Mode::kArmed; });
+      if (!is_lost) return true;
+    }
+    const std::string why = seen_.fault == FaultCode::kNone && refusal != Refusal::kNone
+                                ? std::string(to_string(refusal))
+                                : why_off();
+    live(Wish::kOff);
     return fail(item, fmt::format("the device could not be armed for it: {}", why));
   }
 
@@ -335,11 +378,12 @@ class Procedure {
   const Setup& setup_;
   Station& station_;
   BrakeWatch brakes_;
-  Observation seen_;
+  Observation seen_, powered_;  // the last; the last with the drives on
   std::vector<Item> items_;
-  bool watches_ = false;      // the brakes
-  bool was_stopped_ = false;  // with power, by an input
-  bool has_slipped_ = false;  // a brake
+  bool watches_ = false;        // the brakes
+  bool was_stopped_ = false;    // with power, by an input
+  bool has_slipped_ = false;    // a brake
+  bool has_disagreed_ = false;  // channels of an input, since one was asked for
 };
 
 }  // namespace

@@ -36,9 +36,10 @@ enum class Act : std::uint8_t {
 
 /// What the control cycle is wanted to do.
 enum class Wish : std::uint8_t {
-  kTare,  ///< drives off; the handle is tared once nobody holds it
+  kTare,  ///< drives off; faults are reset, and the handle is tared once nobody holds it
   kOff,   ///< drives off
-  kArm,   ///< drives on, the arm held where it stands; also after a fault
+  kArm,   ///< drives on, the arm held where it stands; not after a fault
+  kStay,  ///< as it is: whatever happens now, nobody has requested it
 };
 
 /// One period.
@@ -46,8 +47,10 @@ struct Observation {
   double time_s = 0.0;  ///< on the device's clock
   SafetyInputs safety;
   bool dead_man = false;
-  VectorM q_m;  ///< where the brakes sit: motor side, link side without motor encoders; unwrapped
-  VectorP q_p;  ///< gantry
+  /// Where the brakes sit: motor side, link side without motor encoders; unwrapped. Empty where the
+  /// sample was no good.
+  VectorM q_m;
+  VectorP q_p;              ///< gantry
   VectorM load_m;           ///< that the brakes of the joints carry, Nm or N
   VectorP load_p;           ///< likewise of the gantry
   bool is_powered = false;  ///< the command that answered this sample has the drives on
@@ -94,7 +97,7 @@ struct Item {
   Outcome outcome = Outcome::kUntested;
   std::string found;                       ///< for people
   std::optional<double> answered_s = {};   ///< of an input: after it was asked for
-  std::optional<double> power_off_s = {};  ///< of a stop: drives off after it was seen
+  std::optional<double> power_off_s = {};  ///< of a stop: commanded off after it was seen
   std::optional<double> motion = {};       ///< of a brake, rad or m
   std::optional<double> load = {};         ///< of a brake, the largest, Nm or N
 };
