@@ -1,17 +1,19 @@
 #include "apps/hapticgiant/device_memory.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdint>
 #include <ctime>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <exception>
 #include <optional>
 #include <string_view>
 
 #include "apps/hapticgiant/output_file.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/remote/agreement.h"
 
 namespace hg::apps {
@@ -19,14 +21,16 @@ namespace {
 
 constexpr double kBraked = 0.2;  // s after which brakes have closed and nothing moves any more
 
+// Nothing: there is none. Throws SetupError where there is one that cannot be read.
 std::optional<std::string> text_of(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+  constexpr std::uintmax_t kMost = 1'000'000;  // bytes
+  if (access(file.c_str(), F_OK) != 0 && errno == ENOENT) return std::nullopt;
+  return read_file(file, kMost);
 }
 
-std::string posture_file(const std::string& folder, const config::Device& device) {
-  return start_test::file_of(folder, "posture", device.name);
+std::string posture_file(const RunArguments& arguments, const config::Device& device) {
+  return start_test::file_of(arguments.recordings, "posture", device.name,
+                             arguments.device_address);
 }
 
 std::vector<start_test::Position> posture_of(const config::Device& device,
@@ -67,19 +71,25 @@ std::string sha256_of(const config::Device& device) {
   return start_test::sha256(texts);
 }
 
-std::string start_test_file(const std::string& folder, const config::Device& device) {
-  return start_test::file_of(folder, "start_test", device.name);
+std::string start_test_file(const std::string& folder, const config::Device& device,
+                            const std::string& address) {
+  return start_test::file_of(folder, "start_test", device.name,
+                             address.empty() ? "simulated" : address);
 }
 
 std::string check_start_test(const RunArguments& arguments, const config::Device& device) {
-  const std::string file = start_test_file(arguments.recordings, device);
-  const std::optional<std::string> kept = text_of(file);
+  const std::string file = start_test_file(arguments.recordings, device, arguments.device_address);
   start_test::Verdict verdict = {.objection = "there is none"};
-  if (kept) {
-    verdict = start_test::judge(*kept, {.device = device.name,
-                                        .files_sha256 = sha256_of(device),
-                                        .valid_for_s = device.start_test.valid_for_s,
-                                        .now = std::time(nullptr)});
+  try {
+    if (const std::optional<std::string> kept = text_of(file)) {
+      verdict = start_test::judge(*kept, {.device = device.name,
+                                          .address = arguments.device_address,
+                                          .files_sha256 = sha256_of(device),
+                                          .valid_for_s = device.start_test.valid_for_s,
+                                          .now = std::time(nullptr)});
+    }
+  } catch (const SetupError& error) {
+    verdict.objection = error.what();
   }
   if (verdict.objection.empty()) {
     return verdict.untested.empty() ? fmt::format("passed {}", verdict.ended)
@@ -108,12 +118,12 @@ std::string check_posture(const RunArguments& arguments, const config::Device& d
     if (std::ranges::find(*now, name, &start_test::Position::name) != now->end()) continue;
     throw SetupError(fmt::format("--posture-confirmed: {} has no joint '{}'", device.name, name));
   }
-  const std::string file = posture_file(arguments.recordings, device);
+  const std::string file = posture_file(arguments, device);
   const std::optional<std::string> kept = text_of(file);
   if (!kept) return "nothing is known of the last run: homing was not compared";
   std::vector<start_test::Moved> moved;
   try {
-    moved = start_test::compare_posture(*kept, *now, device.start_test);
+    moved = start_test::compare_posture(*kept, arguments.device_address, *now, device.start_test);
   } catch (const SetupError& error) {
     throw SetupError(fmt::format("{}: {}; look where the machine stands, then delete the file",
                                  file, error.what()));
@@ -144,9 +154,10 @@ std::string keep_posture(const RunArguments& arguments, const config::Device& de
   if (!now) return "not kept, because the device has gone: the next run compares with an older one";
   try {
     make_folder(arguments.recordings);
-    write_output(posture_file(arguments.recordings, device),
-                 start_test::posture_to_json(device.name, std::time(nullptr), *now));
-  } catch (const SetupError& error) {
+    write_output(posture_file(arguments, device),
+                 start_test::posture_to_json(device.name, arguments.device_address,
+                                             std::time(nullptr), *now));
+  } catch (const std::exception& error) {
     return fmt::format("not kept: {}", error.what());
   }
   return {};

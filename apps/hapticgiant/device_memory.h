@@ -15,8 +15,10 @@ namespace hg::apps {
 /// Of the files that describe the device.
 std::string sha256_of(const config::Device& device);
 
-/// The file of its start test in the folder of the recordings.
-std::string start_test_file(const std::string& folder, const config::Device& device);
+/// The file of the start test of the machine at `address` in the folder of the recordings; an empty
+/// one stands for all simulations, whose results count for no machine and replace none.
+std::string start_test_file(const std::string& folder, const config::Device& device,
+                            const std::string& address);
 
 /// Whether brakes and stop inputs were tested, in words for people. Throws SetupError where they
 /// were not and `arguments` do not say that it goes without.

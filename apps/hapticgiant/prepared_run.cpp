@@ -13,16 +13,18 @@ PreparedRun::PreparedRun(const RunArguments& a)
     device = std::make_unique<device::SimulatedDevice>(assembly::make_simulated_device(scenario));
     return;
   }
-  const auto connect = [&] {
+  const auto connect = [&](double busy_patience_s) {
     return connect_device(arguments.device_address, key_of(arguments.key_file), scenario,
-                          arguments.is_fast);
+                          arguments.is_fast, busy_patience_s);
   };
-  auto connected = connect();
+  auto connected = connect(0.0);
   is_machine = !connected->welcome().is_simulated;
   if (is_machine) {
     start_test = check_start_test(arguments, scenario.device);
     posture = check_posture(arguments, scenario.device, *connected);
-    connected = connect();
+    // the server may not have heard yet that the session for the posture is over
+    constexpr double kFarewell = 0.5;  // s
+    connected = connect(kFarewell);
   }
   remote = connected.get();
   device = std::move(connected);

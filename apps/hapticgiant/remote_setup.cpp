@@ -22,9 +22,10 @@ remote::Key key_of(const std::string& file) {
 std::unique_ptr<remote::RemoteDevice> connect_device(const std::string& address,
                                                      const remote::Key& key,
                                                      const config::Scenario& scenario,
-                                                     bool is_lock_step) {
+                                                     bool is_lock_step, double busy_patience_s) {
   const remote::ClientConfig config{.expected = describe(scenario, is_lock_step),
                                     .client = std::string("hapticgiant run ") + kVersion,
+                                    .busy_patience_s = busy_patience_s,
                                     .key = key};
   return std::make_unique<remote::RemoteDevice>(remote::parse_address("--device-address", address),
                                                 config);

@@ -190,8 +190,6 @@ int start_test(const StartTestArguments& arguments) {
   const config::Scenario scenario = make_scenario(run);
   runtime::check({.priority = arguments.priority});
   make_folder(arguments.recordings);
-  const std::string file = start_test_file(arguments.recordings, scenario.device);
-  check_writable(file);
 
   std::unique_ptr<device::Device> device;
   remote::RemoteDevice* remote = nullptr;
@@ -204,6 +202,9 @@ int start_test(const StartTestArguments& arguments) {
     device = std::move(connected);
   }
   const bool is_simulated = remote == nullptr || remote->welcome().is_simulated;
+  const std::string file = start_test_file(arguments.recordings, scenario.device,
+                                           is_simulated ? "" : arguments.device_address);
+  check_writable(file);
 
   const auto keep = [&](const std::vector<start_test::Item>& items) {
     const start_test::Result result = {.device = scenario.device.name,
@@ -220,19 +221,17 @@ int start_test(const StartTestArguments& arguments) {
 
   const std::atomic<bool>& interrupted = watch_interruption();
   DeviceStation station(scenario, *device, is_simulated, interrupted);
-  std::vector<start_test::Item> items;
-  {
-    const BackgroundOutput output(interrupted);
-    print_out(fmt::format("HapticGiant {}  start test of {}{}\n", kVersion, scenario.device.name,
-                          is_simulated ? ", simulated, with a simulated operator" : ""));
-    print_out("stop        Ctrl-C\n");
-    if (remote != nullptr && !arguments.is_fast) {
-      runtime::become_real_time({.priority = arguments.priority});
-    }
-    items = start_test::run(setup_of(scenario.device, is_simulated), station);
-    station.release();
-    if (remote != nullptr) remote->close(station.end());
+  const BackgroundOutput output(interrupted);
+  print_out(fmt::format("HapticGiant {}  start test of {}{}\n", kVersion, scenario.device.name,
+                        is_simulated ? ", simulated, with a simulated operator" : ""));
+  print_out("stop        Ctrl-C\n");
+  if (remote != nullptr && !arguments.is_fast) {
+    runtime::become_real_time({.priority = arguments.priority});
   }
+  const std::vector<start_test::Item> items =
+      start_test::run(setup_of(scenario.device, is_simulated), station);
+  station.release();
+  if (remote != nullptr) remote->close(station.end());
 
   const bool has_passed = start_test::has_passed(items);
   keep(items);

@@ -40,13 +40,14 @@ RemoteDevice::~RemoteDevice() { close(fault_); }
 
 void RemoteDevice::connect(const std::string& at) {
   const std::uint64_t nonce = random_number();
-  const std::int64_t deadline = now_ns() + ns(config_.answer_timeout_s);
+  const std::int64_t busy_until = now_ns() + ns(config_.busy_patience_s);
+  const std::int64_t deadline = now_ns() + ns(config_.answer_timeout_s + config_.busy_patience_s);
   while (now_ns() < deadline) {
     send(Hello{nonce, config_.expected, config_.client});
     const std::int64_t again = std::min(now_ns() + kHelloPeriod, deadline);
     while (now_ns() < again) {
       socket_.wait(again);
-      if (answers(at, nonce)) return;
+      if (answers(at, nonce, now_ns() < busy_until)) return;
       if (socket_.was_refused()) break;  // come back later
     }
     while (now_ns() < again) socket_.wait(again);
@@ -58,7 +59,7 @@ void RemoteDevice::connect(const std::string& at) {
 }
 
 // whether a datagram was the welcome
-bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce) {
+bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce, bool is_patient) {
   Peer from;
   if (!socket_.receive(datagram_, from)) return false;
   Header header;
@@ -78,6 +79,7 @@ bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce) {
   if (is_forged && welcome_.refusal == Refusal::kNone) {
     throw SetupError(at + ": the device's answer is not of the key that was given (--key-file)");
   }
+  if (welcome_.refusal == Refusal::kBusy && is_patient) return false;  // asked again
   if (welcome_.refusal != Refusal::kNone) {
     throw SetupError(fmt::format("{}: the device refuses: {}", at, welcome_.reason.printable()));
   }

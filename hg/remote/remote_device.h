@@ -22,6 +22,7 @@ struct ClientConfig {
   Description expected;           ///< anything else is refused
   std::string client;             ///< program and version, for the server's log
   double answer_timeout_s = 3.0;  ///< for the welcome
+  double busy_patience_s = 0.0;   ///< with a device that has another client
   double first_timeout_s = 1.0;   ///< for the first frame
   /// Between frames. In real time what a gantry at 1.5 m/s may do in it (75 mm) counts, in
   /// lock-step the patience with a slow simulator.
@@ -52,7 +53,7 @@ class RemoteDevice final : public device::Device {
 
  private:
   void connect(const std::string& at);
-  bool answers(const std::string& at, std::uint64_t nonce);
+  bool answers(const std::string& at, std::uint64_t nonce, bool is_patient);
   void take_in() noexcept;
   void take(const Header& header) noexcept;
   void say_again() noexcept;

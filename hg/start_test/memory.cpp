@@ -20,10 +20,20 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::time_t kClockAhead = 60;  // s that another clock may be ahead
 
-std::string text_of(std::time_t time) {
+std::string date_of(std::time_t time) {
   std::tm parts{};
   gmtime_r(&time, &parts);
   return fmt::format("{:%Y-%m-%d %H:%M} UTC", parts);
+}
+
+// Names of files may be no UTF-8; what is none of it is replaced.
+std::string text_of(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+// whether `kept` is what a file says where `name` was written
+bool is_same(const Json& kept, const std::string& name) {
+  return kept.is_string() && text_of(kept) == text_of(Json(name));
 }
 
 const char* unit_of(const Position& position) { return position.is_slide ? "m" : "rad"; }
@@ -42,8 +52,9 @@ std::string sha256(std::span<const std::string_view> texts) {
   return fmt::format("{:02x}", fmt::join(hash, ""));
 }
 
-std::string file_of(std::string_view folder, std::string_view kind, std::string_view device) {
-  std::string name(device);
+std::string file_of(std::string_view folder, std::string_view kind, std::string_view device,
+                    std::string_view where) {
+  std::string name = fmt::format("{}_{}", device, where);
   for (char& c : name) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-') c = '_';
   }
@@ -56,7 +67,7 @@ std::string to_json(const Result& result) {
   json["address"] = result.address;
   json["simulated"] = result.is_simulated;
   json["passed"] = result.has_passed;
-  json["ended"] = text_of(result.ended);
+  json["ended"] = date_of(result.ended);
   json["ended_unix_s"] = static_cast<std::int64_t>(result.ended);
   json["version"] = result.version;
   json["files_sha256"] = result.files_sha256;
@@ -71,7 +82,7 @@ std::string to_json(const Result& result) {
     if (item.motion) line["motion_rad_or_m"] = *item.motion;
     if (item.load) line["load_Nm_or_N"] = *item.load;
   }
-  return json.dump(2) + "\n";
+  return text_of(json, 2) + "\n";
 }
 
 Verdict judge(std::string_view text, const Wanted& wanted) {
@@ -82,24 +93,29 @@ Verdict judge(std::string_view text, const Wanted& wanted) {
     return verdict;
   };
   try {
-    const auto ended = static_cast<std::time_t>(json.at("ended_unix_s").get<std::int64_t>());
-    verdict.ended = text_of(ended);
+    const Json& time = json.at("ended_unix_s");
+    const std::time_t ended = time.is_number_integer() ? time.get<std::int64_t>() : -1;
+    if (ended < 0) return object("it cannot be read");
+    if (ended > wanted.now + kClockAhead) {
+      return object("it is of the future: look at the clock");
+    }
+    verdict.ended = date_of(ended);
     std::string failed;
     for (const Json& item : json.at("items")) {
       const std::string outcome = item.at("outcome"), name = item.at("name");
       if (outcome == to_string(Outcome::kFailed)) failed += (failed.empty() ? "" : ", ") + name;
       if (outcome == to_string(Outcome::kUntested)) verdict.untested.push_back(name);
     }
-    if (json.at("device") != wanted.device) return object("it is of another device");
+    if (!is_same(json.at("device"), wanted.device)) return object("it is of another device");
+    if (!is_same(json.at("address"), wanted.address)) {
+      return object("it is of the device at " + json.at("address").get<std::string>());
+    }
     if (json.at("simulated").get<bool>()) return object("it is of a simulation");
     if (!json.at("passed").get<bool>() || !failed.empty()) {
       return object(failed.empty() ? "it did not come to its end" : "failed: " + failed);
     }
     if (json.at("files_sha256") != wanted.files_sha256) {
       return object("the files of the device have changed since");
-    }
-    if (ended > wanted.now + kClockAhead) {
-      return object(fmt::format("it is of the future, {}: look at the clock", verdict.ended));
     }
     const auto age_s = static_cast<double>(wanted.now - ended);
     if (age_s > wanted.valid_for_s) {
@@ -113,28 +129,34 @@ Verdict judge(std::string_view text, const Wanted& wanted) {
   return verdict;
 }
 
-std::string posture_to_json(std::string_view device, std::time_t at,
+std::string posture_to_json(const std::string& device, const std::string& address, std::time_t at,
                             const std::vector<Position>& posture) {
   Json json;
   json["device"] = device;
-  json["brakes_closed"] = text_of(at);
+  json["address"] = address;
+  json["brakes_closed"] = date_of(at);
   json["positions"] = Json::array();
   for (const Position& position : posture) {
     json["positions"].push_back(
         {{"name", position.name}, {"value", position.value}, {"unit", unit_of(position)}});
   }
-  return json.dump(2) + "\n";
+  return text_of(json, 2) + "\n";
 }
 
-std::vector<Moved> compare_posture(std::string_view text, const std::vector<Position>& now,
+std::vector<Moved> compare_posture(std::string_view text, const std::string& address,
+                                   const std::vector<Position>& now,
                                    const StartTestConfig& config) {
   const Json json = Json::parse(text, nullptr, false);
   std::vector<Moved> moved;
   try {
+    if (!is_same(json.at("address"), address)) {
+      throw SetupError("expected the posture of the machine at " + address + ", got that at " +
+                       json.at("address").get<std::string>());
+    }
     for (const Position& position : now) {
       const auto& kept = json.at("positions");
       const auto found = std::ranges::find_if(
-          kept, [&](const Json& line) { return line.at("name") == position.name; });
+          kept, [&](const Json& line) { return is_same(line.at("name"), position.name); });
       const std::string is =
           fmt::format("{}: {:.3f} {}", position.name, position.value, unit_of(position));
       if (found == kept.end()) {

@@ -27,14 +27,16 @@ struct Result {
 /// SHA-256 of texts that follow each other, as 64 hexadecimal digits.
 std::string sha256(std::span<const std::string_view> texts);
 
-/// "FOLDER/KIND_DEVICE.json", with characters in the device's name that are safe in any folder.
-std::string file_of(std::string_view folder, std::string_view kind, std::string_view device);
+/// "FOLDER/KIND_DEVICE_WHERE.json", with characters in the names that are safe in any folder.
+/// `where` is the address of a machine.
+std::string file_of(std::string_view folder, std::string_view kind, std::string_view device,
+                    std::string_view where);
 
 std::string to_json(const Result& result);
 
 /// What a run of a machine asks for.
 struct Wanted {
-  std::string device, files_sha256;
+  std::string device, address, files_sha256;
   double valid_for_s = 86400.0;
   std::time_t now = 0;
 };
@@ -57,15 +59,16 @@ struct Position {
   bool is_endless = false;  ///< whole turns do not count
 };
 
-std::string posture_to_json(std::string_view device, std::time_t at,
+std::string posture_to_json(const std::string& device, const std::string& address, std::time_t at,
                             const std::vector<Position>& posture);
 
 /// Joints that stand elsewhere than they were left, or of which nothing was kept, as "m2: -0.512
-/// rad, the last run has left it at 0.103 rad". Throws SetupError for a text that is no posture.
+/// rad, the last run has left it at 0.103 rad". Throws SetupError for a text that is no posture of
+/// the machine at `address`.
 struct Moved {
   std::string name, words;
 };
-std::vector<Moved> compare_posture(std::string_view json, const std::vector<Position>& now,
-                                   const StartTestConfig& config);
+std::vector<Moved> compare_posture(std::string_view json, const std::string& address,
+                                   const std::vector<Position>& now, const StartTestConfig& config);
 
 }  // namespace hg::start_test

@@ -2,12 +2,15 @@
 /// posture that is the one in which the last run has left it.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <thread>
 
@@ -17,6 +20,7 @@
 #include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/start_test_command.h"
 #include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
 #include "hg/remote/device_server.h"
@@ -85,11 +89,17 @@ class MachineTest : public ::testing::Test {
 
   void keep_result(const config::Device& device, bool has_passed = true) {
     start_test::Result result = {.device = device.name,
+                                 .address = arguments_.device_address,
                                  .version = "test",
                                  .files_sha256 = apps::sha256_of(device),
                                  .ended = std::time(nullptr),
                                  .has_passed = has_passed};
-    apps::write_output(apps::start_test_file(folder_.string(), device), to_json(result));
+    apps::write_output(apps::start_test_file(folder_.string(), device, arguments_.device_address),
+                       to_json(result));
+  }
+  std::filesystem::path posture_file() const {
+    return start_test::file_of(folder_.string(), "posture", "HapticGiant",
+                               arguments_.device_address);
   }
   std::string refusal() const {
     try {
@@ -145,7 +155,7 @@ TEST_F(MachineTest, AGantryThatWasHomedThirtyCentimetresOffIsRefusedByName) {
   arguments_.device_address = machine.address();
   arguments_.without_start_test = true;
   EXPECT_EQ(apps::run(arguments_), 1);  // too short for its events
-  ASSERT_TRUE(std::filesystem::exists(folder_ / "posture_HapticGiant.json"));
+  ASSERT_TRUE(std::filesystem::exists(posture_file()));
   EXPECT_EQ(refusal(), "");
 
   machine.homing_error.store(0.3);
@@ -161,8 +171,75 @@ TEST_F(MachineTest, AGantryThatWasHomedThirtyCentimetresOffIsRefusedByName) {
   expect_part(refusal(), "HapticGiant has no joint 'nobody'");
 
   arguments_.confirmed_joints.clear();
-  std::ofstream(folder_ / "posture_HapticGiant.json") << "{";
+  std::ofstream(posture_file()) << "{";
   expect_part(refusal(), "expected the posture that a run has kept");
+}
+
+TEST_F(MachineTest, AFileThatCannotBeReadIsNotTakenForNone) {
+  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  const Machine machine(scenario);
+  arguments_.device_address = machine.address();
+  const std::filesystem::path result =
+      apps::start_test_file(folder_.string(), scenario.device, machine.address());
+  ASSERT_EQ(mkfifo(result.c_str(), 0600), 0);  // nobody writes there
+  expect_part(refusal(), "expected a file, got a named pipe");
+  arguments_.without_start_test = true;
+  EXPECT_EQ(refusal(), "");
+  ASSERT_EQ(mkfifo(posture_file().c_str(), 0600), 0);
+  expect_part(refusal(), "expected a file, got a named pipe");
+  std::filesystem::remove(posture_file());
+  std::ofstream(posture_file()) << std::string(1'100'000, ' ');
+  expect_part(refusal(), "it has more than 1000000 bytes");
+  std::filesystem::remove(posture_file());
+  std::filesystem::create_directory(posture_file());
+  expect_part(refusal(), "expected a file, got a folder");
+}
+
+TEST_F(MachineTest, AStartTestOfAnotherMachineOfTheSameNameDoesNotCount) {
+  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  const Machine machine(scenario), other(scenario);
+  arguments_.device_address = other.address();
+  keep_result(scenario.device);
+  EXPECT_EQ(refusal(), "");
+  const std::string kept =
+      apps::start_test_file(folder_.string(), scenario.device, other.address());
+  arguments_.device_address = machine.address();
+  expect_part(refusal(), "there is none");
+  std::filesystem::rename(
+      kept, apps::start_test_file(folder_.string(), scenario.device, machine.address()));
+  expect_part(refusal(), "it is of the device at " + other.address());
+}
+
+TEST_F(MachineTest, ADemoLeavesTheResultOfAMachine) {
+  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  Machine machine(scenario), demo(scenario, true);
+  arguments_.device_address = machine.address();
+  keep_result(scenario.device);
+  for (const std::string& address : {std::string(), demo.address()}) {
+    apps::StartTestArguments arguments;
+    arguments.device_address = address;
+    arguments.is_fast = true;
+    arguments.recordings = folder_.string();
+    EXPECT_EQ(apps::start_test(arguments), 0);
+    EXPECT_TRUE(std::filesystem::remove(folder_ / "start_test_HapticGiant_simulated.json"));
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(MachineTest, AServerThatStillHasTheSessionBeforeIsAskedAgain) {
+  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  const Machine machine(scenario);
+  arguments_.device_address = machine.address();
+  auto before = apps::connect_device(machine.address(), {}, scenario, true);
+  SensorFrame sensors;
+  before->read(sensors);  // it has the device
+  std::thread goes([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    before.reset();
+  });
+  EXPECT_NE(apps::connect_device(machine.address(), {}, scenario, true, 60.0), nullptr);
+  goes.join();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
     remote_commands_test.py PROGRAM
 """
 
+import contextlib
 import json
 import math
 import os
@@ -27,6 +28,18 @@ PROGRAM = None
 CLIENT = ROOT / "examples" / "python" / "device_client.py"
 
 
+def read_until(stream, is_there):
+    """The lines up to the first one for which `is_there` holds; fails where the text ends before."""
+    said = ""
+    while True:
+        line = stream.readline()
+        said += line
+        if not line:
+            raise AssertionError("the text has ended: " + said)
+        if is_there(line):
+            return said
+
+
 class Server:
     """`hapticgiant simulate` at a free port."""
 
@@ -34,10 +47,8 @@ class Server:
         self.process = subprocess.Popen(
             [PROGRAM, "simulate", "--listen", "127.0.0.1:0", *arguments], cwd=ROOT, text=True,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        self.head = []
-        while not (self.head and self.head[-1].startswith("stop")):
-            self.head.append(self.process.stdout.readline())
-        self.address = re.search(r"^address +(\S+)$", "".join(self.head), re.MULTILINE)[1]
+        head = read_until(self.process.stdout, lambda line: line.startswith("stop"))
+        self.address = re.search(r"^address +(\S+)$", head, re.MULTILINE)[1]
 
     def __enter__(self):
         return self
@@ -47,10 +58,7 @@ class Server:
 
     def session(self):
         """The closing lines of a session that has ended or will."""
-        lines = []
-        while not (lines and lines[-1].startswith("  truth")):
-            lines.append(self.process.stdout.readline())
-        return "".join(lines)
+        return read_until(self.process.stdout, lambda line: line.startswith("  truth"))
 
     def close(self):
         """Ctrl-C; its exit code."""
@@ -149,8 +157,7 @@ class Commands(unittest.TestCase):
                 [PROGRAM, "run", "door", "--fast", "--duration", "100000", "--no-recording",
                  "--device-address", server.address], cwd=ROOT, text=True, stdout=subprocess.PIPE)
             process.stdout.readline()
-            while "s  " not in process.stdout.readline():  # an event: the run is under way
-                pass
+            read_until(process.stdout, lambda line: "s  " in line)  # an event: it is under way
             server.close()
             said = process.communicate(timeout=100)[0]
             self.assertEqual(process.returncode, 3, said)
@@ -259,7 +266,8 @@ class StartTest(unittest.TestCase):
                 result = subprocess.run(
                     [PROGRAM, "start-test", "--fast", "--device-address", server.address,
                      "--recordings", folder], cwd=ROOT, text=True, capture_output=True, timeout=500)
-            kept = json.loads(pathlib.Path(folder, "start_test_HapticGiant.json").read_text())
+            file = pathlib.Path(folder, "start_test_HapticGiant_simulated.json")
+            kept = json.loads(file.read_text())
         return result, kept, {item["name"]: item for item in kept["items"]}
 
     def test_a_good_device_passes_and_the_result_is_kept(self):
@@ -300,13 +308,9 @@ class StartTest(unittest.TestCase):
 
     def test_a_server_that_goes_is_exit_code_3(self):
         with tempfile.TemporaryDirectory() as folder:
-            with Server("free_space") as server:
-                process = subprocess.Popen(
-                    [PROGRAM, "start-test", "--device-address", server.address, "--recordings",
-                     folder], cwd=ROOT, text=True, stdout=subprocess.PIPE)
-                while "->" not in process.stdout.readline():
-                    pass
-                file = pathlib.Path(folder, "start_test_HapticGiant.json")
+            with Server("free_space", "--fast") as server, Machine(server.address) as machine:
+                process = self.waiting_test(machine, folder)
+                file, = pathlib.Path(folder).glob("start_test_HapticGiant_127_0_0_1_*.json")
                 self.assertFalse(json.loads(file.read_text())["passed"])  # should it be killed now
                 server.close()
                 said = process.communicate(timeout=100)[0]
@@ -315,14 +319,18 @@ class StartTest(unittest.TestCase):
         self.assertIn("the test has ended early: remote device has ended the session", said)
         self.assertFalse(kept["passed"])
 
+    def waiting_test(self, machine, folder):
+        """For somebody who does what it asks for."""
+        process = subprocess.Popen(
+            [PROGRAM, "start-test", "--fast", "--device-address", machine.address, "--recordings",
+             folder], cwd=ROOT, text=True, stdout=subprocess.PIPE)
+        read_until(process.stdout, lambda line: "->" in line)
+        return process
 
     def test_ctrl_c_is_a_test_that_failed(self):
-        with tempfile.TemporaryDirectory() as folder, Server("free_space") as server:
-            process = subprocess.Popen(
-                [PROGRAM, "start-test", "--device-address", server.address, "--recordings", folder],
-                cwd=ROOT, text=True, stdout=subprocess.PIPE)
-            while "->" not in process.stdout.readline():
-                pass
+        with tempfile.TemporaryDirectory() as folder, Server("free_space", "--fast") as server, \
+                Machine(server.address) as machine:
+            process = self.waiting_test(machine, folder)
             process.send_signal(signal.SIGINT)
             said = process.communicate(timeout=100)[0]
             self.assertEqual(process.returncode, 1, said)
@@ -367,17 +375,21 @@ class Machine:
 
     def serve(self):
         while not self.is_over:
-            sockets = [self.front, *self.backs.values()]
-            for ready in select.select(sockets, [], [], 0.1)[0]:
-                if ready is self.front:
-                    data, client = ready.recvfrom(2048)
-                    if client not in self.backs:
-                        self.backs[client] = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-                        self.backs[client].connect(self.there)
-                    self.backs[client].send(data)
-                else:
-                    client = next(c for c, back in self.backs.items() if back is ready)
-                    self.front.sendto(self.changed(ready.recv(2048)), client)
+            with contextlib.suppress(ConnectionRefusedError):  # the server has gone
+                self.pass_on()
+
+    def pass_on(self):
+        sockets = [self.front, *self.backs.values()]
+        for ready in select.select(sockets, [], [], 0.1)[0]:
+            if ready is self.front:
+                data, client = ready.recvfrom(2048)
+                if client not in self.backs:
+                    self.backs[client] = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+                    self.backs[client].connect(self.there)
+                self.backs[client].send(data)
+            else:
+                client = next(c for c, back in self.backs.items() if back is ready)
+                self.front.sendto(self.changed(ready.recv(2048)), client)
 
     def changed(self, data):
         kind, session, number, fields = device_client.decode(data)
@@ -414,8 +426,10 @@ class MachineTest(unittest.TestCase):
                     if "-> " in line:
                         machine.obey(line.split("-> ")[1])
             self.assertEqual(process.wait(timeout=300), 0, said)
-            kept = json.loads(pathlib.Path(folder, "start_test_HapticGiant.json").read_text())
+            file, = pathlib.Path(folder).glob("start_test_*.json")
+            kept = json.loads(file.read_text())
             self.assertFalse(kept["simulated"])
+            self.assertEqual(kept["address"], machine.address)
             self.assertEqual({item["outcome"] for item in kept["items"]}, {"passed"}, said)
 
             machine.inputs["dead_man"] = 0
@@ -439,18 +453,17 @@ class MachineTest(unittest.TestCase):
             here = ("free_space", "--fast", "--device-address", machine.address, "--recordings",
                     folder, "--without-start-test")
             run(*here, "--duration", "0.1")
-            kept = pathlib.Path(folder, "posture_HapticGiant.json").read_text()
+            file, = pathlib.Path(folder).glob("posture_HapticGiant_127_0_0_1_*.json")
+            kept = file.read_text()
             process = subprocess.Popen(
                 [PROGRAM, "run", *here, "--duration", "100000", "--no-viewer", "--no-recording"],
                 cwd=ROOT, text=True, stdout=subprocess.PIPE)
-            said = ""
-            while "tare" not in said:
-                said += process.stdout.readline()
+            said = read_until(process.stdout, lambda line: "tare" in line)
             server.close()
             said += process.communicate(timeout=100)[0]
             self.assertEqual(process.returncode, 3, said)
             self.assertIn("posture      not kept, because the device has gone", said)
-            self.assertEqual(pathlib.Path(folder, "posture_HapticGiant.json").read_text(), kept)
+            self.assertEqual(file.read_text(), kept)
 
 
 class PythonCodec(unittest.TestCase):
