@@ -20,6 +20,8 @@ constexpr double kArming = 20.0;    // s
 constexpr double kReaction = 0.05;  // s from a stop to drives that are commanded off
 constexpr double kLeaning = 90.0;   // s for all brakes
 constexpr double kReminder = 5.0;   // s between two lists of what is still to be loaded
+constexpr const char* kReleaseStop =
+    "pull the emergency stop out, and press the reset button of the safety controller";
 constexpr const char* kSlips = "a brake slips, so that nothing more is asked for";
 constexpr const char* kOneWire = "only one of its two channels did: a wire or contact is broken";
 
@@ -40,7 +42,7 @@ constexpr Operation kOperations[] = {
     {SafetyInput::kDeadMan, Act::kTakeHandle, Act::kLetGoOfHandle,
      "take the handle and hold it, so that its dead-man switch closes", "let go of the handle"},
     {SafetyInput::kEmergencyStop, Act::kPressStop, Act::kReleaseStop, "press the emergency stop",
-     "pull the emergency stop out, and press the reset button of the safety controller"},
+     kReleaseStop},
     {SafetyInput::kEnablingSwitch, Act::kLetGoOfSwitch, Act::kHoldSwitch,
      "let go of the enabling switch until it is asked for again", "hold the enabling switch again"},
 };
@@ -257,7 +259,7 @@ class Procedure {
       if (is_stop) is_good = look_at_stop(item);
     } else {
       fail(item, why_not);
-      live(Wish::kOff);
+      stay(Wish::kOff, kHold);
       if (!has_disagreed_) return;
     }
     stay(Wish::kOff, kHold);
@@ -315,6 +317,12 @@ class Procedure {
   }
 
   bool arm(Item& item) {
+    if (seen_.safety.emergency_stop) {  // pressed too late for the item before, or still
+      ask(Act::kReleaseStop, kReleaseStop);
+      if (!wait(Wish::kOff, kPatience, [&] { return !seen_.safety.emergency_stop; })) {
+        return fail(item, "the emergency stop was not released, so that nothing could be armed");
+      }
+    }
     if (!seen_.safety.operator_enable) {
       ask(Act::kHoldSwitch, "hold the enabling switch");
       if (!wait(Wish::kOff, kPatience, [&] { return seen_.safety.operator_enable; })) {

@@ -306,6 +306,16 @@ class StartTest(unittest.TestCase):
             self.assertEqual(failed, [name])
             self.assertIn("only one of its two channels did", items[name]["found"])
 
+    def test_a_fault_of_the_standing_arm_ends_its_item_and_nothing_arms_it_again(self):
+        # while it is waited for the emergency stop
+        result, kept, items = self.start_test("{at_s: 102.2, for_s: 0.01, fault: drive_fault}")
+        self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+        self.assertEqual(items["emergency stop"]["outcome"], "failed")
+        self.assertEqual(items["emergency stop"]["found"], "the drives went off before it was "
+                         "operated: drive reports a fault")
+        self.assertEqual(items["enabling switch"]["outcome"], "passed", result.stdout)
+        self.assertEqual(result.stdout.count("the drives come on"), 2)
+
     def test_a_server_that_goes_is_exit_code_3(self):
         with tempfile.TemporaryDirectory() as folder:
             with Server("free_space", "--fast") as server, Machine(server.address) as machine:

@@ -23,6 +23,10 @@ class Machine final : public Station {
   Observation live(Wish wish) override {
     seen_.time_s += kPeriod;
     if (seen_.time_s > ends_s) throw Ended{"remote device is silent"};
+    if (pressed_s_ > 0.0 && seen_.time_s >= pressed_s_) {
+      seen_.safety.emergency_stop = true;
+      pressed_s_ = 0.0;
+    }
     step(wish);
     seen_.is_powered = seen_.mode == Mode::kArmed;
     leans_ = leans_ && wish == Wish::kOff;
@@ -48,7 +52,8 @@ class Machine final : public Station {
       seen_.dead_man = act == Act::kTakeHandle;
     }
     if (act == Act::kPressStop || act == Act::kReleaseStop) {
-      safety.emergency_stop = act == Act::kPressStop;
+      safety.emergency_stop = act == Act::kPressStop && press_delay_s == 0.0;
+      if (act == Act::kPressStop) pressed_s_ = seen_.time_s + press_delay_s;
     }
     if (act == Act::kLetGoOfSwitch || act == Act::kHoldSwitch) {
       safety.operator_enable = act == Act::kHoldSwitch;
@@ -61,6 +66,7 @@ class Machine final : public Station {
   std::function<void(Observation&)> spoil;
   std::function<bool(const Observation&)> breaks;  ///< a rule: the gantry does not obey
   bool is_stopped_by_inputs = true;
+  double press_delay_s = 0.0;  ///< of the emergency stop
   int armings = 0;
   Act ignored = Act::kNone;
   double ends_s = 1e9;
@@ -89,6 +95,7 @@ class Machine final : public Station {
 
   Observation seen_{.mode = Mode::kReady};
   bool leans_ = false;
+  double pressed_s_ = 0.0;
 };
 
 Setup setup() {
@@ -222,6 +229,19 @@ TEST(StartTest, AFaultOfTheStandingArmFailsItsItemAndNothingArmsItAgainWithoutWo
             "the drives went off before it was operated: gantry does not move as commanded");
   EXPECT_EQ(item(items, "enabling switch").outcome, Outcome::kPassed);
   EXPECT_EQ(machine.armings, 2);  // one for each item, told before
+}
+
+TEST(StartTest, AStopThatIsPressedTooLateIsReleasedBeforeTheNextItem) {
+  Machine machine;
+  double armed_s = -1.0;
+  machine.breaks = [&](const Observation& seen) {
+    if (seen.mode == Mode::kArmed && armed_s < 0.0) armed_s = seen.time_s;
+    return armed_s > 0.0 && std::abs(seen.time_s - armed_s - 5.0) < 0.5 * kPeriod;
+  };
+  machine.press_delay_s = 4.5;
+  const std::vector<Item> items = run(setup(), machine);
+  EXPECT_EQ(item(items, "emergency stop").outcome, Outcome::kFailed);
+  EXPECT_EQ(item(items, "enabling switch").outcome, Outcome::kPassed);
 }
 
 TEST(StartTest, AFaultThatComesWithTheDrivesIsNotTriedAgain) {
