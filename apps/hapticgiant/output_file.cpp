@@ -51,7 +51,8 @@ bool is_whole(const OpenFile& file, std::string_view text) {
 
 // what goes there has its place behind what was printed before
 bool is_standard_output(const std::string& file) {
-  struct stat named {}, standard {};
+  struct stat named {
+  }, standard{};
   return stat(file.c_str(), &named) == 0 && fstat(STDOUT_FILENO, &standard) == 0 &&
          named.st_dev == standard.st_dev && named.st_ino == standard.st_ino;
 }

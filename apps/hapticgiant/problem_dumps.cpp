@@ -85,8 +85,8 @@ std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
   // with copies: the thread may outlive the run, or for ever wait for a disk
   std::promise<Written> promise;
   writing_ = promise.get_future();
-  const auto write_one = [promise = std::move(promise), write = write_, place = place_,
-                          kept = problems[next_++]]() mutable noexcept {
+  auto write_one = [promise = std::move(promise), write = write_, place = place_,
+                    kept = problems[next_++]]() mutable noexcept {
     Written written = {.cycle = kept.cycle};
     try {
       written.file = place.folder / fmt::format("{}_hqp_{}.hqp", place.stem, kept.cycle);

@@ -128,6 +128,7 @@ void mix(const estimation::State& state, Hash& hash) noexcept {
     hash.mix(*v);
   }
   hash.mix(inertial.turned_in_all);
+  hash.mix(inertial.offset_at_rest);
 }
 
 void mix(const collision::State& state, Hash& hash) noexcept {

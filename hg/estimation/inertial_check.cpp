@@ -13,7 +13,7 @@ constexpr double kMemoryAtRest_s = 0.5;   // without, in which zero and gravity 
 constexpr double kMostBias = 0.03;        // rad/s; more is no zero but a drift
 constexpr double kSlipMemory_s = 0.5;     // after which a difference of speeds is forgotten
 constexpr double kOffsetMemory_s = 2.0;   // in which the zero of the accelerometer is learnt
-constexpr double kMostOffset = 0.6;       // m/s^2; more is no zero of an accelerometer
+constexpr double kMostOffset = 1.0;       // m/s^2: 0.1 rad off level; more is no zero
 constexpr double kTypicalGravity = 9.81;  // m/s^2
 
 }  // namespace
@@ -54,6 +54,7 @@ void advance(double dt, const InertialSample& sample, bool is_on, InertialCheck&
   check.up_S += newest(check.gravity_samples) * (a_S - check.up_S);
   check.offset_S = check.up_S - R_B_S.transpose() * gravity;
   check.offset_S = check.offset_S.cwiseMax(-kMostOffset).cwiseMin(kMostOffset);
+  check.offset_at_rest = check.offset_S.norm();
 }
 
 double turn_uncertainty(const InertialCheck& check) noexcept {
@@ -64,7 +65,7 @@ double turn_uncertainty(const InertialCheck& check) noexcept {
 double slip_uncertainty(const InertialCheck& check) noexcept {
   constexpr double kOwn = 0.2;      // m/s^2
   constexpr double kPeak_s = 0.74;  // of `slip` after a step of 2 m/s^2, with both memories
-  return kPeak_s * std::fmax(0.0, check.offset_S.norm() - kOwn);
+  return kPeak_s * std::fmax(0.0, check.offset_at_rest - kOwn);
 }
 
 double tilt(const InertialCheck& check) noexcept {

@@ -28,6 +28,7 @@ struct InertialCheck {
   /// Specific force at rest, a moving mean, in S, m/s^2.
   Eigen::Vector3d up_S = Eigen::Vector3d::Zero();
   Eigen::Vector3d offset_S = Eigen::Vector3d::Zero();  ///< of `up_S` from gravity, m/s^2
+  double offset_at_rest = 0.0;                         ///< its size then, m/s^2
   Eigen::Vector3d p_S = Eigen::Vector3d::Zero();       ///< of the last sample, by encoders, in B, m
   Eigen::Vector3d v_S = Eigen::Vector3d::Zero();       ///< the same, m/s
   /// By how much the unit has become faster than the encoders say, forgotten soon, in B, m/s.
@@ -52,7 +53,7 @@ double turn_uncertainty(const InertialCheck& check) noexcept;
 
 /// What of `slip` is explained by a base that is not level or a joint that was homed wrongly, m/s:
 /// a turn of the handle by half a turn makes twice the error of gravity's direction of it. Up to
-/// 20 mg of `offset_S` are taken for the unit's own.
+/// 20 mg of `offset_at_rest` are taken for the unit's own.
 double slip_uncertainty(const InertialCheck& check) noexcept;
 
 /// Angle between gravity as measured and as the posture says, rad, 0..pi; pi where an accelerometer

@@ -58,12 +58,12 @@ void Summary::add(const Sample& sample) {
   if (record.mode == Mode::kFault && fault_.code == FaultCode::kNone) {
     fault_ = record.fault;
   }
+  reality_.add(sample);
   if (record.mode != Mode::kRunning) {
     last_acceleration_ = record.a_H;
     return;
   }
 
-  reality_.add(sample);
   ++running_cycles_;
   duration_s_ = record.time_s;
   for (std::size_t i = 0; i < catalogue_.size(); ++i) {

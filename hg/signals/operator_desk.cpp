@@ -3,7 +3,7 @@
 namespace hg {
 
 void OperatorDesk::press_stop(std::uint64_t page) {
-  bits_.fetch_or(kStop);
+  bits_.fetch_or(kStop | kUnseenStop);
   stops_.fetch_add(1);
   pressed_by_.insert(page);
 }
@@ -81,7 +81,8 @@ void OperatorDesk::look(std::int64_t now_ns, SafetyPanel& panel) noexcept {
   const std::uint32_t bits = bits_.load();
   const auto is = [bits](std::uint32_t bit) { return (bits & bit) != 0; };
   const auto is_taken = [&](Input input) { return is(taken(input)); };
-  if (is(kStop)) panel.emergency_stop = true;
+  if (is(kStop) || is(kUnseenStop)) panel.emergency_stop = true;
+  bits_.fetch_and(~(bits & kUnseenStop));
   if (is_taken(Input::kOperatorEnable) && !is(on(Input::kOperatorEnable))) {
     panel.operator_enable = false;
   }

@@ -32,6 +32,7 @@ class OperatorDesk {
 
   // The server's thread. Pages have numbers from 1 on.
 
+  /// In force for one cycle at least, even when it is released before that.
   void press_stop(std::uint64_t page);
   /// Takes back what `page` (or kScript) has pressed. False: it has pressed nothing.
   bool release_stop(std::uint64_t page);
@@ -81,6 +82,7 @@ class OperatorDesk {
   static std::uint32_t taken(Input input) noexcept { return 1u << static_cast<unsigned>(input); }
   static std::uint32_t on(Input input) noexcept { return 8u << static_cast<unsigned>(input); }
   static constexpr std::uint32_t kStop = 64u;
+  static constexpr std::uint32_t kUnseenStop = 128u;  // by the control thread
 
   void let_go(std::size_t input) noexcept;
   bool is_silent(std::size_t input, std::int64_t now_ns) const noexcept {

@@ -55,6 +55,15 @@ TEST(OperatorDesk, AStopStaysUntilEverybodyWhoPressedItHasTakenItBack) {
   EXPECT_FALSE(look(desk, 0).emergency_stop);
 }
 
+TEST(OperatorDesk, AStopThatIsReleasedBeforeACycleHasLookedStopsAllTheSame) {
+  OperatorDesk desk;
+  desk.open();
+  desk.press_stop(1);
+  EXPECT_TRUE(desk.release_stop(1));
+  EXPECT_TRUE(look(desk, 0).emergency_stop);
+  EXPECT_FALSE(look(desk, 0).emergency_stop);
+}
+
 TEST(OperatorDesk, TheStopOfAScriptIsReleasedByName) {
   OperatorDesk desk;
   desk.open();
