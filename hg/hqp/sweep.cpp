@@ -457,6 +457,8 @@ bool start_from_dual(const Problem& problem, const Options& options, int levels,
   if (!work.dual.find_guess(problem, options, levels, top, hint, work.direct, work.point.state)) {
     return false;
   }
+  const auto found = work.dual.point().head(problem.variables());
+  if (!std::isfinite(found.squaredNorm())) return false;
   work.has_dual_point = true;
   work.steps = 0;
   work.released_row = -1;

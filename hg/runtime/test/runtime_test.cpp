@@ -78,6 +78,7 @@ struct Parts {
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(model, Eigen::Vector2d::Zero(), kPosture));
     cycle::Config config;
+    config.estimation.wrench.has_imu = false;
     config.prepositioning.n_p = 2;
     config.monitor.joint_range.assign(6, {-10.0, 10.0});
     config.monitor.joint_speed_max.assign(6, 10.0);
