@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "hg/core/allowed_to_wait.h"
 #include "hg/core/error.h"
 #include "hg/rendering/test/test_models.h"
 #include "hg/runtime/monotonic_clock.h"
@@ -243,6 +244,7 @@ class PagesAtWork : public ::testing::Test {
   class Device : public StillDevice {
    public:
     void read(SensorFrame& sensors) noexcept override {
+      const AllowedToWait for_the_test;
       if (!is_free) turns.acquire();
       StillDevice::read(sensors);
     }
