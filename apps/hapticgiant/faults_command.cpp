@@ -19,15 +19,17 @@
 namespace hg::apps {
 namespace {
 
+void write_cases(const std::string& file, nlohmann::ordered_json json) {
+  if (file.empty()) return;
+  json["version"] = kVersion;
+  write_output(file, json.dump(2) + "\n");
+}
+
 int process_faults(const FaultsArguments& arguments) {
   const std::vector<ProcessCase> cases =
       play_process_faults(arguments.scenarios, arguments.repetitions, arguments.campaign.seed);
   print_out(to_text(cases));
-  if (!arguments.json.empty()) {
-    nlohmann::ordered_json json = to_json(cases);
-    json["version"] = kVersion;
-    write_output(arguments.json, json.dump(2) + "\n");
-  }
+  write_cases(arguments.json, to_json(cases));
   return std::ranges::all_of(cases, &ProcessCase::is_good) ? 0 : 1;
 }
 
@@ -66,11 +68,7 @@ int faults(const FaultsArguments& arguments) {
   if (!arguments.markdown.empty()) {
     write_output(arguments.markdown, experiments::to_markdown(campaign));
   }
-  if (!arguments.json.empty()) {
-    nlohmann::ordered_json json = experiments::to_json(campaign);
-    json["version"] = kVersion;
-    write_output(arguments.json, json.dump(2) + "\n");
-  }
+  write_cases(arguments.json, experiments::to_json(campaign));
   return experiments::is_passed(campaign) ? 0 : 1;
 }
 

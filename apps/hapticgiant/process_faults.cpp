@@ -42,7 +42,6 @@ constexpr auto kUntilRunning = std::chrono::seconds(60);
 constexpr auto kUntilEnded = std::chrono::seconds(30);
 constexpr auto kFaultToStop = milliseconds(300);
 constexpr auto kFrozen = std::chrono::seconds(1);
-constexpr double kStandstill = 0.02;        // rad/s and m/s, of the truth
 constexpr double kWatchedAfter_s = 1.0;     // beyond the session: the device lives on by itself
 constexpr std::uint64_t kUnwritten = 1000;  // samples that a recording may lack at its end
 
@@ -52,6 +51,7 @@ struct Description {
   bool may_die = false;     ///< by a signal
   bool is_recorded = true;  ///< its recording has all but the end
   bool is_told = false;     ///< by an exit code other than 0
+  bool is_stop = false;     ///< the device has to stop by itself: no command comes any more
 };
 
 constexpr auto kDescriptions = std::to_array<Description>({
@@ -63,9 +63,9 @@ constexpr auto kDescriptions = std::to_array<Description>({
     {ProcessFault::kNoDescriptors, "no_descriptors", "it may open nothing more"},
     {ProcessFault::kNoMemory, "no_memory", "it gets no more memory", true, false},
     {ProcessFault::kBusy, "processors_busy", "others take all processors", false, false},
-    {ProcessFault::kFrozen, "frozen", "it is suspended for a second"},
-    {ProcessFault::kSuspended, "suspended", "it is suspended for good", true},
-    {ProcessFault::kKilled, "killed", "kill -9", true},
+    {ProcessFault::kFrozen, "frozen", "it is suspended for a second", false, true, false, true},
+    {ProcessFault::kSuspended, "suspended", "it is suspended for good", true, true, false, true},
+    {ProcessFault::kKilled, "killed", "kill -9", true, true, false, true},
 });
 
 const Description& description_of(ProcessFault fault) {
@@ -95,23 +95,19 @@ class Witness final : public device::Device {
       from_p_ = truth.q_p;
     }
     for (Eigen::Index i = 0; i < from_m_.size(); ++i) {
-      const bool is_slide =
-          !stated.is_slide.empty() && stated.is_slide[static_cast<std::size_t>(i)];
-      look(truth.q_m[i] - from_m_[i], is_slide ? stated.slide_stop_distance : stated.stop_distance);
+      look(truth.q_m[i] - from_m_[i], stated.stop_distance_of_joint(static_cast<int>(i)));
     }
     for (Eigen::Index i = 0; i < from_p_.size(); ++i) {
-      look(truth.q_p[i] - from_p_[i],
-           stated.is_gantry_slide ? stated.gantry_stop_distance : stated.turn_stop_distance);
+      look(truth.q_p[i] - from_p_[i], stated.stop_distance_of_gantry());
     }
     energy_ -= dt * truth.w_H.dot(truth.twist);
     most_energy = std::max(most_energy, energy_);
     watched_s_ += dt;
-    const VectorM& motors = truth.dtheta_m.size() > 0 ? truth.dtheta_m : truth.dq_m;
-    const bool is_still =
-        motors.lpNorm<Eigen::Infinity>() < kStandstill &&
-        (truth.dq_p.size() == 0 || truth.dq_p.lpNorm<Eigen::Infinity>() < kStandstill);
-    if (!is_still) rest_s = std::numeric_limits<double>::quiet_NaN();
-    if (is_still && std::isnan(rest_s)) rest_s = watched_s_;
+    if (!experiments::stands_still(truth)) {
+      rest_s = std::numeric_limits<double>::quiet_NaN();
+    } else if (std::isnan(rest_s)) {
+      rest_s = watched_s_;
+    }
   }
 
   std::atomic<std::uint64_t> periods{0};
@@ -366,15 +362,13 @@ ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& r
                           (witness.is_on && static_cast<double>(witness.periods) * dt > at_s);
                  }) &&
         !controller.has_ended();
-    const bool is_stopped_by_fault = fault == ProcessFault::kFrozen ||
-                                     fault == ProcessFault::kSuspended ||
-                                     fault == ProcessFault::kKilled;
-    if (is_stopped_by_fault) witness.is_watched = true;
+    const bool is_stop = description_of(fault).is_stop;
+    if (is_stop) witness.is_watched = true;
     apply(fault, controller, folder, load);
     if (fault == ProcessFault::kFrozen) {
       std::this_thread::sleep_for(kFrozen);
       controller.send(SIGCONT);
-    } else if (!is_stopped_by_fault) {
+    } else if (!is_stop) {
       std::this_thread::sleep_for(kFaultToStop);
       witness.is_watched = true;
     }
@@ -434,8 +428,8 @@ std::string to_text(const std::vector<ProcessCase>& cases) {
          fmt::format(
              "\nat rest: from the stop (SIGTERM 0.3 s after the fault; the fault itself where the "
              "controller is frozen, suspended or killed)\nuntil all axes of the device stood "
-             "still; "
-             "way: from there on, of the stopping distance; J: given to the person\n\n{} of {} "
+             "still; way: from there on, of the stopping distance; J: given to the person\n\n{} of "
+             "{} "
              "cases moved an axis farther than its stopping distance, did not come to rest, did "
              "not end, or lost more of\ntheir recording than its last second\n",
              bad, cases.size());

@@ -15,9 +15,8 @@
 namespace hg::experiments {
 namespace {
 
-constexpr double kStandstill = 0.02;  // rad/s and m/s, of the truth
-constexpr double kSettling = 1.0;     // s after the grasp: no fault before
-constexpr double kLatest = 8.0;       // s: later faults would tell nothing new
+constexpr double kSettling = 1.0;  // s after the grasp: no fault before
+constexpr double kLatest = 8.0;    // s: later faults would tell nothing new
 constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 
 // Worst of all limits of the device, from the truth.
@@ -42,13 +41,6 @@ class TrueLimits {
   LimitCatalogue limits_;
   std::vector<double> positions_;
 };
-
-// The drives: a person who pulls goes on to bend the springs behind them.
-bool stands_still(const Truth& truth) {
-  const VectorM& motors = truth.dtheta_m.size() > 0 ? truth.dtheta_m : truth.dq_m;
-  const double gantry = truth.dq_p.size() > 0 ? truth.dq_p.lpNorm<Eigen::Infinity>() : 0.0;
-  return motors.lpNorm<Eigen::Infinity>() < kStandstill && gantry < kStandstill;
-}
 
 // Whether the machine no longer does what was asked for.
 bool has_reacted(const CycleRecord& record, bool was_on) {
@@ -85,14 +77,12 @@ class Travel {
     }
     const safety::MonitorConfig& stated = device_.monitor;
     for (Eigen::Index i = 0; i < truth.q_m.size(); ++i) {
-      const bool is_slide =
-          !stated.is_slide.empty() && stated.is_slide[static_cast<std::size_t>(i)];
       look(off_m_[i] + truth.q_m[i] - at_stop_m_[i], truth.q_m[i] - from_m_[i],
-           is_slide ? stated.slide_stop_distance : stated.stop_distance);
+           stated.stop_distance_of_joint(static_cast<int>(i)));
     }
     for (Eigen::Index i = 0; i < truth.q_p.size(); ++i) {
       look(off_p_[i] + truth.q_p[i] - at_stop_p_[i], truth.q_p[i] - from_p_[i],
-           stated.is_gantry_slide ? stated.gantry_stop_distance : stated.turn_stop_distance);
+           stated.stop_distance_of_gantry());
     }
     if (!has_reacted) return;
     energy_ -= dt * truth.w_H.dot(truth.twist);
@@ -226,6 +216,13 @@ bool has_all_cycles(const std::filesystem::path& file, std::uint64_t cycles) {
 }
 
 }  // namespace
+
+bool stands_still(const Truth& truth) {
+  constexpr double kStandstill = 0.02;  // rad/s and m/s
+  const VectorM& motors = truth.dtheta_m.size() > 0 ? truth.dtheta_m : truth.dq_m;
+  const double gantry = truth.dq_p.size() > 0 ? truth.dq_p.lpNorm<Eigen::Infinity>() : 0.0;
+  return motors.lpNorm<Eigen::Infinity>() < kStandstill && gantry < kStandstill;
+}
 
 Interval fault_times(const config::Scenario& scenario) {
   const double grasp_s = scenario.script.script.grasp_s;

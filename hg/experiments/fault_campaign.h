@@ -12,6 +12,7 @@
 #include "hg/experiments/workers.h"
 #include "hg/injection/injection.h"
 #include "hg/recording/recorder.h"
+#include "hg/signals/truth.h"
 
 namespace hg::experiments {
 
@@ -71,6 +72,9 @@ struct Campaign {
   std::vector<std::string> scenarios;
   std::vector<FaultCase> cases;
 };
+
+/// Whether the drives stand still: a person who pulls goes on to bend the springs behind them.
+bool stands_still(const Truth& truth);
 
 /// When faults begin: the hand has settled, and the script goes on for a while. Empty (lb > ub) for
 /// a script that is too short, or that there is none.

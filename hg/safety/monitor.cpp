@@ -305,9 +305,8 @@ void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
     look<FaultCode::kBrakingSpeed>(
         i, std::abs(robot.dq_m[i] - state.ramp_speed[i]),
         is_slide ? config_.slide_braking_deviation : config_.braking_deviation);
-    look<FaultCode::kStopTooFar>(
-        i, std::abs(robot.q_m[i] - state.stop_from[i]),
-        kUntilBrakes * (is_slide ? config_.slide_stop_distance : config_.stop_distance));
+    look<FaultCode::kStopTooFar>(i, std::abs(robot.q_m[i] - state.stop_from[i]),
+                                 kUntilBrakes * config_.stop_distance_of_joint(i));
   }
   const bool is_slide = config_.is_gantry_slide;
   const double gap = is_slide ? config_.gantry_gap : config_.turn_gap;
@@ -319,9 +318,7 @@ void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
                                       gap);
     look<FaultCode::kBrakingSpeed>(n_m_ + i, std::abs(robot.dq_p[i] - state.dq_p_model[i]),
                                    off + by_dead_time);
-    look<FaultCode::kStopTooFar>(
-        n_m_ + i, moved,
-        kUntilBrakes * (is_slide ? config_.gantry_stop_distance : config_.turn_stop_distance));
+    look<FaultCode::kStopTooFar>(n_m_ + i, moved, kUntilBrakes * config_.stop_distance_of_gantry());
   }
 }
 

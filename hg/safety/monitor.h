@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -78,6 +79,16 @@ struct MonitorConfig {
   std::vector<ActuatorModel> actuators;    ///< of the joints; empty: drives follow positions
   int first_cartesian = 0;  ///< Cartesian limits in the catalogue: first and one past the last;
   int end_cartesian = 0;    ///< sums of joints stand between them and the joints
+
+  /// How far a manipulator joint may move in a stop, rad or m.
+  double stop_distance_of_joint(int joint) const noexcept {
+    const auto i = static_cast<std::size_t>(joint);
+    return i < is_slide.size() && is_slide[i] ? slide_stop_distance : stop_distance;
+  }
+  /// The same of any axis of the gantry, m or rad.
+  double stop_distance_of_gantry() const noexcept {
+    return is_gantry_slide ? gantry_stop_distance : turn_stop_distance;
+  }
 };
 
 /// Whether somebody holds the handle, as far as the device can tell.

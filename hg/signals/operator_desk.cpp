@@ -78,11 +78,10 @@ void OperatorDesk::look(std::int64_t now_ns, SafetyPanel& panel) noexcept {
   for (std::size_t i = 0; i < kHeldInputs; ++i) {
     if (is_silent(i, now_ns)) let_go(i);
   }
-  const std::uint32_t bits = bits_.load();
+  const std::uint32_t bits = bits_.fetch_and(~kUnseenStop);
   const auto is = [bits](std::uint32_t bit) { return (bits & bit) != 0; };
   const auto is_taken = [&](Input input) { return is(taken(input)); };
   if (is(kStop) || is(kUnseenStop)) panel.emergency_stop = true;
-  bits_.fetch_and(~(bits & kUnseenStop));
   if (is_taken(Input::kOperatorEnable) && !is(on(Input::kOperatorEnable))) {
     panel.operator_enable = false;
   }
