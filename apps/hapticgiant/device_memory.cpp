@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "apps/hapticgiant/output_file.h"
 #include "hg/core/error.h"
@@ -19,7 +22,8 @@
 namespace hg::apps {
 namespace {
 
-constexpr double kBraked = 0.2;  // s after which brakes have closed and nothing moves any more
+constexpr double kBraked = 0.2;   // s after which brakes have closed and nothing moves any more
+constexpr double kWatched = 1.0;  // s in which nothing may move then
 
 // Nothing: there is none. Throws SetupError where there is one that cannot be read.
 std::optional<std::string> text_of(const std::string& file) {
@@ -50,10 +54,11 @@ std::vector<start_test::Position> posture_of(const config::Device& device,
 
 // With drives off and brakes closed. Nothing: the device has gone.
 std::optional<std::vector<start_test::Position>> braked_posture(const config::Device& device,
-                                                                remote::RemoteDevice& remote) {
+                                                                remote::RemoteDevice& remote,
+                                                                double duration_s = kBraked) {
   SensorFrame sensors;
   CommandFrame off = remote::off_command(remote.welcome().actual);
-  for (double time_s = 0.0; time_s < kBraked; time_s += 1.0 / device.rate_Hz) {
+  for (double time_s = 0.0; time_s < duration_s; time_s += 1.0 / device.rate_Hz) {
     remote.read(sensors);
     if (sensors.driver_fault != FaultCode::kNone) return std::nullopt;
     off.sequence = sensors.sequence;
@@ -61,6 +66,20 @@ std::optional<std::vector<start_test::Position>> braked_posture(const config::De
     remote.write(off);
   }
   return posture_of(device, sensors);
+}
+
+// Names of joints and axes that move although their brakes are closed.
+std::vector<std::string> slipping(const config::Device& device,
+                                  const std::vector<start_test::Position>& from,
+                                  const std::vector<start_test::Position>& to) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double moved = to[i].value - from[i].value;
+    const double most =
+        from[i].is_slide ? device.monitor.slide_brake_slip : device.monitor.brake_slip;
+    if (std::abs(moved) > most) names.push_back(from[i].name);
+  }
+  return names;
 }
 
 }  // namespace
@@ -148,19 +167,38 @@ std::string check_posture(const RunArguments& arguments, const config::Device& d
                   file, device.name, lines, names));
 }
 
-std::string keep_posture(const RunArguments& arguments, const config::Device& device,
-                         remote::RemoteDevice& remote) {
-  const auto now = braked_posture(device, remote);
-  if (!now) return "not kept, because the device has gone: the next run compares with an older one";
+std::vector<std::string> leave_machine(const RunArguments& arguments, const config::Device& device,
+                                       remote::RemoteDevice& remote, FaultCode fault) {
+  std::vector<std::string> lines;
+  const auto braked = braked_posture(device, remote);
+  const auto now = braked ? braked_posture(device, remote, kWatched) : std::nullopt;
+  const std::vector<std::string> names =
+      now ? slipping(device, *braked, *now) : std::vector<std::string>{};
+  if (!names.empty()) {
+    lines.push_back(
+        fmt::format("brakes       {} MOVES WITH ITS BRAKE CLOSED", fmt::join(names, ", ")));
+  }
+  if (!names.empty() || fault == FaultCode::kBrakesSlip) {
+    std::error_code ignored;  // there may be none
+    std::filesystem::remove(start_test_file(arguments.recordings, device, arguments.device_address),
+                            ignored);
+    lines.push_back("start test   counts no more, because a brake did not hold");
+  }
+  if (!now) {
+    lines.push_back(
+        "posture      not kept, because the device has gone: the next run compares with an older "
+        "one");
+    return lines;
+  }
   try {
     make_folder(arguments.recordings);
     write_output(posture_file(arguments, device),
                  start_test::posture_to_json(device.name, arguments.device_address,
                                              std::time(nullptr), *now));
   } catch (const std::exception& error) {
-    return fmt::format("not kept: {}", error.what());
+    lines.push_back(fmt::format("posture      not kept: {}", error.what()));
   }
-  return {};
+  return lines;
 }
 
 }  // namespace hg::apps

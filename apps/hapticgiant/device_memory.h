@@ -30,8 +30,10 @@ std::string check_start_test(const RunArguments& arguments, const config::Device
 std::string check_posture(const RunArguments& arguments, const config::Device& device,
                           remote::RemoteDevice& remote);
 
-/// Keeps where the machine stands at the end of its session, brakes closed. Says why it could not.
-std::string keep_posture(const RunArguments& arguments, const config::Device& device,
-                         remote::RemoteDevice& remote);
+/// Keeps where the machine stands at the end of its session, after a second with closed brakes.
+/// Where one of them slips meanwhile, or `fault` says that one did, its start test counts no more.
+/// What there is to say, one line each; nothing when all is well.
+std::vector<std::string> leave_machine(const RunArguments& arguments, const config::Device& device,
+                                       remote::RemoteDevice& remote, FaultCode fault);
 
 }  // namespace hg::apps

@@ -291,8 +291,11 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   runtime.start();
   watch(runtime, observers);
   const runtime::Report report = runtime.join();
-  const std::string not_kept =
-      run.is_machine ? keep_posture(arguments, scenario.device, *run.remote) : "";
+  std::vector<std::string> about_machine;
+  if (run.is_machine) {
+    about_machine =
+        leave_machine(arguments, scenario.device, *run.remote, observers.summary.fault().code);
+  }
   if (run.remote != nullptr) close_device(*run.remote, observers.summary.fault());
 
   evaluation::RunFacts facts = facts_of(run, options, report);
@@ -306,7 +309,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
                         observers.dumps.summary(runtime.kept_problems())));
   if (run.is_machine) print_out(fmt::format("  start test   {}\n", run.start_test));
-  if (!not_kept.empty()) print_out(fmt::format("  posture      {}\n", not_kept));
+  for (const std::string& line : about_machine) print_out(fmt::format("  {}\n", line));
   bool is_written = recorded.is_whole;
   try {
     if (!arguments.summary.empty()) {

@@ -95,6 +95,10 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "of its speed from that of its reference");
   v.number("braking_deviation_m_per_s", monitor.slide_braking_deviation, kPositive,
            "the same of a prismatic joint");
+  v.number("brake_slip_rad", monitor.brake_slip, kPositive,
+           "that a revolute joint or axis may move at rest with its brake closed, once the device "
+           "had power; a machine without brakes needs a large one");
+  v.number("brake_slip_m", monitor.slide_brake_slip, kPositive, "the same of a prismatic one");
 }
 
 template <class V>

@@ -10,11 +10,11 @@ namespace hg::cycle {
 namespace {
 
 using safety::kBrakingRate;
+using safety::kCoasting;
 using safety::kRampOut;
 using safety::kStandstill;
 
 constexpr double kSafeShare = 0.9;  // of the safe speed, which is watched
-constexpr double kCoasting = 0.1;   // rad/s and m/s
 constexpr double kRampIn = 0.3;     // s in which the forces of a run come in
 
 bool stands_still(const CycleRecord& record) noexcept {
@@ -23,7 +23,6 @@ bool stands_still(const CycleRecord& record) noexcept {
          record.robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
 }
 
-// Measured, so above what encoders and a hand on the springs of a braked arm make of rest.
 bool is_coasting(const RobotState& robot) noexcept {
   return robot.dq_m.lpNorm<Eigen::Infinity>() > kCoasting ||
          robot.dq_p.lpNorm<Eigen::Infinity>() > kCoasting;

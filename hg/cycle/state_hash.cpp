@@ -176,6 +176,12 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
   hash.mix(state.stop_from);
   hash.mix(state.braking_ramp);
   hash.mix(state.ramp_speed);
+  hash.mix(std::uint64_t{state.samples_off} | std::uint64_t{state.was_powered} << 32U);
+  hash.mix(state.braked_at);
+  hash.mix(state.braked_at_p);
+  hash.mix(state.may_slip);
+  hash.mix(state.may_slip_p);
+  hash.mix(static_cast<std::uint64_t>(state.slip.code));
 }
 
 void mix(const passivity::State& state, Hash& hash) noexcept {

@@ -53,7 +53,7 @@ class Travel {
  public:
   Travel(const config::Scenario& scenario) : device_(scenario.device) {}
 
-  // One period from the begin of the fault on, until the device is at rest again.
+  // One period from the begin of the fault on.
   void add(const Truth& truth, const Sample& sample, bool has_reacted) {
     const double dt = device_.rendering.dt;
     if (!has_begun_) {
@@ -248,7 +248,7 @@ FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
   Player player(played);
   TrueLimits limits(scenario);
   Travel travel(scenario);
-  bool is_at_rest = false, was_on = false, has_run = false;
+  bool was_on = false, has_run = false;
   double noticed_at_s = kNever;
   std::uint64_t cycles = 0;
   const auto recorder =
@@ -280,8 +280,8 @@ FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
       result.fault = record.fault.code;
     }
     const bool was_noticed = !std::isnan(noticed_at_s);
-    if (!is_at_rest) travel.add(truth, player.sample(), was_noticed);
-    is_at_rest = is_at_rest || (was_noticed && stands_still(truth));
+    travel.add(truth, player.sample(), was_noticed);
+    result.is_told_to_fall = result.is_told_to_fall || record.fault.code == FaultCode::kBrakesSlip;
     result.stop = std::max(result.stop, record.stop);
     if (std::isnan(noticed_at_s) || !stands_still(truth)) {
       result.stopped_s = kNever;

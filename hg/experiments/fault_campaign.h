@@ -61,10 +61,11 @@ struct FaultCase {
   double worst_excess = 0.0;    ///< true, outside any limit of the device, rad or m
   double worst_distance = 0.0;  ///< of true handle and twin while running or stopping, m
   /// Largest way of an axis that nobody asked for, true: off its plan until the device stopped, and
-  /// all of it from there to rest; as a share of its stopping distance.
+  /// all of it from there on; as a share of its stopping distance.
   double travel_share = 0.0;
-  double energy = 0.0;      ///< given to the person from the stop to rest, J
-  bool is_complete = true;  ///< its recording has every cycle, in order, once
+  double energy = 0.0;           ///< given to the person from the stop on, J
+  bool is_told_to_fall = false;  ///< rule 323 has said that a brake does not hold
+  bool is_complete = true;       ///< its recording has every cycle, in order, once
 };
 
 struct Campaign {

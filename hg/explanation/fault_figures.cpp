@@ -102,6 +102,7 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
     case FaultCode::kBrakingPosition:
     case FaultCode::kBrakingSpeed:
     case FaultCode::kStopTooFar:
+    case FaultCode::kBrakesSlip:
     case FaultCode::kSensorJump:
       // joints, then axes of the gantry
       if (index >= n_m) return name_in(names.gantry, index - n_m, "axis");

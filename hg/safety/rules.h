@@ -344,6 +344,13 @@ inline constexpr Rule kRules[] = {
      .warn_from = 0.9,
      .reaction = Stop::kSto,
      .release = "at once, and look why: brakes had to stop it"},
+    {.code = FaultCode::kBrakesSlip,
+     .name = "brake slips",
+     .meaning = "An axis moves although its drive is off and its brake closed.",
+     .threshold = "monitor.brake_slip_rad, monitor.brake_slip_m",
+     .debounce = {.samples = 3},
+     .reaction = Stop::kSto,
+     .release = "the run is started again, after a start test: no software holds such an axis"},
 };
 
 inline constexpr std::size_t kRuleCount = std::size(kRules);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace hg::safety {
 namespace {
@@ -109,7 +110,13 @@ void break_rule(const Fault& fault, SupervisorState& state, Stop at_least) noexc
   const Stop reaction = std::max(rule_of(fault.code).reaction, at_least);
   const Event event = reaction == Stop::kSto ? Event::kHardRule : Event::kRule;
   const State before = state.state, next = transition(before, event).next;
-  if (next == before) return;
+  if (next == before) {
+    // what the brakes did not hold counts more than why they had to
+    const bool is_worse =
+        fault.code == FaultCode::kBrakesSlip && state.fault.code != FaultCode::kBrakesSlip;
+    if (is_worse) state.also = std::exchange(state.fault, fault);
+    return;
+  }
   const bool has_cause = state.fault.code != FaultCode::kNone && before == State::kToFault;
   enter(next, reaction, state);
   (has_cause ? state.also : state.fault) = fault;

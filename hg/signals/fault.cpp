@@ -72,6 +72,8 @@ std::string_view to_string(FaultCode code) noexcept {
       return "axis brakes too slowly";
     case FaultCode::kStopTooFar:
       return "axis moved too far in a stop";
+    case FaultCode::kBrakesSlip:
+      return "axis moves with its brake closed";
     case FaultCode::kWrenchTooLarge:
       return "user wrench exceeds the sensor's range";
     case FaultCode::kSolverFailed:

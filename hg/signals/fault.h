@@ -50,6 +50,7 @@ enum class FaultCode : std::uint16_t {
   kBrakingPosition = 320,  ///< an axis that is being stopped is not where its braking ramp takes it
   kBrakingSpeed = 321,     ///< an axis that is being stopped has not the speed of its braking ramp
   kStopTooFar = 322,       ///< an axis that is being stopped has moved too far
+  kBrakesSlip = 323,       ///< an axis moves although its drive is off and its brake closed
 };
 
 /// One line for humans, for example "measured value is not finite".

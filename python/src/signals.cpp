@@ -107,7 +107,8 @@ void bind_fault_codes(nb::module_& module) {
       .value("MOTION_UNEXPLAINED", FaultCode::kMotionUnexplained)
       .value("BRAKING_POSITION", FaultCode::kBrakingPosition)
       .value("BRAKING_SPEED", FaultCode::kBrakingSpeed)
-      .value("STOP_TOO_FAR", FaultCode::kStopTooFar);
+      .value("STOP_TOO_FAR", FaultCode::kStopTooFar)
+      .value("BRAKES_SLIP", FaultCode::kBrakesSlip);
 }
 
 void bind_limit_words(nb::module_& module) {

@@ -29,20 +29,28 @@
 namespace hg {
 namespace {
 
-// a simulation that says it were none, whose gantry may be homed wrongly
+// a simulation that says it were none, whose gantry may be homed wrongly, and the brake of whose m5
+// may not hold
 class Homed final : public device::Device {
  public:
-  Homed(device::SimulatedDevice device, double offset)
-      : device_(std::move(device)), offset_(offset) {}
+  Homed(device::SimulatedDevice device, double offset, double falling)
+      : device_(std::move(device)), offset_(offset), falling_(falling) {}
   void read(SensorFrame& sensors) noexcept override {
     device_.read(sensors);
     sensors.q_p[0] += offset_;
+    if (was_on_ && !is_on_) fallen_ += 1e-3 * falling_;
+    sensors.q_m[4] += fallen_;
   }
-  void write(const CommandFrame& command) noexcept override { device_.write(command); }
+  void write(const CommandFrame& command) noexcept override {
+    is_on_ = command.enable;
+    was_on_ = was_on_ || is_on_;
+    device_.write(command);
+  }
 
  private:
   device::SimulatedDevice device_;
-  double offset_;
+  double offset_, falling_, fallen_ = 0.0;
+  bool is_on_ = false, was_on_ = false;
 };
 
 class Machine {
@@ -55,7 +63,7 @@ class Machine {
                                      .lock_step_timeout_s = 60.0}),
         thread_([this] {
           while (server_.wait_for_client(stop_)) {
-            Homed device(world_, homing_error.load());
+            Homed device(world_, homing_error.load(), falling.load());
             server_.serve(device, stop_);
           }
         }) {}
@@ -66,6 +74,7 @@ class Machine {
   std::string address() const { return server_.address(); }
 
   std::atomic<double> homing_error{0.0};  ///< of the first axis, from the next session on, m
+  std::atomic<double> falling{0.0};       ///< speed of m5 once the power has gone, rad/s; the same
 
  private:
   std::atomic<bool> stop_{false};
@@ -173,6 +182,22 @@ TEST_F(MachineTest, AGantryThatWasHomedThirtyCentimetresOffIsRefusedByName) {
   arguments_.confirmed_joints.clear();
   std::ofstream(posture_file()) << "{";
   expect_part(refusal(), "expected the posture that a run has kept");
+}
+
+TEST_F(MachineTest, AfterABrakeThatDidNotHoldTheStartTestCountsNoMore) {
+  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  Machine machine(scenario);
+  arguments_.device_address = machine.address();
+  keep_result(scenario.device);
+  EXPECT_EQ(apps::run(arguments_), 1);
+  EXPECT_EQ(refusal(), "") << "brakes that hold";
+  machine.falling.store(0.3);
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(apps::run(arguments_), 1);
+  const std::string said = testing::internal::GetCapturedStdout();
+  expect_part(said, "m5 MOVES WITH ITS BRAKE CLOSED");
+  expect_part(said, "start test   counts no more");
+  expect_part(refusal(), "no start test of HapticGiant that counts: there is none");
 }
 
 TEST_F(MachineTest, AFileThatCannotBeReadIsNotTakenForNone) {

@@ -97,6 +97,18 @@ TEST(PlayFault, AGantryEncoderThatDriftsSlowlyIsSeenInTime) {
   }
 }
 
+TEST(PlayFault, AnArmThatFallsBecauseItsBrakeDoesNotHoldIsWatchedToTheEndAndTold) {
+  const injection::Injection weak = {
+      .kind = injection::find_kind("brake_weak"), .index = 4, .from_s = 2.0};
+  const injection::Injection stop = {.kind = injection::find_kind("emergency_stop"), .from_s = 4.0};
+  const FaultCase result =
+      play_fault(config::load_scenario("models/scenarios/excavator.yaml"),
+                 {.phase = Phase::kPair, .injection = weak, .other = stop}, {}, 10.0);
+  EXPECT_EQ(result.outcome, Outcome::kNoticed);
+  EXPECT_GT(result.travel_share, 1.0);
+  EXPECT_TRUE(result.is_told_to_fall);
+}
+
 TEST(PlayFault, AnEncoderThatJumpsIsNamedAndNotTheCollisionThatItSeemsToBe) {
   for (const int joint : {0, 1, 2, 3, 4}) {
     EXPECT_EQ(play("link_encoder_zero", joint).fault, FaultCode::kSensorJump) << joint;
@@ -128,6 +140,25 @@ TEST(Campaign, IsTheSameForTheSameSeedAndTellsEveryCase) {
   EXPECT_EQ(cases.size(), 4U);
   EXPECT_EQ(cases_of(3), cases);
   EXPECT_NE(cases_of(4), cases);
+}
+
+TEST(Campaign, CountsAnArmThatNoSoftwareHoldsByItself) {
+  Campaign campaign;
+  campaign.scenarios = {"walk"};
+  FaultCase fallen = {.injection = {.kind = injection::find_kind("brake_weak")},
+                      .other = injection::Injection{.kind = injection::find_kind("emergency_stop")},
+                      .outcome = Outcome::kNoticed,
+                      .travel_share = 3.0,
+                      .is_told_to_fall = true};
+  campaign.cases = {fallen};
+  EXPECT_TRUE(is_passed(campaign));
+  EXPECT_NE(to_text(campaign).find("1 of 1 cases fell because a brake did not hold"),
+            std::string::npos);
+  campaign.cases[0].is_told_to_fall = false;
+  EXPECT_FALSE(is_passed(campaign)) << "nobody was told";
+  campaign.cases = {fallen};
+  campaign.cases[0].injection.kind = injection::find_kind("motor_dead");
+  EXPECT_FALSE(is_passed(campaign)) << "all brakes held";
 }
 
 TEST(Campaign, FailsForAnUnnoticedFaultAndForAnExceededBound) {

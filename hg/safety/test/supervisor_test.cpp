@@ -257,6 +257,22 @@ TEST(Supervisor, TheFirstCauseIsKeptAndWhatEndsAStopIsRememberedBesides) {
   EXPECT_EQ(state.also.code, kHardFault.code);
 }
 
+TEST(Supervisor, ABrakeThatSlipsIsToldWhateverMadeItClose) {
+  constexpr Fault kSlip{FaultCode::kBrakesSlip, 4, 0.11, 0.1};
+  SupervisorState state = in(State::kFault);
+  const FaultCode first = state.fault.code;
+  for (int k = 0; k < 2; ++k) {
+    break_rule(kSlip, state);
+    EXPECT_EQ(state.state, State::kFault);
+    EXPECT_EQ(state.fault.code, FaultCode::kBrakesSlip);
+    EXPECT_EQ(state.also.code, first) << "the first cause is kept besides";
+  }
+  SupervisorState ready = in(State::kReady);
+  break_rule(kSlip, ready);
+  EXPECT_EQ(ready.state, State::kFault);
+  EXPECT_EQ(ready.fault.code, FaultCode::kBrakesSlip);
+}
+
 TEST(Supervisor, AStopThatTakesTooLongIsBrokenOff) {
   for (const State stopping : {State::kToArmed, State::kToReady, State::kToFault}) {
     SupervisorState state = in(stopping);
