@@ -100,9 +100,9 @@ void JointControl::restart(State& state) const noexcept {
 }
 
 void JointControl::listen(const SensorFrame& sensors, bool on, State& state) const noexcept {
-  if (config_.method == Method::kDrives) return;
   const double age = age_of(sensors);
   if (on) {
+    if (state.answers == 0) return;  // drives that follow positions need not answer
     const bool is_late = age < 0.0 || age > state.latency + kLatencyMargin;
     state.late = std::max(0, state.late + (is_late ? 1 : -1));
     return;
@@ -114,6 +114,7 @@ void JointControl::listen(const SensorFrame& sensors, bool on, State& state) con
 }
 
 Fault JointControl::check_latency(const SensorFrame& sensors, const State& state) const noexcept {
+  if (config_.method == Method::kDrives) return {};
   return state.late * config_.dt < kLateFor ? Fault{} : link_fault(sensors, state);
 }
 

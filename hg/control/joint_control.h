@@ -82,14 +82,16 @@ class JointControl {
   bool is_latency_known(const State& state) const noexcept {
     return config_.method == Method::kDrives || state.answers >= kAnswersNeeded;
   }
-  /// Whether the loop may be closed with the latency that was measured.
+  /// Whether the loop may be closed with the latency that was measured, or there is none.
   bool is_stable(const State& state) const noexcept {
-    return state.latency * config_.dt <= config_.latency_max;
+    return config_.method == Method::kDrives || state.latency * config_.dt <= config_.latency_max;
   }
   /// kCommandsLost or kLatencyGrew when the command at work was half a period older than the
-  /// latency that the gains know in 50 ms more of samples than it was not; kNone otherwise.
+  /// latency that the gains know in 50 ms more of samples than it was not; kNone otherwise, and
+  /// where there is no torque loop.
   Fault check_latency(const SensorFrame& sensors, const State& state) const noexcept;
-  /// The same from 5 ms on: enough to be why the device does not move as commanded.
+  /// The same from 5 ms on, of any device that answers: enough to be why it does not move as
+  /// commanded.
   Fault link_disturbance(const SensorFrame& sensors, const State& state) const noexcept;
   /// Drives are off: the next step begins anew.
   void rest(const ReferenceState& reference, State& state, CommandFrame& command) const noexcept;

@@ -68,6 +68,8 @@ bool follows_from_link(FaultCode code) noexcept {
     case FaultCode::kJointTorqueExceeded:
     case FaultCode::kMotorDeviates:
     case FaultCode::kTorqueUnexplained:
+    case FaultCode::kTurnUnexplained:
+    case FaultCode::kMotionUnexplained:
     case FaultCode::kLimitExceeded:
     case FaultCode::kSpeedExceeded:
     case FaultCode::kTrackingLost:

@@ -495,8 +495,8 @@ TEST(Cycle, ALatencyThatGrowsWhileTheDrivesAreOnStopsTheDevice) {
 
 // Commands of so many periods do not reach the device, and from the period `at` on (-1: never) a
 // joint comes away from its reference. The fault; kNone: it goes on.
-FaultCode fault_of_lost_commands(int periods, int at) {
-  Loop loop(false, true, false);
+FaultCode fault_of_lost_commands(int periods, int at, bool has_torque_loop = true) {
+  Loop loop(false, has_torque_loop, false);
   loop.run(200);
   loop.start_running();
   loop.run(100);
@@ -517,6 +517,9 @@ TEST(Cycle, CommandsThatDoNotReachTheDeviceAreTheCauseThatIsNamed) {
   // and not what they lead to, while they are lost and soon after
   EXPECT_EQ(fault_of_lost_commands(40, 10), FaultCode::kCommandsLost);
   EXPECT_EQ(fault_of_lost_commands(40, 40), FaultCode::kCommandsLost);
+  // which drives that follow positions bear, but what they lead to has the same name
+  EXPECT_EQ(fault_of_lost_commands(300, -1, false), FaultCode::kNone);
+  EXPECT_EQ(fault_of_lost_commands(40, 10, false), FaultCode::kCommandsLost);
   // another cause is told all the same
   EXPECT_EQ(fault_of_lost_commands(0, 10), FaultCode::kSpeedExceeded);
   EXPECT_EQ(fault_of_lost_commands(3, 3), FaultCode::kSpeedExceeded);
