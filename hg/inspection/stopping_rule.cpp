@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 namespace hg::inspection {
 
@@ -31,7 +32,11 @@ std::vector<Stopping> stopping_of(const config::Device& device) {
 }
 
 void inspect_stopping(const config::Device& device, Collector& out) {
+  constexpr double kTooFar = 4.0;  // times what the slowest axis needs: that is no bound any more
+  std::map<std::string, Stopping> slowest;  // by the key that states their distance
   for (const Stopping& s : stopping_of(device)) {
+    Stopping& worst = slowest.try_emplace(s.key, s).first->second;
+    if (s.need.distance > worst.need.distance) worst = s;
     if (std::isfinite(s.need.distance) && s.need.distance > safety::kUntilBrakes * s.distance) {
       const char* unit = s.is_angle ? "rad" : "m";
       out.add(
@@ -47,6 +52,16 @@ void inspect_stopping(const config::Device& device, Collector& out) {
                           device.monitor.stop_time, s.name, s.need.time),
               "raise it, or lower the speed of the joint");
     }
+  }
+  for (const auto& [key, s] : slowest) {
+    if (!(s.distance > kTooFar * s.need.distance)) continue;
+    const char* unit = s.is_angle ? "rad" : "m";
+    out.add(
+        Severity::kWarning, key,
+        fmt::format("{:g} {}, where {} needs {:.3g} {} to stop from full speed, and no axis "
+                    "more: so far one may run before its brakes close",
+                    s.distance, unit, s.name, s.need.distance, unit),
+        fmt::format("lower it, or leave it out: {:.3g} {} would do", 1.25 * s.need.distance, unit));
   }
 }
 

@@ -22,7 +22,8 @@ struct Stopping {
 /// Gantry first.
 std::vector<Stopping> stopping_of(const config::Device& device);
 
-/// Adds a fault for every distance, and a warning for a time, that an ordinary stop would exceed.
+/// Adds a fault for every distance, and a warning for a time, that an ordinary stop would exceed,
+/// and a warning for a distance that no stop comes near to.
 void inspect_stopping(const config::Device& device, Collector& out);
 
 }  // namespace hg::inspection

@@ -390,6 +390,14 @@ TEST_F(DeskTest, OldSequenceNumbersHoldNothing) {
   EXPECT_FALSE(look().override_key);
 }
 
+TEST_F(DeskTest, ASwitchIsOnOrOff) {
+  const auto page = open_page();
+  EXPECT_EQ(ask(*page, "panel", "override_key", 2.0), "a switch is 0 (off) or 1 (on)");
+  SafetyPanel panel;
+  desk_.look(0, panel);
+  EXPECT_FALSE(panel.override_key);
+}
+
 TEST_F(DeskTest, AClosedPageLetsGoAtOnce) {
   const auto page = open_page();
   EXPECT_EQ(ask(*page, "panel", "operator_enable", 1.0), "");
