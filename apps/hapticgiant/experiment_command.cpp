@@ -2,16 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/progress.h"
+#include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/assembly/assembly.h"
 #include "hg/config/scenario.h"
+#include "hg/core/error.h"
 #include "hg/experiments/free_space.h"
 #include "hg/experiments/impedance.h"
+#include "hg/experiments/seed_ranges.h"
 #include "hg/experiments/stability_map.h"
 
 namespace hg::apps {
@@ -63,6 +68,37 @@ int experiment_impedance(const ExperimentArguments& arguments) {
   print_out(experiments::to_text(report));
   write_json(arguments, experiments::to_json(report));
   return 0;
+}
+
+int experiment_seeds(const SeedsArguments& arguments) {
+  std::vector<experiments::Trial> trials;
+  for (const std::string& scenario : arguments.scenarios) {
+    for (const std::string& hand : arguments.hands) {
+      RunArguments run;
+      run.world.scenario = scenario;
+      run.world.hand = hand == "own" ? "" : hand;
+      run.law = arguments.law;
+      run.bounds = arguments.bounds;
+      trials.push_back({.name = std::filesystem::path(scenario).stem().string(),
+                        .hand = run.world.hand,
+                        .scenario = make_scenario(run)});
+      if (assembly::planned_duration_s(trials.back().scenario) == 0.0) {
+        throw SetupError(scenario + ": no script plays it, so that it has no end");
+      }
+    }
+  }
+  check_writable(arguments.json, kJson);
+  check_writable(arguments.markdown, kMarkdown);
+  print_out(fmt::format("HapticGiant {}  seeds {} to {}\n\n", kVersion, arguments.first,
+                        arguments.first + static_cast<std::uint64_t>(arguments.count) - 1));
+  const std::vector<experiments::SeededRun> runs =
+      experiments::play_seeds(trials, arguments.first, arguments.count, progress_of("runs"));
+  print_out(experiments::to_text(trials, runs));
+  write_json({.json = arguments.json, .svg = {}}, experiments::to_json(trials, runs));
+  if (!arguments.markdown.empty()) {
+    write_output(arguments.markdown, experiments::to_markdown(trials, runs));
+  }
+  return experiments::have_all_held(runs) ? 0 : 1;
 }
 
 }  // namespace hg::apps

@@ -1,7 +1,9 @@
 /// `hapticgiant experiment NAME`: what the simulated device is like to hold, measured.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace hg::apps {
 
@@ -10,9 +12,22 @@ struct ExperimentArguments {
   std::string svg;   ///< file for the drawing; empty = none
 };
 
+struct SeedsArguments {
+  std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
+  std::vector<std::string> hands = {"own"};  ///< or presets
+  int count = 16;
+  std::uint64_t first = 1;
+  std::string law;       ///< "gauss" or "paper"; empty = the device's
+  std::string bounds;    ///< "recoverable" or "paper"; likewise
+  std::string json;      ///< file for all runs; empty = none
+  std::string markdown;  ///< file for the table; empty = none
+};
+
 /// Each prints to stdout and returns the exit code: 0; bad input is thrown as SetupError.
 int experiment_free_space(const ExperimentArguments& arguments);
 int experiment_stability_map(const ExperimentArguments& arguments);
 int experiment_impedance(const ExperimentArguments& arguments);
+/// Exit code 1 when a run ended in a fault or left a limit.
+int experiment_seeds(const SeedsArguments& arguments);
 
 }  // namespace hg::apps

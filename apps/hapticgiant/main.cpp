@@ -392,8 +392,34 @@ void add_identify(CLI::App& app, hg::apps::IdentifyArguments& arguments, int& ex
       [&arguments, &exit_code] { exit_code = hg::apps::identify_payload(arguments); });
 }
 
+void add_seeds(CLI::App& experiment, hg::apps::SeedsArguments& arguments, int& exit_code) {
+  CLI::App* command = experiment.add_subcommand(
+      "seeds", "what scenarios show over many seeds and hands: limits, faults, events, errors");
+  command->add_option("scenarios", arguments.scenarios, "scenario files or names")
+      ->capture_default_str();
+  command->add_option("--hands", arguments.hands, "own: that of each scenario; or presets")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"own", "relaxed", "normal", "stiff"}))
+      ->capture_default_str();
+  command->add_option("--count", arguments.count, "seeds per scenario and hand")
+      ->check(whole_number(1.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--first", arguments.first, "the first of them")
+      ->check(whole_number(0.0))
+      ->capture_default_str();
+  command->add_option("--law", arguments.law, "gauss or paper; default: the device's")
+      ->check(CLI::IsMember({"gauss", "paper"}));
+  command->add_option("--bounds", arguments.bounds, "recoverable or paper; default: the device's")
+      ->check(CLI::IsMember({"recoverable", "paper"}));
+  command->add_option("--json", arguments.json, "write all runs as JSON to this file");
+  command->add_option("--markdown", arguments.markdown, "write the table as Markdown to this file");
+  command->callback(
+      [&arguments, &exit_code] { exit_code = hg::apps::experiment_seeds(arguments); });
+}
+
 void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
-                    hg::apps::ExperimentsArguments& more, int& exit_code) {
+                    hg::apps::SeedsArguments& seeds, hg::apps::ExperimentsArguments& more,
+                    int& exit_code) {
   CLI::App* command =
       app.add_subcommand("experiment",
                          "The paper's experiments, and what the simulated device is like to hold "
@@ -406,7 +432,8 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
       "  hapticgiant experiment free-space        force and vibration on a slow walk, what makes "
       "them\n"
       "  hapticgiant experiment stability-map --svg stability.svg\n"
-      "  hapticgiant experiment impedance --json impedance.json");
+      "  hapticgiant experiment impedance --json impedance.json\n"
+      "  hapticgiant experiment seeds free_space --hands own,stiff --count 16");
   hg::apps::add_paper_experiments(*command, more.paper, exit_code);
   const auto add = [&](const char* name, const char* text,
                        int (*run)(const hg::apps::ExperimentArguments&)) {
@@ -422,6 +449,7 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
       ->add_option("--svg", arguments.svg, "draw the map to this file");
   add("impedance", "how far the handle gives way, by frequency and under a constant push",
       hg::apps::experiment_impedance);
+  add_seeds(*command, seeds, exit_code);
 }
 
 void add_faults(CLI::App& app, hg::apps::FaultsArguments& arguments, int& exit_code) {
@@ -524,6 +552,7 @@ int main(int argc, char** argv) {
   hg::apps::HqpSolveArguments hqp;
   hg::apps::IdentifyArguments identified;
   hg::apps::ExperimentArguments measured;
+  hg::apps::SeedsArguments seeds;
   hg::apps::ExperimentsArguments experiments;
   hg::apps::BenchArguments compared;
   hg::apps::FaultsArguments broken;
@@ -538,7 +567,7 @@ int main(int argc, char** argv) {
   add_new(app, created, exit_code);
   add_hqp(app, hqp, exit_code);
   add_identify(app, identified, exit_code);
-  add_experiment(app, measured, experiments, exit_code);
+  add_experiment(app, measured, seeds, experiments, exit_code);
   hg::apps::add_plot_and_compare(app, experiments, exit_code);
   add_bench(app, compared, exit_code);
   add_faults(app, broken, exit_code);
