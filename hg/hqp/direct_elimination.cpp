@@ -423,9 +423,9 @@ double DirectElimination::reduce_to_free(int variable, double* y) noexcept {
 }
 
 void DirectElimination::complete(double* x) const noexcept {
+  for (int t = 0; t < rank_; ++t) x[pivots_[index(t)].variable] = 0.0;  // 0 * NaN is not 0
   for (int t = rank_ - 1; t >= 0; --t) {
     const Pivot& pivot = pivots_[index(t)];
-    x[pivot.variable] = 0.0;
     const double others = pivot.is_unit ? 0.0 : dot(n_, reduced_row(t), x);
     x[pivot.variable] = (pivot.value - others) * pivot.inverse;
   }

@@ -61,7 +61,7 @@ class DirectElimination {
   /// The same of a single variable.
   double reduce_to_free(int variable, double* y) noexcept;
 
-  /// The taken variables of x from the free ones.
+  /// The taken variables of x from the free ones, whatever they were.
   void complete(double* x) const noexcept;
 
   /// mu with g + sum over t < rank of mu_t c_t = 0, of which only those from `first` on are

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <limits>
 #include <vector>
 
 namespace hg::hqp {
@@ -145,6 +146,24 @@ TEST(DirectElimination, LeavesFixedVariablesToTheirOwnRows) {
   ASSERT_TRUE(elimination.find_point(x.data()));
   EXPECT_EQ(x[1], 0.1);  // without rounding, as the longest number of row 0 was not eliminated
   EXPECT_NEAR(C.row(0).dot(x), 1.3, kRounding);
+}
+
+// What x was where variables are taken, NaN included, does not show.
+TEST(DirectElimination, CompletesAPointFromItsFreeVariables) {
+  srand(5);
+  const Eigen::MatrixXd C = Eigen::MatrixXd::Random(3, 4);
+  const Problem problem = problem_of(C);
+  DirectElimination elimination(4, 7);
+  elimination.reset(problem);
+  for (int row = 0; row < 3; ++row) {
+    ASSERT_EQ(elimination.add_row(problem, {row, 1.0 + row}, kRank), Outcome::kIndependent);
+  }
+  Eigen::Vector4d x;
+  for (int v = 0; v < 4; ++v) {
+    x[v] = elimination.is_free(v) ? 0.5 : std::numeric_limits<double>::quiet_NaN();
+  }
+  elimination.complete(x.data());
+  EXPECT_LT((C * x - Eigen::Vector3d(1.0, 2.0, 3.0)).norm(), kRounding);
 }
 
 TEST(DirectElimination, ForgetsPivotsOnDemand) {
