@@ -509,16 +509,13 @@ void DualMethod::write(std::vector<RowState>& guess) const noexcept {
 
 // The first level from first_ on that is expected to have violated inequalities.
 int DualMethod::hinted_level() const noexcept {
-  for (int level = first_; level < levels_; ++level) {
-    for (int row = problem_->first_row(level); row < problem_->end_row(level); ++row) {
-      if (is_violated(hint_[at(row)]) && !is_equality(problem_->bounds(row))) return level;
-    }
-  }
-  return levels_;
+  int level = first_;
+  while (level < levels_ && hint_[at(level)] == 0) ++level;
+  return level;
 }
 
 bool DualMethod::find_guess(const Problem& problem, const Options& options, int levels, int top,
-                            std::span<const RowState> hint, DirectElimination& direct,
+                            std::span<const std::uint8_t> hint, DirectElimination& direct,
                             std::vector<RowState>& guess) noexcept {
   problem_ = &problem;
   options_ = &options;

@@ -29,10 +29,10 @@ class DualMethod {
 
   /// Active rows of the first `levels` levels into `guess`. `direct` holds the equalities of the
   /// first `top` levels, which have no other rows; it is left with other pivots behind these.
-  /// `hint`: states of the last solve; levels that had violated rows then are settled one by one at
-  /// once. False: given up, `guess` is not written.
+  /// `hint`, by level: whether violated inequalities are expected there; such levels are settled one
+  /// by one at once. False: given up, `guess` is not written.
   bool find_guess(const Problem& problem, const Options& options, int levels, int top,
-                  std::span<const RowState> hint, DirectElimination& direct,
+                  std::span<const std::uint8_t> hint, DirectElimination& direct,
                   std::vector<RowState>& guess) noexcept;
   /// The point of the guess, all variables.
   const Eigen::VectorXd& point() const noexcept { return x_; }
@@ -86,7 +86,7 @@ class DualMethod {
   const Problem* problem_ = nullptr;
   const Options* options_ = nullptr;
   int levels_ = 0;
-  std::span<const RowState> hint_;
+  std::span<const std::uint8_t> hint_;
   int first_ = 0;  ///< levels above are settled
   int level_ = 0;  ///< s; problem.levels(): the smallest |x|
   int last_ = 0;   ///< the largest level that s may be

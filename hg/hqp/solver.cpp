@@ -53,6 +53,17 @@ bool misses_rows(const Problem& problem, const Options& options, int levels,
   return false;
 }
 
+// Whether `other` has rows as `guess` has them that the tries since have corrected.
+bool repeats_mistake(const Problem& problem, int levels, const std::vector<RowState>& guess,
+                     const std::vector<RowState>& other, const Workspace& work) noexcept {
+  const int rows = rows_of(problem, levels);
+  for (int row = 0; row < rows; ++row) {
+    if (is_equality(problem.bounds(row)) || other[at(row)] != guess[at(row)]) continue;
+    if (as_guess(work.point.state[at(row)]) != guess[at(row)]) return true;
+  }
+  return false;
+}
+
 // Tries the guess in work.point.state and its corrections until one is proven, or `max_effort` is
 // spent, or `iterations` reaches `max_iterations`.
 bool try_guesses(const Problem& problem, const Options& options, int levels, int max_effort,
@@ -94,7 +105,8 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
   }
   load_guess(problem, levels, active.state, first);
   const bool has_second = load_guess(problem, levels, active.before, second);
-  if (has_second && !std::equal(first.begin(), first.begin() + rows, second.begin())) {
+  if (has_second && !std::equal(first.begin(), first.begin() + rows, second.begin()) &&
+      !repeats_mistake(problem, levels, first, second, work)) {
     start_from_zero_with(problem, second, work);
     if (try_for(kEffortOfSecondGuess)) return true;
   }

@@ -444,8 +444,38 @@ int take_better_point(const Problem& problem, const Options& options, int levels
   return work.proven_levels;
 }
 
+// Whether an inequality of the level is violated, by its state or at the point tried last.
+template <typename IsViolated>
+bool has_violated_inequality(const Problem& problem, int level, const IsViolated& is_it) noexcept {
+  for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
+    if (!is_equality(problem.bounds(row)) && problem.norm(row) > 0.0 && is_it(row)) return true;
+  }
+  return false;
+}
+
+// Levels that are expected to have violated inequalities, into work.has_violated: those of the last
+// solve; when it had none, those that the point tried last violates, but for the first of them,
+// where a row has become active since.
+void expect_violated(const Problem& problem, const Options& options, int levels,
+                     std::span<const RowState> last, Workspace& work) noexcept {
+  bool has_any = false;
+  for (int level = 0; level < levels; ++level) {
+    work.has_violated[at(level)] = has_violated_inequality(
+        problem, level, [&](int row) { return is_violated(last[at(row)]); });
+    has_any |= work.has_violated[at(level)] != 0;
+  }
+  if (has_any) return;
+  for (int level = 0; level < levels; ++level) {
+    const bool has = has_violated_inequality(problem, level, [&](int row) {
+      return violation(problem, options, work, row) != 0.0;
+    });
+    work.has_violated[at(level)] = has && has_any;
+    has_any |= has;
+  }
+}
+
 bool start_from_dual(const Problem& problem, const Options& options, int levels,
-                     std::span<const RowState> hint, Workspace& work) noexcept {
+                     std::span<const RowState> last, Workspace& work) noexcept {
   int top = 0;  // levels that the guesses so far have in common
   while (top < work.direct_levels && !has_inequality(problem, top)) ++top;
   if (top == 0) {
@@ -454,7 +484,9 @@ bool start_from_dual(const Problem& problem, const Options& options, int levels,
     work.direct.truncate(work.direct_rank_at_level[at(top)]);
   }
   work.direct_levels = top;
-  if (!work.dual.find_guess(problem, options, levels, top, hint, work.direct, work.point.state)) {
+  expect_violated(problem, options, levels, last, work);
+  if (!work.dual.find_guess(problem, options, levels, top, work.has_violated, work.direct,
+                            work.point.state)) {
     return false;
   }
   const auto found = work.dual.point().head(problem.variables());

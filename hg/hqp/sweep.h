@@ -38,9 +38,9 @@ void start_from_zero_with(const Problem& problem, std::vector<RowState>& guess,
 void start_solve(const Problem& problem, Workspace& work) noexcept;
 
 /// The guess of the dual method into work.point.state, its point being the last one. False: it has
-/// none, and work.point.state is as it was. `hint`: the states of the last solve.
+/// none, and work.point.state is as it was. `last`: the states of the last solve.
 bool start_from_dual(const Problem& problem, const Options& options, int levels,
-                     std::span<const RowState> hint, Workspace& work) noexcept;
+                     std::span<const RowState> last, Workspace& work) noexcept;
 
 /// After a last guess that was not proven: the better one of its point and that of the dual method,
 /// level by level, into work.point. Returns the number of levels that it is optimal for.

@@ -93,6 +93,28 @@ Effort solve_all(const Contradiction& kind, int seeds) {
   return effort;
 }
 
+// A second guess that is wrong in what the first one has just been corrected in is not tried: the
+// first guess and that of the dual method are.
+TEST(DualMethod, ComesBeforeASecondGuessThatIsKnownToBeWrong) {
+  constexpr int n = 6;
+  Problem problem({.variables = n, .levels = 2, .rows = 2 * n});
+  problem.add_level();
+  for (int i = 0; i < n; ++i) problem.add_bound(i, {-kInfinity, 1.0});
+  problem.add_level();
+  for (int i = 0; i < n; ++i) {
+    const double wish = i == 2 ? 9.0 : 2.0;
+    problem.add_bound(i, {wish, wish});  // all limits act, that of x2 is first in the way
+  }
+  Solver solver(problem.capacity());
+  Solution solution(problem.capacity());
+  ActiveSet active;
+  active.state[0] = RowState::kUpper;
+  active.before[1] = RowState::kUpper;
+  EXPECT_EQ(solver.solve(problem, {}, active, solution), Status::kSolved);
+  EXPECT_EQ(solution.iterations, 2);
+  for (const double x : solution.x) EXPECT_EQ(x, 1.0);
+}
+
 // Cold, 4 active sets are tried before the dual method; its guess needs one.
 TEST(DualMethod, FindsContradictionsOfTwoLevels) {
   const Effort effort = solve_all({.variables = 12, .depth = 2, .count = 3}, 50);
