@@ -17,7 +17,7 @@ namespace {
 constexpr int kEffortOfGuess = 2;        // itself, and one row more or less,
 constexpr int kEffortFromZero = 4;       // when there is none,
 constexpr int kEffortOfSecondGuess = 1;  // what differs more is found faster by the dual method,
-constexpr int kEffortOfDual = 4;       // which is almost always right. Where it gives up: from zero
+constexpr int kEffortOfDual = 2;       // which is almost always right. Where it gives up: from zero
 constexpr int kEffort = 32;            // with this and so much per variable. More is
 constexpr int kEffortPerVariable = 2;  // taken for a cycle
 constexpr double kFar = 10.0;          // |x| of the dual method's point beside that of the result
@@ -110,8 +110,16 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
     start_from_zero_with(problem, second, work);
     if (try_for(kEffortOfSecondGuess)) return true;
   }
-  if (start_from_dual(problem, options, levels, active.state, work)) {
+  expect_violated(problem, options, levels, active.state, work);
+  if (start_from_dual(problem, options, levels, work)) {
     if (try_for(kEffortOfDual)) return true;
+    // where the levels that give way were not the expected ones: again with those of the point
+    // found
+    const bool has_time = options.budget == 0 || iterations < options.budget;
+    if (has_time && expect_violated_now(problem, options, levels, work) &&
+        start_from_dual(problem, options, levels, work) && try_for(kEffortOfDual)) {
+      return true;
+    }
     if (options.budget == 0 || iterations < options.budget) return false;
     work.is_last = true;
     const int last = std::min(options.budget + 1, options.max_iterations);

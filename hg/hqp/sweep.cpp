@@ -453,29 +453,37 @@ bool has_violated_inequality(const Problem& problem, int level, const IsViolated
   return false;
 }
 
-// Levels that are expected to have violated inequalities, into work.has_violated: those of the last
-// solve; when it had none, those that the point tried last violates, but for the first of them,
-// where a row has become active since.
 void expect_violated(const Problem& problem, const Options& options, int levels,
                      std::span<const RowState> last, Workspace& work) noexcept {
   bool has_any = false;
   for (int level = 0; level < levels; ++level) {
-    work.has_violated[at(level)] = has_violated_inequality(
+    work.gives_way[at(level)] = has_violated_inequality(
         problem, level, [&](int row) { return is_violated(last[at(row)]); });
-    has_any |= work.has_violated[at(level)] != 0;
+    has_any |= work.gives_way[at(level)] != 0;
   }
   if (has_any) return;
   for (int level = 0; level < levels; ++level) {
-    const bool has = has_violated_inequality(problem, level, [&](int row) {
-      return violation(problem, options, work, row) != 0.0;
-    });
-    work.has_violated[at(level)] = has && has_any;
+    const bool has = has_violated_inequality(
+        problem, level, [&](int row) { return violation(problem, options, work, row) != 0.0; });
+    work.gives_way[at(level)] = has && has_any;
     has_any |= has;
   }
 }
 
+bool expect_violated_now(const Problem& problem, const Options& options, int levels,
+                         Workspace& work) noexcept {
+  bool is_new = false;
+  for (int level = 0; level < levels; ++level) {
+    const bool has = has_violated_inequality(
+        problem, level, [&](int row) { return violation(problem, options, work, row) != 0.0; });
+    is_new |= has != (work.gives_way[at(level)] != 0);
+    work.gives_way[at(level)] = has;
+  }
+  return is_new;
+}
+
 bool start_from_dual(const Problem& problem, const Options& options, int levels,
-                     std::span<const RowState> last, Workspace& work) noexcept {
+                     Workspace& work) noexcept {
   int top = 0;  // levels that the guesses so far have in common
   while (top < work.direct_levels && !has_inequality(problem, top)) ++top;
   if (top == 0) {
@@ -484,8 +492,7 @@ bool start_from_dual(const Problem& problem, const Options& options, int levels,
     work.direct.truncate(work.direct_rank_at_level[at(top)]);
   }
   work.direct_levels = top;
-  expect_violated(problem, options, levels, last, work);
-  if (!work.dual.find_guess(problem, options, levels, top, work.has_violated, work.direct,
+  if (!work.dual.find_guess(problem, options, levels, top, work.gives_way, work.direct,
                             work.point.state)) {
     return false;
   }

@@ -37,10 +37,19 @@ void start_from_zero_with(const Problem& problem, std::vector<RowState>& guess,
 /// The same at the beginning of a solve.
 void start_solve(const Problem& problem, Workspace& work) noexcept;
 
-/// The guess of the dual method into work.point.state, its point being the last one. False: it has
-/// none, and work.point.state is as it was. `last`: the states of the last solve.
-bool start_from_dual(const Problem& problem, const Options& options, int levels,
+/// Levels that are expected to have violated inequalities, into work.gives_way: those of the last
+/// solve, whose states are `last`; when it had none, those that the point tried last violates, but
+/// for the first of them, where a row has become active since.
+void expect_violated(const Problem& problem, const Options& options, int levels,
                      std::span<const RowState> last, Workspace& work) noexcept;
+/// Those of the point tried last. Returns whether that is anything new.
+bool expect_violated_now(const Problem& problem, const Options& options, int levels,
+                         Workspace& work) noexcept;
+
+/// The guess of the dual method into work.point.state, its point being the last one. False: it has
+/// none, and work.point.state is as it was. Needs work.gives_way.
+bool start_from_dual(const Problem& problem, const Options& options, int levels,
+                     Workspace& work) noexcept;
 
 /// After a last guess that was not proven: the better one of its point and that of the dual method,
 /// level by level, into work.point. Returns the number of levels that it is optimal for.

@@ -29,6 +29,7 @@ Workspace::Workspace(const Capacity& c)
       is_needed(at(c.rows)),
       direct_rank_at_level(at(c.levels) + 1),
       has_violated(at(c.levels) + 1),
+      gives_way(at(c.levels) + 1),
       fit(at(c.levels) + 1),
       mu(c.variables),
       slope(at(c.rows)),

@@ -65,6 +65,7 @@ struct Workspace {
   int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state
   std::vector<int> direct_rank_at_level;
   std::vector<std::uint8_t> has_violated;  ///< by level, as found at the point
+  std::vector<std::uint8_t> gives_way;     ///< by level: expected to have violated inequalities
   std::vector<Fit> fit;                    ///< of the levels in `direct`, and of the smallest norm
 
   std::vector<TargetRow> targets;

@@ -115,6 +115,21 @@ TEST(DualMethod, ComesBeforeASecondGuessThatIsKnownToBeWrong) {
   for (const double x : solution.x) EXPECT_EQ(x, 1.0);
 }
 
+// Where its guess was wrong about the levels that give way, it starts again with those of the point
+// that the guess gave, instead of leaving the problem to the method that goes level by level.
+TEST(DualMethod, StartsAgainWithTheLevelsThatGaveWay) {
+  for (const std::uint32_t seed : {2148u, 5832u}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Problem problem = random_problem(seed, {});
+    Solver solver(problem.capacity());
+    Solution solution(problem.capacity());
+    ActiveSet active;
+    EXPECT_EQ(solver.solve(problem, {}, active, solution), Status::kSolved);
+    EXPECT_EQ(fault_of(problem, {}, solution), "");
+    EXPECT_LE(solution.iterations, 7);  // 32 and 20 without
+  }
+}
+
 // Cold, 4 active sets are tried before the dual method; its guess needs one.
 TEST(DualMethod, FindsContradictionsOfTwoLevels) {
   const Effort effort = solve_all({.variables = 12, .depth = 2, .count = 3}, 50);
