@@ -111,15 +111,15 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
     if (try_for(kEffortOfSecondGuess)) return true;
   }
   expect_violated(problem, options, levels, active.state, work);
-  if (start_from_dual(problem, options, levels, work)) {
-    if (try_for(kEffortOfDual)) return true;
-    // where the levels that give way were not the expected ones: again with those of the point
-    // found
-    const bool has_time = options.budget == 0 || iterations < options.budget;
-    if (has_time && expect_violated_now(problem, options, levels, work) &&
-        start_from_dual(problem, options, levels, work) && try_for(kEffortOfDual)) {
-      return true;
-    }
+  bool has_guess = start_from_dual(problem, options, levels, work);
+  if (has_guess && try_for(kEffortOfDual)) return true;
+  // where the levels that give way were not the expected ones: again with those of the last point
+  const bool has_time = options.budget == 0 || iterations < options.budget;
+  if (has_time && expect_violated_now(problem, options, levels, work)) {
+    has_guess = start_from_dual(problem, options, levels, work);
+    if (has_guess && try_for(kEffortOfDual)) return true;
+  }
+  if (has_guess) {
     if (options.budget == 0 || iterations < options.budget) return false;
     work.is_last = true;
     const int last = std::min(options.budget + 1, options.max_iterations);
