@@ -60,11 +60,7 @@ bool DualMethod::choose_level(DirectElimination& direct) noexcept {
   for (; level_ < last_; ++level_) {
     const int rank = direct.rank();
     rank_at_level_[at(level_)] = rank;
-    targets_.clear();
-    for (int row = problem_->first_row(level_); row < problem_->end_row(level_); ++row) {
-      const Interval bounds = problem_->bounds(row);
-      if (is_equality(bounds) && problem_->norm(row) > 0.0) targets_.push_back({row, bounds.ub});
-    }
+    collect_targets();
     if (targets_.empty()) continue;
     if (2 * static_cast<int>(targets_.size()) >= direct.freedom()) return true;
     if (!direct.add_least_squares(*problem_, targets_, options_->rank_tolerance)) return false;
@@ -123,17 +119,19 @@ void DualMethod::reduce(int i, DirectElimination& direct) noexcept {
   candidate.length = std::sqrt(squared);
 }
 
-// What level s wants, as rows of objective_, a column per free variable, with room for as many rows
-// more as there are columns. Returns the number of rows.
+// Equalities of level s, into targets_.
+void DualMethod::collect_targets() noexcept {
+  targets_.clear();
+  for (int row = problem_->first_row(level_); row < problem_->end_row(level_); ++row) {
+    const Interval bounds = problem_->bounds(row);
+    if (is_equality(bounds) && problem_->norm(row) > 0.0) targets_.push_back({row, bounds.ub});
+  }
+}
+
+// What level s wants, targets_ or the smallest |x|, as rows of objective_, a column per free
+// variable, with room for as many rows more as there are columns. Returns the number of rows.
 int DualMethod::collect_objective(DirectElimination& direct, bool is_regular) noexcept {
   const bool is_norm = level_ == levels_;
-  targets_.clear();
-  if (!is_norm) {
-    for (int row = problem_->first_row(level_); row < problem_->end_row(level_); ++row) {
-      const Interval bounds = problem_->bounds(row);
-      if (is_equality(bounds) && problem_->norm(row) > 0.0) targets_.push_back({row, bounds.ub});
-    }
-  }
   const int wanted = is_norm ? problem_->variables() : static_cast<int>(targets_.size());
   const int rows = is_regular ? wanted + freedom_ : wanted;
   double largest = 0.0;
@@ -193,13 +191,16 @@ bool DualMethod::set_up_metric(DirectElimination& direct) noexcept {
   freedom_ = static_cast<int>(free_.size());
   stride_ = padded(freedom_);
   collect_candidates();
-  bool is_regular = false;
   regularisation_ = 0.0;
   has_objective_ = true;
+  bool is_regular = false;
+  if (level_ < levels_) {
+    collect_targets();
+    is_regular = static_cast<int>(targets_.size()) < freedom_;
+  }
   int rows = 0;
-  for (int attempt = 0; attempt < 2; ++attempt, is_regular = true) {
+  for (;; is_regular = true) {
     rows = collect_objective(direct, is_regular);
-    if (rows < freedom_) continue;
     double smallest = kInfinity;
     double largest = 0.0;
     for (int j = 0; j < freedom_; ++j) {
@@ -221,7 +222,9 @@ bool DualMethod::set_up_metric(DirectElimination& direct) noexcept {
       h[0] = diagonal;
     }
     if (smallest > kSingular * largest) break;
-    if (is_regular && !(smallest > 0.0)) return false;
+    if (!is_regular) continue;
+    if (!(smallest > 0.0)) return false;
+    break;
   }
   // the triangle, its columns stride_ apart
   for (int j = 0; j < freedom_; ++j) {

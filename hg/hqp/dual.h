@@ -29,8 +29,8 @@ class DualMethod {
 
   /// Active rows of the first `levels` levels into `guess`. `direct` holds the equalities of the
   /// first `top` levels, which have no other rows; it is left with other pivots behind these.
-  /// `hint`, by level: whether violated inequalities are expected there; such levels are settled one
-  /// by one at once. False: given up, `guess` is not written.
+  /// `hint`, by level: whether violated inequalities are expected there; such levels are settled
+  /// one by one at once. False: given up, `guess` is not written.
   bool find_guess(const Problem& problem, const Options& options, int levels, int top,
                   std::span<const std::uint8_t> hint, DirectElimination& direct,
                   std::vector<RowState>& guess) noexcept;
@@ -71,6 +71,7 @@ class DualMethod {
   void collect_candidates() noexcept;
   void reduce(int candidate, DirectElimination& direct) noexcept;
   bool set_up_metric(DirectElimination& direct) noexcept;
+  void collect_targets() noexcept;
   int collect_objective(DirectElimination& direct, bool is_regular) noexcept;
   int most_violated() const noexcept;
   Outcome run(DirectElimination& direct) noexcept;
