@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numeric>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -30,11 +31,11 @@ constexpr int kMostRows = 40;        // of a problem
 constexpr double kSameSlack = 1e-8;  // of 1 + slack
 constexpr double kSamePoint = 1e-6;  // of 1 + |x|
 
-// Bytes of a ByteProblem: whole rows are dropped when it shrinks, then bytes go to 0.
-rc::Gen<Bytes> any_bytes() {
+// Bytes of a problem: whole rows are dropped when it shrinks, then bytes go to 0.
+rc::Gen<Bytes> any_bytes(std::size_t head_bytes, std::size_t row_bytes) {
   const auto byte = rc::gen::cast<std::uint8_t>(rc::gen::inRange(0, 256));
-  const auto row = rc::gen::container<Bytes>(ByteProblem::kRowBytes, byte);
-  const auto head = rc::gen::container<Bytes>(ByteProblem::kHeadBytes, byte);
+  const auto row = rc::gen::container<Bytes>(row_bytes, byte);
+  const auto head = rc::gen::container<Bytes>(head_bytes, byte);
   return rc::gen::apply(
       [](Bytes bytes, const std::vector<Bytes>& rows) {
         for (const Bytes& more : rows) bytes.insert(bytes.end(), more.begin(), more.end());
@@ -49,9 +50,10 @@ std::string text_of(const Problem& problem) {
   return text.str();
 }
 
-// Checks `fault`, a function of bytes that tells what is wrong, on random ones.
-template <typename Fault>
-void expect_none(const Fault& fault, Numbers numbers = Numbers::kTame) {
+// Checks `fault`, a function of bytes that tells what is wrong, on random ones. `problem_of` makes
+// a problem of them, to be printed.
+template <typename Fault, typename ProblemOf>
+void expect_none(const Fault& fault, const rc::Gen<Bytes>& any, const ProblemOf& problem_of) {
   rc::detail::TestParams params = rc::detail::configuration().testParams;
   if (std::getenv("RC_PARAMS") == nullptr) {
     params.seed = 1;
@@ -60,10 +62,10 @@ void expect_none(const Fault& fault, Numbers numbers = Numbers::kTame) {
   params.maxSize = kMostRows;
   const auto result = rc::detail::checkTestable(
       [&] {
-        const Bytes bytes = *any_bytes();
+        const Bytes bytes = *any;
         const std::string found = fault(bytes);
         if (found.empty()) return;
-        RC_LOG() << text_of(ByteProblem(bytes, numbers).problem) << found << '\n';
+        RC_LOG() << text_of(problem_of(bytes)) << found << '\n';
         RC_FAIL("the property does not hold");
       },
       rc::detail::TestMetadata{}, params);
@@ -73,7 +75,13 @@ void expect_none(const Fault& fault, Numbers numbers = Numbers::kTame) {
                                                                << message.str();
 }
 
-constexpr Capacity kCapacity = {.variables = 8, .levels = kMaxLevels, .rows = 4 * kMostRows};
+template <typename Fault>
+void expect_none(const Fault& fault, Numbers numbers = Numbers::kTame) {
+  expect_none(fault, any_bytes(ByteProblem::kHeadBytes, ByteProblem::kRowBytes),
+              [&](const Bytes& bytes) { return ByteProblem(bytes, numbers).problem; });
+}
+
+constexpr Capacity kCapacity = {.variables = 30, .levels = kMaxLevels, .rows = 5 * kMostRows};
 
 struct Solved {
   Solution solution{kCapacity};
@@ -392,6 +400,110 @@ TEST(Property, AnyNumbersGiveAFiniteAnswer) {
         return fault_of(made.problem, made.options, solution, made.is_tame ? 1e-6 : kInfinity);
       },
       Numbers::kSpecial);
+}
+
+// A problem of 2 to 30 joints whose levels cannot all be met: couplings, 3 levels of limits,
+// wishes.
+class Conflict {
+ public:
+  static constexpr std::size_t kHeadBytes = 3;
+  static constexpr std::size_t kRowBytes = 4;
+
+  explicit Conflict(const Bytes& bytes) : n_(2 + bytes[0] % 29), levels_(5) {
+    for (int i = 0; i < bytes[1] % (n_ / 3 + 1); ++i) add(0, random_row(i), {0.0, 0.0});
+    for (std::size_t k = kHeadBytes; k + kRowBytes <= bytes.size(); k += kRowBytes) {
+      add_kind(bytes[k] % 7, bytes[k + 1], bytes[k + 2], 0.01 * bytes[k + 3]);
+    }
+    for (int i = 0; i < n_; ++i) {
+      const double wish = random_row(bytes[2])[static_cast<std::size_t>(i)];
+      levels_[4].push_back({{}, i, {wish, wish}, 1.0});
+    }
+  }
+  Problem problem() const { return problem_of(n_, levels_); }
+
+ private:
+  using Coefficients = std::vector<double>;
+
+  Coefficients random_row(int seed) const {
+    std::mt19937 random(static_cast<std::uint32_t>(seed));
+    std::normal_distribution<double> number;
+    Coefficients row(static_cast<std::size_t>(n_));
+    for (double& c : row) c = number(random);
+    return row;
+  }
+  void add(int level, const Coefficients& row, Interval bounds) {
+    levels_[static_cast<std::size_t>(level)].push_back({row, -1, bounds, 1.0});
+    last_ = row;
+  }
+  void add_kind(int kind, int seed, int level, double number) {
+    const Coefficients row = random_row(seed);
+    const int limits = 1 + level % 3;
+    if (kind == 0 || kind == 1) {  // a contradiction: of two levels, or of three
+      Coefficients sum = row;
+      add(1, row, {-kInfinity, number});
+      if (kind == 1) {
+        const Coefficients other = random_row(seed + 1);
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += other[i];
+        add(2, other, {-kInfinity, number});
+      }
+      add(2 + kind, sum, {2.0 * number + 0.5, 3.0 * number + 1.0});
+    } else if (kind == 2) {
+      add(limits, row, {-number, number});
+    } else if (kind == 3) {  // lb = ub
+      add(limits, row, {number, number});
+    } else if (kind == 4) {  // limits that meet at x = 0
+      levels_[static_cast<std::size_t>(limits)].push_back({{}, level % n_, {-kInfinity, 0.0}, 1.0});
+    } else if (!last_.empty()) {  // the last row again, exactly or nearly
+      Coefficients again = last_;
+      for (std::size_t i = 0; i < row.size() && kind == 6; ++i) again[i] += 1e-5 * row[i];
+      add(limits, again, {-number, kInfinity});
+    }
+  }
+
+  int n_;
+  std::vector<std::vector<Row>> levels_;
+  Coefficients last_;
+};
+
+template <typename Fault>
+void expect_none_in_conflicts(const Fault& fault) {
+  expect_none([&](const Bytes& bytes) { return fault(Conflict(bytes).problem()); },
+              any_bytes(Conflict::kHeadBytes, Conflict::kRowBytes),
+              [](const Bytes& bytes) { return Conflict(bytes).problem(); });
+}
+
+TEST(Property, ConflictsOfLevelsAreSolvedAndCertified) {
+  expect_none_in_conflicts([](const Problem& problem) {
+    const Solved solved = solve(problem);
+    std::string fault = solved.fault;
+    if (solved.solution.status != Status::kSolved) fault += "not solved";
+    const bool is_ill_posed = !fault.empty() && !solve_slowly(problem, true).doubt.empty();
+    return is_ill_posed ? "" : fault;
+  });
+}
+
+TEST(Property, ConflictsOfLevelsEndTheSameFromAWrongGuess) {
+  expect_none_in_conflicts([](const Problem& problem) {
+    const Solved cold = solve(problem);
+    ActiveSet guess = cold.active;
+    std::rotate(guess.state.begin(), guess.state.begin() + 1, guess.state.begin() + problem.rows());
+    const Solved warm = solve(problem, {}, guess);
+    return difference(problem, cold.solution, warm.solution);
+  });
+}
+
+TEST(Property, ConflictsOfLevelsGiveTheSameBits) {
+  expect_none_in_conflicts([](const Problem& problem) {
+    const Solved one = solve(problem);
+    Solver fresh(kCapacity);
+    Solution other(kCapacity);
+    ActiveSet active;
+    fresh.solve(problem, {}, active, other);
+    const bool is_same = one.solution.x == other.x && one.active.state == active.state &&
+                         one.solution.slack == other.slack &&
+                         one.solution.iterations == other.iterations;
+    return std::string(is_same ? "" : "another solver gives other bits");
+  });
 }
 
 }  // namespace
