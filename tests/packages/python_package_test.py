@@ -16,6 +16,7 @@ EXAMPLES = {
     "joint_bounds.py": r"    2\.00 +-?[0-9. -]+",
     "solve_problem.py": r"SOLVED \[1\. 2\.\]\nSOLVED \[1\. 3\.\] after 1 active set",
     "hqp_priorities.py": r"slow tip: .* misses by \[0\. 0\.\]\nfast tip: (.*\n)+.*blocked by row 1\n",
+    "whole_body.py": r"right hand +misses by 0\.000\nleft hand +misses by 0\.[1-9]\d\d\n(.*\n)+SOLVED with 16 ",
     "open_door.py": r"opens at 9\.\d\d s, force .* N, felt: ",
     "read_run.py": r"1\d{4} cycles, 14\.\d s.*\nhinge at most 1\.\d{3} rad, open from 9\.\d\d s on",
 }
