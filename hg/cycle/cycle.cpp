@@ -356,8 +356,11 @@ void Cycle::render(bool is_held, CycleRecord& record) noexcept {
   }
   const VectorP q_p_target =
       gantry_target_.step(record.robot, state_.rendering.reference.q_m, state_.gantry_target);
-  const prepositioning::Command gantry = prepositioning::step(
-      config_.prepositioning, record.robot, q_p_target, state_.is_blocked, speed / std::sqrt(2.0));
+  prepositioning::Room room;
+  rendering_.gantry_room(room.down, room.up);
+  const prepositioning::Command gantry =
+      prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked,
+                           speed / std::sqrt(2.0), room);
   record.q_p_target = gantry.q_target;
   state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
   state_.is_blocked = rendering_.is_blocked();

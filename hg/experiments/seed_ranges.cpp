@@ -61,14 +61,15 @@ std::string range_of(const std::vector<const SeededRun*>& runs, int digits, doub
 }
 
 const SeededRun& worst_of(const std::vector<const SeededRun*>& runs, WorstLimit SeededRun::*limit) {
-  return **std::ranges::max_element(
-      runs, {}, [&](const SeededRun* run) { return (run->*limit).excess; });
+  return **std::ranges::max_element(runs, {},
+                                    [&](const SeededRun* run) { return (run->*limit).excess; });
 }
 
 using Cells = std::array<std::string, 12>;
 
-const Cells kHead = {"scenario", "hand",      "held",      "events",   "outside mrad", "worst at",
-                     "outside mm", "worst at", "joints mrad", "handle mm", "torque %", "vibration m/s^2"};
+const Cells kHead = {"scenario",     "hand",      "held",       "events",
+                     "outside mrad", "worst at",  "outside mm", "worst at",
+                     "joints mrad",  "handle mm", "torque %",   "vibration m/s^2"};
 
 std::vector<const SeededRun*> of_trial(const std::vector<SeededRun>& runs, std::size_t trial) {
   std::vector<const SeededRun*> found;
@@ -80,7 +81,8 @@ std::vector<const SeededRun*> of_trial(const std::vector<SeededRun>& runs, std::
 
 Cells cells_of(const Trial& trial, const std::vector<const SeededRun*>& runs) {
   const auto held = std::ranges::count_if(runs, [](const auto* run) { return run->has_held; });
-  const auto complete = std::ranges::count_if(runs, [](const auto* run) { return run->missing == 0; });
+  const auto complete =
+      std::ranges::count_if(runs, [](const auto* run) { return run->missing == 0; });
   const auto share = [&](auto count) { return fmt::format("{} of {}", count, runs.size()); };
   const auto name = [&](WorstLimit SeededRun::*limit) {
     const std::string& text = (worst_of(runs, limit).*limit).name;

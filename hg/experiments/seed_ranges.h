@@ -32,14 +32,14 @@ struct SeededRun {
   std::uint64_t seed = 0;
   Fault fault;
   double ended_s = 0.0;
-  bool has_held = false;          ///< no fault, all limits within Summary::limits_held()
-  std::size_t missing = 0;        ///< expected events that did not happen
-  WorstLimit angle, length;       ///< largest of all, true; rad and m
-  double joint_error = 0.0;       ///< largest of true link and reference, rad
-  double handle_distance = 0.0;   ///< largest of true handle and twin, m
-  double torque_share = 0.0;      ///< largest motor torque over its peak; 0 without torque control
-  double mean_force = 0.0;        ///< of the person, N
-  double vibration = 0.0;         ///< rms of the handle's acceleration above 5 Hz, m/s^2
+  bool has_held = false;         ///< no fault, all limits within Summary::limits_held()
+  std::size_t missing = 0;       ///< expected events that did not happen
+  WorstLimit angle, length;      ///< largest of all, true; rad and m
+  double joint_error = 0.0;      ///< largest of true link and reference, rad
+  double handle_distance = 0.0;  ///< largest of true handle and twin, m
+  double torque_share = 0.0;     ///< largest motor torque over its peak; 0 without torque control
+  double mean_force = 0.0;       ///< of the person, N
+  double vibration = 0.0;        ///< rms of the handle's acceleration above 5 Hz, m/s^2
 };
 
 /// Plays every trial with the seeds first .. first + count - 1, on all cores. Runs are in the order

@@ -6,6 +6,11 @@
 #include "hg/core/error.h"
 
 namespace hg::prepositioning {
+namespace {
+
+constexpr double kCreeping = 0.1;  // m/s or rad/s, that an arm takes back in front of a limit
+
+}  // namespace
 
 void check(const Config& config) {
   const auto require = [](bool ok, const char* rule) {
@@ -21,14 +26,20 @@ void check(const Config& config) {
 }
 
 Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked, double dq_max) noexcept {
+             bool device_blocked, double dq_max, const Room& room) noexcept {
   const double fastest = std::min(config.dq_max, dq_max);
   Command command = {q_target, VectorP::Zero(config.n_p)};
   if (device_blocked) return command;
   for (int i = 0; i < config.n_p; ++i) {
     const Interval q_limits = config.q_limits[static_cast<std::size_t>(i)];
     command.q_target[i] = std::clamp(command.q_target[i], q_limits.lb, q_limits.ub);
-    const Interval bounds = limits::braking_velocity_bounds(q_limits, config.drive, robot.q_p[i]);
+    Interval bounds = limits::braking_velocity_bounds(q_limits, config.drive, robot.q_p[i]);
+    if (room.up.size() > 0) {
+      const Interval alone =
+          limits::braking_velocity_bounds({-room.down[i], room.up[i]}, config.drive, 0.0);
+      bounds.lb = std::max(bounds.lb, std::min(alone.lb, -kCreeping));
+      bounds.ub = std::min(bounds.ub, std::max(alone.ub, kCreeping));
+    }
     const double dq = config.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
     command.dq[i] = std::clamp(std::clamp(dq, bounds.lb, bounds.ub), -fastest, fastest);
   }

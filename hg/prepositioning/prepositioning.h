@@ -26,14 +26,21 @@ struct Config {
 /// Throws SetupError naming the field that is out of range.
 void check(const Config& config);
 
+/// How far each axis may go by itself, the arm held stiff, before it carries a frame of the device
+/// over a limit; negative beyond one, m or rad. Empty: there are no such limits.
+struct Room {
+  VectorP down, up;
+};
+
 struct Command {
   VectorP q_target;  ///< where the gantry should be, within its limits, m or rad
   VectorP dq;        ///< velocity command, m/s or rad/s
 };
 
 /// `robot` gives the gantry. `device_blocked` (a manipulator row could not be met) scales the
-/// command to zero: a gantry that drags a blocked arm is a fault. No axis is faster than `dq_max`.
+/// command to zero: a gantry that drags a blocked arm is a fault. No axis is faster than `dq_max`,
+/// nor so fast that it could not stop within its `room`: an arm at its limits takes nothing back.
 Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked, double dq_max = kInfinity) noexcept;
+             bool device_blocked, double dq_max = kInfinity, const Room& room = {}) noexcept;
 
 }  // namespace hg::prepositioning

@@ -326,6 +326,24 @@ bool Rendering::is_blocked() const noexcept {
   return false;
 }
 
+void Rendering::gantry_room(VectorP& down, VectorP& up) const noexcept {
+  down = up = VectorP::Constant(device_.n_p, kInfinity);
+  for (const CartesianLimit& frame : device_.cartesian_limits) {
+    const model::Jacobian J = device_.chain.jacobian(frame.frame);
+    const Eigen::Vector3d position = device_.chain.pose(frame.frame).p;
+    for (int axis = 0; axis < 3; ++axis) {
+      const limits::JointLimits& range = frame.axes[static_cast<std::size_t>(axis)];
+      const double to_lower = position[axis] - range.q_min, to_upper = range.q_max - position[axis];
+      for (int i = 0; i < device_.n_p; ++i) {
+        const double per = J(axis, i);  // of the frame, per motion of the gantry
+        if (std::abs(per) < 1e-3) continue;
+        down[i] = std::min(down[i], (per > 0.0 ? to_lower : to_upper) / std::abs(per));
+        up[i] = std::min(up[i], (per > 0.0 ? to_upper : to_lower) / std::abs(per));
+      }
+    }
+  }
+}
+
 Vector6 Rendering::handle_twist(const RobotState& robot) const noexcept {
   return J_H_ * stacked(robot.dq_p, robot.dq_m);
 }

@@ -10,7 +10,8 @@ namespace hg::experiments {
 namespace {
 
 Trial short_walk() {
-  Trial trial = {.name = "walk", .hand = "", .scenario = config::load_scenario("models/scenarios/walk.yaml")};
+  Trial trial = {
+      .name = "walk", .hand = "", .scenario = config::load_scenario("models/scenarios/walk.yaml")};
   trial.scenario.duration_s = 2.0;
   return trial;
 }
@@ -37,7 +38,8 @@ TEST(PlaySeeds, AFaultAndALimitThatIsLeftHaveNotHeld) {
   EXPECT_EQ(runs[0].fault.code, FaultCode::kSensorNotFinite);
   EXPECT_NEAR(runs[0].ended_s, 1.5, 0.01);
   EXPECT_FALSE(have_all_held(runs));
-  EXPECT_NE(to_text({trial}, runs).find("100 measured value is not finite in 1 runs"), std::string::npos);
+  EXPECT_NE(to_text({trial}, runs).find("100 measured value is not finite in 1 runs"),
+            std::string::npos);
 
   Trial tight = short_walk();
   for (LimitInfo& limit : tight.scenario.limits) {
@@ -58,7 +60,9 @@ TEST(PlaySeeds, TheTableHasMedianAndWorst) {
   }
   EXPECT_TRUE(have_all_held(runs));
   const std::string page = to_markdown(trials, runs);
-  EXPECT_NE(page.find("| 3 of 3 | 3 of 3 | 0.00 / 0.00 | - | 1.00 / 4.00 | elbow x |"), std::string::npos) << page;
+  EXPECT_NE(page.find("| 3 of 3 | 3 of 3 | 0.00 / 0.00 | - | 1.00 / 4.00 | elbow x |"),
+            std::string::npos)
+      << page;
   EXPECT_EQ(to_json(trials, runs)["runs"].size(), 3U);
 }
 
