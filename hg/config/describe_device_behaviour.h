@@ -135,6 +135,11 @@ void describe(V& v, rendering::Options& options, std::size_t manipulator_joints)
   v.choice("bounds", options.bounds, kBounds, "how limits become bounds on accelerations");
   v.number("T_C_s", options.T_C, kPositive,
            "bounds paper: time within which virtual joints and frames return, at least a period");
+  v.number("solver_budget", options.solver_budget, kCount,
+           "active sets after which the solver of a cycle ends with what it has, all limits of the "
+           "device kept; 0: it goes on until its result is proven");
+  v.rule(options.solver_budget == std::floor(options.solver_budget), "solver_budget",
+         "must be a whole number", model::to_text(options.solver_budget));
   v.number("kP_posture_1_per_s2", options.kP_posture, kNotNegative,
            "of a seventh joint, towards its goal");
   v.number("kD_posture_1_per_s", options.kD_posture, kNotNegative, "of a seventh joint, damping");

@@ -241,9 +241,15 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("force",
        fmt::format("mean {:.1f} N, max {:.1f} N", mean(sum_force_, running_cycles_), max_force_));
   if (reality_.is_known()) text += reality_text();
-  line("solver", fmt::format("{} solved, {} not; {:.1f} active-set changes per second",
-                             solver_status_[1], solver_status_[2] + solver_status_[3],
-                             per_second(active_set_changes_, duration_s_)));
+  const auto count = [&](SolverStatus status) {
+    return solver_status_[static_cast<std::size_t>(status)];
+  };
+  const std::uint64_t spent = count(SolverStatus::kBudgetSpent);
+  line("solver",
+       fmt::format("{} solved, {}{} not; {:.1f} active-set changes per second",
+                   count(SolverStatus::kSolved),
+                   spent > 0 ? fmt::format("{} ended by the budget, ", spent) : "",
+                   count(SolverStatus::kFailed), per_second(active_set_changes_, duration_s_)));
   line("smoothness", fmt::format("acceleration changes by {:.4f} m/s^2 per cycle on average",
                                  mean(sum_acceleration_change_, running_cycles_)));
   line("cycle time", fmt::format("median {:.1f} us, 99.9 % {:.1f} us, max {:.1f} us; {} late",

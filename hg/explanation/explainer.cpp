@@ -204,16 +204,18 @@ void Explainer::add_others(const Sample& sample) {
         i < 16 ? name_in(names_.joints, i, "number") : name_in(names_.gantry, i - 16, "gantry");
     extend("command", which + ": the sanitiser changed it before it left", record.time_s);
   }
-  if (record.solver_status == SolverStatus::kIterationLimit ||
-      record.solver_status == SolverStatus::kFailed) {
-    extend("solver", fmt::format("not solved: {}", to_string(record.solver_status)), record.time_s);
+  if (record.solver_status == SolverStatus::kBudgetSpent) {
+    extend("solver",
+           "its budget was spent: the limits of the device are kept, the twin is not exact",
+           record.time_s);
   }
+  if (record.solver_status == SolverStatus::kFailed) extend("solver", "failed", record.time_s);
   if (sample.operator_input.late_cycles > 0) {
     extend("late", "cycles that were missed at once", record.time_s,
            static_cast<double>(sample.operator_input.late_cycles));
   }
   if (sample.operator_input.most_active_sets > 0) {
-    extend("hurried", "a fault on purpose: the solver could try a few active sets only",
+    extend("hurried", "a fault on purpose: the solver had a budget of a few active sets only",
            record.time_s);
   }
   if (record.tracking.is_clamped) {

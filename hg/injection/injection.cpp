@@ -211,7 +211,7 @@ constexpr std::array kKinds = {
          "periods"},
     Kind{"cycles_late", "cycles come too late", Part::kCycles, Effect::kSet, {1.0, 20.0}, "cycles"},
     Kind{"solver_hurried",
-         "the solver has no time to finish",
+         "the solver is ended before it has finished",
          Part::kSolver,
          Effect::kSet,
          {1.0, 3.0},

@@ -133,7 +133,7 @@ void fields(Archive& a, T& record) {
   a("passivity", record.passivity);
   a("contact", record.contact);
   a("q_p_target", record.q_p_target, "where prepositioning wants the gantry, m");
-  a("solver_status", record.solver_status, "0 not run, 1 solved, 2 iteration limit, 3 failed");
+  a("solver_status", record.solver_status, "0 not run, 1 solved, 2 budget spent, 3 failed");
   a("solver_iterations", record.solver_iterations);
   a("active_set_changes", record.active_set_changes);
   a("state_hash", record.state_hash, "equal in a replay");

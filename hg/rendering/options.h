@@ -37,6 +37,8 @@ struct Options {
   double kP_posture = 25;  ///< of joints that the task leaves free, 1/s^2; double pole at 5 rad/s
   double kD_posture = 10;  ///< 1/s
   int slow_solve = 100;    ///< active sets from which on a solve is kept; a warm start needs 1 or 2
+  /// Active sets after which a solve is ended, with the limits of the device kept; 0: none.
+  double solver_budget = 0;
 };
 
 }  // namespace hg::rendering

@@ -110,10 +110,8 @@ void Reactions::split(const Tasks& tasks, const hqp::Solution& solution,
         solution.x[static_cast<std::size_t>(tasks.alpha(limit))];
   }
   find_active(tasks, solution);
-  if (!is_paper) {
-    if (active_count_ > 0) split_active(tasks, solution, tau_constraint);
-    return;
-  }
+  if (!is_paper && active_count_ > 0) split_active(tasks, solution, tau_constraint);
+  if (!is_paper && solution.status == hqp::Status::kSolved) return;
   rest_ = tau_constraint;
   for (int j = 0; j < active_count_; ++j) {
     const int limit = active_[static_cast<std::size_t>(j)];

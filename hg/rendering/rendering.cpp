@@ -24,17 +24,11 @@ constexpr int kActiveSetsPerRow = 4;
 constexpr int kAlignIterations = 10;
 constexpr double kAligned = 1e-12;  // m and rad
 
-SolverStatus to_solver_status(hqp::Status status) noexcept {
-  switch (status) {
-    case hqp::Status::kSolved:
-      return SolverStatus::kSolved;
-    case hqp::Status::kIterationLimit:
-      return SolverStatus::kIterationLimit;
-    case hqp::Status::kBadRow:
-    case hqp::Status::kNumericalFailure:
-      return SolverStatus::kFailed;
-  }
-  return SolverStatus::kFailed;
+SolverStatus solver_status(const Tasks& tasks, const hqp::Solution& solution) noexcept {
+  if (solution.status == hqp::Status::kSolved) return SolverStatus::kSolved;
+  const bool is_usable =
+      solution.status == hqp::Status::kIterationLimit && tasks.keeps_limits_of_device(solution);
+  return is_usable ? SolverStatus::kBudgetSpent : SolverStatus::kFailed;
 }
 
 // torque of Coulomb friction while slipping, as part of tau_dis
@@ -79,6 +73,7 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
   };
   require(options.dt > 0.0, "rendering: the period must be positive");
   require(options.slow_solve > 0, "rendering: slow_solve must be positive");
+  require(options.solver_budget >= 0, "rendering: solver_budget must not be negative");
   const bool is_paper = options.law == Law::kPaper;
   require(!is_paper || device.n_m == 6, "device: law paper needs six manipulator joints, got " +
                                             std::to_string(device.n_m) +
@@ -123,14 +118,15 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
       solver_(tasks_.problem().capacity()),
       solution_(tasks_.problem().capacity()),
       kept_problems_(std::make_unique<hqp::KeptProblems>(tasks_.problem().capacity())) {
+  solver_options_.max_iterations =
+      std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
   limit_solver(0);
 }
 
 void Rendering::limit_solver(std::uint32_t most_active_sets) noexcept {
-  const auto usual = static_cast<std::uint32_t>(
-      std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows()));
-  const std::uint32_t most = most_active_sets == 0 ? usual : std::min(usual, most_active_sets);
-  solver_options_.max_iterations = static_cast<int>(most);
+  const int usual = static_cast<int>(options_.solver_budget);
+  const int most = static_cast<int>(most_active_sets);
+  solver_options_.budget = usual == 0 || most == 0 ? std::max(usual, most) : std::min(usual, most);
 }
 
 State Rendering::start(const VectorM& q_m) const {
@@ -259,6 +255,7 @@ void Rendering::solve(State& state, double handle_speed, CycleRecord& record) no
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
   const int first_twin_limit = static_cast<int>(tasks_.limit_rows().size()) - n_a;
   record.solver_iterations = 0;
+  bool was_spent = false;  // by a solve of this cycle
   for (int attempt = 0; attempt <= n_a; ++attempt) {
     Budget& budget = record.budget;
     const VectorA tau =
@@ -278,11 +275,13 @@ void Rendering::solve(State& state, double handle_speed, CycleRecord& record) no
     ended_(Stage::kRenderingSetUp);
     guess_ = state.active_set;
     solved_cycle_ = record.cycle;
-    record.solver_status = to_solver_status(
-        solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_));
+    solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_);
+    record.solver_status = solver_status(tasks_, solution_);
     record.solver_iterations += solution_.iterations;
-    const bool is_fine = solution_.status == hqp::Status::kSolved;
-    if (!is_fine || solution_.iterations >= options_.slow_solve) keep_problem(record.cycle);
+    was_spent = was_spent || record.solver_status == SolverStatus::kBudgetSpent;
+    if (record.solver_status == SolverStatus::kFailed ||
+        solution_.iterations >= options_.slow_solve)
+      keep_problem(record.cycle);
     ended_(Stage::kSolver);
 
     const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);
@@ -307,6 +306,9 @@ void Rendering::solve(State& state, double handle_speed, CycleRecord& record) no
       released = true;
     }
     if (!released) break;
+  }
+  if (was_spent && record.solver_status == SolverStatus::kSolved) {
+    record.solver_status = SolverStatus::kBudgetSpent;
   }
   if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
   reactions_.report(tasks_, solution_, L_, J_a_, options_.dt, record);

@@ -91,7 +91,7 @@ class Rendering {
   /// Of the twin as set up, at its end effector in the direction of B's axes where it is least, kg.
   double apparent_mass(const State& state) const noexcept;
 
-  /// The solver tries at most so many active sets from now on; 0: as many as it is made for.
+  /// The budget of a solve from now on, where it is smaller than that of the options; 0: that.
   void limit_solver(std::uint32_t most_active_sets) noexcept;
 
   /// Who is told about kRenderingSetUp, kSolver and kReactions from now on.

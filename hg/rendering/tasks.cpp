@@ -294,6 +294,19 @@ int Tasks::acting_row(int limit, const hqp::Solution& solution) const noexcept {
   return acts || rating_row < 0 ? row : rating_row;
 }
 
+bool Tasks::keeps_limits_of_device(const hqp::Solution& solution) const noexcept {
+  constexpr double kMet = 1e-6;  // rad/s^2 or m/s^2
+  const int count = static_cast<int>(limit_rows_.size()) - n_a_;
+  for (int limit = 0; limit < count; ++limit) {
+    for (const int row :
+         {first_limit_row() + limit, limit_rows_[static_cast<std::size_t>(limit)].rating_row}) {
+      if (row < 0 || problem_.level_of(row) < solution.completed_levels) continue;
+      if (!(std::abs(solution.slack[static_cast<std::size_t>(row)]) <= kMet)) return false;
+    }
+  }
+  return true;
+}
+
 TouchedEnds Tasks::touched_ends(const hqp::Solution& solution) const noexcept {
   TouchedEnds touched;
   for (std::size_t i = 0; i < limit_rows_.size(); ++i) {

@@ -78,6 +78,8 @@ class Tasks {
   int limit_row_count() const noexcept { return limit_row_count_; }
   /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
   int acting_row(int limit, const hqp::Solution& solution) const noexcept;
+  /// Whether all rows of device limits are in levels that `solution` has completed, or are met.
+  bool keeps_limits_of_device(const hqp::Solution& solution) const noexcept;
   /// The ends that `solution` touches or leaves, of both rows of a joint.
   TouchedEnds touched_ends(const hqp::Solution& solution) const noexcept;
   /// Law paper: index of the constraint force or torque of a limit in x; law gauss: -1.

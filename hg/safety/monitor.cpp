@@ -76,7 +76,8 @@ Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
 }
 
 Fault check_solution(const CycleRecord& record) noexcept {
-  if (record.solver_status != SolverStatus::kSolved) {
+  if (record.solver_status != SolverStatus::kSolved &&
+      record.solver_status != SolverStatus::kBudgetSpent) {
     return make_fault(FaultCode::kSolverFailed, -1, static_cast<double>(record.solver_status), 0.0);
   }
   int index = first_not_finite(record.reference.ddq_m);

@@ -103,7 +103,8 @@ struct OperatorFrame {
   SafetyPanel panel;
   ParameterChange change;
   std::uint32_t late_cycles = 0;  ///< missed by this run since the last cycle: late or left out
-  /// That the solver may try in this cycle at most; 0: as configured. A fault on purpose.
+  /// The solver's budget in this cycle, where it is smaller than the one configured; 0: that one. A
+  /// fault on purpose.
   std::uint32_t most_active_sets = 0;
 };
 

@@ -40,8 +40,8 @@ std::string_view to_string(SolverStatus status) noexcept {
       return "not run";
     case SolverStatus::kSolved:
       return "solved";
-    case SolverStatus::kIterationLimit:
-      return "iteration limit";
+    case SolverStatus::kBudgetSpent:
+      return "budget spent";
     case SolverStatus::kFailed:
       return "failed";
   }

@@ -108,7 +108,7 @@ struct TrackingReport {
 enum class SolverStatus : std::uint8_t {
   kNotRun = 0,
   kSolved = 1,
-  kIterationLimit = 2,
+  kBudgetSpent = 2,  ///< ended before it was proven; all limits of the device are kept
   kFailed = 3
 };
 

@@ -59,7 +59,8 @@ void bind_modes(nb::module_& module) {
   nb::enum_<SolverStatus>(module, "SolverStatus", nb::is_arithmetic())
       .value("NOT_RUN", SolverStatus::kNotRun)
       .value("SOLVED", SolverStatus::kSolved)
-      .value("ITERATION_LIMIT", SolverStatus::kIterationLimit)
+      .value("BUDGET_SPENT", SolverStatus::kBudgetSpent,
+             "ended before it was proven; all limits of the device are kept")
       .value("FAILED", SolverStatus::kFailed);
 }
 

@@ -100,6 +100,8 @@ TEST(BadDevice, RatesGainsAndChoicesHaveRanges) {
             "drive, 1.5, got 1.6");
   EXPECT_EQ(device_message(13, "drive: {dead_time_s: 0.3}"),
             "device.yaml:13:22: drive.dead_time_s: must be shorter than 256 cycles, got 0.3");
+  EXPECT_EQ(device_message(13, "rendering: {solver_budget: 1.5}"),
+            "device.yaml:13:28: rendering.solver_budget: must be a whole number, got 1.5");
 }
 
 TEST(BadDevice, GantryJointsHaveNoAccelerationOfTheirOwn) {

@@ -221,6 +221,22 @@ TEST(Summary, TellsATimedOutStop) {
   EXPECT_FALSE(json["real_time"].get<bool>());
 }
 
+TEST(Summary, SaysHowOftenTheBudgetOfTheSolverWasSpent) {
+  Summary summary(catalogue(), {}, 1000.0);
+  const auto has = [&](const char* part) {
+    return summary.to_text({}, {}).find(part) != std::string::npos;
+  };
+  for (int k = 0; k < 5; ++k) {
+    Sample sample;
+    sample.record = running(1e-3 * k);
+    if (k >= 3) sample.record.solver_status = SolverStatus::kBudgetSpent;
+    EXPECT_EQ(has("ended by the budget"), k > 3);
+    summary.add(sample);
+  }
+  EXPECT_TRUE(has("3 solved, 2 ended by the budget, 0 not")) << summary.to_text({}, {});
+  EXPECT_NE(summary.to_json({}, {}).find("\"budget spent\": 2"), std::string::npos);
+}
+
 TEST(Summary, TheJsonHoldsWhatScriptsNeed) {
   Summary summary(catalogue(), {}, 1000.0);
   Sample sample;

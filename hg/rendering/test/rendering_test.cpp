@@ -86,6 +86,30 @@ TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
   }
 }
 
+// level 0 couples, 1 to 3 are those of the device, the twin's follow
+TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
+  DeviceModel device = unlimited_device();
+  device.virtual_joints = {
+      {.name = "q4+q5", .weights = posture({0, 0, 0, 1, 1, 0}), .limits = {0.26, 2.88, 4, 40}}};
+  device.cartesian_limits = {{.name = "hand", .frame = device.handle, .axes = {}, .margin = 5e-3}};
+  device.cartesian_limits[0].axes.fill({-1.5, 1.5, 1.5, 5.0});
+  const Tasks tasks(device, golden_twin(), {});
+  hqp::Solution solution(tasks.problem().capacity());
+  solution.slack.assign(static_cast<std::size_t>(tasks.problem().rows()), 0.0);
+  EXPECT_TRUE(tasks.keeps_limits_of_device(solution));
+  const auto of_hand = static_cast<std::size_t>(tasks.first_limit_row() + 6 + 1);
+  solution.slack[of_hand] = -0.01;
+  EXPECT_FALSE(tasks.keeps_limits_of_device(solution));
+  solution.completed_levels = 3;
+  EXPECT_FALSE(tasks.keeps_limits_of_device(solution));
+  solution.completed_levels = 4;
+  EXPECT_TRUE(tasks.keeps_limits_of_device(solution));
+  solution.completed_levels = 0;
+  solution.slack[of_hand] = 0.0;
+  solution.slack[of_hand + 3] = 1.0;  // of the twin
+  EXPECT_TRUE(tasks.keeps_limits_of_device(solution));
+}
+
 TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessAskedFor) {
   Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
   State state = rendering.start(kPosture);

@@ -101,7 +101,9 @@ TEST(CheckSolution, FindsWhatMustNotBeIntegrated) {
   good.twin.ddq_a = VectorA::Zero(2);
   EXPECT_EQ(check_solution(good).code, FaultCode::kNone);
   CycleRecord record = good;
-  record.solver_status = SolverStatus::kIterationLimit;
+  record.solver_status = SolverStatus::kBudgetSpent;
+  EXPECT_EQ(check_solution(record).code, FaultCode::kNone);
+  record.solver_status = SolverStatus::kFailed;
   EXPECT_EQ(check_solution(record).code, FaultCode::kSolverFailed);
   record = good;
   record.twin.ddq_a[1] = kNan;
