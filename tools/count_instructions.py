@@ -13,6 +13,7 @@ import sys
 import tempfile
 
 SCENARIOS = ["door", "free_space", "excavator"]
+LARGE_TWINS = ["chain_20", "chain_30"]
 REFERENCE = ["cart6_free", "cart6_sing_tc20", "door_full_unlock", "exc_two"]
 
 
@@ -31,7 +32,7 @@ def count(program, what, name):
 
 
 def jobs():
-    for name in SCENARIOS:
+    for name in SCENARIOS + LARGE_TWINS:
         yield "cycle", name
     sets = [f"{name}:{law}" for law in ("gauss", "paper") for name in SCENARIOS]
     for name in sets + [f"tests/reference/{name}.hqp.gz" for name in REFERENCE]:

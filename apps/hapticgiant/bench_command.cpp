@@ -27,6 +27,8 @@ constexpr std::array<std::pair<Law, Bounds>, 4> kVariants = {{{Law::kGauss, Boun
                                                               {Law::kPaper, Bounds::kRecoverable},
                                                               {Law::kGauss, Bounds::kPaper},
                                                               {Law::kPaper, Bounds::kPaper}}};
+// what the table of the cycle has besides the scenarios, unless some are named
+constexpr std::array<const char*, 2> kLargeTwins = {"chain_20", "chain_30"};
 constexpr std::array<int, 6> kVariables = {6, 12, 24, 48, 84, 120};
 constexpr std::array<int, 5> kLevels = {1, 2, 5, 10, 20};
 
@@ -189,7 +191,11 @@ int bench(const BenchArguments& arguments) {
                      value.is_string() ? value.get<std::string>() : value.dump()));
   }
   const bool is_right = measure_solvers(scenarios, reference, effort, results);
-  measure_cycles(scenarios, effort, results);
+  std::vector<NamedScenario> with_large = scenarios;
+  if (arguments.scenarios == BenchArguments{}.scenarios) {
+    for (const char* name : kLargeTwins) with_large.push_back({name, bench_scenario(name)});
+  }
+  measure_cycles(with_large, effort, results);
   const bool is_solved = measure_growth(effort, results);
   const bool is_well = play_laws(scenarios, results);
 

@@ -88,6 +88,31 @@ TEST_P(EveryScenario, ShowsItsEventsWithASofterOrStifferHand) {
   }
 }
 
+// Twins of 20 and 30 joints, for benchmarks: many of their limits and their latch act at once.
+class Chain : public ::testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Shipped, Chain, ::testing::Values("chain_20", "chain_30"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_P(Chain, RunsSoundlyAtItsLimits) {
+  for (const bool is_elastic : {false, true}) {
+    SCOPED_TRACE(is_elastic);
+    ScenarioRun run(is_elastic ? shipped(GetParam()) : law_alone(GetParam()));
+    int most = 0, latched = 0;
+    run.play([&](const Sample& sample) {
+      int acting = 0;
+      for (const LimitReport& limit : sample.record.limits) {
+        acting += limit.state != LimitState::kInactive && limit.cause == LimitCause::kPosition;
+        latched += limit.cause == LimitCause::kLock;
+      }
+      most = std::max(most, acting);
+    });
+    expect_sound(run);
+    EXPECT_GE(most, 8);
+    EXPECT_GT(latched, 1000);  // cycles
+  }
+}
+
 TEST(Scenario, TheSameRunGivesTheSameBits) {
   std::vector<std::uint64_t> hashes;
   ScenarioRun first("door");
