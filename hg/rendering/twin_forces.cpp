@@ -126,14 +126,28 @@ VectorA damping_torque(const MatrixA& L, const VectorA& dq_a, double dt,
   const VectorA root = D.cwiseSqrt();
   const VectorA diagonal = std::sqrt(dt) * root;
   if (norm_bound(L, diagonal) < 0.5) return torque;
-  MatrixA B = diagonal.asDiagonal();
-  L.triangularView<Eigen::Lower>().solveInPlace(B);
-  const double trace = B.squaredNorm();
+  // B is lower triangular, and of B^T B the lower triangle is enough
+  MatrixA B(n, n);
+  double trace = 0.0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Index rest = n - i;
+    auto column = B.col(i).tail(rest);
+    column.setZero();
+    column[0] = diagonal[i];
+    L.bottomRightCorner(rest, rest).triangularView<Eigen::Lower>().solveInPlace(column);
+    trace += column.squaredNorm();
+  }
   if (trace <= 1.0) return torque;
 
   // D' = D^1/2 (1 + s B^T B)^-1 D^1/2
-  MatrixA series = MatrixA::Identity(n, n);
-  series.noalias() += (1.0 - 1.0 / trace) * B.transpose() * B;
+  const double s = 1.0 - 1.0 / trace;
+  MatrixA series(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = j; i < n; ++i) {
+      series(i, j) = s * B.col(i).tail(n - i).dot(B.col(j).tail(n - i));
+    }
+    series(j, j) += 1.0;
+  }
   Eigen::LLT<Eigen::Ref<MatrixA>> series_cholesky(series);
   torque = root.cwiseProduct(dq_a);
   series_cholesky.solveInPlace(torque);
