@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "hg/model/haptic_giant.h"
 #include "hg/model/test/dh_reference.h"
 #include "hg/model/test/models.h"
@@ -94,6 +96,25 @@ TEST(FreeSpaceUrdf, IsTheDefaultFreeBody) {
   EXPECT_LT((urdf.c() - body.c()).norm(), 1e-11);
   EXPECT_LT(distance(urdf.pose(urdf.frame("handle")), body.pose(0)), kRounding);
   EXPECT_EQ(urdf.joints()[0].name, body.joints()[0].name);
+}
+
+TEST(ChainUrdfs, AreLongAndHeavyAsTheirReadmeSays) {
+  for (const int joints : {20, 30}) {
+    SCOPED_TRACE(joints);
+    Chain chain = twin_chain("chain_" + std::to_string(joints));
+    ASSERT_EQ(chain.nv(), joints);
+    const VectorA straight = VectorA::Zero(joints);
+    chain.update(straight, straight);
+    const Eigen::Vector3d tip = chain.pose(chain.frame("handle")).p;
+    EXPECT_LT((tip - Eigen::Vector3d(1.2, 0.0, 0.0)).norm(), kRounding);
+    // the weight of all links, half a length from j2 on: 10 kg in all
+    EXPECT_NEAR(chain.gravity()[1] / -9.81 / (0.5 * (1.2 - 1.2 / joints)),
+                10.0 * (joints - 1) / joints, 2e-3);
+    for (int i = 0; i < joints; ++i) {
+      const Interval range = chain.joints()[static_cast<std::size_t>(i)].position;
+      EXPECT_NEAR(range.ub - range.lb, 2.0 / joints, 1e-3) << i;
+    }
+  }
 }
 
 TEST(DoorUrdf, MassMatrixIsConstantAndUncoupled) {
