@@ -55,7 +55,7 @@ struct Observers {
   TareStatus told_tare = TareStatus::kNone;
   FaultCode told_fault = FaultCode::kNone;
   explanation::Names names;
-  std::string fault_figures = {};  ///< of the first fault
+  std::string fault_figures = {};  ///< of the summary's fault
 };
 
 // what somebody did to the run
@@ -96,9 +96,10 @@ void observe(Observers& observers, const Sample& sample) {
     observers.script_end_s = 0.0;
     observers.status_line.print("the script has played; drag the handle in the page");
   }
-  const bool had_fault = observers.summary.fault().code != FaultCode::kNone;
+  const FaultCode before = observers.summary.fault().code;
   observers.summary.add(sample);
-  if (const Fault& fault = observers.summary.fault(); !had_fault && safety::is_fault(fault.code)) {
+  if (const Fault& fault = observers.summary.fault();
+      fault.code != before && safety::is_fault(fault.code)) {
     observers.fault_figures = explanation::figures_of(fault, observers.names, sample.sensors);
   }
   tell_requests(observers, sample.record);

@@ -10,11 +10,11 @@ namespace hg::cycle {
 namespace {
 
 using safety::kBrakingRate;
-using safety::kCoasting;
 using safety::kRampOut;
 using safety::kStandstill;
 
 constexpr double kSafeShare = 0.9;  // of the safe speed, which is watched
+constexpr double kCoasting = 0.1;   // rad/s and m/s
 constexpr double kRampIn = 0.3;     // s in which the forces of a run come in
 
 bool stands_still(const CycleRecord& record) noexcept {
@@ -23,6 +23,7 @@ bool stands_still(const CycleRecord& record) noexcept {
          record.robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
 }
 
+// Measured, so above what encoders and a hand on the springs of a braked arm make of rest.
 bool is_coasting(const RobotState& robot) noexcept {
   return robot.dq_m.lpNorm<Eigen::Infinity>() > kCoasting ||
          robot.dq_p.lpNorm<Eigen::Infinity>() > kCoasting;
@@ -155,6 +156,10 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
     safety::Monitor::forget(state_.monitor);
   }
 
+  const Fault slip = safety::watch_brakes(
+      monitor_.config(), sensors, safety::is_powered(state_.supervisor.state), state_.brakes);
+  if (slip.code != FaultCode::kNone) safety::break_rule(slip, state_.supervisor);
+
   // control -> sanitiser
   write_command(sensors, operator_input, command, record);
   ended_(Stage::kControl);
@@ -201,7 +206,7 @@ void Cycle::supervise(const SensorFrame& sensors, const OperatorFrame& operator_
       .is_held = is_held(sensors),
       .safety = safety,
       .to_arm = is_arming ? refusal_to_arm() : Refusal::kNone,
-      .is_broken = state_.monitor.is_broken,
+      .is_broken = state_.monitor.is_broken || state_.brakes.slip.code != FaultCode::kNone,
       .fault = safety::check_safety_inputs(safety, supervisor),
       // such a sample cannot be controlled with
       .reaction = fault.code != FaultCode::kNone ? Stop::kSto : Stop::kNone};

@@ -16,6 +16,7 @@
 #include "hg/prepositioning/gantry_target.h"
 #include "hg/prepositioning/prepositioning.h"
 #include "hg/rendering/rendering.h"
+#include "hg/safety/brakes.h"
 #include "hg/safety/monitor.h"
 #include "hg/safety/sanitiser.h"
 #include "hg/safety/supervisor.h"
@@ -43,6 +44,7 @@ struct State {
   std::uint64_t next_sequence = 0;
   safety::SupervisorState supervisor;
   safety::MonitorState monitor;
+  safety::BrakeState brakes;
   estimation::State estimation;
   rendering::State rendering;
   control::State control;

@@ -176,12 +176,15 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
   hash.mix(state.stop_from);
   hash.mix(state.braking_ramp);
   hash.mix(state.ramp_speed);
-  hash.mix(std::uint64_t{state.samples_off} | std::uint64_t{state.was_powered} << 32U);
-  hash.mix(state.braked_at);
-  hash.mix(state.braked_at_p);
-  hash.mix(state.may_slip);
-  hash.mix(state.may_slip_p);
-  hash.mix(static_cast<std::uint64_t>(state.slip.code));
+}
+
+void mix(const safety::BrakeState& state, Hash& hash) noexcept {
+  hash.mix(std::uint64_t{state.samples_off} | std::uint64_t{state.was_powered} << 32U |
+           static_cast<std::uint64_t>(state.slip.code) << 40U);
+  hash.mix(std::uint64_t{state.broken});
+  hash.mix(state.last);
+  hash.mix(state.from);
+  hash.mix(state.may_move);
 }
 
 void mix(const passivity::State& state, Hash& hash) noexcept {
@@ -210,6 +213,7 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
   hash.mix(state.next_sequence);
   mix(state.supervisor, hash);
   mix(state.monitor, hash);
+  mix(state.brakes, hash);
   hash.mix(state.q_m);
   hash.mix(state.tau_m);
   mix(state.collision, hash);

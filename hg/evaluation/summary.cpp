@@ -55,7 +55,11 @@ void Summary::add(const Sample& sample) {
   last_hash_ = record.state_hash;
   cycle_time_us_.add(sample.cycle_time_us);
   // an operator who lets go is the cause of a stop, too, and no fault
-  if (record.mode == Mode::kFault && fault_.code == FaultCode::kNone) {
+  // a brake that does not hold takes the place of why it had to
+  const bool is_first = fault_.code == FaultCode::kNone;
+  const bool is_worse =
+      record.fault.code == FaultCode::kBrakesSlip && fault_.code != record.fault.code;
+  if (record.mode == Mode::kFault && (is_first || is_worse)) {
     fault_ = record.fault;
   }
   reality_.add(sample);

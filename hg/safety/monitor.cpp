@@ -152,17 +152,10 @@ Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
   look_at_inertial_unit(watched);
   look_at_gantry(sensors, record, watched, state);
   look_at_braking(record, watched, state);
-  look_at_brakes(record.robot, watched.state, state);
   look_at_frames(record, watched);
   look_at_clocks(sensors, watched, state);
   look_at_sensors(sensors, state);
-  Verdict verdict = judge(state);
-  constexpr std::size_t kBrakes = rule_index(FaultCode::kBrakesSlip);
-  if (state.slip.code == FaultCode::kNone && state.broken[kBrakes] >= debounce_[kBrakes]) {
-    const Worst& slip = worst_[kBrakes];
-    state.slip = make_fault(FaultCode::kBrakesSlip, slip.index, slip.value, slip.limit);
-  }
-  if (state.slip.code != FaultCode::kNone) verdict.fault = state.slip;
+  const Verdict verdict = judge(state);
   state.is_broken = verdict.fault.code != FaultCode::kNone;
   return verdict;
 }
@@ -327,49 +320,6 @@ void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
     look<FaultCode::kBrakingSpeed>(n_m_ + i, std::abs(robot.dq_p[i] - state.dq_p_model[i]),
                                    off + by_dead_time);
     look<FaultCode::kStopTooFar>(n_m_ + i, moved, kUntilBrakes * config_.stop_distance_of_gantry());
-  }
-}
-
-// Closed brakes hold an axis where they have found it at rest; one that still moved has its
-// stopping distance, for as long as a stop may take. Before there was power others may move the
-// device.
-void Monitor::look_at_brakes(const RobotState& robot, State supervised,
-                             MonitorState& state) noexcept {
-  if (is_powered(supervised)) {
-    state.was_powered = true;
-    state.samples_off = 0;
-    return;
-  }
-  if (!state.was_powered) return;
-  const auto at_rest = static_cast<std::uint32_t>(config_.stop_time / config_.dt) + 1;
-  state.samples_off = std::min(state.samples_off + 1, at_rest + 1);
-  const bool is_new = state.samples_off == 1, is_over = state.samples_off == at_rest;
-  const VectorM& q_m = robot.theta_m.size() > 0 ? robot.theta_m : robot.q_m;
-  const auto bound = [&](double dq, bool is_slide, double distance) {
-    if (is_new && std::abs(dq) > kCoasting) return distance;
-    return is_slide ? config_.slide_brake_slip : config_.brake_slip;
-  };
-  if (is_new || is_over) {
-    state.braked_at = state.may_slip = q_m;
-    state.braked_at_p = state.may_slip_p = robot.q_p;
-    for (int i = 0; i < n_m_; ++i) {
-      state.may_slip[i] =
-          bound(robot.dq_m[i], config_.is_slide[at(i)], config_.stop_distance_of_joint(i));
-    }
-    for (int i = 0; i < n_p_; ++i) {
-      state.may_slip_p[i] =
-          bound(robot.dq_p[i], config_.is_gantry_slide, config_.stop_distance_of_gantry());
-    }
-  }
-  for (int i = 0; i < n_m_; ++i) {
-    const double moved = q_m[i] - state.braked_at[i];
-    look<FaultCode::kBrakesSlip>(i, std::abs(config_.is_slide[at(i)] ? moved : turned(moved)),
-                                 state.may_slip[i]);
-  }
-  for (int i = 0; i < n_p_; ++i) {
-    const double moved = robot.q_p[i] - state.braked_at_p[i];
-    look<FaultCode::kBrakesSlip>(
-        n_m_ + i, std::abs(config_.is_gantry_slide ? moved : turned(moved)), state.may_slip_p[i]);
   }
 }
 

@@ -62,11 +62,12 @@ struct MonitorConfig {
   double slide_braking_gap = 0.02;        ///< the same of a prismatic joint, m
   double braking_deviation = 0.25;        ///< of its speed from the reference's, rad/s
   double slide_braking_deviation = 0.25;  ///< the same of a prismatic joint, m/s
-  double brake_slip = 0.1;                ///< of a revolute axis with its brake closed, rad
-  double slide_brake_slip = 0.05;         ///< the same of a prismatic one, m
-  double frozen_samples = 0;              ///< with the same bits; 0: sensors have no noise
-  double overruns_in_a_row = 2;           ///< late cycles that may follow each other
-  double overruns_per_s = 5;              ///< late cycles that may come again and again
+  // of brakes.h
+  double brake_slip = 0.1;         ///< of a revolute axis with its brake closed, rad
+  double slide_brake_slip = 0.05;  ///< the same of a prismatic one, m
+  double frozen_samples = 0;       ///< with the same bits; 0: sensors have no noise
+  double overruns_in_a_row = 2;    ///< late cycles that may follow each other
+  double overruns_per_s = 5;       ///< late cycles that may come again and again
 
   // what the device is
   double dt = 1e-3;                        ///< period, s
@@ -151,12 +152,6 @@ struct MonitorState {
   VectorM stop_from, braking_ramp;  ///< joints: where it began, where the ramp has led
   VectorM ramp_speed;  ///< of the joints, by the accelerations of the reference since it began
   VectorP stop_from_p, braking_ramp_p;  ///< gantry: where it began, where the drive model has led
-  /// Of the brakes, since the power went for the last time; 0: it is on, or never was.
-  std::uint32_t samples_off = 0;
-  bool was_powered = false;
-  VectorM braked_at, may_slip;  ///< joints: where they stood, how far they may get from there
-  VectorP braked_at_p, may_slip_p;
-  Fault slip;  ///< of a brake that did not hold; kept for the whole run
 };
 
 struct Verdict {
@@ -202,7 +197,6 @@ class Monitor {
                       MonitorState& state) noexcept;
   void look_at_braking(const CycleRecord& record, const Watched& watched,
                        MonitorState& state) noexcept;
-  void look_at_brakes(const RobotState& robot, State supervised, MonitorState& state) noexcept;
   void look_at_frames(const CycleRecord& record, const Watched& watched) noexcept;
   void look_at_clocks(const SensorFrame& sensors, const Watched& watched,
                       MonitorState& state) noexcept;

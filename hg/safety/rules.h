@@ -346,7 +346,8 @@ inline constexpr Rule kRules[] = {
      .release = "at once, and look why: brakes had to stop it"},
     {.code = FaultCode::kBrakesSlip,
      .name = "brake slips",
-     .meaning = "An axis moves although its drive is off and its brake closed.",
+     .meaning = "An axis moves although its drive is off and its brake closed, or its encoders "
+                "say so.",
      .threshold = "monitor.brake_slip_rad, monitor.brake_slip_m",
      .debounce = {.samples = 3},
      .reaction = Stop::kSto,

@@ -11,9 +11,6 @@ namespace hg::safety {
 inline constexpr double kBrakingRate = 20.0;  ///< 1/s, of the law: a slow motion halves in 35 ms
 inline constexpr double kRampOut = 0.1;       ///< s in which forces make room for braking
 inline constexpr double kStandstill = 1e-3;   ///< rad/s and m/s: below it a stop is over
-/// Measured speed, rad/s or m/s, above what encoders and a hand on the springs of a braked arm make
-/// of rest.
-inline constexpr double kCoasting = 0.1;
 
 /// What a stop takes: s, and rad or m.
 struct StoppingNeed {

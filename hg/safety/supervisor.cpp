@@ -114,7 +114,10 @@ void break_rule(const Fault& fault, SupervisorState& state, Stop at_least) noexc
     // what the brakes did not hold counts more than why they had to
     const bool is_worse =
         fault.code == FaultCode::kBrakesSlip && state.fault.code != FaultCode::kBrakesSlip;
-    if (is_worse) state.also = std::exchange(state.fault, fault);
+    if (is_worse) {
+      state.also = std::exchange(state.fault, fault);
+      state.stop = reaction;
+    }
     return;
   }
   const bool has_cause = state.fault.code != FaultCode::kNone && before == State::kToFault;

@@ -544,6 +544,26 @@ TEST(Cycle, TheTwinMeetsTheHandleAgainAfterAFaultInMotion) {
   EXPECT_EQ(loop.record.mode, Mode::kRunning);
 }
 
+TEST(Cycle, AnArmThatFallsIsToldThoughAnotherSensorGivesNoNumber) {
+  Loop loop(false, false, true);
+  loop.start_running();
+  loop.sensors.a_S[1] = std::numeric_limits<double>::quiet_NaN();
+  loop.step();
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kSensorNotFinite);
+  for (int k = 0; k < 200; ++k) {
+    loop.sensors.q_m[4] += 1e-3;
+    loop.step();
+  }
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kBrakesSlip);
+  EXPECT_EQ(loop.record.fault.index, 4);
+  EXPECT_EQ(loop.record.warning.code, FaultCode::kSensorNotFinite) << "the first cause, besides";
+  loop.sensors.a_S.setZero();
+  loop.operator_input.request = ModeRequest::kReset;
+  loop.run(10);
+  EXPECT_EQ(loop.record.mode, Mode::kFault);
+  EXPECT_EQ(loop.record.refusal, Refusal::kNone);  // it was said in the cycle of the request
+}
+
 TEST(Cycle, HandleAndTwinApartIsAFault) {
   Loop loop;
   loop.start_running();

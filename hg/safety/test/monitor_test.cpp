@@ -634,67 +634,6 @@ TEST(Monitor, AStopThatGoesTooFarEndsWhateverItsRampSays) {
   EXPECT_EQ(bench.verdict.fault.index, 0);
 }
 
-// A bench whose power goes, with joint 4 at speed `dq`.
-struct DarkBench : Bench {
-  explicit DarkBench(double dq = 0.0) {
-    record.robot.dq_m[4] = dq;
-    watched.state = State::kFault;
-    step();
-    record.robot.dq_m[4] = 0.0;
-  }
-  int move(double by, int axis = 4) {
-    return until_fault(FaultCode::kBrakesSlip, [&] {
-      (axis < 6 ? record.robot.q_m[axis] : record.robot.q_p[axis - 6]) += by;
-    });
-  }
-};
-
-TEST(Monitor, AnAxisThatMovesWithItsBrakeClosedIsTold) {
-  DarkBench bench;
-  EXPECT_NEAR(bench.move(1e-3), 103, 1);  // 0.1 rad and three samples
-  EXPECT_EQ(bench.verdict.fault.index, 4);
-  EXPECT_EQ(rule_of(FaultCode::kBrakesSlip).reaction, Stop::kSto);
-  DarkBench gantry;
-  EXPECT_NEAR(gantry.move(-1e-3, 7), 53, 1);  // 0.05 m
-  EXPECT_EQ(gantry.verdict.fault.index, 7);
-}
-
-TEST(Monitor, AnAxisThatMovedWhenThePowerWentHasItsStoppingDistanceForTheTimeOfAStop) {
-  DarkBench bench(0.5);
-  for (int k = 0; k < 700; ++k) {
-    bench.record.robot.q_m[4] += 1e-3;
-    bench.step();
-    ASSERT_EQ(bench.verdict.fault.code, FaultCode::kNone) << k;
-  }
-  EXPECT_NEAR(bench.move(1e-3), 103, 1) << "0.8 rad in all";
-  DarkBench late(0.5);
-  late.run(1000);
-  EXPECT_NEAR(late.move(1e-3), 103, 1) << "it came to rest in time";
-}
-
-TEST(Monitor, ABrakeThatSlippedIsNotTrustedAgain) {
-  DarkBench bench;
-  bench.move(1e-2);
-  bench.record.robot.q_m[4] = 0.0;
-  bench.run(3000);
-  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kBrakesSlip);
-  EXPECT_TRUE(bench.state.is_broken) << "no reset";
-}
-
-TEST(Monitor, BeforeTheFirstPowerOthersMayMoveTheDevice) {
-  Monitor monitor(config(), 2, 6);
-  Bench bench;
-  MonitorState fresh;
-  bench.watched.state = State::kReady;
-  for (int k = 0; k < 1000; ++k) {
-    bench.record.robot.q_m[4] += 1e-3;
-    bench.record.robot.q_p[0] -= 1e-3;
-    bench.step();
-    EXPECT_EQ(monitor.watch(bench.sensors, bench.record, bench.watched, fresh).fault.code,
-              FaultCode::kNone);
-  }
-}
-
 TEST(Monitor, AJumpIsKnownBeforeAnythingElseIsMadeOfTheSample) {
   Bench bench;
   EXPECT_FALSE(bench.monitor.has_jumped(bench.sensors, bench.state));
