@@ -8,7 +8,7 @@
 namespace hg::prepositioning {
 namespace {
 
-constexpr double kCreeping = 0.1;  // m/s or rad/s, that an arm takes back in front of a limit
+constexpr double kTakenBack = 0.25;  // m/s or rad/s, of the gantry by the arm in front of a limit
 
 }  // namespace
 
@@ -37,8 +37,8 @@ Command step(const Config& config, const RobotState& robot, const VectorP& q_tar
     if (room.up.size() > 0) {
       const Interval alone =
           limits::braking_velocity_bounds({-room.down[i], room.up[i]}, config.drive, 0.0);
-      bounds.lb = std::max(bounds.lb, std::min(alone.lb, -kCreeping));
-      bounds.ub = std::min(bounds.ub, std::max(alone.ub, kCreeping));
+      bounds.lb = std::max(bounds.lb, std::min(alone.lb, 0.0) - kTakenBack);
+      bounds.ub = std::min(bounds.ub, std::max(alone.ub, 0.0) + kTakenBack);
     }
     const double dq = config.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
     command.dq[i] = std::clamp(std::clamp(dq, bounds.lb, bounds.ub), -fastest, fastest);

@@ -39,7 +39,8 @@ struct Command {
 
 /// `robot` gives the gantry. `device_blocked` (a manipulator row could not be met) scales the
 /// command to zero: a gantry that drags a blocked arm is a fault. No axis is faster than `dq_max`,
-/// nor so fast that it could not stop within its `room`: an arm at its limits takes nothing back.
+/// nor more than 0.25 m/s (rad/s) faster than lets it stop within its `room`: an arm at its limits
+/// takes no more back.
 Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
              bool device_blocked, double dq_max = kInfinity, const Room& room = {}) noexcept;
 

@@ -331,6 +331,7 @@ bool Rendering::is_blocked() const noexcept {
 void Rendering::gantry_room(VectorP& down, VectorP& up) const noexcept {
   down = up = VectorP::Constant(device_.n_p, kInfinity);
   for (const CartesianLimit& frame : device_.cartesian_limits) {
+    if (frame.frame == device_.handle) continue;
     const model::Jacobian J = device_.chain.jacobian(frame.frame);
     const Eigen::Vector3d position = device_.chain.pose(frame.frame).p;
     for (int axis = 0; axis < 3; ++axis) {

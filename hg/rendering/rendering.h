@@ -79,8 +79,9 @@ class Rendering {
   /// In the last step a joint or virtual joint of the device could not be kept within its limits:
   /// what the gantry does to a held twin stands above them.
   bool is_blocked() const noexcept;
-  /// How far each axis of the gantry may go down and up, the arm held stiff, until a frame is at a
-  /// Cartesian limit: by the positions of the last step, to first order, m or rad.
+  /// How far each axis of the gantry may go down and up, the arm held stiff, until a frame other
+  /// than the handle, which the law leads, is at a Cartesian limit: by the positions of the last
+  /// step, to first order, m or rad.
   void gantry_room(VectorP& down, VectorP& up) const noexcept;
 
   // of the last step, with its posture:

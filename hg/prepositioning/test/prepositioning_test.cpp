@@ -92,6 +92,34 @@ TEST(Prepositioning, StandsStillWhileTheDeviceIsBlocked) {
   EXPECT_EQ(step(config(), robot, target, true).dq.norm(), 0.0);
 }
 
+TEST(Prepositioning, StopsByItselfBeforeItCarriesAFrameOverItsLimit) {
+  const Config gantry = config();
+  RobotState robot;
+  robot.q_p = Eigen::Vector2d(0.0, 0.0);
+  const VectorP target = Eigen::Vector2d(1.0, -1.0);
+  const VectorP free = step(gantry, robot, target, false).dq;
+  const auto in = [&](double down, double up) {
+    const Room room = {VectorP::Constant(2, down), VectorP::Constant(2, up)};
+    return step(gantry, robot, target, false, kInfinity, room).dq;
+  };
+  EXPECT_EQ(in(kInfinity, kInfinity), free);
+  EXPECT_EQ(in(10.0, 10.0), free) << "far away";
+  EXPECT_EQ(in(0.1, 10.0)[0], free[0]) << "only towards a limit";
+  EXPECT_EQ(in(10.0, 0.1)[1], free[1]);
+  constexpr double kTakenBack = 0.25;  // by the arm
+  for (const double left : {0.4, 0.2, 0.1}) {
+    const VectorP dq = in(left, left);
+    for (const double v : {dq[0] - kTakenBack, -dq[1] - kTakenBack}) {
+      EXPECT_GT(v, 0.1);
+      EXPECT_LE(v * v / (2.0 * gantry.drive.ddq_max) + v * gantry.drive.tau, left + 1e-12) << left;
+    }
+  }
+  for (const double left : {0.0, -0.02}) {
+    EXPECT_EQ(in(10.0, left)[0], kTakenBack) << "slowly on";
+    EXPECT_EQ(in(left, 10.0)[1], -kTakenBack);
+  }
+}
+
 TEST(Prepositioning, RefusesImpossibleConfigurations) {
   Config gantry = config();
   gantry.k_ppu = 0.0;
