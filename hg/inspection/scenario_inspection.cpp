@@ -113,11 +113,13 @@ void inspect_demand(const rendering::TwinDof& dof, const Demand& demand, Collect
           " in 5 % of the postures or more");
 }
 
-// The work of a cycle grows with the cube of the twin's degrees of freedom. Measured, 99 % of the
-// cycles: gauss 0.5 ms with 20 and 2 ms with 30, paper 1 ms with 12.
+// The work of a cycle grows with the cube of the twin's degrees of freedom at most. Measured, 99.9
+// % of the cycles (docs/benchmarks.md): gauss 38 us with 20 and 79 us with 30, paper 1.2 ms
+// with 30.
 void inspect_work(const config::Device& device, const config::Twin& twin, Collector& out) {
   const bool is_paper = device.rendering.law == rendering::Law::kPaper;
-  const double most = std::floor((is_paper ? 8.0 : 15.0) * std::cbrt(1000.0 / device.rate_Hz));
+  const double most =
+      std::floor((is_paper ? 20.0 : 40.0) * std::cbrt(1000.0 / device.rate_Hz) + 1e-9);
   const int dofs = twin.model.chain.nv();
   if (dofs <= most) return;
   out.add(

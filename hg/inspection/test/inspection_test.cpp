@@ -438,15 +438,15 @@ TEST(Pair, TwinThatIsTooMuchWorkForTheRateIsFound) {
     return finding == nullptr ? "" : finding->what;
   };
   using rendering::Law;
-  EXPECT_EQ(finding_of(15, Law::kGauss, 1000.0), "");
+  EXPECT_EQ(finding_of(30, Law::kGauss, 1000.0), "");
+  EXPECT_EQ(finding_of(20, Law::kGauss, 8000.0), "");
   EXPECT_EQ(
-      finding_of(16, Law::kGauss, 1000.0),
-      "the twin has 16 degrees of freedom, expected at most 15 with the law gauss at 1000 Hz: "
+      finding_of(21, Law::kGauss, 8000.0),
+      "the twin has 21 degrees of freedom, expected at most 20 with the law gauss at 8000 Hz: "
       "the cycle may take longer than its period");
-  EXPECT_EQ(finding_of(8, Law::kPaper, 1000.0), "");
-  EXPECT_NE(finding_of(9, Law::kPaper, 1000.0), "");
-  EXPECT_EQ(finding_of(16, Law::kGauss, 500.0), "");
-  EXPECT_NE(finding_of(12, Law::kGauss, 2000.0), "");
+  EXPECT_EQ(finding_of(20, Law::kPaper, 1000.0), "");
+  EXPECT_NE(finding_of(21, Law::kPaper, 1000.0), "");
+  EXPECT_EQ(finding_of(25, Law::kPaper, 500.0), "");
 }
 
 TEST(TwinFigures, DrawTheHalfLimitedJointWithinItsLimit) {
