@@ -165,11 +165,12 @@ std::string to_text(const std::vector<Trial>& trials, const std::vector<SeededRu
 }
 
 std::string to_markdown(const std::vector<Trial>& trials, const std::vector<SeededRun>& runs) {
-  std::string text;
+  std::string text = "# What scenarios show over seeds\n\n";
+  bool is_head = true;
   for (const Cells& cells : table_of(trials, runs)) {
-    const bool is_head = text.empty();
     text += fmt::format("| {} |\n", fmt::join(cells, " | "));
     if (!is_head) continue;
+    is_head = false;
     for (std::size_t i = 0; i < cells.size(); ++i) text += "| --- ";
     text += "|\n";
   }

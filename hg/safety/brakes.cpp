@@ -27,8 +27,11 @@ Axis axis_of(const MonitorConfig& config, int i, int n_p, int n_m) noexcept {
 }
 
 BrakedAxes positions_of(const SensorFrame& sensors) noexcept {
-  BrakedAxes q(sensors.q_p.size() + sensors.q_m.size() + sensors.theta_m.size());
-  q << sensors.q_p, sensors.q_m, sensors.theta_m;
+  const Eigen::Index n_p = sensors.q_p.size(), n_m = sensors.q_m.size();
+  BrakedAxes q(n_p + n_m + sensors.theta_m.size());
+  q.head(n_p) = sensors.q_p;
+  q.segment(n_p, n_m) = sensors.q_m;
+  q.tail(sensors.theta_m.size()) = sensors.theta_m;
   return q;
 }
 
@@ -76,7 +79,8 @@ Fault watch_brakes(const MonitorConfig& config, const SensorFrame& sensors, bool
     if (!std::isfinite(q[i])) continue;
     if (!std::isfinite(state.from[i])) state.from[i] = q[i];
     if (is_new || is_over) {
-      const double speed = std::isfinite(last[i]) ? moved(axis, last[i], q[i]) / config.dt : kInfinity;
+      const double speed =
+          std::isfinite(last[i]) ? moved(axis, last[i], q[i]) / config.dt : kInfinity;
       const double share = is_over ? 0.0 : std::min(1.0, speed / axis.speed_max);
       state.may_move[i] = slip_of(config, axis) + share * axis.stop_distance;
     }

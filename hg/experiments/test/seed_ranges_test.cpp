@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 namespace hg::experiments {
@@ -49,6 +50,20 @@ TEST(PlaySeeds, AFaultAndALimitThatIsLeftHaveNotHeld) {
   EXPECT_EQ(outside[0].length.name, "hand x");
   EXPECT_GT(outside[0].length.excess, 0.3);
   EXPECT_FALSE(have_all_held(outside));
+}
+
+TEST(PlaySeeds, TheScenariosOfStressBeginWell) {
+  std::vector<Trial> trials;
+  for (const auto& entry : std::filesystem::directory_iterator("models/stress")) {
+    if (entry.path().extension() != ".yaml") continue;
+    trials.push_back({.name = entry.path().stem().string(),
+                      .hand = "",
+                      .scenario = config::load_scenario(entry.path().string())});
+    trials.back().scenario.duration_s = 1.5;
+  }
+  EXPECT_EQ(trials.size(), 10U);
+  const std::vector<SeededRun> runs = play_seeds(trials, 1, 1, {});
+  EXPECT_TRUE(have_all_held(runs)) << to_text(trials, runs);
 }
 
 TEST(PlaySeeds, TheTableHasMedianAndWorst) {

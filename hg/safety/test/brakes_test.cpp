@@ -32,9 +32,7 @@ struct Dark {
     if (has_motors) sensors.theta_m[4] += 1e-3 * speed;
     EXPECT_EQ(step().code, FaultCode::kNone);
   }
-  Fault step(bool is_powered = false) {
-    return watch_brakes(monitor, sensors, is_powered, state);
-  }
+  Fault step(bool is_powered = false) { return watch_brakes(monitor, sensors, is_powered, state); }
   // samples until it is told; -1: not within 2000
   template <typename Change>
   int until_told(Change change) {
