@@ -110,7 +110,7 @@ std::vector<Cells> table_of(const std::vector<Trial>& trials, const std::vector<
   return table;
 }
 
-// "free_space, stiff hand: 111 joint torque exceeded at 12.3 s (seed 4) and in 2 more"
+// "- free_space, stiff hand: 111 joint torque exceeded at 12.3 s (seed 4) and in 2 more"
 std::string faults_of(const std::vector<Trial>& trials, const std::vector<SeededRun>& runs) {
   std::string text;
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -120,7 +120,7 @@ std::string faults_of(const std::vector<Trial>& trials, const std::vector<Seeded
     }
     for (const auto& [code, found] : by_code) {
       const std::string hand = trials[i].hand.empty() ? "its own" : trials[i].hand;
-      text += fmt::format("{}, {} hand: {} {} in {} runs, first at {:.2f} s with seed {}\n",
+      text += fmt::format("- {}, {} hand: {} {} in {} runs, first at {:.2f} s with seed {}\n",
                           trials[i].name, hand, static_cast<int>(code), to_string(code),
                           found.size(), found.front()->ended_s, found.front()->seed);
     }
