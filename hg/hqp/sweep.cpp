@@ -409,6 +409,9 @@ void start_from_zero_with(const Problem& problem, std::vector<RowState>& guess,
 }
 
 void start_solve(const Problem& problem, Workspace& work) noexcept {
+  // a try that ends in doubt leaves values alone: those of the last solve say nothing
+  std::fill_n(work.value.begin(), problem.rows(), 0.0);
+  work.x_norm = 0.0;
   start_from_zero(problem, work);
   work.released_row = -1;
   work.has_dual_point = false;
