@@ -495,6 +495,7 @@ bool start_from_dual(const Problem& problem, const Options& options, int levels,
     work.direct.truncate(work.direct_rank_at_level[at(top)]);
   }
   work.direct_levels = top;
+  work.has_dual_point = false;  // the point of a run before is overwritten
   if (!work.dual.find_guess(problem, options, levels, top, work.gives_way, work.direct,
                             work.point.state)) {
     return false;
