@@ -30,19 +30,13 @@ void begin(const ExperimentArguments& arguments, const std::string& what) {
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, what));
 }
 
-void write_json(const ExperimentArguments& arguments, nlohmann::ordered_json json) {
-  if (arguments.json.empty()) return;
-  json["version"] = kVersion;
-  write_output(arguments.json, json.dump(2) + "\n");
-}
-
 }  // namespace
 
 int experiment_free_space(const ExperimentArguments& arguments) {
   begin(arguments, "Free space: a hand walks a free body round a circle of 0.7 m at 0.25 m/s\n");
   const auto runs = experiments::measure_free_space(walk_scenario(), progress_of("walks"));
   print_out(experiments::to_text(runs));
-  write_json(arguments, experiments::to_json(runs));
+  write_json(arguments.json, experiments::to_json(runs));
   return 0;
 }
 
@@ -54,7 +48,7 @@ int experiment_stability_map(const ExperimentArguments& arguments) {
   const experiments::StabilityMap map =
       experiments::make_stability_map(walk_scenario(), config, progress_of("kicks"));
   print_out(experiments::to_text(map));
-  write_json(arguments, experiments::to_json(map));
+  write_json(arguments.json, experiments::to_json(map));
   if (!arguments.svg.empty()) write_output(arguments.svg, experiments::to_svg(map));
   return 0;
 }
@@ -66,7 +60,7 @@ int experiment_impedance(const ExperimentArguments& arguments) {
   const experiments::ImpedanceReport report =
       experiments::measure_impedance(walk_scenario(), config, progress_of("pushes"));
   print_out(experiments::to_text(report));
-  write_json(arguments, experiments::to_json(report));
+  write_json(arguments.json, experiments::to_json(report));
   return 0;
 }
 
@@ -94,7 +88,7 @@ int experiment_seeds(const SeedsArguments& arguments) {
   const std::vector<experiments::SeededRun> runs =
       experiments::play_seeds(trials, arguments.first, arguments.count, progress_of("runs"));
   print_out(experiments::to_text(trials, runs));
-  write_json({.json = arguments.json, .svg = {}}, experiments::to_json(trials, runs));
+  write_json(arguments.json, experiments::to_json(trials, runs));
   if (!arguments.markdown.empty()) {
     write_output(arguments.markdown, experiments::to_markdown(trials, runs));
   }

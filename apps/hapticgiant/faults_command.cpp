@@ -19,17 +19,11 @@
 namespace hg::apps {
 namespace {
 
-void write_cases(const std::string& file, nlohmann::ordered_json json) {
-  if (file.empty()) return;
-  json["version"] = kVersion;
-  write_output(file, json.dump(2) + "\n");
-}
-
 int process_faults(const FaultsArguments& arguments) {
   const std::vector<ProcessCase> cases =
       play_process_faults(arguments.scenarios, arguments.repetitions, arguments.campaign.seed);
   print_out(to_text(cases));
-  write_cases(arguments.json, to_json(cases));
+  write_json(arguments.json, to_json(cases));
   return std::ranges::all_of(cases, &ProcessCase::is_good) ? 0 : 1;
 }
 
@@ -68,7 +62,7 @@ int faults(const FaultsArguments& arguments) {
   if (!arguments.markdown.empty()) {
     write_output(arguments.markdown, experiments::to_markdown(campaign));
   }
-  write_cases(arguments.json, experiments::to_json(campaign));
+  write_json(arguments.json, experiments::to_json(campaign));
   return experiments::is_passed(campaign) ? 0 : 1;
 }
 

@@ -8,10 +8,12 @@
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output.h"
+#include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 
@@ -97,6 +99,12 @@ void write_output(const std::string& file, const std::string& text) {
   if (is_written && !error) return;
   if (replaces) fs::remove(written, error);
   throw SetupError(file + ": could not be written");
+}
+
+void write_json(const std::string& file, nlohmann::ordered_json json) {
+  if (file.empty()) return;
+  json["version"] = kVersion;
+  write_output(file, json.dump(2) + "\n");
 }
 
 void make_folder(const std::string& folder) {

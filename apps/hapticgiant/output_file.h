@@ -1,6 +1,7 @@
 /// Files that the program writes on request: whole or not at all.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,9 @@ void check_writable(const std::string& file, std::string_view beginning = {});
 /// output (/dev/stdout) is printed. Throws SetupError.
 /// Where nobody reads it waits, after an interruption for half a second.
 void write_output(const std::string& file, const std::string& text);
+
+/// JSON of measurements, with the version of the program; an empty `file` means none. As above.
+void write_json(const std::string& file, nlohmann::ordered_json json);
 
 /// With the folders that it lies in. Throws SetupError.
 void make_folder(const std::string& folder);

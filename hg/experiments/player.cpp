@@ -6,6 +6,11 @@
 
 namespace hg::experiments {
 
+void set_seed(config::Scenario& scenario, std::uint64_t seed) {
+  scenario.device.simulation.seed = seed;
+  scenario.device.simulation.sensors.seed = seed;
+}
+
 Player::Player(const config::Scenario& scenario)
     : scenario_(scenario),
       cycle_(assembly::make_cycle(scenario)),

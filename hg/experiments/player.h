@@ -14,6 +14,9 @@
 
 namespace hg::experiments {
 
+/// Of sensor errors, noise and tremor.
+void set_seed(config::Scenario& scenario, std::uint64_t seed);
+
 class Player {
  public:
   /// `scenario` needs a planned end (assembly::planned_duration_s) and must outlive the player.
@@ -30,6 +33,11 @@ class Player {
   const CycleRecord& record() const noexcept { return sample_->record; }
   /// Between run() and end(): all of this period but the truth.
   const Sample& sample() const noexcept { return *sample_; }
+  /// The same with the truth.
+  const Sample& judged_sample() noexcept {
+    sample_->truth = truth();
+    return *sample_;
+  }
   /// Between begin() and end(): at the time of the sensors.
   const Truth& truth() const noexcept { return *device_.truth(); }
   /// For disturbances: what is changed between run() and end() is what the device gets.

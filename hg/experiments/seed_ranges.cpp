@@ -17,18 +17,15 @@ namespace {
 
 SeededRun play(const Trial& trial, std::uint64_t seed) {
   config::Scenario scenario = trial.scenario;
-  scenario.device.simulation.seed = scenario.device.simulation.sensors.seed = seed;
+  set_seed(scenario, seed);
   Player player(scenario);
   evaluation::Summary summary = assembly::make_summary(scenario);
   evaluation::EventDetector detector(scenario.events, scenario.limits);
-  auto sample = std::make_unique<Sample>();
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
     player.begin();
     player.run();
-    sample->record = player.record();
-    sample->truth = player.truth();
-    summary.add(*sample);
-    (void)detector.observe(sample->record);
+    summary.add(player.judged_sample());
+    (void)detector.observe(player.record());
   }
   const evaluation::Reality& reality = summary.reality();
   SeededRun run = {.seed = seed,

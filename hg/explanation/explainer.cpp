@@ -71,9 +71,10 @@ std::string why_it_stops(const Sample& sample, bool was_autonomous) {
 }
 
 std::string release_text(const safety::Rule& rule) {
-  const bool is_lost = rule.code == FaultCode::kDeviceSilent ||
-                       rule.code == FaultCode::kDeviceGone || rule.code == FaultCode::kBrakesSlip;
-  return std::string(rule.release) + (is_lost ? "" : ", then a reset");
+  const bool needs_new_run = rule.code == FaultCode::kDeviceSilent ||
+                             rule.code == FaultCode::kDeviceGone ||
+                             rule.code == FaultCode::kBrakesSlip;
+  return std::string(rule.release) + (needs_new_run ? "" : ", then a reset");
 }
 
 std::string detail(const char* label, const std::string& text) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hg/core/linear_algebra.h"
+#include "hg/experiments/player.h"
 #include "hg/haptify/play.h"
 
 namespace hg::haptify {
@@ -50,7 +51,7 @@ Dynamics measure_dynamics(const config::Scenario& scenario, const DynamicsConfig
                           std::uint64_t seed) {
   config::Scenario stroked = with_script(scenario, strokes(config, axis));
   stroked.twin.model.q_start.head<3>() = config.position;
-  set_seed(stroked, seed);
+  experiments::set_seed(stroked, seed);
   const Played played = play(stroked);
   const Eigen::Vector3d direction = main_axis(played.instants, axis);
   const Eigen::Index part = axis < 3 ? 0 : 3;

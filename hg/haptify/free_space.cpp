@@ -6,6 +6,7 @@
 
 #include "hg/experiments/changes.h"
 #include "hg/experiments/motion_analysis.h"
+#include "hg/experiments/player.h"
 #include "hg/inspection/survey.h"
 
 namespace hg::haptify {
@@ -52,7 +53,7 @@ FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceCo
   const config::HandPose hand =
       config::hand_of({.p = start.p + start.R * q.head<3>(), .R = start.R * R});
   config::Scenario led = with_script(scenario, exploration(config, hand, seed));
-  set_seed(led, seed);
+  experiments::set_seed(led, seed);
 
   const Played played = play(led);
   const double rate_Hz = led.device.rate_Hz;

@@ -17,26 +17,19 @@ config::Scenario with_script(config::Scenario scenario, const user::Script& scri
   return scenario;
 }
 
-void set_seed(config::Scenario& scenario, std::uint64_t seed) {
-  scenario.device.simulation.seed = seed;
-  scenario.device.simulation.sensors.seed = seed;
-}
-
 Played play(const config::Scenario& scenario) {
   experiments::Player player(scenario);
   evaluation::Summary summary = assembly::make_summary(scenario);
   const double grasp_s = scenario.script.script.grasp_s;
-  auto sample = std::make_unique<Sample>();
   Played played;
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
     player.begin();
     player.run();
-    sample->record = player.record();
-    sample->truth = player.truth();
-    summary.add(*sample);
-    const CycleRecord& record = sample->record;
+    const Sample& sample = player.judged_sample();
+    summary.add(sample);
+    const CycleRecord& record = sample.record;
     if (record.time_s < grasp_s) continue;
-    const Truth& truth = sample->truth;
+    const Truth& truth = sample.truth;
     played.instants.push_back({.time_s = record.time_s - grasp_s,
                                .T_B_H = truth.T_B_H,
                                .twist = truth.twist,

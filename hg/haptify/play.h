@@ -30,9 +30,6 @@ struct Played {
 /// What a script does to a free body besides holding it.
 config::Scenario with_script(config::Scenario scenario, const user::Script& script);
 
-/// Noise, sensor errors and tremor of another repetition.
-void set_seed(config::Scenario& scenario, std::uint64_t seed);
-
 /// Once from start to end, as fast as it can.
 Played play(const config::Scenario& scenario);
 

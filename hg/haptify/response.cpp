@@ -7,6 +7,7 @@
 #include <span>
 
 #include "hg/experiments/changes.h"
+#include "hg/experiments/player.h"
 #include "hg/haptify/measures.h"
 #include "hg/haptify/play.h"
 
@@ -85,7 +86,7 @@ config::Scenario prepared(const config::Scenario& scenario, const ResponseConfig
   config::Scenario result = with_script(scenario, script);
   result.twin.model.q_start.head<3>() = config.position;
   result.script.hand.tremor_rms = 0.0;  // an instrument pushes
-  set_seed(result, seed);
+  experiments::set_seed(result, seed);
   return result;
 }
 

@@ -8,6 +8,7 @@
 
 #include "hg/environment/surface.h"
 #include "hg/experiments/changes.h"
+#include "hg/experiments/player.h"
 #include "hg/experiments/stability_map.h"
 #include "hg/haptify/measures.h"
 
@@ -101,7 +102,7 @@ Slide measure_slide(const config::Scenario& scenario, const SurfaceConfig& confi
   script.duration_s = time;
   config::Scenario sliding =
       with_script(above_surface(scenario, config, k, config.damping), script);
-  set_seed(sliding, seed);
+  experiments::set_seed(sliding, seed);
   const Played played = play(sliding);
   Slide result = {.failure = played.failure};
   double count = 0.0;
@@ -140,7 +141,7 @@ Press measure_press(const config::Scenario& scenario, const SurfaceConfig& confi
   script.duration_s = kRest + 2.0 * config.press_s + 1.0;
   config::Scenario pressed =
       with_hand(above_surface(scenario, config, stiffness, config.damping), hand, script);
-  set_seed(pressed, seed);
+  experiments::set_seed(pressed, seed);
   const Played played = play(pressed);
   Press result = {.failure = played.failure};
   const Loading loading = loading_of(played, config.position.z(), config.least_force);
@@ -164,7 +165,7 @@ Peak measure_peak(const config::Scenario& scenario, const SurfaceConfig& config,
   script.duration_s = kRest + config.peak_s + 1.0;
   config::Scenario pressed =
       with_hand(above_surface(scenario, config, k, config.damping), hand, script);
-  set_seed(pressed, seed);
+  experiments::set_seed(pressed, seed);
   const Played played = play(pressed);
   Peak result;
   const Loading loading = loading_of(played, config.position.z(), config.least_force);
