@@ -46,11 +46,26 @@ double recoverable_speed(double d, double v, double ddq_max, const RecoverableOp
   return speed_on_root(d - 0.5 * ddq_max * options.tau * options.tau, v, ddq_max, dt);
 }
 
+// w(d) itself, d >= 0.
+double approach_speed(double d, double ddq_max, double tau) noexcept {
+  const double v_line = d / tau;
+  if (v_line <= ddq_max * tau) return v_line;
+  return std::sqrt(ddq_max * (2.0 * d - ddq_max * tau * tau));
+}
+
 double recoverable_max(double d, double v, const JointLimits& limits,
                        const RecoverableOptions& options, double dt) noexcept {
+  // the share of what the speed lacks that is left at the end of the sample
+  const double kept = std::max(0.0, 1.0 - dt / options.tau_onset);
+  const auto left = [&](double fastest) {
+    return std::isfinite(fastest) ? kept * std::max(0.0, fastest - v) : 0.0;
+  };
+  const double slower = d > 0.0 ? left(approach_speed(d, limits.ddq_max, options.tau)) : 0.0;
   const double v_end =
-      std::min(limits.dq_max, recoverable_speed(d, v, limits.ddq_max, options, dt));
-  return std::clamp((v_end - v) / dt, -options.ddq_rec_factor * limits.ddq_max, limits.ddq_max);
+      std::min(limits.dq_max - left(limits.dq_max),
+               recoverable_speed(d, v - slower, limits.ddq_max, options, dt) - slower);
+  const double ddq = std::max((v_end - v) / dt, -options.ddq_rec_factor * limits.ddq_max);
+  return options.is_capped ? std::min(ddq, limits.ddq_max) : ddq;
 }
 
 // Fastest speed from which ddq_max stops the joint within distance d; [DP18] eq. (10).
@@ -128,6 +143,8 @@ void check(const RecoverableOptions& options, const JointLimits& limits, double 
           "tau_rec must be finite and not below the longest period", options.tau_rec);
   require(options.v_rec > 0.0 && std::isfinite(options.v_rec) && options.v_rec <= limits.dq_max,
           item, "v_rec must be positive and at most dq_max", options.v_rec);
+  require(options.tau_onset >= 0.0 && std::isfinite(options.tau_onset), item,
+          "tau_onset must be finite and not negative", options.tau_onset);
   require(options.ddq_rec_factor >= 1.0 && std::isfinite(options.ddq_rec_factor), item,
           "ddq_rec_factor must be finite and at least 1", options.ddq_rec_factor);
 }

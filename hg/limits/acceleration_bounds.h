@@ -35,6 +35,8 @@ struct RecoverableOptions {
   double tau_rec = 20e-3;       ///< time constant of the return, s; slow enough to be no jerk
   double v_rec = 0.5;           ///< speed of the return, rad/s or m/s; a slow hand movement
   double ddq_rec_factor = 1.5;  ///< braking beyond the limits may use so many times ddq_max, >= 1
+  double tau_onset = 0.0;       ///< time constant with which braking comes in, s; 0: all at once
+  bool is_capped = true;        ///< ddq_max limits accelerations everywhere, not only braking
 };
 
 /// Default options for a nominal period `dt` and the longest period `dt_max` that may occur, s:
@@ -50,7 +52,11 @@ void check(const RecoverableOptions& options, const JointLimits& limits, double 
 ///
 ///   v+ <= w(d+),  w(d) = d / tau for d <= A tau^2, else sqrt(A (2 d - A tau^2))    for q <= q_max
 ///   v+ <= -min(v_rec, -d+ / tau_rec)                                               for q > q_max
-///   v+ <= dq_max,  ddq <= A,  and in any case ddq >= -A_rec
+///   v+ <= dq_max,  ddq <= A if capped,  and in any case ddq >= -A_rec
+///
+/// With tau_onset T > dt what the speed still lacks to each of the two, w(d) - v and dq_max - v,
+/// shrinks by no more than dt / T in a sample: braking comes in before it is needed, without a
+/// jump.
 ///
 /// A state with |dq| <= dq_max and -w(q - q_min) <= dq <= w(q_max - q) is viable. From a viable
 /// state every choice inside the bounds leads to a viable state, keeps position and speed inside

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cfenv>
 #include <cmath>
 #include <limits>
@@ -56,7 +57,9 @@ void expect_invariant(const JointLimits& limits, const RecoverableOptions& optio
     const Interval ddq = bounds(joint);
     ASSERT_LE(ddq.lb, ddq.ub) << k;
     const double chosen = choose(policy, ddq, k, joint, dt, bounds, random);
-    ASSERT_LE(std::abs(chosen), limits.ddq_max + dq_rounding / dt) << k;
+    if (options.is_capped) {
+      ASSERT_LE(std::abs(chosen), limits.ddq_max + dq_rounding / dt) << k;
+    }
 
     const auto [end, path] = move(joint, chosen, dt);
     ASSERT_LE(path.ub, limits.q_max + kPositionRounding) << k;
@@ -80,6 +83,57 @@ TEST(RecoverableBounds, FromViableStatesEveryPolicyKeepsAllLimits) {
       if (HasFatalFailure()) return;
     }
   }
+}
+
+TEST(RecoverableBounds, WithoutACapAndWithAnEarlyOnsetEveryPolicyKeepsAllLimits) {
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    const JointLimits limits = random_limits(random);
+    const double dt = random_period(random);
+    RecoverableOptions options = options_for(limits, dt);
+    options.is_capped = false;
+    options.tau_onset = dt * log_uniform(random, 0.5, 100.0);
+    for (const Policy policy : kPolicies) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", policy " +
+                   std::to_string(static_cast<int>(policy)));
+      expect_invariant(limits, options, dt, dt, policy, 6000, random);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+// From rest with all that is allowed: the acceleration of each sample until the joint stops.
+std::vector<double> sprint(const RecoverableOptions& options) {
+  Joint joint = {kElbow.q_min, 0.0};
+  std::vector<double> chosen;
+  for (int k = 0; k < 5000; ++k) {
+    const double ub = recoverable_bounds(kElbow, options, joint.q, joint.dq, kDt).ub;
+    const double ddq = std::min(ub, 5.0 * kElbow.ddq_max);  // of a strong motor
+    joint = move(joint, ddq, kDt).end;
+    chosen.push_back(ddq);
+  }
+  EXPECT_NEAR(joint.q, kElbow.q_max, 1e-6);
+  return chosen;
+}
+
+TEST(RecoverableBounds, WithoutACapAJointAcceleratesAsItsMotorCan) {
+  const std::vector<double> ddq = sprint({.is_capped = false});
+  EXPECT_EQ(ddq.front(), 5.0 * kElbow.ddq_max);
+  EXPECT_NEAR(*std::ranges::min_element(ddq), -kElbow.ddq_max, 1e-6);
+}
+
+TEST(RecoverableBounds, AnEarlyOnsetBrakesWithoutAJump) {
+  const auto largest_jump = [](const std::vector<double>& ddq) {
+    double largest = 0.0;
+    for (std::size_t k = 1; k < ddq.size(); ++k) {
+      largest = std::max(largest, std::abs(ddq[k] - ddq[k - 1]));
+    }
+    return largest;
+  };
+  const double at_once = largest_jump(sprint({.is_capped = false}));
+  const double gradual = largest_jump(sprint({.tau_onset = 25e-3, .is_capped = false}));
+  EXPECT_GT(at_once, 4.0 * kElbow.ddq_max);
+  EXPECT_LT(gradual, 0.5 * kElbow.ddq_max);
 }
 
 TEST(RecoverableBounds, PeriodsMayVaryUpToTau) {
@@ -442,6 +496,9 @@ TEST(CheckRecoverableOptions, AnImpossibleOptionIsRefusedAndNamed) {
   for (const double bad : {kNan, kInfinity, -1.0, 0.0}) {
     EXPECT_TRUE(said({.tau = bad}).starts_with("joint m4: tau must")) << bad;
     EXPECT_TRUE(said({.tau_rec = bad}).starts_with("joint m4: tau_rec must")) << bad;
+    if (bad != 0.0) {
+      EXPECT_TRUE(said({.tau_onset = bad}).starts_with("joint m4: tau_onset must")) << bad;
+    }
     EXPECT_TRUE(said({.v_rec = bad}).starts_with("joint m4: v_rec must")) << bad;
     EXPECT_TRUE(said({.ddq_rec_factor = bad}).starts_with("joint m4: ddq_rec_factor must")) << bad;
   }
