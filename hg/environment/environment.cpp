@@ -14,10 +14,10 @@ using Eigen::Vector3d;
 constexpr double kStill = 1e-10;  // m; a proxy that moves less has arrived
 
 // Never pulls, and along the surface within the cone of friction.
-Vector3d force_of(const Spread& spread, const Vector3d& velocity) noexcept {
+Vector3d force_of(const Spread& spread, double pressed, const Vector3d& velocity) noexcept {
   const double damping = spread.damping * std::min(1.0, spread.depth / kFullDamping);
   const double speed = velocity.dot(spread.normal);
-  const double f_normal = std::max(0.0, spread.stiffness * spread.depth - damping * speed);
+  const double f_normal = std::max(0.0, spread.stiffness * pressed - damping * speed);
   const Vector3d v_tangent = velocity - speed * spread.normal;
   Vector3d f_tangent = spread.stiffness * spread.tangent - damping * v_tangent;
   const double held = spread.friction * f_normal;
@@ -49,8 +49,29 @@ ContactReport Environment::step(const Vector3d& position, const Vector3d& veloci
   contact.proxy = state.proxy;
   const Spread spread = planes.spread(handle, state.proxy);
   contact.surface = spread.surface;
-  if (spread.surface >= 0) contact.force = force_of(spread, velocity);
+  if (spread.surface < 0) {
+    state.dent = state.taken = state.pressed = 0.0;
+    return contact;
+  }
+  state.dent = std::min(state.dent, spread.depth);
+  state.pressed = spread.depth - state.dent;
+  state.stiffness = spread.stiffness;
+  contact.force = force_of(spread, state.pressed, velocity);
   return contact;
+}
+
+void Environment::give_way(const ContactReport& contact, double missing, const Vector3d& velocity,
+                           State& state) const noexcept {
+  const double force = contact.force.norm();
+  if (contact.surface < 0 || force == 0.0) return;
+  const double given = std::max(0.0, force - missing);
+  state.taken -= period_ * given * contact.force.dot(velocity) / force;
+  state.taken = std::max(0.0, state.taken);
+  if (missing > 0.0) {
+    state.dent += std::min(missing / state.stiffness, state.pressed);
+  } else if (state.taken > 0.0) {
+    state.dent = std::max(0.0, state.dent - kRecovery * period_);
+  }
 }
 
 Environment::Found Environment::first_hit(const Vector3d& from, const Vector3d& to) const noexcept {

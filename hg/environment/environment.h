@@ -30,11 +30,17 @@ inline constexpr int kMaxRounds = 4;  ///< in which the proxy follows a curved s
 inline constexpr int kMaxSweeps = 5 * kMaxRounds;
 
 inline constexpr double kFullDamping = 5e-3;  ///< depth from which damping acts in full, m; [C] 5
+inline constexpr double kRecovery = 4e-3;     ///< speed at which a dent is filled again, m/s
 
 /// Part of the copyable state of a cycle.
 struct State {
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();
   bool is_started = false;  ///< false: the proxy starts where the handle is
+  // where the device cannot push as hard as the surface would
+  double dent = 0.0;       ///< by which the surface has given way along its normal, m
+  double taken = 0.0;      ///< energy that this contact has taken and not given back, J
+  double stiffness = 0.0;  ///< of the surfaces that push, N/m
+  double pressed = 0.0;    ///< depth of the handle beyond the dent, m
 };
 
 class Environment {
@@ -50,6 +56,12 @@ class Environment {
   /// starts inside a solid is free until it has left it.
   ContactReport step(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
                      State& state) const noexcept;
+
+  /// After a step(): of the force `contact` the device does not give `missing` (N, of its size).
+  /// The surface gives way until its spring pushes no harder than the device, so that it never
+  /// gives back more than it has taken. It recovers slowly, from the energy that it has taken.
+  void give_way(const ContactReport& contact, double missing, const Eigen::Vector3d& velocity,
+                State& state) const noexcept;
 
  private:
   struct Found {

@@ -359,6 +359,89 @@ TEST(Energy, OfABouncingMassDoesNotGrow) {
   EXPECT_GT(bounces, 100);
 }
 
+// A mass that meets a surface with a device behind it that gives at most `force`.
+struct Impact {
+  double depth = 0.0, v_out = 0.0, taken = 0.0, given = 0.0, last_force = 0.0;
+  int samples = 0;  // until it is out again, or all
+};
+
+Impact impact(double stiffness, double mass, double v, double force, bool gives_way) {
+  Surface floor = table();
+  floor.stiffness = stiffness;
+  Led led({floor});
+  led.at({0, 0, 0.01});
+  Vector3d p(0, 0, 1e-6), velocity(0, 0, -v);
+  Impact impact;
+  for (; impact.samples < 5000 && (p.z() <= 0.0 || velocity.z() < 0.0); ++impact.samples) {
+    const ContactReport contact = led.environment.step(p, velocity, led.state);
+    const double f = std::min(contact.force.z(), force);
+    if (gives_way) led.environment.give_way(contact, contact.force.z() - f, velocity, led.state);
+    const Vector3d a(0, 0, f / mass);
+    const double moved = kDt * velocity.z() + 0.5 * kDt * kDt * a.z();
+    (moved < 0.0 ? impact.taken : impact.given) += std::abs(f * moved);
+    p.z() += moved;
+    velocity += kDt * a;
+    impact.depth = std::max(impact.depth, -p.z());
+    impact.v_out = velocity.z();
+    impact.last_force = f;
+  }
+  return impact;
+}
+
+TEST(GivingWay, ThrowsBackNoFasterThanATenth) {
+  for (const double stiffness : {8e3, 2e4, 5e4}) {
+    for (const double mass : {3.0, 6.0, 20.0}) {
+      for (const double v : {0.4, 0.83, 1.33}) {
+        SCOPED_TRACE(std::to_string(stiffness) + " N/m, " + std::to_string(mass) + " kg, " +
+                     std::to_string(v) + " m/s");
+        const double force = 6.0 * mass;  // 6 m/s^2
+        const Impact soft = impact(stiffness, mass, v, force, true);
+        EXPECT_LT(soft.v_out, 0.35 * std::sqrt(force * force / (stiffness * mass)) + 0.1 * v);
+        EXPECT_LT(soft.depth, 1.1 * v * v / (2.0 * 6.0) + 1.5 * force / stiffness);
+        EXPECT_LE(soft.given, soft.taken);
+        EXPECT_GT(impact(stiffness, mass, v, force, false).v_out, 0.9 * v);
+      }
+    }
+  }
+}
+
+TEST(GivingWay, LeavesNoMoreInTheSpringThanTheDeviceGives) {
+  Led led({table()});
+  led.at({0, 0, 0.01});
+  const Vector3d v(0, 0, -1.0);
+  for (int k = 1; k <= 100; ++k) {
+    const Vector3d p(0, 0, -1e-3 * k);
+    const ContactReport contact = led.environment.step(p, v, led.state);
+    led.environment.give_way(contact, std::max(0.0, contact.force.z() - 30.0), v, led.state);
+  }
+  const Vector3d still = Vector3d::Zero();
+  EXPECT_NEAR(led.environment.step({0, 0, -0.1}, still, led.state).force.z(), 30.0, 1.5);
+  // 20 mm nearer to the surface there is none, and pressing again begins there
+  EXPECT_EQ(led.environment.step({0, 0, -0.08}, still, led.state).force.z(), 0.0);
+  EXPECT_NEAR(led.environment.step({0, 0, -0.085}, still, led.state).force.z(), 10.0, 0.1);
+  // outside, all is forgotten
+  led.at({0, 0, 0.01});
+  EXPECT_NEAR(led.environment.step({0, 0, -0.01}, still, led.state).force.z(), 20.0, 0.1);
+}
+
+TEST(GivingWay, RecoversSlowlyAndOnlyFromWhatTheContactHasTaken) {
+  const auto pressed = [](double taken) {
+    Led led({table()});
+    led.at({0, 0, 0.01});
+    led.at({0, 0, -0.05});
+    led.state.dent = 0.045;
+    led.state.taken = taken;
+    ContactReport contact;
+    for (int k = 0; k < 1000; ++k) {
+      contact = led.environment.step({0, 0, -0.05}, Vector3d::Zero(), led.state);
+      led.environment.give_way(contact, 0.0, Vector3d::Zero(), led.state);
+    }
+    return contact.force.z();
+  };
+  EXPECT_NEAR(pressed(0.0), 10.0, 0.1);
+  EXPECT_NEAR(pressed(1.0), 2000.0 * (0.005 + kRecovery), 0.1);
+}
+
 TEST(Mesh, OfABoxFeelsLikeTheBox) {
   const Vector3d size(0.3, 0.2, 0.1);
   for (unsigned seed = 0; seed < 60; ++seed) {

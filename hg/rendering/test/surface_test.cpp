@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+
 #include "hg/rendering/test/playing.h"
 
 namespace hg::rendering {
@@ -63,6 +66,39 @@ TEST(TwinOnASurface, FeelsOnlyTheShareOfIt) {
   twin.step(Vector6::Zero(), 0.25);
   EXPECT_NEAR(twin.record.contact.force.z(), 4.0, 1e-4);
   EXPECT_NEAR(twin.state.twin.ddq_a[2], 4.0 / kMass, 1e-4);
+}
+
+// A fall into a stiff floor: depth and fastest way back, m and m/s.
+std::pair<double, double> fall(double ddq_max) {
+  DeviceModel device = unlimited_device();
+  for (limits::JointLimits& joint : device.joint_limits) joint.ddq_max = ddq_max;
+  Rendering rendering(device, Falling::body(), without_synchronisation(),
+                      environment::Environment({{.name = "floor",
+                                                 .shape = environment::Plane{},
+                                                 .stiffness = 2e4,
+                                                 .damping = 0.0}},
+                                               kDt));
+  State state = rendering.start(kPosture);
+  state.twin.dq_a[2] = -0.5;
+  double depth = 0.0, back = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+    CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
+    rendering.step(state, 0.0, record);
+    rendering.integrate(state);
+    depth = std::max(depth, -state.twin.q_a[2]);
+    back = std::max(back, state.twin.dq_a[2]);
+  }
+  return {depth, back};
+}
+
+TEST(TwinOnASurface, IsNotThrownBackByAForceThatTheDeviceCannotGive) {
+  const auto [depth, back] = fall(kInfinity);
+  EXPECT_NEAR(depth, 0.5 * std::sqrt(kMass / 2e4), 1e-3);
+  EXPECT_NEAR(back, 0.5, 0.02);
+  const auto [weak_depth, weak_back] = fall(6.0);
+  EXPECT_GT(weak_depth, 3.0 * depth);
+  EXPECT_LT(weak_back, 0.05);
 }
 
 TEST(TwinOnASurface, FeelsNothingWhileItIsBraked) {
