@@ -208,8 +208,9 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
   const config::Device& device = scenario.device;
   safety::MonitorConfig monitor = device.monitor;
   if (!notices_frozen_sensors(device)) monitor.frozen_samples = 0.0;
-  // the paper's bounds ask for more than any rating where they contradict each other
-  if (device.rendering.bounds == rendering::Bounds::kPaper) {
+  // the paper's bounds ask for more than any rating where they contradict each other, and where the
+  // law knows torques they are what limits accelerations
+  if (device.rendering.bounds == rendering::Bounds::kPaper || !device.model.motors.empty()) {
     monitor.acceleration_tolerance = kInfinity;
   }
   return cycle::Cycle({.estimation = device.estimation,

@@ -267,14 +267,22 @@ void derive(Device& device, const DeviceDraft& draft) {
     device.monitor.joint_acceleration.push_back(joint.ddq_max);
   }
   state_stopping(device);
-  device.monitor.first_cartesian =
-      device.model.n_m + static_cast<int>(device.model.virtual_joints.size());
-  device.monitor.end_cartesian =
-      device.monitor.first_cartesian + 3 * static_cast<int>(device.model.cartesian_limits.size());
+  settle_law(device);
   set_rate(device, device.rate_Hz);
 }
 
 }  // namespace
+
+void settle_law(Device& device) {
+  const bool knows_torques = device.control.method != control::Method::kDrives &&
+                             device.rendering.law == rendering::Law::kGauss &&
+                             device.rendering.bounds == rendering::Bounds::kRecoverable;
+  rendering::DeviceModel& model = device.model;
+  model.motors = knows_torques ? device.control.actuators : std::vector<ActuatorModel>{};
+  device.monitor.first_cartesian =
+      model.n_m + static_cast<int>(model.virtual_joints.size() + model.motors.size());
+  device.monitor.end_cartesian = model.limit_count();
+}
 
 void set_rate(Device& device, double rate_Hz) {
   const double dt = 1.0 / rate_Hz;

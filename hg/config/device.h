@@ -54,6 +54,10 @@ struct Device {
   Places places;                           ///< of the keys of the YAML file
 };
 
+/// To be called after law, bounds or method of control have been chosen anew: whether the law knows
+/// the torques of the motors follows from them.
+void settle_law(Device& device);
+
 /// Changes the rate and all that follows from it. Throws SetupError when the drive's dead time
 /// would span too many periods.
 void set_rate(Device& device, double rate_Hz);

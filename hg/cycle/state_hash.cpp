@@ -86,6 +86,9 @@ void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
   hash.mix(state.calming.inertia);
   hash.mix(state.contact.proxy);
   hash.mix(std::uint64_t{state.contact.is_started});
+  hash.mix(state.contact.dent);
+  hash.mix(state.contact.taken);
+  hash.mix(state.motor_torque);
 }
 
 void mix(const estimation::TareState& tare, Hash& hash) noexcept {

@@ -23,6 +23,11 @@ LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin) 
   for (const VirtualJoint& joint : device.virtual_joints) {
     catalogue.push_back({LimitKind::kVirtualJoint, joint.name, true, range_of(joint.limits)});
   }
+  for (std::size_t i = 0; i < device.motors.size(); ++i) {
+    const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(device.n_p) + i];
+    catalogue.push_back(
+        {LimitKind::kMotor, "motor " + joint.name, joint.type != model::JointType::kPrismatic, {}});
+  }
   for (const CartesianLimit& limit : device.cartesian_limits) {
     for (std::size_t axis = 0; axis < limit.axes.size(); ++axis) {
       catalogue.push_back({LimitKind::kCartesian, limit.name + " " + "xyz"[axis], false,
@@ -50,6 +55,7 @@ void limit_positions(DeviceModel& device, const VectorP& q_p, const VectorM& q_m
   for (const VirtualJoint& joint : device.virtual_joints) {
     positions.push_back(joint.weights.dot(q_m));
   }
+  positions.resize(positions.size() + device.motors.size(), 0.0);  // have no position
   device.chain.update_poses(stacked(q_p, q_m));
   for (const CartesianLimit& limit : device.cartesian_limits) {
     const Eigen::Vector3d p = device.chain.pose(limit.frame).p;

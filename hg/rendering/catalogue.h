@@ -10,8 +10,9 @@
 
 namespace hg::rendering {
 
-/// Manipulator joints, virtual joints, x y z of each Cartesian frame, then one entry per degree of
-/// freedom of the twin. Quantities without limits are listed, too: their range is unbounded.
+/// Manipulator joints, virtual joints, motors that the law knows, x y z of each Cartesian frame,
+/// then one entry per degree of freedom of the twin. Quantities without limits are listed, too:
+/// their range is unbounded.
 LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin);
 
 /// Names that an earlier limit of the catalogue has already: two limits of one name could not be

@@ -10,6 +10,7 @@
 #include "hg/core/types.h"
 #include "hg/limits/acceleration_bounds.h"
 #include "hg/model/chain.h"
+#include "hg/signals/actuator_model.h"
 
 namespace hg::rendering {
 
@@ -36,6 +37,9 @@ struct DeviceModel {
   int handle = -1;                                ///< frame H
   int elbow = -1;                                 ///< frame shown as the elbow; -1 = none
   std::vector<limits::JointLimits> joint_limits;  ///< of the manipulator joints
+  /// One per manipulator joint: their torques are limits of the law. Empty: the law does not know
+  /// them, and no limit is accelerated beyond its rating.
+  std::vector<ActuatorModel> motors;
   std::vector<VirtualJoint> virtual_joints;
   std::vector<CartesianLimit> cartesian_limits;  ///< highest priority first
   /// Goals of the manipulator joints (n_m, or empty: none), NaN = no goal. The gantry moves so that
@@ -44,7 +48,8 @@ struct DeviceModel {
 
   /// Entries of the catalogue that belong to the device.
   int limit_count() const {
-    return n_m + static_cast<int>(virtual_joints.size() + 3 * cartesian_limits.size());
+    return n_m +
+           static_cast<int>(virtual_joints.size() + motors.size() + 3 * cartesian_limits.size());
   }
   const std::string& manipulator_joint(int i) const {
     return chain.joints()[static_cast<std::size_t>(n_p + i)].name;

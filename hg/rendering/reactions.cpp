@@ -53,6 +53,7 @@ bool is_upper_side(hqp::RowState state, double reaction) noexcept {
 LimitCause cause_of(const LimitRow& row, Interval ddq, hqp::RowState state, double reaction,
                     double dt) noexcept {
   if (state == hqp::RowState::kInactive) return LimitCause::kNone;
+  if (row.is_motor) return LimitCause::kTorque;
   const bool is_upper = is_upper_side(state, reaction);
   const LimitCause held_by = is_upper ? row.held_by.upper : row.held_by.lower;
   const bool holds_always = held_by == LimitCause::kLock || held_by == LimitCause::kFriction;
@@ -62,7 +63,8 @@ LimitCause cause_of(const LimitRow& row, Interval ddq, hqp::RowState state, doub
   const auto is_bound = [&](double value) {
     return std::abs(bound - value) <= 1e-9 * (1.0 + std::abs(bound));
   };
-  if (is_bound((row.limits.dq_max - sign * row.dq) / dt)) return LimitCause::kVelocity;
+  const double onset = std::max(row.options.tau_onset, dt);
+  if (is_bound((row.limits.dq_max - sign * row.dq) / onset)) return LimitCause::kVelocity;
   if (is_bound(row.limits.ddq_max)) return LimitCause::kAcceleration;
   return held_by == LimitCause::kNone ? LimitCause::kPosition : held_by;
 }
@@ -83,6 +85,15 @@ Reactions::Reactions(const DeviceModel& device, const TwinModel& twin)
 VectorA Reactions::torque(int limit) const noexcept {
   if (limit < device_limits_) return directions_.torque(limit);
   return VectorA::Unit(n_a_, limit - device_limits_);
+}
+
+VectorA Reactions::torque_of_device() const noexcept {
+  VectorA sum = VectorA::Zero(n_a_);
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    if (limit < device_limits_) sum += torque(limit) * value_[static_cast<std::size_t>(limit)];
+  }
+  return sum;
 }
 
 void Reactions::find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept {

@@ -38,6 +38,9 @@ class Reactions {
   /// Constraint force or torque of a limit in its own coordinate.
   double of(int limit) const noexcept { return value_[static_cast<std::size_t>(limit)]; }
 
+  /// Torque of all limits of the device on the twin (n_a).
+  VectorA torque_of_device() const noexcept;
+
   /// Fills limits, felt_limit, w_felt and the constraint parts and structure of the budget.
   /// `L` is the Cholesky factor of M_a, `J_a` the Jacobian of the twin's end effector.
   void report(const Tasks& tasks, const hqp::Solution& solution, const MatrixA& L,

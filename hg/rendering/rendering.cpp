@@ -75,6 +75,8 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
   require(options.slow_solve > 0, "rendering: slow_solve must be positive");
   require(options.solver_budget >= 0, "rendering: solver_budget must not be negative");
   const bool is_paper = options.law == Law::kPaper;
+  require(device.motors.empty() || device.motors.size() == static_cast<std::size_t>(device.n_m),
+          "device: one motor per manipulator joint is needed, or none");
   require(!is_paper || device.n_m == 6, "device: law paper needs six manipulator joints, got " +
                                             std::to_string(device.n_m) +
                                             "; law gauss takes seven as well");
@@ -143,8 +145,12 @@ ChangeStatus Rendering::change(const ParameterChange& change, State& state) cons
 }
 
 void Rendering::update_device(const RobotState& robot, const ReferenceState& reference) noexcept {
-  device_.chain.update_kinematics(stacked(robot.q_p, reference.q_m),
-                                  stacked(robot.dq_p, reference.dq_m));
+  const VectorPM q = stacked(robot.q_p, reference.q_m), dq = stacked(robot.dq_p, reference.dq_m);
+  if (device_.motors.empty()) {
+    device_.chain.update_kinematics(q, dq);
+  } else {
+    device_.chain.update(q, dq);
+  }
 }
 
 SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record, double share,
@@ -194,6 +200,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   record.active_set_changes =
       changed_rows(previous, state.active_set, tasks_.first_limit_row(), tasks_.limit_row_count());
   if (!is_released) catch_reversals(state.twin, options_.dt, state.inner);
+  give_way(state, record);
   report_kinematics(state, record);
   ended_(Stage::kReactions);
   return record.solver_status;
@@ -207,6 +214,20 @@ void Rendering::feel_surfaces(State& state, double share, CycleRecord& record) n
   if (record.contact.surface < 0) return;
   record.contact.force *= share;
   record.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * record.contact.force;
+}
+
+// What the limits of the device take of the force of a surface, the surface does not push with.
+void Rendering::give_way(State& state, const CycleRecord& record) const noexcept {
+  const double force = record.contact.force.norm();
+  if (record.contact.surface < 0 || force == 0.0) return;
+  const auto factor = L_.triangularView<Eigen::Lower>();
+  VectorA along = J_a_.topRows<3>().transpose() * (record.contact.force / force);
+  VectorA limits = reactions_.torque_of_device();
+  factor.solveInPlace(along);
+  factor.solveInPlace(limits);
+  const double missing = -along.dot(limits) / along.squaredNorm();
+  const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
+  environment_.give_way(record.contact, std::clamp(missing, 0.0, force), v_E, state.contact);
 }
 
 void Rendering::align(const RobotState& robot, State& state) noexcept {
@@ -265,6 +286,7 @@ void Rendering::solve(State& state, double handle_speed, CycleRecord& record) no
                  .reference = state.reference,
                  .twin = state.twin,
                  .inner = state.inner,
+                 .motor_torque = state.motor_torque,
                  .touched = state.touched,
                  .L = L_,
                  .J_H = J_H_,
@@ -310,6 +332,8 @@ void Rendering::solve(State& state, double handle_speed, CycleRecord& record) no
   if (was_spent && record.solver_status == SolverStatus::kSolved) {
     record.solver_status = SolverStatus::kBudgetSpent;
   }
+  tasks_.find_motor_torques(solution_);
+  state.motor_torque = tasks_.motor_torque();
   if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
   reactions_.report(tasks_, solution_, L_, J_a_, options_.dt, record);
 }

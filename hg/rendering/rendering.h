@@ -36,7 +36,8 @@ struct State {
   TwinInnerState inner;
   Calming calming;  ///< for the next step
   hqp::ActiveSet active_set;
-  TouchedEnds touched;  ///< by the last result; law paper only
+  TouchedEnds touched;   ///< by the last result; law paper only
+  VectorM motor_torque;  ///< that the last result asks for, Nm or N; empty: none, or not known
   environment::State contact;
 };
 
@@ -114,6 +115,7 @@ class Rendering {
  private:
   void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
   void feel_surfaces(State& state, double share, CycleRecord& record) noexcept;
+  void give_way(State& state, const CycleRecord& record) const noexcept;
   void solve(State& state, double handle_speed, CycleRecord& record) noexcept;
   void report_kinematics(const State& state, CycleRecord& record) const noexcept;
 

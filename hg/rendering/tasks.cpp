@@ -4,16 +4,22 @@
 #include <cmath>
 
 #include "hg/core/rotation.h"
+#include "hg/rendering/motor_torque.h"
 
 namespace hg::rendering {
 namespace {
+
+// where the law knows the torques of the motors:
+constexpr double kTrackingMargin = 1e-3;     // rad or m, of a joint behind its reference
+constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its limits
+constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
 
 hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
                           const Options& options) {
   const int n_m = device.n_m, n_a = twin.chain.nv();
   const int limits = device.limit_count() + n_a;
   const int frames = static_cast<int>(device.cartesian_limits.size());
-  hqp::Capacity capacity{.variables = n_m + n_a, .levels = 4 + frames, .rows = 6 + limits + n_a};
+  hqp::Capacity capacity{.variables = n_m + n_a, .levels = 5 + frames, .rows = 6 + limits + n_a};
   if (options.bounds == Bounds::kPaper) {
     capacity.levels += 2;
     capacity.rows += n_m + n_a;
@@ -46,6 +52,8 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
     : options_(options),
       n_m_(device.n_m),
       n_a_(twin.chain.nv()),
+      knows_torques_(!device.motors.empty()),
+      first_motor_(n_m_ + static_cast<int>(device.virtual_joints.size())),
       problem_(capacity_of(device, twin, options)),
       coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0) {
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
@@ -56,15 +64,30 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
 void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   problem_.add_level();
   for (int i = 0; i < 6; ++i) problem_.add_row(coefficients_, {});
+  const double margin = knows_torques_ ? kTrackingMargin : 0.0;
   problem_.add_level();
   for (int i = 0; i < n_m_; ++i) {
-    add_limit(device.joint_limits[static_cast<std::size_t>(i)], i, 0.0);
+    add_limit(device.joint_limits[static_cast<std::size_t>(i)], i, margin);
   }
   problem_.add_level();
-  for (const VirtualJoint& joint : device.virtual_joints) add_limit(joint.limits, -1, 0.0);
+  for (const VirtualJoint& joint : device.virtual_joints) {
+    add_limit(joint.limits, -1, margin * joint.weights.lpNorm<1>());
+  }
+  if (knows_torques_) {
+    problem_.add_level();
+    for (int i = 0; i < n_m_; ++i) {
+      add_limit({.ddq_max = device.joint_limits[static_cast<std::size_t>(i)].ddq_max}, -1, 0.0);
+      limit_rows_.back().is_motor = true;
+    }
+  }
   for (const CartesianLimit& frame : device.cartesian_limits) {
     problem_.add_level();
     for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
+  }
+  for (LimitRow& row : limit_rows_) {
+    if (!knows_torques_) break;
+    row.options.is_capped = false;
+    row.options.tau_onset = kBrakingOnset;
   }
   problem_.add_level();
   for (int i = 0; i < n_a_; ++i) {
@@ -114,6 +137,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
                  const TaskInput& input) noexcept {
   fill_coupling(device, twin, input);
   fill_device_limits(device, input);
+  if (knows_torques_) fill_motors(device, input);
   fill_twin_limits(twin, input);
 
   const VectorA tau = input.tau - twin.chain.c();
@@ -192,10 +216,12 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   for (const VirtualJoint& joint : device.virtual_joints) {
     row.head(n_m_) = joint.weights;
     problem_.set_row(first_limit_row() + limit, coefficients_);
-    set_limit(limit, joint.limits, joint.weights.dot(reference.q_m),
-              joint.weights.dot(reference.dq_m), 0.0);
+    set_limit(limit, limit_rows_[static_cast<std::size_t>(limit)].limits,
+              joint.weights.dot(reference.q_m), joint.weights.dot(reference.dq_m), 0.0);
     ++limit;
   }
+
+  limit += static_cast<int>(device.motors.size());
 
   // [HG] (15)-(16)
   for (const CartesianLimit& frame : device.cartesian_limits) {
@@ -217,6 +243,36 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   }
 }
 
+// What each motor can give, as an acceleration of its joint: row and bounds are divided by the
+// inertia that the motor moves while all other joints keep their speed.
+void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexcept {
+  const auto M = device.chain.M().bottomRows(n_m_);
+  VectorM known = device.chain.c().tail(n_m_);
+  known.noalias() += M.leftCols(device.n_p) * input.robot.ddq_p;
+  known.noalias() -= input.J_H.middleCols(device.n_p, n_m_).transpose() * input.robot.w_H;
+
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
+    const double dq = input.reference.dq_m[i];
+    const double inertia = M(i, device.n_p + i) + motor.rotor_inertia;
+    row.head(n_m_) = M.row(i).segment(device.n_p, n_m_) / inertia;
+    row[i] = 1.0;
+    problem_.set_row(first_limit_row() + first_motor_ + i, coefficients_);
+    Interval torque = allowed_torque(motor, dq);
+    if (input.motor_torque.size() > 0) {
+      torque = reached_torque(torque, input.motor_torque[i], options_.dt);
+    }
+    LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
+    limit.dq = dq;
+    limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
+    limit.inertia = inertia;
+    limit.q = known[i];
+    problem_.set_bounds(first_limit_row() + first_motor_ + i, limit.ddq);
+  }
+}
+
 void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept {
   const int first = static_cast<int>(limit_rows_.size()) - n_a_;
   for (int i = 0; i < n_a_; ++i) {
@@ -228,6 +284,7 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
     row.held_by = effective.held_by;
     row.range = input.inner.parameters.moving[static_cast<std::size_t>(i)].q;
     row.options = limits::recoverable_options(effective.limits, options_.dt, options_.dt);
+    if (knows_torques_) row.options.tau_onset = kTwinBrakingOnset;
     const bool is_held =
         row.held_by.lower != LimitCause::kNone || row.held_by.upper != LimitCause::kNone;
     row.is_recoverable = options_.bounds == Bounds::kRecoverable || is_held ||
@@ -292,6 +349,18 @@ int Tasks::acting_row(int limit, const hqp::Solution& solution) const noexcept {
   const int rating_row = limit_rows_[static_cast<std::size_t>(limit)].rating_row;
   const bool acts = solution.state[static_cast<std::size_t>(row)] != hqp::RowState::kInactive;
   return acts || rating_row < 0 ? row : rating_row;
+}
+
+void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
+  if (!knows_torques_) return;
+  const Eigen::Map<const Eigen::VectorXd> ddq_m(solution.x.data(), n_m_);
+  motor_torque_.resize(n_m_);
+  for (int i = 0; i < n_m_; ++i) {
+    LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
+    const std::span<const double> row = problem_.coefficients(first_limit_row() + first_motor_ + i);
+    limit.q += limit.inertia * Eigen::Map<const Eigen::VectorXd>(row.data(), n_m_).dot(ddq_m);
+    motor_torque_[i] = limit.q;
+  }
 }
 
 bool Tasks::keeps_limits_of_device(const hqp::Solution& solution) const noexcept {

@@ -5,7 +5,8 @@
 ///   level 0         coupling of H and E (12), 6 equalities
 ///   level 1         manipulator joints
 ///   level 2         virtual joints (singularity)
-///   level 3, 4, ... Cartesian limits, a level per frame
+///   then            torques of the motors, where the law knows them; motor_torque.h
+///   then            Cartesian limits, a level per frame
 ///   then            twin joints and locks
 ///   bounds paper    acceleration ratings of the manipulator joints, then of the twin joints
 ///   law gauss       L^T ddq_a = L^-1 tau with M_a = L L^T; x = (ddq_m, ddq_a)
@@ -39,6 +40,9 @@ struct LimitRow {
   limits::RecoverableOptions options;
   double rating = 1.0;  ///< largest acceleration, 1 where there is none
   int rating_row = -1;  ///< row of bounds B, -1: none
+  /// The torque of a motor, as an acceleration of its joint; `q` is then what the motor gives.
+  bool is_motor = false;
+  double inertia = 0.0;  ///< that this motor moves, kg m^2 or kg
   /// Bounds R, this cycle. With bounds paper only of a twin joint that may be found beyond limits
   /// which were not there before: seen from outside, A lets it coast away.
   bool is_recoverable = true;
@@ -53,6 +57,7 @@ struct TaskInput {
   const ReferenceState& reference;
   const TwinState& twin;
   const TwinInnerState& inner;
+  const VectorM& motor_torque;       ///< of the last cycle, Nm or N; empty: there was none
   const TouchedEnds& touched;        ///< by the last result; law paper only
   const MatrixA& L;                  ///< M_a = L L^T
   const model::Jacobian& J_H;        ///< of the handle, gantry first
@@ -78,6 +83,10 @@ class Tasks {
   int limit_row_count() const noexcept { return limit_row_count_; }
   /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
   int acting_row(int limit, const hqp::Solution& solution) const noexcept;
+  /// Finds what the motors give with `solution`, once after each fill().
+  void find_motor_torques(const hqp::Solution& solution) noexcept;
+  /// The result, Nm or N: n_m, or empty where the law does not know the motors.
+  const VectorM& motor_torque() const noexcept { return motor_torque_; }
   /// Whether all rows of device limits are in levels that `solution` has completed, or are met.
   bool keeps_limits_of_device(const hqp::Solution& solution) const noexcept;
   /// The ends that `solution` touches or leaves, of both rows of a joint.
@@ -96,6 +105,7 @@ class Tasks {
   void fill_coupling(const DeviceModel& device, const TwinModel& twin,
                      const TaskInput& input) noexcept;
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
+  void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
   void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;
   void fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept;
@@ -106,12 +116,15 @@ class Tasks {
 
   Options options_;
   int n_m_, n_a_;
+  bool knows_torques_;
+  int first_motor_;  ///< limit
   int limit_row_count_ = 0;
   int dynamics_row_ = 0;  ///< first row of Gauss' principle
   hqp::Problem problem_;
   std::vector<LimitRow> limit_rows_;
   std::vector<double> coefficients_;  ///< scratch, one row
   Vector6 s_ = Vector6::Zero();
+  VectorM motor_torque_;
   std::optional<PaperLaw> paper_;  ///< law paper only
 };
 

@@ -10,6 +10,8 @@ std::string_view to_string(LimitKind kind) noexcept {
       return "virtual";
     case LimitKind::kCartesian:
       return "cartesian";
+    case LimitKind::kMotor:
+      return "motor";
     case LimitKind::kTwinJoint:
       return "twin";
   }
@@ -48,6 +50,8 @@ std::string_view to_string(LimitCause cause) noexcept {
       return "friction";
     case LimitCause::kContradiction:
       return "contradiction";
+    case LimitCause::kTorque:
+      return "torque";
   }
   return "unknown";
 }

@@ -11,16 +11,18 @@
 
 namespace hg {
 
-/// Order of the catalogue: device first, then twin; within, the priorities of [HG] Table II.
+/// Order of the catalogue: device first, then twin; within, the priorities of [HG] Table II, motors
+/// between virtual joints and frames.
 enum class LimitKind : std::uint8_t {
   kManipulatorJoint = 0,
   kVirtualJoint = 1,
-  kCartesian = 2,
-  kTwinJoint = 3,
+  kMotor = 2,  ///< torque of a motor of the manipulator; has no distance to its ends
+  kCartesian = 3,
+  kTwinJoint = 4,
 };
 
 inline constexpr int kMaxLimits =
-    kMaxManipulator + kMaxVirtualJoints + 3 * kMaxCartesianFrames + kMaxTwin;
+    2 * kMaxManipulator + kMaxVirtualJoints + 3 * kMaxCartesianFrames + kMaxTwin;
 
 /// One limited quantity. Its index in the catalogue is the index of its LimitReport.
 struct LimitInfo {
@@ -44,6 +46,7 @@ enum class LimitCause : std::uint8_t {
   kLatch = 5,          ///< a latch lets the joint close but not open
   kFriction = 6,       ///< Coulomb friction holds the joint
   kContradiction = 7,  ///< no position meets all limits of the joint: held between or at the lock
+  kTorque = 8,         ///< the motor gives all the torque that the law may ask it for
 };
 
 std::string_view to_string(LimitKind kind) noexcept;

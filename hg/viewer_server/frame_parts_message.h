@@ -20,8 +20,9 @@ template <>
 inline constexpr auto kWords<LimitState> = std::to_array<std::string_view>({"inactive", "lower",
                                                                             "upper", "violated"});
 template <>
-inline constexpr auto kWords<LimitCause> = std::to_array<std::string_view>(
-    {"none", "position", "velocity", "acceleration", "lock", "latch", "friction", "contradiction"});
+inline constexpr auto kWords<LimitCause> =
+    std::to_array<std::string_view>({"none", "position", "velocity", "acceleration", "lock",
+                                     "latch", "friction", "contradiction", "torque"});
 
 struct FeltLimitMessage {
   int index = 0;

@@ -41,6 +41,8 @@ std::string reason(const LimitReport& report) {
       return "held by friction";
     case LimitCause::kContradiction:
       return "limits contradict each other";
+    case LimitCause::kTorque:
+      return "all its torque";
     case LimitCause::kNone:
     case LimitCause::kPosition:
       break;

@@ -72,12 +72,12 @@ std::vector<SceneSurfaceMessage> surface_messages(const std::vector<SceneSurface
 // Task levels as in [HG] Table II: Cartesian frames one after the other, three rows each.
 std::vector<SceneLimitMessage> limit_messages(const LimitCatalogue& limits) {
   std::vector<SceneLimitMessage> messages;
-  int axes = 0;
-  for (const LimitInfo& limit : limits) {
-    axes += limit.kind == LimitKind::kCartesian ? 1 : 0;
-    int priority = kFirstPriority + static_cast<int>(limit.kind);
-    if (limit.kind == LimitKind::kCartesian) priority += (axes - 1) / 3;
-    if (limit.kind == LimitKind::kTwinJoint) priority += axes / 3 - 1;
+  int axes = 0, priority = kFirstPriority;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const LimitInfo& limit = limits[i];
+    const bool is_other_kind = i > 0 && limit.kind != limits[i - 1].kind;
+    if (is_other_kind || (axes > 0 && axes % 3 == 0)) ++priority;
+    axes = limit.kind == LimitKind::kCartesian ? axes % 3 + 1 : 0;
     messages.push_back({limit.name, limit.kind, limit.is_angle ? LimitUnit::kRad : LimitUnit::kM,
                         bounded(limit.range.lb), bounded(limit.range.ub), priority});
   }

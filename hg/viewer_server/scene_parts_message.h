@@ -15,8 +15,8 @@ template <>
 inline constexpr auto kWords<JointType> = std::to_array<std::string_view>({"revolute", "prismatic",
                                                                            "floating"});
 template <>
-inline constexpr auto kWords<LimitKind> = std::to_array<std::string_view>({"manipulator", "virtual",
-                                                                           "cartesian", "twin"});
+inline constexpr auto kWords<LimitKind> =
+    std::to_array<std::string_view>({"manipulator", "virtual", "motor", "cartesian", "twin"});
 template <>
 inline constexpr auto kWords<Environment> = std::to_array<std::string_view>({"room", "door",
                                                                              "excavator"});

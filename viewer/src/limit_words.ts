@@ -22,6 +22,7 @@ const KINDS: Record<SceneLimit["kind"], string> = {
   manipulator: "joint of the device",
   virtual: "keeps away from the singularity",
   cartesian: "wall of the workspace",
+  motor: "motor of the device",
   twin: "joint of the twin",
 };
 
@@ -34,6 +35,7 @@ const CAUSES: Record<ActiveLimit["cause"], string> = {
   latch: "latched: closes, does not open",
   friction: "held by friction",
   contradiction: "held between limits that contradict each other",
+  torque: "has no more torque",
 };
 
 // "end of its range, joint of the device"

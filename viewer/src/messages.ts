@@ -52,7 +52,7 @@ export interface SceneJoint {
 // a limited quantity
 export interface SceneLimit {
   name: string;
-  kind: "manipulator" | "virtual" | "cartesian" | "twin";
+  kind: "manipulator" | "virtual" | "cartesian" | "motor" | "twin";
   unit: "rad" | "m"; // of its position; the reaction of a rad is in Nm, of a m in N
   min: number | null; // null = unbounded
   max: number | null;
