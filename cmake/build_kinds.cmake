@@ -31,16 +31,20 @@ add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)
 # without: what they cost the control cycle has not been measured.
 set(HG_CHECKED _GLIBCXX_ASSERTIONS)
 
-# hg_kind(NAME [SHORT_BUILD] HEADERS file... LINKS library... [DEFINITIONS macro...])
+# What the control cycle has no use for, and its results do not depend on to the last bit: functions
+# that another library may replace, errno of the mathematical ones, and floating-point traps.
+set(fast -fno-semantic-interposition -fno-math-errno -fno-trapping-math)
+
+# hg_kind(NAME [SHORT_BUILD] [FLAGS flag...] HEADERS file... LINKS library... [DEFINITIONS macro...])
 function(hg_kind name)
-  cmake_parse_arguments(ARG "SHORT_BUILD" "" "HEADERS;LINKS;DEFINITIONS" ${ARGN})
+  cmake_parse_arguments(ARG "SHORT_BUILD" "" "FLAGS;HEADERS;LINKS;DEFINITIONS" ${ARGN})
   if(ARG_SHORT_BUILD)
-    set(HG_KIND_${name}_FLAGS $<$<CONFIG:Release>:-O1> PARENT_SCOPE)
+    set(ARG_FLAGS $<$<CONFIG:Release>:-O1>)
   endif()
   foreach(library IN LISTS ARG_LINKS)
     list(APPEND ARG_DEFINITIONS $<TARGET_PROPERTY:${library},INTERFACE_COMPILE_DEFINITIONS>)
   endforeach()
-  foreach(property HEADERS LINKS DEFINITIONS)
+  foreach(property FLAGS HEADERS LINKS DEFINITIONS)
     set(HG_KIND_${name}_${property} ${ARG_${property}} PARENT_SCOPE)
   endforeach()
 endfunction()
@@ -49,8 +53,8 @@ set(others ${PROJECT_SOURCE_DIR}/cmake/precompiled/others.h)
 set(scenario ${PROJECT_SOURCE_DIR}/cmake/precompiled/scenario.h)
 set(test <gtest/gtest.h>)
 set(own_eigen Eigen=hg_hqp_eigen)
-hg_kind(loop HEADERS ${others} LINKS Eigen3::Eigen)
-hg_kind(solver HEADERS ${others} LINKS Eigen3::Eigen DEFINITIONS ${own_eigen})
+hg_kind(loop FLAGS ${fast} HEADERS ${others} LINKS Eigen3::Eigen)
+hg_kind(solver FLAGS ${fast} HEADERS ${others} LINKS Eigen3::Eigen DEFINITIONS ${own_eigen})
 hg_kind(offline SHORT_BUILD HEADERS ${others} <fmt/format.h> LINKS Eigen3::Eigen fmt::fmt
   DEFINITIONS ${HG_CHECKED})
 hg_kind(scenario SHORT_BUILD HEADERS ${others} <fmt/format.h> ${scenario}
