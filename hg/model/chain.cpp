@@ -49,6 +49,25 @@ pinocchio::JointModel scalar_joint(bool turns, const Eigen::Vector3d& axis) {
                : pinocchio::JointModel(pinocchio::JointModelPrismaticUnaligned(axis));
 }
 
+// Of a joint with one coordinate.
+struct Axis {
+  bool turns = false;
+  Eigen::Vector3d e;  // in the joint's own frame
+  // which of x, y, z it is and, in the order x, y, z, x, ..., the next two; -1 = none of them
+  Eigen::Index k = -1, i = -1, j = -1;
+};
+
+Axis axis_of(const Joint& joint) {
+  Axis axis = {joint.type != JointType::kPrismatic, joint.axis};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (joint.axis != Eigen::Vector3d::Unit(k)) continue;
+    axis.k = k;
+    axis.i = (k + 1) % 3;
+    axis.j = (k + 2) % 3;
+  }
+  return axis;
+}
+
 int find(std::string_view name, const std::vector<std::string>& names, const std::string& chain,
          const std::string& kind) {
   const auto found = std::find(names.begin(), names.end(), name);
@@ -80,6 +99,8 @@ Eigen::Matrix<double, 7, 1> integrate_floating(const Eigen::Matrix<double, 7, 1>
 struct Assembly {
   std::string name;
   std::vector<Joint> joints;
+  std::vector<Axis> axes;  // of the joints; unless they float
+  bool has_floating = false;
   std::vector<std::string> joint_names;
   std::vector<std::string> frame_names;
   std::vector<Frame> frames;
@@ -94,6 +115,8 @@ struct Assembly {
     joint.nq = model.nqs[index];
     joint.nv = model.nvs[index];
     joint_names.push_back(joint.name);
+    axes.push_back(axis_of(joint));
+    has_floating = has_floating || joint.type == JointType::kFloating;
     joints.push_back(std::move(joint));
     return index;
   }
@@ -293,6 +316,116 @@ Assembly build(const FreeBody& body, const ChainOptions& options) {
   return chain;
 }
 
+// The library's passes from root to tip and back, to the last bit, for joints with one coordinate
+// each: what a joint is need not be asked at every step, and poses and twists serve M and c.
+class Passes {
+ public:
+  Passes(const Assembly& parts, pinocchio::Data& data) noexcept
+      : axes_(parts.axes), model_(parts.model), data_(data) {}
+
+  void poses(const VectorIn& q) noexcept {
+    for (std::size_t i = 1; i <= axes_.size(); ++i) place(i, q[index(i)]);
+  }
+
+  void kinematics(const VectorIn& q, const VectorIn& dq) noexcept {
+    data_.a[0].setZero();
+    for (std::size_t i = 1; i <= axes_.size(); ++i) {
+      place(i, q[index(i)]);
+      move(i, dq[index(i)], data_.a);
+    }
+  }
+
+  // M: the upper triangle
+  void dynamics(const VectorIn& q, const VectorIn& dq) noexcept {
+    data_.a_gf[0] = -model_.gravity;
+    for (std::size_t i = 1; i <= axes_.size(); ++i) {
+      place(i, q[index(i)]);
+      move(i, dq[index(i)], data_.a_gf);
+      const pinocchio::Inertia& body = model_.inertias[i];
+      data_.oYcrb[i] = data_.oMi[i].act(body);
+      data_.f[i] = body * data_.a_gf[i] + body.vxiv(data_.v[i]);
+    }
+    for (std::size_t i = axes_.size(); i > 0; --i) {
+      const Eigen::Index row = index(i);
+      auto momentum = data_.Ag.col(row);
+      pinocchio::motionSet::inertiaAction(data_.oYcrb[i], data_.J.col(row), momentum);
+      for (Eigen::Index k = row; k < model_.nv; ++k) {
+        data_.M(row, k) = data_.J.col(row).dot(data_.Ag.col(k));
+      }
+      const Axis& axis = axes_[i - 1];
+      data_.nle[row] = (axis.turns ? data_.f[i].angular() : data_.f[i].linear()).dot(axis.e);
+      if (i == 1) continue;
+      data_.oYcrb[i - 1] += data_.oYcrb[i];
+      data_.f[i - 1] += data_.liMi[i].act(data_.f[i]);
+    }
+  }
+
+ private:
+  static Eigen::Index index(std::size_t joint) noexcept {
+    return static_cast<Eigen::Index>(joint) - 1;
+  }
+
+  void place(std::size_t joint, double q) noexcept {
+    const Axis& axis = axes_[joint - 1];
+    const Eigen::Matrix3d& R = model_.jointPlacements[joint].rotation();
+    pinocchio::SE3& T = data_.liMi[joint];
+    auto& R_T = T.rotation();
+    T.translation() = model_.jointPlacements[joint].translation();
+    double sine = 0.0, cosine = 0.0;
+    if (axis.turns) pinocchio::SINCOS(q, &sine, &cosine);
+    if (!axis.turns) {
+      R_T = R;
+      T.translation() += R * (q * axis.e);
+    } else if (axis.k >= 0) {
+      R_T.col(axis.k) = R.col(axis.k);
+      R_T.col(axis.i) = cosine * R.col(axis.i) + sine * R.col(axis.j);
+      R_T.col(axis.j) = R_T.col(axis.k).cross(R_T.col(axis.i));
+    } else {
+      Eigen::Matrix3d turned;
+      pinocchio::toRotationMatrix(axis.e, cosine, sine, turned);
+      R_T.noalias() = R * turned;
+    }
+    pinocchio::SE3& T_B = data_.oMi[joint];
+    if (joint == 1) {
+      T_B = T;
+      return;
+    }
+    const pinocchio::SE3& parent = data_.oMi[joint - 1];
+    T_B.rotation().noalias() = parent.rotation() * R_T;
+    T_B.translation() = parent.translation() + parent.rotation() * T.translation();
+  }
+
+  // column of the Jacobian, v, and accelerations `a` at ddq = 0
+  template <typename Motions>
+  void move(std::size_t joint, double dq, Motions& a) noexcept {
+    const Axis& axis = axes_[joint - 1];
+    const pinocchio::SE3& T_B = data_.oMi[joint];
+    const Eigen::Vector3d along = T_B.rotation() * axis.e;
+    auto column = data_.J.col(index(joint));
+    if (axis.turns) {
+      column << T_B.translation().cross(along), along;
+    } else {
+      column << along, Eigen::Vector3d::Zero();
+    }
+
+    const pinocchio::SE3& T = data_.liMi[joint];
+    pinocchio::Motion& v = data_.v[joint];
+    v.setZero();
+    (axis.turns ? v.angular() : v.linear()) = axis.e * dq;
+    if (joint > 1) v += T.actInv(data_.v[joint - 1]);
+
+    // v x the joint's own twist
+    a[joint].setZero();
+    if (axis.turns) a[joint].linear() = v.linear().cross(axis.e) * dq;
+    (axis.turns ? a[joint].angular() : a[joint].linear()) = v.angular().cross(axis.e) * dq;
+    a[joint] += T.actInv(a[joint - 1]);
+  }
+
+  const std::vector<Axis>& axes_;
+  const pinocchio::Model& model_;
+  pinocchio::Data& data_;
+};
+
 }  // namespace
 
 struct Chain::Impl {
@@ -301,6 +434,8 @@ struct Chain::Impl {
         data(parts.model),
         scratch(parts.model),
         zero(Eigen::VectorXd::Zero(parts.model.nv)) {}
+
+  Passes passes() noexcept { return {parts, data}; }
 
   const Frame& frame(int index) const noexcept {
     assert(index >= 0 && index < static_cast<int>(parts.frames.size()));
@@ -390,11 +525,13 @@ ConfigurationA Chain::integrate(const VectorIn& q, const VectorIn& step) const n
 
 void Chain::update_poses(const VectorIn& q) noexcept {
   assert(q.size() == nq());
+  if (!impl_->parts.has_floating) return impl_->passes().poses(q);
   pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q);
 }
 
 void Chain::update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept {
   assert(q.size() == nq() && dq.size() == nv());
+  if (!impl_->parts.has_floating) return impl_->passes().kinematics(q, dq);
   const VectorIn ddq(impl_->zero);
   pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q, dq, ddq);
   pinocchio::computeJointJacobians(impl_->parts.model, impl_->data);
@@ -409,12 +546,15 @@ void Chain::update(const VectorIn& q, const VectorIn& dq, const Loads& loads) no
   const pinocchio::Model& model = impl_->parts.model;
   pinocchio::Data& data = impl_->data;
 
-  // poses, Jacobians, M
-  pinocchio::crba(model, data, q, pinocchio::Convention::WORLD);
+  // poses, Jacobians, M; velocities, c, and accelerations at ddq = 0 in a frame that falls with
+  // gravity
+  if (impl_->parts.has_floating) {
+    pinocchio::crba(model, data, q, pinocchio::Convention::WORLD);
+    pinocchio::nonLinearEffects(model, data, q, dq);
+  } else {
+    impl_->passes().dynamics(q, dq);
+  }
   data.M.triangularView<Eigen::StrictlyLower>() = data.M.transpose();
-
-  // velocities, c, and accelerations at ddq = 0 in a frame that falls with gravity
-  pinocchio::nonLinearEffects(model, data, q, dq);
   const Eigen::Vector3d g = model.gravity.linear();
   for (pinocchio::JointIndex i = 1; i < data.a.size(); ++i) {
     data.a[i] = data.a_gf[i];

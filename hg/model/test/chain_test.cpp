@@ -3,7 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
@@ -199,6 +204,56 @@ TEST(Chain, PosesAloneAreThoseOfTheKinematicsToTheBit) {
       ASSERT_EQ(chain.pose(frame).R, other.pose(frame).R);
     }
   });
+}
+
+// Chains with a floating joint are computed by the library, all others by passes of their own.
+TEST(Chain, AFloatingJointAtTheTipChangesNoBitOfWhatIsBeforeIt) {
+  constexpr std::string_view kTip = R"(<joint name="tip" type="floating"><parent link="handle"/>
+    <child link="tip"/></joint><link name="tip"><inertial><mass value="1e-9"/>
+    <inertia ixx="1e-9" iyy="1e-9" izz="1e-9" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>)";
+  std::vector<std::string> texts = {R"(<robot name="slanted"><link name="base"/>
+    <joint name="slide" type="prismatic"><parent link="base"/><child link="a"/>
+    <origin xyz="0 0 0.4" rpy="0.4 -0.3 0.2"/><axis xyz="0.6 0 0.8"/>
+    <limit lower="-1" upper="1"/></joint><link name="a"><inertial><mass value="1"/>
+    <inertia ixx="0.1" iyy="0.2" izz="0.2" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="turn" type="continuous"><parent link="a"/><child link="handle"/>
+    <origin xyz="0.1 0.2 0.3" rpy="0.1 0.2 0.3"/><axis xyz="1 2 -3"/></joint>
+    <link name="handle"><inertial><origin xyz="0.3 0 0"/><mass value="2"/>
+    <inertia ixx="0.1" iyy="0.2" izz="0.2" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>)"};
+  for (const char* file : {"haptic_giant/haptic_giant.urdf", "twins/door/door.urdf"}) {
+    std::ifstream stream(std::string("models/") + file);
+    texts.emplace_back(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  }
+  for (std::string& text : texts) {
+    const ChainOptions options = {.T_B_root = slanted()};
+    Chain chain = Chain::from_urdf_text(text, "chain.urdf", options);
+    Chain tipped = Chain::from_urdf_text(text.replace(text.rfind("</robot>"), 8, kTip),
+                                         "tipped.urdf", options);
+    const int n = chain.nv(), handle = chain.frame("handle");
+    for (unsigned seed = 0; seed < kSamples; ++seed) {
+      RandomState random(seed);
+      const Eigen::VectorXd q = random.q(tipped), dq = random.vector(n + 6);
+      const auto expect_equal = [&] {
+        EXPECT_EQ(chain.pose(handle).p, tipped.pose(handle).p);
+        EXPECT_EQ(chain.pose(handle).R, tipped.pose(handle).R);
+        EXPECT_EQ(chain.twist(handle), tipped.twist(handle));
+        EXPECT_EQ(chain.jacobian(handle), tipped.jacobian(handle).leftCols(n));
+        EXPECT_EQ(chain.bias_acceleration(handle), tipped.bias_acceleration(handle));
+      };
+      chain.update_poses(q.head(n));
+      tipped.update_poses(q);
+      EXPECT_EQ(chain.pose(handle).R, tipped.pose(handle).R);
+      chain.update_kinematics(q.head(n), dq.head(n));
+      tipped.update_kinematics(q, dq);
+      expect_equal();
+      chain.update(q.head(n), dq.head(n));
+      tipped.update(q, dq);
+      expect_equal();
+      EXPECT_LT((chain.M() - tipped.M().topLeftCorner(n, n)).norm(), 1e-6);
+      EXPECT_LT((chain.c() - tipped.c().head(n)).norm(), 1e-6);
+      if (HasFailure()) return;
+    }
+  }
 }
 
 TEST(Chain, InverseDynamicsIsMassMatrixTimesAccelerationPlusBias) {
