@@ -8,6 +8,13 @@ namespace hg {
 /// The first component that is NaN or infinite, counted through all vectors; -1 = there is none.
 template <typename... Vectors>
 int first_not_finite(const Vectors&... vectors) noexcept {
+  double nothing = 0.0;  // x - x is NaN for those and 0 for all others
+  const auto subtract = [&](const auto& v) {
+    for (int i = 0; i < v.size(); ++i) nothing += v[i] - v[i];
+  };
+  (subtract(vectors), ...);
+  if (nothing == 0.0) return -1;
+
   int passed = 0, found = -1;
   const auto look = [&](const auto& v) {
     for (int i = 0; i < v.size() && found < 0; ++i) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <new>
 
 #include "hg/cycle/state_hash.h"
 #include "hg/safety/stopping.h"
@@ -123,7 +125,8 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
 
 void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input,
                  CommandFrame& command, CycleRecord& record) noexcept HG_NONBLOCKING {
-  record = {};
+  std::destroy_at(&record);  // made anew in its place: `record = {}` would copy an empty one
+  ::new (&record) CycleRecord;
   record.cycle = state_.cycle;
   record.time_s = static_cast<double>(state_.cycle) * config_.rendering.dt;
 

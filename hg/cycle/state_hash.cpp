@@ -28,11 +28,22 @@ class Hash {
   void mix_packed(const T* values, std::size_t count) noexcept {
     constexpr std::size_t kInWord = sizeof(std::uint64_t) / sizeof(T);
     static_assert(kInWord > 1 && std::has_unique_object_representations_v<T>);
-    for (std::size_t i = 0; i < count; i += kInWord) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, values + i, std::min(kInWord, count - i) * sizeof(T));
+    std::uint64_t word = 0;
+    std::size_t i = 0;
+    for (; i + kInWord <= count; i += kInWord) {
+      std::memcpy(&word, values + i, sizeof(word));
       mix(word);
     }
+    if (i == count) return;
+    word = 0;
+    std::memcpy(&word, values + i, (count - i) * sizeof(T));
+    mix(word);
+  }
+  template <typename First, typename Second, typename... More>
+  void mix(const First& first, const Second& second, const More&... more) noexcept {
+    mix(first);
+    mix(second);
+    (mix(more), ...);
   }
 
  private:
@@ -42,10 +53,8 @@ class Hash {
 void mix(const rendering::TwinValues& values, std::size_t dofs, Hash& hash) noexcept {
   for (std::size_t i = 0; i < dofs; ++i) {
     const rendering::DofValues& dof = values.dofs[i];
-    for (const double value : {dof.stiffness, dof.rest, dof.preload, dof.damping,
-                               dof.quadratic_damping, dof.friction, dof.dq_max}) {
-      hash.mix(value);
-    }
+    hash.mix(dof.stiffness, dof.rest, dof.preload, dof.damping, dof.quadratic_damping, dof.friction,
+             dof.dq_max);
   }
   hash.mix(values.w_ref);
   hash.mix(values.loads.mass);
@@ -71,9 +80,7 @@ void mix(const rendering::TwinInnerState& inner, std::size_t dofs, Hash& hash) n
 }
 
 void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
-  for (const VectorM* v : {&state.reference.q_m, &state.reference.dq_m, &state.reference.ddq_m}) {
-    hash.mix(*v);
-  }
+  hash.mix(state.reference.q_m, state.reference.dq_m, state.reference.ddq_m);
   hash.mix(state.twin.q_a);
   hash.mix(state.twin.dq_a);
   hash.mix(state.twin.ddq_a);
@@ -104,14 +111,11 @@ void mix(const estimation::TareState& tare, Hash& hash) noexcept {
 
 void mix(const estimation::State& state, Hash& hash) noexcept {
   for (const estimation::GantryObserver& axis : state.gantry) {
-    for (const double value : {axis.q, axis.dq, axis.ddq, axis.disturbance}) hash.mix(value);
+    hash.mix(axis.q, axis.dq, axis.ddq, axis.disturbance);
   }
   hash.mix(state.q_m);
   for (std::size_t i = 0; i < static_cast<std::size_t>(state.q_m.size()); ++i) {
-    for (const double value :
-         {state.link[i].q, state.link[i].dq, state.motor[i].theta, state.motor[i].dtheta}) {
-      hash.mix(value);
-    }
+    hash.mix(state.link[i].q, state.link[i].dq, state.motor[i].theta, state.motor[i].dtheta);
   }
   hash.mix(std::uint64_t{state.is_started} | std::uint64_t{state.wrench.is_started} << 1U);
   hash.mix(state.wrench.omega_S);
@@ -125,11 +129,8 @@ void mix(const estimation::State& state, Hash& hash) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     hash.mix(Eigen::Vector3d(inertial.R_B_S.col(axis)));
   }
-  for (const Eigen::Vector3d* v :
-       {&inertial.bias, &inertial.turn, &inertial.turned, &inertial.up_S, &inertial.offset_S,
-        &inertial.p_S, &inertial.v_S, &inertial.slip}) {
-    hash.mix(*v);
-  }
+  hash.mix(inertial.bias, inertial.turn, inertial.turned, inertial.up_S, inertial.offset_S,
+           inertial.p_S, inertial.v_S, inertial.slip);
   hash.mix(inertial.turned_in_all);
   hash.mix(inertial.offset_at_rest);
 }
@@ -163,18 +164,12 @@ void mix(const safety::MonitorState& state, Hash& hash) noexcept {
   hash.mix_packed(state.same.data(), state.same.size());
   hash.mix(static_cast<std::uint64_t>(state.late_in_a_row) |
            std::uint64_t{state.has_sample} << 62U | std::uint64_t{state.is_broken} << 63U);
-  for (const double value : {state.time_s, state.clock_error, state.late}) hash.mix(value);
+  hash.mix(state.time_s, state.clock_error, state.late);
   hash.mix(state.w_S);
   hash.mix(state.imu);
-  for (const VectorM* v : {&state.q_m, &state.tau_m, &state.pulled_back, &state.momentum,
-                           &state.lowest, &state.highest}) {
-    hash.mix(*v);
-  }
-  for (const VectorP* v :
-       {&state.q_p, &state.dq_p_model, &state.gantry_gap, &state.gantry_drift, &state.gantry_way,
-        &state.lowest_p, &state.highest_p, &state.stop_from_p, &state.braking_ramp_p}) {
-    hash.mix(*v);
-  }
+  hash.mix(state.q_m, state.tau_m, state.pulled_back, state.momentum, state.lowest, state.highest);
+  hash.mix(state.q_p, state.dq_p_model, state.gantry_gap, state.gantry_drift, state.gantry_way,
+           state.lowest_p, state.highest_p, state.stop_from_p, state.braking_ramp_p);
   hash.mix(std::uint64_t{state.is_stopping});
   hash.mix(state.stop_from);
   hash.mix(state.braking_ramp);
@@ -192,12 +187,10 @@ void mix(const safety::BrakeState& state, Hash& hash) noexcept {
 
 void mix(const passivity::State& state, Hash& hash) noexcept {
   hash.mix(std::uint64_t{state.is_started});
-  for (const Eigen::Vector3d* x : {&state.x1, &state.x2, &state.x3}) hash.mix(*x);
-  for (const double value :
-       {state.high, state.low, state.oscillates_s, state.since_pushed_s, state.hold_s,
-        state.restless_s, state.tank, state.energy, state.calming.damping, state.calming.inertia}) {
-    hash.mix(value);
-  }
+  hash.mix(state.x1, state.x2, state.x3);
+  hash.mix(state.high, state.low, state.oscillates_s, state.since_pushed_s, state.hold_s,
+           state.restless_s, state.tank, state.energy, state.calming.damping,
+           state.calming.inertia);
 }
 
 }  // namespace
@@ -229,10 +222,8 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
                                                              << 32U);
   hash.mix(control.poles.w0);
   hash.mix(control.modes.Q());
-  for (const VectorM* v : {&control.integral, &control.friction, &control.tau_r, &control.dtau_r,
-                           &control.ddtau_r, &control.unexplained}) {
-    hash.mix(*v);
-  }
+  hash.mix(control.integral, control.friction, control.tau_r, control.dtau_r, control.ddtau_r,
+           control.unexplained);
   hash.mix(state.w_H);
   return hash.value();
 }
