@@ -1,8 +1,9 @@
 #include "hg/rendering/reactions.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "hg/rendering/bearing_wrench.h"
 
 namespace hg::rendering {
 namespace {
@@ -75,6 +76,7 @@ Reactions::Reactions(const DeviceModel& device, const TwinModel& twin)
     : n_m_(device.n_m),
       n_a_(twin.chain.nv()),
       device_limits_(device.limit_count()),
+      columns_(n_a_, device_limits_ + n_a_),
       rest_(VectorA::Zero(n_a_)),
       directions_(device, twin),
       problem_(capacity_for(device_limits_ + n_a_, n_a_)),
@@ -184,16 +186,16 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
     problem_.add_row(coefficients, {0.0, 0.0});
   }
   problem_.add_level();
-  std::array<VectorA, kMaxLimits> columns;
   double largest = 0.0;
-  for (std::size_t j = 0; j < coefficients.size(); ++j) {
-    columns[j] = torque(active_[j]) * scale_[j];
-    largest = std::max(largest, columns[j].cwiseAbs().maxCoeff());
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    columns_.col(j) = torque(limit) * scale_[static_cast<std::size_t>(j)];
+    largest = std::max(largest, columns_.col(j).cwiseAbs().maxCoeff());
   }
   for (int i = 0; i < n_a_; ++i) {
     double largest_in_row = 0.0;
     for (std::size_t j = 0; j < coefficients.size(); ++j) {
-      row[j] = columns[j][i];
+      row[j] = columns_(i, static_cast<Eigen::Index>(j));
       largest_in_row = std::max(largest_in_row, std::abs(row[j]));
     }
     // near singular postures, what is left of a joint that no limit reaches must not decide
@@ -224,11 +226,7 @@ void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const 
   }
   report_felt(L, record);
 
-  // part of the wrench that moves no joint of the twin
-  const Eigen::ColPivHouseholderQR<model::Jacobian> J_a_qr(J_a);
-  Vector6 moving = J_a_qr.householderQ().adjoint() * record.robot.w_H;
-  moving.tail(6 - J_a_qr.rank()).setZero();
-  record.budget.structure = record.robot.w_H - J_a_qr.householderQ() * moving;
+  record.budget.structure = bearing_wrench(J_a, record.robot.w_H);
 }
 
 // what is felt most: the limit that takes most of the acceleration, in the metric of M_a, which

@@ -59,8 +59,9 @@ class Reactions {
   std::array<double, kMaxLimits> value_{};
   std::array<int, kMaxLimits> active_{};  ///< limits that may have a reaction
   int active_count_ = 0;
-  std::array<double, kMaxLimits> scale_{};  ///< of active limit j, in the split
-  VectorA rest_;                            ///< part of the constraint torque that nothing explains
+  std::array<double, kMaxLimits> scale_{};    ///< of active limit j, in the split
+  MatrixUpTo<kMaxTwin, kMaxLimits> columns_;  ///< its torque on the twin per unit of the split
+  VectorA rest_;  ///< part of the constraint torque that nothing explains
   ConstraintDirections directions_;
   hqp::Problem problem_;
   hqp::Solver solver_;

@@ -344,13 +344,6 @@ void Tasks::fill_ranges(const TaskInput& input) noexcept {
   }
 }
 
-int Tasks::acting_row(int limit, const hqp::Solution& solution) const noexcept {
-  const int row = first_limit_row() + limit;
-  const int rating_row = limit_rows_[static_cast<std::size_t>(limit)].rating_row;
-  const bool acts = solution.state[static_cast<std::size_t>(row)] != hqp::RowState::kInactive;
-  return acts || rating_row < 0 ? row : rating_row;
-}
-
 void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
   if (!knows_torques_) return;
   const Eigen::Map<const Eigen::VectorXd> ddq_m(solution.x.data(), n_m_);

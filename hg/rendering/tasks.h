@@ -82,7 +82,12 @@ class Tasks {
   /// Rows of limits follow each other from first_limit_row() on: bounds, then acceleration ratings.
   int limit_row_count() const noexcept { return limit_row_count_; }
   /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
-  int acting_row(int limit, const hqp::Solution& solution) const noexcept;
+  int acting_row(int limit, const hqp::Solution& solution) const noexcept {
+    const int row = first_limit_row() + limit;
+    const int rating_row = limit_rows_[static_cast<std::size_t>(limit)].rating_row;
+    const bool acts = solution.state[static_cast<std::size_t>(row)] != hqp::RowState::kInactive;
+    return acts || rating_row < 0 ? row : rating_row;
+  }
   /// Finds what the motors give with `solution`, once after each fill().
   void find_motor_torques(const hqp::Solution& solution) noexcept;
   /// The result, Nm or N: n_m, or empty where the law does not know the motors.
