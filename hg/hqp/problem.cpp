@@ -10,11 +10,13 @@
 namespace hg::hqp {
 namespace {
 
+[[noreturn]] void refuse(const char* item, int value, int min, int max) {
+  throw SetupError(std::string(item) + ": must be " + std::to_string(min) + ".." +
+                   std::to_string(max) + ", got " + std::to_string(value));
+}
+
 void require_in_range(const char* item, int value, int min, int max) {
-  if (value < min || value > max) {
-    throw SetupError(std::string(item) + ": must be " + std::to_string(min) + ".." +
-                     std::to_string(max) + ", got " + std::to_string(value));
-  }
+  if (value < min || value > max) refuse(item, value, min, max);
 }
 
 }  // namespace
@@ -76,9 +78,14 @@ int Problem::add_bound(int variable, Interval bounds, double weight) {
 void Problem::set_row(int row, std::span<const double> coefficients) noexcept {
   assert(row >= 0 && row < rows() && variable(row) < 0);
   assert(coefficients.size() == index(variables_));
-  std::copy(coefficients.begin(), coefficients.end(),
-            coefficients_.begin() + row * capacity_.variables);
-  rows_[index(row)].norm = norm_of(coefficients);
+  double* const own = coefficients_.data() + row * capacity_.variables;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    const double c = coefficients[i];
+    own[i] = c;
+    sum += c * c;
+  }
+  rows_[index(row)].norm = std::sqrt(sum);
 }
 
 void Problem::set_bounds(int row, Interval bounds) noexcept {
