@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/jacobian.hpp>
 #include <pinocchio/algorithm/kinematics.hpp>
@@ -431,6 +432,7 @@ class Passes {
 struct Chain::Impl {
   explicit Impl(Assembly assembly)
       : parts(std::move(assembly)),
+        results(parts.frames.size()),
         data(parts.model),
         scratch(parts.model),
         zero(Eigen::VectorXd::Zero(parts.model.nv)) {}
@@ -442,10 +444,22 @@ struct Chain::Impl {
     return parts.frames[static_cast<std::size_t>(index)];
   }
 
+  // What is asked of a frame several times after an update is computed once. The numbers of the
+  // updates that the results are of.
+  struct Results {
+    std::uint64_t pose_of = 0, twist_of = 0, jacobian_of = 0, bias_of = 0;
+    Pose pose;
+    Vector6 twist, bias;
+    Jacobian J;
+  };
+  Results& results_of(int index) noexcept { return results[static_cast<std::size_t>(index)]; }
+
   Assembly parts;
-  pinocchio::Data data;     // results of update()
-  pinocchio::Data scratch;  // of inverse_dynamics()
-  Eigen::VectorXd zero;     // (nv)
+  std::uint64_t updates = 1;
+  std::vector<Results> results;  // by frame
+  pinocchio::Data data;          // results of update()
+  pinocchio::Data scratch;       // of inverse_dynamics()
+  Eigen::VectorXd zero;          // (nv)
 };
 
 std::string_view to_string(JointType type) noexcept {
@@ -525,12 +539,14 @@ ConfigurationA Chain::integrate(const VectorIn& q, const VectorIn& step) const n
 
 void Chain::update_poses(const VectorIn& q) noexcept {
   assert(q.size() == nq());
+  ++impl_->updates;
   if (!impl_->parts.has_floating) return impl_->passes().poses(q);
   pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q);
 }
 
 void Chain::update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept {
   assert(q.size() == nq() && dq.size() == nv());
+  ++impl_->updates;
   if (!impl_->parts.has_floating) return impl_->passes().kinematics(q, dq);
   const VectorIn ddq(impl_->zero);
   pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q, dq, ddq);
@@ -543,6 +559,7 @@ Loads Chain::default_loads() const noexcept {
 
 void Chain::update(const VectorIn& q, const VectorIn& dq, const Loads& loads) noexcept {
   assert(q.size() == nq() && dq.size() == nv());
+  ++impl_->updates;
   const pinocchio::Model& model = impl_->parts.model;
   pinocchio::Data& data = impl_->data;
 
@@ -579,39 +596,50 @@ void Chain::update(const VectorIn& q, const VectorIn& dq, const Loads& loads) no
   data.g *= loads.mass * loads.gravity;
 }
 
-Pose Chain::pose(int frame) const noexcept {
+const Pose& Chain::pose(int frame) const noexcept {
+  Impl::Results& results = impl_->results_of(frame);
+  if (std::exchange(results.pose_of, impl_->updates) == impl_->updates) return results.pose;
   const Frame& f = impl_->frame(frame);
-  const pinocchio::SE3 T_B_frame = impl_->data.oMi[f.joint] * f.T_joint_frame;
-  return {T_B_frame.translation(), T_B_frame.rotation()};
+  const pinocchio::SE3& T_B_joint = impl_->data.oMi[f.joint];
+  results.pose.p = T_B_joint.translation() + T_B_joint.rotation() * f.T_joint_frame.translation();
+  results.pose.R.noalias() = T_B_joint.rotation() * f.T_joint_frame.rotation();
+  return results.pose;
 }
 
-Vector6 Chain::twist(int frame) const noexcept {
+const Vector6& Chain::twist(int frame) const noexcept {
+  Impl::Results& results = impl_->results_of(frame);
+  if (std::exchange(results.twist_of, impl_->updates) == impl_->updates) return results.twist;
   const Frame& f = impl_->frame(frame);
   const Eigen::Matrix3d& R_B_joint = impl_->data.oMi[f.joint].rotation();
   const pinocchio::Motion& v = impl_->data.v[f.joint];
-  Vector6 result;
-  result << R_B_joint * (v.linear() + v.angular().cross(f.T_joint_frame.translation())),
+  results.twist << R_B_joint * (v.linear() + v.angular().cross(f.T_joint_frame.translation())),
       R_B_joint * v.angular();
-  return result;
+  return results.twist;
 }
 
-Jacobian Chain::jacobian(int frame) const noexcept {
+const Jacobian& Chain::jacobian(int frame) const noexcept {
+  Impl::Results& results = impl_->results_of(frame);
+  Jacobian& J = results.J;
+  if (std::exchange(results.jacobian_of, impl_->updates) == impl_->updates) return J;
   const Frame& f = impl_->frame(frame);
   const Eigen::Vector3d p_B_frame = impl_->data.oMi[f.joint].act(f.T_joint_frame.translation());
 
   // joints beyond the frame do not move it
   const int columns = impl_->parts.model.idx_vs[f.joint] + impl_->parts.model.nvs[f.joint];
-  Jacobian J = Jacobian::Zero(6, nv());
+  J.resize(6, nv());
   for (int i = 0; i < columns; ++i) {
     // columns of data.J are twists at the origin of B
     const Eigen::Vector3d v = impl_->data.J.col(i).head<3>();
     const Eigen::Vector3d omega = impl_->data.J.col(i).tail<3>();
     J.col(i) << v + omega.cross(p_B_frame), omega;
   }
+  J.rightCols(nv() - columns).setZero();
   return J;
 }
 
-Vector6 Chain::bias_acceleration(int frame) const noexcept {
+const Vector6& Chain::bias_acceleration(int frame) const noexcept {
+  Impl::Results& results = impl_->results_of(frame);
+  if (std::exchange(results.bias_of, impl_->updates) == impl_->updates) return results.bias;
   const Frame& f = impl_->frame(frame);
   const Eigen::Matrix3d& R_B_joint = impl_->data.oMi[f.joint].rotation();
   const Eigen::Vector3d& p = f.T_joint_frame.translation();
@@ -621,9 +649,8 @@ Vector6 Chain::bias_acceleration(int frame) const noexcept {
   // spatial to classical acceleration of the frame's origin
   const Eigen::Vector3d v_frame = v.linear() + v.angular().cross(p);
   const Eigen::Vector3d a_frame = a.linear() + a.angular().cross(p) + v.angular().cross(v_frame);
-  Vector6 result;
-  result << R_B_joint * a_frame, R_B_joint * a.angular();
-  return result;
+  results.bias << R_B_joint * a_frame, R_B_joint * a.angular();
+  return results.bias;
 }
 
 const Eigen::MatrixXd& Chain::M() const noexcept { return impl_->data.M; }

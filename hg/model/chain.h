@@ -122,13 +122,13 @@ class Chain {
   Loads default_loads() const noexcept;
 
   /// Pose of a frame relative to B.
-  Pose pose(int frame) const noexcept;
+  const Pose& pose(int frame) const noexcept;
   /// Velocity of the frame's origin and angular velocity (v; omega).
-  Vector6 twist(int frame) const noexcept;
+  const Vector6& twist(int frame) const noexcept;
   /// twist = jacobian * dq.
-  Jacobian jacobian(int frame) const noexcept;
+  const Jacobian& jacobian(int frame) const noexcept;
   /// dJ * dq: classical acceleration of the frame's origin and angular acceleration at ddq = 0.
-  Vector6 bias_acceleration(int frame) const noexcept;
+  const Vector6& bias_acceleration(int frame) const noexcept;
 
   /// Mass matrix (nv x nv), symmetric, both triangles.
   const Eigen::MatrixXd& M() const noexcept;
