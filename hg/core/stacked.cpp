@@ -4,8 +4,9 @@ namespace hg {
 
 VectorPM stacked(const VectorP& p, const VectorM& m) noexcept {
   VectorPM both(p.size() + m.size());
-  both.head(p.size()) = p;
-  both.tail(m.size()) = m;
+  // number by number: they are few, and their number is known to nobody else
+  for (Eigen::Index i = 0; i < p.size(); ++i) both[i] = p[i];
+  for (Eigen::Index i = 0; i < m.size(); ++i) both[p.size() + i] = m[i];
   return both;
 }
 

@@ -310,7 +310,7 @@ void Rendering::solve(State& state, double handle_speed, CycleRecord& record) no
     state.reference.ddq_m = x.head(n_m);
     state.twin.ddq_a = x.tail(n_a);
     budget.inertia = twin_.chain.c();
-    budget.inertia.noalias() += twin_.chain.M() * state.twin.ddq_a;
+    budget.inertia += twin_.chain.M().lazyProduct(state.twin.ddq_a);
     const VectorA tau_constraint = budget.inertia - tau;
     reactions_.split(tasks_, solution_, tau_constraint);
     ended_(Stage::kReactions);
@@ -356,7 +356,7 @@ void Rendering::gantry_room(VectorP& down, VectorP& up) const noexcept {
   down = up = VectorP::Constant(device_.n_p, kInfinity);
   for (const CartesianLimit& frame : device_.cartesian_limits) {
     if (frame.frame == device_.handle) continue;
-    const model::Jacobian J = device_.chain.jacobian(frame.frame);
+    const model::Jacobian& J = device_.chain.jacobian(frame.frame);
     const Eigen::Vector3d position = device_.chain.pose(frame.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
       const limits::JointLimits& range = frame.axes[static_cast<std::size_t>(axis)];
@@ -372,11 +372,11 @@ void Rendering::gantry_room(VectorP& down, VectorP& up) const noexcept {
 }
 
 Vector6 Rendering::handle_twist(const RobotState& robot) const noexcept {
-  return J_H_ * stacked(robot.dq_p, robot.dq_m);
+  return J_H_.lazyProduct(stacked(robot.dq_p, robot.dq_m));
 }
 
 Vector6 Rendering::end_effector_twist(const State& state) const noexcept {
-  return J_a_ * state.twin.dq_a;
+  return J_a_.lazyProduct(state.twin.dq_a);
 }
 
 double Rendering::apparent_mass(const State& state) const noexcept {

@@ -153,8 +153,8 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
 // [HG] (12) with (11): J_m ddq_m - J_a ddq_a = s - J_p ddq_p - dJ dq + dJ_a dq_a
 void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
                           const TaskInput& input) noexcept {
-  const Pose T_B_H = device.chain.pose(device.handle);
-  const Pose T_B_E = twin.chain.pose(twin.end_effector);
+  const Pose& T_B_H = device.chain.pose(device.handle);
+  const Pose& T_B_E = twin.chain.pose(twin.end_effector);
   const Vector6 velocity_error =
       twin.chain.twist(twin.end_effector) - device.chain.twist(device.handle);
   s_.head<3>() =
@@ -163,7 +163,7 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
                  options_.kD_rot * velocity_error.tail<3>();
 
   const model::Jacobian& J = input.J_H;
-  const Vector6 known = s_ - J.leftCols(device.n_p) * input.robot.ddq_p -
+  const Vector6 known = s_ - J.leftCols(device.n_p).lazyProduct(input.robot.ddq_p) -
                         device.chain.bias_acceleration(device.handle) +
                         twin.chain.bias_acceleration(twin.end_effector);
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
@@ -225,12 +225,11 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
 
   // [HG] (15)-(16)
   for (const CartesianLimit& frame : device.cartesian_limits) {
-    const model::Jacobian J =
-        frame.frame == device.handle ? input.J_H : device.chain.jacobian(frame.frame);
-    const Vector6 known =
-        J.leftCols(device.n_p) * input.robot.ddq_p + device.chain.bias_acceleration(frame.frame);
-    const Eigen::Vector3d position = device.chain.pose(frame.frame).p;
-    const Vector6 twist = device.chain.twist(frame.frame);
+    const model::Jacobian& J = device.chain.jacobian(frame.frame);
+    const Vector6 known = J.leftCols(device.n_p).lazyProduct(input.robot.ddq_p) +
+                          device.chain.bias_acceleration(frame.frame);
+    const Eigen::Vector3d& position = device.chain.pose(frame.frame).p;
+    const Vector6& twist = device.chain.twist(frame.frame);
     for (int axis = 0; axis < 3; ++axis) {
       row.head(n_m_) = J.row(axis).segment(device.n_p, n_m_);
       problem_.set_row(first_limit_row() + limit, coefficients_);

@@ -11,6 +11,7 @@ constexpr double kArrived = 1e-9;  // of the larger of 1 and the target
 constexpr double kLargest = 1e9;   // of any value; keeps products finite
 
 void approach(double& now, double target, double share) noexcept {
+  if (now == target) return;
   now += share * (target - now);
   if (std::abs(target - now) <= kArrived * std::max(1.0, std::abs(target))) now = target;
 }
@@ -18,7 +19,7 @@ void approach(double& now, double target, double share) noexcept {
 void approach_speed_limit(double& now, double target, double speed, double share) noexcept {
   if (std::isinf(target)) now = target;
   if (std::isinf(now)) now = std::max(target, speed);
-  if (now != target) approach(now, target, share);
+  approach(now, target, share);
 }
 
 DofValues values_of(const TwinDof& dof) noexcept {
