@@ -110,10 +110,12 @@ void Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_
 void Estimation::observe_wrench(const SensorFrame& sensors, State& state,
                                 RobotState& robot) noexcept {
   chain_.update_poses(stacked(robot.q_p, robot.q_m));
-  const Eigen::Matrix3d R_B_H = chain_.pose(handle_).R;
+  const Eigen::Matrix3d& R_B_H = chain_.pose(handle_).R;
   const Eigen::Matrix3d R_B_S = R_B_H * config_.T_H_S.R;
-  advance(config_.wrench.tare, config_.dt, without_weight(config_.wrench, sensors, R_B_S),
-          sensors.dead_man, robot.q_m, robot.q_p, state.wrench.tare);
+  if (state.wrench.tare.status == TareStatus::kUnderWay) {
+    advance(config_.wrench.tare, config_.dt, without_weight(config_.wrench, sensors, R_B_S),
+            sensors.dead_man, robot.q_m, robot.q_p, state.wrench.tare);
+  }
   estimate(config_.wrench, config_.dt, sensors, R_B_S, state.wrench);
 
   // the sensor measures in S; the law needs the same wrench about H, resolved in B

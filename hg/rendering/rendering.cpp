@@ -1,6 +1,7 @@
 #include "hg/rendering/rendering.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -54,13 +55,20 @@ void catch_reversals(const TwinState& state, double dt, TwinInnerState& inner) n
   }
 }
 
+using RowStates = std::array<hqp::RowState, hqp::kMaxRows>;
+
+// the first rows only: an active set has room for many more than a problem has
+void copy(const RowStates& from, int rows, RowStates& to) noexcept {
+  std::copy_n(from.begin(), rows, to.begin());
+}
+
 // rows that begin or cease to act; a lock whose reaction changes its sign does neither
-int changed_rows(const hqp::ActiveSet& a, const hqp::ActiveSet& b, int first, int count) noexcept {
+int changed_rows(const RowStates& a, const RowStates& b, int first, int count) noexcept {
   int changes = 0;
   for (int i = first; i < first + count; ++i) {
     const auto row = static_cast<std::size_t>(i);
-    const bool acted = a.state[row] != hqp::RowState::kInactive;
-    if (acted != (b.state[row] != hqp::RowState::kInactive)) ++changes;
+    const bool acted = a[row] != hqp::RowState::kInactive;
+    if (acted != (b[row] != hqp::RowState::kInactive)) ++changes;
   }
   return changes;
 }
@@ -195,10 +203,11 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   }
   feel_surfaces(state, share, record);
 
-  const hqp::ActiveSet previous = state.active_set;
+  RowStates previous;
+  copy(state.active_set.state, tasks_.problem().rows(), previous);
   solve(state, handle_speed, record);
-  record.active_set_changes =
-      changed_rows(previous, state.active_set, tasks_.first_limit_row(), tasks_.limit_row_count());
+  record.active_set_changes = changed_rows(previous, state.active_set.state,
+                                           tasks_.first_limit_row(), tasks_.limit_row_count());
   if (!is_released) catch_reversals(state.twin, options_.dt, state.inner);
   give_way(state, record);
   report_kinematics(state, record);
@@ -295,7 +304,8 @@ void Rendering::solve(State& state, double handle_speed, CycleRecord& record) no
                  .tau = tau,
                  .handle_speed = handle_speed});
     ended_(Stage::kRenderingSetUp);
-    guess_ = state.active_set;
+    copy(state.active_set.state, tasks_.problem().rows(), guess_.state);
+    copy(state.active_set.before, tasks_.problem().rows(), guess_.before);
     solved_cycle_ = record.cycle;
     solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_);
     record.solver_status = solver_status(tasks_, solution_);
