@@ -143,7 +143,8 @@ void Reactions::split_active(const Tasks& tasks, const hqp::Solution& solution,
     const auto row = static_cast<std::size_t>(tasks.acting_row(limit, solution));
     if (hqp::is_violated(solution.state[row])) problem_.add_bound(j, {0.0, 0.0});
   }
-  active_set_ = {};
+  std::fill_n(active_set_.state.begin(), problem_.rows(), hqp::RowState::kInactive);
+  std::fill_n(active_set_.before.begin(), problem_.rows(), hqp::RowState::kInactive);
   solver_.solve(problem_, {}, active_set_, solution_);
   for (std::size_t j = 0; j < static_cast<std::size_t>(active_count_); ++j) {
     value_[static_cast<std::size_t>(active_[j])] = solution_.x[j] * scale_[j];
