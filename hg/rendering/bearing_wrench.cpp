@@ -1,6 +1,5 @@
 #include "hg/rendering/bearing_wrench.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hg::rendering {
@@ -11,10 +10,10 @@ Vector6 bearing_wrench(const model::Jacobian& J, const Vector6& w) noexcept {
   model::Jacobian left = J;
   Vector6 rest = w;
   double smallest_squared = 0.0;
-  for (Eigen::Index rank = 0; rank < std::min<Eigen::Index>(6, J.cols()); ++rank) {
+  for (Eigen::Index count = left.cols(); count > 0; --count) {
     Eigen::Index longest = 0;
     double squared = 0.0;
-    for (Eigen::Index i = 0; i < left.cols(); ++i) {
+    for (Eigen::Index i = 0; i < count; ++i) {
       const double squared_i = left.col(i).squaredNorm();
       if (squared_i > squared) {
         squared = squared_i;
@@ -22,12 +21,12 @@ Vector6 bearing_wrench(const model::Jacobian& J, const Vector6& w) noexcept {
       }
     }
     if (!(squared > smallest_squared)) break;
-    if (rank == 0) smallest_squared = kDependent * kDependent * squared;
+    if (count == left.cols()) smallest_squared = kDependent * kDependent * squared;
     const Vector6 direction = left.col(longest) / std::sqrt(squared);
-    for (Eigen::Index i = 0; i < left.cols(); ++i) {
+    left.col(longest) = left.col(count - 1);
+    for (Eigen::Index i = 0; i < count - 1; ++i) {
       left.col(i) -= direction * direction.dot(left.col(i));
     }
-    left.col(longest).setZero();
     rest -= direction * direction.dot(rest);
   }
   return rest;
