@@ -7,7 +7,8 @@
 /// wrenches and twists linear part first. Units SI.
 ///
 /// Set-up throws SetupError, `file:line: item: rule, got value`. After it nothing allocates or
-/// throws. Accessors return the results of the last update. One chain serves one thread.
+/// throws. Accessors return the results of the last update; what they refer to changes with the
+/// next one. One chain serves one thread.
 #pragma once
 
 #include <filesystem>
