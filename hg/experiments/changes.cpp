@@ -20,18 +20,26 @@ Eigen::MatrixXd inertia_of(const config::Scenario& scenario) {
   return chain.M();
 }
 
-}  // namespace
-
-void set_free_twin(config::Scenario& scenario, const FreeTwin& twin) {
-  require_free_body(scenario);
+void set_body(config::Scenario& scenario, const model::FreeBody& body) {
   rendering::TwinModel& model = scenario.twin.model;
-  const model::FreeBody body = {.mass = twin.mass,
-                                .inertia = inertia_of(scenario).bottomRightCorner<3, 3>()};
   model.chain = model::Chain::free_body(body, {.T_B_root = scenario.twin.T_B_root,
                                                .gravity = model.chain.default_loads().gravity > 0});
   model.end_effector = model.chain.frame("handle");
   model.mass_scale = 1.0;
-  for (std::size_t i = 0; i < 3; ++i) model.dofs[i].damping = twin.damping;
+}
+
+}  // namespace
+
+void set_free_twin(config::Scenario& scenario, const FreeTwin& twin) {
+  require_free_body(scenario);
+  set_body(scenario,
+           {.mass = twin.mass, .inertia = inertia_of(scenario).bottomRightCorner<3, 3>()});
+  for (std::size_t i = 0; i < 3; ++i) scenario.twin.model.dofs[i].damping = twin.damping;
+}
+
+void set_free_inertia(config::Scenario& scenario, double inertia) {
+  const double mass = free_twin_of(scenario).mass;
+  set_body(scenario, {.mass = mass, .inertia = inertia * Eigen::Matrix3d::Identity()});
 }
 
 FreeTwin free_twin_of(const config::Scenario& scenario) {

@@ -10,6 +10,10 @@ namespace hg::experiments {
 /// inertia and angular damping stay. Throws SetupError when the twin is not a free body.
 void set_free_twin(config::Scenario& scenario, const FreeTwin& twin);
 
+/// Gives the scenario's free body the same moment of inertia about all axes, kg m^2; its mass
+/// stays. Throws SetupError when the twin is not a free body.
+void set_free_inertia(config::Scenario& scenario, double inertia);
+
 /// Of the scenario's free body. Throws SetupError when the twin is not one.
 FreeTwin free_twin_of(const config::Scenario& scenario);
 

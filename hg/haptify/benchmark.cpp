@@ -18,6 +18,10 @@ Benchmark measure(const config::Scenario& scenario, const Options& options, cons
   add_force_response(group);
   add_latency(group);
   add_z_width(group);
+  add_impacts(group);
+  add_felt_mass(group);
+  add_rotation(group);
+  add_springs(group);
   return result;
 }
 

@@ -54,5 +54,9 @@ void add_z_width(const Group& group);
 void add_transparency(const Group& group);
 void add_force_response(const Group& group);
 void add_latency(const Group& group);
+void add_impacts(const Group& group);
+void add_felt_mass(const Group& group);
+void add_rotation(const Group& group);
+void add_springs(const Group& group);
 
 }  // namespace hg::haptify

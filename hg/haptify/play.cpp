@@ -37,6 +37,7 @@ Played play(const config::Scenario& scenario) {
                                .w_H = truth.w_H,
                                .p_B_E = record.T_B_E.p,
                                .p_ref = record.T_B_H.p,
+                               .surface = record.contact.force,
                                .is_limited = record.felt_limit >= 0});
   }
   const Fault& fault = player.record().fault;

@@ -16,10 +16,11 @@ struct Instant {
   double time_s = 0.0;  ///< since the grasp
   Pose T_B_H;           ///< handle
   Vector6 twist = Vector6::Zero(), acceleration = Vector6::Zero();
-  Vector6 w_H = Vector6::Zero();                    ///< wrench of the person
-  Eigen::Vector3d p_B_E = Eigen::Vector3d::Zero();  ///< twin, as it is rendered
-  Eigen::Vector3d p_ref = Eigen::Vector3d::Zero();  ///< handle at the reference
-  bool is_limited = false;                          ///< a limit of the device is felt
+  Vector6 w_H = Vector6::Zero();                      ///< wrench of the person
+  Eigen::Vector3d p_B_E = Eigen::Vector3d::Zero();    ///< twin, as it is rendered
+  Eigen::Vector3d p_ref = Eigen::Vector3d::Zero();    ///< handle at the reference
+  Eigen::Vector3d surface = Eigen::Vector3d::Zero();  ///< force of virtual surfaces on the twin, N
+  bool is_limited = false;                            ///< a limit of the device is felt
 };
 
 struct Played {

@@ -11,7 +11,8 @@ from program import TemporaryFolder, run
 TABLE = ["workspace_volume", "free_space_force", "free_space_vibration", "free_space_centroid",
          "frictionless_surface", "stiffness_accuracy", "stiffness_peak_force"]
 BEYOND = ["transparency_bandwidth", "position_bandwidth", "force_bandwidth", "latency", "z_width",
-          "z_width_light", "free_space_centroid_seen"]
+          "z_width_light", "free_space_centroid_seen", "impact_depth", "impact_rebound",
+          "felt_mass_20", "felt_mass_60", "smallest_inertia", "spring_frequency"]
 
 
 def cells(line):
@@ -31,7 +32,8 @@ class Haptify(TemporaryFolder):
         names = sorted(file.name for file in one.iterdir())
         self.assertEqual(names, sorted(file.name for file in two.iterdir()))
         self.assertLessEqual({"report.html", "report.md", "table.tex", "haptify.csv",
-                              "repetitions.csv", "transparency.csv", "z_width.csv"}, set(names))
+                              "repetitions.csv", "transparency.csv", "z_width.csv", "impacts.csv",
+                              "felt_mass.csv", "rotation.csv", "springs.csv"}, set(names))
         for name in names:
             self.assertEqual((one / name).read_bytes(), (two / name).read_bytes(), name)
 
