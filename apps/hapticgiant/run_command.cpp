@@ -191,7 +191,7 @@ int exit_code(const evaluation::Summary& summary, const std::vector<std::string>
               bool was_interrupted) {
   if (summary.fault().code != FaultCode::kNone) return 3;
   if (was_interrupted) return 0;
-  return missing.empty() && summary.limits_held() ? 0 : 1;
+  return missing.empty() && summary.limits_held() && !summary.has_shaken() ? 0 : 1;
 }
 
 evaluation::Timing timing_of(const runtime::Options& options, const runtime::Report& report) {

@@ -13,6 +13,7 @@
 #include "hg/assembly/start_posture.h"
 #include "hg/control/loop_stability.h"
 #include "hg/core/error.h"
+#include "hg/core/linear_algebra.h"
 #include "hg/rendering/catalogue.h"
 
 namespace hg::assembly {
@@ -197,6 +198,21 @@ control::Config checked_control(const config::Device& device) {
   return control;
 }
 
+// What the hand moves at the start in the direction in which that is most, kg; directions in which
+// the twin cannot move do not count.
+double felt_mass(const rendering::TwinModel& twin) {
+  constexpr double kStuck = 1e-6;  // of the largest mobility
+  model::Chain chain = twin.chain;
+  const VectorA at_rest = VectorA::Zero(chain.nv());
+  chain.update(twin.q_start, at_rest);
+  const Eigen::MatrixXd J = chain.jacobian(twin.end_effector).topRows<3>();
+  const Eigen::Matrix3d mobility = J * inverse(Eigen::MatrixXd(chain.M())) * J.transpose();
+  const Eigen::Vector3d eigenvalues = symmetric_eigen(mobility).values;  // the smallest first
+  const auto least = std::ranges::find_if(
+      eigenvalues, [&](double value) { return value > kStuck * eigenvalues[2]; });
+  return least == eigenvalues.end() ? 0.0 : twin.mass_scale / *least;
+}
+
 }  // namespace
 
 bool notices_frozen_sensors(const config::Device& device) {
@@ -213,6 +229,9 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
   if (device.rendering.bounds == rendering::Bounds::kPaper || !device.model.motors.empty()) {
     monitor.acceleration_tolerance = kInfinity;
   }
+  monitor.looks_for_shaking = device.passivity.reaction != passivity::Reaction::kOff;
+  monitor.stops_shaking = device.passivity.reaction == passivity::Reaction::kAct;
+  monitor.twin_mass = felt_mass(scenario.twin.model);
   return cycle::Cycle({.estimation = device.estimation,
                        .prepositioning = device.prepositioning,
                        .rendering = device.rendering,

@@ -209,7 +209,7 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       "passivity",
       [&](auto& child) {
         child.choice("reaction", d.passivity.reaction, kPassivityReactions,
-                     "to hand and device shaking each other: nothing, a note in the record, or "
+                     "to hand and device shaking each other: nothing, a warning, or "
                      "more inertia and damping of the twin until they are calm");
         child.number("damping_Ns_per_m", d.passivity.damping, kPositive,
                      "of the handle while it is calmed, besides that of the twin");

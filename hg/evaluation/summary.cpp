@@ -47,7 +47,8 @@ Summary::Summary(LimitCatalogue catalogue, LimitPositions positions, double rate
                  const VectorM& torque_rated)
     : catalogue_(std::move(catalogue)),
       reality_(catalogue_, std::move(positions), rate_Hz, torque_rated),
-      worst_excess_(catalogue_.size(), 0.0) {}
+      worst_excess_(catalogue_.size(), 0.0),
+      rate_Hz_(rate_Hz) {}
 
 void Summary::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
@@ -72,6 +73,12 @@ void Summary::add(const Sample& sample) {
   duration_s_ = record.time_s;
   for (std::size_t i = 0; i < catalogue_.size(); ++i) {
     worst_excess_[i] = std::max(worst_excess_[i], record.limits[i].excess);
+  }
+  if (record.warning.code == FaultCode::kOscillation) {
+    if (shaking_cycles_++ == 0) {
+      shaking_from_s_ = record.time_s;
+      shaking_ = static_cast<Shaking>(record.warning.index);
+    }
   }
   max_sync_error_ = std::max(max_sync_error_, record.sync_error);
   max_sync_angle_ = std::max(max_sync_angle_, record.sync_error_angle);
@@ -126,6 +133,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   }
   json["limits_held"] = limits_held();
   if (reality_.is_known()) json["reality"] = reality_json();
+  json["shaking"] = shaking_json();
   json["sync_error"] = {{"max_m", max_sync_error_}, {"max_rad", max_sync_angle_}};
   json["force"] = {{"mean_N", mean(sum_force_, running_cycles_)},
                    {"max_N", max_force_},
@@ -153,6 +161,14 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
                    {"what", std::string(to_string(fault_.code))},
                    {"index", fault_.index}};
   return json.dump(2) + "\n";
+}
+
+nlohmann::ordered_json Summary::shaking_json() const {
+  nlohmann::ordered_json json = {{"duration_s", static_cast<double>(shaking_cycles_) / rate_Hz_}};
+  if (!has_shaken()) return json;
+  json["first_s"] = shaking_from_s_;
+  json["what"] = std::string(to_string(shaking_));
+  return json;
 }
 
 nlohmann::ordered_json Summary::reality_json() const {
@@ -240,6 +256,12 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
          fmt::format("{}, worst {} by {:.3f} {}",
                      limits_held() ? "held within tolerance" : "EXCEEDED", catalogue_[worst].name,
                      1e3 * worst_excess_[worst], catalogue_[worst].is_angle ? "mrad" : "mm"));
+  }
+  if (has_shaken()) {
+    line("SHAKING", fmt::format("hand and device shake each other, {:.2f} s in all, first at "
+                                "{:.3f} s: {}",
+                                static_cast<double>(shaking_cycles_) / rate_Hz_, shaking_from_s_,
+                                to_string(shaking_)));
   }
   line("hand - twin", fmt::format("at most {:.3f} mm apart", 1e3 * max_sync_error_));
   line("force",

@@ -54,6 +54,8 @@ class Summary {
   /// No limit may be exceeded by the reference by more than 2 mm / 5 mrad ([HANDBOOK] 10.1), or in
   /// truth by more than 1 mm / 2 mrad.
   bool limits_held() const noexcept;
+  /// Hand and device shook each other while it ran: FaultCode::kOscillation was warned of.
+  bool has_shaken() const noexcept { return shaking_cycles_ > 0; }
   const std::vector<Event>& events() const noexcept { return events_; }
   const Fault& fault() const noexcept { return fault_; }
   const Reality& reality() const noexcept { return reality_; }
@@ -66,6 +68,7 @@ class Summary {
 
  private:
   nlohmann::ordered_json reality_json() const;
+  nlohmann::ordered_json shaking_json() const;
   std::string reality_text() const;
 
   LimitCatalogue catalogue_;
@@ -76,6 +79,10 @@ class Summary {
   double duration_s_ = 0.0;
   double max_sync_error_ = 0.0, max_sync_angle_ = 0.0;
   double sum_force_ = 0.0, max_force_ = 0.0, max_torque_ = 0.0;
+  double rate_Hz_;
+  std::uint64_t shaking_cycles_ = 0;
+  double shaking_from_s_ = 0.0;
+  Shaking shaking_ = Shaking::kNone;  ///< at its begin
   std::array<std::uint64_t, 4> solver_status_{};
   std::uint64_t active_set_changes_ = 0;
   Histogram cycle_time_us_;

@@ -62,9 +62,10 @@ enum class Verdict {
 /// '.', 'r', 'h', 'U', 'X'.
 char symbol(Verdict verdict) noexcept;
 std::string_view to_string(Verdict verdict) noexcept;
-/// Whether the contact itself is: what it takes to go on is more than friction.
+/// Whether it comes to rest: who holds a handle that goes on does not ask whether friction keeps it
+/// going.
 constexpr bool is_stable(Verdict verdict) noexcept {
-  return verdict != Verdict::kSustained && verdict != Verdict::kDiverges;
+  return verdict == Verdict::kStable || verdict == Verdict::kSlow;
 }
 
 /// When a handle is calm. [C] 3 looks at 2 s; a heavy body on a soft hand swings too slowly for

@@ -211,7 +211,7 @@ std::string to_text(const StabilityMap& map) {
          fmt::format(
              "\n.  stable        r  calms down, but not within {0:g} s        X  diverges\n"
              "U  sustained, above {1:g} mm/s        h  the same, but not without friction: the "
-             "joints stick and slip\n",
+             "joints stick and slip, not stable either\n",
              map.config.kick.watched, 1e3 * map.config.calm.calm_speed);
 }
 

@@ -195,10 +195,13 @@ void Explainer::add_others(const Sample& sample) {
   if (record.warning.code != FaultCode::kNone) {
     const safety::Rule& rule = safety::rule_of(record.warning.code);
     const std::string part = part_of(record.warning, names_, sample.sensors);
-    extend("warning",
-           fmt::format("{}{}, stops at {:.4g}", rule.name, part.empty() ? "" : " (" + part + ")",
-                       record.warning.limit),
-           record.time_s, record.warning.value);
+    const std::string what = fmt::format("{}{}", rule.name, part.empty() ? "" : " (" + part + ")");
+    if (record.warning.code == FaultCode::kOscillation) {
+      extend("warning", what + ": hand and device shake each other", record.time_s);
+    } else {
+      extend("warning", fmt::format("{}, stops at {:.4g}", what, record.warning.limit),
+             record.time_s, record.warning.value);
+    }
   }
   for (int i = 0; i < 32; ++i) {
     if (((record.sanitised >> i) & 1U) == 0) continue;

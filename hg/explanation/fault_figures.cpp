@@ -45,6 +45,7 @@ bool is_yes_or_no(FaultCode code) {
     case FaultCode::kSafetyInputsDisagree:
     case FaultCode::kDriveFault:
     case FaultCode::kSolverFailed:
+    case FaultCode::kOscillation:
       return true;
     default:
       return false;
@@ -86,6 +87,8 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
                      index);
     case FaultCode::kCollisionAhead:
       return name_in(names.pairs, index, "pair");
+    case FaultCode::kOscillation:
+      return std::string(to_string(static_cast<Shaking>(index)));
     case FaultCode::kWrenchTooLarge:
       return index == 0 ? "force in N" : "torque in Nm";
     case FaultCode::kSafeSpeedExceeded:

@@ -8,12 +8,18 @@ namespace hg::passivity {
 namespace {
 
 constexpr double kHigh_Hz = 30.0, kLow_Hz = 3.0;
-constexpr double kMean = 0.2;          // s
-constexpr double kLeast = 1.0;         // N: less is noise
-constexpr double kRatio = 0.5;         // of the forces of oscillation and intention
-constexpr double kIntention = 0.5;     // N, added to what is intended
-constexpr double kViolent = 15.0;      // N
-constexpr double kAfterPush = 0.4;     // s: twice the mean
+constexpr double kMean = 0.2;        // s
+constexpr double kLeast = 1.0;       // N: less is noise
+constexpr double kRatio = 0.5;       // of the forces of oscillation and intention
+constexpr double kIntention = 0.5;   // N, added to what is intended
+constexpr double kViolent = 15.0;    // N
+constexpr double kAfterPush = 0.4;   // s: twice the mean
+constexpr double kPause = 0.2;       // s: longer than half a period of 3 Hz
+constexpr int kTurns = 2;            // a whole period
+constexpr int kTurnsPushed = 6;      // three: an impact rings
+constexpr double kTremor_Hz = 10.0;  // with half its width: 8 to 12 Hz pass
+constexpr double kTremor = 5.0;      // N: 2 N along each axis ([HANDBOOK] 5.1 has 0.05 N), and the
+                                     // arm that swings along
 constexpr double kDampingRise = 0.02;  // s
 constexpr double kInertiaRise = 0.05;  // s
 constexpr double kHold = 2.0;          // s
@@ -26,11 +32,25 @@ double share_of_Hz(double dt, double frequency) noexcept {
   return share_of(dt, 1.0 / (2.0 * std::numbers::pi * frequency));
 }
 
+// What of the force a person's tremor may be, squared.
+double tremor_part(double dt, const Eigen::Vector3d& f, State& s) noexcept {
+  const double k = std::numbers::pi * kTremor_Hz * dt;
+  const double scale = 1.0 / (1.0 + k + k * k);
+  const Eigen::Vector3d band =
+      scale * (k * (f - s.in2) - 2.0 * (k * k - 1.0) * s.tremor1 - (1.0 - k + k * k) * s.tremor2);
+  s.in2 = s.in1;
+  s.in1 = f;
+  s.tremor2 = s.tremor1;
+  s.tremor1 = band;
+  s.tremor += share_of(dt, kMean) * (band.squaredNorm() - s.tremor);
+  return std::min(s.tremor, kTremor * kTremor);
+}
+
 // 1 = detected
 double look_for_oscillation(const Config& config, const Input& input, State& s) noexcept {
   const double dt = config.dt;
   if (!s.is_started) {
-    s.x1 = s.x2 = s.x3 = input.f;
+    s.x1 = s.x2 = s.x3 = s.in1 = s.in2 = input.f;
     s.since_pushed_s = kAfterPush;
   }
   s.x1 += share_of_Hz(dt, kHigh_Hz) * (input.f - s.x1);
@@ -41,9 +61,10 @@ double look_for_oscillation(const Config& config, const Input& input, State& s) 
   s.low += share * (s.x3.squaredNorm() - s.low);
 
   s.since_pushed_s = input.is_pushed_back ? 0.0 : s.since_pushed_s + dt;
-  const double high = std::sqrt(s.high);
+  const double high = std::sqrt(std::max(0.0, s.high - tremor_part(dt, input.f, s)));
   const double low = std::sqrt(s.low);
-  const bool counts = s.since_pushed_s > kAfterPush;
+  s.turns.step(s.x1 - s.x2, 0.5 * std::sqrt(s.high), dt, kPause);
+  const bool counts = s.turns.count >= (s.since_pushed_s > kAfterPush ? kTurns : kTurnsPushed);
   const bool oscillates = counts && high > kLeast && high > kRatio * (low + kIntention);
   s.oscillates_s =
       std::clamp(s.oscillates_s + (oscillates ? dt : -2.0 * dt), 0.0, config.trip_time);

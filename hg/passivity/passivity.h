@@ -5,8 +5,10 @@
 /// [C] 7: of the user's force f, x1 = LP30(f), x2 = LP3(x1), x3 = LP3(x2), high^2 = mean |x1-x2|^2,
 /// low^2 = mean |x3|^2 over 0.2 s; it oscillates while high > 1 N and high > (low + 0.5 N) / 2, and
 /// is detected once it has for `trip_time` (counted down twice as fast), or at high > 15 N.
-/// Differs from [C] 7: detected after 0.2 s instead of 0.4 s; what happens while a limit or a
-/// surface pushes back, or just after, does not count: impacts look like oscillations.
+/// Differs from [C] 7: detected after 0.2 s instead of 0.4 s. It must have turned round, too, since
+/// a hard start or stop is no oscillation: twice, and six times while a limit or a surface pushes
+/// back, and just after. What a person's tremor may be, up to 5 N rms about 10 Hz, is taken off
+/// `high`. Torques, forces above 30 Hz and bouncing: hg/safety/shaking.h.
 ///
 /// When detected the twin gets a damper at its end effector (`damping`), and so much inertia that
 /// it is felt with `least_mass` at least. A growing inertia M is passive as long as M' / 2 <= D
@@ -21,6 +23,7 @@
 
 #include <cstdint>
 
+#include "hg/core/turns.h"
 #include "hg/core/types.h"
 #include "hg/signals/state.h"
 
@@ -65,7 +68,12 @@ struct State {
   bool is_started = false;
   Eigen::Vector3d x1 = Eigen::Vector3d::Zero(), x2 = Eigen::Vector3d::Zero(),
                   x3 = Eigen::Vector3d::Zero();
-  double high = 0.0, low = 0.0;     ///< mean squares, N^2
+  double high = 0.0, low = 0.0;  ///< mean squares, N^2
+  /// Band-pass about 10 Hz: its last inputs and outputs, and the mean square of it, N^2.
+  Eigen::Vector3d in1 = Eigen::Vector3d::Zero(), in2 = Eigen::Vector3d::Zero(),
+                  tremor1 = Eigen::Vector3d::Zero(), tremor2 = Eigen::Vector3d::Zero();
+  double tremor = 0.0;
+  Turns turns;                      ///< of x1 - x2
   double oscillates_s = 0.0;        ///< the counter
   double since_pushed_s = 0.0;      ///< since something pushed back
   double hold_s = 0.0;              ///< until calming ends

@@ -12,12 +12,13 @@
 namespace hg::safety {
 namespace {
 
-constexpr double kClockMemory = 0.02;    // share of the newest sample in the clock's mean error
-constexpr double kPullMemory_s = 0.2;    // after which a reference that came back is forgotten
-constexpr double kGapMemory_s = 2.0;     // after which an error of the drive model is forgotten
-constexpr double kDriftMemory_s = 60.0;  // the same where it adds up
-constexpr double kDriveError = 0.005;    // of its way, that a drive may add up to
-constexpr double kMotorMemory_s = 0.02;  // over which the torque of a motor is observed
+constexpr double kClockMemory = 0.02;       // share of the newest sample in the clock's mean error
+constexpr double kPullMemory_s = 0.2;       // after which a reference that came back is forgotten
+constexpr double kGapMemory_s = 2.0;        // after which an error of the drive model is forgotten
+constexpr double kDriftMemory_s = 60.0;     // the same where it adds up
+constexpr double kDriveError = 0.005;       // of its way, that a drive may add up to
+constexpr double kMotorMemory_s = 0.02;     // over which the torque of a motor is observed
+constexpr double kShakingPatience_s = 3.0;  // as that of hg/passivity
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -87,7 +88,7 @@ Fault check_solution(const CycleRecord& record) noexcept {
 }
 
 Monitor::Monitor(const MonitorConfig& config, int n_p, int n_m)
-    : config_(config), n_p_(n_p), n_m_(n_m) {
+    : config_(config), shaking_(config.dt, config.twin_mass), n_p_(n_p), n_m_(n_m) {
   const auto require = [](bool ok, const std::string& text) {
     if (!ok) throw SetupError("monitor: " + text);
   };
@@ -155,7 +156,9 @@ Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
   look_at_frames(record, watched);
   look_at_clocks(sensors, watched, state);
   look_at_sensors(sensors, state);
-  const Verdict verdict = judge(state);
+  const Fault shaking = look_for_shaking(sensors, record, watched, state);
+  Verdict verdict = judge(state);
+  if (shaking.code != FaultCode::kNone) verdict.warning = shaking;
   state.is_broken = verdict.fault.code != FaultCode::kNone;
   return verdict;
 }
@@ -337,6 +340,22 @@ void Monitor::look_at_frames(const CycleRecord& record, const Watched& watched) 
   look<FaultCode::kSafeSpeedExceeded>(0, record.v_H.norm(), config_.safe_speed);
   if (!config_.is_gantry_slide) return;
   look<FaultCode::kSafeSpeedExceeded>(1, record.robot.dq_p.norm(), config_.safe_speed);
+}
+
+// A warning. What calming could end, hg/passivity stops itself.
+Fault Monitor::look_for_shaking(const SensorFrame& sensors, const CycleRecord& record,
+                                const Watched& watched, MonitorState& state) noexcept {
+  if (!config_.looks_for_shaking || mode_of(watched.state) != Mode::kRunning) {
+    state.shaking = {};
+    return {};
+  }
+  const ShakingReport found = shaking_.step(sensors, record, state.shaking);
+  if (found.what == Shaking::kNone) return {};
+  const auto index = static_cast<int>(found.what);
+  if (config_.stops_shaking && found.what != Shaking::kForce) {
+    look<FaultCode::kOscillation>(index, state.shaking.shakes_s, kShakingPatience_s);
+  }
+  return make_fault(FaultCode::kOscillation, index, found.index, 1.0);
 }
 
 void Monitor::look_at_clocks(const SensorFrame& sensors, const Watched& watched,

@@ -12,6 +12,7 @@
 
 #include "hg/core/interval.h"
 #include "hg/safety/rules.h"
+#include "hg/safety/shaking.h"
 #include "hg/safety/transitions.h"
 #include "hg/signals/actuator_model.h"
 #include "hg/signals/drive_model.h"
@@ -68,8 +69,11 @@ struct MonitorConfig {
   double frozen_samples = 0;       ///< with the same bits; 0: sensors have no noise
   double overruns_in_a_row = 2;    ///< late cycles that may follow each other
   double overruns_per_s = 5;       ///< late cycles that may come again and again
+  bool looks_for_shaking = true;   ///< hand and device shake each other: a warning
+  bool stops_shaking = false;      ///< a stop, where it lasts
 
-  // what the device is
+  // what device and twin are
+  double twin_mass = 1.0;                  ///< felt at the handle where most, at the start, kg
   double dt = 1e-3;                        ///< period, s
   double gantry_speed_max = 1.5;           ///< of commands, m/s or rad/s
   DriveModel drive;                        ///< of every gantry axis
@@ -152,11 +156,14 @@ struct MonitorState {
   VectorM stop_from, braking_ramp;  ///< joints: where it began, where the ramp has led
   VectorM ramp_speed;  ///< of the joints, by the accelerations of the reference since it began
   VectorP stop_from_p, braking_ramp_p;  ///< gantry: where it began, where the drive model has led
+  ShakingState shaking;
 };
 
 struct Verdict {
-  Fault fault;    ///< a broken rule, the one with the hardest reaction
-  Fault warning;  ///< the rule nearest to its threshold, once beyond its warning
+  Fault fault;  ///< a broken rule, the one with the hardest reaction
+  /// Hand and device shake each other; otherwise the rule nearest to its threshold, once beyond its
+  /// warning.
+  Fault warning;
 };
 
 class Monitor {
@@ -198,11 +205,14 @@ class Monitor {
   void look_at_braking(const CycleRecord& record, const Watched& watched,
                        MonitorState& state) noexcept;
   void look_at_frames(const CycleRecord& record, const Watched& watched) noexcept;
+  Fault look_for_shaking(const SensorFrame& sensors, const CycleRecord& record,
+                         const Watched& watched, MonitorState& state) noexcept;
   void look_at_clocks(const SensorFrame& sensors, const Watched& watched,
                       MonitorState& state) noexcept;
   Verdict judge(MonitorState& state) const noexcept;
 
   MonitorConfig config_;
+  ShakingWatch shaking_;
   int n_p_, n_m_;
   std::array<int, kRuleCount> debounce_{};  // samples
   std::array<Worst, kRuleCount> fresh_{};   // before a cycle

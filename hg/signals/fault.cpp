@@ -96,4 +96,22 @@ std::string_view to_string(FaultCode code) noexcept {
   return "unknown fault";
 }
 
+std::string_view to_string(Shaking shaking) noexcept {
+  switch (shaking) {
+    case Shaking::kNone:
+      return "nothing";
+    case Shaking::kForce:
+      return "force of 3 to 30 Hz";
+    case Shaking::kTorque:
+      return "torque of 3 to 30 Hz";
+    case Shaking::kFastForce:
+      return "force above 30 Hz";
+    case Shaking::kFastTorque:
+      return "torque above 30 Hz";
+    case Shaking::kBouncing:
+      return "bouncing on a surface";
+  }
+  return "unknown";
+}
+
 }  // namespace hg

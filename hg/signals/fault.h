@@ -56,6 +56,19 @@ enum class FaultCode : std::uint16_t {
 /// One line for humans, for example "measured value is not finite".
 std::string_view to_string(FaultCode code) noexcept;
 
+/// What shakes, with FaultCode::kOscillation: Fault::index. Numbers never change meaning.
+enum class Shaking : std::int16_t {
+  kNone = -1,
+  kForce = 0,       ///< 3 to 30 Hz
+  kTorque = 1,      ///< 3 to 30 Hz
+  kFastForce = 2,   ///< above 30 Hz
+  kFastTorque = 3,  ///< above 30 Hz
+  kBouncing = 4,    ///< the twin bounces off virtual surfaces and drives the hand
+};
+
+/// "torque of 3 to 30 Hz"
+std::string_view to_string(Shaking shaking) noexcept;
+
 struct Fault {
   FaultCode code = FaultCode::kNone;
   std::int16_t index = -1;  ///< joint, limit or component it concerns; -1 = none

@@ -275,5 +275,23 @@ TEST(Summary, MoreThanFiveMilliradiansOutsideIsALimitExceeded) {
   EXPECT_FALSE(summary.limits_held());
 }
 
+TEST(Summary, SaysThatHandAndDeviceShookEachOther) {
+  Summary summary(catalogue(), {}, 1000.0);
+  Sample sample;
+  for (int n = 0; n < 1000; ++n) {
+    sample.record = running(1e-3 * n);
+    if (n >= 300 && n < 550) sample.record.warning = {FaultCode::kOscillation, 2, 1.0, 1.0};
+    EXPECT_EQ(summary.has_shaken(), n > 300);
+    summary.add(sample);
+  }
+  EXPECT_NE(summary.to_text({}, {}).find(
+                "SHAKING      hand and device shake each other, 0.25 s in all, first at 0.300 s: "
+                "force above 30 Hz"),
+            std::string::npos);
+  const auto json = nlohmann::json::parse(summary.to_json({}, {}));
+  EXPECT_NEAR(json["shaking"]["duration_s"].get<double>(), 0.25, 1e-9);
+  EXPECT_EQ(json["shaking"]["what"], "force above 30 Hz");
+}
+
 }  // namespace
 }  // namespace hg::evaluation

@@ -189,9 +189,12 @@ TEST(Explainer, TellsWarningsRefusalsLateCyclesAndTheSanitiser) {
       sample.operator_input.late_cycles = 3;
       sample.record.solver_status = SolverStatus::kBudgetSpent;
     }
+    if (t > 0.7 && t < 0.8) sample.record.warning = {FaultCode::kOscillation, 4, 1.0, 1.0};
   });
-  ASSERT_EQ(of_kind(entries, "warning").size(), 1u);
+  ASSERT_EQ(of_kind(entries, "warning").size(), 2u);
   EXPECT_TRUE(has(of_kind(entries, "warning")[0].text, "tracking (m1), stops at 0.08, up to 0.05"));
+  EXPECT_TRUE(has(of_kind(entries, "warning")[1].text,
+                  "oscillation (bouncing on a surface): hand and device shake each other, for "));
   EXPECT_EQ(of_kind(entries, "command").size(), 2u);
   EXPECT_EQ(of_kind(entries, "refused").size(), 1u);
   EXPECT_TRUE(has(of_kind(entries, "late")[0].text, "up to 3"));
@@ -244,6 +247,7 @@ TEST(FaultFigures, NameThePartTheValueAndTheLimit) {
   EXPECT_EQ(text(FaultCode::kWrenchTooLarge, 1, 30.0, 20.0), "torque in Nm: 30, limit 20");
   EXPECT_EQ(text(FaultCode::kSyncLost, -1, 0.3, 0.1), "0.3, limit 0.1");
   EXPECT_EQ(text(FaultCode::kEmergencyStop, -1, 1.0, 0.0), "");  // yes or no
+  EXPECT_EQ(text(FaultCode::kOscillation, 3, 3.1, 3.0), "torque above 30 Hz");
   EXPECT_EQ(text(FaultCode::kDeviceSilent, -1, 0.0, 0.0), "");
   EXPECT_EQ(text(FaultCode::kBusErrors, -1, 1.0, 0.0), "1, limit 0");
   EXPECT_EQ(text(FaultCode::kCollisionAhead, 0, 0.029, 0.03),
