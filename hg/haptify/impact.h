@@ -14,7 +14,7 @@ namespace hg::haptify {
 /// arm needs to press with `press`, which is what somebody does who reaches for a wall.
 struct ImpactConfig {
   Eigen::Vector3d position{0.0, 0.3, -0.775};  ///< of the wall where it is hit, m in B
-  double damping = 0.0;                        ///< of the wall, Ns/m: what is judged is the device
+  double damping = 20.0;                       ///< of the wall, Ns/m: as surfaces have by default
   double run_up_s = 0.5;                       ///< in which the goal goes to the wall
   double longest_run_up = 1.5;                 ///< m
   double watched_s = 6.0;                      ///< after the first contact

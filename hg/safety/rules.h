@@ -298,7 +298,8 @@ inline constexpr Rule kRules[] = {
                 "hand, and it does not end.",
      .threshold = "passivity.reaction: act",
      .reaction = Stop::kSs2,
-     .release = "at once; hold the handle less stiffly, make the twin heavier or the surface softer"},
+     .release =
+         "at once; hold the handle less stiffly, make the twin heavier or the surface softer"},
     {.code = FaultCode::kEnergy,
      .name = "energy",
      .meaning = "The device has given more energy than its tank holds.",

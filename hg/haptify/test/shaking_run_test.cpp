@@ -31,7 +31,6 @@ Told watched(const config::Scenario& scenario) {
     told.what = static_cast<Shaking>(record.warning.index);
   }
   told.fault = player.record().fault;
-              player.record().time_s);
   return told;
 }
 
