@@ -22,6 +22,7 @@
 #include "hg/inspection/datasheet.h"
 #include "hg/inspection/device_inspection.h"
 #include "hg/inspection/scenario_inspection.h"
+#include "hg/inspection/stiffness.h"
 #include "hg/inspection/twin_inspection.h"
 
 namespace hg::apps {
@@ -148,6 +149,7 @@ void check_twins(Check& check) {
   for (const config::Scenario& scenario : check.scenarios) {
     add(inspection::inspect(scenario.twin, scenario.device.rendering.dt), check);
     add(inspection::inspect(scenario.device, scenario.twin), check);
+    add(inspection::inspect_surfaces(scenario), check);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/stacked.h"
+#include "hg/inspection/stiffness.h"
 #include "hg/inspection/survey.h"
 #include "hg/inspection/twin_inspection.h"
 
@@ -180,6 +181,7 @@ Findings inspect(const config::Device& device, const config::Twin& twin) {
     out.add(Severity::kFault, "placement", error.what(), "");
   }
   inspect_work(device, twin, out);
+  inspect_stiffness(device, twin, out);
   const bool is_bounded = std::ranges::all_of(
       twin.model.dofs, [](const rendering::TwinDof& dof) { return dof.q_index >= 0; });
   if (!is_bounded) return std::move(out.findings);  // a floating twin goes where the device goes
