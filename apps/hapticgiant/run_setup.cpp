@@ -97,8 +97,7 @@ void apply_to_simulation(const ScenarioArguments& arguments, config::Scenario& s
            preset);
     scenario.script.hand = user::hand(preset);
   }
-  config::settle_law(device);
-  scenario.limits = rendering::make_catalogue(device.model, scenario.twin.model);
+  config::settle_law(scenario);
 }
 
 // a remote device has its own seed, step, hand and sensors
@@ -162,8 +161,7 @@ void apply_law(const RunArguments& arguments, config::Scenario& scenario) {
   choose("--passivity", arguments.passivity,
          config::Choices<passivity::Reaction>(config::kPassivityReactions),
          scenario.device.passivity.reaction);
-  config::settle_law(scenario.device);
-  scenario.limits = rendering::make_catalogue(scenario.device.model, scenario.twin.model);
+  config::settle_law(scenario);
 }
 
 // the options that change what the scenario says, one per line

@@ -54,8 +54,8 @@ struct Device {
   Places places;                           ///< of the keys of the YAML file
 };
 
-/// To be called after law, bounds or method of control have been chosen anew: whether the law knows
-/// the torques of the motors follows from them.
+/// What follows from law, bounds and method of control: whether the law knows the torques of the
+/// motors. Of a scenario settle_law() in scenario.h.
 void settle_law(Device& device);
 
 /// Changes the rate and all that follows from it. Throws SetupError when the drive's dead time

@@ -1,5 +1,6 @@
 #include "hg/config/scenario.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -136,6 +137,23 @@ Scenario load_scenario(std::vector<SourceText> recorded) {
   const std::filesystem::path file = recorded.front().name;
   SourceReader reader(std::move(recorded));
   return load(file, reader);
+}
+
+void settle_law(Scenario& scenario) {
+  settle_law(scenario.device);
+  const LimitCatalogue before = std::move(scenario.limits);
+  scenario.limits = rendering::make_catalogue(scenario.device.model, scenario.twin.model);
+  for (evaluation::EventRule& event : scenario.events) {
+    for (evaluation::Condition& condition : event.all_of) {
+      using enum evaluation::ConditionKind;
+      const bool is_of_limit =
+          condition.kind == kLimit || condition.kind == kSpeedLimit || condition.kind == kLocked;
+      if (!is_of_limit) continue;
+      const std::string& name = before[static_cast<std::size_t>(condition.index)].name;
+      const auto limit = std::ranges::find(scenario.limits, name, &LimitInfo::name);
+      condition.index = static_cast<int>(limit - scenario.limits.begin());
+    }
+  }
 }
 
 }  // namespace hg::config

@@ -43,4 +43,8 @@ Scenario load_scenario(const std::filesystem::path& file);
 /// The same from a recording, without the disk: `recorded` is Scenario::sources of that run.
 Scenario load_scenario(std::vector<SourceText> recorded);
 
+/// To be called after law, bounds or method of control of the device have been chosen anew: its
+/// motors are limits of the scenario where the law knows them; events still name the same limits.
+void settle_law(Scenario& scenario);
+
 }  // namespace hg::config

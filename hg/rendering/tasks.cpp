@@ -12,6 +12,7 @@ namespace {
 // where the law knows the torques of the motors:
 constexpr double kTrackingMargin = 1e-3;     // rad or m, of a joint behind its reference
 constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its limits
+constexpr double kJumped = 1.5;              // times the speed of a motor without load
 constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
 
 hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
@@ -250,9 +251,20 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
   known.noalias() += M.leftCols(device.n_p) * input.robot.ddq_p;
   known.noalias() -= input.J_H.middleCols(device.n_p, n_m_).transpose() * input.robot.w_H;
 
+  // what turns faster than any motor has jumped: nothing is known of its torques
+  are_torques_known_ = known.allFinite();
+  for (int i = 0; i < n_m_; ++i) {
+    const double fastest = kJumped * device.motors[static_cast<std::size_t>(i)].speed_no_load;
+    if (std::abs(input.reference.dq_m[i]) > fastest) are_torques_known_ = false;
+  }
+
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (int i = 0; i < n_m_; ++i) {
+    if (!are_torques_known_) {
+      problem_.set_bounds(first_limit_row() + first_motor_ + i, {});
+      continue;
+    }
     const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
     const double dq = input.reference.dq_m[i];
     const double inertia = M(i, device.n_p + i) + motor.rotor_inertia;
@@ -344,7 +356,8 @@ void Tasks::fill_ranges(const TaskInput& input) noexcept {
 }
 
 void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
-  if (!knows_torques_) return;
+  motor_torque_.resize(0);
+  if (!knows_torques_ || !are_torques_known_) return;
   const Eigen::Map<const Eigen::VectorXd> ddq_m(solution.x.data(), n_m_);
   motor_torque_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {

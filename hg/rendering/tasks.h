@@ -122,7 +122,8 @@ class Tasks {
   Options options_;
   int n_m_, n_a_;
   bool knows_torques_;
-  int first_motor_;  ///< limit
+  bool are_torques_known_ = false;  ///< in this cycle
+  int first_motor_;                 ///< limit
   int limit_row_count_ = 0;
   int dynamics_row_ = 0;  ///< first row of Gauss' principle
   hqp::Problem problem_;

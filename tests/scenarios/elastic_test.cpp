@@ -208,7 +208,9 @@ TEST(StuckJoint, NeitherReferenceNorTwinRunAwayFromPerfectDrives) {
 // [C] 6: bounds of 3 and 10 mrad gave 46 to 54 N, and 16 to 28 m/s^2 on release
 TEST(StuckJoint, ElasticJointsComeBackWithoutAKick) {
   config::Scenario scenario = raising();
-  scenario.device.monitor.motor_tolerance = kInfinity;  // which would stop it at once
+  // which would stop it at once
+  scenario.device.monitor.motor_tolerance = scenario.device.monitor.unexplained_tolerance =
+      kInfinity;
   const StuckJoint stuck = stuck_joint(scenario);
   EXPECT_EQ(stuck.fault, FaultCode::kNone);
   EXPECT_LT(stuck.moved, 0.02);

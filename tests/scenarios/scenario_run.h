@@ -31,6 +31,7 @@ inline config::Scenario shipped(const std::string& name, double rate_Hz) {
 /// the estimation filters the wrench.
 inline config::Scenario with_ideal_device(config::Scenario scenario) {
   scenario.device.control.method = control::Method::kDrives;
+  config::settle_law(scenario);
   scenario.device.simulation.sensors = simulation::ideal_sensors();
   return scenario;
 }

@@ -52,7 +52,7 @@ export interface SceneJoint {
 // a limited quantity
 export interface SceneLimit {
   name: string;
-  kind: "manipulator" | "virtual" | "cartesian" | "motor" | "twin";
+  kind: "manipulator" | "virtual" | "motor" | "cartesian" | "twin";
   unit: "rad" | "m"; // of its position; the reaction of a rad is in Nm, of a m in N
   min: number | null; // null = unbounded
   max: number | null;
@@ -164,7 +164,7 @@ export interface FeltLimit {
 export interface ActiveLimit {
   index: number; // in Scene.limits
   state: "inactive" | "lower" | "upper" | "violated";
-  cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction";
+  cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction" | "torque";
   reaction: number; // Nm or N, in its own coordinate
   excess: number; // outside its range by this, rad or m
   text: string;

@@ -356,15 +356,37 @@ TEST(Twin, LocksHoldTheJointTheyName) {
 TEST(Scenario, NamesEveryLimitInTheOrderOfTheTasks) {
   std::vector<std::string> names;
   for (const LimitInfo& limit : door().limits) names.push_back(limit.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"m1", "m2", "m3", "m4", "m5", "m6", "q4+q5", "hand x",
-                                             "hand y", "hand z", "elbow x", "elbow y", "elbow z",
-                                             "hinge", "lever"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{
+                "m1",       "m2",       "m3",       "m4",       "m5",       "m6",       "q4+q5",
+                "motor m1", "motor m2", "motor m3", "motor m4", "motor m5", "motor m6", "hand x",
+                "hand y",   "hand z",   "elbow x",  "elbow y",  "elbow z",  "hinge",    "lever"}));
   EXPECT_EQ(door().limits[6].kind, LimitKind::kVirtualJoint);
-  EXPECT_EQ(door().limits[7].kind, LimitKind::kCartesian);
-  EXPECT_FALSE(door().limits[7].is_angle);
-  EXPECT_EQ(door().limits[13].kind, LimitKind::kTwinJoint);
-  EXPECT_EQ(door().limits[13].range.ub, 1.75);
-  EXPECT_FALSE(door().limits[12].range.bounded());
+  EXPECT_EQ(door().limits[7].kind, LimitKind::kMotor);
+  EXPECT_FALSE(door().limits[7].range.bounded());
+  EXPECT_EQ(door().limits[13].kind, LimitKind::kCartesian);
+  EXPECT_FALSE(door().limits[13].is_angle);
+  EXPECT_EQ(door().limits[19].kind, LimitKind::kTwinJoint);
+  EXPECT_EQ(door().limits[19].range.ub, 1.75);
+  EXPECT_FALSE(door().limits[18].range.bounded());
+}
+
+TEST(Scenario, WhoseLawDoesNotKnowTheMotorsHasNoLimitsOfThemAndTheSameEvents) {
+  Scenario scenario = door();
+  const Scenario before = scenario;
+  scenario.device.rendering.law = rendering::Law::kPaper;
+  settle_law(scenario);
+  EXPECT_TRUE(scenario.device.model.motors.empty());
+  EXPECT_EQ(scenario.limits.size() + 6, before.limits.size());
+  const auto hinge = [](const Scenario& of) {
+    return of.limits[static_cast<std::size_t>(of.events[0].all_of[0].index)].name;
+  };
+  EXPECT_EQ(hinge(before), "hinge");
+  EXPECT_EQ(hinge(scenario), "hinge");
+  scenario.device.rendering.law = rendering::Law::kGauss;
+  settle_law(scenario);
+  EXPECT_EQ(scenario.limits.size(), before.limits.size());
+  EXPECT_EQ(hinge(scenario), "hinge");
 }
 
 TEST(Scenario, ExpectsTheEventsOfTheFiguresInTheirOrder) {
@@ -384,7 +406,7 @@ TEST(Scenario, ConditionsPointAtLimitsJointsAndCoordinates) {
   const auto& pushed = door().events[0].all_of;
   ASSERT_EQ(pushed.size(), 2u);
   EXPECT_EQ(pushed[0].kind, ConditionKind::kLocked);
-  EXPECT_EQ(pushed[0].index, 13);  // hinge in the catalogue
+  EXPECT_EQ(pushed[0].index, 19);  // hinge in the catalogue
   EXPECT_EQ(pushed[1].kind, ConditionKind::kForceAbove);
   EXPECT_EQ(pushed[1].value, 10.0);
 
@@ -400,7 +422,7 @@ TEST(Scenario, ConditionsPointAtLimitsJointsAndCoordinates) {
   EXPECT_EQ(turned[0].index, 0);
   const auto& elbow = free_space().events[1].all_of;
   EXPECT_EQ(elbow[0].kind, ConditionKind::kLimit);
-  EXPECT_EQ(elbow[0].index, 10);
+  EXPECT_EQ(elbow[0].index, 16);
   EXPECT_EQ(elbow[0].side, LimitState::kUpper);
   const auto& gantry = free_space().events[6].all_of;
   EXPECT_EQ(gantry[0].kind, ConditionKind::kGantryAbove);

@@ -388,7 +388,7 @@ Impact impact(double stiffness, double mass, double v, double force, bool gives_
   return impact;
 }
 
-TEST(GivingWay, ThrowsBackNoFasterThanATenth) {
+TEST(GivingWay, ThrowsBackOnlyWithWhatTheSpringHoldsAtTheForceOfTheDevice) {
   for (const double stiffness : {8e3, 2e4, 5e4}) {
     for (const double mass : {3.0, 6.0, 20.0}) {
       for (const double v : {0.4, 0.83, 1.33}) {
@@ -396,10 +396,10 @@ TEST(GivingWay, ThrowsBackNoFasterThanATenth) {
                      std::to_string(v) + " m/s");
         const double force = 6.0 * mass;  // 6 m/s^2
         const Impact soft = impact(stiffness, mass, v, force, true);
-        EXPECT_LT(soft.v_out, 0.35 * std::sqrt(force * force / (stiffness * mass)) + 0.1 * v);
+        EXPECT_LT(soft.v_out, 1.05 * force / std::sqrt(stiffness * mass) + 6.0 * kDt);
         EXPECT_LT(soft.depth, 1.1 * v * v / (2.0 * 6.0) + 1.5 * force / stiffness);
         EXPECT_LE(soft.given, soft.taken);
-        EXPECT_GT(impact(stiffness, mass, v, force, false).v_out, 0.9 * v);
+        EXPECT_GT(impact(stiffness, mass, v, force, false).v_out, 0.9 * v);  // as it came
       }
     }
   }

@@ -53,7 +53,7 @@ TEST(PlayFault, AGantryThatRunsAwayIsStoppedByItsBrakesSoonAndNear) {
       EXPECT_EQ(result.stop, Stop::kSto);
       EXPECT_LT(result.noticed_s, 0.15);
       EXPECT_LT(result.travel_share, 0.3);
-      EXPECT_LT(result.energy, 1.0);
+      EXPECT_LT(result.energy, 1.2);  // the arm makes up for the gantry with all its motors give
     }
   }
 }

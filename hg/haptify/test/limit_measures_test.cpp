@@ -21,9 +21,11 @@ const config::Scenario& walk() {
   return scenario;
 }
 
-// whose handle may brake and accelerate with 1 m/s^2 only
+// whose handle may brake and accelerate with 1 m/s^2 only: its law knows that rating and no motors
 config::Scenario sluggish() {
   config::Scenario scenario = walk();
+  scenario.device.control.method = control::Method::kDrives;
+  config::settle_law(scenario);
   for (rendering::CartesianLimit& limit : scenario.device.model.cartesian_limits) {
     for (limits::JointLimits& axis : limit.axes) axis.ddq_max = 1.0;
   }
@@ -41,7 +43,7 @@ TEST(Impact, IsAsDeepAsTheDeviceMustBrake) {
   EXPECT_NEAR(impact.depth / impact.bound, 1.0, 0.15);
   // which is more than the wall gives way
   EXPECT_GT(impact.depth, 3.0 * impact.speed * std::sqrt(6.0 / 20'000.0));
-  EXPECT_GT(impact.peak_force, 15'000.0 * impact.depth);
+  EXPECT_LT(impact.peak_force, 0.1 * 20'000.0 * impact.depth);  // the wall gives way, too
 }
 
 TEST(Impact, OnASoftDampedWallComesToRest) {

@@ -110,9 +110,10 @@ TEST(MotorRows, AMotorGivesNoMoreThanItsShareAndIsNamed) {
     const VectorM& dq = twin.record.reference.dq_m;
     for (int i = 0; i < 6; ++i) {
       const double torque = twin.state.motor_torque[i];
+      // a bound that has shrunk with the speed is followed with the time constant
       const Interval allowed = allowed_torque(kMotor, dq[i]);
-      ASSERT_LE(torque, allowed.ub + 1e-6) << k << " motor " << i;
-      ASSERT_GE(torque, allowed.lb - 1e-6) << k << " motor " << i;
+      ASSERT_LE(torque, allowed.ub + 0.05 * kMotor.torque_max) << k << " motor " << i;
+      ASSERT_GE(torque, allowed.lb - 0.05 * kMotor.torque_max) << k << " motor " << i;
       largest = std::max(largest, std::abs(torque) / kMotor.torque_max);
     }
     for (std::size_t i = 0; i < catalogue.size(); ++i) {
@@ -139,6 +140,14 @@ TEST(MotorRows, RatingsCapAccelerationsOnlyWhereTheMotorsAreNotKnown) {
   };
   EXPECT_NEAR(largest_acceleration(false), 5.0, 1e-6);
   EXPECT_GT(largest_acceleration(true), 10.0);
+}
+
+TEST(MotorRows, AReferenceThatHasJumpedIsSolvedWithoutThem) {
+  Pulled twin(true);
+  twin.pull(force(1.0, 0.0, 0.0));
+  twin.state.reference.dq_m[2] = 400.0;
+  twin.pull(force(1.0, 0.0, 0.0));
+  EXPECT_EQ(twin.state.motor_torque.size(), 0);
 }
 
 TEST(MotorRows, AreNoLimitsOfADeviceWithoutMotors) {

@@ -72,12 +72,11 @@ TEST(TwinOnASurface, FeelsOnlyTheShareOfIt) {
 std::pair<double, double> fall(double ddq_max) {
   DeviceModel device = unlimited_device();
   for (limits::JointLimits& joint : device.joint_limits) joint.ddq_max = ddq_max;
-  Rendering rendering(device, Falling::body(), without_synchronisation(),
-                      environment::Environment({{.name = "floor",
-                                                 .shape = environment::Plane{},
-                                                 .stiffness = 2e4,
-                                                 .damping = 0.0}},
-                                               kDt));
+  Rendering rendering(
+      device, Falling::body(), without_synchronisation(),
+      environment::Environment(
+          {{.name = "floor", .shape = environment::Plane{}, .stiffness = 2e4, .damping = 0.0}},
+          kDt));
   State state = rendering.start(kPosture);
   state.twin.dq_a[2] = -0.5;
   double depth = 0.0, back = 0.0;

@@ -19,7 +19,7 @@ use file::{FailFastFile, FileHandle};
 use read::{read, Item};
 
 /// Uncompressed size after which a chunk ends, whether it is flushed or not.
-const CHUNK_BYTES: u64 = 1024 * 1024;
+const CHUNK_BYTES: u64 = 2 * 1024 * 1024;
 /// The fastest level of zstd that is not a trade against size on these messages (docs/recording.md).
 const ZSTD_LEVEL: u32 = 1;
 
