@@ -151,6 +151,11 @@ void settle_law(Scenario& scenario) {
       if (!is_of_limit) continue;
       const std::string& name = before[static_cast<std::size_t>(condition.index)].name;
       const auto limit = std::ranges::find(scenario.limits, name, &LimitInfo::name);
+      if (limit == scenario.limits.end()) {
+        throw SetupError("event '" + event.name + "': waits for '" + name +
+                         "', which is a limit only where the law knows the torques of the motors: "
+                         "law gauss, bounds recoverable, plant elastic");
+      }
       condition.index = static_cast<int>(limit - scenario.limits.begin());
     }
   }

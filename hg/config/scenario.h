@@ -45,6 +45,7 @@ Scenario load_scenario(std::vector<SourceText> recorded);
 
 /// To be called after law, bounds or method of control of the device have been chosen anew: its
 /// motors are limits of the scenario where the law knows them; events still name the same limits.
+/// Throws SetupError where an event waits for a motor that is no limit any more.
 void settle_law(Scenario& scenario);
 
 }  // namespace hg::config

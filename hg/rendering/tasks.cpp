@@ -85,10 +85,11 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
     problem_.add_level();
     for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
   }
-  for (LimitRow& row : limit_rows_) {
-    if (!knows_torques_) break;
-    row.options.is_capped = false;
-    row.options.tau_onset = kBrakingOnset;
+  if (knows_torques_) {
+    for (LimitRow& row : limit_rows_) {
+      row.options.is_capped = false;
+      row.options.tau_onset = kBrakingOnset;
+    }
   }
   problem_.add_level();
   for (int i = 0; i < n_a_; ++i) {
@@ -247,7 +248,8 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
 // inertia that the motor moves while all other joints keep their speed.
 void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexcept {
   const auto M = device.chain.M().bottomRows(n_m_);
-  VectorM known = device.chain.c().tail(n_m_);
+  VectorM& known = known_torque_;
+  known = device.chain.c().tail(n_m_);
   known.noalias() += M.leftCols(device.n_p) * input.robot.ddq_p;
   known.noalias() -= input.J_H.middleCols(device.n_p, n_m_).transpose() * input.robot.w_H;
 
@@ -279,7 +281,6 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     limit.inertia = inertia;
-    limit.q = known[i];
     problem_.set_bounds(first_limit_row() + first_motor_ + i, limit.ddq);
   }
 }
@@ -363,8 +364,8 @@ void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
   for (int i = 0; i < n_m_; ++i) {
     LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
     const std::span<const double> row = problem_.coefficients(first_limit_row() + first_motor_ + i);
-    limit.q += limit.inertia * Eigen::Map<const Eigen::VectorXd>(row.data(), n_m_).dot(ddq_m);
-    motor_torque_[i] = limit.q;
+    const double ddq = Eigen::Map<const Eigen::VectorXd>(row.data(), n_m_).dot(ddq_m);
+    limit.q = motor_torque_[i] = known_torque_[i] + limit.inertia * ddq;
   }
 }
 

@@ -88,7 +88,7 @@ class Tasks {
     const bool acts = solution.state[static_cast<std::size_t>(row)] != hqp::RowState::kInactive;
     return acts || rating_row < 0 ? row : rating_row;
   }
-  /// Finds what the motors give with `solution`, once after each fill().
+  /// Finds what the motors give with `solution`, which solves problem().
   void find_motor_torques(const hqp::Solution& solution) noexcept;
   /// The result, Nm or N: n_m, or empty where the law does not know the motors.
   const VectorM& motor_torque() const noexcept { return motor_torque_; }
@@ -130,6 +130,7 @@ class Tasks {
   std::vector<LimitRow> limit_rows_;
   std::vector<double> coefficients_;  ///< scratch, one row
   Vector6 s_ = Vector6::Zero();
+  VectorM known_torque_;  ///< of the motors, without what accelerates the joints; this cycle
   VectorM motor_torque_;
   std::optional<PaperLaw> paper_;  ///< law paper only
 };

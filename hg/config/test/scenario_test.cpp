@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/core/test/message_of.h"
 #include "hg/rendering/catalogue.h"
 
 namespace hg::config {
@@ -387,6 +388,13 @@ TEST(Scenario, WhoseLawDoesNotKnowTheMotorsHasNoLimitsOfThemAndTheSameEvents) {
   settle_law(scenario);
   EXPECT_EQ(scenario.limits.size(), before.limits.size());
   EXPECT_EQ(hinge(scenario), "hinge");
+
+  Scenario waiting = before;
+  waiting.events[0].all_of[0].index = 7;
+  waiting.device.rendering.bounds = rendering::Bounds::kPaper;
+  EXPECT_EQ(message_of([&] { settle_law(waiting); }),
+            "event 'locked': waits for 'motor m1', which is a limit only where the law knows the "
+            "torques of the motors: law gauss, bounds recoverable, plant elastic");
 }
 
 TEST(Scenario, ExpectsTheEventsOfTheFiguresInTheirOrder) {

@@ -8,17 +8,12 @@
 
 #include "hg/rendering/catalogue.h"
 #include "hg/rendering/test/playing.h"
+#include "hg/signals/test/reference_actuators.h"
 
 namespace hg::rendering {
 namespace {
 
-const ActuatorModel kMotor = {.rotor_inertia = 1.5,
-                              .stiffness = 12000.0,
-                              .coulomb_friction = 4.0,
-                              .viscous_friction = 3.0,
-                              .torque_max = 176.0,
-                              .speed_full_torque = 2.0,
-                              .speed_no_load = 4.0};
+const ActuatorModel kMotor = reference_actuators().front();  // 176 Nm, no load at 4 rad/s
 
 TEST(AllowedTorque, IsTheShareOfTheMotorAtRest) {
   const Interval torque = allowed_torque(kMotor, 0.0);
