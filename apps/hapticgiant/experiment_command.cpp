@@ -73,6 +73,7 @@ int experiment_seeds(const SeedsArguments& arguments) {
       run.world.hand = hand == "own" ? "" : hand;
       run.law = arguments.law;
       run.bounds = arguments.bounds;
+      run.gantry = arguments.gantry;
       trials.push_back({.name = std::filesystem::path(scenario).stem().string(),
                         .hand = run.world.hand,
                         .scenario = make_scenario(run)});

@@ -148,6 +148,7 @@ RunArguments recorded_arguments(const std::string& text) {
     if (option == "--plant") world.plant = value;
     if (option == "--law") arguments.law = value;
     if (option == "--bounds") arguments.bounds = value;
+    if (option == "--gantry") arguments.gantry = value;
     if (option == "--passivity") arguments.passivity = value;
   }
   return arguments;
@@ -158,6 +159,8 @@ void apply_law(const RunArguments& arguments, config::Scenario& scenario) {
          scenario.device.rendering.law);
   choose("--bounds", arguments.bounds, config::Choices<rendering::Bounds>(config::kBounds),
          scenario.device.rendering.bounds);
+  choose("--gantry", arguments.gantry, config::Choices<rendering::Gantry>(config::kGantries),
+         scenario.device.rendering.gantry);
   choose("--passivity", arguments.passivity,
          config::Choices<passivity::Reaction>(config::kPassivityReactions),
          scenario.device.passivity.reaction);
@@ -182,6 +185,7 @@ std::string changes(const RunArguments& arguments) {
   if (world.step_s) line("--step", fmt::format("{}", *world.step_s));
   line("--law", arguments.law);
   line("--bounds", arguments.bounds);
+  line("--gantry", arguments.gantry);
   line("--passivity", arguments.passivity);
   return text;
 }

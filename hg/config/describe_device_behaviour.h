@@ -133,6 +133,8 @@ template <class V>
 void describe(V& v, rendering::Options& options, std::size_t manipulator_joints) {
   v.choice("law", options.law, kLaws, "how limits become forces; paper needs six joints");
   v.choice("bounds", options.bounds, kBounds, "how limits become bounds on accelerations");
+  v.choice("gantry", options.gantry, kGantries,
+           "what moves the gantry: with law gauss its accelerations can be unknowns of the law");
   v.number("T_C_s", options.T_C, kPositive,
            "bounds paper: time within which virtual joints and frames return, at least a period");
   v.number("solver_budget", options.solver_budget, kCount,

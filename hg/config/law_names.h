@@ -1,4 +1,5 @@
-/// Names of law, bounds and what is done about passivity, in device.yaml and on the command line.
+/// Names of law, bounds, what moves the gantry, and what is done about passivity, in device.yaml
+/// and on the command line.
 #pragma once
 
 #include <array>
@@ -16,6 +17,10 @@ inline constexpr std::array<Choice<rendering::Law>, 2> kLaws = {
 inline constexpr std::array<Choice<rendering::Bounds>, 2> kBounds = {
     {{to_string(rendering::Bounds::kRecoverable), rendering::Bounds::kRecoverable},
      {to_string(rendering::Bounds::kPaper), rendering::Bounds::kPaper}}};
+
+inline constexpr std::array<Choice<rendering::Gantry>, 2> kGantries = {
+    {{to_string(rendering::Gantry::kLaw), rendering::Gantry::kLaw},
+     {to_string(rendering::Gantry::kRule), rendering::Gantry::kRule}}};
 
 inline constexpr std::array<Choice<passivity::Reaction>, 3> kPassivityReactions = {
     {{"off", passivity::Reaction::kOff},

@@ -349,8 +349,24 @@ void Cycle::render(bool is_held, CycleRecord& record) noexcept {
   if (has_left) pulled_back_ -= state_.rendering.reference.q_m;
   if (!has_left) pulled_back_.resize(0);
   const double speed = is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
+  const VectorP q_p_target =
+      gantry_target_.step(record.robot, state_.rendering.reference.q_m, state_.gantry_target);
+  prepositioning::Room room;
+  rendering_.gantry_room(room.down, room.up);
+  const prepositioning::Command gantry =
+      prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked,
+                           speed / std::sqrt(2.0), room);
+  record.q_p_target = gantry.q_target;
+  const DriveModel& drive = config_.estimation.drive;
+  const bool leads = rendering_.leads_gantry() && !is_stopping;
+  GantryTask gantry_task;
+  if (leads) {
+    gantry_task = prepositioning::accelerations(gantry, drive, record.robot, state_.rendering.ddq_p,
+                                                config_.rendering.dt);
+    gantry_task.unexplained = estimation_.gantry_disturbance(state_.estimation);
+  }
   rendering_.step(state_.rendering, is_stopping ? kBrakingRate * (1.0 - share) : 0.0, record, share,
-                  speed / std::sqrt(3.0));
+                  speed / std::sqrt(3.0), gantry_task);
   const double step =
       is_stopping ? -config_.rendering.dt / kRampOut : config_.rendering.dt / kRampIn;
   share = std::clamp(share + step, 0.0, 1.0);
@@ -362,15 +378,10 @@ void Cycle::render(bool is_held, CycleRecord& record) noexcept {
     safety::break_rule(unsolved, state_.supervisor);
     state_.brakes_joints = true;
   }
-  const VectorP q_p_target =
-      gantry_target_.step(record.robot, state_.rendering.reference.q_m, state_.gantry_target);
-  prepositioning::Room room;
-  rendering_.gantry_room(room.down, room.up);
-  const prepositioning::Command gantry =
-      prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked,
-                           speed / std::sqrt(2.0), room);
-  record.q_p_target = gantry.q_target;
   state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
+  if (leads) {
+    state_.dq_p = prepositioning::velocity_for(state_.rendering.ddq_p, gantry, drive, record.robot);
+  }
   state_.is_blocked = rendering_.is_blocked();
   record.tracking.is_clamped = has_left;
   if (state_.brakes_joints) brake_joints(record);

@@ -96,6 +96,7 @@ void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
   hash.mix(state.contact.dent);
   hash.mix(state.contact.taken);
   hash.mix(state.motor_torque);
+  hash.mix(state.ddq_p);
 }
 
 void mix(const estimation::TareState& tare, Hash& hash) noexcept {

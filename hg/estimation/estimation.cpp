@@ -107,6 +107,12 @@ void Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_
   }
 }
 
+VectorP Estimation::gantry_disturbance(const State& state) const noexcept {
+  VectorP ddq(n_p_);
+  for (int i = 0; i < n_p_; ++i) ddq[i] = state.gantry[static_cast<std::size_t>(i)].disturbance;
+  return ddq;
+}
+
 void Estimation::observe_wrench(const SensorFrame& sensors, State& state,
                                 RobotState& robot) noexcept {
   chain_.update_poses(stacked(robot.q_p, robot.q_m));

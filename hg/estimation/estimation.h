@@ -59,6 +59,8 @@ class Estimation {
   bool is_tared(const State& state) const noexcept {
     return state.wrench.tare.is_valid || !config_.wrench.tare.is_needed;
   }
+  /// Acceleration of the gantry, n_p, that its drives were not told to have, m/s^2 or rad/s^2.
+  VectorP gantry_disturbance(const State& state) const noexcept;
 
  private:
   bool turns_without_end(int joint) const noexcept;

@@ -9,6 +9,14 @@ namespace hg::prepositioning {
 namespace {
 
 constexpr double kTakenBack = 0.25;  // m/s or rad/s, of the gantry by the arm in front of a limit
+constexpr double kLead = 0.1;        // m/s or rad/s, of the law beside the rule
+// s in which the law may come to ask for all that the drives have: it sees what comes of it late
+double onset(const DriveModel& drive) noexcept { return std::max(60e-3, 15.0 * drive.dead_time); }
+
+// when a command of now arrives
+VectorP speed_then(const DriveModel& drive, const RobotState& robot) noexcept {
+  return robot.dq_p + drive.dead_time * robot.ddq_p;
+}
 
 }  // namespace
 
@@ -28,8 +36,8 @@ void check(const Config& config) {
 Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
              bool device_blocked, double dq_max, const Room& room) noexcept {
   const double fastest = std::min(config.dq_max, dq_max);
-  Command command = {q_target, VectorP::Zero(config.n_p)};
-  if (device_blocked) return command;
+  Command command = {q_target, VectorP::Zero(config.n_p), VectorP::Zero(config.n_p),
+                     VectorP::Zero(config.n_p)};
   for (int i = 0; i < config.n_p; ++i) {
     const Interval q_limits = config.q_limits[static_cast<std::size_t>(i)];
     command.q_target[i] = std::clamp(command.q_target[i], q_limits.lb, q_limits.ub);
@@ -41,9 +49,35 @@ Command step(const Config& config, const RobotState& robot, const VectorP& q_tar
       bounds.ub = std::min(bounds.ub, std::max(alone.ub, 0.0) + kTakenBack);
     }
     const double dq = config.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
-    command.dq[i] = std::clamp(std::clamp(dq, bounds.lb, bounds.ub), -fastest, fastest);
+    command.dq_min[i] = std::clamp(bounds.lb, -fastest, fastest);
+    command.dq_max[i] = std::clamp(bounds.ub, -fastest, fastest);
+    if (device_blocked) continue;
+    command.dq[i] = std::clamp(dq, command.dq_min[i], command.dq_max[i]);
   }
   return command;
+}
+
+GantryTask accelerations(const Command& command, const DriveModel& drive, const RobotState& robot,
+                         const VectorP& last, double dt) noexcept {
+  const VectorP dq = speed_then(drive, robot);
+  const VectorP& before = last.size() > 0 ? last : robot.ddq_p;
+  const double change = drive.ddq_max * dt / onset(drive);
+  GantryTask task = {dq, dq, dq, VectorP::Zero(dq.size())};
+  for (Eigen::Index i = 0; i < dq.size(); ++i) {
+    const auto of = [&](double dq_cmd) { return drive_acceleration(drive, dq[i], dq_cmd); };
+    const double least = of(std::max(command.dq_min[i], command.dq[i] - kLead));
+    const double most = of(std::min(command.dq_max[i], command.dq[i] + kLead));
+    task.ddq_min[i] = std::clamp(before[i] - change, least, most);
+    task.ddq_max[i] = std::clamp(before[i] + change, least, most);
+    task.ddq[i] = of(command.dq[i]);
+  }
+  return task;
+}
+
+VectorP velocity_for(const VectorP& ddq, const Command& command, const DriveModel& drive,
+                     const RobotState& robot) noexcept {
+  const VectorP dq = speed_then(drive, robot) + drive.lag * ddq;
+  return dq.cwiseMax(command.dq_min).cwiseMin(command.dq_max);
 }
 
 }  // namespace hg::prepositioning

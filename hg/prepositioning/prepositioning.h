@@ -9,6 +9,8 @@
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/limits/velocity_bounds.h"
+#include "hg/signals/drive_model.h"
+#include "hg/signals/gantry_task.h"
 #include "hg/signals/state.h"
 
 namespace hg::prepositioning {
@@ -33,8 +35,9 @@ struct Room {
 };
 
 struct Command {
-  VectorP q_target;  ///< where the gantry should be, within its limits, m or rad
-  VectorP dq;        ///< velocity command, m/s or rad/s
+  VectorP q_target;        ///< where the gantry should be, within its limits, m or rad
+  VectorP dq;              ///< velocity command, m/s or rad/s
+  VectorP dq_min, dq_max;  ///< that may be commanded instead, m/s or rad/s
 };
 
 /// `robot` gives the gantry. `device_blocked` (a manipulator row could not be met) scales the
@@ -43,5 +46,16 @@ struct Command {
 /// takes no more back.
 Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
              bool device_blocked, double dq_max = kInfinity, const Room& room = {}) noexcept;
+
+/// Where the law may lead the gantry instead of `command`, which is its aim: 0.1 m/s (rad/s) beside
+/// it within what may be commanded, in steps from `last` that bring all that the drives have within
+/// 60 ms or 15 dead times. `last` (n_p, or empty) is where the law has led it a period of `dt` (s)
+/// before.
+GantryTask accelerations(const Command& command, const DriveModel& drive, const RobotState& robot,
+                         const VectorP& last, double dt) noexcept;
+
+/// The velocity command that makes the drives accelerate by `ddq`, within what may be commanded.
+VectorP velocity_for(const VectorP& ddq, const Command& command, const DriveModel& drive,
+                     const RobotState& robot) noexcept;
 
 }  // namespace hg::prepositioning

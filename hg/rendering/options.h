@@ -18,6 +18,12 @@ enum class Bounds : std::uint8_t {
   kPaper,        ///< [HG]: A for joints, C for virtual joints and frames, B as levels of their own
 };
 
+/// What moves the gantry.
+enum class Gantry : std::uint8_t {
+  kLaw,   ///< law gauss: its accelerations are unknowns with the rule as their aim; else the rule
+  kRule,  ///< [HG] (27)
+};
+
 constexpr std::string_view to_string(Law law) noexcept {
   return law == Law::kPaper ? "paper" : "gauss";
 }
@@ -25,9 +31,14 @@ constexpr std::string_view to_string(Bounds bounds) noexcept {
   return bounds == Bounds::kPaper ? "paper" : "recoverable";
 }
 
+constexpr std::string_view to_string(Gantry gantry) noexcept {
+  return gantry == Gantry::kRule ? "rule" : "law";
+}
+
 struct Options {
   Law law = Law::kGauss;
   Bounds bounds = Bounds::kRecoverable;
+  Gantry gantry = Gantry::kLaw;
   double T_C = 20e-3;      ///< horizon of bounds C, s; the period, as printed in (8), bounces
   double dt = 1e-3;        ///< nominal period, s; integration uses it
   double kP_tran = 400;    ///< synchronisation (11), 1/s^2; double pole at 20 rad/s with kD

@@ -162,7 +162,7 @@ void Rendering::update_device(const RobotState& robot, const ReferenceState& ref
 }
 
 SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record, double share,
-                             double handle_speed) noexcept {
+                             double handle_speed, const GantryTask& gantry) noexcept {
   update_device(record.robot, state.reference);
   advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
@@ -205,7 +205,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
 
   RowStates previous;
   copy(state.active_set.state, tasks_.problem().rows(), previous);
-  solve(state, handle_speed, record);
+  solve(state, handle_speed, gantry, record);
   record.active_set_changes = changed_rows(previous, state.active_set.state,
                                            tasks_.first_limit_row(), tasks_.limit_row_count());
   if (!is_released) catch_reversals(state.twin, options_.dt, state.inner);
@@ -281,7 +281,8 @@ bool Rendering::stay_near(const RobotState& robot, double largest, State& state)
 }
 
 // Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
-void Rendering::solve(State& state, double handle_speed, CycleRecord& record) noexcept {
+void Rendering::solve(State& state, double handle_speed, const GantryTask& gantry,
+                      CycleRecord& record) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
   const int first_twin_limit = static_cast<int>(tasks_.limit_rows().size()) - n_a;
   record.solver_iterations = 0;
@@ -296,6 +297,7 @@ void Rendering::solve(State& state, double handle_speed, CycleRecord& record) no
                  .twin = state.twin,
                  .inner = state.inner,
                  .motor_torque = state.motor_torque,
+                 .gantry = gantry,
                  .touched = state.touched,
                  .L = L_,
                  .J_H = J_H_,
@@ -344,6 +346,8 @@ void Rendering::solve(State& state, double handle_speed, CycleRecord& record) no
   }
   tasks_.find_motor_torques(solution_);
   state.motor_torque = tasks_.motor_torque();
+  state.ddq_p.resize(0);
+  if (gantry.ddq.size() > 0) state.ddq_p = tasks_.gantry_acceleration(solution_);
   if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
   reactions_.report(tasks_, solution_, L_, J_a_, options_.dt, record);
 }

@@ -37,6 +37,7 @@ struct State {
   Calming calming;  ///< for the next step
   hqp::ActiveSet active_set;
   TouchedEnds touched;   ///< by the last result; law paper only
+  VectorP ddq_p;         ///< that the last result asks the gantry for; empty: nothing
   VectorM motor_torque;  ///< that the last result asks for, Nm or N; empty: none, or not known
   environment::State contact;
 };
@@ -65,9 +66,13 @@ class Rendering {
   /// begins and ends without a bump. `braking_rate` > 0 (1/s) brings the twin to rest, under the
   /// same limits; with `share` 0 it is then a body without friction that nobody touches. The handle
   /// moves no faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian
-  /// limits for it.
+  /// limits for it. `gantry` says
+  /// where the law may lead the gantry; state.ddq_p is then where to.
   SolverStatus step(State& state, double braking_rate, CycleRecord& record, double share = 1.0,
-                    double handle_speed = kInfinity) noexcept;
+                    double handle_speed = kInfinity, const GantryTask& gantry = {}) noexcept;
+
+  /// Whether the law can lead the gantry.
+  bool leads_gantry() const noexcept { return tasks_.leads_gantry(); }
 
   /// Moves the twin at rest to where its end effector meets the handle, as far as its joints allow.
   void align(const RobotState& robot, State& state) noexcept;
@@ -116,7 +121,8 @@ class Rendering {
   void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
   void feel_surfaces(State& state, double share, CycleRecord& record) noexcept;
   void give_way(State& state, const CycleRecord& record) const noexcept;
-  void solve(State& state, double handle_speed, CycleRecord& record) noexcept;
+  void solve(State& state, double handle_speed, const GantryTask& gantry,
+             CycleRecord& record) noexcept;
   void report_kinematics(const State& state, CycleRecord& record) const noexcept;
 
   DeviceModel device_;

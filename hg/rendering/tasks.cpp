@@ -15,6 +15,10 @@ constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its
 constexpr double kJumped = 1.5;              // times the speed of a motor without load
 constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
 
+int led_axes(const DeviceModel& device, const Options& options) noexcept {
+  return options.law == Law::kGauss && options.gantry == Gantry::kLaw ? device.n_p : 0;
+}
+
 hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
                           const Options& options) {
   const int n_m = device.n_m, n_a = twin.chain.nv();
@@ -32,6 +36,11 @@ hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
   } else {
     capacity.levels += 2;
     capacity.rows += n_m;
+  }
+  if (const int led = led_axes(device, options); led > 0) {
+    capacity.variables += led;
+    capacity.levels += 2;
+    capacity.rows += 2 * led;
   }
   return capacity;
 }
@@ -53,6 +62,7 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
     : options_(options),
       n_m_(device.n_m),
       n_a_(twin.chain.nv()),
+      n_g_(led_axes(device, options)),
       knows_torques_(!device.motors.empty()),
       first_motor_(n_m_ + static_cast<int>(device.virtual_joints.size())),
       problem_(capacity_of(device, twin, options)),
@@ -63,7 +73,12 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
 }
 
 void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
+  if (n_g_ > 0) {
+    problem_.add_level();
+    for (int i = 0; i < n_g_; ++i) problem_.add_bound(n_m_ + n_a_ + i, {});
+  }
   problem_.add_level();
+  coupling_row_ = problem_.rows();
   for (int i = 0; i < 6; ++i) problem_.add_row(coefficients_, {});
   const double margin = knows_torques_ ? kTrackingMargin : 0.0;
   problem_.add_level();
@@ -110,8 +125,11 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   problem_.add_level();
   dynamics_row_ = problem_.rows();
   for (int i = 0; i < n_a_; ++i) problem_.add_row(coefficients_, {});
+  if (n_g_ > 0) problem_.add_level();
+  for (int i = 0; i < n_g_; ++i) problem_.add_bound(n_m_ + n_a_ + i, {});
   if (n_m_ == 6) return;
   problem_.add_level();
+  posture_row_ = problem_.rows();
   for (int i = 0; i < n_m_; ++i) problem_.add_bound(i, {});
 }
 
@@ -137,6 +155,8 @@ void Tasks::add_rating(int limit, int variable) {
 
 void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
                  const TaskInput& input) noexcept {
+  ddq_p_ = input.robot.ddq_p;
+  if (n_g_ > 0) fill_gantry(input);
   fill_coupling(device, twin, input);
   fill_device_limits(device, input);
   if (knows_torques_) fill_motors(device, input);
@@ -165,7 +185,7 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
                  options_.kD_rot * velocity_error.tail<3>();
 
   const model::Jacobian& J = input.J_H;
-  const Vector6 known = s_ - J.leftCols(device.n_p).lazyProduct(input.robot.ddq_p) -
+  const Vector6 known = s_ - J.leftCols(device.n_p).lazyProduct(ddq_p_) -
                         device.chain.bias_acceleration(device.handle) +
                         twin.chain.bias_acceleration(twin.end_effector);
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
@@ -173,8 +193,9 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
   for (int i = 0; i < 6; ++i) {
     row.head(n_m_) = J.row(i).segment(device.n_p, n_m_);
     row.segment(n_m_, n_a_) = -input.J_a.row(i);
-    problem_.set_row(i, coefficients_);
-    problem_.set_bounds(i, {known[i], known[i]});
+    row.tail(n_g_) = J.row(i).head(n_g_);
+    problem_.set_row(coupling_row_ + i, coefficients_);
+    problem_.set_bounds(coupling_row_ + i, {known[i], known[i]});
   }
 }
 
@@ -228,12 +249,13 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   // [HG] (15)-(16)
   for (const CartesianLimit& frame : device.cartesian_limits) {
     const model::Jacobian& J = device.chain.jacobian(frame.frame);
-    const Vector6 known = J.leftCols(device.n_p).lazyProduct(input.robot.ddq_p) +
-                          device.chain.bias_acceleration(frame.frame);
+    const Vector6 known =
+        J.leftCols(device.n_p).lazyProduct(ddq_p_) + device.chain.bias_acceleration(frame.frame);
     const Eigen::Vector3d& position = device.chain.pose(frame.frame).p;
     const Vector6& twist = device.chain.twist(frame.frame);
     for (int axis = 0; axis < 3; ++axis) {
       row.head(n_m_) = J.row(axis).segment(device.n_p, n_m_);
+      row.tail(n_g_) = J.row(axis).head(n_g_);
       problem_.set_row(first_limit_row() + limit, coefficients_);
       limits::JointLimits limits = limit_rows_[static_cast<std::size_t>(limit)].limits;
       limits.dq_max = frame.axes[static_cast<std::size_t>(axis)].dq_max;
@@ -250,7 +272,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
   const auto M = device.chain.M().bottomRows(n_m_);
   VectorM& known = known_torque_;
   known = device.chain.c().tail(n_m_);
-  known.noalias() += M.leftCols(device.n_p) * input.robot.ddq_p;
+  known.noalias() += M.leftCols(device.n_p) * ddq_p_;
   known.noalias() -= input.J_H.middleCols(device.n_p, n_m_).transpose() * input.robot.w_H;
 
   // what turns faster than any motor has jumped: nothing is known of its torques
@@ -272,6 +294,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     const double inertia = M(i, device.n_p + i) + motor.rotor_inertia;
     row.head(n_m_) = M.row(i).segment(device.n_p, n_m_) / inertia;
     row[i] = 1.0;
+    row.tail(n_g_) = M.row(i).head(n_g_) / inertia;
     problem_.set_row(first_limit_row() + first_motor_ + i, coefficients_);
     Interval torque = allowed_torque(motor, dq);
     if (input.motor_torque.size() > 0) {
@@ -323,11 +346,25 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
   }
 }
 
+// The law takes the gantry to do at once what it asks for. It does so after the dead time of its
+// drives; what it does until then, or otherwise, is seen in the next samples.
+void Tasks::fill_gantry(const TaskInput& input) noexcept {
+  const GantryTask& task = input.gantry;
+  const bool is_led = task.ddq.size() == n_g_;
+  for (int i = 0; i < n_g_; ++i) {
+    const double aim = is_led ? task.ddq[i] : input.robot.ddq_p[i];
+    problem_.set_bounds(i,
+                        is_led ? Interval{task.ddq_min[i], task.ddq_max[i]} : Interval{aim, aim});
+    problem_.set_bounds(dynamics_row_ + n_a_ + i, {aim, aim});
+    ddq_p_[i] = is_led ? task.unexplained[i] : 0.0;
+  }
+}
+
 // Gauss: minimise |L^T ddq_a - L^-1 (tau - c)|^2 = (ddq_a - ddq_free)^T M (ddq_a - ddq_free)
 void Tasks::fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept {
   VectorA b = tau;
   L.triangularView<Eigen::Lower>().solveInPlace(b);
-  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), n_m_ + n_a_);
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (int i = 0; i < n_a_; ++i) {
     row.segment(n_m_, i).setZero();
@@ -343,7 +380,7 @@ void Tasks::fill_posture(const DeviceModel& device, const ReferenceState& refere
     const bool has_goal = device.posture.size() > 0 && std::isfinite(device.posture[i]);
     const double error = has_goal ? device.posture[i] - reference.q_m[i] : 0.0;
     const double ddq = options_.kP_posture * error - options_.kD_posture * reference.dq_m[i];
-    problem_.set_bounds(dynamics_row_ + n_a_ + i, {ddq, ddq});
+    problem_.set_bounds(posture_row_ + i, {ddq, ddq});
   }
 }
 
@@ -359,12 +396,12 @@ void Tasks::fill_ranges(const TaskInput& input) noexcept {
 void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
   motor_torque_.resize(0);
   if (!knows_torques_ || !are_torques_known_) return;
-  const Eigen::Map<const Eigen::VectorXd> ddq_m(solution.x.data(), n_m_);
+  const Eigen::Map<const Eigen::VectorXd> x(solution.x.data(), problem_.variables());
   motor_torque_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
     LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
     const std::span<const double> row = problem_.coefficients(first_limit_row() + first_motor_ + i);
-    const double ddq = Eigen::Map<const Eigen::VectorXd>(row.data(), n_m_).dot(ddq_m);
+    const double ddq = Eigen::Map<const Eigen::VectorXd>(row.data(), problem_.variables()).dot(x);
     limit.q = motor_torque_[i] = known_torque_[i] + limit.inertia * ddq;
   }
 }

@@ -2,14 +2,16 @@
 ///
 /// Source: [HG] (9)-(19) and Table II, tasks 1-8; law and bounds are options, see docs/law.md.
 ///
-///   level 0         coupling of H and E (12), 6 equalities
-///   level 1         manipulator joints
-///   level 2         virtual joints (singularity)
+///   law gauss       what the drives of the gantry can follow, where the law leads it
+///   then            coupling of H and E (12), 6 equalities
+///   then            manipulator joints
+///   then            virtual joints (singularity)
 ///   then            torques of the motors, where the law knows them; motor_torque.h
 ///   then            Cartesian limits, a level per frame
 ///   then            twin joints and locks
 ///   bounds paper    acceleration ratings of the manipulator joints, then of the twin joints
-///   law gauss       L^T ddq_a = L^-1 tau with M_a = L L^T; x = (ddq_m, ddq_a)
+///   law gauss       L^T ddq_a = L^-1 tau with M_a = L L^T; x = (ddq_m, ddq_a, ddq_p)
+///                   aim of the gantry, where the law leads it
 ///                   posture, where the manipulator has a joint to spare
 ///   law paper       dynamics, range and norm of the constraint torques; paper_law.h
 ///
@@ -28,6 +30,7 @@
 #include "hg/rendering/paper_law.h"
 #include "hg/rendering/twin_forces.h"
 #include "hg/rendering/twin_model.h"
+#include "hg/signals/gantry_task.h"
 #include "hg/signals/state.h"
 
 namespace hg::rendering {
@@ -58,6 +61,7 @@ struct TaskInput {
   const TwinState& twin;
   const TwinInnerState& inner;
   const VectorM& motor_torque;       ///< of the last cycle, Nm or N; empty: there was none
+  const GantryTask& gantry;          ///< empty: it does what was measured
   const TouchedEnds& touched;        ///< by the last result; law paper only
   const MatrixA& L;                  ///< M_a = L L^T
   const model::Jacobian& J_H;        ///< of the handle, gantry first
@@ -78,7 +82,7 @@ class Tasks {
 
   const hqp::Problem& problem() const noexcept { return problem_; }
   const std::vector<LimitRow>& limit_rows() const noexcept { return limit_rows_; }
-  int first_limit_row() const noexcept { return 6; }
+  int first_limit_row() const noexcept { return coupling_row_ + 6; }
   /// Rows of limits follow each other from first_limit_row() on: bounds, then acceleration ratings.
   int limit_row_count() const noexcept { return limit_row_count_; }
   /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
@@ -92,13 +96,19 @@ class Tasks {
   void find_motor_torques(const hqp::Solution& solution) noexcept;
   /// The result, Nm or N: n_m, or empty where the law does not know the motors.
   const VectorM& motor_torque() const noexcept { return motor_torque_; }
+  /// Whether the gantry's accelerations are unknowns.
+  bool leads_gantry() const noexcept { return n_g_ > 0; }
+  /// What a solution asks of the gantry, n_p; where leads_gantry().
+  VectorP gantry_acceleration(const hqp::Solution& solution) const noexcept {
+    return Eigen::Map<const Eigen::VectorXd>(solution.x.data() + n_m_ + n_a_, n_g_);
+  }
   /// Whether all rows of device limits are in levels that `solution` has completed, or are met.
   bool keeps_limits_of_device(const hqp::Solution& solution) const noexcept;
   /// The ends that `solution` touches or leaves, of both rows of a joint.
   TouchedEnds touched_ends(const hqp::Solution& solution) const noexcept;
   /// Law paper: index of the constraint force or torque of a limit in x; law gauss: -1.
   int alpha(int limit) const noexcept { return paper_ ? paper_->alpha(limit) : -1; }
-  /// Level 0's right-hand side (11): how H has to accelerate relative to E.
+  /// Right-hand side (11) of the coupling: how H has to accelerate relative to E.
   const Vector6& synchronisation() const noexcept { return s_; }
 
  private:
@@ -112,6 +122,7 @@ class Tasks {
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
+  void fill_gantry(const TaskInput& input) noexcept;
   void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;
   void fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept;
   void fill_ranges(const TaskInput& input) noexcept;
@@ -121,15 +132,19 @@ class Tasks {
 
   Options options_;
   int n_m_, n_a_;
+  int n_g_;  ///< axes of the gantry that the law leads
   bool knows_torques_;
   bool are_torques_known_ = false;  ///< in this cycle
   int first_motor_;                 ///< limit
   int limit_row_count_ = 0;
+  int coupling_row_ = 0;  ///< first row of (12)
   int dynamics_row_ = 0;  ///< first row of Gauss' principle
+  int posture_row_ = 0;   ///< first row of the posture of seven joints
   hqp::Problem problem_;
   std::vector<LimitRow> limit_rows_;
   std::vector<double> coefficients_;  ///< scratch, one row
   Vector6 s_ = Vector6::Zero();
+  VectorP ddq_p_;         ///< of the gantry, in this cycle, without what is unknown
   VectorM known_torque_;  ///< of the motors, without what accelerates the joints; this cycle
   VectorM motor_torque_;
   std::optional<PaperLaw> paper_;  ///< law paper only

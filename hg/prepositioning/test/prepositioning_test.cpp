@@ -120,6 +120,76 @@ TEST(Prepositioning, StopsByItselfBeforeItCarriesAFrameOverItsLimit) {
   }
 }
 
+// What the law leaves at its aim is what the rule commands.
+TEST(Prepositioning, TheAimOfTheLawIsTheRule) {
+  const DriveModel drive;
+  RobotState robot;
+  robot.q_p = Eigen::Vector2d(0.1, -0.2);
+  robot.dq_p = Eigen::Vector2d(0.03, -0.02);
+  robot.ddq_p = Eigen::Vector2d(0.5, 0.2);
+  const Command command = step(config(), robot, Eigen::Vector2d(0.12, -0.21), false);
+  const GantryTask task = accelerations(command, drive, robot, VectorP(0), kDt);
+  const VectorP dq = velocity_for(task.ddq, command, drive, robot);
+  EXPECT_LT((dq - command.dq).cwiseAbs().maxCoeff(), 1e-12);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_NEAR(task.ddq_max[i] - task.ddq_min[i], 2.0 * drive.ddq_max / 60.0, 1e-12);
+    EXPECT_NEAR(task.ddq_max[i] + task.ddq_min[i], 2.0 * robot.ddq_p[i], 1e-12);
+  }
+}
+
+// A gantry whose drives follow their model, led by the law.
+struct LedGantry {
+  DriveModel drive;
+  RobotState robot;
+  std::array<CommandDelay, 2> delay{};
+  VectorP last;
+
+  LedGantry() { robot.q_p = robot.dq_p = robot.ddq_p = Eigen::Vector2d::Zero(); }
+
+  // for one period, towards `q_target`; `choose` is the law
+  void step(const VectorP& q_target, const auto& choose) {
+    const Command command = prepositioning::step(config(), robot, q_target, false);
+    last = choose(accelerations(command, drive, robot, last, kDt));
+    const VectorP dq = velocity_for(last, command, drive, robot);
+    for (int i = 0; i < 2; ++i) {
+      const double arrived = delay[static_cast<std::size_t>(i)].shift(dq[i], 4);
+      robot.ddq_p[i] = drive_acceleration(drive, robot.dq_p[i], arrived);
+      robot.q_p[i] += kDt * robot.dq_p[i] + 0.5 * kDt * kDt * robot.ddq_p[i];
+      robot.dq_p[i] += kDt * robot.ddq_p[i];
+    }
+  }
+};
+
+TEST(Prepositioning, TheDrivesDoWhatTheLawAsksFor) {
+  const VectorP wanted = Eigen::Vector2d(1.0, -1.5);
+  LedGantry gantry;
+  for (int k = 0; k < 300; ++k) {
+    // the rule goes along, so that nothing but its drives limits the gantry
+    const VectorP target = gantry.robot.q_p + gantry.robot.dq_p / config().k_ppu;
+    gantry.step(target, [&](const GantryTask& task) -> VectorP {
+      return wanted.cwiseMax(task.ddq_min).cwiseMin(task.ddq_max);
+    });
+    if (k > 70) {
+      EXPECT_LT((gantry.robot.ddq_p - wanted).cwiseAbs().maxCoeff(), 0.03) << k;
+    }
+  }
+}
+
+// However much the law wants, it leads 0.1 m/s beside the rule and nowhere beyond the range.
+TEST(Prepositioning, TheLawLeadsTheGantryNotFar) {
+  const auto most = [](const GantryTask& task) { return task.ddq_max; };
+  LedGantry gantry;
+  for (int k = 0; k < 3000; ++k) gantry.step(Eigen::Vector2d(0.3, 0.2), most);
+  EXPECT_NEAR(gantry.robot.q_p[0], 0.3 + 0.1 / config().k_ppu, 1e-3);
+  for (int k = 0; k < 6000; ++k) {
+    gantry.step(Eigen::Vector2d(3.0, 3.0), most);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_LT(gantry.robot.q_p[i], config().q_limits[static_cast<std::size_t>(i)].ub + 1e-3) << k;
+    }
+  }
+  EXPECT_NEAR(gantry.robot.q_p[0], 1.40, 5e-3);
+}
+
 TEST(Prepositioning, RefusesImpossibleConfigurations) {
   Config gantry = config();
   gantry.k_ppu = 0.0;
