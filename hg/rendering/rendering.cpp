@@ -173,7 +173,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   J_H_ = device_.chain.jacobian(device_.handle);
   J_a_ = twin_.chain.jacobian(twin_.end_effector);
   reactions_.update(J_H_, J_a_);
-  advance_locks(twin_, state.twin.q_a, state.inner);
+  advance_locks(twin_, options_.bounds, state.twin.q_a, state.inner);
 
   const int n_a = twin_.chain.nv();
   Budget& budget = record.budget;

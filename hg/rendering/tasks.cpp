@@ -314,9 +314,13 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
     const TwinDof& dof = twin.dofs[static_cast<std::size_t>(i)];
     const double q = dof.q_index >= 0 ? input.twin.q_a[dof.q_index] : 0.0;
     const double dq = input.twin.dq_a[i];
-    const EffectiveLimits effective = effective_limits(twin, i, dq, input.inner);
+    EffectiveLimits effective = effective_limits(twin, i, dq, input.inner);
     LimitRow& row = limit_rows_[static_cast<std::size_t>(first + i)];
     row.held_by = effective.held_by;
+    const bool is_locked = row.held_by.upper == LimitCause::kLock;
+    if (is_locked && options_.bounds == Bounds::kPaper) {
+      effective.limits.q_min = effective.limits.q_max = q;
+    }
     row.range = input.inner.parameters.moving[static_cast<std::size_t>(i)].q;
     row.options = limits::recoverable_options(effective.limits, options_.dt, options_.dt);
     if (knows_torques_) row.options.tau_onset = kTwinBrakingOnset;
@@ -326,8 +330,7 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
                          input.inner.parameters.may_be_overrun[static_cast<std::size_t>(i)];
     set_limit(first + i, effective.limits, q, dq, 0.0);
 
-    // [HG] (31): a lock of bounds paper stops the joint where it is, as far as its rating allows
-    const bool is_locked = row.held_by.upper == LimitCause::kLock;
+    // [HG] (31): a lock of bounds paper stops the joint, as fast as its rating allows
     double ddq_stop = -dq / options_.dt;
     if (options_.bounds == Bounds::kPaper) {
       const double ddq_max = effective.limits.ddq_max;

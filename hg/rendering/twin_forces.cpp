@@ -40,7 +40,7 @@ double norm_bound(const MatrixA& L, const VectorA& d) noexcept {
 
 }  // namespace
 
-void advance_locks(const TwinModel& twin, const ConfigurationA& q_a,
+void advance_locks(const TwinModel& twin, Bounds bounds, const ConfigurationA& q_a,
                    TwinInnerState& inner) noexcept {
   for (std::size_t i = 0; i < twin.locks.size(); ++i) {
     const Lock& lock = twin.locks[i];
@@ -55,7 +55,8 @@ void advance_locks(const TwinModel& twin, const ConfigurationA& q_a,
     // the latch follows the joint towards the lock and never back
     const double side = q >= lock.position ? 1.0 : -1.0;
     if (side * (q - state.edge) < 0.0) state.edge = q;
-    if (std::abs(q - lock.position) <= kLockReached) state.is_locked = true;
+    const bool is_reached = std::abs(q - lock.position) <= kLockReached;
+    if (is_reached || bounds == Bounds::kPaper) state.is_locked = true;
   }
 }
 

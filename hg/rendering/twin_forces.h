@@ -13,6 +13,7 @@
 #include <array>
 
 #include "hg/core/types.h"
+#include "hg/rendering/options.h"
 #include "hg/rendering/twin_model.h"
 #include "hg/rendering/twin_parameters.h"
 #include "hg/signals/state.h"
@@ -21,8 +22,9 @@ namespace hg::rendering {
 
 struct LockState {
   bool is_engaged = false;  ///< all conditions hold
-  bool is_locked = false;   ///< engaged, and the joint has reached the lock's position
-  double edge = 0.0;        ///< while latched: the joint may not go beyond it
+  /// Engaged, and the joint has reached the lock's position; with bounds paper as soon as engaged.
+  bool is_locked = false;
+  double edge = 0.0;  ///< while latched: the joint may not go beyond it
 };
 
 /// Part of the copyable state of a cycle.
@@ -35,8 +37,9 @@ struct TwinInnerState {
 /// A joint counts as being at its lock within this distance, rad or m.
 inline constexpr double kLockReached = 1e-4;
 
-/// Engages, latches, locks and releases according to the joint positions.
-void advance_locks(const TwinModel& twin, const ConfigurationA& q_a,
+/// Engages, latches, locks and releases according to the joint positions. With bounds paper a lock
+/// that engages locks at once, wherever its joint is, [HG] VII-C.
+void advance_locks(const TwinModel& twin, Bounds bounds, const ConfigurationA& q_a,
                    TwinInnerState& inner) noexcept;
 
 /// What holds the two sides of a limit besides its own ratings; kNone where nothing does.

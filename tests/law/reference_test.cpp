@@ -65,6 +65,8 @@ void expect_near(double got, double expected, double tolerance, const std::strin
   EXPECT_NEAR(got, expected, tolerance * (1.0 + std::abs(expected))) << what;
 }
 
+double number_of(const nlohmann::json& value) { return value.get<double>(); }
+
 double coefficient(const hqp::Problem& problem, int row, int column) {
   const int variable = problem.variable(row);
   if (variable >= 0) return variable == column ? 1.0 : 0.0;
@@ -149,6 +151,62 @@ TEST_P(RecordedStates, GiveTheRecordedProblemsAccelerationsAndFlags) {
 
 INSTANTIATE_TEST_SUITE_P(, RecordedStates, testing::ValuesIn(recording_names()),
                          [](const auto& name) { return name.param; });
+
+// A lock that engages in motion: no recording of tests/reference has it. The states of
+// door_full_unlock in which the hinge is locked are taken with a hinge at q on its way to the
+// closed stop, with dq = -sqrt(2 ddq_max q): what bounds B of level 8 allow a slammed door to have.
+//
+// (31) changes the problem of the same state without a lock in three rows and no others, because
+// neither (11), (12) nor (20) knows of locks:
+//   levels 6 and 8, hinge  lb = ub = clip(-dq / dt, +-ddq_max), from tests/reference/README.md: of
+//   the
+//                          accelerations that the rating permits the one that leaves the least
+//                          speed
+//   level 10, hinge        alpha in [-inf, inf], whatever was touched before
+// The problem without a lock is one that recordings cover: states of all five have none. Level 1
+// can always be met here (regular J_m), level 6 takes the hinge, so the solution has exactly that
+// acceleration, and both ends of an equality that is met are touched: (26) of the next cycle.
+TEST(RecordedDoor, FollowsALockThatEngagesInMotion) {
+  const Recording recording = read_recording("door_full_unlock");
+  Renderings renderings(recording);
+  const double dt = number_of(recording.header.at("params").at("dt"));
+  const double ddq_max = number_of(recording.header.at("dt").at("ddqmax").at(0));
+  const std::vector<int> locked = {1, 0};
+  int states = 0;
+  for (std::size_t k = 0; k < recording.states.size(); ++k) {
+    const nlohmann::json& line = recording.states[k];
+    if (line.at("locked").get<std::vector<int>>() != locked) continue;
+    SCOPED_TRACE("state " + std::to_string(k));
+    const double q = 2e-4 * static_cast<double>(1 + states++);
+    const double dq = -std::sqrt(2.0 * ddq_max * q);
+    const auto step = [&](const std::vector<int>& locks, rendering::State& state) {
+      rendering::Rendering& rendering = renderings.with(locks);
+      state = recorded_state(line, rendering);
+      state.twin.q_a[0] = q;
+      state.twin.dq_a[0] = dq;
+      state.touched.upper[13] = state.touched.lower[13] = false;  // the hinge's limit
+      CycleRecord record = recorded_input(line);
+      EXPECT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+      return record;
+    };
+    rendering::State state;
+    step({0, 0}, state);
+    hqp::Problem expected = renderings.with({0, 0}).problem();
+    const double ddq = std::clamp(-dq / dt, -ddq_max, ddq_max);
+    const int level_6 = expected.first_row(5), level_8 = expected.first_row(7);
+    expected.set_bounds(level_6, {ddq, ddq});
+    expected.set_bounds(level_8, {ddq, ddq});
+    expected.set_bounds(expected.first_row(9), {-kInfinity, kInfinity});
+
+    const CycleRecord record = step(locked, state);
+    expect_same_problem(renderings.with(locked).problem(), expected);
+    EXPECT_NEAR(record.twin.ddq_a[0], ddq, kAccelerationError * (1.0 + ddq_max));
+    EXPECT_TRUE(state.touched.lower[13]);
+    EXPECT_TRUE(state.touched.upper[13]);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(states, 100);
+}
 
 TEST(RecordedStatesData, IsThere) { EXPECT_FALSE(recording_names().empty()) << reference_folder(); }
 

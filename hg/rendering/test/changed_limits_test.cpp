@@ -99,12 +99,18 @@ TEST_P(LimitsOfEveryVariant, BrakeToASpeedLimitThatAppears) {
   EXPECT_LT(playing.dq(0), 0.3 + 1e-9);
 }
 
-TEST_P(LimitsOfEveryVariant, HoldALatchThatIsMetAtSpeed) {
+TEST_P(LimitsOfEveryVariant, HoldALockThatEngagesAtSpeed) {
   TwinModel twin = pressed_door(0.8);
   twin.locks = {{.name = "bolt", .dof = 0, .position = 0.5, .engaged_while = while_pressed()}};
   Playing playing(twin, options());
   playing.state.twin.dq_a[0] = 0.3;
   playing.run(0.3, 0, 3.0);
+  if (options().bounds == Bounds::kPaper) {
+    // [HG] (31): at rest after the way of braking, whatever pushes
+    EXPECT_NEAR(playing.q(0), 0.8 + 0.5 * 0.3 * 0.3 / twin.dofs[0].limits.ddq_max, 1e-9);
+    EXPECT_EQ(playing.limit(0).cause, LimitCause::kLock);
+    return;
+  }
   // back from the way of braking; a latch follows a joint that comes back too fast to stop there
   EXPECT_LT(playing.q(0), 0.8 + 1e-3);
   EXPECT_GT(playing.q(0), 0.8 - 0.02);
@@ -112,6 +118,7 @@ TEST_P(LimitsOfEveryVariant, HoldALatchThatIsMetAtSpeed) {
 }
 
 TEST_P(LimitsOfEveryVariant, LetALockWinThatIsOutsideAChangedRange) {
+  const bool stops_in_place = options().bounds == Bounds::kPaper;
   TwinModel twin = pressed_door(0.8);
   twin.locks = {{.name = "bolt", .dof = 0, .position = 0.5, .engaged_while = while_pressed()}};
   Playing playing(twin, options());
@@ -122,10 +129,11 @@ TEST_P(LimitsOfEveryVariant, LetALockWinThatIsOutsideAChangedRange) {
     ASSERT_GE(playing.limit(0).to_lower + playing.limit(0).to_upper, 0.0) << k;
     is_told = is_told || playing.limit(0).cause == LimitCause::kContradiction;
   }
-  EXPECT_NEAR(playing.q(0), 0.5, 2.0 * kLockReached);
-  EXPECT_TRUE(is_told);
+  const double held_at = stops_in_place ? 0.8 : 0.5;
+  EXPECT_NEAR(playing.q(0), held_at, 2.0 * kLockReached);
+  EXPECT_EQ(is_told, !stops_in_place);
   EXPECT_EQ(playing.limit(0).cause, LimitCause::kLock);
-  EXPECT_NEAR(playing.limit(0).excess, 0.2, 1e-3);  // of the range that was asked for
+  EXPECT_NEAR(playing.limit(0).excess, held_at - 0.3, 1e-3);  // of the range that was asked for
 }
 
 TEST_P(LimitsOfEveryVariant, HoldAJointInTheMiddleOfLimitsThatCrossAndSaySo) {

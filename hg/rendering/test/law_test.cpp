@@ -406,6 +406,42 @@ TEST(PaperBounds, ALockBrakesWithTheRatingOfItsJoint) {
   }
 }
 
+// [HG] VII-C: the hinge is locked in place. The lock engages in motion, at q_0 with speed v_0, and
+// brakes with clip(-dq / dt, +-ddq_max): from sample to sample the speed falls by dt ddq_max, the
+// last step takes what is left, and the way is the sum of dt dq + dt^2 ddq / 2. The joint stays
+// there, also when it is pushed, and is not drawn to the position of the lock.
+TEST(PaperBounds, ALockThatEngagesInMotionStopsTheJointWhereItIs) {
+  constexpr double kRating = 6.0, kTorque = 4.0, kStart = 0.4, kSpeed = -0.5;
+  for (const Law law : {Law::kGauss, Law::kPaper}) {
+    SCOPED_TRACE(to_string(law));
+    Door door(with(law, Bounds::kPaper), 0.0, true);
+    const double dt = 1e-3;
+    door.state().twin.q_a << kStart, 0.6;  // the bolt is open
+    door.state().twin.dq_a[0] = kSpeed;
+    door.run(dt, 0.0);
+    EXPECT_NE(door.limit().cause, LimitCause::kLock);
+    door.state().twin.q_a[1] = 0.4;
+    double q = door.hinge(), dq = door.hinge_speed();
+    while (dq != 0.0) {
+      const double ddq = std::clamp(-dq / dt, -kRating, kRating);
+      door.run(dt, kTorque);
+      ASSERT_NEAR(door.record.twin.ddq_a[0], ddq, 1e-8);
+      ASSERT_EQ(door.limit().cause, LimitCause::kLock);
+      q += dt * dq + 0.5 * dt * dt * ddq;
+      dq = std::abs(dq) <= dt * kRating ? 0.0 : dq + dt * ddq;
+      ASSERT_NEAR(door.hinge(), q, 1e-9);
+    }
+    EXPECT_NEAR(q, kStart - 0.5 * kSpeed * kSpeed / kRating, 1e-3);
+    door.run(0.3, kTorque);
+    EXPECT_NEAR(door.hinge(), q, 1e-9);
+    EXPECT_NEAR(door.limit().reaction, -kTorque, 1e-3);
+    EXPECT_EQ(door.limit().excess, 0.0);
+    door.state().twin.q_a[1] = 0.6;
+    door.run(0.2, kTorque);
+    EXPECT_GT(door.hinge(), q + 0.01);
+  }
+}
+
 TEST(Laws, RefuseWhatTheyCannotRender) {
   const TwinModel twin = unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
   Options options;
