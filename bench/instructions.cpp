@@ -72,9 +72,11 @@ std::size_t solve(bench::ProblemSource& source, bool is_warm) {
   hqp::Solver solver(capacity);
   hqp::Solution solution(capacity);
   hqp::ActiveSet active;
-  for (const hqp::Problem& problem : problems) {
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    const hqp::ActiveSet* const guess = source.guess(i);
     if (!is_warm) active = {};
-    counted({.solver = &solver, .problem = &problem, .active = &active, .solution = &solution});
+    if (is_warm && guess != nullptr) active = *guess;
+    counted({.solver = &solver, .problem = &problems[i], .active = &active, .solution = &solution});
   }
   return problems.size();
 }

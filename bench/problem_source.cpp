@@ -1,6 +1,7 @@
 #include "bench/problem_source.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
@@ -39,8 +40,11 @@ std::size_t bytes_of(const hqp::Problem& problem) {
 ProblemSource::ProblemSource(std::string name, const config::Scenario& scenario, std::size_t most)
     : name_(std::move(name)), remaining_(most), player_(std::make_unique<Player>(scenario)) {}
 
-ProblemSource::ProblemSource(const fs::path& file, std::size_t most)
-    : remaining_(most), block_(hqp::read_problems(file.string())) {
+ProblemSource::ProblemSource(const fs::path& file, std::size_t most) : remaining_(most) {
+  for (hqp::RecordedProblem& recorded : hqp::read_recorded_problems(file.string())) {
+    block_.push_back(std::move(recorded.problem));
+    guesses_.push_back(recorded.guess);
+  }
   name_ = file.filename().string();
   name_.resize(name_.find(".hqp"));
   is_sequence_ = !name_.starts_with("random");
@@ -64,14 +68,30 @@ void ProblemSource::read_reference(const std::string& stem) {
     norms_[i].erase(norms_[i].begin(), norms_[i].begin() + variables);
     for (double& norm : norms_[i]) norm = std::sqrt(norm);
   }
-  if (!fs::exists(stem + ".skip")) return;
-  for (const std::vector<double>& line : read_numbers(stem + ".skip")) {
-    for (const double index : line) {
-      if (index >= 0.0 && index < static_cast<double>(norms_.size())) {
-        norms_[static_cast<std::size_t>(index)].clear();
-      }
+  if (fs::exists(stem + ".skip")) read_skipped(stem + ".skip");
+}
+
+void ProblemSource::read_skipped(const std::string& file) {
+  std::istringstream text(hqp::read_text(file));
+  int line_number = 0;
+  for (std::string line; std::getline(text, line);) {
+    ++line_number;
+    std::string word;
+    if (!(std::istringstream(line) >> word)) continue;
+    std::size_t index = 0;
+    const char* const end = word.data() + word.size();
+    const auto [read_to, error] = std::from_chars(word.data(), end, index);
+    if (error != std::errc() || read_to != end || index >= norms_.size()) {
+      throw SetupError(file + ":" + std::to_string(line_number) +
+                       ": expected the index of a problem, 0.." +
+                       std::to_string(norms_.size() - 1) + ", got '" + word + "'");
     }
+    norms_[index].clear();
   }
+}
+
+const hqp::ActiveSet* ProblemSource::guess(std::size_t index) const {
+  return index < guesses_.size() && guesses_[index] ? &*guesses_[index] : nullptr;
 }
 
 std::span<const double> ProblemSource::reference(std::size_t index) const {

@@ -3,12 +3,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "bench/player.h"
 #include "hg/hqp/problem.h"
+#include "hg/hqp/solution.h"
 
 namespace hg::bench {
 
@@ -20,8 +22,9 @@ class ProblemSource {
 
   /// The problem of each cycle that renders. `scenario` must outlive the source.
   ProblemSource(std::string name, const config::Scenario& scenario, std::size_t most);
-  /// NAME.hqp or NAME.hqp.gz, with the optimal slack norms in NAME.sol.gz and the indices of what
-  /// cannot be compared in NAME.skip, where these files are. Throws SetupError.
+  /// NAME.hqp or NAME.hqp.gz, with the optimal slack norms in NAME.sol.gz and what cannot be
+  /// compared in NAME.skip, where these files are. A line of NAME.skip begins with the index of a
+  /// problem; what follows says why. Throws SetupError.
   ProblemSource(const std::filesystem::path& file, std::size_t most);
 
   const std::string& name() const { return name_; }
@@ -33,11 +36,16 @@ class ProblemSource {
   /// where there is nothing to compare with.
   std::span<const double> reference(std::size_t index) const;
 
+  /// What a warm start of problem `index` begins with, counted as in reference(); null: with what
+  /// the solve before it has left.
+  const hqp::ActiveSet* guess(std::size_t index) const;
+
   /// The next problems, valid until the next call; empty at the end.
   std::span<const hqp::Problem> next();
 
  private:
   void read_reference(const std::string& stem);
+  void read_skipped(const std::string& file);
   std::span<const hqp::Problem> next_of_scenario();
 
   std::string name_;
@@ -45,6 +53,7 @@ class ProblemSource {
   std::size_t remaining_;
   std::unique_ptr<Player> player_;  ///< null: from a file, all in block_
   std::vector<hqp::Problem> block_;
+  std::vector<std::optional<hqp::ActiveSet>> guesses_;  ///< of a file
   std::vector<std::vector<double>> norms_;
 };
 

@@ -61,12 +61,14 @@ class SetTimer {
       for (std::size_t i = 0; i < block.size(); ++i) {
         *placed_ = block[i];
         if (!is_warm) active_ = {};
+        const hqp::ActiveSet* const guess = is_warm ? source_.guess(first_ + i) : nullptr;
+        if (guess != nullptr) active_ = *guess;
         const Clock::time_point begin = Clock::now();
         const hqp::Status status = solver_->solve(*placed_, {}, active_, *solution_);
         const double us = microseconds_since(begin);
 
-        // the first of all has nothing to start from
-        const std::size_t skipped = is_warm ? 1 : 0;
+        // the first of all may have nothing to start from
+        const std::size_t skipped = is_warm && source_.guess(0) == nullptr ? 1 : 0;
         if (first_ + i >= skipped) run.times.add(first_ + i - skipped, us);
         if (pass > 0) continue;
         run.failures += status != hqp::Status::kSolved;

@@ -30,7 +30,8 @@ struct SolverSet {
   std::vector<SolverRun> runs;
 };
 
-/// Solves all problems of `source` `passes` times with each solver. `baseline` may be null, and is
+/// Solves all problems of `source` `passes` times with each solver, warm from the guess of the
+/// problem where its file has one, else from the problem before. `baseline` may be null, and is
 /// left out where neighbours are not alike: on such problems it may never return. Each
 /// problem is copied into place just before it is solved, as a cycle does. `wrong` compares with
 /// the reference of the source; without one the cascade is compared with ours, and ours with the

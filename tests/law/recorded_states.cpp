@@ -70,7 +70,11 @@ Recording read_recording(const std::string& name) {
   recording.is_skipped.resize(recording.states.size());
   if (std::filesystem::exists(base.string() + ".skip")) {
     std::istringstream skip(hqp::read_text(base.string() + ".skip"));
-    for (std::size_t index = 0; skip >> index;) recording.is_skipped.at(index) = true;
+    // the first word of a line is the index of a problem; what follows says why
+    while (std::getline(skip, line)) {
+      std::size_t index = 0;
+      if (std::istringstream(line) >> index) recording.is_skipped.at(index) = true;
+    }
   }
   return recording;
 }

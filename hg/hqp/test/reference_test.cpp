@@ -65,8 +65,11 @@ ReferenceSet read_set(const std::string& name) {
   set.is_recorded_sequence = !name.starts_with("random");
   const std::filesystem::path skip = folder() / (name + ".skip");
   if (std::filesystem::exists(skip)) {
-    for (const auto& line : read_numbers(skip)) {
-      for (const double index : line) set.skipped.insert(static_cast<int>(index));
+    // the first word of a line is the index of a problem; what follows says why
+    std::istringstream text(read_text(skip.string()));
+    for (std::string line; std::getline(text, line);) {
+      int index = 0;
+      if (std::istringstream(line) >> index) set.skipped.insert(index);
     }
   }
   return set;
