@@ -10,9 +10,11 @@
 namespace hg::hqp {
 
 enum class Status : std::uint8_t {
-  kSolved,          ///< every level is optimal
-  kIterationLimit,  ///< the first `completed_levels` are optimal; when all are, |x| is not smallest
-  kBadRow,          ///< `bad_row` is not finite, has lb > ub or a weight <= 0; levels above it hold
+  kSolved,  ///< every level is optimal
+  /// The first `completed_levels` are optimal; when all are, |x| may not be the smallest. Out of
+  /// active sets, or rounding hides whether more is optimal.
+  kIterationLimit,
+  kBadRow,  ///< `bad_row` is not finite, has lb > ub or a weight <= 0; levels above it hold
   kNumericalFailure,  ///< overflow: x is the last finite point
 };
 const char* to_string(Status status) noexcept;

@@ -155,7 +155,12 @@ Status complete_levels(const Problem& problem, const Options& options, int all_l
       return complete_levels(problem, options, all_levels, levels, iterations, work);
     }
     work.point = work.saved;
-    update_values(problem, levels, work);
+    const int optimal = count_optimal_levels(problem, options, all_levels, work);
+    levels = std::min(optimal, all_levels);
+    if (optimal <= all_levels) {
+      const bool is_finite = std::isfinite(work.gradient.head(problem.variables()).squaredNorm());
+      return is_finite ? Status::kIterationLimit : Status::kNumericalFailure;
+    }
   }
   return Status::kSolved;
 }

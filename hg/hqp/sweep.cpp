@@ -10,6 +10,8 @@ namespace {
 constexpr double kSmallRest = 1e-10;
 // Steps from the first point, docs/hqp.md: more help where few rows act, and harm where many do.
 constexpr int kVariablesPerEarlyStep = 6;
+// Rest of a gradient, relative to its terms, of a level that counts as optimal by values alone.
+constexpr double kOptimalRest = 1e-7;
 constexpr double kSameSlack = 1e-9;  // share of 1 + slack up to which two points are as good
 constexpr double kNoWay = 1e-9;      // share of the way to a point that is none
 
@@ -445,6 +447,34 @@ int take_better_point(const Problem& problem, const Options& options, int levels
   }
   read_states(problem, options, levels, work);
   return work.proven_levels;
+}
+
+int count_optimal_levels(const Problem& problem, const Options& options, int levels,
+                         Workspace& work) noexcept {
+  work.x_norm = work.point.x.head(problem.variables()).norm();
+  update_values(problem, levels, work);
+  read_states(problem, options, levels, work);
+  work.elimination.reset(problem.variables());
+  work.touched.clear();
+  const int end = wants_smallest_norm(problem, options, levels) ? levels + 1 : levels;
+  for (int level = 0; level < end; ++level) {
+    const int rank = work.elimination.rank();
+    const LevelGradient size = level_gradient(problem, options, level, work);
+    if (!size.is_zero) {
+      work.cone.solve(problem, work.touched, work.gradient.data(), size.scale,
+                      options.rank_tolerance, work.elimination);
+      work.elimination.project_to_free(work.gradient.data(), work.direction.data());
+      work.elimination.truncate(rank);
+      const double rest = work.direction.head(problem.variables()).norm();
+      if (!(rest <= kOptimalRest * size.scale + size.rounding)) return level;
+    }
+    if (level == levels) break;
+    collect_targets(problem, options, level, work);
+    work.elimination.add_least_squares(problem, work.targets, work.point.x.data(),
+                                       options.rank_tolerance);
+    collect_touched(problem, options, level, work);
+  }
+  return levels + 1;
 }
 
 // Whether an inequality of the level is violated, by its state or at the point tried last.

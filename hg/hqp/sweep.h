@@ -56,6 +56,13 @@ bool start_from_dual(const Problem& problem, const Options& options, int levels,
 int take_better_point(const Problem& problem, const Options& options, int levels,
                       Workspace& work) noexcept;
 
+/// Levels that work.point is optimal for by its values alone, whatever has found it: what rows
+/// above that are equalities, violated or at a bound leave of the gradient. work.gradient is that
+/// of the first level that is not. Reads the states of all rows anew. levels + 1: |x| is the
+/// smallest, too, or need not be.
+int count_optimal_levels(const Problem& problem, const Options& options, int levels,
+                         Workspace& work) noexcept;
+
 enum class Judgement {
   kProven,     ///< work.point is optimal for each level
   kCorrected,  ///< it is not; work.point.state is the next guess

@@ -157,7 +157,7 @@ void bind_enums(nb::module_& module) {
   nb::enum_<hqp::Status>(module, "Status", "How a solve ended.")
       .value("SOLVED", hqp::Status::kSolved, "every level is optimal")
       .value("ITERATION_LIMIT", hqp::Status::kIterationLimit,
-             "levels from completed_levels on are feasible but not optimal")
+             "levels from completed_levels on are not known to be optimal")
       .value("NUMERICAL_FAILURE", hqp::Status::kNumericalFailure, "x is the last finite point");
   nb::enum_<RowState>(module, "RowState", nb::is_arithmetic(), "Place of a row in its interval.")
       .value("INACTIVE", RowState::kInactive, "inside")
