@@ -45,11 +45,11 @@ def slack_norms(levels, x):
 def solve(variables, levels):
     """x, whether it was solved, and microseconds."""
     rows = [row for level in levels for row in level]
-    ends = np.cumsum([len(level) for level in levels]).astype(np.intc)
+    firsts = np.cumsum([0] + [len(level) for level in levels]).astype(np.intc)
     x, _, flag, info = daqp.solve(
         np.eye(variables), np.zeros(variables), np.array([c for c, _, _ in rows]),
         np.array([min(ub, 1e30) for _, _, ub in rows]),
-        np.array([max(lb, -1e30) for _, lb, _ in rows]), np.zeros(len(rows), np.intc), ends)
+        np.array([max(lb, -1e30) for _, lb, _ in rows]), np.zeros(len(rows), np.intc), firsts)
     return np.array(x), flag > 0, 1e6 * (info["setup_time"] + info["solve_time"])
 
 
