@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace hg::hqp {
 namespace {
@@ -10,6 +11,9 @@ constexpr double kParallel = 1e-12;    // cosine below which a direction does no
 constexpr double kResolution = 1e-16;  // share of |x| below which a step does not change x
 constexpr double kCorrection = 1e-3;   // share of the tolerance that is a gain, near the optimum
 constexpr int kExchangesPerRow = 3;    // rows released in a corner, per row that meets there
+// Steps of a level before each of which the held rows are chosen anew. After these a row is held
+// until x is the minimum over the held rows: slower mostly, but no set of rows comes back.
+constexpr int kFreeStepsPerVariable = 1;
 
 // Sides of a row that do not stop a step, as bits.
 constexpr std::uint8_t kUpperSide = 1;
@@ -63,6 +67,7 @@ class LevelByLevel {
   Workspace& work_;
   LevelGradient size_ = {};
   int base_ = 0;               ///< pivots of the levels above
+  int steps_ = 0;              ///< of this level
   bool is_held_back_ = false;  ///< the last level was settled by the rows of work_.held
 };
 
@@ -216,15 +221,16 @@ double LevelByLevel::best_length(int level, double longest) const noexcept {
   return length;
 }
 
-// Makes the rows of held_ the pivots above those of the levels above.
+// Makes the rows of held the pivots above those of the levels above; what depends on them is not
+// held any more.
 void LevelByLevel::hold_rows(int level) noexcept {
   Elimination& elimination = work_.elimination;
   elimination.truncate(base_);
   std::fill_n(work_.skipped_sides.begin(), end_of_levels_above(level), std::uint8_t{0});
-  for (const TouchedRow& t : work_.held) {
-    elimination.add_row(problem_, t.row, options_.rank_tolerance);
+  std::erase_if(work_.held, [&](const TouchedRow& t) {
     work_.skipped_sides[at(t.row)] = kBothSides;
-  }
+    return !elimination.add_row(problem_, t.row, options_.rank_tolerance);
+  });
 }
 
 // Multipliers of the held rows, into work_.mu; returns the one to release, -1 when all push.
@@ -266,8 +272,10 @@ int LevelByLevel::touched_obstacle(int level) const noexcept {
 // A direction along which the objective falls and x can move at once. In a corner, rows are held
 // and released until there is one, or all held rows push: x is optimal.
 LevelByLevel::Aim LevelByLevel::aim_past_obstacles(int level) noexcept {
-  work_.held.clear();
-  for (int i = 0; i < work_.cone.pushing(); ++i) work_.held.push_back(work_.cone.row(i));
+  if (steps_ <= kFreeStepsPerVariable * n_) {
+    work_.held.clear();
+    for (int i = 0; i < work_.cone.pushing(); ++i) work_.held.push_back(work_.cone.row(i));
+  }
   hold_rows(level);
 
   const int corner_size = static_cast<int>(work_.touched.size());
@@ -296,7 +304,9 @@ LevelByLevel::Aim LevelByLevel::aim_past_obstacles(int level) noexcept {
   for (const TouchedRow& t : work_.touched) work_.skipped_sides[at(t.row)] |= side_of(t);
   work_.direction.head(n_) = work_.cone.descent().head(n_);
   find_slopes(level);
-  return gains(level, best_length(level, kInfinity)) ? Aim::kAhead : Aim::kOptimal;
+  if (!gains(level, best_length(level, kInfinity))) return Aim::kOptimal;
+  work_.held.clear();
+  return Aim::kAhead;
 }
 
 PrimalOutcome LevelByLevel::optimise(int level) noexcept {
@@ -304,6 +314,7 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
   base_ = elimination.rank();
   work_.point.rank_at_level[at(level)] = base_;
   work_.point.blocking_row[at(level)] = -1;
+  steps_ = 0;
   while (true) {
     if (iterations_ >= options_.max_iterations) return PrimalOutcome::kIterationLimit;
     ++iterations_;
@@ -330,6 +341,10 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
     if (!(way > kResolution * work_.x_norm)) return PrimalOutcome::kOptimal;
     if (!move(problem_, work_.direction, length, work_)) return PrimalOutcome::kNotFinite;
     update_values(problem_, levels_, work_);
+    ++steps_;
+    if (length == longest && static_cast<int>(work_.held.size()) < n_ - base_) {
+      work_.held.push_back({obstacle, work_.slope[at(obstacle)] > 0.0 ? 1.0 : -1.0});
+    }
   }
 }
 
