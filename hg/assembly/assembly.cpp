@@ -198,21 +198,6 @@ control::Config checked_control(const config::Device& device) {
   return control;
 }
 
-// What the hand moves at the start in the direction in which that is most, kg; directions in which
-// the twin cannot move do not count.
-double felt_mass(const rendering::TwinModel& twin) {
-  constexpr double kStuck = 1e-6;  // of the largest mobility
-  model::Chain chain = twin.chain;
-  const VectorA at_rest = VectorA::Zero(chain.nv());
-  chain.update(twin.q_start, at_rest);
-  const Eigen::MatrixXd J = chain.jacobian(twin.end_effector).topRows<3>();
-  const Eigen::Matrix3d mobility = J * inverse(Eigen::MatrixXd(chain.M())) * J.transpose();
-  const Eigen::Vector3d eigenvalues = symmetric_eigen(mobility).values;  // the smallest first
-  const auto least = std::ranges::find_if(
-      eigenvalues, [&](double value) { return value > kStuck * eigenvalues[2]; });
-  return least == eigenvalues.end() ? 0.0 : twin.mass_scale / *least;
-}
-
 }  // namespace
 
 bool notices_frozen_sensors(const config::Device& device) {
@@ -231,7 +216,8 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
   }
   monitor.looks_for_shaking = device.passivity.reaction != passivity::Reaction::kOff;
   monitor.stops_shaking = device.passivity.reaction == passivity::Reaction::kAct;
-  monitor.twin_mass = felt_mass(scenario.twin.model);
+  const double heaviest = rendering::felt_mass(scenario.twin.model).mass.ub;
+  monitor.twin_mass = std::isfinite(heaviest) ? heaviest : 0.0;
   return cycle::Cycle({.estimation = device.estimation,
                        .prepositioning = device.prepositioning,
                        .rendering = device.rendering,

@@ -24,10 +24,11 @@ inline constexpr std::array<Choice<SurfaceShape>, 5> kSurfaceShapes = {
 
 /// What stands under `surfaces`, before it becomes a Surface.
 struct SurfaceDraft {
-  environment::Surface surface;  ///< without its shape
+  environment::Surface surface;  ///< without its shape, place and damping
   SurfaceShape shape = SurfaceShape::kPlane;
   Eigen::Vector3d size = Eigen::Vector3d::Constant(kNoDefault);
   double radius = 0.0, length = 0.0, scale = 1.0;
+  double damping = kNoDefault;
   std::filesystem::path mesh;
   Placement placement;
 };
@@ -71,8 +72,9 @@ void describe(V& v, std::vector<SurfaceDraft>& surfaces) {
       "of the surface in B; without it, its frame is B");
   v.number("stiffness_N_per_m", d.surface.stiffness, range_of(environment::kStiffness),
            "of the spring between handle and surface");
-  v.number("damping_Ns_per_m", d.surface.damping, range_of(environment::kDamping),
-           "against the motion of the handle inside, in full from 5 mm on");
+  v.number("damping_Ns_per_m", d.damping, range_of(environment::kDamping),
+           "against the motion of the handle inside; without it critical for the twin, and the "
+           "surface catches what meets it, docs/environment.md");
   v.number("friction", d.surface.friction, range_of(environment::kFriction),
            "coefficient of Coulomb friction");
 }

@@ -1,10 +1,13 @@
 #include "hg/config/describe_surfaces.h"
 
+#include <cmath>
+
 namespace hg::config {
 
 environment::Surface surface_of(const SurfaceDraft& draft, SourceReader& reader) {
   environment::Surface surface = draft.surface;
   surface.pose = pose_of(draft.placement);
+  if (!std::isnan(draft.damping)) surface.damping = draft.damping;
   switch (draft.shape) {
     case SurfaceShape::kPlane:
       break;

@@ -15,7 +15,8 @@ constexpr double kStill = 1e-10;  // m; a proxy that moves less has arrived
 
 // Never pulls, and along the surface within the cone of friction.
 Vector3d force_of(const Spread& spread, double pressed, const Vector3d& velocity) noexcept {
-  const double damping = spread.damping * std::min(1.0, spread.depth / kFullDamping);
+  const double damping =
+      spread.damping * std::min(1.0, spread.stiffness * spread.depth / kFullDamping);
   const double speed = velocity.dot(spread.normal);
   const double f_normal = std::max(0.0, spread.stiffness * pressed - damping * speed);
   const Vector3d v_tangent = velocity - speed * spread.normal;
@@ -28,17 +29,20 @@ Vector3d force_of(const Spread& spread, double pressed, const Vector3d& velocity
 
 }  // namespace
 
-Environment::Environment(std::vector<Surface> surfaces, double period)
-    : surfaces_(std::move(surfaces)), period_(period) {
+Environment::Environment(std::vector<Surface> surfaces, double period, const Interval& mass)
+    : surfaces_(std::move(surfaces)), mass_(mass.ub), period_(period) {
   if (surfaces_.size() > kMaxSurfaces) {
     throw SetupError("surfaces: at most " + std::to_string(kMaxSurfaces) + ", got " +
                      std::to_string(surfaces_.size()));
   }
-  for (const Surface& surface : surfaces_) check(surface);
+  for (const Surface& surface : surfaces_) {
+    check(surface);
+    damping_.push_back(surface.damping.value_or(critical_damping(surface.stiffness, mass, period)));
+  }
 }
 
 ContactReport Environment::step(const Vector3d& position, const Vector3d& velocity,
-                                State& state) const noexcept {
+                                const Vector3d& push, State& state) const noexcept {
   const Vector3d handle = position + 0.5 * period_ * velocity;
   ContactReport contact;
   contact.proxy = handle;
@@ -57,7 +61,23 @@ ContactReport Environment::step(const Vector3d& position, const Vector3d& veloci
   state.pressed = spread.depth - state.dent;
   state.stiffness = spread.stiffness;
   contact.force = force_of(spread, state.pressed, velocity);
+  if (spread.catches) catch_it(spread, velocity, push, contact, state);
   return contact;
+}
+
+// What comes in is stopped with a time constant and no harder. So the spring holds what the person
+// pushes when it stands still, and does not throw it back.
+void Environment::catch_it(const Spread& spread, const Vector3d& velocity, const Vector3d& push,
+                           ContactReport& contact, State& state) const noexcept {
+  const double speed = -velocity.dot(spread.normal);
+  if (speed < kImpact) return;
+  const double most = std::max(0.0, -push.dot(spread.normal)) + mass_ * speed / kStopping;
+  const double force = contact.force.dot(spread.normal);
+  if (force <= most) return;
+  contact.force *= most / force;
+  const double pressed = std::min(state.pressed, most / spread.stiffness);
+  state.dent += state.pressed - pressed;
+  state.pressed = pressed;
 }
 
 void Environment::give_way(const ContactReport& contact, double missing, const Vector3d& velocity,
@@ -69,7 +89,7 @@ void Environment::give_way(const ContactReport& contact, double missing, const V
   state.taken = std::max(0.0, state.taken);
   if (missing > 0.0) {
     state.dent += std::min(missing / state.stiffness, state.pressed);
-  } else if (state.taken > 0.0) {
+  } else if (state.taken > 0.5 * state.stiffness * state.pressed * state.pressed) {
     state.dent = std::max(0.0, state.dent - kRecovery * period_);
   }
 }
@@ -97,7 +117,8 @@ void Environment::follow(const Vector3d& handle, Planes& planes, Vector3d& proxy
     }
     const Vector3d before = proxy;
     proxy += met.hit.share * (handle - proxy);
-    planes.add(met.hit.normal, surfaces_[static_cast<std::size_t>(met.surface)], met.surface);
+    const auto index = static_cast<std::size_t>(met.surface);
+    planes.add(met.hit.normal, surfaces_[index], damping_[index], met.surface);
     slide(handle, planes, proxy);
     if ((proxy - before).norm() < kStill) return;
   }
@@ -111,8 +132,8 @@ void Environment::slide(const Vector3d& handle, Planes& planes, Vector3d& proxy)
     const Found met = first_hit(proxy, target);
     proxy += met.hit.share * (target - proxy);
     if (met.surface < 0) return;
-    const Surface& surface = surfaces_[static_cast<std::size_t>(met.surface)];
-    if (!planes.add(met.hit.normal, surface, met.surface)) return;
+    const auto index = static_cast<std::size_t>(met.surface);
+    if (!planes.add(met.hit.normal, surfaces_[index], damping_[index], met.surface)) return;
   }
 }
 

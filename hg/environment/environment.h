@@ -17,6 +17,7 @@
 
 #include <vector>
 
+#include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/environment/cast.h"
 #include "hg/environment/planes.h"
@@ -29,8 +30,12 @@ inline constexpr std::size_t kMaxSurfaces = 64;
 inline constexpr int kMaxRounds = 4;  ///< in which the proxy follows a curved surface
 inline constexpr int kMaxSweeps = 5 * kMaxRounds;
 
-inline constexpr double kFullDamping = 5e-3;  ///< depth from which damping acts in full, m; [C] 5
-inline constexpr double kRecovery = 4e-3;     ///< speed at which a dent is filled again, m/s
+inline constexpr double kFullDamping =
+    2.0;  ///< force of the spring from which damping acts in full, N
+inline constexpr double kRecovery = 3e-3;  ///< speed at which a dent is filled again, m/s
+// of what comes in to a surface that says no damping:
+inline constexpr double kStopping = 15e-3;  ///< time constant with which it is stopped, s
+inline constexpr double kImpact = 0.02;     ///< from which speed on, m/s
 
 /// Part of the copyable state of a cycle.
 struct State {
@@ -46,16 +51,19 @@ struct State {
 class Environment {
  public:
   Environment() = default;  ///< without surfaces
-  /// `period` of the steps, s. Throws SetupError naming the first surface that cannot be.
-  Environment(std::vector<Surface> surfaces, double period);
+  /// `period` of the steps, s; `mass` (kg) of the body that meets them, where it is lightest and
+  /// heaviest, for the damping of those that do not say theirs. Throws SetupError naming the first
+  /// surface that cannot be.
+  Environment(std::vector<Surface> surfaces, double period, const Interval& mass);
 
   const std::vector<Surface>& surfaces() const noexcept { return surfaces_; }
 
-  /// `position` and `velocity` of the handle at the begin of a sample. The spring acts as in its
+  /// `position` and `velocity` of the handle at the begin of a sample, `push` (N) of the person on
+  /// it. The spring acts as in its
   /// middle, where the handle is half a period later; else it would give energy. A handle that
   /// starts inside a solid is free until it has left it.
   ContactReport step(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
-                     State& state) const noexcept;
+                     const Eigen::Vector3d& push, State& state) const noexcept;
 
   /// After a step(): of the force `contact` the device does not give `missing` (N, of its size).
   /// The surface gives way until its spring pushes no harder than the device, so that it never
@@ -72,7 +80,12 @@ class Environment {
   void slide(const Eigen::Vector3d& handle, Planes& planes, Eigen::Vector3d& proxy) const noexcept;
   void follow(const Eigen::Vector3d& handle, Planes& planes, Eigen::Vector3d& proxy) const noexcept;
 
+  void catch_it(const Spread& spread, const Eigen::Vector3d& velocity, const Eigen::Vector3d& push,
+                ContactReport& contact, State& state) const noexcept;
+
   std::vector<Surface> surfaces_;
+  std::vector<double> damping_;  ///< of each, Ns/m
+  double mass_ = 0.0;            ///< of the body, kg
   double period_ = 0.0;
 };
 

@@ -14,15 +14,16 @@ constexpr double kFlat = 1e-12;     // m; less deep is no contact
 
 }  // namespace
 
-bool Planes::add(const Vector3d& normal, const Surface& surface, int index) noexcept {
+bool Planes::add(const Vector3d& normal, const Surface& surface, double damping,
+                 int index) noexcept {
   for (int i = 0; i < count_; ++i) {
     Plane& plane = planes_[static_cast<std::size_t>(i)];
     if (plane.normal.dot(normal) < 1.0 - kParallel) continue;
-    plane = {normal, &surface, index};
+    plane = {normal, &surface, damping, index};
     return true;
   }
   if (count_ == 3) return false;
-  planes_[static_cast<std::size_t>(count_++)] = {normal, &surface, index};
+  planes_[static_cast<std::size_t>(count_++)] = {normal, &surface, damping, index};
   return true;
 }
 
@@ -72,9 +73,12 @@ Spread Planes::spread(const Vector3d& handle, const Vector3d& proxy) const noexc
     const Plane& plane = planes_[static_cast<std::size_t>(i)];
     const double share = s[i] / sum;
     spread.stiffness += share * plane.surface->stiffness;
-    spread.damping += share * plane.surface->damping;
+    spread.damping += share * plane.damping;
     spread.friction += share * plane.surface->friction;
-    if (share > largest) spread.surface = plane.index;
+    if (share > largest) {
+      spread.surface = plane.index;
+      spread.catches = !plane.surface->damping;
+    }
     largest = std::max(largest, share);
   }
   return spread;

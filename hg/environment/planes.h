@@ -20,13 +20,15 @@ struct Spread {
   int surface = -1;                                   ///< that has the largest share
   // mean of the surfaces by their shares in `normal`
   double stiffness = 0.0, damping = 0.0, friction = 0.0;
+  bool catches = false;  ///< the surface with the largest share says no damping
 };
 
 class Planes {
  public:
-  /// A plane of surface `index`, which `surface` describes; false when there are three already.
-  /// One that is nearly parallel to another takes its place.
-  bool add(const Eigen::Vector3d& normal, const Surface& surface, int index) noexcept;
+  /// A plane of surface `index`, which `surface` describes, with `damping` (Ns/m); false when there
+  /// are three already. One that is nearly parallel to another takes its place.
+  bool add(const Eigen::Vector3d& normal, const Surface& surface, double damping,
+           int index) noexcept;
   bool empty() const noexcept { return count_ == 0; }
 
   Spread spread(const Eigen::Vector3d& handle, const Eigen::Vector3d& proxy) const noexcept;
@@ -38,6 +40,7 @@ class Planes {
   struct Plane {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     const Surface* surface = nullptr;
+    double damping = 0.0;  ///< Ns/m
     int index = -1;
   };
   Eigen::Vector3d shares(const Eigen::Vector3d& to_handle) const noexcept;

@@ -1,11 +1,15 @@
 #include "hg/environment/surface.h"
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "hg/core/error.h"
 
 namespace hg::environment {
 namespace {
+
+constexpr double kArmMass = 1.5;  // kg, of a hand that holds on; hg/user/hand.h
 
 void require(const Surface& surface, const char* what, const Interval& range, double value) {
   if (range.contains(value)) return;
@@ -17,9 +21,14 @@ void require(const Surface& surface, const char* what, const Interval& range, do
 
 }  // namespace
 
+double critical_damping(double stiffness, const Interval& mass, double period) noexcept {
+  if (!std::isfinite(mass.lb)) return 0.0;
+  return std::min(2.0 * std::sqrt(stiffness * (mass.ub + kArmMass)), mass.lb / period);
+}
+
 void check(const Surface& surface) {
   require(surface, "stiffness", kStiffness, surface.stiffness);
-  require(surface, "damping", kDamping, surface.damping);
+  if (surface.damping) require(surface, "damping", kDamping, *surface.damping);
   require(surface, "friction", kFriction, surface.friction);
   if (const auto* box = std::get_if<Box>(&surface.shape)) {
     for (const double edge : box->size) require(surface, "edge", kSize, edge);

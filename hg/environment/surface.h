@@ -3,6 +3,7 @@
 /// Set-up data in SI units; check() throws SetupError.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -35,14 +36,21 @@ struct Surface {
   Shape shape;
   Pose pose;                  ///< T_B_surface
   double stiffness = 2000.0;  ///< N/m
-  double damping = 20.0;      ///< Ns/m, in full from 5 mm inside on
-  double friction = 0.0;      ///< Coulomb coefficient, sticking as slipping
+  /// Ns/m. None: critical_damping(), and the surface catches what meets it,
+  /// Environment::catch_it().
+  std::optional<double> damping;
+  double friction = 0.0;  ///< Coulomb coefficient, sticking as slipping
 };
 
 inline constexpr Interval kStiffness = {10.0, 5e4};
 inline constexpr Interval kDamping = {0.0, 1e3};
 inline constexpr Interval kFriction = {0.0, 2.0};
 inline constexpr Interval kSize = {1e-3, 100.0};  ///< m, of edges, radii and lengths
+
+/// With which a body on a spring of `stiffness` (N/m) comes to rest without a swing, Ns/m; `mass`
+/// (kg) in the directions in which it is lightest and heaviest. Less where that is more than
+/// samples of `period` (s) allow for the lightest. 0 for a body that nothing can move.
+double critical_damping(double stiffness, const Interval& mass, double period) noexcept;
 
 /// Throws SetupError "surface NAME: rule, got value".
 void check(const Surface& surface);

@@ -219,7 +219,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
 void Rendering::feel_surfaces(State& state, double share, CycleRecord& record) noexcept {
   const Eigen::Vector3d p_E = twin_.chain.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
-  record.contact = environment_.step(p_E, v_E, state.contact);
+  record.contact = environment_.step(p_E, v_E, record.robot.w_H.head<3>(), state.contact);
   if (record.contact.surface < 0) return;
   record.contact.force *= share;
   record.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * record.contact.force;
@@ -235,7 +235,8 @@ void Rendering::give_way(State& state, const CycleRecord& record) const noexcept
   factor.solveInPlace(along);
   factor.solveInPlace(limits);
   const double missing = -along.dot(limits) / along.squaredNorm();
-  const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
+  const Eigen::Vector3d v_E =
+      J_a_.topRows<3>() * (state.twin.dq_a + 0.5 * options_.dt * state.twin.ddq_a);
   environment_.give_way(record.contact, std::clamp(missing, 0.0, force), v_E, state.contact);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hg/core/error.h"
+#include "hg/core/linear_algebra.h"
 
 namespace hg::rendering {
 
@@ -28,6 +29,22 @@ void check(const TwinModel& twin) {
   require(twin.conditional_limits.size() <= static_cast<std::size_t>(kMaxConditionalLimits),
           ": at most " + std::to_string(kMaxConditionalLimits) + " conditional limits");
   require(kMassScale.contains(twin.mass_scale), ": mass_scale must be 0.1..10");
+}
+
+FeltMass felt_mass(const TwinModel& twin) {
+  constexpr double kStuck = 1e-6;  // of the largest mobility
+  model::Chain chain = twin.chain;
+  const VectorA at_rest = VectorA::Zero(chain.nv());
+  chain.update(twin.q_start, at_rest);
+  const Eigen::MatrixXd J = chain.jacobian(twin.end_effector).topRows<3>();
+  const Eigen::MatrixXd moved =
+      inverse(Eigen::MatrixXd(chain.M() * twin.mass_scale)) * J.transpose();
+  const SymmetricEigen mobility = symmetric_eigen(J * moved);  // the smallest first
+  const double most = mobility.values[2];
+  if (!(most > 0.0)) return {.dq = at_rest};
+  const double least =
+      *std::ranges::find_if(mobility.values, [&](double value) { return value > kStuck * most; });
+  return {{1.0 / most, 1.0 / least}, moved * mobility.vectors.col(2) / most};
 }
 
 double position_of(const TwinModel& twin, int dof, const ConfigurationA& q_a) noexcept {

@@ -84,6 +84,15 @@ struct TwinModel {
 /// Throws SetupError naming the first thing that does not fit together.
 void check(const TwinModel& twin);
 
+/// What a force at the end effector has to move, at the start of the twin.
+struct FeltMass {
+  /// In the directions in which it is lightest and heaviest, kg; directions in which it cannot move
+  /// do not count. Infinite where there is no other.
+  Interval mass = {kInfinity, kInfinity};
+  VectorA dq;  ///< motion of the joints that moves it with 1 m/s where it is lightest
+};
+FeltMass felt_mass(const TwinModel& twin);
+
 /// Position of degree of freedom `dof`, which is not one of a floating joint; rad or m.
 double position_of(const TwinModel& twin, int dof, const ConfigurationA& q_a) noexcept;
 

@@ -44,24 +44,54 @@ TEST(Plane, ActsAsInTheMiddleOfTheSample) {
   Led led({table()});
   led.at({0, 0, 0.1});
   const Vector3d v(0, 0, -0.5);
-  const ContactReport contact = led.environment.step({0, 0, -0.01}, v, led.state);
+  const ContactReport contact = led.environment.step({0, 0, -0.01}, v, kNoPush, led.state);
   EXPECT_NEAR(contact.force.z(), 2000 * (0.01 + 0.5 * kDt * 0.5), kRounding);
 }
 
-TEST(Damping, BrakesOnlyTheWayInGrowsWithTheDepthAndNeverPulls) {
+TEST(Damping, BrakesOnlyTheWayInGrowsWithTheSpringAndNeverPulls) {
   Surface surface = table();
   surface.damping = 100;
   Led led({surface});
   const auto force = [&](double depth, double v) {
     State state;
-    led.environment.step({0, 0, 0.1}, Vector3d::Zero(), state);
+    led.environment.step({0, 0, 0.1}, Vector3d::Zero(), kNoPush, state);
     const Vector3d p(0, 0, -depth - 0.5 * kDt * v);  // in the middle of the sample at `depth`
-    return led.environment.step(p, {0, 0, v}, state).force.z();
+    return led.environment.step(p, {0, 0, v}, kNoPush, state).force.z();
   };
   EXPECT_NEAR(force(0.01, -0.2), 20 + 20, kRounding);
   EXPECT_NEAR(force(0.01, 0.1), 20 - 10, kRounding);
   EXPECT_EQ(force(0.01, 0.3), 0.0);
-  EXPECT_NEAR(force(0.001, -0.2), 2 + 20 * 0.2, kRounding);
+  EXPECT_NEAR(force(0.0005, -0.2), 1 + 20 * 0.5, kRounding);
+}
+
+// A body that is pushed into a surface that says no damping, by a device that gives everything.
+TEST(Damping, OfASurfaceThatSaysNoneCatchesEveryBody) {
+  for (const double mass : {0.5, 3.0, 6.0, 20.0}) {
+    for (const double stiffness : {2e3, 5e4}) {
+      for (const double speed : {0.2, 1.3}) {
+        SCOPED_TRACE(std::to_string(mass) + " kg, " + std::to_string(stiffness) + " N/m, " +
+                     std::to_string(speed) + " m/s");
+        const Surface floor = {.name = "floor", .shape = Plane{}, .stiffness = stiffness};
+        const Environment environment({floor}, kDt, {mass, mass});
+        State state;
+        const Vector3d push(0, 0, -10.0);
+        Vector3d p(0, 0, 1e-3), v(0, 0, -speed);
+        double back = 0.0, late = 0.0;
+        for (int k = 0; k < 2000; ++k) {
+          const ContactReport contact = environment.step(p, v, push, state);
+          environment.give_way(contact, 0.0, v, state);
+          const Vector3d a = (push + contact.force) / mass;
+          p += kDt * v + 0.5 * kDt * kDt * a;
+          v += kDt * a;
+          back = std::max(back, v.z());
+          if (k > 1000) late = std::max(late, std::abs(v.z()));
+        }
+        EXPECT_LE(back, 0.1 * speed);
+        EXPECT_LT(late, kRecovery + 1e-3);
+        EXPECT_LT(p.z(), -9.0 / stiffness);
+      }
+    }
+  }
 }
 
 TEST(Damping, DoesNotBrakeSlidingWithoutFriction) {
@@ -69,7 +99,8 @@ TEST(Damping, DoesNotBrakeSlidingWithoutFriction) {
   surface.damping = 100;
   Led led({surface});
   led.at({0, 0, 0.1});
-  const ContactReport contact = led.environment.step({0, 0, -0.01}, {0.3, 0, 0}, led.state);
+  const ContactReport contact =
+      led.environment.step({0, 0, -0.01}, {0.3, 0, 0}, kNoPush, led.state);
   EXPECT_LT(contact.force.head<2>().norm(), kRounding);
 }
 
@@ -128,7 +159,8 @@ TEST(Proxy, DoesNotPopThroughAThinWallAtHighSpeed) {
       const Vector3d start = 0.15 * random_in(random, 1.0).cwiseProduct(Vector3d(1, 1, 0));
       Vector3d p = start + Vector3d(0, 0, 0.01);
       ContactReport contact;
-      for (int k = 0; k < 40; ++k) contact = led.environment.step(p += kDt * v, v, led.state);
+      for (int k = 0; k < 40; ++k)
+        contact = led.environment.step(p += kDt * v, v, kNoPush, led.state);
       ASSERT_LT(p.z(), -0.01);
       EXPECT_NEAR(contact.proxy.z(), 0.0005, 1e-8);
       EXPECT_NEAR(contact.force.z(), 2000 * (0.0005 - p.z() - 0.5 * kDt * v.z()), 1e-3);
@@ -266,7 +298,7 @@ TEST(Friction, StaysWithinItsConeWhateverTheHandleDoes) {
     led.at({0, 0, 0.02});
     for (int k = 0; k < 2000; ++k) {
       const ContactReport contact =
-          led.environment.step(random_in(random, 0.02), random_in(random, 1.0), led.state);
+          led.environment.step(random_in(random, 0.02), random_in(random, 1.0), kNoPush, led.state);
       ASSERT_LE(contact.force.head<2>().norm(), mu * contact.force.z() + 1e-9) << k;
     }
   }
@@ -342,18 +374,17 @@ TEST(Energy, OfABouncingMassDoesNotGrow) {
   Surface floor = table();
   floor.stiffness = 20'000;
   Led led({floor});
-  constexpr double kMass = 3.0;
   Vector3d p(0, 0, 0.002), v(0, 0, -0.3);
-  const double start = 0.5 * kMass * v.squaredNorm();
+  const double start = 0.5 * kBody * v.squaredNorm();
   int bounces = 0;
   for (int k = 0; k < 20'000; ++k) {
-    const Vector3d a = led.environment.step(p, v, led.state).force / kMass;
+    const Vector3d a = led.environment.step(p, v, kNoPush, led.state).force / kBody;
     p += kDt * v + 0.5 * kDt * kDt * a;
     v += kDt * a;
     if (p.z() > 0.002 && v.z() > 0.0) {
       v = -v;  // thrown back
       ++bounces;
-      ASSERT_LT(0.5 * kMass * v.squaredNorm(), 1.02 * start) << k;
+      ASSERT_LT(0.5 * kBody * v.squaredNorm(), 1.02 * start) << k;
     }
   }
   EXPECT_GT(bounces, 100);
@@ -373,7 +404,7 @@ Impact impact(double stiffness, double mass, double v, double force, bool gives_
   Vector3d p(0, 0, 1e-6), velocity(0, 0, -v);
   Impact impact;
   for (; impact.samples < 5000 && (p.z() <= 0.0 || velocity.z() < 0.0); ++impact.samples) {
-    const ContactReport contact = led.environment.step(p, velocity, led.state);
+    const ContactReport contact = led.environment.step(p, velocity, kNoPush, led.state);
     const double f = std::min(contact.force.z(), force);
     if (gives_way) led.environment.give_way(contact, contact.force.z() - f, velocity, led.state);
     const Vector3d a(0, 0, f / mass);
@@ -411,17 +442,17 @@ TEST(GivingWay, LeavesNoMoreInTheSpringThanTheDeviceGives) {
   const Vector3d v(0, 0, -1.0);
   for (int k = 1; k <= 100; ++k) {
     const Vector3d p(0, 0, -1e-3 * k);
-    const ContactReport contact = led.environment.step(p, v, led.state);
+    const ContactReport contact = led.environment.step(p, v, kNoPush, led.state);
     led.environment.give_way(contact, std::max(0.0, contact.force.z() - 30.0), v, led.state);
   }
   const Vector3d still = Vector3d::Zero();
-  EXPECT_NEAR(led.environment.step({0, 0, -0.1}, still, led.state).force.z(), 30.0, 1.5);
+  EXPECT_NEAR(led.environment.step({0, 0, -0.1}, still, kNoPush, led.state).force.z(), 30.0, 1.5);
   // 20 mm nearer to the surface there is none, and pressing again begins there
-  EXPECT_EQ(led.environment.step({0, 0, -0.08}, still, led.state).force.z(), 0.0);
-  EXPECT_NEAR(led.environment.step({0, 0, -0.085}, still, led.state).force.z(), 10.0, 0.1);
+  EXPECT_EQ(led.environment.step({0, 0, -0.08}, still, kNoPush, led.state).force.z(), 0.0);
+  EXPECT_NEAR(led.environment.step({0, 0, -0.085}, still, kNoPush, led.state).force.z(), 10.0, 0.1);
   // outside, all is forgotten
   led.at({0, 0, 0.01});
-  EXPECT_NEAR(led.environment.step({0, 0, -0.01}, still, led.state).force.z(), 20.0, 0.1);
+  EXPECT_NEAR(led.environment.step({0, 0, -0.01}, still, kNoPush, led.state).force.z(), 20.0, 0.1);
 }
 
 TEST(GivingWay, RecoversSlowlyAndOnlyFromWhatTheContactHasTaken) {
@@ -433,7 +464,7 @@ TEST(GivingWay, RecoversSlowlyAndOnlyFromWhatTheContactHasTaken) {
     led.state.taken = taken;
     ContactReport contact;
     for (int k = 0; k < 1000; ++k) {
-      contact = led.environment.step({0, 0, -0.05}, Vector3d::Zero(), led.state);
+      contact = led.environment.step({0, 0, -0.05}, Vector3d::Zero(), kNoPush, led.state);
       led.environment.give_way(contact, 0.0, Vector3d::Zero(), led.state);
     }
     return contact.force.z();
@@ -510,7 +541,7 @@ TEST(Step, DoesNotAllocateAndSurvivesANan) {
 
 TEST(Check, RefusesWhatNoSurfaceIs) {
   const auto message = [](const Surface& surface) {
-    return message_of([&] { Environment({surface}, kDt); });
+    return message_of([&] { Environment({surface}, kDt, {kBody, kBody}); });
   };
   Surface surface = table();
   surface.stiffness = 1e6;
@@ -525,7 +556,9 @@ TEST(Check, RefusesWhatNoSurfaceIs) {
   surface.shape = Mesh({{Vector3d(0, 0, 0), Vector3d(400, 0, 0), Vector3d(0, 300, 0)}});
   EXPECT_EQ(message(surface),
             "surface table: size (scale: 0.001 for millimetres) must be 0.001 .. 100, got 400");
-  EXPECT_EQ(message_of([] { Environment(std::vector<Surface>(65, table()), kDt); }),
+  EXPECT_EQ(message_of([] {
+              Environment(std::vector<Surface>(65, table()), kDt, {kBody, kBody});
+            }),
             "surfaces: at most 64, got 65");
 }
 

@@ -15,6 +15,8 @@ namespace hg::environment {
 using Eigen::Vector3d;
 
 inline constexpr double kDt = 1e-3;
+inline const Vector3d kNoPush = Vector3d::Zero();
+inline constexpr double kBody = 3.0;  // kg, of what meets them
 
 /// The twelve triangles of a box, outwards.
 inline Mesh box_mesh(const Vector3d& size) {
@@ -62,9 +64,12 @@ struct Led {
   Environment environment;
   State state;
 
-  explicit Led(std::vector<Surface> surfaces) : environment(std::move(surfaces), kDt) {}
+  explicit Led(std::vector<Surface> surfaces)
+      : environment(std::move(surfaces), kDt, {kBody, kBody}) {}
   /// At rest there.
-  ContactReport at(const Vector3d& p) { return environment.step(p, Vector3d::Zero(), state); }
+  ContactReport at(const Vector3d& p) {
+    return environment.step(p, Vector3d::Zero(), kNoPush, state);
+  }
   /// Slowly from where it was led last.
   ContactReport to(const Vector3d& p, double step = 1e-4) {
     const Vector3d from = last;

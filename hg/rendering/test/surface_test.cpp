@@ -26,10 +26,12 @@ struct Falling {
     return twin;
   }
   Falling()
-      : rendering(
-            unlimited_device(), body(), without_synchronisation(),
-            environment::Environment(
-                {{.name = "floor", .shape = environment::Plane{}, .stiffness = kStiffness}}, kDt)),
+      : rendering(unlimited_device(), body(), without_synchronisation(),
+                  environment::Environment({{.name = "floor",
+                                             .shape = environment::Plane{},
+                                             .stiffness = kStiffness,
+                                             .damping = 20.0}},
+                                           kDt, {kMass, kMass})),
         state(rendering.start(kPosture)) {}
 
   void step(const Vector6& w, double share = 1.0, double braking_rate = 0.0) {
@@ -75,8 +77,8 @@ std::pair<double, double> fall(double ddq_max) {
   Rendering rendering(
       device, Falling::body(), without_synchronisation(),
       environment::Environment(
-          {{.name = "floor", .shape = environment::Plane{}, .stiffness = 2e4, .damping = 0.0}},
-          kDt));
+          {{.name = "floor", .shape = environment::Plane{}, .stiffness = 2e4, .damping = 0.0}}, kDt,
+          {kMass, kMass}));
   State state = rendering.start(kPosture);
   state.twin.dq_a[2] = -0.5;
   double depth = 0.0, back = 0.0;
