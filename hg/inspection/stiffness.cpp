@@ -10,7 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "hg/assembly/start_posture.h"
+#include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/rendering/braking.h"
 
 namespace hg::inspection {
 namespace {
@@ -31,18 +34,26 @@ double delay_of(const config::Device& device) {
   return delay;
 }
 
-// The twin at its start.
-struct AtStart {
-  Eigen::MatrixXd J;         // linear part of the end effector's
-  Eigen::MatrixXd mobility;  // inverse of the mass matrix
-};
-
-AtStart at_start(const rendering::TwinModel& twin) {
-  model::Chain chain = twin.chain;
-  const VectorA at_rest = VectorA::Zero(chain.nv());
-  chain.update(twin.q_start, at_rest);
-  return {chain.jacobian(twin.end_effector).topRows<3>(),
-          inverse(Eigen::MatrixXd(chain.M() * twin.mass_scale))};
+// The least along the axes of B, at the start; where the device does not get there it says so
+// itself.
+double braking_of(const config::Device& device, const config::Twin& twin) {
+  rendering::Motion motion = {.dq_p = VectorP::Zero(device.model.n_p),
+                              .dq_m = VectorM::Zero(device.model.n_m)};
+  try {
+    const assembly::Start start = assembly::find_start({.device = device, .twin = twin});
+    motion.q_p = start.q_p;
+    motion.q_m = start.q_m;
+  } catch (const SetupError&) {
+    return kInfinity;
+  }
+  double least = kInfinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      least = std::min(least, rendering::largest_acceleration(device.model, motion,
+                                                              side * Eigen::Vector3d::Unit(axis)));
+    }
+  }
+  return least;
 }
 
 std::string kilo(double stiffness) { return fmt::format("{:.2g} kN/m", 1e-3 * stiffness); }
@@ -56,11 +67,11 @@ std::string known_of(const StiffnessLimits& limits) {
 
 std::string acceleration_text(const StiffnessLimits& limits) {
   if (!std::isfinite(limits.acceleration)) {
-    return "no Cartesian limit states what the handle may brake with";
+    return "neither motors nor Cartesian limits state what the handle brakes with";
   }
   return fmt::format(
       "{} = m (a / v)^2 where it is met with v = {:g} m/s and the handle brakes with "
-      "a = {:g} m/s^2",
+      "a = {:.3g} m/s^2",
       kilo(limits.by_acceleration(kFeelingSpeed)), kFeelingSpeed, limits.acceleration);
 }
 
@@ -91,7 +102,9 @@ void warn_of(const std::vector<Spring>& springs, double least, const Worth& wort
 }
 
 void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Collector& out) {
-  const Eigen::MatrixXd mobility = at_start(twin.model).mobility;
+  model::Chain chain = twin.model.chain;
+  chain.update(twin.model.q_start, VectorA::Zero(chain.nv()));
+  const Eigen::MatrixXd mobility = inverse(Eigen::MatrixXd(chain.M() * twin.model.mass_scale));
   std::vector<Spring> springs;
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const rendering::TwinDof& dof = twin.model.dofs[i];
@@ -121,7 +134,7 @@ void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Co
       [&](const Spring& spring) {
         return fmt::format(
             "follow their spring up to {:.1f} mm of the handle, I a / K with a = "
-            "{:g} m/s^2 of its Cartesian limits, expected {:g} mm: from there on "
+            "{:.3g} m/s^2, expected {:g} mm: from there on "
             "they swing slower, and their swings may grow",
             1e3 * way(spring), limits.acceleration, 1e3 * kLeastWay);
       },
@@ -149,22 +162,15 @@ double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
 }
 
 StiffnessLimits stiffness_limits(const config::Device& device, const config::Twin& twin) {
-  const AtStart start = at_start(twin.model);
-  const SymmetricEigen mobility = symmetric_eigen(start.J * start.mobility * start.J.transpose());
-  const double most = mobility.values[2];
-  // how the joints move when the handle goes that way with 1 m/s
-  const Eigen::VectorXd dq =
-      start.mobility * start.J.transpose() * Eigen::Vector3d(mobility.vectors.col(2)) / most;
-  StiffnessLimits limits = {.mass = 1.0 / most,
+  const auto [mass, dq] = rendering::felt_mass(twin.model);
+  StiffnessLimits limits = {.mass = mass.lb,
                             .period = device.rendering.dt,
                             .delay = std::max(delay_of(device), device.rendering.dt)};
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const double speed = dq[static_cast<Eigen::Index>(i)];
     limits.damping += twin.model.dofs[i].damping * speed * speed;
   }
-  for (const limits::JointLimits& axis : rendering::handle_limits(device.model)) {
-    limits.acceleration = std::min(limits.acceleration, axis.ddq_max);
-  }
+  limits.acceleration = braking_of(device, twin);
   return limits;
 }
 
@@ -188,14 +194,16 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
   const StiffnessLimits limits = stiffness_limits(scenario.device, scenario.twin);
   for (std::size_t i = 0; i < scenario.surfaces.size(); ++i) {
     const environment::Surface& surface = scenario.surfaces[i];
+    const double damping = surface.damping.value_or(environment::critical_damping(
+        surface.stiffness, rendering::felt_mass(scenario.twin.model).mass, limits.period));
     const std::array<std::pair<double, std::string>, 3> bounds = {
         {{limits.by_frequency(),
           fmt::format("the body swings on it up to {:.1f} Hz", limits.frequency_Hz())},
          {limits.by_acceleration(kFeelingSpeed),
-          fmt::format("a hand at {:g} m/s needs no more than the handle's {:g} m/s^2",
+          fmt::format("a hand at {:g} m/s needs no more than the handle's {:.3g} m/s^2",
                       kFeelingSpeed, limits.acceleration)},
-         {limits.by_passivity(surface.damping),
-          fmt::format("it is passive in any hand with its {:g} Ns/m", surface.damping)}}};
+         {limits.by_passivity(damping),
+          fmt::format("it is passive in any hand with its {:.3g} Ns/m", damping)}}};
     std::string beyond;
     double most = surface.stiffness;
     for (const auto& [bound, why] : bounds) {

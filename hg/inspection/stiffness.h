@@ -11,14 +11,15 @@
 
 namespace hg::inspection {
 
-/// What the limits follow from. A device without a Cartesian limit of its handle has no stated
-/// acceleration: infinite.
+/// What the limits follow from. The acceleration is what the motors can brake the handle with, or
+/// the rating of its Cartesian limits where the law does not know them; without either it is
+/// infinite.
 struct StiffnessLimits {
   double mass = 0.0;                ///< of the twin in the direction in which it is lightest, kg
   double damping = 0.0;             ///< of the twin in that direction, Ns/m
   double period = 0.0;              ///< T, s
   double delay = 0.0;               ///< T_d of the wrench: sensor, low-pass and torque loop, s
-  double acceleration = kInfinity;  ///< a, that the handle may brake with, m/s^2
+  double acceleration = kInfinity;  ///< a, along the worst axis of B, m/s^2
 
   /// Up to here T_d turns what swings by 20 degrees at most. Measured: 6 kg and 3 kg on surfaces
   /// are calm at 8.2 Hz and not at 11.6 Hz with 6 ms.
