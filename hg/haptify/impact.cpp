@@ -3,27 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "hg/environment/surface.h"
+#include "hg/experiments/changes.h"
 #include "hg/experiments/player.h"
 #include "hg/haptify/play.h"
+#include "hg/rendering/braking.h"
+#include "hg/rendering/motor_torque.h"
 
 namespace hg::haptify {
 namespace {
 
-constexpr int kAhead = 1;      // y of B: straight ahead of the person, who looks along it
-constexpr double kRest = 1.0;  // s, before everything
+constexpr int kAhead = 1;          // y of B: straight ahead of the person, who looks along it
+constexpr double kRest = 1.0;      // s, before everything
+constexpr double kFastest = 0.01;  // s, of the way of a goal
 
 config::Scenario prepared(const config::Scenario& scenario, const ImpactConfig& config,
-                          double stiffness, double run_up, double watched_s, std::uint64_t seed) {
+                          double stiffness, double speed, double way_s, double watched_s,
+                          std::uint64_t seed) {
+  const double run_up = config.run_up_s * speed;
+  const double behind = config.press / scenario.script.hand.stiffness[kAhead] +
+                        kDeepestImpact * speed * speed / (2.0 * config.braking);
   user::Script script;
   script.segments.push_back({.start_s = kRest,
-                             .duration_s = config.run_up_s,
+                             .duration_s = way_s,
                              .channel = kAhead,
                              .blend = user::Blend::kBy,
-                             .value = run_up});
-  script.duration_s = kRest + config.run_up_s + watched_s;
+                             .value = run_up + behind});
+  script.duration_s = kRest + way_s + watched_s;
   config::Scenario result = with_script(scenario, script);
   result.twin.model.q_start.head<3>() = config.position - run_up * Eigen::Vector3d::Unit(kAhead);
   const Eigen::AngleAxisd towards_hand(0.5 * std::numbers::pi, Eigen::Vector3d::UnitX());
@@ -45,33 +54,37 @@ std::size_t contact_of(const Played& played, const ImpactConfig& config) {
   return static_cast<std::size_t>(at - played.instants.begin());
 }
 
-}  // namespace
-
-double braking_limit(const config::Device& device) {
-  return rendering::handle_limits(device.model)[kAhead].ddq_max;
+// From the contact to the deepest point.
+double braking_of(const rendering::DeviceModel& device, std::span<const Instant> braking) {
+  const Instant& first = braking.front();
+  rendering::Motion motion = {first.q_p, first.dq_p, first.q_m, first.dq_m};
+  for (const Instant& now : braking) motion.w_H += now.w_H / static_cast<double>(braking.size());
+  return rendering::largest_acceleration(device, motion, -Eigen::Vector3d::Unit(kAhead));
 }
 
-double find_run_up(const config::Scenario& scenario, const ImpactConfig& config, double speed) {
-  constexpr int kTries = 9;         // of halving: 3 mm
-  constexpr double kLongest = 2.0;  // s from the end of the goal's way to the wall
-  double too_short = 0.0, enough = config.longest_run_up;
+}  // namespace
+
+double find_way(const config::Scenario& scenario, const ImpactConfig& config, double speed) {
+  constexpr int kTries = 9;  // of halving
+  double fast = 0.0, slow = config.longest_way_s;
   for (int i = 0; i < kTries; ++i) {
-    const double run_up = 0.5 * (too_short + enough);
-    config::Scenario tried = prepared(scenario, config, 1.0, run_up, kLongest, 1);
+    const double way_s = 0.5 * (fast + slow);
+    config::Scenario tried = prepared(scenario, config, 1.0, speed, way_s, 1.0, 1);
     tried.surfaces.clear();
     const Played played = play(tried);
     const std::size_t contact = contact_of(played, config);
     const bool is_fast =
         contact < played.instants.size() && played.instants[contact].twist[kAhead] >= speed;
-    (is_fast ? enough : too_short) = run_up;
+    (is_fast ? fast : slow) = way_s;
   }
-  return enough;
+  return std::max(fast, kFastest);
 }
 
 Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& config,
-                      double stiffness, double run_up, std::uint64_t seed) {
+                      double stiffness, double speed, double way_s, std::uint64_t seed) {
   const config::Scenario hit =
-      prepared(scenario, config, stiffness, run_up, config.watched_s + 1.0, seed);
+      prepared(scenario, config, stiffness, speed, way_s, config.watched_s + 1.0, seed);
+  const double mass = experiments::free_twin_of(hit).mass;
   const Played played = play(hit);
   const std::vector<Instant>& all = played.instants;
   const std::size_t contact = contact_of(played, config);
@@ -81,12 +94,11 @@ Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& conf
     return result;
   }
   result.speed = all[contact - 1].twist[kAhead];
-  const double a = braking_limit(hit.device);
-  if (std::isfinite(a)) result.bound = result.speed * result.speed / (2.0 * a);
   const double contact_s = all[contact].time_s;
   const double end_s = std::min(all.back().time_s, contact_s + config.watched_s);
   double last_fast_s = contact_s;
   double back = 0.0;
+  std::size_t deepest = contact;
   bool has_left = false;  // the wall, for the first time
   for (std::size_t i = contact; i < all.size() && all[i].time_s <= end_s; ++i) {
     const Instant& now = all[i];
@@ -94,6 +106,7 @@ Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& conf
     const double depth = now.T_B_H.p[kAhead] - config.position[kAhead];
     if (depth < 0.0) has_left = true;
     if (!has_left) {
+      if (depth > result.depth) deepest = i;
       result.depth = std::max(result.depth, depth);
       back = std::max(back, -v);
     }
@@ -103,10 +116,16 @@ Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& conf
     }
     result.peak_force = std::max(result.peak_force, now.surface.norm());
     result.felt_force = std::max(result.felt_force, std::abs(now.w_H[kAhead]));
-    if (i + 1 == all.size()) break;
-    const double work = now.surface.dot(all[i + 1].p_B_E - now.p_B_E);
+    const double work = now.contact_power / hit.device.rate_Hz;
     (work < 0.0 ? result.energy_in : result.energy_out) += std::abs(work);
   }
+  result.braking =
+      braking_of(hit.device.model, std::span(all).subspan(contact, deepest + 1 - contact));
+  result.bound = result.speed * result.speed / (2.0 * result.braking);
+  result.onset = 0.5 * rendering::kTorqueOnset * result.speed;
+  const double moved = mass + hit.script.hand.mass[kAhead];
+  result.spring =
+      result.felt_force / stiffness + result.speed * std::sqrt(moved / stiffness) / std::numbers::e;
   result.rebound = result.speed > 0.0 ? back / result.speed : 0.0;
   const bool rests = last_fast_s <= end_s - config.still_s && result.end.empty();
   result.rest_s = rests ? last_fast_s - contact_s : kInfinity;

@@ -1,5 +1,5 @@
-// Where the acceleration that the device can give is felt: impacts, hard pulls, light rotations,
-// stiff springs.
+// Where the acceleration that the device can give is felt: hard pulls, light rotations, stiff
+// springs.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,6 @@
 #include "hg/experiments/changes.h"
 #include "hg/haptify/felt_body.h"
 #include "hg/haptify/groups.h"
-#include "hg/haptify/impact.h"
 #include "hg/haptify/measures.h"
 #include "hg/haptify/response.h"
 #include "hg/haptify/swing.h"
@@ -25,124 +24,9 @@ using Values = std::vector<double>;
 constexpr int kAxes = 3;
 constexpr double kWithin3dB = 1.4125;  // 3 dB
 
-template <typename Item, typename Value>
-Values values_of(const std::vector<Item>& items, const Value& value) {
-  Values values;
-  for (const Item& item : items) values.push_back(value(item));
-  return values;
-}
-
 std::string mean_text(const Values& values, int digits) {
   return fmt::format("{:.{}f}", mean_value(values), digits);
 }
-
-// "1.9", or "never" where one of the repetitions goes on
-std::string rest_text(const std::vector<Impact>& impacts) {
-  const auto restless = std::ranges::count_if(
-      impacts, [](const Impact& impact) { return std::isinf(impact.rest_s); });
-  const auto count = static_cast<std::ptrdiff_t>(impacts.size());
-  if (restless == count) return "never";
-  if (restless > 0) return fmt::format("never in {} of {}", restless, count);
-  return mean_text(values_of(impacts, [](const Impact& i) { return i.rest_s; }), 2);
-}
-
-// what ended the first of them that was ended
-std::string end_text(const std::vector<Impact>& impacts) {
-  const auto ended =
-      std::ranges::find_if(impacts, [](const Impact& impact) { return !impact.end.empty(); });
-  return ended == impacts.end() ? "" : ended->end;
-}
-
-std::vector<std::string> impact_row(double stiffness, const std::vector<Impact>& impacts) {
-  const auto mean = [&](const auto& value, int digits) {
-    return mean_text(values_of(impacts, value), digits);
-  };
-  return {fmt::format("{:g}", stiffness),
-          mean([](const Impact& i) { return i.speed; }, 2),
-          mean([](const Impact& i) { return 1e3 * i.depth; }, 1),
-          mean([](const Impact& i) { return 1e3 * i.bound; }, 1),
-          mean([](const Impact& i) { return i.depth / i.bound; }, 2),
-          mean([](const Impact& i) { return i.rebound; }, 2),
-          rest_text(impacts),
-          mean([](const Impact& i) { return 1e3 * i.last_speed; }, 0),
-          mean([](const Impact& i) { return 100.0 * i.energy_out / i.energy_in; }, 0),
-          mean([](const Impact& i) { return i.peak_force; }, 0),
-          mean([](const Impact& i) { return i.felt_force; }, 0),
-          end_text(impacts)};
-}
-
-Table impact_table(const ImpactConfig& config, double braking) {
-  return {.id = "impacts",
-          .title = "Impacts on a wall",
-          .note = fmt::format(
-              "The scenario's hand, whose goal stops at an upright wall with {:g} Ns/m, runs into "
-              "it. Speed just before it; deepest point of the handle in the first contact, and "
-              "over v^2 / (2 a) with a = {:g} m/s^2, what device.yaml lets the handle brake with; "
-              "speed at which it leaves the wall over that of the impact; when it is at rest "
-              "(slower than {:g} mm/s for good, {:g} s watched) and its largest speed in the last "
-              "{:g} s; what the wall gives back of the energy that it took, in all contacts; "
-              "largest forces of wall and person.",
-              config.damping, braking, 1e3 * config.rest_speed, config.watched_s, config.still_s),
-          .columns = {"N/m", "m/s", "deepest mm", "v^2/(2a) mm", "ratio", "rebound", "rest s",
-                      "last mm/s", "energy back %", "wall N", "person N", "ended by"}};
-}
-
-}  // namespace
-
-void add_impacts(const Group& group) {
-  const bool is_quick = group.options.is_quick;
-  const Values speeds = is_quick ? Values{0.4} : Values{0.2, 0.4, 0.83, 1.33};
-  const Values stiffness = is_quick ? Values{2000} : Values{2000, 50000};
-  ImpactConfig config;
-  if (is_quick) config.watched_s = 4.5;
-  const Values run_ups = group.measure_all("run-up", speeds.size(), [&](std::size_t i) {
-    return find_run_up(group.scenario, config, speeds[i]);
-  });
-  const std::size_t n = group.repetitions(), rows = speeds.size() * stiffness.size();
-  const auto all = group.measure_all("impacts", rows * n, [&](std::size_t i) {
-    const std::size_t row = i / n;
-    return measure_impact(group.scenario, config, stiffness[row / speeds.size()],
-                          run_ups[row % speeds.size()], group.seed(i % n));
-  });
-  Table table = impact_table(config, braking_limit(group.scenario.device));
-  Values ratio(n, 0.0), rebound(n, 0.0), restless(n, 0.0);
-  bool has_all = true;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const double k = stiffness[row / speeds.size()];
-    std::vector<Impact> impacts;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Impact& one = all[row * n + i];
-      const std::string what = fmt::format("impact at {:g} m/s on {:g} N/m, seed {}",
-                                           speeds[row % speeds.size()], k, group.seed(i));
-      if (!group.has_worked(what, one.failure)) {
-        has_all = false;
-        continue;
-      }
-      impacts.push_back(one);
-      ratio[i] = std::max(ratio[i], one.depth / one.bound);
-      rebound[i] = std::max(rebound[i], one.rebound);
-      restless[i] += std::isinf(one.rest_s) ? 1.0 : 0.0;
-    }
-    if (!impacts.empty()) table.rows.push_back(impact_row(k, impacts));
-  }
-  group.out.tables.push_back(table);
-  if (!has_all) ratio = rebound = restless = {};
-  group.out.beyond.push_back({.id = "impact_depth",
-                              .name = "Depth of an impact over v^2 / (2 a), largest",
-                              .values = ratio,
-                              .note = "of the impacts below; 1 is braking as hard as allowed"});
-  group.out.beyond.push_back({.id = "impact_rebound",
-                              .name = "Speed after an impact over that before, largest",
-                              .values = rebound,
-                              .note = "1: the wall is a perfect spring, above it drives the body"});
-  group.out.beyond.push_back({.id = "impact_restless",
-                              .name = "Impacts that do not come to rest",
-                              .digits = 1,
-                              .values = restless,
-                              .note = fmt::format("of {} within {:g} s", rows, config.watched_s)});
-}
-
-namespace {
 
 // First corner of the transparency along the worst axis, Hz; what ended a run that was pushed too
 // hard is a result.

@@ -9,6 +9,17 @@
 #include "hg/experiments/player.h"
 
 namespace hg::haptify {
+namespace {
+
+// of a free body, along its way: what limits do to its rotation is not the wall's
+double contact_power(const CycleRecord& record, double period) {
+  if (record.contact.surface < 0) return 0.0;
+  const Budget& budget = record.budget;
+  const VectorA dq = record.twin.dq_a + 0.5 * period * record.twin.ddq_a;
+  return -(budget.surface + budget.limits + budget.conflict).head<3>().dot(dq.head<3>());
+}
+
+}  // namespace
 
 config::Scenario with_script(config::Scenario scenario, const user::Script& script) {
   experiments::play_script(scenario, script);
@@ -30,15 +41,21 @@ Played play(const config::Scenario& scenario) {
     const CycleRecord& record = sample.record;
     if (record.time_s < grasp_s) continue;
     const Truth& truth = sample.truth;
-    played.instants.push_back({.time_s = record.time_s - grasp_s,
-                               .T_B_H = truth.T_B_H,
-                               .twist = truth.twist,
-                               .acceleration = truth.acceleration,
-                               .w_H = truth.w_H,
-                               .p_B_E = record.T_B_E.p,
-                               .p_ref = record.T_B_H.p,
-                               .surface = record.contact.force,
-                               .is_limited = record.felt_limit >= 0});
+    played.instants.push_back(
+        {.time_s = record.time_s - grasp_s,
+         .T_B_H = truth.T_B_H,
+         .twist = truth.twist,
+         .acceleration = truth.acceleration,
+         .w_H = truth.w_H,
+         .p_B_E = record.T_B_E.p,
+         .p_ref = record.T_B_H.p,
+         .surface = record.contact.force,
+         .contact_power = contact_power(record, 1.0 / scenario.device.rate_Hz),
+         .q_p = truth.q_p,
+         .dq_p = truth.dq_p,
+         .q_m = truth.q_m,
+         .dq_m = truth.dq_m,
+         .is_limited = record.felt_limit >= 0});
   }
   const Fault& fault = player.record().fault;
   if (fault.code != FaultCode::kNone) {

@@ -21,7 +21,7 @@ TEST(Groups, MeasurementsThatFailAreToldAndGiveNoFigure) {
         std::pair(&add_transparency, "transparency along x: "),
         std::pair(&add_force_response, "force response along x: "),
         std::pair(&add_latency, "latency, axis 0, seed 1: "),
-        std::pair(&add_impacts, "impact at 0.4 m/s on 2000 N/m, seed 1: "),
+        std::pair(&add_impacts, "impact, normal hand, 0.5 kg, 0.2 m/s on 2000 N/m: "),
         std::pair(&add_felt_mass, "felt mass, 20 N along axis 0, seed 1: "),
         std::pair(&add_rotation, "rotation, normal hand, 0.005 kg m^2: "),
         std::pair(&add_springs, "spring of 500 Nm/rad from 2 mm, seed 1: ")}) {
