@@ -15,6 +15,9 @@ namespace hg::config {
 
 enum class SurfaceShape { kPlane, kBox, kSphere, kCylinder, kMesh };
 
+inline constexpr std::array<Choice<environment::Contact>, 2> kContacts = {
+    {{"spring", environment::Contact::kSpring}, {"stop", environment::Contact::kStop}}};
+
 inline constexpr std::array<Choice<SurfaceShape>, 5> kSurfaceShapes = {
     {{"plane", SurfaceShape::kPlane},
      {"box", SurfaceShape::kBox},
@@ -70,6 +73,12 @@ void describe(V& v, std::vector<SurfaceDraft>& surfaces) {
   v.group(
       "placement", [&](auto& child) { describe(child, d.placement); },
       "of the surface in B; without it, its frame is B");
+  v.choice("contact", d.surface.contact, kContacts,
+           "spring: pushes out what enters; stop: brakes the twin before it, like its own limits");
+  const bool is_stop = d.surface.contact == environment::Contact::kStop;
+  for (const char* key : {"stiffness_N_per_m", "damping_Ns_per_m", "friction"}) {
+    v.rule(!is_stop || !v.is_given(key), key, "a surface that is a stop has no such key");
+  }
   v.number("stiffness_N_per_m", d.surface.stiffness, range_of(environment::kStiffness),
            "of the spring between handle and surface");
   v.number("damping_Ns_per_m", d.damping, range_of(environment::kDamping),

@@ -11,6 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kNear = 0.05;    // m; how far a stop looks, and twice its braking distance
+constexpr double kFlat = 1e-6;    // m; triangles that differ by less are of one plane
 constexpr double kStill = 1e-10;  // m; a proxy that moves less has arrived
 
 // Never pulls, and along the surface within the cone of friction.
@@ -27,6 +29,27 @@ Vector3d force_of(const Spread& spread, double pressed, const Vector3d& velocity
   return f_normal * spread.normal + f_tangent;
 }
 
+// Whether a point behind a triangle of a mesh is not in the solid there: next to it, around an edge
+// that is bent outwards, it is in front of another triangle, or less far behind it.
+bool is_beside(const Surface& surface, const Vector3d& point, const Facing& behind) noexcept {
+  const Mesh* mesh = std::get_if<Mesh>(&surface.shape);
+  if (mesh == nullptr) return false;
+  const Vector3d p = surface.pose.R.transpose() * (point - surface.pose.p);
+  const Vector3d normal = surface.pose.R.transpose() * behind.normal;
+  bool is_beside = false;
+  mesh->for_each_near(p, p, kBehind, [&](const Triangle& triangle) {
+    const Facing other = facing(triangle, p);
+    const bool is_less =
+        other.distance > 0.0 ? other.distance < kBehind : -other.distance < -behind.distance;
+    if (other.is_edge || !is_less) return;
+    // inwards along the other triangle's plane, from their edge, is behind it
+    const Vector3d middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
+    const double height = normal.dot(middle - (p - behind.distance * normal));
+    if (height < -kFlat) is_beside = true;
+  });
+  return is_beside;
+}
+
 }  // namespace
 
 Environment::Environment(std::vector<Surface> surfaces, double period, const Interval& mass)
@@ -37,6 +60,7 @@ Environment::Environment(std::vector<Surface> surfaces, double period, const Int
   }
   for (const Surface& surface : surfaces_) {
     check(surface);
+    has_stops_ = has_stops_ || surface.contact == Contact::kStop;
     damping_.push_back(surface.damping.value_or(critical_damping(surface.stiffness, mass, period)));
   }
 }
@@ -94,9 +118,32 @@ void Environment::give_way(const ContactReport& contact, double missing, const V
   }
 }
 
+std::array<Facing, kMostFacing> Environment::stops(const Vector3d& position,
+                                                   const Vector3d& velocity,
+                                                   double ddq_max) const noexcept {
+  FacingPlanes planes;
+  if (!position.allFinite() || !velocity.allFinite()) return planes.planes();
+  const auto way = [&](double speed) { return speed * std::abs(speed) / (2.0 * ddq_max); };
+  const double reach = kNear + 2.0 * way(velocity.norm());
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (surfaces_[i].contact != Contact::kStop) continue;
+    const Surface& surface = surfaces_[i];
+    for (const bool is_edge : {false, true}) {
+      for_each_facing(surface, position, reach, [&](Facing found) {
+        found.surface = static_cast<int>(i);
+        if (found.is_edge != is_edge || (is_edge && planes.covers(found))) return;
+        if (found.distance < 0.0 && is_beside(surface, position, found)) return;
+        planes.add(found, found.distance - way(-found.normal.dot(velocity)));
+      });
+    }
+  }
+  return planes.planes();
+}
+
 Environment::Found Environment::first_hit(const Vector3d& from, const Vector3d& to) const noexcept {
   Found first;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (surfaces_[i].contact == Contact::kStop) continue;
     const auto hit = environment::first_hit(surfaces_[i], from, to);
     if (!hit || (first.surface >= 0 && hit->share >= first.hit.share)) continue;
     first = {*hit, static_cast<int>(i)};

@@ -20,6 +20,7 @@
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/environment/cast.h"
+#include "hg/environment/nearest.h"
 #include "hg/environment/planes.h"
 #include "hg/environment/surface.h"
 #include "hg/signals/state.h"
@@ -58,6 +59,14 @@ class Environment {
 
   const std::vector<Surface>& surfaces() const noexcept { return surfaces_; }
 
+  /// Whether some surfaces are met like a stop. Those do not push.
+  bool has_stops() const noexcept { return has_stops_; }
+  /// The planes of such surfaces that a handle with this `velocity` has least to spare of, when it
+  /// brakes with `ddq_max` (m/s^2). Others, and those too far to matter, have no surface.
+  std::array<Facing, kMostFacing> stops(const Eigen::Vector3d& position,
+                                        const Eigen::Vector3d& velocity,
+                                        double ddq_max) const noexcept;
+
   /// `position` and `velocity` of the handle at the begin of a sample, `push` (N) of the person on
   /// it. The spring acts as in its
   /// middle, where the handle is half a period later; else it would give energy. A handle that
@@ -87,6 +96,7 @@ class Environment {
   std::vector<double> damping_;  ///< of each, Ns/m
   double mass_ = 0.0;            ///< of the body, kg
   double period_ = 0.0;
+  bool has_stops_ = false;
 };
 
 }  // namespace hg::environment

@@ -31,10 +31,17 @@ struct Cylinder {
 
 using Shape = std::variant<Plane, Box, Sphere, Cylinder, Mesh>;
 
+/// What becomes of a handle that comes to a surface.
+enum class Contact {
+  kSpring,  ///< it is pushed out again
+  kStop,    ///< it is braked before, and does not enter: a limit of the twin
+};
+
 struct Surface {
   std::string name;
   Shape shape;
-  Pose pose;                  ///< T_B_surface
+  Pose pose;  ///< T_B_surface
+  Contact contact = Contact::kSpring;
   double stiffness = 2000.0;  ///< N/m
   /// Ns/m. None: critical_damping(), and the surface catches what meets it,
   /// Environment::catch_it().

@@ -194,6 +194,7 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
   const StiffnessLimits limits = stiffness_limits(scenario.device, scenario.twin);
   for (std::size_t i = 0; i < scenario.surfaces.size(); ++i) {
     const environment::Surface& surface = scenario.surfaces[i];
+    if (surface.contact == environment::Contact::kStop) continue;
     const double damping = surface.damping.value_or(environment::critical_damping(
         surface.stiffness, rendering::felt_mass(scenario.twin.model).mass, limits.period));
     const std::array<std::pair<double, std::string>, 3> bounds = {

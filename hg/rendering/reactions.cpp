@@ -72,21 +72,24 @@ LimitCause cause_of(const LimitRow& row, Interval ddq, hqp::RowState state, doub
 
 }  // namespace
 
-Reactions::Reactions(const DeviceModel& device, const TwinModel& twin)
+Reactions::Reactions(const DeviceModel& device, const TwinModel& twin, int stops)
     : n_m_(device.n_m),
       n_a_(twin.chain.nv()),
       device_limits_(device.limit_count()),
-      columns_(n_a_, device_limits_ + n_a_),
+      count_(device_limits_ + n_a_ + stops),
+      columns_(n_a_, count_),
+      stop_torque_(n_a_, stops),
       rest_(VectorA::Zero(n_a_)),
       directions_(device, twin),
-      problem_(capacity_for(device_limits_ + n_a_, n_a_)),
+      problem_(capacity_for(count_, n_a_)),
       solver_(problem_.capacity()),
       solution_(problem_.capacity()) {}
 
 // torque of a unit reaction on the twin
 VectorA Reactions::torque(int limit) const noexcept {
   if (limit < device_limits_) return directions_.torque(limit);
-  return VectorA::Unit(n_a_, limit - device_limits_);
+  const int dof = limit - device_limits_;
+  return dof < n_a_ ? VectorA(VectorA::Unit(n_a_, dof)) : VectorA(stop_torque_.col(dof - n_a_));
 }
 
 VectorA Reactions::torque_of_device() const noexcept {
@@ -100,7 +103,13 @@ VectorA Reactions::torque_of_device() const noexcept {
 
 void Reactions::find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept {
   active_count_ = 0;
-  for (int limit = 0; limit < device_limits_ + n_a_; ++limit) {
+  for (int i = 0; i < stop_torque_.cols(); ++i) {
+    const int row = tasks.first_limit_row() + device_limits_ + n_a_ + i;
+    stop_torque_.col(i) =
+        Eigen::Map<const Eigen::VectorXd>(tasks.problem().coefficients(row).data(), n_m_ + n_a_)
+            .tail(n_a_);
+  }
+  for (int limit = 0; limit < count_; ++limit) {
     const auto row = static_cast<std::size_t>(tasks.acting_row(limit, solution));
     const bool acts = solution.state[row] != hqp::RowState::kInactive;
     if (!acts && value_[static_cast<std::size_t>(limit)] == 0.0) continue;
@@ -177,7 +186,7 @@ void Reactions::add_signs(const Tasks& tasks, const hqp::Solution& solution) noe
 
 // no push against idle motion of the manipulator, and the torques on the twin add up
 void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
-  std::array<double, kMaxLimits> row{};
+  std::array<double, kMaxReactions> row{};
   const std::span<const double> coefficients(row.data(), static_cast<std::size_t>(active_count_));
   problem_.add_level();
   if (n_m_ > 6) {
@@ -246,6 +255,10 @@ void Reactions::report_felt(const MatrixA& L, CycleRecord& record) const noexcep
     const int limit = active_[static_cast<std::size_t>(j)];
     const double value = value_[static_cast<std::size_t>(limit)];
     VectorA tau = torque(limit) * value;
+    if (limit >= record.limit_count) {
+      budget.surface -= tau;
+      continue;
+    }
     if (record.limits[static_cast<std::size_t>(limit)].state == LimitState::kViolated) {
       budget.conflict -= tau;
     } else {

@@ -22,7 +22,8 @@ namespace hg::rendering {
 
 class Reactions {
  public:
-  Reactions(const DeviceModel& device, const TwinModel& twin);
+  /// Of `stops` rows of virtual surfaces besides the limits of the catalogue.
+  Reactions(const DeviceModel& device, const TwinModel& twin, int stops = 0);
 
   /// Takes the Jacobians of this cycle, see ConstraintDirections; before split() and report().
   void update(const model::Jacobian& J_H, const model::Jacobian& J_a) noexcept {
@@ -35,7 +36,8 @@ class Reactions {
   void split(const Tasks& tasks, const hqp::Solution& solution,
              const VectorA& tau_constraint) noexcept;
 
-  /// Constraint force or torque of a limit in its own coordinate.
+  /// Constraint force or torque of a limit in its own coordinate, of stop i that of limit
+  /// catalogue size + i.
   double of(int limit) const noexcept { return value_[static_cast<std::size_t>(limit)]; }
 
   /// Torque of all limits of the device on the twin (n_a).
@@ -55,12 +57,16 @@ class Reactions {
   VectorA torque(int limit) const noexcept;
   void report_felt(const MatrixA& L, CycleRecord& record) const noexcept;
 
+  static constexpr int kMaxReactions = kMaxLimits + environment::kMostFacing;
+
   int n_m_, n_a_, device_limits_;
-  std::array<double, kMaxLimits> value_{};
-  std::array<int, kMaxLimits> active_{};  ///< limits that may have a reaction
+  int count_;  ///< of all limits and stops
+  std::array<double, kMaxReactions> value_{};
+  std::array<int, kMaxReactions> active_{};  ///< limits that may have a reaction
   int active_count_ = 0;
-  std::array<double, kMaxLimits> scale_{};    ///< of active limit j, in the split
-  MatrixUpTo<kMaxTwin, kMaxLimits> columns_;  ///< its torque on the twin per unit of the split
+  std::array<double, kMaxReactions> scale_{};    ///< of active limit j, in the split
+  MatrixUpTo<kMaxTwin, kMaxReactions> columns_;  ///< its torque on the twin per unit of the split
+  MatrixUpTo<kMaxTwin, environment::kMostFacing> stop_torque_;  ///< of a unit reaction of each
   VectorA rest_;  ///< part of the constraint torque that nothing explains
   ConstraintDirections directions_;
   hqp::Problem problem_;

@@ -114,20 +114,37 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
   check(twin);
 }
 
+namespace {
+
+void check_stops(const DeviceModel& device, const Options& options) {
+  if (options.law != Law::kGauss || options.bounds != Bounds::kRecoverable) {
+    throw SetupError("surfaces with 'contact: stop' need law gauss with bounds recoverable");
+  }
+  if (!std::isfinite(stop_rating(device))) {
+    throw SetupError(
+        "surfaces with 'contact: stop' need a Cartesian limit of the handle with ddq_max in "
+        "device.yaml: with it the handle brakes before them");
+  }
+}
+
+}  // namespace
+
 Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
                      environment::Environment environment)
     : device_((check(device, twin, options), std::move(device))),
       twin_(std::move(twin)),
       options_(options),
       environment_(std::move(environment)),
-      tasks_(device_, twin_, options_),
-      reactions_(device_, twin_),
+      stop_rating_(stop_rating(device_)),
+      tasks_(device_, twin_, options_, environment_.has_stops()),
+      reactions_(device_, twin_, tasks_.stop_count()),
       L_(twin_.chain.nv(), twin_.chain.nv()),
       J_H_(6, device_.chain.nv()),
       J_a_(6, twin_.chain.nv()),
       solver_(tasks_.problem().capacity()),
       solution_(tasks_.problem().capacity()),
       kept_problems_(std::make_unique<hqp::KeptProblems>(tasks_.problem().capacity())) {
+  if (environment_.has_stops()) check_stops(device_, options_);
   solver_options_.max_iterations =
       std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
   limit_solver(0);
@@ -210,6 +227,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
                                            tasks_.first_limit_row(), tasks_.limit_row_count());
   if (!is_released) catch_reversals(state.twin, options_.dt, state.inner);
   give_way(state, record);
+  if (environment_.has_stops()) report_stops(record);
   report_kinematics(state, record);
   ended_(Stage::kReactions);
   return record.solver_status;
@@ -219,10 +237,26 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
 void Rendering::feel_surfaces(State& state, double share, CycleRecord& record) noexcept {
   const Eigen::Vector3d p_E = twin_.chain.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
+  if (environment_.has_stops()) stops_ = environment_.stops(p_E, v_E, stop_rating_);
   record.contact = environment_.step(p_E, v_E, record.robot.w_H.head<3>(), state.contact);
   if (record.contact.surface < 0) return;
   record.contact.force *= share;
   record.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * record.contact.force;
+}
+
+// The reactions of stops are forces of their surfaces.
+void Rendering::report_stops(CycleRecord& record) const noexcept {
+  const int first = device_.limit_count() + twin_.chain.nv();
+  double most = record.contact.force.norm();
+  for (int i = 0; i < tasks_.stop_count(); ++i) {
+    const environment::Facing& stop = stops_[static_cast<std::size_t>(i)];
+    const double force = reactions_.of(first + i);
+    if (stop.surface < 0 || force == 0.0) continue;
+    record.contact.force += force * stop.normal;
+    if (force <= most) continue;
+    most = force;
+    record.contact.surface = stop.surface;
+  }
 }
 
 // What the limits of the device take of the force of a surface, the surface does not push with.
@@ -285,7 +319,7 @@ bool Rendering::stay_near(const RobotState& robot, double largest, State& state)
 void Rendering::solve(State& state, double handle_speed, const GantryTask& gantry,
                       CycleRecord& record) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
-  const int first_twin_limit = static_cast<int>(tasks_.limit_rows().size()) - n_a;
+  const int first_twin_limit = device_.limit_count();
   record.solver_iterations = 0;
   bool was_spent = false;  // by a solve of this cycle
   for (int attempt = 0; attempt <= n_a; ++attempt) {
@@ -304,6 +338,7 @@ void Rendering::solve(State& state, double handle_speed, const GantryTask& gantr
                  .J_H = J_H_,
                  .J_a = J_a_,
                  .directions = reactions_.directions(),
+                 .stops = stops_,
                  .tau = tau,
                  .handle_speed = handle_speed});
     ended_(Stage::kRenderingSetUp);

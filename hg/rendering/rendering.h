@@ -5,6 +5,7 @@
 /// No allocation, noexcept after construction.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -123,13 +124,16 @@ class Rendering {
   void give_way(State& state, const CycleRecord& record) const noexcept;
   void solve(State& state, double handle_speed, const GantryTask& gantry,
              CycleRecord& record) noexcept;
+  void report_stops(CycleRecord& record) const noexcept;
   void report_kinematics(const State& state, CycleRecord& record) const noexcept;
 
   DeviceModel device_;
   TwinModel twin_;
   Options options_;
   environment::Environment environment_;
+  double stop_rating_;
   Tasks tasks_;
+  std::array<environment::Facing, environment::kMostFacing> stops_;  ///< of this cycle
   Reactions reactions_;
   // of this cycle: M_a = L L^T, the Jacobians of handle (gantry first) and end effector
   MatrixA L_;

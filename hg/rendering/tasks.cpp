@@ -19,10 +19,10 @@ int led_axes(const DeviceModel& device, const Options& options) noexcept {
   return options.law == Law::kGauss && options.gantry == Gantry::kLaw ? device.n_p : 0;
 }
 
-hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
-                          const Options& options) {
+hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin, const Options& options,
+                          int stops) {
   const int n_m = device.n_m, n_a = twin.chain.nv();
-  const int limits = device.limit_count() + n_a;
+  const int limits = device.limit_count() + n_a + stops;
   const int frames = static_cast<int>(device.cartesian_limits.size());
   hqp::Capacity capacity{.variables = n_m + n_a, .levels = 5 + frames, .rows = 6 + limits + n_a};
   if (options.bounds == Bounds::kPaper) {
@@ -58,14 +58,24 @@ LimitRow make_row(const limits::JointLimits& limits, double margin, double dt) {
 
 }  // namespace
 
-Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options)
+double stop_rating(const DeviceModel& device) {
+  double rating = kInfinity;
+  for (const limits::JointLimits& axis : handle_limits(device)) {
+    rating = std::min(rating, axis.ddq_max);
+  }
+  return rating;
+}
+
+Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
+             bool has_stops)
     : options_(options),
       n_m_(device.n_m),
       n_a_(twin.chain.nv()),
       n_g_(led_axes(device, options)),
+      stop_count_(has_stops ? environment::kMostFacing : 0),
       knows_torques_(!device.motors.empty()),
       first_motor_(n_m_ + static_cast<int>(device.virtual_joints.size())),
-      problem_(capacity_of(device, twin, options)),
+      problem_(capacity_of(device, twin, options, stop_count_)),
       coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0) {
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
   problem_.clear(problem_.capacity().variables);
@@ -109,6 +119,11 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   problem_.add_level();
   for (int i = 0; i < n_a_; ++i) {
     add_limit(twin.dofs[static_cast<std::size_t>(i)].limits, n_m_ + i, 0.0);
+  }
+  for (int i = 0; i < stop_count_; ++i) {
+    add_limit({.q_min = 0.0, .ddq_max = stop_rating(device)}, -1, 0.0);
+    if (knows_torques_) limit_rows_.back().options.tau_onset = kTwinBrakingOnset;
+    limit_rows_.back().options.is_capped = false;
   }
   if (options_.bounds == Bounds::kPaper) {
     problem_.add_level();
@@ -161,6 +176,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   fill_device_limits(device, input);
   if (knows_torques_) fill_motors(device, input);
   fill_twin_limits(twin, input);
+  if (stop_count_ > 0) fill_stops(twin, input);
 
   const VectorA tau = input.tau - twin.chain.c();
   if (paper_) {
@@ -309,7 +325,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
 }
 
 void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept {
-  const int first = static_cast<int>(limit_rows_.size()) - n_a_;
+  const int first = static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_;
   for (int i = 0; i < n_a_; ++i) {
     const TwinDof& dof = twin.dofs[static_cast<std::size_t>(i)];
     const double q = dof.q_index >= 0 ? input.twin.q_a[dof.q_index] : 0.0;
@@ -363,6 +379,29 @@ void Tasks::fill_gantry(const TaskInput& input) noexcept {
   }
 }
 
+// The distance d of E to a plane in front of it, d'' = n^T (J_a ddq_a + dJ_a dq_a): the solid
+// curves away from its plane, so that this is the least.
+void Tasks::fill_stops(const TwinModel& twin, const TaskInput& input) noexcept {
+  const int first = static_cast<int>(limit_rows_.size()) - stop_count_;
+  const auto J = input.J_a.topRows<3>();
+  const Eigen::Vector3d velocity = J * input.twin.dq_a;
+  const Vector6 bias = twin.chain.bias_acceleration(twin.end_effector);
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  for (int i = 0; i < stop_count_; ++i) {
+    const environment::Facing& stop = input.stops[static_cast<std::size_t>(i)];
+    if (stop.surface < 0) {
+      limit_rows_[static_cast<std::size_t>(first + i)].ddq = {};
+      problem_.set_bounds(first_limit_row() + first + i, {});
+      continue;
+    }
+    row.segment(n_m_, n_a_) = J.transpose() * stop.normal;
+    problem_.set_row(first_limit_row() + first + i, coefficients_);
+    set_limit(first + i, limit_rows_[static_cast<std::size_t>(first + i)].limits, stop.distance,
+              stop.normal.dot(velocity), stop.normal.dot(bias.head<3>()));
+  }
+}
+
 // Gauss: minimise |L^T ddq_a - L^-1 (tau - c)|^2 = (ddq_a - ddq_free)^T M (ddq_a - ddq_free)
 void Tasks::fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept {
   VectorA b = tau;
@@ -411,7 +450,7 @@ void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
 
 bool Tasks::keeps_limits_of_device(const hqp::Solution& solution) const noexcept {
   constexpr double kMet = 1e-6;  // rad/s^2 or m/s^2
-  const int count = static_cast<int>(limit_rows_.size()) - n_a_;
+  const int count = static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_;
   for (int limit = 0; limit < count; ++limit) {
     for (const int row :
          {first_limit_row() + limit, limit_rows_[static_cast<std::size_t>(limit)].rating_row}) {

@@ -8,7 +8,7 @@
 ///   then            virtual joints (singularity)
 ///   then            torques of the motors, where the law knows them; motor_torque.h
 ///   then            Cartesian limits, a level per frame
-///   then            twin joints and locks
+///   then            twin joints and locks, virtual surfaces that are stops
 ///   bounds paper    acceleration ratings of the manipulator joints, then of the twin joints
 ///   law gauss       L^T ddq_a = L^-1 tau with M_a = L L^T; x = (ddq_m, ddq_a, ddq_p)
 ///                   aim of the gantry, where the law leads it
@@ -22,6 +22,7 @@
 #include <optional>
 #include <vector>
 
+#include "hg/environment/nearest.h"
 #include "hg/hqp/problem.h"
 #include "hg/hqp/solution.h"
 #include "hg/limits/acceleration_bounds.h"
@@ -67,14 +68,21 @@ struct TaskInput {
   const model::Jacobian& J_H;        ///< of the handle, gantry first
   const model::Jacobian& J_a;        ///< of the twin's end effector
   ConstraintDirections& directions;  ///< of J_H and J_a; found by law paper
+  const std::array<environment::Facing, environment::kMostFacing>& stops;
   VectorA tau;  ///< all torques on the twin that are not constraints, without c_a
   /// Largest speed of H along each axis of B, where the device limits H, m/s.
   double handle_speed = kInfinity;
 };
 
+/// With which the handle brakes before a virtual surface that is a stop: the least of its ratings,
+/// m/s^2.
+double stop_rating(const DeviceModel& device);
+
 class Tasks {
  public:
-  Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options);
+  /// `has_stops`: there are virtual surfaces that the end effector of the twin must not enter.
+  Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
+        bool has_stops = false);
 
   /// Writes all rows. `device` and `twin` are the models given to the constructor, with updated
   /// chains.
@@ -83,6 +91,8 @@ class Tasks {
   const hqp::Problem& problem() const noexcept { return problem_; }
   const std::vector<LimitRow>& limit_rows() const noexcept { return limit_rows_; }
   int first_limit_row() const noexcept { return coupling_row_ + 6; }
+  /// Rows of virtual surfaces that are stops, after the limits of the catalogue, and like them.
+  int stop_count() const noexcept { return stop_count_; }
   /// Rows of limits follow each other from first_limit_row() on: bounds, then acceleration ratings.
   int limit_row_count() const noexcept { return limit_row_count_; }
   /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
@@ -123,6 +133,7 @@ class Tasks {
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
   void fill_gantry(const TaskInput& input) noexcept;
+  void fill_stops(const TwinModel& twin, const TaskInput& input) noexcept;
   void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;
   void fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept;
   void fill_ranges(const TaskInput& input) noexcept;
@@ -133,6 +144,7 @@ class Tasks {
   Options options_;
   int n_m_, n_a_;
   int n_g_;  ///< axes of the gantry that the law leads
+  int stop_count_;
   bool knows_torques_;
   bool are_torques_known_ = false;  ///< in this cycle
   int first_motor_;                 ///< limit

@@ -40,7 +40,7 @@ TEST(Surfaces, HaveShapePlaceAndFeel) {
           "  - {name: c, shape: sphere, radius_m: 0.2, placement: {x_m: 9, yaw_rad: 1.570796}}\n"
           "  - {name: d, shape: cylinder, radius_m: 0.1, length_m: 0.4, placement: {x_m: 9},\n"
           "     stiffness_N_per_m: 500, damping_Ns_per_m: 7}\n"
-          "  - {name: e, shape: mesh, mesh: plate.stl, scale: 0.001}\n")
+          "  - {name: e, shape: mesh, mesh: plate.stl, scale: 0.001, contact: stop}\n")
           .surfaces;
   ASSERT_EQ(surfaces.size(), 5U);
   EXPECT_TRUE(std::holds_alternative<environment::Plane>(surfaces[0].shape));
@@ -53,6 +53,9 @@ TEST(Surfaces, HaveShapePlaceAndFeel) {
   EXPECT_EQ(std::get<environment::Cylinder>(surfaces[3].shape).length, 0.4);
   EXPECT_EQ(surfaces[3].stiffness, 500.0);
   EXPECT_EQ(surfaces[3].damping, 7.0);
+  EXPECT_FALSE(surfaces[0].damping);
+  EXPECT_EQ(surfaces[0].contact, environment::Contact::kSpring);
+  EXPECT_EQ(surfaces[4].contact, environment::Contact::kStop);
   const auto& mesh = std::get<environment::Mesh>(surfaces[4].shape);
   ASSERT_EQ(mesh.triangles().size(), 1U);
   EXPECT_EQ(mesh.triangles()[0].corners[1], Eigen::Vector3d(1, 0, 0));
@@ -72,6 +75,8 @@ TEST(Surfaces, AreRefusedWithTheirPlace) {
             "models/scenarios/bad.stl:2: a number is expected after 'vertex', got 'zero'");
   EXPECT_EQ(message("{name: a, stiffness_N_per_m: 1e6}"),
             at + "34: surfaces[0].stiffness_N_per_m: must be 10 .. 50000, got 1e6");
+  EXPECT_EQ(message("{name: a, placement: {z_m: -5}, contact: stop, friction: 0.1}"),
+            at + "5: surfaces[0].friction: a surface that is a stop has no such key");
   EXPECT_EQ(message("{name: a, placement: {z_m: -5}}\n  - {name: a, placement: {z_m: -5}}"),
             "models/scenarios/run.yaml:9:12: surfaces[1].name: surfaces must not use a name twice");
   EXPECT_EQ(message("{name: a, placement: {z_m: 50}}"),

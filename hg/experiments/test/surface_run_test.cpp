@@ -16,18 +16,21 @@ namespace {
 struct Pressed {
   double stiffness = 0.0;  // true force of the hand over true depth of the handle, N/m
   double force = 0.0;      // largest, N
-  double shaking = 0.0;    // rms of the true speed of the handle in the last second, m/s
+  double shaking = 0.0;    // rms of the true speed of the handle in the last half second, m/s
+  double depth = 0.0;      // largest, of the true handle, m
   FaultCode fault = FaultCode::kNone;
 };
 
 // A plane 20 mm below the start, onto which a hand goes down until it presses with `force`, and
 // holds for 2 s.
-Pressed press(double stiffness, double damping, user::HandPreset preset, double force = 20.0) {
+Pressed press(double stiffness, double damping, user::HandPreset preset, double force = 20.0,
+              environment::Contact contact = environment::Contact::kSpring) {
   config::Scenario scenario = config::load_scenario("models/scenarios/free_space.yaml");
   const Eigen::Vector3d start = assembly::handle_start(scenario.twin.model).p;
   environment::Surface table = {
       .name = "table", .shape = environment::Plane{}, .stiffness = stiffness, .damping = damping};
   table.pose.p.z() = start.z() - 0.02;
+  table.contact = contact;
   scenario.surfaces = {table};
   user::HandImpedance& hand = scenario.script.hand;
   hand = user::hand(preset);
@@ -47,6 +50,7 @@ Pressed press(double stiffness, double damping, user::HandPreset preset, double 
     const Truth& truth = player.truth();
     const double f = -truth.w_H.z(), depth = table.pose.p.z() - truth.T_B_H.p.z();
     if (record.contact.surface >= 0) pressed.force = std::max(pressed.force, f);
+    pressed.depth = std::max(pressed.depth, depth);
     if (record.time_s < 5.5) continue;
     sum_fd += f * depth;
     sum_dd += depth * depth;
@@ -67,6 +71,15 @@ TEST(SurfaceRun, TableFeelsAsStiffAsItIs) {
     EXPECT_LT(pressed.shaking, 2e-3) << stiffness;
     EXPECT_GT(pressed.force, 15.0) << stiffness;
   }
+}
+
+TEST(SurfaceRun, AStopCarriesAHandCalmly) {
+  const Pressed pressed =
+      press(5e4, 0.0, user::HandPreset::kNormal, 50.0, environment::Contact::kStop);
+  EXPECT_EQ(pressed.fault, FaultCode::kNone);
+  EXPECT_GT(pressed.force, 40.0);
+  EXPECT_LT(pressed.shaking, 2e-3);
+  EXPECT_LT(pressed.depth, 1.5e-3);  // what the joints give under 50 N; the twin is not inside
 }
 
 }  // namespace

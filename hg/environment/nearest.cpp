@@ -1,0 +1,103 @@
+#include "hg/environment/nearest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace hg::environment {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kOnIt = 1e-9;       // m; from here no direction of the way to a point is known
+constexpr double kBeside = 1e-3;     // m; what is so near to a triangle is over it
+constexpr double kBent = 1e-6;       // m
+constexpr double kParallel = 0.999;  // cosine between normals
+
+Vector3d nearest_on(const Triangle& triangle, const Vector3d& p) noexcept {
+  const auto& corners = triangle.corners;
+  const double height = triangle.normal.dot(p - corners[0]);
+  const Vector3d foot = p - height * triangle.normal;
+  bool is_over = true;
+  double least = kInfinity;
+  Vector3d nearest = foot;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3d edge = corners[(i + 1) % 3] - corners[i];
+    if (edge.cross(p - corners[i]).dot(triangle.normal) >= -kBeside * edge.norm()) continue;
+    is_over = false;
+    const double share = std::clamp(edge.dot(p - corners[i]) / edge.squaredNorm(), 0.0, 1.0);
+    const Vector3d point = corners[i] + share * edge;
+    const double distance = (p - point).norm();
+    if (distance < least) {
+      least = distance;
+      nearest = point;
+    }
+  }
+  return is_over ? foot : nearest;
+}
+
+}  // namespace
+
+Facing facing(const Plane&, const Vector3d& p) noexcept { return {Vector3d::UnitZ(), p.z()}; }
+
+Facing facing(const Box& box, const Vector3d& p) noexcept {
+  const Vector3d half = 0.5 * box.size;
+  const Vector3d away = p - p.cwiseMax(-half).cwiseMin(half);
+  const double distance = away.norm();
+  if (distance > kOnIt) return {away / distance, distance};
+  Eigen::Index axis = 0;
+  const double height = (p.cwiseAbs() - half).maxCoeff(&axis);
+  return {std::copysign(1.0, p[axis]) * Vector3d::Unit(axis), height};
+}
+
+Facing facing(const Sphere& sphere, const Vector3d& p) noexcept {
+  const double r = p.norm();
+  return {r > kOnIt ? Vector3d(p / r) : Vector3d::UnitZ(), r - sphere.radius};
+}
+
+Facing facing(const Cylinder& cylinder, const Vector3d& p) noexcept {
+  const double r = p.head<2>().norm();
+  const Vector2d out = r > kOnIt ? Vector2d(p.head<2>() / r) : Vector2d::UnitX();
+  const double beside = r - cylinder.radius, above = std::abs(p.z()) - 0.5 * cylinder.length;
+  const double side = std::copysign(1.0, p.z());
+  if (beside > 0.0 && above > 0.0) {
+    const double distance = std::hypot(beside, above);
+    return {Vector3d(beside * out.x(), beside * out.y(), above * side) / distance, distance};
+  }
+  if (beside > above) return {Vector3d(out.x(), out.y(), 0.0), beside};
+  return {side * Vector3d::UnitZ(), above};
+}
+
+Facing facing(const Triangle& triangle, const Vector3d& p) noexcept {
+  const double height = triangle.normal.dot(p - triangle.corners[0]);
+  if (height < -kBehind) return {};
+  const Vector3d away = p - nearest_on(triangle, p);
+  const double distance = away.norm();
+  // over it, or touching it: its own plane, from whatever side
+  if (distance <= std::abs(height) + kOnIt) return {triangle.normal, height};
+  return height > 0.0 ? Facing{away / distance, distance, -1, true} : Facing{};
+}
+
+bool FacingPlanes::covers(const Facing& edge) const noexcept {
+  return std::ranges::any_of(planes_, [&](const Facing& plane) {
+    if (plane.surface != edge.surface || plane.is_edge) return false;
+    return plane.distance - edge.distance * plane.normal.dot(edge.normal) < kBent;
+  });
+}
+
+void FacingPlanes::add(const Facing& facing, double to_spare) noexcept {
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    if (planes_[i].surface < 0 || planes_[i].normal.dot(facing.normal) < kParallel) continue;
+    if (to_spare >= to_spare_[i]) return;
+    planes_[i] = facing;
+    to_spare_[i] = to_spare;
+    return;
+  }
+  const auto loosest = std::ranges::max_element(to_spare_);
+  if (to_spare >= *loosest) return;
+  planes_[static_cast<std::size_t>(loosest - to_spare_.begin())] = facing;
+  *loosest = to_spare;
+}
+
+}  // namespace hg::environment
