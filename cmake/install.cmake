@@ -2,7 +2,7 @@
 # find_package(hapticgiant COMPONENTS ...) gives hapticgiant::MODULE; docs/packages.md.
 #
 # Everything but what only the program needs.
-set(HG_PACKAGE core signals model collision environment limits hqp estimation rendering passivity prepositioning control safety
+set(HG_PACKAGE core signals model collision environment limits hqp estimation rendering passivity compliance prepositioning control safety
   cycle user simulation injection device runtime evaluation config assembly)
 # headers that only their own module includes; Eigen or YAML show in them
 set(HG_PRIVATE_HEADERS

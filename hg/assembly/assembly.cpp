@@ -124,14 +124,29 @@ simulation::Config device_simulation(const config::Device& device, const Start& 
   return config;
 }
 
-simulation::Simulation simulation_of(const config::Device& device, const Start& start,
-                                     user::Person person) {
+// Throws SetupError where nobody can be hit.
+void place(const config::BystanderInTheWay& bystander, const model::Chain& chain,
+           simulation::Config& simulation) {
+  auto* plant = std::get_if<simulation::PlantConfig>(&simulation.plant);
+  if (plant == nullptr) {
+    throw SetupError(
+        "bystander: only elastic joints can hit somebody, here the drives follow positions: leave "
+        "it out, or run with --plant elastic");
+  }
+  plant->bystander = bystander.config;
+  plant->bystander->frame = chain.frame(bystander.hit_by);
+}
+
+simulation::Simulation simulation_of(
+    const config::Device& device, const Start& start, user::Person person,
+    const std::optional<config::BystanderInTheWay>& bystander = {}) {
   const model::Chain& chain =
       device.simulation.chain ? *device.simulation.chain : device.model.chain;
   const std::string& handle =
       device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
-  return simulation::Simulation(device_simulation(device, start), chain, chain.frame(handle),
-                                std::move(person));
+  simulation::Config config = device_simulation(device, start);
+  if (bystander) place(*bystander, chain, config);
+  return simulation::Simulation(config, chain, chain.frame(handle), std::move(person));
 }
 
 bool has_noise(const simulation::SensorsConfig& sensors) {
@@ -198,6 +213,17 @@ control::Config checked_control(const config::Device& device) {
   return control;
 }
 
+compliance::Config compliance_of(const config::Device& device) {
+  compliance::Config compliance = device.compliance;
+  compliance.dt = device.rendering.dt;
+  if (device.control.method == control::Method::kDrives) return compliance;
+  compliance.torque_max.resize(device.model.n_m);
+  for (int i = 0; i < device.model.n_m; ++i) {
+    compliance.torque_max[i] = device.control.actuators[static_cast<std::size_t>(i)].torque_max;
+  }
+  return compliance;
+}
+
 }  // namespace
 
 bool notices_frozen_sensors(const config::Device& device) {
@@ -226,6 +252,7 @@ cycle::Cycle make_cycle(const config::Scenario& scenario) {
                        .sanitiser = device.sanitiser,
                        .collision = device.collision,
                        .passivity = device.passivity,
+                       .compliance = compliance_of(device),
                        .surfaces = scenario.surfaces},
                       device.model, scenario.twin.model);
 }
@@ -240,7 +267,7 @@ user::Person make_person(const config::Scenario& scenario, const Start& start) {
 
 simulation::Simulation make_simulation(const config::Scenario& scenario) {
   const Start start = find_start(scenario);
-  return simulation_of(scenario.device, start, make_person(scenario, start));
+  return simulation_of(scenario.device, start, make_person(scenario, start), scenario.bystander);
 }
 
 simulation::Simulation make_unheld_simulation(const config::Device& device, const Start& start) {

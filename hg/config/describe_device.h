@@ -50,6 +50,7 @@ struct DeviceDraft {
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
   passivity::Config passivity;
+  compliance::Config compliance;
   StartTestConfig start_test;
   std::vector<std::string> input_names{kSafetyInputNames.begin(), kSafetyInputNames.end()};
   bool watches_collisions = true;

@@ -220,6 +220,14 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       },
       "energy and oscillation at the handle, docs/passivity.md");
   v.group(
+      "compliance",
+      [&](auto& child) {
+        child.flag("is_on", d.compliance.is_on,
+                   "arm and gantry give way to what touches the arm, before the device stops; only "
+                   "with torque sensors in the joints");
+      },
+      "contact anywhere along the arm, docs/compliance.md");
+  v.group(
       "collision",
       [&](auto& child) {
         child.flag("is_watched", d.watches_collisions,

@@ -361,6 +361,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .monitor = draft.monitor,
                    .sanitiser = draft.sanitiser,
                    .passivity = draft.passivity,
+                   .compliance = draft.compliance,
                    .start_test = draft.start_test,
                    .collision = {.safe_distance = draft.safe_distance},
                    .unknown_links = {},

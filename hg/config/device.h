@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hg/collision/guard.h"
+#include "hg/compliance/compliance.h"
 #include "hg/config/faults.h"
 #include "hg/config/simulation.h"
 #include "hg/config/sources.h"
@@ -46,6 +47,7 @@ struct Device {
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
   passivity::Config passivity;
+  compliance::Config compliance;  ///< without period and torques of the joints
   StartTestConfig start_test;
   collision::Config collision;             ///< no shapes: not watched
   std::vector<std::string> unknown_links;  ///< moving, whose shape nobody knows

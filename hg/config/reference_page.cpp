@@ -1,5 +1,6 @@
 #include "hg/config/reference_page.h"
 
+#include "hg/config/describe_bystander.h"
 #include "hg/config/describe_changes.h"
 #include "hg/config/describe_control.h"
 #include "hg/config/describe_device.h"
@@ -111,6 +112,8 @@ std::string scenario_table() {
   describe_injections(writer, injections);
   std::vector<SurfaceDraft> surfaces;
   describe_surfaces(writer, surfaces);
+  BystanderDraft bystander;
+  describe_bystander(writer, bystander);
   return writer.table();
 }
 

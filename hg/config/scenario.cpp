@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "hg/config/describe_bystander.h"
 #include "hg/config/describe_changes.h"
 #include "hg/config/describe_injections.h"
 #include "hg/config/describe_panel.h"
@@ -73,11 +74,17 @@ std::vector<environment::Surface> load_surfaces(Loader& loader, LoaderFile& file
   return surfaces;
 }
 
+std::optional<BystanderInTheWay> in_the_way(BystanderDraft draft) {
+  if (!draft.bystander) return {};
+  return BystanderInTheWay{*draft.bystander, std::move(draft.hit_by)};
+}
+
 Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   ScenarioDraft draft;
   ChangesDraft changes;
   InjectionsDraft injections;
+  BystanderDraft bystander;
   std::vector<environment::Surface> surfaces;
   std::vector<TimedPanel> panel;
   std::optional<Device> device;
@@ -106,6 +113,8 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
     injections = injections_of(draft.names.manipulator, draft.names.gantry);
     describe_injections(loader, injections);
     surfaces = load_surfaces(loader, file, twin->model);
+    bystander = bystander_of(device->model.chain.frame_names());
+    describe_bystander(loader, bystander);
   });
 
   return {.title = draft.title,
@@ -121,6 +130,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
           .panel = std::move(panel),
           .faults = std::move(injections.injections),
           .surfaces = std::move(surfaces),
+          .bystander = in_the_way(std::move(bystander)),
           .sources = reader.texts(),
           .places = std::move(file.places)};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,16 @@
 #include "hg/signals/limit.h"
 #include "hg/signals/timed_changes.h"
 #include "hg/signals/timed_panel.h"
+#include "hg/simulation/bystander.h"
 #include "hg/user/person.h"
 
 namespace hg::config {
+
+/// Somebody who stands in the way of the simulated arm.
+struct BystanderInTheWay {
+  simulation::BystanderConfig config;  ///< without its frame
+  std::string hit_by;                  ///< that frame: a link of the device's URDF
+};
 
 struct Scenario {
   std::string title;
@@ -34,8 +42,9 @@ struct Scenario {
   std::vector<TimedPanel> panel;               ///< of the operator, likewise
   std::vector<injection::Injection> faults;    ///< on purpose
   std::vector<environment::Surface> surfaces;  ///< that the twin meets
-  std::vector<SourceText> sources;             ///< of all files, the scenario first
-  Places places;                               ///< of the keys of the YAML file
+  std::optional<BystanderInTheWay> bystander;
+  std::vector<SourceText> sources;  ///< of all files, the scenario first
+  Places places;                    ///< of the keys of the YAML file
 };
 
 /// Throws SetupError with the faults of the scenario, its device, twin and script, one per line.

@@ -173,6 +173,18 @@ void JointControl::step(const ReferenceState& now, const ReferenceState& next,
   report.latency_s = state.latency * config_.dt;
 }
 
+// The reference is so near to the joints that its mass matrix is theirs.
+JointControl::JointTorques JointControl::joint_torques(const RobotState& robot,
+                                                       const VectorM& ddq) const noexcept {
+  const VectorM ahead = ddq - ddq_r_;
+  VectorM needed = link_torque_;
+  needed.noalias() += chain_.M().bottomRightCorner(n_m_, n_m_).lazyProduct(ahead);
+  const model::Jacobian& J = chain_.jacobian(handle_);
+  const VectorM of_user = J.rightCols(n_m_).transpose().lazyProduct(robot.w_H);
+  return {.external = needed - robot.tau_m,
+          .motion = (needed + of_user).cwiseAbs() + of_user.cwiseAbs()};
+}
+
 // Torques of the springs that move the links as the reference says, [C] 1.
 VectorM JointControl::link_torque(const ReferenceState& reference,
                                   const RobotState& robot) noexcept {
@@ -209,6 +221,8 @@ JointControl::Feedforward JointControl::feedforward(const ReferenceState& refere
                                                     const RobotState& robot,
                                                     State& state) noexcept {
   const VectorM tau = link_torque(reference, robot);
+  link_torque_ = tau;
+  ddq_r_ = reference.ddq_m;
   state.unexplained += config_.dt / kUnexplained_s * (robot.tau_m - tau - state.unexplained);
   follow_torque(fed(tau), state);
   return {.tau = state.tau_r,

@@ -100,6 +100,15 @@ class JointControl {
   void step(const ReferenceState& now, const ReferenceState& next, const RobotState& robot,
             State& state, CommandFrame& command, TrackingReport& report) noexcept;
 
+  /// Torques on the joints, Nm.
+  struct JointTorques {
+    VectorM external;  ///< that neither motion nor user explain: something touches the arm
+    VectorM motion;    ///< that move and hold it by the model, and the user's
+  };
+  /// In the step() just done, with the measured acceleration `ddq` of the links instead of that of
+  /// the reference. Only with torque control.
+  JointTorques joint_torques(const RobotState& robot, const VectorM& ddq) const noexcept;
+
  private:
   /// Reference minus measured, at the time of the sample.
   struct Errors {
@@ -131,7 +140,8 @@ class JointControl {
   model::Chain chain_;
   int n_p_, n_m_, handle_;
   VectorM K_, sqrt_K_, Jm_;
-  VectorM feed_max_;  ///< largest torque that is fed forward, Nm
+  VectorM feed_max_;             ///< largest torque that is fed forward, Nm
+  VectorM link_torque_, ddq_r_;  ///< of this step: what link_torque() gave, and for which ddq
 };
 
 }  // namespace hg::control

@@ -166,6 +166,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
 
   // control -> sanitiser
   write_command(sensors, operator_input, command, record);
+  feel_touch(command.enable, record);
   ended_(Stage::kControl);
   sanitise(command, record);
   ended_(Stage::kSafety);
@@ -309,6 +310,35 @@ void Cycle::watch_energy(CycleRecord& record) noexcept {
   if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
 }
 
+// What touches the arm pushes twin and gantry from the next cycle on. It is felt for where the
+// control knows torques, while the law moves the arm; a stop for any other cause does not give way.
+void Cycle::feel_touch(bool is_on, CycleRecord& record) noexcept {
+  const safety::SupervisorState& supervisor = state_.supervisor;
+  const bool is_stopped_by_it = supervisor.fault.code == FaultCode::kTorqueUnexplained;
+  const bool gives_way = supervisor.mode() == Mode::kRunning ||
+                         (supervisor.mode() == Mode::kStopping && is_stopped_by_it);
+  compliance::State& touch = state_.touch;
+  const VectorM& dq = record.robot.dq_m;
+  const bool is_known = config_.compliance.torque_max.size() == dq.size() && dq.size() > 0;
+  if (!config_.compliance.is_on || !is_on || !gives_way || !is_known || state_.brakes_joints) {
+    touch = {};
+    state_.rendering.touch.setZero();
+    return;
+  }
+  if (touch.dq.size() == dq.size()) {
+    const control::JointControl::JointTorques torques =
+        control_.joint_torques(record.robot, (dq - touch.dq) / config_.rendering.dt);
+    record.touch = compliance::step(config_.compliance,
+                                    {.torque = torques.external,
+                                     .load = torques.motion,
+                                     .J = rendering_.handle_jacobian(),
+                                     .n_p = static_cast<int>(record.robot.q_p.size())},
+                                    touch);
+  }
+  touch.dq = dq;
+  state_.rendering.touch = record.touch.wrench;
+}
+
 // Nothing moves. Before it is armed the device may be moved by others: the twin goes along. Where
 // joints have braked by themselves the twin was left behind, and meets the handle again.
 void Cycle::hold(CycleRecord& record) noexcept {
@@ -356,7 +386,7 @@ void Cycle::render(bool is_held, CycleRecord& record) noexcept {
   rendering_.gantry_room(room.down, room.up);
   const prepositioning::Command gantry =
       prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked,
-                           speed / std::sqrt(2.0), room);
+                           speed / std::sqrt(2.0), room, state_.touch.away);
   record.q_p_target = gantry.q_target;
   const DriveModel& drive = config_.estimation.drive;
   const bool leads = rendering_.leads_gantry() && !is_stopping;
@@ -366,7 +396,8 @@ void Cycle::render(bool is_held, CycleRecord& record) noexcept {
                                                 config_.rendering.dt);
     gantry_task.unexplained = estimation_.gantry_disturbance(state_.estimation);
   }
-  rendering_.step(state_.rendering, is_stopping ? kBrakingRate * (1.0 - share) : 0.0, record, share,
+  const double braking = is_stopping ? kBrakingRate * (1.0 - share) : 0.0;
+  rendering_.step(state_.rendering, state_.touch.is_told ? kBrakingRate : braking, record, share,
                   speed / std::sqrt(3.0), gantry_task);
   const double step =
       is_stopping ? -config_.rendering.dt / kRampOut : config_.rendering.dt / kRampIn;

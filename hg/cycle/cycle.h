@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hg/collision/guard.h"
+#include "hg/compliance/compliance.h"
 #include "hg/control/joint_control.h"
 #include "hg/core/nonblocking.h"
 #include "hg/core/stage_probe.h"
@@ -34,6 +35,7 @@ struct Config {
   safety::SanitiserConfig sanitiser;
   collision::Config collision;
   passivity::Config passivity;
+  compliance::Config compliance;
   std::vector<environment::Surface> surfaces;  ///< that the twin meets
 };
 
@@ -51,6 +53,7 @@ struct State {
   prepositioning::TargetState gantry_target;
   collision::State collision;
   passivity::State passivity;
+  compliance::State touch;
   Vector6 w_H = Vector6::Zero();  ///< of the user: the last one within the sensor's range
   VectorP dq_p;                   ///< gantry command of the last cycle
   VectorM q_m, tau_m;             ///< positions and torques of the last command
@@ -101,6 +104,7 @@ class Cycle {
   void trust_wrench(const SensorFrame& sensors, RobotState& robot) noexcept;
   void look_ahead(CycleRecord& record) noexcept;
   void watch_energy(CycleRecord& record) noexcept;
+  void feel_touch(bool is_on, CycleRecord& record) noexcept;
   void hold(CycleRecord& record) noexcept;
   void render(bool is_held, CycleRecord& record) noexcept;
   void monitor(const SensorFrame& sensors, std::uint32_t late_cycles, CycleRecord& record) noexcept;

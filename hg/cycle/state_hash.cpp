@@ -194,6 +194,13 @@ void mix(const passivity::State& state, Hash& hash) noexcept {
            state.calming.inertia);
 }
 
+void mix(const compliance::State& state, Hash& hash) noexcept {
+  hash.mix(std::uint64_t{state.is_started} | std::uint64_t{state.is_told} << 1U);
+  hash.mix(state.dq, state.torque, state.variance, state.load);
+  hash.mix(state.quiet_s);
+  hash.mix(state.away);
+}
+
 }  // namespace
 
 std::uint64_t hash_of(const State& state, int rows) noexcept {
@@ -226,6 +233,10 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
   hash.mix(control.integral, control.friction, control.tau_r, control.dtau_r, control.ddtau_r,
            control.unexplained);
   hash.mix(state.w_H);
+  if (state.touch.dq.size() > 0) {  // somebody feels for it
+    mix(state.touch, hash);
+    hash.mix(state.rendering.touch);
+  }
   return hash.value();
 }
 

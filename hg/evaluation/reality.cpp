@@ -52,6 +52,9 @@ void Reality::add(const Sample& sample) {
     const double inside = std::clamp(positions_[i], ranges_[i].lb, ranges_[i].ub);
     worst_excess_[i] = std::max(worst_excess_[i], std::abs(positions_[i] - inside));
   }
+  bystander_.force = std::max(bystander_.force, truth.bystander.force);
+  bystander_.pressure = std::max(bystander_.pressure, truth.bystander.pressure);
+  bystander_.compression = std::max(bystander_.compression, truth.bystander.compression);
   if (record.mode != Mode::kRunning && record.mode != Mode::kStopping) return;
   int joint = -1;
   const double error = (record.reference.q_m - truth.q_m).cwiseAbs().maxCoeff(&joint);

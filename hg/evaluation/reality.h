@@ -44,6 +44,8 @@ class Reality {
   /// Largest difference of reference and true link, rad or m, and its joint.
   double max_joint_error() const noexcept { return max_joint_error_; }
   int worst_joint() const noexcept { return worst_joint_; }
+  /// What a bystander has borne at most, each by itself.
+  const BystanderReport& bystander() const noexcept { return bystander_; }
   /// Largest distance of the true handle and the twin's end effector, m.
   double max_hand_distance() const noexcept { return max_hand_distance_; }
   /// Largest motor torque over its peak, per joint; empty without torque control.
@@ -69,6 +71,7 @@ class Reality {
   double max_joint_error_ = 0.0, max_hand_distance_ = 0.0;
   int worst_joint_ = -1;
   VectorM max_torque_share_, torque_rated_, sum_torque_;
+  BystanderReport bystander_;
   double sum_force_ = 0.0, sum_vibration_ = 0.0, sum_vibration_20_ = 0.0;
 };
 

@@ -80,6 +80,12 @@ void Summary::add(const Sample& sample) {
       shaking_ = static_cast<Shaking>(record.warning.index);
     }
   }
+  if (record.touch.torque.size() > 0) {
+    feels_touch_ = true;
+    max_touch_share_ = std::max(max_touch_share_, record.touch.share);
+    if (record.touch.is_told) touched_s_ += 1.0 / rate_Hz_;
+    max_touch_force_ = std::max(max_touch_force_, record.touch.wrench.head<3>().norm());
+  }
   max_sync_error_ = std::max(max_sync_error_, record.sync_error);
   max_sync_angle_ = std::max(max_sync_angle_, record.sync_error_angle);
   const double force = record.robot.w_H.head<3>().norm();
@@ -134,6 +140,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["limits_held"] = limits_held();
   if (reality_.is_known()) json["reality"] = reality_json();
   json["shaking"] = shaking_json();
+  if (feels_touch_) json["touch"] = touch_json();
   json["sync_error"] = {{"max_m", max_sync_error_}, {"max_rad", max_sync_angle_}};
   json["force"] = {{"mean_N", mean(sum_force_, running_cycles_)},
                    {"max_N", max_force_},
@@ -171,6 +178,12 @@ nlohmann::ordered_json Summary::shaking_json() const {
   return json;
 }
 
+nlohmann::ordered_json Summary::touch_json() const {
+  return {{"max_share_of_threshold", max_touch_share_},
+          {"duration_s", touched_s_},
+          {"max_force_N", max_touch_force_}};
+}
+
 nlohmann::ordered_json Summary::reality_json() const {
   nlohmann::ordered_json json;
   const std::vector<double>& excess = reality_.worst_excess();
@@ -188,6 +201,12 @@ nlohmann::ordered_json Summary::reality_json() const {
   json["mean_force_N"] = reality_.mean_force();
   json["vibration_above_5_Hz_m_per_s2"] = reality_.vibration();
   json["vibration_above_20_Hz_m_per_s2"] = reality_.vibration_20();
+  const BystanderReport& bystander = reality_.bystander();
+  if (bystander.force > 0.0) {
+    json["bystander"] = {{"max_force_N", bystander.force},
+                         {"max_pressure_N_per_cm2", bystander.pressure},
+                         {"max_compression_m", bystander.compression}};
+  }
   return json;
 }
 
@@ -228,6 +247,12 @@ std::string Summary::reality_text() const {
   line("handle", fmt::format("mean force {:.2f} N, vibration {:.3f} m/s^2 rms above 5 Hz, {:.3f} "
                              "above 20 Hz",
                              reality_.mean_force(), reality_.vibration(), reality_.vibration_20()));
+  const BystanderReport& bystander = reality_.bystander();
+  if (bystander.force > 0.0) {
+    line("BYSTANDER",
+         fmt::format("hit with up to {:.0f} N, {:.1f} N/cm^2, pressed in by {:.1f} mm",
+                     bystander.force, bystander.pressure, 1e3 * bystander.compression));
+  }
   return text;
 }
 
@@ -262,6 +287,14 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
                                 "{:.3f} s: {}",
                                 static_cast<double>(shaking_cycles_) / rate_Hz_, shaking_from_s_,
                                 to_string(shaking_)));
+  }
+  if (touched_s_ > 0.0) {
+    line("CONTACT", fmt::format("something touched the arm, which gave way for {:.2f} s, with up "
+                                "to {:.0f} N",
+                                touched_s_, max_touch_force_));
+  } else if (feels_touch_) {
+    line("contact", fmt::format("nothing touched the arm, at most {:.0f} % of a threshold",
+                                100.0 * max_touch_share_));
   }
   line("hand - twin", fmt::format("at most {:.3f} mm apart", 1e3 * max_sync_error_));
   line("force",

@@ -69,6 +69,7 @@ class Summary {
  private:
   nlohmann::ordered_json reality_json() const;
   nlohmann::ordered_json shaking_json() const;
+  nlohmann::ordered_json touch_json() const;
   std::string reality_text() const;
 
   LimitCatalogue catalogue_;
@@ -82,6 +83,8 @@ class Summary {
   double rate_Hz_;
   std::uint64_t shaking_cycles_ = 0;
   double shaking_from_s_ = 0.0;
+  bool feels_touch_ = false;  ///< what touches the arm is felt for
+  double max_touch_share_ = 0.0, touched_s_ = 0.0, max_touch_force_ = 0.0;
   Shaking shaking_ = Shaking::kNone;  ///< at its begin
   std::array<std::uint64_t, 4> solver_status_{};
   std::uint64_t active_set_changes_ = 0;

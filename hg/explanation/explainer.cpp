@@ -203,6 +203,18 @@ void Explainer::add_others(const Sample& sample) {
              record.time_s, record.warning.value);
     }
   }
+  if (record.touch.is_told) {
+    const std::string where =
+        record.touch.joint < 0
+            ? ""
+            : fmt::format(" beyond joint {}", name_in(names_.joints, record.touch.joint, "number"));
+    extend("contact", fmt::format("something touches the arm{}: arm and gantry give way", where),
+           record.time_s, record.touch.wrench.head<3>().norm(), " N");
+  }
+  if (sample.truth.bystander.force > 0.0) {
+    extend("bystander", "the arm hits the bystander", record.time_s, sample.truth.bystander.force,
+           " N");
+  }
   for (int i = 0; i < 32; ++i) {
     if (((record.sanitised >> i) & 1U) == 0) continue;
     const std::string which =

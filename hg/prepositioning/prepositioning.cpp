@@ -34,7 +34,7 @@ void check(const Config& config) {
 }
 
 Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked, double dq_max, const Room& room) noexcept {
+             bool device_blocked, double dq_max, const Room& room, const VectorP& away) noexcept {
   const double fastest = std::min(config.dq_max, dq_max);
   Command command = {q_target, VectorP::Zero(config.n_p), VectorP::Zero(config.n_p),
                      VectorP::Zero(config.n_p)};
@@ -48,7 +48,8 @@ Command step(const Config& config, const RobotState& robot, const VectorP& q_tar
       bounds.lb = std::max(bounds.lb, std::min(alone.lb, 0.0) - kTakenBack);
       bounds.ub = std::min(bounds.ub, std::max(alone.ub, 0.0) + kTakenBack);
     }
-    const double dq = config.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
+    const double to_target = config.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
+    const double dq = away.size() > 0 ? away[i] : to_target;
     command.dq_min[i] = std::clamp(bounds.lb, -fastest, fastest);
     command.dq_max[i] = std::clamp(bounds.ub, -fastest, fastest);
     if (device_blocked) continue;

@@ -43,9 +43,11 @@ struct Command {
 /// `robot` gives the gantry. `device_blocked` (a manipulator row could not be met) scales the
 /// command to zero: a gantry that drags a blocked arm is a fault. No axis is faster than `dq_max`,
 /// nor more than 0.25 m/s (rad/s) faster than lets it stop within its `room`: an arm at its limits
-/// takes no more back.
+/// takes no more back. `away` takes the place of the way to the target: with this velocity the
+/// gantry leaves what the arm touches; empty: nothing touches.
 Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked, double dq_max = kInfinity, const Room& room = {}) noexcept;
+             bool device_blocked, double dq_max = kInfinity, const Room& room = {},
+             const VectorP& away = {}) noexcept;
 
 /// Where the law may lead the gantry instead of `command`, which is its aim: 0.1 m/s (rad/s) beside
 /// it within what may be commanded, in steps from `last` that bring all that the drives have within

@@ -32,6 +32,11 @@ inline constexpr std::string_view kMessageName<PassivityReport> =
 template <>
 inline constexpr std::string_view kMessageName<ContactReport> = "hapticgiant_msgs/ContactReport";
 template <>
+inline constexpr std::string_view kMessageName<TouchReport> = "hapticgiant_msgs/TouchReport";
+template <>
+inline constexpr std::string_view kMessageName<BystanderReport> =
+    "hapticgiant_msgs/BystanderReport";
+template <>
 inline constexpr std::string_view kMessageName<CycleRecord> = "hapticgiant_msgs/CycleRecord";
 template <>
 inline constexpr std::string_view kMessageName<Truth> = "hapticgiant_msgs/Truth";
@@ -97,6 +102,15 @@ void fields(Archive& a, T& contact) {
   a("surface", contact.surface, "that pushes most, in the order of the scenario; -1 none");
 }
 
+template <typename Archive, Is<TouchReport> T>
+void fields(Archive& a, T& touch) {
+  a("torque", touch.torque, "on the joints by what touches the arm, Nm; empty: not felt for");
+  a("share", touch.share, "of the joint's threshold, the largest");
+  a("is_told", touch.is_told, "something touches the arm, which gives way");
+  a("joint", touch.joint, "the last one that feels it, whose link is touched; -1 none");
+  a("wrench", touch.wrench, "on the handle, that does the same to the joints");
+}
+
 template <typename Archive, Is<CycleRecord> T>
 void fields(Archive& a, T& record) {
   a("cycle", record.cycle);
@@ -132,11 +146,19 @@ void fields(Archive& a, T& record) {
   a("collision", record.collision);
   a("passivity", record.passivity);
   a("contact", record.contact);
+  a("touch", record.touch);
   a("q_p_target", record.q_p_target, "where prepositioning wants the gantry, m");
   a("solver_status", record.solver_status, "0 not run, 1 solved, 2 budget spent, 3 failed");
   a("solver_iterations", record.solver_iterations);
   a("active_set_changes", record.active_set_changes);
   a("state_hash", record.state_hash, "equal in a replay");
+}
+
+template <typename Archive, Is<BystanderReport> T>
+void fields(Archive& a, T& bystander) {
+  a("force", bystander.force, "of the arm on the body, N");
+  a("pressure", bystander.pressure, "N/cm^2");
+  a("compression", bystander.compression, "of the body, m");
 }
 
 template <typename Archive, Is<Truth> T>
@@ -155,6 +177,7 @@ void fields(Archive& a, T& truth) {
   a("twist", truth.twist, "of the handle: m/s, rad/s");
   a("acceleration", truth.acceleration, "of the handle: m/s^2, rad/s^2");
   a("w_h", truth.w_H, "wrench of the user at the handle: N, Nm");
+  a("bystander", truth.bystander, "whom the arm hits");
 }
 
 template <typename Archive, Is<Sample> T>

@@ -218,6 +218,7 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
     const VectorA braking = braking_rate * state.twin.dq_a;
     budget.damping.noalias() += twin_.chain.M() * braking;
   }
+  if (!state.touch.isZero(0.0)) budget.surface.noalias() -= J_a_.transpose() * state.touch;
   feel_surfaces(state, share, record);
 
   RowStates previous;

@@ -35,7 +35,8 @@ struct State {
   ReferenceState reference;
   TwinState twin;
   TwinInnerState inner;
-  Calming calming;  ///< for the next step
+  Calming calming;                  ///< for the next step
+  Vector6 touch = Vector6::Zero();  ///< on the handle, of what touches the arm: likewise
   hqp::ActiveSet active_set;
   TouchedEnds touched;   ///< by the last result; law paper only
   VectorP ddq_p;         ///< that the last result asks the gantry for; empty: nothing
@@ -94,6 +95,8 @@ class Rendering {
   // of the last step, with its posture:
   /// Twist of the handle as measured, resolved in B.
   Vector6 handle_twist(const RobotState& robot) const noexcept;
+  /// Jacobian of the handle, gantry joints first.
+  const model::Jacobian& handle_jacobian() const noexcept { return J_H_; }
   /// Twist of the end effector of the twin, resolved in B.
   Vector6 end_effector_twist(const State& state) const noexcept;
   /// Of the twin as set up, at its end effector in the direction of B's axes where it is least, kg.

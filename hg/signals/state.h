@@ -13,6 +13,7 @@
 #include "hg/signals/fault.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/limit.h"
+#include "hg/signals/touch.h"
 #include "hg/signals/truth.h"
 
 namespace hg {
@@ -89,7 +90,7 @@ struct Budget {
   VectorA damping;   ///< viscous part of tau_dis
   VectorA friction;  ///< Coulomb part of tau_dis while slipping
   VectorA spring;    ///< -tau_dri
-  VectorA surface;   ///< J_a^T w_ref
+  VectorA surface;   ///< J_a^T w_ref, minus J_a^T times the wrench of what touches the arm
   VectorA limits;    ///< minus the constraint torques of all rows with a reaction
   VectorA conflict;  ///< minus what rows that could not be met add
   Vector6 structure = Vector6::Zero();  ///< part of w in the null space of J_a^T
@@ -194,6 +195,7 @@ struct CycleRecord {
   CollisionReport collision;
   PassivityReport passivity;
   ContactReport contact;
+  TouchReport touch;
   VectorP q_p_target;  ///< where prepositioning wants the gantry
   SolverStatus solver_status = SolverStatus::kNotRun;
   int solver_iterations = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hg/core/types.h"
+#include "hg/signals/touch.h"
 
 namespace hg {
 
@@ -17,6 +18,7 @@ struct Truth {
   Vector6 twist = Vector6::Zero();  ///< (v; omega) of H
   Vector6 acceleration = Vector6::Zero();  ///< (classical acceleration of H; d omega/dt)
   Vector6 w_H = Vector6::Zero();           ///< wrench of the user
+  BystanderReport bystander;
 };
 
 }  // namespace hg

@@ -38,10 +38,11 @@ Plant::Plant(const PlantConfig& config, const model::Chain& chain, int handle)
   }
   if (config_.end_stops.empty()) config_.end_stops.resize(at(n_m_));
 
-  q_ = dq_ = ddq_ = tau_user_ = VectorQ::Zero(chain.nv());
+  q_ = dq_ = ddq_ = tau_user_ = tau_bystander_ = VectorQ::Zero(chain.nv());
   for (int i = 0; i < n_p_; ++i) q_[config_.gantry[at(i)]] = config_.q_p_start[i];
   for (int i = 0; i < n_m_; ++i) q_[links_[at(i)]] = config_.q_m_start[i];
   current_ = VectorM::Zero(n_m_);
+  if (config_.bystander) bystander_ = Bystander(*config_.bystander);
   start_in_balance();
 }
 
@@ -84,6 +85,7 @@ void Plant::step(const PlantInput& input) noexcept {
   truth_.ddq_p = gantry_acceleration(input.dq_p_command);
   truth_.w_H = input.w_H;
   tau_user_.noalias() = J_H_.transpose().lazyProduct(input.w_H);
+  if (config_.bystander) meet_bystander();
 
   Equations eq = equations(truth_.ddq_p);
   const Contacts contacts = near_stops();
@@ -92,6 +94,13 @@ void Plant::step(const PlantInput& input) noexcept {
   integrate(truth_.ddq_p);
   chain_.update(q_, dq_, loads());
   observe();
+}
+
+void Plant::meet_bystander() noexcept {
+  const int frame = config_.bystander->frame;
+  const Eigen::Vector3d force = bystander_.step(config_.step, chain_.pose(frame).p);
+  const model::Jacobian J = chain_.jacobian(frame);
+  tau_bystander_.noalias() = J.topRows<3>().transpose().lazyProduct(force);
 }
 
 // Currents with their lag; a motor in motion has no more torque than its speed leaves.
@@ -156,7 +165,7 @@ Plant::Equations Plant::equations(const VectorP& ddq_p) const noexcept {
   eq.coupling.resize(n_m_);
   for (int j = 0; j < n_l_; ++j) {
     const int joint = links_[at(j)];
-    eq.tau[j] = tau_user_[joint] - chain_.c()[joint];
+    eq.tau[j] = tau_user_[joint] + tau_bystander_[joint] - chain_.c()[joint];
     for (int i = 0; i < n_p_; ++i) eq.tau[j] -= M(joint, config_.gantry[at(i)]) * ddq_p[i];
     for (int i = j; i < n_l_; ++i) eq.L(i, j) = M(links_[at(i)], joint);
   }
@@ -280,7 +289,8 @@ void Plant::integrate(const VectorP& ddq_p) noexcept {
   for (int i = 0; i < n_l_; ++i) ddq_[links_[at(i)]] = forces_.ddq[i];
   for (int i = 0; i < n_p_; ++i) {
     const int joint = config_.gantry[at(i)];
-    forces_.f_p[i] = chain_.M().row(joint).dot(ddq_) + chain_.c()[joint] - tau_user_[joint];
+    forces_.f_p[i] = chain_.M().row(joint).dot(ddq_) + chain_.c()[joint] - tau_user_[joint] -
+                     tau_bystander_[joint];
   }
   dq_ += h * ddq_;
   for (int i = 0; i < n_p_; ++i) {
@@ -305,6 +315,7 @@ void Plant::observe() noexcept {
     truth_.dq_m[i] = dq_[links_[at(i)]];
   }
   truth_.tau_J = forces_.tau_links.head(n_m_);
+  truth_.bystander = bystander_.report();
   truth_.T_B_H = chain_.pose(handle_);
   truth_.twist = chain_.twist(handle_);
   J_H_ = chain_.jacobian(handle_);

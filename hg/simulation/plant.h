@@ -59,10 +59,12 @@ struct PlantPower {
   double joint_damping = 0.0, viscous_friction = 0.0, coulomb_friction = 0.0;  ///< lost, >= 0
   double flexible_damping = 0.0;                                               ///< lost, >= 0
   double end_stops = 0.0;  ///< taken by the stops; a little of it comes back
+  double bystander = 0.0;  ///< taken by the bystander; what the body stores comes back
 
   double put_in() const noexcept { return motors + user + gantry; }
   double taken() const noexcept {
-    return joint_damping + viscous_friction + coulomb_friction + flexible_damping + end_stops;
+    return joint_damping + viscous_friction + coulomb_friction + flexible_damping + end_stops +
+           bystander;
   }
 };
 
@@ -110,6 +112,7 @@ class Plant {
   model::Loads loads() const noexcept;
   void start_in_balance() noexcept;
   void move_motors(const VectorM& tau_command) noexcept;
+  void meet_bystander() noexcept;
   VectorP gantry_acceleration(const VectorP& dq_p_command) noexcept;
   Contacts near_stops() const noexcept;
   Equations equations(const VectorP& ddq_p) const noexcept;
@@ -132,6 +135,8 @@ class Plant {
   VectorQ q_, dq_, ddq_;
   VectorQ q_before_, dq_before_;  // at the start of the last step
   VectorQ tau_user_;              // of the user in it, on all joints
+  VectorQ tau_bystander_;         // of the bystander in it, likewise
+  Bystander bystander_;
   BoxProblem box_;
   BoxSolution box_solution_;
   PlantForces forces_;

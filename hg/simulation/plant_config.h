@@ -3,6 +3,7 @@
 /// SI units; for a prismatic joint read N for Nm and m for rad.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "hg/core/interval.h"
@@ -10,6 +11,7 @@
 #include "hg/model/chain.h"
 #include "hg/signals/actuator_model.h"
 #include "hg/signals/drive_model.h"
+#include "hg/simulation/bystander.h"
 
 namespace hg::simulation {
 
@@ -47,6 +49,7 @@ struct PlantConfig {
   EndStopModel end_stop;
   VectorP q_p_start;
   VectorM q_m_start;
+  std::optional<BystanderConfig> bystander;  ///< whom the arm may hit; its frame is of the chain
 };
 
 /// Throws SetupError, `item: rule, got value`, unless a plant can be made of it.

@@ -32,6 +32,7 @@ PlantPower Plant::power() const noexcept {
   PlantPower power;
   power.motors = truth_.tau_motor.dot(truth_.dtheta_m);
   power.user = tau_user_.dot(dq_);
+  power.bystander = -tau_bystander_.dot(dq_);
   power.gantry = forces_.f_p.dot(truth_.dq_p);
   power.coulomb_friction = -forces_.tau_friction.dot(truth_.dtheta_m);
   for (int i = 0; i < n_m_; ++i) {
@@ -51,7 +52,7 @@ double Plant::residual() noexcept {
   double worst = 0.0;
   for (int i = 0; i < n_l_; ++i) {
     const int joint = links_[static_cast<std::size_t>(i)];
-    double error = tau[joint] - tau_user_[joint] - forces_.tau_links[i];
+    double error = tau[joint] - tau_user_[joint] - tau_bystander_[joint] - forces_.tau_links[i];
     if (i < n_m_) error -= forces_.tau_stop[i];
     worst = std::max(worst, std::abs(error));
   }

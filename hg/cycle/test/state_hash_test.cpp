@@ -96,6 +96,19 @@ TEST(StateHash, SeesEveryValueOfTheState) {
       [](State& s) { s.estimation.wrench.tare.square[0] = 1.0; },
       [](State& s) { s.estimation.wrench.tare.first_half[1] = 1.0; },
       [](State& s) { s.estimation.wrench.tare.q_m = VectorM::Ones(1); },
+      [](State& s) { s.touch.dq = VectorM::Ones(1); },
+      [](State& s) {
+        s.touch.dq = VectorM::Ones(1);
+        s.touch.is_told = true;
+      },
+      [](State& s) {
+        s.touch.dq = VectorM::Ones(1);
+        s.touch.torque = VectorM::Ones(1);
+      },
+      [](State& s) {
+        s.touch.dq = VectorM::Ones(1);
+        s.rendering.touch[1] = 1.0;
+      },
       // two signs at once, which a hash of words without rotation does not see
       [](State& s) { s.rendering.reference.q_m[0] = s.rendering.reference.q_m[1] = -1.0; }};
   std::vector<std::uint64_t> hashes = {hash_of(example(), kRows)};

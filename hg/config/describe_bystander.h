@@ -1,0 +1,61 @@
+/// Description of scenario.yaml, sixth part: somebody who stands in the way of the arm.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hg/config/range.h"
+#include "hg/simulation/bystander.h"
+
+namespace hg::config {
+
+/// Whom the arm may hit, before frames have numbers.
+struct BystanderDraft {
+  std::vector<std::string> parts;   ///< of a body
+  std::vector<std::string> frames;  ///< of the device
+  std::string hit_by;               ///< one of these
+  std::optional<simulation::BystanderConfig> bystander;
+};
+
+inline BystanderDraft bystander_of(const std::vector<std::string>& frames) {
+  BystanderDraft draft = {.frames = frames};
+  for (const simulation::BodyPart& part : simulation::kBodyParts)
+    draft.parts.emplace_back(part.name);
+  return draft;
+}
+
+template <class V>
+void describe(V& v, BystanderDraft& d, simulation::BystanderConfig& bystander) {
+  int part = 0, frame = 0;
+  v.name("body_part", part, d.parts, "a part of the body",
+         "what is hit: its stiffness, mass and permissible values are those of ISO/TS 15066",
+         Need::kRequired);
+  v.name("hit_by", frame, d.frames, "a link of the URDF", "whose origin hits it", Need::kRequired);
+  v.vector("position_m", bystander.position, {.lb = -1e3, .ub = 1e3}, "of the skin in B");
+  v.vector("facing", bystander.facing, {.lb = -1.0, .ub = 1.0},
+           "direction out of the skin in B; only what comes from there is met");
+  v.rule(v.is_given("position_m") && v.is_given("facing"), "",
+         "a bystander needs 'position_m' and 'facing'");
+  v.flag("is_clamped", bystander.is_clamped,
+         "it stands against a wall; otherwise it is pushed away");
+  v.rule(!v.is_given("facing") || bystander.facing.norm() > 1e-3, "facing",
+         "must not be a zero vector");
+  if (d.frames.empty()) return;  // the reference page
+  bystander.part = &simulation::kBodyParts[static_cast<std::size_t>(part)];
+  d.hit_by = d.frames[static_cast<std::size_t>(frame)];
+}
+
+template <class V>
+void describe_bystander(V& v, BystanderDraft& d) {
+  v.group(
+      "bystander",
+      [&](auto& child) {
+        d.bystander.emplace();
+        describe(child, d, *d.bystander);
+      },
+      "somebody who stands in the way of the arm, whom only a simulated device can hit, "
+      "docs/compliance.md");
+}
+
+}  // namespace hg::config
