@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/hapticgiant/experiments/docs_page.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
@@ -14,6 +15,7 @@
 #include "hg/assembly/assembly.h"
 #include "hg/config/scenario.h"
 #include "hg/core/error.h"
+#include "hg/experiments/contact.h"
 #include "hg/experiments/free_space.h"
 #include "hg/experiments/impedance.h"
 #include "hg/experiments/seed_ranges.h"
@@ -61,6 +63,21 @@ int experiment_impedance(const ExperimentArguments& arguments) {
       experiments::measure_impedance(walk_scenario(), config, progress_of("pushes"));
   print_out(experiments::to_text(report));
   write_json(arguments.json, experiments::to_json(report));
+  return 0;
+}
+
+int experiment_contact(const ContactArguments& arguments) {
+  experiments::ContactConfig config;
+  config.seeds = arguments.seeds;
+  check_writable(arguments.json, kJson);
+  print_out(fmt::format("HapticGiant {}  Contact: the arm hits somebody in its way\n\n", kVersion));
+  const experiments::ContactMeasures report =
+      experiments::measure_contact(walk_scenario(), config, progress_of("cases"));
+  print_out(experiments::to_text(report));
+  write_json(arguments.json, experiments::to_json(report));
+  if (!arguments.docs.empty()) {
+    refresh_page(arguments.docs, "contact", experiments::to_markdown(report), {});
+  }
   return 0;
 }
 

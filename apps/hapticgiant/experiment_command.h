@@ -12,6 +12,12 @@ struct ExperimentArguments {
   std::string svg;   ///< file for the drawing; empty = none
 };
 
+struct ContactArguments {
+  std::string json;  ///< file for all figures; empty = none
+  std::string docs;  ///< folder of documentation to refresh; empty = none
+  int seeds = 4;
+};
+
 struct SeedsArguments {
   std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
   std::vector<std::string> hands = {"own"};  ///< or presets
@@ -28,6 +34,7 @@ struct SeedsArguments {
 int experiment_free_space(const ExperimentArguments& arguments);
 int experiment_stability_map(const ExperimentArguments& arguments);
 int experiment_impedance(const ExperimentArguments& arguments);
+int experiment_contact(const ContactArguments& arguments);
 /// Exit code 1 when a run ended in a fault or left a limit.
 int experiment_seeds(const SeedsArguments& arguments);
 

@@ -421,9 +421,23 @@ void add_seeds(CLI::App& experiment, hg::apps::SeedsArguments& arguments, int& e
       [&arguments, &exit_code] { exit_code = hg::apps::experiment_seeds(arguments); });
 }
 
+void add_contact(CLI::App& experiment, hg::apps::ContactArguments& arguments, int& exit_code) {
+  CLI::App* command = experiment.add_subcommand(
+      "contact",
+      "the arm hits somebody in its way: force and pressure, with and without giving way");
+  command->add_option("--seeds", arguments.seeds, "seeds per case, from 1 on")
+      ->check(whole_number(1.0, 1e3))
+      ->capture_default_str();
+  command->add_option("--json", arguments.json, "write all figures as JSON to this file");
+  command->add_option("--docs", arguments.docs,
+                      "refresh the page contact.md of this folder (make experiments)");
+  command->callback(
+      [&arguments, &exit_code] { exit_code = hg::apps::experiment_contact(arguments); });
+}
+
 void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
-                    hg::apps::SeedsArguments& seeds, hg::apps::ExperimentsArguments& more,
-                    int& exit_code) {
+                    hg::apps::ContactArguments& contact, hg::apps::SeedsArguments& seeds,
+                    hg::apps::ExperimentsArguments& more, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("experiment",
                          "The paper's experiments, and what the simulated device is like to hold "
@@ -437,6 +451,7 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
       "them\n"
       "  hapticgiant experiment stability-map --svg stability.svg\n"
       "  hapticgiant experiment impedance --json impedance.json\n"
+      "  hapticgiant experiment contact           the arm hits somebody in its way\n"
       "  hapticgiant experiment seeds free_space --hands own,stiff --count 16");
   hg::apps::add_paper_experiments(*command, more.paper, exit_code);
   const auto add = [&](const char* name, const char* text,
@@ -453,6 +468,7 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
       ->add_option("--svg", arguments.svg, "draw the map to this file");
   add("impedance", "how far the handle gives way, by frequency and under a constant push",
       hg::apps::experiment_impedance);
+  add_contact(*command, contact, exit_code);
   add_seeds(*command, seeds, exit_code);
 }
 
@@ -556,6 +572,7 @@ int main(int argc, char** argv) {
   hg::apps::HqpSolveArguments hqp;
   hg::apps::IdentifyArguments identified;
   hg::apps::ExperimentArguments measured;
+  hg::apps::ContactArguments contact;
   hg::apps::SeedsArguments seeds;
   hg::apps::ExperimentsArguments experiments;
   hg::apps::BenchArguments compared;
@@ -571,7 +588,7 @@ int main(int argc, char** argv) {
   add_new(app, created, exit_code);
   add_hqp(app, hqp, exit_code);
   add_identify(app, identified, exit_code);
-  add_experiment(app, measured, seeds, experiments, exit_code);
+  add_experiment(app, measured, contact, seeds, experiments, exit_code);
   hg::apps::add_plot_and_compare(app, experiments, exit_code);
   add_bench(app, compared, exit_code);
   add_faults(app, broken, exit_code);
