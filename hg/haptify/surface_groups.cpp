@@ -178,15 +178,15 @@ config::Scenario with_body(config::Scenario scenario, const MapBody& body) {
 }
 
 Table z_width_table(const std::vector<double>& damping) {
-  Table table = {.id = "z_width",
-                 .title = "Z-width: which surfaces stay calm",
-                 .note =
-                     "A normal hand presses with 10 N on a plane and is kicked (15 N for 10 ms); "
-                     "the rows are body and stiffness, with the frequency at which the body would "
-                     "swing on the spring alone, the columns damping of the plane. Damping acts in "
-                     "full from 5 mm inside on: at 10 N that is 2 kN/m. Prompt: the wrench without "
-                     "the delays of sensor and low-pass.",
-                 .columns = {"body", "N/m", "Hz"}};
+  Table table = {
+      .id = "z_width",
+      .title = "Z-width: which surfaces stay calm",
+      .note =
+          "A normal hand presses with 10 N on a plane and is kicked (15 N for 10 ms); "
+          "the rows are body and stiffness, with the frequency at which the body would "
+          "swing on the spring alone, the columns damping of the plane. Prompt: the wrench "
+          "without the delays of sensor and low-pass.",
+      .columns = {"body", "N/m", "Hz"}};
   for (const double value : damping) table.columns.push_back(fmt::format("{:g} Ns/m", value));
   return table;
 }

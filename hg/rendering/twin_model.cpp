@@ -37,14 +37,15 @@ FeltMass felt_mass(const TwinModel& twin) {
   const VectorA at_rest = VectorA::Zero(chain.nv());
   chain.update(twin.q_start, at_rest);
   const Eigen::MatrixXd J = chain.jacobian(twin.end_effector).topRows<3>();
-  const Eigen::MatrixXd moved =
-      inverse(Eigen::MatrixXd(chain.M() * twin.mass_scale)) * J.transpose();
-  const SymmetricEigen mobility = symmetric_eigen(J * moved);  // the smallest first
-  const double most = mobility.values[2];
+  const Eigen::MatrixXd inverse_mass = inverse(Eigen::MatrixXd(chain.M()));
+  const Eigen::Matrix3d mobility = J * inverse_mass * J.transpose();
+  const SymmetricEigen eigen = symmetric_eigen(mobility);  // the smallest first
+  const double most = eigen.values[2];
   if (!(most > 0.0)) return {.dq = at_rest};
   const double least =
-      *std::ranges::find_if(mobility.values, [&](double value) { return value > kStuck * most; });
-  return {{1.0 / most, 1.0 / least}, moved * mobility.vectors.col(2) / most};
+      *std::ranges::find_if(eigen.values, [&](double value) { return value > kStuck * most; });
+  return {{twin.mass_scale / most, twin.mass_scale / least},
+          inverse_mass * J.transpose() * eigen.vectors.col(2) / most};
 }
 
 double position_of(const TwinModel& twin, int dof, const ConfigurationA& q_a) noexcept {
