@@ -25,10 +25,16 @@ constexpr int kActiveSetsPerRow = 4;
 constexpr int kAlignIterations = 10;
 constexpr double kAligned = 1e-12;  // m and rad
 
-SolverStatus solver_status(const Tasks& tasks, const hqp::Solution& solution) noexcept {
+// What has run out of active sets must keep all limits of the device. What has been through all
+// levels and only lacks its proof is as good as rounding lets it be: motors and walls that stand
+// against each other have no better, joints must be kept.
+SolverStatus solver_status(const Tasks& tasks, const hqp::Options& options,
+                           const hqp::Solution& solution) noexcept {
   if (solution.status == hqp::Status::kSolved) return SolverStatus::kSolved;
+  if (solution.status != hqp::Status::kIterationLimit) return SolverStatus::kFailed;
+  const bool ran_out = options.budget > 0 || solution.iterations >= options.max_iterations;
   const bool is_usable =
-      solution.status == hqp::Status::kIterationLimit && tasks.keeps_limits_of_device(solution);
+      ran_out ? tasks.keeps_limits_of_device(solution) : tasks.keeps_joints(solution);
   return is_usable ? SolverStatus::kBudgetSpent : SolverStatus::kFailed;
 }
 
@@ -347,7 +353,7 @@ void Rendering::solve(State& state, double handle_speed, const GantryTask& gantr
     copy(state.active_set.before, tasks_.problem().rows(), guess_.before);
     solved_cycle_ = record.cycle;
     solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_);
-    record.solver_status = solver_status(tasks_, solution_);
+    record.solver_status = solver_status(tasks_, solver_options_, solution_);
     record.solver_iterations += solution_.iterations;
     was_spent = was_spent || record.solver_status == SolverStatus::kBudgetSpent;
     if (record.solver_status == SolverStatus::kFailed ||

@@ -449,8 +449,16 @@ void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
 }
 
 bool Tasks::keeps_limits_of_device(const hqp::Solution& solution) const noexcept {
+  return keeps(solution, static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_);
+}
+
+bool Tasks::keeps_joints(const hqp::Solution& solution) const noexcept {
+  return keeps(solution, first_motor_);
+}
+
+// the first `count` limits
+bool Tasks::keeps(const hqp::Solution& solution, int count) const noexcept {
   constexpr double kMet = 1e-6;  // rad/s^2 or m/s^2
-  const int count = static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_;
   for (int limit = 0; limit < count; ++limit) {
     for (const int row :
          {first_limit_row() + limit, limit_rows_[static_cast<std::size_t>(limit)].rating_row}) {

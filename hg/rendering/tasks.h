@@ -114,6 +114,8 @@ class Tasks {
   }
   /// Whether all rows of device limits are in levels that `solution` has completed, or are met.
   bool keeps_limits_of_device(const hqp::Solution& solution) const noexcept;
+  /// The same of joints and virtual joints alone.
+  bool keeps_joints(const hqp::Solution& solution) const noexcept;
   /// The ends that `solution` touches or leaves, of both rows of a joint.
   TouchedEnds touched_ends(const hqp::Solution& solution) const noexcept;
   /// Law paper: index of the constraint force or torque of a limit in x; law gauss: -1.
@@ -132,6 +134,7 @@ class Tasks {
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
+  bool keeps(const hqp::Solution& solution, int count) const noexcept;
   void fill_gantry(const TaskInput& input) noexcept;
   void fill_stops(const TwinModel& twin, const TaskInput& input) noexcept;
   void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;

@@ -146,6 +146,7 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
   const auto of_hand = static_cast<std::size_t>(tasks.first_limit_row() + 6 + 1);
   solution.slack[of_hand] = -0.01;
   EXPECT_FALSE(tasks.keeps_limits_of_device(solution));
+  EXPECT_TRUE(tasks.keeps_joints(solution));
   solution.completed_levels = 4;
   EXPECT_FALSE(tasks.keeps_limits_of_device(solution));
   solution.completed_levels = 5;
@@ -154,6 +155,8 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
   solution.slack[of_hand] = 0.0;
   solution.slack[of_hand + 3] = 1.0;  // of the twin
   EXPECT_TRUE(tasks.keeps_limits_of_device(solution));
+  solution.slack[of_hand - 1 - 6] = -1e-5;  // of joint 1
+  EXPECT_FALSE(tasks.keeps_joints(solution));
 }
 
 TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessAskedFor) {
