@@ -2,8 +2,8 @@
 ///
 /// Detection: the torque of the joints that neither motion nor user explain, M ddq + c - J^T w -
 /// tau_J with measured speeds, low-passed. With ddq as their difference this is the observer of the
-/// generalised momentum of De Luca et al. (IROS 2006), discrete, gain 1 / filter. Thresholds follow
-/// the noise: of each joint a least one, times the standard deviation while nothing touches, and a
+/// generalised momentum of De Luca et al. (IROS 2006), discrete, gain 1 / filter. A threshold is
+/// the sum of a least one, of six standard deviations of the noise while nothing touches, and of a
 /// share of what the joint has just been moved with, since that is what the model is wrong by.
 ///
 /// Giving way: of the torques, what is beyond the thresholds becomes the wrench on the handle that

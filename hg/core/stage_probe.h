@@ -14,11 +14,11 @@ namespace hg {
 enum class Stage : std::uint8_t {
   kSupervision,     ///< sensor check, operating state, changes of parameters
   kEstimation,      ///< sensors to states
+  kPrepositioning,  ///< check of the reference, target of the gantry
   kRenderingSetUp,  ///< device and twin models, torques, rows of the problem
   kSolver,          ///< the lexicographic solver
   kReactions,       ///< split of the constraint torque, report of the rendering
-  kPrepositioning,  ///< check of the reference, target and command of the gantry
-  kIntegration,     ///< reference and twin advance by one period
+  kIntegration,     ///< check of the solution, reference and twin advance by one period
   kControl,         ///< commands of the drives
   kSafety,          ///< sanitiser
   kStateHash,       ///< hash of the state for the record
@@ -27,8 +27,8 @@ inline constexpr int kStageCount = 10;
 
 constexpr const char* to_string(Stage stage) noexcept {
   constexpr std::array<const char*, kStageCount> kNames = {
-      "supervision",    "estimation",  "rendering set-up", "solver", "reactions",
-      "prepositioning", "integration", "control",          "safety", "hash"};
+      "supervision", "estimation",  "prepositioning", "rendering set-up", "solver",
+      "reactions",   "integration", "control",        "safety",           "hash"};
   return kNames[static_cast<std::size_t>(stage)];
 }
 

@@ -139,7 +139,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   rendering_.limit_solver(operator_input.most_active_sets);
   ended_(Stage::kSupervision);
 
-  // estimation -> rendering -> prepositioning
+  // estimation -> prepositioning -> rendering
   if (safety::is_finite(monitor_.config(), sensors)) {
     record.robot =
         estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
@@ -352,6 +352,7 @@ void Cycle::hold(CycleRecord& record) noexcept {
   rendering.reference.dq_m.setZero();
   rendering.twin.dq_a.setZero();
   rendering_.step(rendering, kBrakingRate, record, 0.0);
+  rendering_.gantry_room(state_.room.down, state_.room.up);
   state_.is_apart = record.sync_error > monitor_.config().sync_tolerance;
   rendering.reference.ddq_m.setZero();
   rendering.twin.ddq_a.setZero();
@@ -382,11 +383,9 @@ void Cycle::render(bool is_held, CycleRecord& record) noexcept {
   const double speed = is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
   const VectorP q_p_target =
       gantry_target_.step(record.robot, state_.rendering.reference.q_m, state_.gantry_target);
-  prepositioning::Room room;
-  rendering_.gantry_room(room.down, room.up);
   const prepositioning::Command gantry =
       prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked,
-                           speed / std::sqrt(2.0), room, state_.touch.away);
+                           speed / std::sqrt(2.0), state_.room, state_.touch.away);
   record.q_p_target = gantry.q_target;
   const DriveModel& drive = config_.estimation.drive;
   const bool leads = rendering_.leads_gantry() && !is_stopping;
@@ -396,9 +395,11 @@ void Cycle::render(bool is_held, CycleRecord& record) noexcept {
                                                 config_.rendering.dt);
     gantry_task.unexplained = estimation_.gantry_disturbance(state_.estimation);
   }
+  ended_(Stage::kPrepositioning);
   const double braking = is_stopping ? kBrakingRate * (1.0 - share) : 0.0;
   rendering_.step(state_.rendering, state_.touch.is_told ? kBrakingRate : braking, record, share,
                   speed / std::sqrt(3.0), gantry_task);
+  rendering_.gantry_room(state_.room.down, state_.room.up);
   const double step =
       is_stopping ? -config_.rendering.dt / kRampOut : config_.rendering.dt / kRampIn;
   share = std::clamp(share + step, 0.0, 1.0);
@@ -417,7 +418,6 @@ void Cycle::render(bool is_held, CycleRecord& record) noexcept {
   state_.is_blocked = rendering_.is_blocked();
   record.tracking.is_clamped = has_left;
   if (state_.brakes_joints) brake_joints(record);
-  ended_(Stage::kPrepositioning);
   rendering_.integrate(state_.rendering);
   if (is_stopping) {
     safety::go_on_stopping(share == 0.0 && stands_still(record), longest_stop_,

@@ -56,6 +56,7 @@ struct State {
   compliance::State touch;
   Vector6 w_H = Vector6::Zero();  ///< of the user: the last one within the sensor's range
   VectorP dq_p;                   ///< gantry command of the last cycle
+  prepositioning::Room room;      ///< of the gantry, in the last cycle
   VectorM q_m, tau_m;             ///< positions and torques of the last command
   bool was_on = false;            ///< the last command had the drives on
   bool is_blocked = false;        ///< a device limit could not be met in the last cycle

@@ -67,10 +67,10 @@ class Environment {
                                         const Eigen::Vector3d& velocity,
                                         double ddq_max) const noexcept;
 
-  /// `position` and `velocity` of the handle at the begin of a sample, `push` (N) of the person on
-  /// it. The spring acts as in its
-  /// middle, where the handle is half a period later; else it would give energy. A handle that
-  /// starts inside a solid is free until it has left it.
+  /// `position` and `velocity` of the handle at the begin of a sample, `push` (N) of all else that
+  /// acts on it. The spring acts as in the middle of the sample, where the handle is half a period
+  /// later; else it would give energy. A handle that starts inside a solid is free until it has
+  /// left it.
   ContactReport step(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
                      const Eigen::Vector3d& push, State& state) const noexcept;
 

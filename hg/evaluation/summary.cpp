@@ -307,7 +307,7 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("solver",
        fmt::format("{} solved, {}{} not; {:.1f} active-set changes per second",
                    count(SolverStatus::kSolved),
-                   spent > 0 ? fmt::format("{} ended by the budget, ", spent) : "",
+                   spent > 0 ? fmt::format("{} not proven, ", spent) : "",
                    count(SolverStatus::kFailed), per_second(active_set_changes_, duration_s_)));
   line("smoothness", fmt::format("acceleration changes by {:.4f} m/s^2 per cycle on average",
                                  mean(sum_acceleration_change_, running_cycles_)));

@@ -222,9 +222,10 @@ void Explainer::add_others(const Sample& sample) {
     extend("command", which + ": the sanitiser changed it before it left", record.time_s);
   }
   if (record.solver_status == SolverStatus::kBudgetSpent) {
-    extend("solver",
-           "its budget was spent: the limits of the device are kept, the twin is not exact",
-           record.time_s);
+    extend(
+        "solver",
+        "ended before its result was proven: the joints keep their limits, the twin is not exact",
+        record.time_s);
   }
   if (record.solver_status == SolverStatus::kFailed) extend("solver", "failed", record.time_s);
   if (sample.operator_input.late_cycles > 0) {

@@ -16,9 +16,10 @@
 namespace hg::haptify {
 namespace {
 
-constexpr int kAhead = 1;          // y of B: straight ahead of the person, who looks along it
-constexpr double kRest = 1.0;      // s, before everything
-constexpr double kFastest = 0.01;  // s, of the way of a goal
+constexpr int kAhead = 1;             // y of B: straight ahead of the person, who looks along it
+constexpr double kRest = 1.0;         // s, before everything
+constexpr double kFastest = 0.01;     // s, of the way of a goal
+constexpr double kFastEnough = 0.95;  // of the speed that was asked for
 
 config::Scenario prepared(const config::Scenario& scenario, const ImpactConfig& config,
                           double stiffness, double speed, double way_s, double watched_s,
@@ -94,6 +95,10 @@ Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& conf
     return result;
   }
   result.speed = all[contact - 1].twist[kAhead];
+  if (result.speed < kFastEnough * speed) {
+    result.failure = "the hand did not get as fast";
+    return result;
+  }
   const double contact_s = all[contact].time_s;
   const double end_s = std::min(all.back().time_s, contact_s + config.watched_s);
   double last_fast_s = contact_s;
@@ -121,6 +126,10 @@ Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& conf
   }
   result.braking =
       braking_of(hit.device.model, std::span(all).subspan(contact, deepest + 1 - contact));
+  if (result.braking <= 0.0) {
+    result.failure = "the motors cannot hold the handle";
+    return result;
+  }
   result.bound = result.speed * result.speed / (2.0 * result.braking);
   result.onset = 0.5 * rendering::kTorqueOnset * result.speed;
   const double moved = mass + hit.script.hand.mass[kAhead];

@@ -54,7 +54,7 @@ struct Impact {
   double peak_force = 0.0;  ///< of the wall on the rendered body, N
   double felt_force = 0.0;  ///< largest of the person along the normal, N
   std::string end;          ///< fault or exceeded limit that the impact led to; empty = none
-  std::string failure;      ///< no contact
+  std::string failure;      ///< why there was no such impact, or none that motors can brake
 
   /// How deep it may be, m.
   double allowed() const { return kDeepestImpact * bound + onset + spring; }

@@ -66,11 +66,12 @@ GantryTask accelerations(const Command& command, const DriveModel& drive, const 
   GantryTask task = {dq, dq, dq, VectorP::Zero(dq.size())};
   for (Eigen::Index i = 0; i < dq.size(); ++i) {
     const auto of = [&](double dq_cmd) { return drive_acceleration(drive, dq[i], dq_cmd); };
-    const double least = of(std::max(command.dq_min[i], command.dq[i] - kLead));
-    const double most = of(std::min(command.dq_max[i], command.dq[i] + kLead));
+    const double aim = std::clamp(command.dq[i], command.dq_min[i], command.dq_max[i]);
+    const double least = of(std::max(command.dq_min[i], aim - kLead));
+    const double most = of(std::min(command.dq_max[i], aim + kLead));
     task.ddq_min[i] = std::clamp(before[i] - change, least, most);
     task.ddq_max[i] = std::clamp(before[i] + change, least, most);
-    task.ddq[i] = of(command.dq[i]);
+    task.ddq[i] = of(aim);
   }
   return task;
 }

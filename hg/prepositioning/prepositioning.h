@@ -40,8 +40,8 @@ struct Command {
   VectorP dq_min, dq_max;  ///< that may be commanded instead, m/s or rad/s
 };
 
-/// `robot` gives the gantry. `device_blocked` (a manipulator row could not be met) scales the
-/// command to zero: a gantry that drags a blocked arm is a fault. No axis is faster than `dq_max`,
+/// `robot` gives the gantry. `device_blocked` (a manipulator row could not be met) makes the
+/// command zero: a gantry that drags a blocked arm is a fault. No axis is faster than `dq_max`,
 /// nor more than 0.25 m/s (rad/s) faster than lets it stop within its `room`: an arm at its limits
 /// takes no more back. `away` takes the place of the way to the target: with this velocity the
 /// gantry leaves what the arm touches; empty: nothing touches.

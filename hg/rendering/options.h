@@ -38,7 +38,7 @@ constexpr std::string_view to_string(Gantry gantry) noexcept {
 struct Options {
   Law law = Law::kGauss;
   Bounds bounds = Bounds::kRecoverable;
-  Gantry gantry = Gantry::kLaw;
+  Gantry gantry = Gantry::kRule;
   double T_C = 20e-3;      ///< horizon of bounds C, s; the period, as printed in (8), bounces
   double dt = 1e-3;        ///< nominal period, s; integration uses it
   double kP_tran = 400;    ///< synchronisation (11), 1/s^2; double pole at 20 rad/s with kD

@@ -22,6 +22,8 @@ constexpr double kStandstill = 1e-9;
 constexpr int kActiveSets = 200;
 constexpr int kActiveSetsPerRow = 4;
 
+constexpr double kStuck = 1e-6;  // of its mobility: a direction in which the twin cannot move
+
 constexpr int kAlignIterations = 10;
 constexpr double kAligned = 1e-12;  // m and rad
 
@@ -240,12 +242,29 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   return record.solver_status;
 }
 
+// The force on the end effector that accelerates it as springs, weight and reference wrench of the
+// twin do; none in directions in which the twin cannot move.
+Eigen::Vector3d Rendering::push_of_twin(const Budget& budget) const noexcept {
+  const auto factor = L_.triangularView<Eigen::Lower>();
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxTwin, 3> root =
+      J_a_.topRows<3>().transpose();
+  VectorA torque = -budget.spring - budget.surface - twin_.chain.gravity();
+  if (torque.isZero(0.0)) return Eigen::Vector3d::Zero();
+  factor.solveInPlace(root);
+  factor.solveInPlace(torque);
+  Eigen::Matrix3d mobility = root.transpose() * root;
+  mobility.diagonal().array() += kStuck * mobility.trace();
+  return mobility.ldlt().solve(Eigen::Vector3d(root.transpose() * torque));
+}
+
 // The proxy goes along while nothing is felt, too.
 void Rendering::feel_surfaces(State& state, double share, CycleRecord& record) noexcept {
   const Eigen::Vector3d p_E = twin_.chain.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
   if (environment_.has_stops()) stops_ = environment_.stops(p_E, v_E, stop_rating_);
-  record.contact = environment_.step(p_E, v_E, record.robot.w_H.head<3>(), state.contact);
+  Eigen::Vector3d push = record.robot.w_H.head<3>();
+  if (!environment_.surfaces().empty()) push += push_of_twin(record.budget);
+  record.contact = environment_.step(p_E, v_E, push, state.contact);
   if (record.contact.surface < 0) return;
   record.contact.force *= share;
   record.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * record.contact.force;
@@ -356,9 +375,12 @@ void Rendering::solve(State& state, double handle_speed, const GantryTask& gantr
     record.solver_status = solver_status(tasks_, solver_options_, solution_);
     record.solver_iterations += solution_.iterations;
     was_spent = was_spent || record.solver_status == SolverStatus::kBudgetSpent;
-    if (record.solver_status == SolverStatus::kFailed ||
-        solution_.iterations >= options_.slow_solve)
+    const bool has_budget = solver_options_.budget > 0;
+    if ((solution_.status != hqp::Status::kSolved && !has_budget) ||
+        record.solver_status == SolverStatus::kFailed ||
+        solution_.iterations >= options_.slow_solve) {
       keep_problem(record.cycle);
+    }
     ended_(Stage::kSolver);
 
     const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);

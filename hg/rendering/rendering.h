@@ -68,8 +68,7 @@ class Rendering {
   /// begins and ends without a bump. `braking_rate` > 0 (1/s) brings the twin to rest, under the
   /// same limits; with `share` 0 it is then a body without friction that nobody touches. The handle
   /// moves no faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian
-  /// limits for it. `gantry` says
-  /// where the law may lead the gantry; state.ddq_p is then where to.
+  /// limits for it. `gantry` says where the law may lead the gantry; state.ddq_p is then where to.
   SolverStatus step(State& state, double braking_rate, CycleRecord& record, double share = 1.0,
                     double handle_speed = kInfinity, const GantryTask& gantry = {}) noexcept;
 
@@ -123,6 +122,7 @@ class Rendering {
 
  private:
   void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
+  Eigen::Vector3d push_of_twin(const Budget& budget) const noexcept;
   void feel_surfaces(State& state, double share, CycleRecord& record) noexcept;
   void give_way(State& state, const CycleRecord& record) const noexcept;
   void solve(State& state, double handle_speed, const GantryTask& gantry,

@@ -109,7 +109,7 @@ struct TrackingReport {
 enum class SolverStatus : std::uint8_t {
   kNotRun = 0,
   kSolved = 1,
-  kBudgetSpent = 2,  ///< ended before it was proven; all limits of the device are kept
+  kBudgetSpent = 2,  ///< ended before it was proven; the joints keep their limits
   kFailed = 3
 };
 

@@ -60,7 +60,7 @@ void bind_modes(nb::module_& module) {
       .value("NOT_RUN", SolverStatus::kNotRun)
       .value("SOLVED", SolverStatus::kSolved)
       .value("BUDGET_SPENT", SolverStatus::kBudgetSpent,
-             "ended before it was proven; all limits of the device are kept")
+             "ended before it was proven; the joints keep their limits")
       .value("FAILED", SolverStatus::kFailed);
 }
 
@@ -187,12 +187,14 @@ void bind_signals(nb::module_& module) {
   bind_fields<ReferenceState>(module, "ReferenceState", "Reference of the manipulator.");
   bind_fields<TwinState>(module, "TwinState", "State of the twin.");
   bind_fields<TrackingReport>(module, "TrackingReport", "How well the device follows.");
+  bind_fields<BystanderReport>(module, "BystanderReport", "What a simulated bystander bears.");
   bind_fields<Truth>(module, "Truth", "What is really the case; only a simulation knows.");
   bind_fields<Budget>(module, "Budget", "Where the user's wrench goes.");
   bind_fields<LimitReport>(module, "LimitReport", "One limit in one cycle.");
   bind_fields<CollisionReport>(module, "CollisionReport", "How near the device comes to itself.");
   bind_fields<PassivityReport>(module, "PassivityReport", "Energy and oscillation at the handle.");
   bind_fields<ContactReport>(module, "ContactReport", "What virtual surfaces do to the twin.");
+  bind_fields<TouchReport>(module, "TouchReport", "What touches the arm beside the handle.");
   bind_fields<CycleRecord>(module, "CycleRecord", "Everything that a cycle has to say.");
 }
 

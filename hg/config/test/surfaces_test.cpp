@@ -76,7 +76,7 @@ TEST(Surfaces, AreRefusedWithTheirPlace) {
   EXPECT_EQ(message("{name: a, stiffness_N_per_m: 1e6}"),
             at + "34: surfaces[0].stiffness_N_per_m: must be 10 .. 50000, got 1e6");
   EXPECT_EQ(message("{name: a, placement: {z_m: -5}, contact: stop, friction: 0.1}"),
-            at + "5: surfaces[0].friction: a surface that is a stop has no such key");
+            at + "62: surfaces[0].friction: a surface that is a stop has no such key");
   EXPECT_EQ(message("{name: a, placement: {z_m: -5}}\n  - {name: a, placement: {z_m: -5}}"),
             "models/scenarios/run.yaml:9:12: surfaces[1].name: surfaces must not use a name twice");
   EXPECT_EQ(message("{name: a, placement: {z_m: 50}}"),

@@ -657,8 +657,8 @@ TEST(Cycle, ARunningStepEndsEveryStageInOrder) {
   loop.cycle->watch({.ended = note, .listener = &stages});
   loop.step();
   const std::vector<Stage> all = {
-      Stage::kSupervision, Stage::kEstimation, Stage::kRenderingSetUp, Stage::kSolver,
-      Stage::kReactions,   Stage::kReactions,  Stage::kPrepositioning, Stage::kIntegration,
+      Stage::kSupervision, Stage::kEstimation, Stage::kPrepositioning, Stage::kRenderingSetUp,
+      Stage::kSolver,      Stage::kReactions,  Stage::kReactions,      Stage::kIntegration,
       Stage::kControl,     Stage::kSafety,     Stage::kStateHash};
   EXPECT_EQ(stages, all);
 

@@ -230,10 +230,10 @@ TEST(Summary, SaysHowOftenTheBudgetOfTheSolverWasSpent) {
     Sample sample;
     sample.record = running(1e-3 * k);
     if (k >= 3) sample.record.solver_status = SolverStatus::kBudgetSpent;
-    EXPECT_EQ(has("ended by the budget"), k > 3);
+    EXPECT_EQ(has("not proven"), k > 3);
     summary.add(sample);
   }
-  EXPECT_TRUE(has("3 solved, 2 ended by the budget, 0 not")) << summary.to_text({}, {});
+  EXPECT_TRUE(has("3 solved, 2 not proven, 0 not")) << summary.to_text({}, {});
   EXPECT_NE(summary.to_json({}, {}).find("\"budget spent\": 2"), std::string::npos);
 }
 

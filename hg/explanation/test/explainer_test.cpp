@@ -198,7 +198,7 @@ TEST(Explainer, TellsWarningsRefusalsLateCyclesAndTheSanitiser) {
   EXPECT_EQ(of_kind(entries, "command").size(), 2u);
   EXPECT_EQ(of_kind(entries, "refused").size(), 1u);
   EXPECT_TRUE(has(of_kind(entries, "late")[0].text, "up to 3"));
-  EXPECT_TRUE(has(of_kind(entries, "solver")[0].text, "its budget was spent"));
+  EXPECT_TRUE(has(of_kind(entries, "solver")[0].text, "before its result was proven"));
 }
 
 TEST(Explainer, DoesNotTellAnOperatorWhoLetsGoAsAFault) {

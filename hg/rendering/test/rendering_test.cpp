@@ -98,8 +98,10 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   const VectorP aim = Eigen::Vector2d(0.2, -0.1);
   GantryTask task = {Eigen::Vector2d(-0.5, -0.5), Eigen::Vector2d(0.5, 0.5), aim,
                      Eigen::Vector2d::Zero()};
+  Options options = without_synchronisation();
+  options.gantry = Gantry::kLaw;
   const auto play = [&](const GantryTask& gantry, VectorP& ddq_p) {
-    Rendering rendering(device, golden_twin(), without_synchronisation());
+    Rendering rendering(device, golden_twin(), options);
     State state = rendering.start(kPosture);
     CycleRecord record = record_with(kGantryAtHome, kPosture, w);
     EXPECT_EQ(rendering.step(state, 0.0, record, 1.0, kInfinity, gantry), SolverStatus::kSolved);
@@ -122,7 +124,7 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   EXPECT_LE(ddq_p.cwiseAbs().maxCoeff(), 0.5 + 1e-12);
 
   task = {aim, aim, aim, Eigen::Vector2d(0.3, 0.3)};  // it does more than it was told
-  Rendering rendering(device, golden_twin(), without_synchronisation());
+  Rendering rendering(device, golden_twin(), options);
   State state = rendering.start(kPosture);
   CycleRecord record = record_with(kGantryAtHome, kPosture, w);
   rendering.step(state, 0.0, record, 1.0, kInfinity, task);
@@ -132,7 +134,7 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   EXPECT_LT((a_H.head<3>() - record.a_H).norm(), 1e-9);
 }
 
-// level 0 leads the gantry, 1 couples, 2 to 4 are those of the device, the twin's follow
+// level 0 couples, 1 to 3 are those of the device, the twin's follow
 TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
   DeviceModel device = unlimited_device();
   device.virtual_joints = {
@@ -147,9 +149,9 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
   solution.slack[of_hand] = -0.01;
   EXPECT_FALSE(tasks.keeps_limits_of_device(solution));
   EXPECT_TRUE(tasks.keeps_joints(solution));
-  solution.completed_levels = 4;
+  solution.completed_levels = 3;
   EXPECT_FALSE(tasks.keeps_limits_of_device(solution));
-  solution.completed_levels = 5;
+  solution.completed_levels = 4;
   EXPECT_TRUE(tasks.keeps_limits_of_device(solution));
   solution.completed_levels = 0;
   solution.slack[of_hand] = 0.0;

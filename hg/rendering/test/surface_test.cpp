@@ -61,6 +61,27 @@ TEST(TwinOnASurface, RestsWhereTheSurfaceCarriesTheUser) {
   EXPECT_NEAR(twin.record.budget.surface[2], -20.0, 1e-3);
 }
 
+// A surface that says no damping brakes what comes in, and carries the weight of the twin besides.
+TEST(TwinOnASurface, CarriesATwinThatHasWeight) {
+  TwinModel twin =
+      unlimited_twin(model::Chain::free_body({.mass = kMass}, {.gravity = true}), "handle");
+  twin.q_start = floating_at({{0.4, 0.1, 0.05}, Eigen::Matrix3d::Identity()});
+  Rendering rendering(
+      unlimited_device(), twin, without_synchronisation(),
+      environment::Environment(
+          {{.name = "floor", .shape = environment::Plane{}, .stiffness = kStiffness}}, kDt,
+          {kMass, kMass}));
+  State state = rendering.start(kPosture);
+  for (int k = 0; k < 3000; ++k) {
+    state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+    CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
+    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    rendering.integrate(state);
+    ASSERT_GT(state.twin.q_a[2], -0.03) << k;
+  }
+  EXPECT_NEAR(state.twin.q_a[2], -kMass * 9.81 / kStiffness, 1e-3);
+}
+
 TEST(TwinOnASurface, FeelsOnlyTheShareOfIt) {
   Falling twin;
   twin.state.twin.q_a[2] = -0.004;
