@@ -50,6 +50,22 @@ void describe(V& v, control::Config& config) {
            "modal: rate at which a remaining error goes");
   v.number("flatness_Hz", config.flatness_Hz, kPositive,
            "low-pass of the derivatives of the torques fed forward");
+  v.number("wrench_lead_s", config.wrench_lead, {.lb = 0.0, .ub = 0.02},
+           "modal: by which the user's wrench is fed forward early, for what sensor, filter and "
+           "springs cost");
+  v.number("lead_low_pass_Hz", config.lead_low_pass_Hz, kPositive,
+           "modal: low-pass of the wrench's rate of change, which wrench_lead_s takes");
+  v.number("stiff_low_pass_Hz", config.stiff_low_pass_Hz, kNotNegative,
+           "modal: low-pass of what is fed forward to stiff modes, 0 = none");
+  v.number("rotor_pole_rad_per_s", config.poles.w0, kPositive,
+           "modal: natural frequency of the shaped rotor on its spring");
+  v.number("link_pole_rad_per_s", config.poles.w1, kPositive,
+           "modal: natural frequency with which the links follow");
+  v.number("link_damping", config.poles.z1, kPositive, "modal: damping ratio of that");
+  v.number("spring_damping", config.poles.z2, kPositive,
+           "modal: damping ratio of each mode's fast oscillation");
+  v.number("motor_pole_rad_per_s", config.poles.w_motor, kPositive,
+           "modal: double pole of modes that are controlled from the motor side alone");
   v.number("error_max_rad", config.error_max, kPositive,
            "the reference is never further ahead of the joint: a joint that is held back takes "
            "reference and twin with it");

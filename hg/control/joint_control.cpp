@@ -7,6 +7,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
+#include "hg/estimation/low_pass.h"
 #include "hg/model/urdf.h"
 
 namespace hg::control {
@@ -70,6 +71,8 @@ JointControl::JointControl(const Config& config, const model::Chain& chain, int 
     throw SetupError("control: " + std::to_string(n_m_) + " actuators expected, got " +
                      std::to_string(config_.actuators.size()));
   }
+  lead_pole_ = estimation::low_pass_pole(config_.lead_low_pass_Hz, config_.dt);
+  stiff_pole_ = estimation::low_pass_pole(config_.stiff_low_pass_Hz, config_.dt);
   K_.resize(n_m_);
   Jm_.resize(n_m_);
   feed_max_.resize(n_m_);
@@ -87,7 +90,7 @@ State JointControl::start() const {
   state.modes = Modes(n_m_);
   state.integral = VectorM::Zero(n_m_);
   state.friction = VectorM::Constant(n_m_, config_.friction_share);
-  state.tau_r = state.dtau_r = state.ddtau_r = VectorM::Zero(n_m_);
+  state.tau_r = state.dtau_r = state.ddtau_r = state.stiff = VectorM::Zero(n_m_);
   return state;
 }
 
@@ -206,14 +209,18 @@ MatrixM JointControl::scaled_mass() const noexcept {
 
 void JointControl::begin(const ReferenceState& reference, const RobotState& robot,
                          State& state) noexcept {
-  state.poles = poles_for(state.latency * config_.dt + config_.loop.current_lag);
-  state.tau_r = fed(link_torque(reference, robot));
+  state.poles = poles_for(config_.poles, state.latency * config_.dt + config_.loop.current_lag);
+  const VectorM tau = link_torque(reference, robot);
+  state.tau_r = fed(tau);
   state.unexplained = VectorM::Zero(n_m_);
   state.dtau_r.setZero();
   state.ddtau_r.setZero();
   state.integral.setZero();
   state.modes = Modes(n_m_);
   state.modes.follow(scaled_mass(), kSweepsAtStart);
+  state.w_H = robot.w_H;
+  state.dw_H.setZero();
+  state.stiff = of_stiff_modes(tau, state);
   state.is_started = true;
 }
 
@@ -224,10 +231,35 @@ JointControl::Feedforward JointControl::feedforward(const ReferenceState& refere
   link_torque_ = tau;
   ddq_r_ = reference.ddq_m;
   state.unexplained += config_.dt / kUnexplained_s * (robot.tau_m - tau - state.unexplained);
-  follow_torque(fed(tau), state);
+  follow_torque(fed(config_.method == Method::kModal ? timely(tau, robot, state) : tau), state);
   return {.tau = state.tau_r,
           .dtheta = reference.dq_m + state.dtau_r.cwiseQuotient(K_),
           .ddtheta = reference.ddq_m + state.ddtau_r.cwiseQuotient(K_)};
+}
+
+// The share of torques on the joints that bends stiff modes.
+VectorM JointControl::of_stiff_modes(const VectorM& tau, const State& state) const noexcept {
+  const VectorM scaled = tau.cwiseQuotient(sqrt_K_);
+  VectorM in_modes = state.modes.Q().transpose() * scaled;
+  for (int i = 0; i < n_m_; ++i) in_modes[i] *= stiffness_share(state.poles, state.modes.mu()[i]);
+  const VectorM back = state.modes.Q() * in_modes;
+  return sqrt_K_.cwiseProduct(back);
+}
+
+// What sensor, filter and springs make late of the user's wrench is made up for by where it is
+// going. Stiff modes follow soon enough without, and would pass the noise of the sensor on to the
+// handle: they get what is slow.
+VectorM JointControl::timely(const VectorM& tau, const RobotState& robot,
+                             State& state) const noexcept {
+  const Vector6 rate = (robot.w_H - state.w_H) / config_.dt;
+  estimation::low_pass(lead_pole_, rate, state.dw_H);
+  state.w_H = robot.w_H;
+  const model::Jacobian& J = chain_.jacobian(handle_);
+  const Vector6 to_come = config_.wrench_lead * state.dw_H;
+  const VectorM lead = J.rightCols(n_m_).transpose().lazyProduct(to_come);
+  const VectorM stiff = of_stiff_modes(tau, state);
+  estimation::low_pass(stiff_pole_, stiff, state.stiff);
+  return tau - stiff + state.stiff - lead + of_stiff_modes(lead, state);
 }
 
 // The springs cannot take a torque at once: their motors have to twist them. What is fed forward

@@ -33,8 +33,12 @@ struct Config {
   TorqueLoop loop;                       ///< its latency is measured, this one is expected
   double latency_max = kInfinity;        ///< measured, with which the loop is known to be stable, s
   double integral_rate = 2.0;            ///< of kModal: error of the links goes with it, 1/s
-  double integral_max = 5e-4;            ///< of the link error, rad s: no wind-up beyond
+  double integral_max = 3.5e-4;          ///< of the link error, rad s: no wind-up beyond
+  Poles poles;                           ///< of kModal, without latency
   double flatness_Hz = 40.0;       ///< low-pass of derivatives of feedforward torques; check()
+  double wrench_lead = 0.0;        ///< of kModal: the user's wrench is fed forward so much early, s
+  double lead_low_pass_Hz = 65.0;  ///< of the wrench's rate of change for that
+  double stiff_low_pass_Hz = 0.0;  ///< of kModal: of what is fed forward to stiff modes; 0 = none
   double error_max = kInfinity;    ///< by which the reference may be ahead, rad or m
   double friction_share = 0.8;     ///< of the Coulomb friction that is fed forward, 0..1
   double friction_speed = 0.01;    ///< rad/s over which it changes its sign
@@ -61,6 +65,9 @@ struct State {
   VectorM integral;  ///< of q_r - q, rad s
   VectorM friction;  ///< what is fed forward over the Coulomb friction of the configuration
   VectorM tau_r, dtau_r, ddtau_r;  ///< feedforward torque of the links and its derivatives
+  Vector6 w_H = Vector6::Zero();   ///< the user's wrench of the last sample
+  Vector6 dw_H = Vector6::Zero();  ///< its rate of change, low-passed
+  VectorM stiff;                   ///< low-passed torques of stiff modes, Nm
   /// Joint torques that reference and user's wrench do not explain, a moving mean, Nm.
   VectorM unexplained;
   bool is_saturated = false;
@@ -124,6 +131,8 @@ class JointControl {
     return tau.cwiseMin(feed_max_).cwiseMax(-feed_max_);
   }
   MatrixM scaled_mass() const noexcept;
+  VectorM of_stiff_modes(const VectorM& tau, const State& state) const noexcept;
+  VectorM timely(const VectorM& tau, const RobotState& robot, State& state) const noexcept;
   void begin(const ReferenceState& reference, const RobotState& robot, State& state) noexcept;
   Feedforward feedforward(const ReferenceState& reference, const RobotState& robot,
                           State& state) noexcept;
@@ -139,6 +148,7 @@ class JointControl {
   Config config_;
   model::Chain chain_;
   int n_p_, n_m_, handle_;
+  double lead_pole_, stiff_pole_;  ///< of the low-passes
   VectorM K_, sqrt_K_, Jm_;
   VectorM feed_max_;             ///< largest torque that is fed forward, Nm
   VectorM link_torque_, ddq_r_;  ///< of this step: what link_torque() gave, and for which ddq

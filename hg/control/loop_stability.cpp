@@ -118,7 +118,7 @@ class SampledLoop {
         latency_steps_(static_cast<int>(std::lround(config_.loop.latency / config_.dt * kSteps))) {
     model::Chain chain = loop.chain;
     chain.update(q, Eigen::VectorXd::Zero(q.size()));
-    const MatrixM M = chain.M().bottomRightCorner(loop.n_m, loop.n_m);
+    const MatrixM M = reality.link_mass * chain.M().bottomRightCorner(loop.n_m, loop.n_m);
     step_ = matrix_exponential(plant_with_input(config_, M) * (config_.dt / kSteps));
     feedback_ = feedback(loop, q, chain.c().tail(loop.n_m), latency);
     link_pole_ = estimation::low_pass_pole(loop.filters.link_pole_Hz, config_.dt);

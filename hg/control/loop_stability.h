@@ -30,6 +30,7 @@ struct Loop {
 struct Reality {
   std::vector<ActuatorModel> actuators;
   TorqueLoop loop;
+  double link_mass = 1.0;  ///< masses and inertias of the links over those that are believed
 };
 
 /// Largest modulus of the eigenvalues of one period at rest in posture `q` (gantry first), with the

@@ -30,14 +30,19 @@ void rotate(int p, int r, MatrixM& B, MatrixM& Q) noexcept {
 
 }  // namespace
 
-Poles poles_for(double latency) noexcept {
-  const Poles fastest;
+Poles poles_for(const Poles& fastest, double latency) noexcept {
   Poles poles = fastest;
-  poles.w0 = std::min(fastest.w0, 0.24 / latency);
+  poles.w0 = std::min(fastest.w0, 0.27 / latency);
   const double share = poles.w0 / fastest.w0;
   poles.w1 *= share;
   poles.w_motor *= share;
   return poles;
+}
+
+double stiffness_share(const Poles& poles, double mu) noexcept {
+  constexpr double kHalfWidth = 0.1;  // of w2_max
+  const double w2 = std::sqrt(poles.w0 * poles.w0 + 1.0 / mu);
+  return std::clamp(0.5 + (w2 / poles.w2_max - 1.0) / (2.0 * kHalfWidth), 0.0, 1.0);
 }
 
 ModeGains gains_of(const Poles& poles, double mu) noexcept {

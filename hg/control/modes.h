@@ -11,21 +11,28 @@ namespace hg::control {
 
 using MatrixM = MatrixUpTo<kMaxManipulator, kMaxManipulator>;
 
-/// Poles of the closed loop. rad/s; derived from the latency of the loop by poles_for().
+/// Poles of the closed loop. rad/s; slowed down for the latency of the loop by poles_for().
+///
+/// The fast pair is damped as little as this because damping is what latency takes away first: with
+/// z2 = 0.5, [C] 1, modes of 28 to 40 Hz are unstable at 200 rad/s (9 of 200 random postures,
+/// loop_stability.h), with 0.25 none is at 180 rad/s, also where rotors, links and springs differ
+/// by a quarter or the latency by a half.
 struct Poles {
-  double w0 = 150.0;      ///< of the shaped rotor on its spring
-  double w1 = 49.0;       ///< slow pair: how the link follows
-  double z1 = 0.8;        ///< its damping ratio
-  double z2 = 0.5;        ///< damping ratio of the fast pair, which keeps its natural frequency
+  double w0 = 180.0;      ///< of the shaped rotor on its spring
+  double w1 = 57.0;       ///< slow pair: how the link follows
+  double z1 = 0.85;       ///< its damping ratio
+  double z2 = 0.25;       ///< damping ratio of the fast pair, which keeps its natural frequency
   double w2_max = 300.0;  ///< stiffer modes are controlled from the motor side alone
   double w_motor = 90.0;  ///< and have a double pole there
 };
 
-/// The fastest poles that tolerate `latency` (s), which includes the lag of the current; w0 = 0.24
-/// / latency up to its default; w1 and w_motor scale along, w2_max and damping ratios do not. [C] 1
-/// has 0.3 and 200 rad/s, which rests on friction: without it 16 of 200 random postures are
-/// unstable (loop_stability.h).
-Poles poles_for(double latency) noexcept;
+/// `fastest`, slowed down to what tolerates `latency` (s), which includes the lag of the current:
+/// w0 is at most 0.27 / latency; w1 and w_motor scale along, w2_max and damping ratios do not.
+Poles poles_for(const Poles& fastest, double latency) noexcept;
+
+/// How stiff a mode with the eigenvalue `mu` (s^2) is: 0 from 0.9 w2_max down, 1 from 1.1 w2_max
+/// up, linear between. w2 is its frequency with motors free, sqrt(w0^2 + 1 / mu).
+double stiffness_share(const Poles& poles, double mu) noexcept;
 
 /// v = motor (theta_r - theta) + motor_rate (theta_r' - theta') + link (q_r - q) + link_rate (..)
 struct ModeGains {

@@ -233,7 +233,9 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
   hash.mix(control.poles.w0);
   hash.mix(control.modes.Q());
   hash.mix(control.integral, control.friction, control.tau_r, control.dtau_r, control.ddtau_r,
-           control.unexplained);
+           control.unexplained, control.stiff);
+  hash.mix(control.w_H);
+  hash.mix(control.dw_H);
   hash.mix(state.w_H);
   if (state.touch.dq.size() > 0) {  // somebody feels for it
     mix(state.touch, hash);

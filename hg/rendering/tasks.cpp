@@ -449,21 +449,22 @@ void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
 }
 
 bool Tasks::keeps_limits_of_device(const hqp::Solution& solution) const noexcept {
-  return keeps(solution, static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_);
+  constexpr double kMet = 1e-6;  // rad/s^2 or m/s^2
+  return keeps(solution, static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_, kMet);
 }
 
 bool Tasks::keeps_joints(const hqp::Solution& solution) const noexcept {
-  return keeps(solution, first_motor_);
+  constexpr double kMet = 1e-3;  // rad/s^2: for a period it makes a joint faster by 1e-6 rad/s
+  return keeps(solution, first_motor_, kMet);
 }
 
 // the first `count` limits
-bool Tasks::keeps(const hqp::Solution& solution, int count) const noexcept {
-  constexpr double kMet = 1e-6;  // rad/s^2 or m/s^2
+bool Tasks::keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept {
   for (int limit = 0; limit < count; ++limit) {
     for (const int row :
          {first_limit_row() + limit, limit_rows_[static_cast<std::size_t>(limit)].rating_row}) {
       if (row < 0 || problem_.level_of(row) < solution.completed_levels) continue;
-      if (!(std::abs(solution.slack[static_cast<std::size_t>(row)]) <= kMet)) return false;
+      if (!(std::abs(solution.slack[static_cast<std::size_t>(row)]) <= tolerance)) return false;
     }
   }
   return true;

@@ -112,9 +112,10 @@ class Tasks {
   VectorP gantry_acceleration(const hqp::Solution& solution) const noexcept {
     return Eigen::Map<const Eigen::VectorXd>(solution.x.data() + n_m_ + n_a_, n_g_);
   }
-  /// Whether all rows of device limits are in levels that `solution` has completed, or are met.
+  /// Whether all rows of device limits are in levels that `solution` has completed, or are met to
+  /// 1e-6.
   bool keeps_limits_of_device(const hqp::Solution& solution) const noexcept;
-  /// The same of joints and virtual joints alone.
+  /// The same of joints and virtual joints alone, met to 1e-3 rad/s^2.
   bool keeps_joints(const hqp::Solution& solution) const noexcept;
   /// The ends that `solution` touches or leaves, of both rows of a joint.
   TouchedEnds touched_ends(const hqp::Solution& solution) const noexcept;
@@ -134,7 +135,7 @@ class Tasks {
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
-  bool keeps(const hqp::Solution& solution, int count) const noexcept;
+  bool keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept;
   void fill_gantry(const TaskInput& input) noexcept;
   void fill_stops(const TwinModel& twin, const TaskInput& input) noexcept;
   void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "hg/control/test/control_setup.h"
 
 namespace hg::control {
@@ -78,6 +83,62 @@ TEST(LoopStability, RotorsMustBeKnownToThirtyPercent) {
   EXPECT_GT(worst_radius_in_reality(1e-3, 1e-3, 0.5), 1.0);
   for (const double rotor : {0.7, 1.0, 1.5}) {
     EXPECT_LT(worst_radius_in_reality(1e-3, 1e-3, rotor), 1.0) << rotor;
+  }
+}
+
+// Random postures within the limits of the reference device, q4 + q5 kept from the singularity.
+std::vector<Eigen::VectorXd> dense_postures(std::size_t count) {
+  std::mt19937 random(5);
+  const auto between = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+  };
+  std::vector<Eigen::VectorXd> all;
+  while (all.size() < count) {
+    const double m4 = between(0.2, 2.45), m5 = between(-2.0, 2.1);
+    if (m4 + m5 < 0.26 || m4 + m5 > 2.88) continue;
+    all.push_back(posture(joints(between(-3.1, 3.1), between(0.2, 2.75), between(-2.6, 2.6), m4, m5,
+                                 between(-2.6, 2.1))));
+  }
+  return all;
+}
+
+// Gains must hold for an arm that nobody knows exactly, wherever it stands, without the help of
+// friction.
+TEST(LoopStability, EveryPostureToleratesAQuarterOfErrorInMassesAndSpringsAndHalfMoreLatency) {
+  const Loop loop = reference_loop();
+  const Reality believed = {loop.config.actuators, loop.config.loop};
+  const auto with = [&](auto change) {
+    Reality reality = believed;
+    change(reality);
+    return reality;
+  };
+  const auto rotors = [](double factor) {
+    return [factor](Reality& r) {
+      for (ActuatorModel& actuator : r.actuators) actuator.rotor_inertia *= factor;
+    };
+  };
+  const auto springs = [](double factor) {
+    return [factor](Reality& r) {
+      for (ActuatorModel& actuator : r.actuators) actuator.stiffness *= factor;
+    };
+  };
+  const auto links = [](double factor) { return [factor](Reality& r) { r.link_mass = factor; }; };
+  const std::vector<std::pair<std::string, Reality>> realities = {
+      {"as believed", believed},
+      {"rotors x 0.75", with(rotors(0.75))},
+      {"rotors x 1.25", with(rotors(1.25))},
+      {"springs x 0.75", with(springs(0.75))},
+      {"springs x 1.25", with(springs(1.25))},
+      {"links x 0.75", with(links(0.75))},
+      {"links x 1.25", with(links(1.25))},
+      {"latency x 1.5", with([](Reality& r) { r.loop.latency *= 1.5; })}};
+  const std::vector<Eigen::VectorXd> dense = dense_postures(150);
+  for (const auto& [what, reality] : realities) {
+    double worst = 0.0;
+    for (const Eigen::VectorXd& q : dense) {
+      worst = std::max(worst, spectral_radius(loop, q, 1e-3, reality));
+    }
+    EXPECT_LT(worst, 0.995) << what;
   }
 }
 

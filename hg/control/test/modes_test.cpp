@@ -45,7 +45,7 @@ double distance_to_nearest(const Eigen::Vector4cd& values, Complex wanted) {
 
 TEST(Poles, ASoftModeGetsExactlyThePolesAskedFor) {
   for (const double latency : {1.5e-3, 2.5e-3, 4e-3}) {
-    const Poles poles = poles_for(latency);
+    const Poles poles = poles_for({}, latency);
     for (const double frequency_Hz : {2.0, 4.1, 9.0, 11.4, 12.4, 20.0}) {
       SCOPED_TRACE(frequency_Hz);
       const double mu = mu_of(frequency_Hz);
@@ -92,6 +92,17 @@ TEST(Poles, ModesAreStiffFromTheirOwnFrequencyOnNotTheLockedOne) {
   EXPECT_EQ(gains_of(poles, std::pow(1.001 * w_locked, -2)).link_rate, 0.0);
 }
 
+TEST(Poles, StiffnessGrowsFromSoftToStiffWithoutAJump) {
+  const Poles poles;
+  const auto share_at = [&](double w2) {
+    return stiffness_share(poles, 1.0 / (w2 * w2 - poles.w0 * poles.w0));
+  };
+  EXPECT_EQ(share_at(0.89 * poles.w2_max), 0.0);
+  EXPECT_NEAR(share_at(poles.w2_max), 0.5, 1e-12);
+  EXPECT_NEAR(share_at(1.05 * poles.w2_max), 0.75, 1e-12);
+  EXPECT_EQ(share_at(1.11 * poles.w2_max), 1.0);
+}
+
 // [C] 1, "Latency decides w0": at most 0.75 of the largest stable w0, and not much less
 TEST(Poles, FollowTheTableOfLatencies) {
   struct Row {
@@ -101,7 +112,7 @@ TEST(Poles, FollowTheTableOfLatencies) {
   for (const Row& row :
        {Row{0.5e-3, 260.0}, {1e-3, 260.0}, {1.5e-3, 200.0}, {2e-3, 160.0}, {3e-3, 120.0}}) {
     SCOPED_TRACE(row.latency_s);
-    const Poles poles = poles_for(row.latency_s + 0.5e-3);
+    const Poles poles = poles_for({}, row.latency_s + 0.5e-3);
     EXPECT_LE(poles.w0, 0.75 * row.largest_w0);
     EXPECT_GE(poles.w0, 0.55 * row.largest_w0);
     EXPECT_LE(poles.w0, last_w0);
@@ -109,9 +120,9 @@ TEST(Poles, FollowTheTableOfLatencies) {
     EXPECT_NEAR(poles.w_motor / poles.w0, Poles{}.w_motor / Poles{}.w0, 1e-12);
     last_w0 = poles.w0;
   }
-  EXPECT_EQ(poles_for(1.5e-3).w0, Poles{}.w0);
-  EXPECT_EQ(poles_for(0.2e-3).w0, Poles{}.w0);  // no faster than the defaults
-  EXPECT_LT(poles_for(2.5e-3).w0, Poles{}.w0);
+  EXPECT_EQ(poles_for({}, 1.5e-3).w0, Poles{}.w0);
+  EXPECT_EQ(poles_for({}, 0.2e-3).w0, Poles{}.w0);  // no faster than the defaults
+  EXPECT_LT(poles_for({}, 2.5e-3).w0, Poles{}.w0);
 }
 
 MatrixM scaled_mass(const VectorM& q_m) {
