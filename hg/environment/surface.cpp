@@ -4,12 +4,11 @@
 #include <cmath>
 #include <sstream>
 
+#include "hg/core/arm_mass.h"
 #include "hg/core/error.h"
 
 namespace hg::environment {
 namespace {
-
-constexpr double kArmMass = 1.5;  // kg, of a hand that holds on; hg/user/hand.h
 
 void require(const Surface& surface, const char* what, const Interval& range, double value) {
   if (range.contains(value)) return;

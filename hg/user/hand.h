@@ -9,6 +9,7 @@
 
 #include <cstdint>
 
+#include "hg/core/arm_mass.h"
 #include "hg/core/types.h"
 
 namespace hg::user {
@@ -22,7 +23,7 @@ enum class HandPreset { kRelaxed, kNormal, kStiff };
 struct HandImpedance {
   Eigen::Vector3d stiffness{250, 150, 200};        ///< of the arm, N/m
   Eigen::Vector3d damping{20, 15, 18};             ///< of the arm, Ns/m
-  Eigen::Vector3d mass{1.0, 1.5, 1.5};             ///< effective mass of hand and arm, kg
+  Eigen::Vector3d mass{1.0, kArmMass, kArmMass};   ///< effective mass of hand and arm, kg
   double grip_stiffness = 1000;                    ///< of the tissue between hand and handle, N/m
   double grip_damping = 15;                        ///< Ns/m
   Eigen::Vector3d angular_stiffness{1.0, 1.5, 2};  ///< Nm/rad
