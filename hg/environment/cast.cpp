@@ -122,15 +122,6 @@ Clip clip(const Cylinder& cylinder, const Vector3d& a, const Vector3d& b) noexce
   return way;
 }
 
-bool is_over(const Triangle& triangle, const Vector3d& point) noexcept {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3d& corner = triangle.corners[i];
-    const Vector3d edge = triangle.corners[(i + 1) % 3] - corner;
-    if (edge.cross(point - corner).dot(triangle.normal) < -kSeam * edge.norm()) return false;
-  }
-  return true;
-}
-
 std::optional<Hit> first_hit(const Mesh& mesh, const Vector3d& a, const Vector3d& b) noexcept {
   std::optional<Hit> first;
   mesh.for_each_near(a, b, 2.0 * kOutside, [&](const Triangle& triangle) {
@@ -139,7 +130,7 @@ std::optional<Hit> first_hit(const Mesh& mesh, const Vector3d& a, const Vector3d
     if (from < -kOutside || to > -kEntered || to >= from) return;
     const double share = std::max(0.0, from / (from - to));
     if (first && share >= first->share) return;
-    if (is_over(triangle, a + share * (b - a))) first = Hit{share, triangle.normal};
+    if (is_over(triangle, a + share * (b - a), kSeam)) first = Hit{share, triangle.normal};
   });
   return first;
 }
@@ -169,7 +160,7 @@ bool is_inside(const Surface& surface, const Vector3d& point) noexcept {
   return std::visit(
       [&](const auto& shape) {
         if constexpr (std::is_same_v<decltype(shape), const Mesh&>) {
-          return false;
+          return shape.is_closed() && shape.encloses(p);
         } else {
           return clip(shape, p, p).depth() > kOutside;
         }

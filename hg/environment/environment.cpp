@@ -12,7 +12,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kNear = 0.05;    // m; how far a stop looks, and twice its braking distance
-constexpr double kFlat = 1e-6;    // m; triangles that differ by less are of one plane
+constexpr double kDeepest = 0.2;  // m; from where a mesh at least brings back what is inside
+constexpr double kFlat = 1e-6;    // m; triangles that differ by less are of one plane or touch
 constexpr double kStill = 1e-10;  // m; a proxy that moves less has arrived
 
 // Never pulls, and along the surface within the cone of friction.
@@ -30,7 +31,7 @@ Vector3d force_of(const Spread& spread, double pressed, const Vector3d& velocity
 }
 
 // Whether a point behind a triangle of a mesh is not in the solid there: next to it, around an edge
-// that is bent outwards, it is in front of another triangle, or less far behind it.
+// that is bent outwards, it is in front of another triangle of this solid, or less far behind it.
 bool is_beside(const Surface& surface, const Vector3d& point, const Facing& behind) noexcept {
   const Mesh* mesh = std::get_if<Mesh>(&surface.shape);
   if (mesh == nullptr) return false;
@@ -38,10 +39,9 @@ bool is_beside(const Surface& surface, const Vector3d& point, const Facing& behi
   const Vector3d normal = surface.pose.R.transpose() * behind.normal;
   bool is_beside = false;
   mesh->for_each_near(p, p, kBehind, [&](const Triangle& triangle) {
-    const Facing other = facing(triangle, p);
-    const bool is_less =
-        other.distance > 0.0 ? other.distance < kBehind : -other.distance < -behind.distance;
-    if (other.is_edge || !is_less) return;
+    if (triangle.solid != behind.solid || !is_over(triangle, p, kFlat)) return;
+    const double distance = triangle.normal.dot(p - triangle.corners[0]);
+    if (distance > 0.0 ? distance >= kBehind : distance <= behind.distance) return;
     // inwards along the other triangle's plane, from their edge, is behind it
     const Vector3d middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
     const double height = normal.dot(middle - (p - behind.distance * normal));
@@ -52,28 +52,45 @@ bool is_beside(const Surface& surface, const Vector3d& point, const Facing& behi
 
 }  // namespace
 
-Environment::Environment(std::vector<Surface> surfaces, double period, const Interval& mass)
-    : surfaces_(std::move(surfaces)), mass_(mass.ub), period_(period) {
-  if (surfaces_.size() > kMaxSurfaces) {
+void check(const std::vector<Surface>& surfaces) {
+  if (surfaces.size() > kMaxSurfaces) {
     throw SetupError("surfaces: at most " + std::to_string(kMaxSurfaces) + ", got " +
-                     std::to_string(surfaces_.size()));
+                     std::to_string(surfaces.size()));
   }
-  for (const Surface& surface : surfaces_) {
+  std::size_t triangles = 0;
+  for (const Surface& surface : surfaces) {
     check(surface);
-    has_stops_ = has_stops_ || surface.contact == Contact::kStop;
-    damping_.push_back(surface.damping.value_or(critical_damping(surface.stiffness, mass, period)));
+    const Mesh* mesh = std::get_if<Mesh>(&surface.shape);
+    if (mesh != nullptr && surface.contact == Contact::kStop) triangles += mesh->triangles().size();
+  }
+  if (triangles > kMaxStopTriangles) {
+    throw SetupError("surfaces that are stops: at most " + std::to_string(kMaxStopTriangles) +
+                     " triangles in all, got " + std::to_string(triangles));
   }
 }
 
+Environment::Environment(std::vector<Surface> surfaces, double period, const Interval& mass)
+    : surfaces_((check(surfaces), std::move(surfaces))), mass_(mass), period_(period) {
+  has_stops_ = std::ranges::any_of(
+      surfaces_, [](const Surface& surface) { return surface.contact == Contact::kStop; });
+}
+
+double Environment::damping_of(const Surface& surface, double mass_scale) const noexcept {
+  if (surface.damping) return *surface.damping;
+  return critical_damping(surface.stiffness, {mass_scale * mass_.lb, mass_scale * mass_.ub},
+                          period_);
+}
+
 ContactReport Environment::step(const Vector3d& position, const Vector3d& velocity,
-                                const Vector3d& push, State& state) const noexcept {
+                                const Vector3d& push, State& state,
+                                double mass_scale) const noexcept {
   const Vector3d handle = position + 0.5 * period_ * velocity;
   ContactReport contact;
   contact.proxy = handle;
   if (surfaces_.empty() || !handle.allFinite()) return contact;
   if (!state.is_started) state = {handle, true};
   Planes planes;
-  follow(handle, planes, state.proxy);
+  follow(handle, mass_scale, planes, state.proxy);
   contact.proxy = state.proxy;
   const Spread spread = planes.spread(handle, state.proxy);
   contact.surface = spread.surface;
@@ -85,17 +102,19 @@ ContactReport Environment::step(const Vector3d& position, const Vector3d& veloci
   state.pressed = spread.depth - state.dent;
   state.stiffness = spread.stiffness;
   contact.force = force_of(spread, state.pressed, velocity);
-  if (spread.catches) catch_it(spread, velocity, push, contact, state);
+  if (spread.catches) catch_it(spread, mass_scale, velocity, push, contact, state);
   return contact;
 }
 
 // What comes in is stopped with a time constant and no harder. So the spring holds what the person
 // pushes when it stands still, and does not throw it back.
-void Environment::catch_it(const Spread& spread, const Vector3d& velocity, const Vector3d& push,
-                           ContactReport& contact, State& state) const noexcept {
+void Environment::catch_it(const Spread& spread, double mass_scale, const Vector3d& velocity,
+                           const Vector3d& push, ContactReport& contact,
+                           State& state) const noexcept {
   const double speed = -velocity.dot(spread.normal);
   if (speed < kImpact) return;
-  const double most = std::max(0.0, -push.dot(spread.normal)) + mass_ * speed / kStopping;
+  const double most =
+      std::max(0.0, -push.dot(spread.normal)) + mass_scale * mass_.ub * speed / kStopping;
   const double force = contact.force.dot(spread.normal);
   if (force <= most) return;
   contact.force *= most / force;
@@ -128,14 +147,30 @@ std::array<Facing, kMostFacing> Environment::stops(const Vector3d& position,
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     if (surfaces_[i].contact != Contact::kStop) continue;
     const Surface& surface = surfaces_[i];
-    for (const bool is_edge : {false, true}) {
-      for_each_facing(surface, position, reach, [&](Facing found) {
-        found.surface = static_cast<int>(i);
-        if (found.is_edge != is_edge || (is_edge && planes.covers(found))) return;
-        if (found.distance < 0.0 && is_beside(surface, position, found)) return;
-        planes.add(found, found.distance - way(-found.normal.dot(velocity)));
-      });
-    }
+    const auto add = [&](Facing found) {
+      found.surface = static_cast<int>(i);
+      if (found.is_edge && planes.covers(found)) return;
+      if (found.distance < 0.0 && is_beside(surface, position, found)) return;
+      planes.add(found, found.distance - way(-found.normal.dot(velocity)));
+    };
+    double nearest = std::max(reach, kDeepest);  // in front of the handle
+    bool is_behind = false;
+    for_each_facing(surface, position, reach, [&](const Facing& found) {
+      if (found.distance < 0.0) is_behind = true;
+      if (found.distance >= 0.0) nearest = std::min(nearest, found.distance);
+      if (!found.is_edge) add(found);
+    });
+    const Mesh* mesh = std::get_if<Mesh>(&surface.shape);
+    if (mesh == nullptr) continue;
+    for_each_facing(surface, position, reach, [&](const Facing& found) {
+      if (found.is_edge) add(found);
+    });
+    const Eigen::Matrix3d& R = surface.pose.R;
+    const Vector3d p = R.transpose() * (position - surface.pose.p);
+    if (is_behind || !mesh->extent().contains(p)) continue;
+    Facing out = way_out(*mesh, p, nearest);
+    out.normal = R * out.normal;
+    if (out.distance < 0.0) add(out);
   }
   return planes.planes();
 }
@@ -154,7 +189,8 @@ Environment::Found Environment::first_hit(const Vector3d& from, const Vector3d& 
 // From the surface that the proxy meets on its way to the handle along that surface and whatever
 // it then meets. A round ends where the way is free; on a curved surface and behind an edge the
 // next one begins from there. No planes: the proxy has reached the handle.
-void Environment::follow(const Vector3d& handle, Planes& planes, Vector3d& proxy) const noexcept {
+void Environment::follow(const Vector3d& handle, double mass_scale, Planes& planes,
+                         Vector3d& proxy) const noexcept {
   for (int round = 0; round < kMaxRounds; ++round) {
     const Found met = first_hit(proxy, handle);
     planes = {};
@@ -164,14 +200,19 @@ void Environment::follow(const Vector3d& handle, Planes& planes, Vector3d& proxy
     }
     const Vector3d before = proxy;
     proxy += met.hit.share * (handle - proxy);
-    const auto index = static_cast<std::size_t>(met.surface);
-    planes.add(met.hit.normal, surfaces_[index], damping_[index], met.surface);
-    slide(handle, planes, proxy);
+    add(met, mass_scale, planes);
+    slide(handle, mass_scale, planes, proxy);
     if ((proxy - before).norm() < kStill) return;
   }
 }
 
-void Environment::slide(const Vector3d& handle, Planes& planes, Vector3d& proxy) const noexcept {
+bool Environment::add(const Found& met, double mass_scale, Planes& planes) const noexcept {
+  const Surface& surface = surfaces_[static_cast<std::size_t>(met.surface)];
+  return planes.add(met.hit.normal, surface, damping_of(surface, mass_scale), met.surface);
+}
+
+void Environment::slide(const Vector3d& handle, double mass_scale, Planes& planes,
+                        Vector3d& proxy) const noexcept {
   constexpr int kSweeps = kMaxSweeps / kMaxRounds - 1;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     const Vector3d target = planes.step(handle, proxy);
@@ -179,8 +220,7 @@ void Environment::slide(const Vector3d& handle, Planes& planes, Vector3d& proxy)
     const Found met = first_hit(proxy, target);
     proxy += met.hit.share * (target - proxy);
     if (met.surface < 0) return;
-    const auto index = static_cast<std::size_t>(met.surface);
-    if (!planes.add(met.hit.normal, surfaces_[index], damping_[index], met.surface)) return;
+    if (!add(met, mass_scale, planes)) return;
   }
 }
 

@@ -28,6 +28,7 @@
 namespace hg::environment {
 
 inline constexpr std::size_t kMaxSurfaces = 64;
+inline constexpr std::size_t kMaxStopTriangles = 1500;  ///< of all stops: each costs time
 inline constexpr int kMaxRounds = 4;  ///< in which the proxy follows a curved surface
 inline constexpr int kMaxSweeps = 5 * kMaxRounds;
 
@@ -37,6 +38,9 @@ inline constexpr double kRecovery = 3e-3;  ///< speed at which a dent is filled 
 // of what comes in to a surface that says no damping:
 inline constexpr double kStopping = 15e-3;  ///< time constant with which it is stopped, s
 inline constexpr double kImpact = 0.02;     ///< from which speed on, m/s
+
+/// Throws SetupError naming the first surface that cannot be.
+void check(const std::vector<Surface>& surfaces);
 
 /// Part of the copyable state of a cycle.
 struct State {
@@ -53,8 +57,7 @@ class Environment {
  public:
   Environment() = default;  ///< without surfaces
   /// `period` of the steps, s; `mass` (kg) of the body that meets them, where it is lightest and
-  /// heaviest, for the damping of those that do not say theirs. Throws SetupError naming the first
-  /// surface that cannot be.
+  /// heaviest, for the damping of those that do not say theirs. Throws SetupError as check().
   Environment(std::vector<Surface> surfaces, double period, const Interval& mass);
 
   const std::vector<Surface>& surfaces() const noexcept { return surfaces_; }
@@ -70,9 +73,10 @@ class Environment {
   /// `position` and `velocity` of the handle at the begin of a sample, `push` (N) of all else that
   /// acts on it. The spring acts as in the middle of the sample, where the handle is half a period
   /// later; else it would give energy. A handle that starts inside a solid is free until it has
-  /// left it.
+  /// left it. `mass_scale`: of the body now, over its mass at set-up.
   ContactReport step(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
-                     const Eigen::Vector3d& push, State& state) const noexcept;
+                     const Eigen::Vector3d& push, State& state,
+                     double mass_scale = 1.0) const noexcept;
 
   /// After a step(): of the force `contact` the device does not give `missing` (N, of its size).
   /// The surface gives way until its spring pushes no harder than the device, so that it never
@@ -86,15 +90,18 @@ class Environment {
     int surface = -1;
   };
   Found first_hit(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const noexcept;
-  void slide(const Eigen::Vector3d& handle, Planes& planes, Eigen::Vector3d& proxy) const noexcept;
-  void follow(const Eigen::Vector3d& handle, Planes& planes, Eigen::Vector3d& proxy) const noexcept;
+  bool add(const Found& met, double mass_scale, Planes& planes) const noexcept;
+  void slide(const Eigen::Vector3d& handle, double mass_scale, Planes& planes,
+             Eigen::Vector3d& proxy) const noexcept;
+  void follow(const Eigen::Vector3d& handle, double mass_scale, Planes& planes,
+              Eigen::Vector3d& proxy) const noexcept;
+  double damping_of(const Surface& surface, double mass_scale) const noexcept;
 
-  void catch_it(const Spread& spread, const Eigen::Vector3d& velocity, const Eigen::Vector3d& push,
-                ContactReport& contact, State& state) const noexcept;
+  void catch_it(const Spread& spread, double mass_scale, const Eigen::Vector3d& velocity,
+                const Eigen::Vector3d& push, ContactReport& contact, State& state) const noexcept;
 
   std::vector<Surface> surfaces_;
-  std::vector<double> damping_;  ///< of each, Ns/m
-  double mass_ = 0.0;            ///< of the body, kg
+  Interval mass_;  ///< of the body, kg
   double period_ = 0.0;
   bool has_stops_ = false;
 };

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
+#include <numbers>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "hg/core/error.h"
 
@@ -20,6 +24,43 @@ constexpr std::size_t kHeader = 84, kRecord = 50;  // bytes of a binary STL file
 Vector3d middle(const Triangle& triangle) {
   return (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
 }
+
+// What triangles have in common: corners at the same place, and edges.
+class Seams {
+ public:
+  // The number of one corner.
+  int add(const Corners& corners) {
+    std::array<int, 3> numbers{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::array<double, 3> place = {corners[i].x(), corners[i].y(), corners[i].z()};
+      const int next = static_cast<int>(next_.size());
+      const auto [found, is_new] = places_.try_emplace(place, next);
+      if (is_new) next_.push_back(next);
+      numbers[i] = found->second;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int a = numbers[i], b = numbers[(i + 1) % 3];
+      next_[static_cast<std::size_t>(last(a))] = last(b);
+      if (a < b) ++surplus_[{a, b}];
+      if (b < a) --surplus_[{b, a}];
+    }
+    return numbers[0];
+  }
+  // The same of all corners that hang together.
+  int last(int corner) {
+    const auto next = [&](int at) -> int& { return next_[static_cast<std::size_t>(at)]; };
+    for (; next(corner) != corner; corner = next(corner)) next(corner) = next(next(corner));
+    return corner;
+  }
+  bool is_closed() const {
+    return std::ranges::all_of(surplus_, [](const auto& edge) { return edge.second == 0; });
+  }
+
+ private:
+  std::map<std::array<double, 3>, int> places_;
+  std::vector<int> next_;                       // of each corner, one that it hangs together with
+  std::map<std::pair<int, int>, int> surplus_;  // of triangles that run along an edge one way
+};
 
 std::uint32_t count_of(std::string_view content) {
   std::uint32_t count = 0;
@@ -98,11 +139,16 @@ std::vector<Corners> read_text(std::string_view content, std::string_view source
 
 Mesh::Mesh(const std::vector<Corners>& triangles) {
   constexpr double kLeastArea = 1e-14;  // m^2
+  Seams seams;
   for (const Corners& corners : triangles) {
     const Vector3d twice = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     if (!twice.allFinite()) throw SetupError("corners of triangles must be finite");
-    if (twice.norm() > 2.0 * kLeastArea) triangles_.push_back({corners, twice.normalized()});
+    const int corner = seams.add(corners);
+    if (twice.norm() <= 2.0 * kLeastArea) continue;
+    triangles_.push_back({corners, twice.normalized(), corner});
   }
+  is_closed_ = seams.is_closed();
+  for (Triangle& triangle : triangles_) triangle.solid = seams.last(triangle.solid);
   if (triangles_.empty() || triangles_.size() > kMaxTriangles) {
     throw SetupError("1 .. " + std::to_string(kMaxTriangles) + " triangles with an area, got " +
                      std::to_string(triangles_.size()));
@@ -137,6 +183,20 @@ void Mesh::build(std::vector<int>& order, std::size_t begin, std::size_t end) {
     build(order, half, end);
   }
   nodes_[index].next = static_cast<int>(nodes_.size());
+}
+
+// The solid angle of all triangles seen from there is the whole sphere inside, nothing outside
+// (A. van Oosterom, J. Strackee, IEEE Trans. Biomedical Engineering 30(2), 1983).
+bool Mesh::encloses(const Vector3d& point) const noexcept {
+  double angle = 0.0;
+  for (const Triangle& triangle : triangles_) {
+    const Vector3d a = triangle.corners[0] - point, b = triangle.corners[1] - point,
+                   c = triangle.corners[2] - point;
+    const double ra = a.norm(), rb = b.norm(), rc = c.norm();
+    angle += 2.0 * std::atan2(a.dot(b.cross(c)),
+                              ra * rb * rc + a.dot(b) * rc + b.dot(c) * ra + c.dot(a) * rb);
+  }
+  return angle > 2.0 * std::numbers::pi;
 }
 
 Mesh read_stl(std::string_view content, std::string_view source, double scale) {

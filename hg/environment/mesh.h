@@ -1,6 +1,7 @@
 /// A surface of triangles, and the search for those that a short way crosses.
 ///
-/// Each triangle pushes to the side from which its corners run counter-clockwise, as STL has it.
+/// Each triangle pushes to the side from which its corners run counter-clockwise, as STL has it. A
+/// mesh need not be closed; one that is has an inside.
 /// The search walks a tree of boxes: the visit of a way takes at most as many steps as the tree has
 /// nodes, two for a triangle. No allocation after construction.
 #pragma once
@@ -18,7 +19,19 @@ inline constexpr int kMaxTriangles = 20'000;
 struct Triangle {
   std::array<Eigen::Vector3d, 3> corners;
   Eigen::Vector3d normal;  ///< unit
+  int solid = 0;           ///< those that hang together by corners have the same number
 };
+
+/// Whether `point` is above or below the triangle, or beside it by at most `beside` (m).
+inline bool is_over(const Triangle& triangle, const Eigen::Vector3d& point,
+                    double beside) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3d& corner = triangle.corners[i];
+    const Eigen::Vector3d edge = triangle.corners[(i + 1) % 3] - corner;
+    if (edge.cross(point - corner).dot(triangle.normal) < -beside * edge.norm()) return false;
+  }
+  return true;
+}
 
 class Mesh {
  public:
@@ -28,6 +41,12 @@ class Mesh {
   explicit Mesh(const std::vector<std::array<Eigen::Vector3d, 3>>& triangles);
 
   const std::vector<Triangle>& triangles() const noexcept { return triangles_; }
+  /// Of a mesh that has triangles: the box around it.
+  const Eigen::AlignedBox3d& extent() const noexcept { return nodes_.front().box; }
+  /// Whether as many triangles run along each edge in one direction as in the other.
+  bool is_closed() const noexcept { return is_closed_; }
+  /// Whether a closed mesh has `point` inside. Looks at all triangles.
+  bool encloses(const Eigen::Vector3d& point) const noexcept;
 
   /// Calls `visit` for triangles whose box, larger by `margin` (m), the way from `a` to `b`
   /// touches; no other triangle is nearer to it.
@@ -46,6 +65,7 @@ class Mesh {
 
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;  ///< in the order of a walk, parent first
+  bool is_closed_ = false;
 };
 
 /// Triangles of an STL file, binary or text, times `scale` (m per unit of the file). Throws

@@ -19,13 +19,12 @@ Vector3d nearest_on(const Triangle& triangle, const Vector3d& p) noexcept {
   const auto& corners = triangle.corners;
   const double height = triangle.normal.dot(p - corners[0]);
   const Vector3d foot = p - height * triangle.normal;
-  bool is_over = true;
+  if (is_over(triangle, p, kBeside)) return foot;
   double least = kInfinity;
   Vector3d nearest = foot;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector3d edge = corners[(i + 1) % 3] - corners[i];
-    if (edge.cross(p - corners[i]).dot(triangle.normal) >= -kBeside * edge.norm()) continue;
-    is_over = false;
+    if (edge.cross(p - corners[i]).dot(triangle.normal) >= 0.0) continue;
     const double share = std::clamp(edge.dot(p - corners[i]) / edge.squaredNorm(), 0.0, 1.0);
     const Vector3d point = corners[i] + share * edge;
     const double distance = (p - point).norm();
@@ -34,7 +33,7 @@ Vector3d nearest_on(const Triangle& triangle, const Vector3d& p) noexcept {
       nearest = point;
     }
   }
-  return is_over ? foot : nearest;
+  return nearest;
 }
 
 }  // namespace
@@ -75,8 +74,29 @@ Facing facing(const Triangle& triangle, const Vector3d& p) noexcept {
   const Vector3d away = p - nearest_on(triangle, p);
   const double distance = away.norm();
   // over it, or touching it: its own plane, from whatever side
-  if (distance <= std::abs(height) + kOnIt) return {triangle.normal, height};
-  return height > 0.0 ? Facing{away / distance, distance, -1, true} : Facing{};
+  if (distance <= std::abs(height) + kOnIt) {
+    return {triangle.normal, height, -1, false, triangle.solid};
+  }
+  return height > 0.0 ? Facing{away / distance, distance, -1, true, triangle.solid} : Facing{};
+}
+
+Facing way_out(const Mesh& mesh, const Vector3d& p, double reach) noexcept {
+  // mostly it is near: look around in growing distances
+  for (double radius = std::min(2.0 * kBehind, reach);; radius = std::min(2.0 * radius, reach)) {
+    double front = radius;
+    Facing out;
+    mesh.for_each_near(p, p, radius, [&](const Triangle& triangle) {
+      const Vector3d way = nearest_on(triangle, p) - p;
+      const double distance = way.norm();
+      if (triangle.normal.dot(p - triangle.corners[0]) > 0.0) {
+        front = std::min(front, distance);
+      } else if (distance < std::abs(out.distance) && distance > kOnIt) {
+        out = {way / distance, -distance, -1, false, triangle.solid};
+      }
+    });
+    if (-out.distance < front && out.distance < 0.0) return out;
+    if (front < radius || radius >= reach) return {};
+  }
 }
 
 bool FacingPlanes::covers(const Facing& edge) const noexcept {

@@ -17,6 +17,7 @@ struct Facing {
   double distance = kInfinity;                       ///< of the point along it, m; negative inside
   int surface = -1;                                  ///< -1: none
   bool is_edge = false;  ///< of a mesh: the nearest point is not inside of its triangle
+  int solid = 0;         ///< of a mesh: Triangle::solid
 };
 
 /// The planes with the least to spare, and how much that is.
@@ -44,6 +45,11 @@ void for_each_facing(const Surface& surface, const Eigen::Vector3d& point, doubl
 
 inline constexpr double kBehind = 5e-3;  ///< m
 
+/// Out of a closed mesh: the surface nearest to the point `p` (frame of the mesh), if the point is
+/// behind all that is as near. Nothing is farther away than `reach` (m). Distance infinite: there
+/// is none.
+Facing way_out(const Mesh& mesh, const Eigen::Vector3d& p, double reach) noexcept;
+
 // Of shapes in their own frame; normal out of it and distance.
 Facing facing(const Plane& plane, const Eigen::Vector3d& p) noexcept;
 Facing facing(const Box& box, const Eigen::Vector3d& p) noexcept;
@@ -59,7 +65,7 @@ void for_each_facing(const Surface& surface, const Eigen::Vector3d& point, doubl
   const Eigen::Vector3d p = R.transpose() * (point - surface.pose.p);
   const auto tell = [&](const Facing& found) {
     if (found.distance > reach) return;
-    visit(Facing{R * found.normal, found.distance, -1, found.is_edge});
+    visit(Facing{R * found.normal, found.distance, -1, found.is_edge, found.solid});
   };
   std::visit(
       [&](const auto& shape) {

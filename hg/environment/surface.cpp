@@ -40,11 +40,13 @@ void check(const Surface& surface) {
     if (mesh->triangles().empty()) {
       throw SetupError("surface " + surface.name + ": a mesh needs triangles, got none");
     }
-    Eigen::AlignedBox3d extent;
-    for (const Triangle& triangle : mesh->triangles()) {
-      for (const Eigen::Vector3d& corner : triangle.corners) extent.extend(corner);
+    if (surface.contact == Contact::kStop && !mesh->is_closed()) {
+      throw SetupError("surface " + surface.name +
+                       ": a mesh that is a stop must be closed: each edge that of two triangles, "
+                       "which run along it in opposite directions");
     }
-    require(surface, "size (scale: 0.001 for millimetres)", kSize, extent.sizes().maxCoeff());
+    require(surface, "size (scale: 0.001 for millimetres)", kSize,
+            mesh->extent().sizes().maxCoeff());
   }
   const bool is_pose = surface.pose.p.allFinite() && surface.pose.R.isUnitary(1e-9);
   if (!is_pose) throw SetupError("surface " + surface.name + ": its pose must be one");

@@ -50,7 +50,8 @@ struct Surface {
 };
 
 inline constexpr Interval kStiffness = {10.0, 5e4};
-inline constexpr Interval kDamping = {0.0, 1e3};
+/// What is critical for a body of 500 kg on the stiffest spring.
+inline constexpr Interval kDamping = {0.0, 1e4};
 inline constexpr Interval kFriction = {0.0, 2.0};
 inline constexpr Interval kSize = {1e-3, 100.0};  ///< m, of edges, radii and lengths
 

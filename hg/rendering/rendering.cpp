@@ -264,7 +264,9 @@ void Rendering::feel_surfaces(State& state, double share, CycleRecord& record) n
   if (environment_.has_stops()) stops_ = environment_.stops(p_E, v_E, stop_rating_);
   Eigen::Vector3d push = record.robot.w_H.head<3>();
   if (!environment_.surfaces().empty()) push += push_of_twin(record.budget);
-  record.contact = environment_.step(p_E, v_E, push, state.contact);
+  const double mass_scale =
+      state.inner.parameters.now.loads.mass * state.calming.inertia / twin_.mass_scale;
+  record.contact = environment_.step(p_E, v_E, push, state.contact, mass_scale);
   if (record.contact.surface < 0) return;
   record.contact.force *= share;
   record.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * record.contact.force;

@@ -94,6 +94,20 @@ TEST(Damping, OfASurfaceThatSaysNoneCatchesEveryBody) {
   }
 }
 
+// Nobody sees whether a body of 6 kg was set up as that or has become three times as heavy.
+TEST(Damping, OfASurfaceThatSaysNoneFollowsTheMassOfTheBody) {
+  const Surface floor = {.name = "floor", .shape = Plane{}, .stiffness = 2e4};
+  const Environment set_up({floor}, kDt, {6.0, 6.0}), grown({floor}, kDt, {2.0, 2.0});
+  State of_set_up, of_grown;
+  for (const double z : {1e-3, -0.2e-3, -0.5e-3, -0.8e-3}) {
+    const Vector3d p(0, 0, z), v(0, 0, -0.3);
+    const Vector3d force = set_up.step(p, v, kNoPush, of_set_up).force;
+    EXPECT_EQ(grown.step(p, v, kNoPush, of_grown, 3.0).force, force);
+    EXPECT_EQ(of_grown.dent, of_set_up.dent);
+    EXPECT_EQ(force.z() > 0.0, z < 0.0);
+  }
+}
+
 TEST(Damping, DoesNotBrakeSlidingWithoutFriction) {
   Surface surface = table();
   surface.damping = 100;

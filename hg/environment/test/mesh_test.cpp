@@ -87,6 +87,35 @@ TEST(ReadStl, SurvivesDamagedFiles) {
   }
 }
 
+TEST(Mesh, KnowsWhetherItIsClosedAndWhatIsInside) {
+  const Mesh box = box_mesh({0.2, 0.1, 0.3});
+  EXPECT_TRUE(box.is_closed());
+  EXPECT_TRUE(box.encloses({0.09, -0.04, 0.14}));
+  EXPECT_FALSE(box.encloses({0.11, 0.0, 0.0}));
+  EXPECT_TRUE(ball_mesh(2).is_closed());
+  std::vector<std::array<Vector3d, 3>> triangles;
+  for (const Triangle& triangle : box.triangles()) triangles.push_back(triangle.corners);
+  std::swap(triangles[3][0], triangles[3][1]);
+  EXPECT_FALSE(Mesh(triangles).is_closed());  // one is turned round
+  triangles.erase(triangles.begin() + 3);
+  EXPECT_FALSE(Mesh(triangles).is_closed());
+}
+
+TEST(Mesh, NumbersWhatHangsTogether) {
+  std::vector<std::array<Vector3d, 3>> triangles;
+  for (const double x : {0.0, 0.5}) {
+    const Mesh one = box_mesh({0.1, 0.1, 0.1});
+    for (Triangle triangle : one.triangles()) {
+      for (Vector3d& corner : triangle.corners) corner.x() += x;
+      triangles.push_back(triangle.corners);
+    }
+  }
+  const Mesh two(triangles);
+  for (std::size_t i = 0; i < 24; ++i) {
+    EXPECT_EQ(two.triangles()[i].solid == two.triangles()[0].solid, i < 12) << i;
+  }
+}
+
 TEST(Mesh, FindsAllTrianglesNearAWay) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -35,6 +35,36 @@ inline Mesh box_mesh(const Vector3d& size) {
   return Mesh(triangles);
 }
 
+/// An octahedron whose triangles were cut into four `times`, on a ball: 8 * 4^times of them.
+inline Mesh ball_mesh(int times, double radius = 0.1) {
+  std::vector<std::array<Vector3d, 3>> triangles;
+  for (int i = 0; i < 8; ++i) {
+    const double x = (i & 1) != 0 ? -1 : 1, y = (i & 2) != 0 ? -1 : 1, z = (i & 4) != 0 ? -1 : 1;
+    const Vector3d a(x, 0, 0), b(0, y, 0), c(0, 0, z);
+    if (x * y * z > 0.0) {
+      triangles.push_back({a, b, c});
+    } else {
+      triangles.push_back({a, c, b});
+    }
+  }
+  for (int k = 0; k < times; ++k) {
+    std::vector<std::array<Vector3d, 3>> finer;
+    for (const auto& [a, b, c] : triangles) {
+      const Vector3d ab = (a + b).normalized(), bc = (b + c).normalized(),
+                     ca = (c + a).normalized();
+      for (const std::array<Vector3d, 3>& each :
+           {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) {
+        finer.push_back(each);
+      }
+    }
+    triangles = finer;
+  }
+  for (auto& corners : triangles) {
+    for (Vector3d& corner : corners) corner *= radius;
+  }
+  return Mesh(triangles);
+}
+
 inline Vector3d random_in(std::mt19937& random, double half) {
   std::uniform_real_distribution<double> any(-half, half);
   return {any(random), any(random), any(random)};

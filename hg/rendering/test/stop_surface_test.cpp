@@ -146,6 +146,28 @@ TEST(StopSurface, CarriesTheHandCalmlyAndIsNamed) {
   EXPECT_EQ(body.record.contact.force.norm(), 0.0);
 }
 
+// Who moves the handle there before the device is armed is brought out slowly, without a kick.
+TEST(StopSurface, BringsOutSlowlyWhatStartsInside) {
+  const Vector3d size(0.4, 0.4, 0.2);
+  for (const environment::Shape& shape :
+       {environment::Shape(environment::Box{size}), environment::Shape(mesh_of_box(size))}) {
+    // 6 cm below its upper face
+    Thrown body(stop(shape, kStart - 0.04 * Vector3d::UnitZ()));
+    double fastest = 0.0, hardest = 0.0;
+    for (int k = 0; k < 3000; ++k) {
+      body.step();
+      ASSERT_FALSE(HasFatalFailure());
+      fastest = std::max(fastest, body.state.twin.dq_a.norm());
+      hardest = std::max(hardest, body.state.twin.ddq_a.norm());
+    }
+    EXPECT_LT(fastest, 0.5 + 1e-6);
+    EXPECT_GT(fastest, 0.1);
+    EXPECT_LT(hardest, 30.0);
+    EXPECT_GT(body.position().z(), kStart.z() + 0.06);
+    EXPECT_EQ(body.record.contact.force.norm(), 0.0);
+  }
+}
+
 TEST(StopSurface, LetsSlideAlongAMeshOverItsEdges) {
   Thrown body(stop(mesh_of_box({2.0, 2.0, 0.2}), kStart - 0.101 * Vector3d::UnitZ()));
   body.state.twin.dq_a.head<3>() = Vector3d(0.4, 0.3, 0.0);

@@ -82,6 +82,33 @@ TEST(TwinOnASurface, CarriesATwinThatHasWeight) {
   EXPECT_NEAR(state.twin.q_a[2], -kMass * 9.81 / kStiffness, 1e-3);
 }
 
+// A twin that has become twice as heavy meets a surface like one that was set up so.
+TEST(TwinOnASurface, IsCaughtWithTheMassThatItHasNow) {
+  const auto played = [](double mass, double scale) {
+    TwinModel twin = Falling::body();
+    twin.chain = model::Chain::free_body({.mass = mass}, {.gravity = false});
+    Rendering rendering(
+        unlimited_device(), twin, without_synchronisation(),
+        environment::Environment(
+            {{.name = "floor", .shape = environment::Plane{}, .stiffness = kStiffness}}, kDt,
+            {mass, mass}));
+    State state = rendering.start(kPosture);
+    state.inner.parameters.now.loads.mass = state.inner.parameters.target.loads.mass = scale;
+    state.twin.dq_a[2] = -0.3;
+    for (int k = 0; k < 60; ++k) {
+      state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+      CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
+      rendering.step(state, 0.0, record);
+      rendering.integrate(state);
+    }
+    return std::pair{state.twin.q_a[2], state.twin.dq_a[2]};
+  };
+  const auto [z, v] = played(2.0 * kMass, 1.0);
+  const auto [z_grown, v_grown] = played(kMass, 2.0);
+  EXPECT_NEAR(z_grown, z, 1e-9);
+  EXPECT_NEAR(v_grown, v, 1e-7);
+}
+
 TEST(TwinOnASurface, FeelsOnlyTheShareOfIt) {
   Falling twin;
   twin.state.twin.q_a[2] = -0.004;
