@@ -92,14 +92,14 @@ bool follows_from_link(FaultCode code) noexcept {
 // Whether the end of a range or a surface pushes back. Limits of acceleration do so in every
 // oscillation, so that only limits that are near count.
 bool is_pushed_back(const CycleRecord& record) noexcept {
-  constexpr double kPush = 0.5;   // N or Nm
+  constexpr double kPush = 0.5;   // N, or Nm of a limit
   constexpr double kNear = 0.05;  // m or rad
   for (int i = 0; i < record.limit_count; ++i) {
     const LimitReport& limit = record.limits[static_cast<std::size_t>(i)];
     const double left = std::min(limit.to_lower, limit.to_upper);
     if (left < kNear && std::abs(limit.reaction) > kPush) return true;
   }
-  return record.budget.surface.lpNorm<Eigen::Infinity>() > kPush;
+  return record.contact.force.norm() > kPush;
 }
 
 }  // namespace
