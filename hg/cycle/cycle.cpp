@@ -311,10 +311,12 @@ void Cycle::watch_energy(CycleRecord& record) noexcept {
 }
 
 // What touches the arm pushes twin and gantry from the next cycle on. It is felt for where the
-// control knows torques, while the law moves the arm; a stop for any other cause does not give way.
+// control knows torques, while the law moves the arm. A stop that it has caused gives way in the
+// first third of its time, so that the rest is left for braking; any other stop does not.
 void Cycle::feel_touch(bool is_on, CycleRecord& record) noexcept {
   const safety::SupervisorState& supervisor = state_.supervisor;
-  const bool is_stopped_by_it = supervisor.fault.code == FaultCode::kTorqueUnexplained;
+  const bool is_stopped_by_it = supervisor.fault.code == FaultCode::kTorqueUnexplained &&
+                                supervisor.stop_samples < longest_stop_ / 3;
   const bool gives_way = supervisor.mode() == Mode::kRunning ||
                          (supervisor.mode() == Mode::kStopping && is_stopped_by_it);
   compliance::State& touch = state_.touch;

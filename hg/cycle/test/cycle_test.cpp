@@ -20,7 +20,7 @@ const VectorM kPosture = rendering::posture({0.3, 1.5, -0.6, 1.3, 0.2, 0.4});
 
 // A free body in the hand of a device that follows perfectly, and a constant push.
 struct Loop {
-  rendering::DeviceModel device = rendering::unlimited_device();
+  rendering::DeviceModel device;
   std::unique_ptr<Cycle> cycle;
   SensorFrame sensors;
   OperatorFrame operator_input;
@@ -31,12 +31,15 @@ struct Loop {
 
   std::uint64_t latency = 1;  // periods; 0: the device does not answer
 
-  explicit Loop(bool needs_tare = false, bool has_torque_loop = false, bool has_imu = false) {
+  explicit Loop(bool needs_tare = false, bool has_torque_loop = false, bool has_imu = false,
+                const Config& base = {},
+                const rendering::DeviceModel& model = rendering::unlimited_device())
+      : device(model) {
     rendering::TwinModel twin = rendering::unlimited_twin(
         model::Chain::free_body({.mass = 6.0}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
-    Config config;
+    Config config = base;
     config.estimation.wrench.tare.is_needed = needs_tare;
     config.estimation.wrench.has_imu = has_imu;
     config.prepositioning.n_p = 2;
@@ -641,6 +644,82 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
     loop.step();
     ASSERT_EQ(loop.record.state_hash, hashes[static_cast<std::size_t>(k)]) << k;
   }
+}
+
+// The elbow at its wall and the handle caught by a surface: what another cycle goes on from.
+TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
+  rendering::DeviceModel device = rendering::unlimited_device();
+  device.chain.update_poses(
+      (Eigen::VectorXd(8) << Eigen::Vector2d::Zero(), Eigen::VectorXd(kPosture)).finished());
+  const Eigen::Vector3d elbow = device.chain.pose(device.elbow).p;
+  const Eigen::Vector3d handle = device.chain.pose(device.handle).p;
+  rendering::CartesianLimit wall = {.name = "elbow", .frame = device.elbow};
+  for (int axis = 0; axis < 3; ++axis) {
+    wall.axes[static_cast<std::size_t>(axis)] = {
+        .q_min = elbow[axis] - 0.01, .q_max = elbow[axis] + 0.01, .ddq_max = 5.0};
+  }
+  device.cartesian_limits = {wall};
+  Config config;
+  config.surfaces = {{.name = "floor",
+                      .shape = environment::Plane{},
+                      .pose = {.p = handle - Eigen::Vector3d(0.0, 0.0, 0.002)},
+                      .stiffness = 2e4}};
+  Loop loop(false, false, false, config, device);
+  Loop other(false, false, false, config, device);
+  loop.start_running();
+  const Eigen::Matrix3d R = device.chain.pose(device.handle).R;
+  loop.sensors.w_S.head<3>() = R.transpose() * Eigen::Vector3d(20.0, 10.0, -40.0);
+  const auto acts = [&] {
+    return std::ranges::any_of(loop.record.limits, [](const LimitReport& limit) {
+      return limit.state != LimitState::kInactive;
+    });
+  };
+  bool is_both = false;
+  for (int k = 0; k < 1000 && !is_both; ++k) {
+    loop.step();
+    is_both = acts() && loop.cycle->state().rendering.contact.dent > 0.0;
+  }
+  ASSERT_TRUE(is_both);
+  other.cycle->restore(loop.cycle->state());
+  other.sensors = loop.sensors;
+  other.operator_input = loop.operator_input;
+  other.gantry_speed = loop.gantry_speed;
+  other.delay = loop.delay;
+  for (int k = 0; k < 300; ++k) {
+    loop.step();
+    other.step();
+    ASSERT_EQ(other.record.state_hash, loop.record.state_hash) << k;
+    ASSERT_EQ(other.command.q_m, loop.command.q_m) << k;
+    ASSERT_EQ(other.record.contact.force, loop.record.contact.force) << k;
+  }
+}
+
+// Somebody goes on pressing: the stop gives way for a third of its time and then brakes.
+TEST(Cycle, AStopByAContactDoesNotGiveWayForLongerThanItMayTake) {
+  Config config;
+  config.compliance.is_on = true;
+  config.compliance.torque_max = VectorM::Constant(6, 50.0);
+  rendering::DeviceModel device = rendering::unlimited_device();
+  for (limits::JointLimits& joint : device.joint_limits) {
+    joint.dq_max = 0.5;
+    joint.ddq_max = 2.0;
+  }
+  Loop loop(false, true, false, config, device);
+  loop.run(200);
+  loop.start_running();
+  loop.run(100);  // its torque sensors say nothing of its weight: something carries it
+  ASSERT_EQ(loop.record.mode, Mode::kRunning);
+  ASSERT_TRUE(loop.record.touch.is_told);
+  ASSERT_GT(loop.record.v_H.norm(), 0.05);
+  State state = loop.cycle->state();
+  safety::break_rule({.code = FaultCode::kTorqueUnexplained}, state.supervisor);
+  loop.cycle->restore(state);
+  loop.run(200);
+  EXPECT_EQ(loop.record.mode, Mode::kStopping);
+  EXPECT_GT(loop.record.v_H.norm(), 0.05);  // it still gives way
+  const int cycles = 200 + expect_controlled_stop(loop, FaultCode::kTorqueUnexplained, Stop::kSs1);
+  EXPECT_GT(cycles, 333);
+  EXPECT_LT(cycles, 1000);
 }
 
 // Stages in the order in which they ended.
