@@ -71,6 +71,11 @@ std::vector<environment::Surface> load_surfaces(Loader& loader, LoaderFile& file
                 "the end effector of the twin must not start inside of one",
                 "'" + draft.surface.name + "' around it");
   }
+  try {
+    environment::check(surfaces);
+  } catch (const SetupError& error) {
+    file.faults.add_complete(error.what());
+  }
   return surfaces;
 }
 

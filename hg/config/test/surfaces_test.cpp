@@ -37,10 +37,11 @@ TEST(Surfaces, HaveShapePlaceAndFeel) {
       load_surfaces(
           "  - {name: a, placement: {z_m: -5}}\n"
           "  - {name: b, shape: box, size_m: [1, 2, 3], placement: {x_m: 9}, friction: 0.3}\n"
-          "  - {name: c, shape: sphere, radius_m: 0.2, placement: {x_m: 9, yaw_rad: 1.570796}}\n"
+          "  - {name: c, shape: sphere, radius_m: 0.2, placement: {x_m: 9, yaw_rad: 1.570796},\n"
+          "     contact: stop}\n"
           "  - {name: d, shape: cylinder, radius_m: 0.1, length_m: 0.4, placement: {x_m: 9},\n"
           "     stiffness_N_per_m: 500, damping_Ns_per_m: 7}\n"
-          "  - {name: e, shape: mesh, mesh: plate.stl, scale: 0.001, contact: stop}\n")
+          "  - {name: e, shape: mesh, mesh: plate.stl, scale: 0.001}\n")
           .surfaces;
   ASSERT_EQ(surfaces.size(), 5U);
   EXPECT_TRUE(std::holds_alternative<environment::Plane>(surfaces[0].shape));
@@ -55,7 +56,7 @@ TEST(Surfaces, HaveShapePlaceAndFeel) {
   EXPECT_EQ(surfaces[3].damping, 7.0);
   EXPECT_FALSE(surfaces[0].damping);
   EXPECT_EQ(surfaces[0].contact, environment::Contact::kSpring);
-  EXPECT_EQ(surfaces[4].contact, environment::Contact::kStop);
+  EXPECT_EQ(surfaces[2].contact, environment::Contact::kStop);
   const auto& mesh = std::get<environment::Mesh>(surfaces[4].shape);
   ASSERT_EQ(mesh.triangles().size(), 1U);
   EXPECT_EQ(mesh.triangles()[0].corners[1], Eigen::Vector3d(1, 0, 0));
@@ -82,6 +83,9 @@ TEST(Surfaces, AreRefusedWithTheirPlace) {
   EXPECT_EQ(message("{name: a, placement: {z_m: 50}}"),
             "models/scenarios/run.yaml:8:3: surfaces: the end effector of the twin must not start "
             "inside of one, got 'a' around it");
+  EXPECT_EQ(message("{name: a, shape: mesh, mesh: plate.stl, scale: 0.001, contact: stop}"),
+            "surface a: a mesh that is a stop must be closed: each edge that of two triangles, "
+            "which run along it in opposite directions");
 }
 
 }  // namespace
