@@ -32,9 +32,11 @@ void describe(V& v, BystanderDraft& d, simulation::BystanderConfig& bystander) {
          "what is hit: its stiffness, mass and permissible values are those of ISO/TS 15066",
          Need::kRequired);
   v.name("hit_by", frame, d.frames, "a link of the URDF", "whose origin hits it", Need::kRequired);
-  v.vector("position_m", bystander.position, {.lb = -1e3, .ub = 1e3}, "of the skin in B");
+  bystander.position = bystander.facing = Eigen::Vector3d::Constant(kNoDefault);
+  v.vector("position_m", bystander.position, {.lb = -1e3, .ub = 1e3},
+           "of the skin in B; must be given");
   v.vector("facing", bystander.facing, {.lb = -1.0, .ub = 1.0},
-           "direction out of the skin in B; only what comes from there is met");
+           "direction out of the skin in B, must be given; only what comes from there is met");
   v.rule(v.is_given("position_m") && v.is_given("facing"), "",
          "a bystander needs 'position_m' and 'facing'");
   v.flag("is_clamped", bystander.is_clamped,
