@@ -192,11 +192,20 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
   Collector out(scenario.sources, scenario.places);
   if (scenario.surfaces.empty()) return {};
   const StiffnessLimits limits = stiffness_limits(scenario.device, scenario.twin);
+  const Interval mass = rendering::felt_mass(scenario.twin.model).mass;
   for (std::size_t i = 0; i < scenario.surfaces.size(); ++i) {
     const environment::Surface& surface = scenario.surfaces[i];
     if (surface.contact == environment::Contact::kStop) continue;
-    const double damping = surface.damping.value_or(environment::critical_damping(
-        surface.stiffness, rendering::felt_mass(scenario.twin.model).mass, limits.period));
+    const double damping = surface.damping.value_or(
+        environment::critical_damping(surface.stiffness, mass, limits.period));
+    if (surface.damping && damping > mass.lb / limits.period) {
+      out.add(
+          Severity::kWarning, fmt::format("surfaces[{}].damping_Ns_per_m", i),
+          fmt::format("{:g} Ns/m of '{}' is more than samples of {:g} ms allow for {:.2g} kg, "
+                      "m / T = {:.3g} Ns/m",
+                      damping, surface.name, 1e3 * limits.period, mass.lb, mass.lb / limits.period),
+          "lower it, or leave it out: then it is critical for the twin");
+    }
     const std::array<std::pair<double, std::string>, 3> bounds = {
         {{limits.by_frequency(),
           fmt::format("the body swings on it up to {:.1f} Hz", limits.frequency_Hz())},
@@ -204,7 +213,8 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
           fmt::format("a hand at {:g} m/s needs no more than the handle's {:.3g} m/s^2",
                       kFeelingSpeed, limits.acceleration)},
          {limits.by_passivity(damping),
-          fmt::format("it is passive in any hand with its {:.3g} Ns/m", damping)}}};
+          fmt::format("it is passive in any hand with {:.3g} Ns/m, {}", damping,
+                      surface.damping ? "as given" : "which is critical, as none is given")}}};
     std::string beyond;
     double most = surface.stiffness;
     for (const auto& [bound, why] : bounds) {
@@ -213,13 +223,18 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
       most = std::min(most, bound);
     }
     if (beyond.empty()) continue;
+    const bool is_possible = most >= environment::kStiffness.lb;
     out.add(
         Severity::kWarning, fmt::format("surfaces[{}].stiffness_N_per_m", i),
         fmt::format("{:g} N/m of '{}' is more than this device shows: {}; {}. A hand faster than "
                     "{:.2f} m/s goes deeper than the spring alone would let it",
                     surface.stiffness, surface.name, beyond, known_of(limits),
                     limits.meeting_speed(surface.stiffness)),
-        fmt::format("lower it to {:.0f}, or raise its damping and the mass of the twin", most));
+        is_possible
+            ? fmt::format("lower it to {:.0f}, or raise its damping and the mass of the twin", most)
+            : fmt::format("raise its damping and the mass of the twin: a surface has at least "
+                          "{:g} N/m",
+                          environment::kStiffness.lb));
   }
   return std::move(out.findings);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace hg::inspection {
 namespace {
@@ -95,6 +96,30 @@ TEST(Stiffness, WarnsOfSurfacesThatAreTooStiff) {
   EXPECT_EQ(findings[0].item, "surfaces[0].stiffness_N_per_m");
   EXPECT_GT(findings[0].place.line, 8);
   EXPECT_NE(findings[0].mend.find("lower it to 15"), std::string::npos) << findings[0].mend;
+}
+
+TEST(Stiffness, SaysWhatDampingOfASurfaceIsGivenAndAdvisesOnlyWhatASurfaceMayHave) {
+  config::Scenario wall = config::load_scenario("models/stress/wall.yaml");
+  environment::Surface& surface = wall.surfaces[0];
+  surface.stiffness = 5e4;
+  surface.damping.reset();
+  const double latency = std::exchange(wall.device.control.loop.latency, 0.1);
+  EXPECT_NE(inspect_surfaces(wall).at(0).what.find("critical, as none is given"),
+            std::string::npos);
+  wall.device.control.loop.latency = latency;
+  surface.damping = 20.0;
+  EXPECT_NE(inspect_surfaces(wall).at(0).what.find("with 20 Ns/m, as given"), std::string::npos);
+  surface.damping = 0.0;
+  for (rendering::TwinDof& dof : wall.twin.model.dofs) dof.damping = 0.0;
+  const Findings without = inspect_surfaces(wall);
+  ASSERT_EQ(without.size(), 1u);
+  EXPECT_EQ(without[0].mend,
+            "raise its damping and the mass of the twin: a surface has at least 10 N/m");
+  surface.damping = 1e4;
+  const Findings heavy = inspect_surfaces(wall);
+  ASSERT_FALSE(heavy.empty());
+  EXPECT_EQ(heavy[0].item, "surfaces[0].damping_Ns_per_m");
+  EXPECT_NE(heavy[0].what.find("m / T"), std::string::npos);
 }
 
 }  // namespace
