@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "hg/assembly/assembly.h"
@@ -11,12 +12,18 @@
 namespace hg::haptify {
 namespace {
 
-// of a free body, along its way: what limits do to its rotation is not the wall's
+// Of a free body: the force of the surface, as far as limits do not take from it, times the way
+// along it. What limits do to the rest of the motion is not the wall's.
 double contact_power(const CycleRecord& record, double period) {
-  if (record.contact.surface < 0) return 0.0;
   const Budget& budget = record.budget;
+  if (record.contact.surface < 0) return 0.0;
+  const Eigen::Vector3d surface = -budget.surface.head<3>();
+  const double force = surface.norm();
+  if (force == 0.0) return 0.0;
+  const Eigen::Vector3d along = surface / force;
+  const double taken = along.dot((budget.limits + budget.conflict).head<3>());
   const VectorA dq = record.twin.dq_a + 0.5 * period * record.twin.ddq_a;
-  return -(budget.surface + budget.limits + budget.conflict).head<3>().dot(dq.head<3>());
+  return std::clamp(force - taken, 0.0, force) * along.dot(dq.head<3>());
 }
 
 }  // namespace

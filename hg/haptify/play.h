@@ -20,7 +20,7 @@ struct Instant {
   Eigen::Vector3d p_B_E = Eigen::Vector3d::Zero();    ///< twin, as it is rendered
   Eigen::Vector3d p_ref = Eigen::Vector3d::Zero();    ///< handle at the reference
   Eigen::Vector3d surface = Eigen::Vector3d::Zero();  ///< force of virtual surfaces on the twin, N
-  double contact_power = 0.0;  ///< on the twin, of that force and of limits that take from it, W
+  double contact_power = 0.0;  ///< on the twin, of that force without what limits take of it, W
   VectorP q_p, dq_p;           ///< gantry
   VectorM q_m, dq_m;           ///< links of the manipulator
   bool is_limited = false;     ///< a limit of the device is felt
