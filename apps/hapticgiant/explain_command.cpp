@@ -38,7 +38,7 @@ class Reader final : public recording::RecordingListener {
     for (const recording::Event& event : events_) {
       // these the samples tell as well, and more of them
       if (event.name == "tare" || event.name == "request" || event.name == "fault" ||
-          event.name == "stopped") {
+          event.name == "stopped" || event.name == "contact") {
         continue;
       }
       explainer_->add_event(event.time_s, event.name, event.text);

@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "apps/hapticgiant/device_memory.h"
 #include "apps/hapticgiant/interruption.h"
@@ -54,6 +55,7 @@ struct Observers {
   double script_end_s = 0.0;  ///< > 0: the run goes on after the script, tell so
   TareStatus told_tare = TareStatus::kNone;
   FaultCode told_fault = FaultCode::kNone;
+  bool told_touch = false;
   explanation::Names names;
   std::string fault_figures = {};  ///< of the summary's fault
 };
@@ -84,6 +86,16 @@ void tell_fault(Observers& observers, const Sample& sample) {
        fmt::format("{} {}", static_cast<int>(code), to_string(code)));
 }
 
+// whenever something begins to touch the arm
+void tell_touch(Observers& observers, const CycleRecord& record) {
+  const TouchReport& touch = record.touch;
+  if (std::exchange(observers.told_touch, touch.is_told) || !touch.is_told) return;
+  const auto joint = static_cast<std::size_t>(touch.joint);  // -1: very large
+  const std::vector<std::string>& joints = observers.names.joints;
+  const std::string where = joint < joints.size() ? " beyond joint " + joints[joint] : "";
+  tell(observers, record.time_s, "contact", "something touches the arm" + where + ": it gives way");
+}
+
 // for what pages change, at the time of `sample`
 RunPage::Note note(Observers& observers, const Sample& sample) {
   return [&observers, &sample](std::string_view name, const std::string& text) {
@@ -103,6 +115,7 @@ void observe(Observers& observers, const Sample& sample) {
     observers.fault_figures = explanation::figures_of(fault, observers.names, sample.sensors);
   }
   tell_requests(observers, sample.record);
+  tell_touch(observers, sample.record);
   tell_fault(observers, sample);
   observers.recording.push(sample);
   if (const auto event = observers.detector.observe(sample.record)) {
