@@ -237,6 +237,7 @@ evaluation::RunFacts facts_of(const PreparedRun& run, const runtime::Options& op
           .version = kVersion,
           .law = std::string(rendering::to_string(law.law)),
           .bounds = std::string(rendering::to_string(law.bounds)),
+          .gantry = leader_of_gantry(run.scenario),
           .rate_Hz = options.rate_Hz,
           .timing = timing_of(options, report),
           .dropped = report.dropped,

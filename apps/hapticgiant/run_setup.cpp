@@ -235,9 +235,16 @@ ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments&
        .stem = recorder != nullptr
                    ? recorder->stem()
                    : recording::stamped(recording_name(arguments.world.scenario), now),
-       .origin = fmt::format("{}, law {}, bounds {}", scenario.title, rendering::to_string(law.law),
-                             rendering::to_string(law.bounds)),
+       .origin = fmt::format("{}, law {}, bounds {}, gantry {}", scenario.title,
+                             rendering::to_string(law.law), rendering::to_string(law.bounds),
+                             leader_of_gantry(scenario)),
        .program = arguments.program});
+}
+
+std::string leader_of_gantry(const config::Scenario& scenario) {
+  const rendering::Options& options = scenario.device.rendering;
+  const bool is_law = options.law == rendering::Law::kGauss && scenario.device.model.n_p > 0;
+  return std::string(rendering::to_string(is_law ? options.gantry : rendering::Gantry::kRule));
 }
 
 explanation::Names part_names(const config::Scenario& scenario) {

@@ -28,6 +28,9 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
 ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments,
                            const recording::Recorder* recorder);
 
+/// "law" where the law has the gantry's accelerations as unknowns, else "rule".
+std::string leader_of_gantry(const config::Scenario& scenario);
+
 /// What the parts of the device are called in messages.
 explanation::Names part_names(const config::Scenario& scenario);
 

@@ -25,6 +25,7 @@ struct RunFacts {
   std::string version;
   std::string law;     ///< of the rendering
   std::string bounds;  ///< of its limits
+  std::string gantry;  ///< what leads it, "rule" or "law"
   double rate_Hz = 0.0;
   Timing timing;
   std::uint64_t dropped = 0;     ///< samples that were neither judged nor recorded

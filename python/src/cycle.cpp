@@ -31,6 +31,9 @@ void bind_options(nb::module_& module) {
   nb::enum_<Bounds>(module, "Bounds", "How limits become bounds on accelerations.")
       .value("RECOVERABLE", Bounds::kRecoverable)
       .value("PAPER", Bounds::kPaper, "A, B and C of [HG]");
+  nb::enum_<rendering::Gantry>(module, "Gantry", "What leads the gantry.")
+      .value("RULE", rendering::Gantry::kRule)
+      .value("LAW", rendering::Gantry::kLaw, "with law GAUSS");
 }
 
 void bind_scenario(nb::module_& module) {
@@ -50,6 +53,11 @@ void bind_scenario(nb::module_& module) {
           "bounds", [](const Scenario& scenario) { return scenario.device.rendering.bounds; },
           [](Scenario& scenario, rendering::Bounds bounds) {
             scenario.device.rendering.bounds = bounds;
+          })
+      .def_prop_rw(
+          "gantry", [](const Scenario& scenario) { return scenario.device.rendering.gantry; },
+          [](Scenario& scenario, rendering::Gantry gantry) {
+            scenario.device.rendering.gantry = gantry;
           })
       .def_ro("limits", &Scenario::limits, "what CycleRecord.limits is about, in its order")
       .def_prop_ro(

@@ -123,6 +123,12 @@ class Run(unittest.TestCase):
             run["state_hash"], self.door["state_hash"])
         self.assertTrue(different)
 
+    def test_who_leads_the_gantry_can_be_chosen(self):
+        door = hg.load_scenario("door")
+        self.assertEqual(door.gantry, hg.Gantry.RULE)
+        door.gantry = hg.Gantry.LAW
+        self.assertEqual(door.gantry, hg.Gantry.LAW)
+
 
 class OwnLoop(unittest.TestCase):
     def setUp(self):

@@ -32,6 +32,7 @@ constexpr std::array kReproducible = {"scenario",
                                       "version",
                                       "law",
                                       "bounds",
+                                      "gantry",
                                       "rate_Hz",
                                       "duration_s",
                                       "cycles",
@@ -199,6 +200,7 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
                                 .version = kVersion,
                                 .law = std::string(rendering::to_string(law.law)),
                                 .bounds = std::string(rendering::to_string(law.bounds)),
+                                .gantry = leader_of_gantry(scenario),
                                 .rate_Hz = options.rate_Hz,
                                 .allocations_in_loop = report.allocations};
   facts.timing.is_fast = true;

@@ -41,6 +41,7 @@ class Reader final : public recording::RecordingListener {
     evaluation::RunFacts facts = {.scenario = scenario.title,
                                   .law = std::string(rendering::to_string(law.law)),
                                   .bounds = std::string(rendering::to_string(law.bounds)),
+                                  .gantry = leader_of_gantry(scenario),
                                   .rate_Hz = scenario.device.rate_Hz};
     signals_.summary = nlohmann::ordered_json::parse(summary_->to_json(facts, {}));
   }

@@ -221,6 +221,16 @@ TEST(Summary, TellsATimedOutStop) {
   EXPECT_FALSE(json["real_time"].get<bool>());
 }
 
+TEST(Summary, NamesTheLawThatLeadsTheGantry) {
+  const Summary summary(catalogue(), {}, 1000.0);
+  RunFacts facts = {.law = "gauss", .bounds = "recoverable", .gantry = "rule"};
+  EXPECT_NE(summary.to_text(facts, {}).find("gauss, recoverable bounds\n"), std::string::npos);
+  facts.gantry = "law";
+  EXPECT_NE(summary.to_text(facts, {}).find("bounds, gantry led by the law\n"), std::string::npos);
+  const auto json = nlohmann::json::parse(summary.to_json(facts, {}));
+  EXPECT_EQ(json["gantry"].get<std::string>(), "law");
+}
+
 TEST(Summary, SaysHowOftenTheBudgetOfTheSolverWasSpent) {
   Summary summary(catalogue(), {}, 1000.0);
   const auto has = [&](const char* part) {
