@@ -6,6 +6,7 @@ Usage: runtime_commands_test.py PROGRAM   (from the repository root)
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -165,6 +166,24 @@ class Damaged(TemporaryFolder):
             code, out, err = run(*command)
             self.assertEqual((code, out), (2, ""), command)
             self.assertRegex(err, r"^DAMAGED     attachment \S+door.yaml")
+
+
+class Contact(TemporaryFolder):
+    def test_what_begins_to_touch_the_arm_is_told_once(self):
+        models = self.folder / "models"
+        shutil.copytree(MODELS, models)
+        with open(models / "haptic_giant" / "device.yaml", "a") as device:
+            device.write("\ncompliance: {is_on: true}\n")
+        walk = models / "scenarios" / "walk.yaml"
+        text = walk.read_text().replace("duration_s: 16", "duration_s: 4")
+        walk.write_text(text.split("events:")[0] + "faults:\n  - {at_s: 3, for_s: 0.02, "
+                        "fault: torque_sensor_offset, of: m2, magnitude: 25}\n")
+        code, out, err = run("run", walk, "--fast", "--no-viewer", "--no-recording")
+        self.assertEqual((code, err), (0, ""), out)
+        told = [line for line in out.splitlines() if "something touches the arm" in line]
+        self.assertEqual(len(told), 1, out)
+        self.assertRegex(told[0], r"3\.00\d s  contact +something touches the arm beyond joint m2: "
+                                  "it gives way")
 
 
 class Signals(TemporaryFolder):
