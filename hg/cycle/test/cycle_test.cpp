@@ -722,6 +722,19 @@ TEST(Cycle, AStopByAContactDoesNotGiveWayForLongerThanItMayTake) {
   EXPECT_LT(cycles, 1000);
 }
 
+TEST(Cycle, WhatTouchesTheArmIsNoSurfaceThatPushesBack) {
+  Loop loop;
+  loop.start_running();
+  loop.run(10);
+  State state = loop.cycle->state();
+  ASSERT_GT(state.passivity.since_pushed_s, 0.0);
+  state.rendering.touch[0] = 5.0;
+  loop.cycle->restore(state);
+  loop.step();
+  EXPECT_NEAR(loop.record.budget.surface.norm(), 5.0, 1e-9);
+  EXPECT_GT(loop.cycle->state().passivity.since_pushed_s, state.passivity.since_pushed_s);
+}
+
 // Stages in the order in which they ended.
 void note(void* listener, Stage stage) noexcept {
   static_cast<std::vector<Stage>*>(listener)->push_back(stage);
