@@ -88,9 +88,9 @@ Facing way_out(const Mesh& mesh, const Vector3d& p, double reach) noexcept {
     mesh.for_each_near(p, p, radius, [&](const Triangle& triangle) {
       const Vector3d way = nearest_on(triangle, p) - p;
       const double distance = way.norm();
-      if (triangle.normal.dot(p - triangle.corners[0]) > 0.0) {
+      if (distance <= kOnIt || triangle.normal.dot(p - triangle.corners[0]) > 0.0) {
         front = std::min(front, distance);
-      } else if (distance < std::abs(out.distance) && distance > kOnIt) {
+      } else if (distance < std::abs(out.distance)) {
         out = {way / distance, -distance, -1, false, triangle.solid};
       }
     });
