@@ -207,7 +207,7 @@ control::Config checked_control(const config::Device& device) {
   if (control.loop.latency > control.latency_max) {
     throw SetupError(fmt::format(
         "control.latency_s: at {:g} Hz the torque loop is stable up to {:g} s, got {:g}: raise the "
-        "rate, or run with --plant ideal",
+        "rate, lower rotor_pole_rad_per_s or spring_damping, or run with --plant ideal",
         device.rate_Hz, periods * control.dt, control.loop.latency));
   }
   return control;

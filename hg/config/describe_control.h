@@ -50,19 +50,19 @@ void describe(V& v, control::Config& config) {
            "modal: rate at which a remaining error goes");
   v.number("flatness_Hz", config.flatness_Hz, kPositive,
            "low-pass of the derivatives of the torques fed forward");
-  v.number("wrench_lead_s", config.wrench_lead, {.lb = 0.0, .ub = 0.02},
+  v.number("wrench_lead_s", config.wrench_lead, {.lb = 0.0, .ub = 0.01},
            "modal: by which the user's wrench is fed forward early, for what sensor, filter and "
            "springs cost");
-  v.number("lead_low_pass_Hz", config.lead_low_pass_Hz, kPositive,
+  v.number("lead_low_pass_Hz", config.lead_low_pass_Hz, {.lb = 1.0, .ub = 200.0},
            "modal: low-pass of the wrench's rate of change, which wrench_lead_s takes");
   v.number("stiff_low_pass_Hz", config.stiff_low_pass_Hz, kNotNegative,
            "modal: low-pass of what is fed forward to stiff modes, 0 = none");
-  v.number("rotor_pole_rad_per_s", config.poles.w0, kPositive,
+  v.number("rotor_pole_rad_per_s", config.poles.w0, {.lb = 1.0, .ub = 250.0},
            "modal: natural frequency of the shaped rotor on its spring");
   v.number("link_pole_rad_per_s", config.poles.w1, kPositive,
            "modal: natural frequency with which the links follow");
-  v.number("link_damping", config.poles.z1, kPositive, "modal: damping ratio of that");
-  v.number("spring_damping", config.poles.z2, kPositive,
+  v.number("link_damping", config.poles.z1, {.lb = 0.1, .ub = 2.0}, "modal: damping ratio of that");
+  v.number("spring_damping", config.poles.z2, {.lb = 0.01, .ub = 1.0},
            "modal: damping ratio of each mode's fast oscillation");
   v.number("motor_pole_rad_per_s", config.poles.w_motor, kPositive,
            "modal: double pole of modes that are controlled from the motor side alone");

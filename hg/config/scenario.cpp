@@ -74,7 +74,7 @@ std::vector<environment::Surface> load_surfaces(Loader& loader, LoaderFile& file
   try {
     environment::check(surfaces);
   } catch (const SetupError& error) {
-    file.faults.add_complete(error.what());
+    loader.rule(false, "surfaces", error.what());
   }
   return surfaces;
 }

@@ -148,7 +148,7 @@ class JointControl {
   Config config_;
   model::Chain chain_;
   int n_p_, n_m_, handle_;
-  double lead_pole_, stiff_pole_;  ///< of the low-passes
+  double lead_pole_ = 0.0, stiff_pole_ = 0.0;  ///< of the low-passes
   VectorM K_, sqrt_K_, Jm_;
   VectorM feed_max_;             ///< largest torque that is fed forward, Nm
   VectorM link_torque_, ddq_r_;  ///< of this step: what link_torque() gave, and for which ddq

@@ -32,7 +32,7 @@ void rotate(int p, int r, MatrixM& B, MatrixM& Q) noexcept {
 
 Poles poles_for(const Poles& fastest, double latency) noexcept {
   Poles poles = fastest;
-  poles.w0 = std::min(fastest.w0, 0.27 / latency);
+  poles.w0 = std::min(fastest.w0, 0.265 / latency);
   const double share = poles.w0 / fastest.w0;
   poles.w1 *= share;
   poles.w_motor *= share;
@@ -45,15 +45,20 @@ double stiffness_share(const Poles& poles, double mu) noexcept {
   return std::clamp(0.5 + (w2 / poles.w2_max - 1.0) / (2.0 * kHalfWidth), 0.0, 1.0);
 }
 
-ModeGains gains_of(const Poles& poles, double mu) noexcept {
+namespace {
+
+// by its motor alone, as if the spring had no end of stiffness
+ModeGains stiff_gains(const Poles& poles, double mu) noexcept {
+  const double inertia = mu + 1.0 / (poles.w0 * poles.w0);
+  return {.motor = poles.w_motor * poles.w_motor * inertia,
+          .motor_rate = 2.0 * poles.w_motor * inertia};
+}
+
+// four poles where they are wanted
+ModeGains soft_gains(const Poles& poles, double mu) noexcept {
   const double w0_2 = poles.w0 * poles.w0;
   const double w2_2 = w0_2 + 1.0 / mu;
   const double w2 = std::sqrt(w2_2);
-  if (w2 > poles.w2_max) {
-    const double inertia = mu + 1.0 / w0_2;
-    return {.motor = poles.w_motor * poles.w_motor * inertia,
-            .motor_rate = 2.0 * poles.w_motor * inertia};
-  }
   const double w1 = poles.w1, w1_2 = w1 * w1;
   const double a3 = 2.0 * poles.z1 * w1 + 2.0 * poles.z2 * w2;
   const double a2 = w1_2 + w2_2 + 4.0 * poles.z1 * poles.z2 * w1 * w2;
@@ -65,6 +70,17 @@ ModeGains gains_of(const Poles& poles, double mu) noexcept {
   gains.link_rate = a1 * mu / w0_2 - gains.motor_rate;
   gains.link = a0 * mu / w0_2 - gains.motor;
   return gains;
+}
+
+}  // namespace
+
+ModeGains gains_of(const Poles& poles, double mu) noexcept {
+  const double stiff = stiffness_share(poles, mu), soft = 1.0 - stiff;
+  const ModeGains a = soft_gains(poles, mu), b = stiff_gains(poles, mu);
+  return {.motor = soft * a.motor + stiff * b.motor,
+          .motor_rate = soft * a.motor_rate + stiff * b.motor_rate,
+          .link = soft * a.link,
+          .link_rate = soft * a.link_rate};
 }
 
 Modes::Modes(int n) : Q_(MatrixM::Identity(n, n)), mu_(VectorM::Zero(n)) {}

@@ -15,19 +15,19 @@ using MatrixM = MatrixUpTo<kMaxManipulator, kMaxManipulator>;
 ///
 /// The fast pair is damped as little as this because damping is what latency takes away first: with
 /// z2 = 0.5, [C] 1, modes of 28 to 40 Hz are unstable at 200 rad/s (9 of 200 random postures,
-/// loop_stability.h), with 0.25 none is at 180 rad/s, also where rotors, links and springs differ
-/// by a quarter or the latency by a half.
+/// loop_stability.h), with 0.25 none is at 175 rad/s, also where rotors, links and springs differ
+/// by a quarter or the latency by a half. Modes near w2_max tolerate least, hence 270 rad/s.
 struct Poles {
-  double w0 = 180.0;      ///< of the shaped rotor on its spring
+  double w0 = 175.0;      ///< of the shaped rotor on its spring
   double w1 = 57.0;       ///< slow pair: how the link follows
   double z1 = 0.85;       ///< its damping ratio
   double z2 = 0.25;       ///< damping ratio of the fast pair, which keeps its natural frequency
-  double w2_max = 300.0;  ///< stiffer modes are controlled from the motor side alone
+  double w2_max = 270.0;  ///< from about here on a mode is controlled from the motor side alone
   double w_motor = 90.0;  ///< and have a double pole there
 };
 
 /// `fastest`, slowed down to what tolerates `latency` (s), which includes the lag of the current:
-/// w0 is at most 0.27 / latency; w1 and w_motor scale along, w2_max and damping ratios do not.
+/// w0 is at most 0.265 / latency; w1 and w_motor scale along, w2_max and damping ratios do not.
 Poles poles_for(const Poles& fastest, double latency) noexcept;
 
 /// How stiff a mode with the eigenvalue `mu` (s^2) is: 0 from 0.9 w2_max down, 1 from 1.1 w2_max
@@ -39,7 +39,8 @@ struct ModeGains {
   double motor = 0.0, motor_rate = 0.0, link = 0.0, link_rate = 0.0;
 };
 
-/// `mu` is the eigenvalue of the mode in s^2: 1/sqrt(mu) is its frequency with brakes closed.
+/// `mu` is the eigenvalue of the mode in s^2: 1/sqrt(mu) is its frequency with brakes closed. From
+/// soft to stiff modes they change with stiffness_share().
 ModeGains gains_of(const Poles& poles, double mu) noexcept;
 
 /// Eigenvectors Q and eigenvalues mu of a symmetric matrix that changes slowly: every call turns

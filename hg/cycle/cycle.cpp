@@ -312,13 +312,18 @@ void Cycle::watch_energy(CycleRecord& record) noexcept {
 
 // What touches the arm pushes twin and gantry from the next cycle on. It is felt for where the
 // control knows torques, while the law moves the arm. A stop that it has caused gives way in the
-// first third of its time, so that the rest is left for braking; any other stop does not.
+// first third of its time and lets go of that within 50 ms, so that the rest is left for braking;
+// any other stop does not.
 void Cycle::feel_touch(bool is_on, CycleRecord& record) noexcept {
   const safety::SupervisorState& supervisor = state_.supervisor;
-  const bool is_stopped_by_it = supervisor.fault.code == FaultCode::kTorqueUnexplained &&
-                                supervisor.stop_samples < longest_stop_ / 3;
-  const bool gives_way = supervisor.mode() == Mode::kRunning ||
-                         (supervisor.mode() == Mode::kStopping && is_stopped_by_it);
+  constexpr double kFade = 0.05;  // s
+  double share = 1.0;
+  if (supervisor.mode() == Mode::kStopping) {
+    const double left = (longest_stop_ / 3 - supervisor.stop_samples) * config_.rendering.dt;
+    const bool is_stopped_by_it = supervisor.fault.code == FaultCode::kTorqueUnexplained;
+    share = is_stopped_by_it ? std::clamp(left / kFade, 0.0, 1.0) : 0.0;
+  }
+  const bool gives_way = share > 0.0 && is_moving(supervisor.mode());
   compliance::State& touch = state_.touch;
   const VectorM& dq = record.robot.dq_m;
   const bool is_known = config_.compliance.torque_max.size() == dq.size() && dq.size() > 0;
@@ -338,7 +343,7 @@ void Cycle::feel_touch(bool is_on, CycleRecord& record) noexcept {
                                     touch);
   }
   touch.dq = dq;
-  state_.rendering.touch = record.touch.wrench;
+  state_.rendering.touch = share * record.touch.wrench;
 }
 
 // Nothing moves. Before it is armed the device may be moved by others: the twin goes along. Where

@@ -155,12 +155,25 @@ std::optional<Hit> first_hit(const Surface& surface, const Vector3d& from,
   return hit;
 }
 
+namespace {
+
+bool is_on(const Mesh& mesh, const Vector3d& p) noexcept {
+  bool is_near = false;
+  mesh.for_each_near(p, p, kOutside, [&](const Triangle& triangle) {
+    const bool is_in_plane = std::abs(triangle.normal.dot(p - triangle.corners[0])) <= kOutside;
+    is_near = is_near || (is_in_plane && is_over(triangle, p, kOutside));
+  });
+  return is_near;
+}
+
+}  // namespace
+
 bool is_inside(const Surface& surface, const Vector3d& point) noexcept {
   const Vector3d p = into(surface.pose, point);
   return std::visit(
       [&](const auto& shape) {
         if constexpr (std::is_same_v<decltype(shape), const Mesh&>) {
-          return shape.is_closed() && shape.encloses(p);
+          return shape.is_closed() && !is_on(shape, p) && shape.encloses(p);
         } else {
           return clip(shape, p, p).depth() > kOutside;
         }

@@ -26,8 +26,7 @@ struct Hit {
 std::optional<Hit> first_hit(const Surface& surface, const Eigen::Vector3d& from,
                              const Eigen::Vector3d& to) noexcept;
 
-/// Whether a point is in the solid, deeper than kOutside where it is no mesh. A mesh
-/// that is not closed has no inside.
+/// Whether a point is in the solid, deeper than kOutside. A mesh that is not closed has no inside.
 bool is_inside(const Surface& surface, const Eigen::Vector3d& point) noexcept;
 
 }  // namespace hg::environment

@@ -168,7 +168,7 @@ std::array<Facing, kMostFacing> Environment::stops(const Vector3d& position,
     const Eigen::Matrix3d& R = surface.pose.R;
     const Vector3d p = R.transpose() * (position - surface.pose.p);
     if (is_behind || !mesh->extent().contains(p)) continue;
-    Facing out = way_out(*mesh, p, nearest);
+    Facing out = way_out(*mesh, p, mesh->is_one_solid() ? nearest : kDeepest);
     out.normal = R * out.normal;
     if (out.distance < 0.0) add(out);
   }

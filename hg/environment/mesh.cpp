@@ -153,6 +153,8 @@ Mesh::Mesh(const std::vector<Corners>& triangles) {
     throw SetupError("1 .. " + std::to_string(kMaxTriangles) + " triangles with an area, got " +
                      std::to_string(triangles_.size()));
   }
+  is_one_solid_ = std::ranges::all_of(
+      triangles_, [&](const Triangle& triangle) { return triangle.solid == triangles_[0].solid; });
   std::vector<int> order(triangles_.size());
   std::iota(order.begin(), order.end(), 0);
   nodes_.reserve(2 * order.size());

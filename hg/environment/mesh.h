@@ -45,6 +45,7 @@ class Mesh {
   const Eigen::AlignedBox3d& extent() const noexcept { return nodes_.front().box; }
   /// Whether as many triangles run along each edge in one direction as in the other.
   bool is_closed() const noexcept { return is_closed_; }
+  bool is_one_solid() const noexcept { return is_one_solid_; }
   /// Whether a closed mesh has `point` inside. Looks at all triangles.
   bool encloses(const Eigen::Vector3d& point) const noexcept;
 
@@ -65,7 +66,7 @@ class Mesh {
 
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;  ///< in the order of a walk, parent first
-  bool is_closed_ = false;
+  bool is_closed_ = false, is_one_solid_ = true;
 };
 
 /// Triangles of an STL file, binary or text, times `scale` (m per unit of the file). Throws

@@ -1,6 +1,7 @@
 #include "hg/environment/nearest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -80,22 +81,61 @@ Facing facing(const Triangle& triangle, const Vector3d& p) noexcept {
   return height > 0.0 ? Facing{away / distance, distance, -1, true, triangle.solid} : Facing{};
 }
 
+namespace {
+
+// What a solid near a point shows it: how near a face that looks at it, and the nearest way out
+// through one that looks away.
+struct Side {
+  int solid = -1;
+  double front = kInfinity;
+  Facing out;
+
+  bool is_around() const noexcept { return out.distance < 0.0 && -out.distance < front; }
+};
+
+// those of the first few solids that are met
+class Sides {
+ public:
+  Side* of(int solid) noexcept {
+    for (Side& side : sides_) {
+      if (side.solid < 0) side.solid = solid;
+      if (side.solid == solid) return &side;
+    }
+    return nullptr;
+  }
+  const Side* nearest_around() const noexcept {
+    const Side* best = nullptr;
+    for (const Side& side : sides_) {
+      if (!side.is_around()) continue;
+      if (best == nullptr || side.out.distance > best->out.distance) best = &side;
+    }
+    return best;
+  }
+  bool has_front() const noexcept { return sides_[0].front < kInfinity; }
+
+ private:
+  std::array<Side, 8> sides_;
+};
+
+}  // namespace
+
 Facing way_out(const Mesh& mesh, const Vector3d& p, double reach) noexcept {
   // mostly it is near: look around in growing distances
   for (double radius = std::min(2.0 * kBehind, reach);; radius = std::min(2.0 * radius, reach)) {
-    double front = radius;
-    Facing out;
+    Sides sides;
     mesh.for_each_near(p, p, radius, [&](const Triangle& triangle) {
       const Vector3d way = nearest_on(triangle, p) - p;
       const double distance = way.norm();
+      Side* side = distance < radius ? sides.of(triangle.solid) : nullptr;
+      if (side == nullptr) return;
       if (distance <= kOnIt || triangle.normal.dot(p - triangle.corners[0]) > 0.0) {
-        front = std::min(front, distance);
-      } else if (distance < std::abs(out.distance)) {
-        out = {way / distance, -distance, -1, false, triangle.solid};
+        side->front = std::min(side->front, distance);
+      } else if (distance < std::abs(side->out.distance)) {
+        side->out = {way / distance, -distance, -1, false, triangle.solid};
       }
     });
-    if (-out.distance < front && out.distance < 0.0) return out;
-    if (front < radius || radius >= reach) return {};
+    if (const Side* around = sides.nearest_around()) return around->out;
+    if (radius >= reach || (mesh.is_one_solid() && sides.has_front())) return {};
   }
 }
 

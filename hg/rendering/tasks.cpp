@@ -454,7 +454,7 @@ bool Tasks::keeps_limits_of_device(const hqp::Solution& solution) const noexcept
 }
 
 bool Tasks::keeps_joints(const hqp::Solution& solution) const noexcept {
-  constexpr double kMet = 1e-3;  // rad/s^2: for a period it makes a joint faster by 1e-6 rad/s
+  constexpr double kMet = 1e-3;  // rad/s^2: 1e-6 rad/s in a period of 1 ms
   return keeps(solution, first_motor_, kMet);
 }
 

@@ -84,7 +84,8 @@ TEST(Surfaces, AreRefusedWithTheirPlace) {
             "models/scenarios/run.yaml:8:3: surfaces: the end effector of the twin must not start "
             "inside of one, got 'a' around it");
   EXPECT_EQ(message("{name: a, shape: mesh, mesh: plate.stl, scale: 0.001, contact: stop}"),
-            "surface a: a mesh that is a stop must be closed: each edge that of two triangles, "
+            "models/scenarios/run.yaml:8:3: surfaces: surface a: a mesh that is a stop must be "
+            "closed: each edge that of two triangles, "
             "which run along it in opposite directions");
 }
 

@@ -114,14 +114,14 @@ TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
   EXPECT_LT(largest(state.dtau_r - dtau), 1e-6 * largest(dtau));
 }
 
-// The torques fed forward for a force of the user that grows with 100 N/s along `axis` of B.
-VectorM fed_for_growing_force(const Config& config, int axis) {
+// The torques fed forward for a wrench of the user that grows with 100 `direction` per second.
+VectorM fed_for_growing(const Config& config, const Vector6& direction) {
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   for (int k = 0; k < 300; ++k) {
-    robot.w_H[axis] = 0.1 * k;
+    robot.w_H = 0.1 * k * direction;
     answer(control, state, reference, robot);
   }
   return state.tau_r;
@@ -129,9 +129,9 @@ VectorM fed_for_growing_force(const Config& config, int axis) {
 
 TEST(ModalControl, AForceThatGrowsIsFedForwardAsItWillBe) {
   Config config = frictionless_config();
-  const VectorM late = fed_for_growing_force(config, 1);
+  const VectorM late = fed_for_growing(config, Vector6::Unit(1));
   config.wrench_lead = 4e-3;
-  const VectorM early = fed_for_growing_force(config, 1);
+  const VectorM early = fed_for_growing(config, Vector6::Unit(1));
   model::Chain chain = arm();
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
   const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
@@ -140,18 +140,34 @@ TEST(ModalControl, AForceThatGrowsIsFedForwardAsItWillBe) {
   EXPECT_LT(largest(early - late - in_4_ms), 0.05 * largest(in_4_ms));
 }
 
-// Turning about the axis of m6 bends a stiff mode alone.
-TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
+// who holds the handle when the drives come on is no force that grows
+TEST(ModalControl, AForceThatWasThereBeforeIsNotLed) {
   Config config = frictionless_config();
-  const VectorM late = fed_for_growing_force(config, 5);
   config.wrench_lead = 4e-3;
-  const VectorM early = fed_for_growing_force(config, 5);
+  JointControl control = control_of(config);
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  RobotState robot = following(reference, VectorM::Zero(6));
+  robot.w_H[1] = 50.0;
+  answer(control, state, reference, robot);
+  const VectorM at_once = state.tau_r;
+  for (int k = 0; k < 300; ++k) answer(control, state, reference, robot);
+  EXPECT_LT(largest(state.tau_r - at_once), 1e-6);
+  EXPECT_EQ(state.dw_H, Vector6::Zero());
+}
+
+// A torque about the axis of m6 bends a stiff mode alone.
+TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
   model::Chain chain = arm();
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
   const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
-  const double in_4_ms = 0.4 * std::abs(J(5, 7));
-  EXPECT_GT(in_4_ms, 0.3);
-  EXPECT_LT(std::abs(early[5] - late[5]), 0.05 * in_4_ms);
+  Vector6 torque = Vector6::Zero();
+  torque.tail<3>() = J.col(7).tail<3>();
+  Config config = frictionless_config();
+  const VectorM late = fed_for_growing(config, torque);
+  config.wrench_lead = 4e-3;
+  const VectorM early = fed_for_growing(config, torque);
+  EXPECT_LT(std::abs(early[5] - late[5]), 0.05 * 0.4);  // of 0.4 Nm in 4 ms
 }
 
 // rms of the feedforward of a joint whose reference shakes with 60 Hz and 10 rad/s^2

@@ -85,6 +85,8 @@ TEST(StateHash, SeesEveryValueOfTheState) {
       [](State& s) { s.estimation.q_m[3] = 0.0; }, [](State& s) { s.estimation.link[5].dq = 1.0; },
       [](State& s) { s.estimation.motor[5].theta = 1.0; }, [](State& s) { s.control.answers = 1; },
       [](State& s) { s.control.unexplained = VectorM::Constant(1, 0.8); },
+      [](State& s) { s.control.stiff = VectorM::Constant(1, 0.9); },
+      [](State& s) { s.control.w_H[3] = 1.0; }, [](State& s) { s.control.dw_H[0] = 2.0; },
       [](State& s) { s.control.late = 1; }, [](State& s) { s.estimation.wrench.omega_S.x() = 1.0; },
       [](State& s) { s.estimation.wrench.alpha_S.y() = 1.0; },
       [](State& s) { s.estimation.wrench.w_S[4] = 1.0; },

@@ -95,6 +95,11 @@ TEST(MeshStop, OfAWallHoldsAboveAShelfThatReachesIntoIt) {
     EXPECT_TRUE(has_plane(found, Vector3d::UnitX(), -deep));
     EXPECT_TRUE(has_plane(found, Vector3d::UnitZ(), 0.003));
   }
+  // deep in the wall, above the shelf
+  for (const double deep : {0.006, 0.02, 0.04}) {
+    EXPECT_TRUE(has_plane(planes({stop(mesh)}, {-deep, 0.0, 0.01}), Vector3d::UnitX(), -deep))
+        << deep;
+  }
 }
 
 // A plate of 2 mm is not felt through: what comes to its back meets its back.
