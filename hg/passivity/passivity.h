@@ -5,10 +5,10 @@
 /// [C] 7: of the user's force f, x1 = LP30(f), x2 = LP3(x1), x3 = LP3(x2), high^2 = mean |x1-x2|^2,
 /// low^2 = mean |x3|^2 over 0.2 s; it oscillates while high > 1 N and high > (low + 0.5 N) / 2, and
 /// is detected once it has for `trip_time` (counted down twice as fast), or at high > 15 N.
-/// Differs from [C] 7: detected after 0.2 s instead of 0.4 s. It must have turned round, too, since
-/// a hard start or stop is no oscillation: twice, and six times while a limit or a surface pushes
-/// back, and just after. What a person's tremor may be, up to 5 N rms about 10 Hz, is taken off
-/// `high`. Torques, forces above 30 Hz and bouncing: hg/safety/shaking.h.
+/// Differs from [C] 7: detected after 0.25 s instead of 0.4 s. It must have turned round, too,
+/// since a hard start or stop is no oscillation: twice, and six times while a limit or a surface
+/// pushes back, and just after. What a person's tremor may be, up to 5 N rms about 10 Hz, is taken
+/// off `high`. Torques, forces above 30 Hz and bouncing: hg/safety/shaking.h.
 ///
 /// When detected the twin gets a damper at its end effector (`damping`), and so much inertia that
 /// it is felt with `least_mass` at least. A growing inertia M is passive as long as M' / 2 <= D
@@ -39,7 +39,7 @@ enum class Reaction : std::uint8_t {
 struct Config {
   Reaction reaction = Reaction::kObserve;
   double dt = 1e-3;         ///< s
-  double trip_time = 0.2;   ///< of oscillation until it is detected, s
+  double trip_time = 0.25;  ///< of oscillation until it is detected, s
   double damping = 25.0;    ///< of the damper when calmed, Ns/m; [C] 7
   double least_mass = 3.0;  ///< felt at the handle when calmed, kg; [C] 7
   double tank_start = 5.0;  ///< J; [HANDBOOK] 9.6

@@ -23,7 +23,7 @@ struct Shaking {
 };
 
 Shaking play(const config::Scenario& scenario) {
-  constexpr double kOnset = 0.01;
+  constexpr double kOnset = 0.03;  // noise alone moves half a kilogram with 0.013 m/s
   Shaking shaking;
   Player player(scenario);
   const double end_s = scenario.script.script.grasp_s + scenario.script.script.duration_s;
@@ -66,7 +66,7 @@ TEST(PassivityRun, CatchesStiffHandsOnLightTwins) {
     const Shaking calmed = play(kicked(tried, config, hand, mass, 4.0));
     EXPECT_GT(alone.last_speed, 0.02) << "run " << run << ": stable by itself";
     EXPECT_LT(calmed.detected_s - calmed.onset_s, 0.4) << "run " << run;
-    EXPECT_LT(calmed.calmed_speed, 0.01) << "run " << run;
+    EXPECT_LT(calmed.calmed_speed, 0.015) << "run " << run;
     EXPECT_EQ(calmed.fault, FaultCode::kNone) << "run " << run;
   }
 }

@@ -157,7 +157,7 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
   solution.slack[of_hand] = 0.0;
   solution.slack[of_hand + 3] = 1.0;  // of the twin
   EXPECT_TRUE(tasks.keeps_limits_of_device(solution));
-  solution.slack[of_hand - 1 - 6] = -1e-5;  // of joint 1
+  solution.slack[of_hand - 1 - 6] = -2e-3;  // of joint 1
   EXPECT_FALSE(tasks.keeps_joints(solution));
 }
 
