@@ -91,6 +91,7 @@ int experiment_seeds(const SeedsArguments& arguments) {
       run.law = arguments.law;
       run.bounds = arguments.bounds;
       run.gantry = arguments.gantry;
+      run.braking = arguments.braking;
       trials.push_back({.name = std::filesystem::path(scenario).stem().string(),
                         .hand = run.world.hand,
                         .scenario = make_scenario(run)});

@@ -26,6 +26,7 @@ struct SeedsArguments {
   std::string law;       ///< "gauss" or "paper"; empty = the device's
   std::string bounds;    ///< "recoverable" or "paper"; likewise
   std::string gantry;    ///< "law" or "rule"; empty = the device's
+  std::string braking;   ///< "alone" or "together"; empty = the device's
   std::string json;      ///< file for all runs; empty = none
   std::string markdown;  ///< file for the table; empty = none
 };

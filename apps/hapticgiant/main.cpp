@@ -142,6 +142,8 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       ->check(CLI::IsMember({"recoverable", "paper"}));
   command->add_option("--gantry", run.gantry, "law or rule; default: the device's")
       ->check(CLI::IsMember({"law", "rule"}));
+  command->add_option("--braking", run.braking, "alone or together; default: the device's")
+      ->check(CLI::IsMember({"alone", "together"}));
   command
       ->add_option("--passivity", run.passivity,
                    "off, observe or act on a hand and a device that shake each other; default: the "
@@ -415,6 +417,8 @@ void add_seeds(CLI::App& experiment, hg::apps::SeedsArguments& arguments, int& e
       ->check(CLI::IsMember({"recoverable", "paper"}));
   command->add_option("--gantry", arguments.gantry, "law or rule; default: the device's")
       ->check(CLI::IsMember({"law", "rule"}));
+  command->add_option("--braking", arguments.braking, "alone or together; default: the device's")
+      ->check(CLI::IsMember({"alone", "together"}));
   command->add_option("--json", arguments.json, "write all runs as JSON to this file");
   command->add_option("--markdown", arguments.markdown, "write the table as Markdown to this file");
   command->callback(

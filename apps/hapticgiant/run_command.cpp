@@ -238,6 +238,7 @@ evaluation::RunFacts facts_of(const PreparedRun& run, const runtime::Options& op
           .law = std::string(rendering::to_string(law.law)),
           .bounds = std::string(rendering::to_string(law.bounds)),
           .gantry = leader_of_gantry(run.scenario),
+          .braking = braking_of(run.scenario),
           .rate_Hz = options.rate_Hz,
           .timing = timing_of(options, report),
           .dropped = report.dropped,

@@ -21,6 +21,7 @@ struct RunArguments {
   std::string law;        ///< "gauss" or "paper"; empty = the device's
   std::string bounds;     ///< "recoverable" or "paper"; empty = the device's
   std::string gantry;     ///< "law" or "rule"; empty = the device's
+  std::string braking;    ///< "alone" or "together"; empty = the device's
   std::string passivity;  ///< "off", "observe" or "act"; empty = the device's
   std::string summary;    ///< JSON file; empty = none
   bool has_viewer = true;

@@ -149,6 +149,7 @@ RunArguments recorded_arguments(const std::string& text) {
     if (option == "--law") arguments.law = value;
     if (option == "--bounds") arguments.bounds = value;
     if (option == "--gantry") arguments.gantry = value;
+    if (option == "--braking") arguments.braking = value;
     if (option == "--passivity") arguments.passivity = value;
   }
   return arguments;
@@ -161,6 +162,8 @@ void apply_law(const RunArguments& arguments, config::Scenario& scenario) {
          scenario.device.rendering.bounds);
   choose("--gantry", arguments.gantry, config::Choices<rendering::Gantry>(config::kGantries),
          scenario.device.rendering.gantry);
+  choose("--braking", arguments.braking, config::Choices<rendering::Braking>(config::kBrakings),
+         scenario.device.rendering.braking);
   choose("--passivity", arguments.passivity,
          config::Choices<passivity::Reaction>(config::kPassivityReactions),
          scenario.device.passivity.reaction);
@@ -186,6 +189,7 @@ std::string changes(const RunArguments& arguments) {
   line("--law", arguments.law);
   line("--bounds", arguments.bounds);
   line("--gantry", arguments.gantry);
+  line("--braking", arguments.braking);
   line("--passivity", arguments.passivity);
   return text;
 }
@@ -235,9 +239,9 @@ ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments&
        .stem = recorder != nullptr
                    ? recorder->stem()
                    : recording::stamped(recording_name(arguments.world.scenario), now),
-       .origin = fmt::format("{}, law {}, bounds {}, gantry {}", scenario.title,
+       .origin = fmt::format("{}, law {}, bounds {}, gantry {}, braking {}", scenario.title,
                              rendering::to_string(law.law), rendering::to_string(law.bounds),
-                             leader_of_gantry(scenario)),
+                             leader_of_gantry(scenario), braking_of(scenario)),
        .program = arguments.program});
 }
 
@@ -245,6 +249,13 @@ std::string leader_of_gantry(const config::Scenario& scenario) {
   const rendering::Options& options = scenario.device.rendering;
   const bool is_law = options.law == rendering::Law::kGauss && scenario.device.model.n_p > 0;
   return std::string(rendering::to_string(is_law ? options.gantry : rendering::Gantry::kRule));
+}
+
+std::string braking_of(const config::Scenario& scenario) {
+  using enum rendering::Braking;
+  const config::Device& device = scenario.device;
+  const bool is_together = rendering::brakes_together(device.model, device.rendering);
+  return std::string(rendering::to_string(is_together ? kTogether : kAlone));
 }
 
 explanation::Names part_names(const config::Scenario& scenario) {

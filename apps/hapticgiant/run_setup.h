@@ -31,6 +31,9 @@ ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments&
 /// "law" where the law has the gantry's accelerations as unknowns, else "rule".
 std::string leader_of_gantry(const config::Scenario& scenario);
 
+/// "together" where limits of the device brake together, else "alone".
+std::string braking_of(const config::Scenario& scenario);
+
 /// What the parts of the device are called in messages.
 explanation::Names part_names(const config::Scenario& scenario);
 

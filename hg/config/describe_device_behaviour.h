@@ -135,6 +135,9 @@ void describe(V& v, rendering::Options& options, std::size_t manipulator_joints)
   v.choice("bounds", options.bounds, kBounds, "how limits become bounds on accelerations");
   v.choice("gantry", options.gantry, kGantries,
            "what moves the gantry: with law gauss its accelerations can be unknowns of the law");
+  v.choice("braking", options.braking, kBrakings,
+           "how motors brake before limits: before each by itself, or before all that are near "
+           "together, where law and bounds know the motors");
   v.number("T_C_s", options.T_C, kPositive,
            "bounds paper: time within which virtual joints and frames return, at least a period");
   v.number("solver_budget", options.solver_budget, kCount,

@@ -1,5 +1,5 @@
-/// Names of law, bounds, what moves the gantry, and what is done about passivity, in device.yaml
-/// and on the command line.
+/// Names of law, bounds, what moves the gantry, how limits are braked for, and what is done about
+/// passivity, in device.yaml and on the command line.
 #pragma once
 
 #include <array>
@@ -21,6 +21,10 @@ inline constexpr std::array<Choice<rendering::Bounds>, 2> kBounds = {
 inline constexpr std::array<Choice<rendering::Gantry>, 2> kGantries = {
     {{to_string(rendering::Gantry::kLaw), rendering::Gantry::kLaw},
      {to_string(rendering::Gantry::kRule), rendering::Gantry::kRule}}};
+
+inline constexpr std::array<Choice<rendering::Braking>, 2> kBrakings = {
+    {{to_string(rendering::Braking::kAlone), rendering::Braking::kAlone},
+     {to_string(rendering::Braking::kTogether), rendering::Braking::kTogether}}};
 
 inline constexpr std::array<Choice<passivity::Reaction>, 3> kPassivityReactions = {
     {{"off", passivity::Reaction::kOff},

@@ -121,6 +121,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["law"] = facts.law;
   json["bounds"] = facts.bounds;
   json["gantry"] = facts.gantry;
+  json["braking"] = facts.braking;
   json["rate_Hz"] = facts.rate_Hz;
   json["fast"] = facts.timing.is_fast;
   json["duration_s"] = duration_s_;
@@ -271,8 +272,9 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
 
   line("run", fmt::format("{}, {:.1f} s in {:.1f} s ({:.1f}x real time), {:.0f} Hz", facts.scenario,
                           duration_s_, facts.wall_time_s, duration_s_ / wall, facts.rate_Hz));
-  line("law", fmt::format("{}, {} bounds{}", facts.law, facts.bounds,
-                          facts.gantry == "law" ? ", gantry led by the law" : ""));
+  line("law", fmt::format("{}, {} bounds{}{}", facts.law, facts.bounds,
+                          facts.gantry == "law" ? ", gantry led by the law" : "",
+                          facts.braking == "together" ? ", limits brake together" : ""));
   line("events", missing.empty() ? fmt::format("{} of {} in order", events_.size(), events_.size())
                                  : fmt::format("{} happened; missing: {}", events_.size(),
                                                fmt::join(missing, ", ")));

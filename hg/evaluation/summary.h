@@ -23,9 +23,10 @@ namespace hg::evaluation {
 struct RunFacts {
   std::string scenario;
   std::string version;
-  std::string law;     ///< of the rendering
-  std::string bounds;  ///< of its limits
-  std::string gantry;  ///< what leads it, "rule" or "law"
+  std::string law;      ///< of the rendering
+  std::string bounds;   ///< of its limits
+  std::string gantry;   ///< what leads it, "rule" or "law"
+  std::string braking;  ///< before limits, "alone" or "together"
   double rate_Hz = 0.0;
   Timing timing;
   std::uint64_t dropped = 0;     ///< samples that were neither judged nor recorded

@@ -24,6 +24,12 @@ enum class Gantry : std::uint8_t {
   kRule,  ///< [HG] (27)
 };
 
+/// Before which limits of the device its motors brake.
+enum class Braking : std::uint8_t {
+  kAlone,     ///< before each by itself, with its rating
+  kTogether,  ///< before all at once; where motors are known and bounds are recoverable, else alone
+};
+
 constexpr std::string_view to_string(Law law) noexcept {
   return law == Law::kPaper ? "paper" : "gauss";
 }
@@ -35,10 +41,15 @@ constexpr std::string_view to_string(Gantry gantry) noexcept {
   return gantry == Gantry::kRule ? "rule" : "law";
 }
 
+constexpr std::string_view to_string(Braking braking) noexcept {
+  return braking == Braking::kTogether ? "together" : "alone";
+}
+
 struct Options {
   Law law = Law::kGauss;
   Bounds bounds = Bounds::kRecoverable;
   Gantry gantry = Gantry::kRule;
+  Braking braking = Braking::kAlone;
   double T_C = 20e-3;      ///< horizon of bounds C, s; the period, as printed in (8), bounces
   double dt = 1e-3;        ///< nominal period, s; integration uses it
   double kP_tran = 400;    ///< synchronisation (11), 1/s^2; double pole at 20 rad/s with kD

@@ -66,6 +66,11 @@ double stop_rating(const DeviceModel& device) {
   return rating;
 }
 
+bool brakes_together(const DeviceModel& device, const Options& options) noexcept {
+  return options.braking == Braking::kTogether && options.law == Law::kGauss &&
+         options.bounds == Bounds::kRecoverable && !device.motors.empty();
+}
+
 Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
              bool has_stops)
     : options_(options),
@@ -132,6 +137,13 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
     for (int i = 0; i < n_a_; ++i) add_rating(device.limit_count() + i, n_m_ + i);
   }
   limit_row_count_ = problem_.rows() - first_limit_row();
+  if (brakes_together(device, options_)) {
+    const int limits = device.limit_count();
+    lasting_.resize(device.motors.size());
+    joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_);
+    approaches_.resize(static_cast<std::size_t>(limits));
+    known_.resize(static_cast<std::size_t>(limits));
+  }
 
   if (paper_) {
     paper_->add_levels(problem_);
@@ -175,6 +187,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   fill_coupling(device, twin, input);
   fill_device_limits(device, input);
   if (knows_torques_) fill_motors(device, input);
+  if (joint_braking_) brake_together();
   fill_twin_limits(twin, input);
   if (stop_count_ > 0) fill_stops(twin, input);
 
@@ -221,6 +234,7 @@ void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, do
   row.limits = limits;
   row.q = q;
   row.dq = dq;
+  row.known = known_acceleration;
   if (row.is_recoverable) {
     row.ddq = limits::recoverable_bounds(limits, row.options, q, dq, options_.dt);
     if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, {});
@@ -313,6 +327,10 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     row.tail(n_g_) = M.row(i).head(n_g_) / inertia;
     problem_.set_row(first_limit_row() + first_motor_ + i, coefficients_);
     Interval torque = allowed_torque(motor, dq);
+    if (joint_braking_) {
+      lasting_[static_cast<std::size_t>(i)] = {(torque.lb - known[i]) / inertia,
+                                               (torque.ub - known[i]) / inertia};
+    }
     if (input.motor_torque.size() > 0) {
       torque = reached_torque(torque, input.motor_torque[i], options_.dt);
     }
@@ -321,6 +339,29 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     limit.inertia = inertia;
     problem_.set_bounds(first_limit_row() + first_motor_ + i, limit.ddq);
+  }
+}
+
+// Limits that need it brake together, early enough.
+void Tasks::brake_together() noexcept {
+  braking_reserve_ = kMostReserve;
+  bool has_near = false;
+  for (std::size_t i = 0; i < approaches_.size(); ++i) {
+    const LimitRow& row = limit_rows_[i];
+    if (row.is_motor) continue;
+    approaches_[i] = approach(row.limits, row.options, row.q, row.dq, options_.dt);
+    known_[i] = row.known;
+    has_near = has_near || is_near(approaches_[i], row.limits);
+  }
+  if (!has_near || !are_torques_known_) return;
+  braking_reserve_ = joint_braking_->reserve(problem_, lasting_, approaches_, known_);
+  for (std::size_t i = 0; i < approaches_.size(); ++i) {
+    LimitRow& row = limit_rows_[i];
+    if (row.is_motor) continue;
+    row.ddq =
+        braking_bounds(approaches_[i], braking_reserve_, row.ddq, row.limits, row.options, row.dq);
+    problem_.set_bounds(first_limit_row() + static_cast<int>(i),
+                        {row.ddq.lb - row.known, row.ddq.ub - row.known});
   }
 }
 

@@ -27,6 +27,7 @@
 #include "hg/hqp/solution.h"
 #include "hg/limits/acceleration_bounds.h"
 #include "hg/rendering/device_model.h"
+#include "hg/rendering/joint_braking.h"
 #include "hg/rendering/options.h"
 #include "hg/rendering/paper_law.h"
 #include "hg/rendering/twin_forces.h"
@@ -52,6 +53,7 @@ struct LimitRow {
   bool is_recoverable = true;
   Holds held_by;             ///< locks, latches and friction, this cycle
   double q = 0.0, dq = 0.0;  ///< this cycle
+  double known = 0.0;        ///< acceleration without the unknowns, this cycle
   Interval ddq;              ///< bounds of the first row, this cycle, without known accelerations
 };
 
@@ -77,6 +79,10 @@ struct TaskInput {
 /// With which the handle brakes before a virtual surface that is a stop: the least of its ratings,
 /// m/s^2.
 double stop_rating(const DeviceModel& device);
+
+/// Whether limits of the device brake together. Where the law does not know the motors, or bounds
+/// do not brake in time, each brakes by itself, whatever `options` ask for.
+bool brakes_together(const DeviceModel& device, const Options& options) noexcept;
 
 class Tasks {
  public:
@@ -121,6 +127,9 @@ class Tasks {
   TouchedEnds touched_ends(const hqp::Solution& solution) const noexcept;
   /// Law paper: index of the constraint force or torque of a limit in x; law gauss: -1.
   int alpha(int limit) const noexcept { return paper_ ? paper_->alpha(limit) : -1; }
+  /// How many times harder than needed the device can brake before all its limits together, in this
+  /// cycle; kMostReserve: at least, or nothing is near, or limits brake alone.
+  double braking_reserve() const noexcept { return braking_reserve_; }
   /// Right-hand side (11) of the coupling: how H has to accelerate relative to E.
   const Vector6& synchronisation() const noexcept { return s_; }
 
@@ -134,6 +143,7 @@ class Tasks {
                      const TaskInput& input) noexcept;
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
+  void brake_together() noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
   bool keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept;
   void fill_gantry(const TaskInput& input) noexcept;
@@ -163,6 +173,11 @@ class Tasks {
   VectorP ddq_p_;         ///< of the gantry, in this cycle, without what is unknown
   VectorM known_torque_;  ///< of the motors, without what accelerates the joints; this cycle
   VectorM motor_torque_;
+  std::optional<JointBraking> joint_braking_;  ///< only where limits brake together
+  std::vector<Approach> approaches_;           ///< of limits of the device, this cycle
+  std::vector<double> known_;                  ///< their accelerations without the unknowns
+  std::vector<Interval> lasting_;              ///< bounds of rows of motors once they are reached
+  double braking_reserve_ = kMostReserve;
   std::optional<PaperLaw> paper_;  ///< law paper only
 };
 

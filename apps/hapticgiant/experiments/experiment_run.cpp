@@ -33,6 +33,7 @@ constexpr std::array kReproducible = {"scenario",
                                       "law",
                                       "bounds",
                                       "gantry",
+                                      "braking",
                                       "rate_Hz",
                                       "duration_s",
                                       "cycles",
@@ -201,6 +202,7 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
                                 .law = std::string(rendering::to_string(law.law)),
                                 .bounds = std::string(rendering::to_string(law.bounds)),
                                 .gantry = leader_of_gantry(scenario),
+                                .braking = braking_of(scenario),
                                 .rate_Hz = options.rate_Hz,
                                 .allocations_in_loop = report.allocations};
   facts.timing.is_fast = true;

@@ -42,6 +42,7 @@ class Reader final : public recording::RecordingListener {
                                   .law = std::string(rendering::to_string(law.law)),
                                   .bounds = std::string(rendering::to_string(law.bounds)),
                                   .gantry = leader_of_gantry(scenario),
+                                  .braking = braking_of(scenario),
                                   .rate_Hz = scenario.device.rate_Hz};
     signals_.summary = nlohmann::ordered_json::parse(summary_->to_json(facts, {}));
   }

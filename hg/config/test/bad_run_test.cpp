@@ -104,6 +104,21 @@ TEST(BadDevice, RatesGainsAndChoicesHaveRanges) {
             "device.yaml:13:28: rendering.solver_budget: must be a whole number, got 1.5");
 }
 
+TEST(GoodDevice, SaysWhetherLimitsBrakeTogether) {
+  const auto braking = [](const std::string& text) {
+    SourceReader reader({{"arm.urdf", text_of("models/haptic_giant/haptic_giant.urdf")},
+                         {"device.yaml", device_text(13, text)}});
+    return load_device("device.yaml", reader).rendering.braking;
+  };
+  EXPECT_EQ(braking("rendering: {braking: together}"), rendering::Braking::kTogether);
+  EXPECT_EQ(braking("rendering: {braking: alone}"), rendering::Braking::kAlone);
+  EXPECT_EQ(braking(""), rendering::Braking::kAlone);
+  EXPECT_EQ(
+      device_message(13, "rendering: {braking: all}"),
+      "device.yaml:13:22: rendering.braking: must be one of alone, together, got 'all', did you "
+      "mean 'alone'?");
+}
+
 TEST(BadDevice, GantryJointsHaveNoAccelerationOfTheirOwn) {
   EXPECT_EQ(
       device_message(13, "  ppu1: {q_max_m: 1.2, ddq_max_m_per_s2: 2}"),

@@ -231,6 +231,16 @@ TEST(Summary, NamesTheLawThatLeadsTheGantry) {
   EXPECT_EQ(json["gantry"].get<std::string>(), "law");
 }
 
+TEST(Summary, SaysWhereLimitsBrakeTogether) {
+  const Summary summary(catalogue(), {}, 1000.0);
+  RunFacts facts = {.law = "gauss", .bounds = "recoverable", .braking = "alone"};
+  EXPECT_NE(summary.to_text(facts, {}).find("gauss, recoverable bounds\n"), std::string::npos);
+  facts.braking = "together";
+  EXPECT_NE(summary.to_text(facts, {}).find("bounds, limits brake together\n"), std::string::npos);
+  const auto json = nlohmann::json::parse(summary.to_json(facts, {}));
+  EXPECT_EQ(json["braking"].get<std::string>(), "together");
+}
+
 TEST(Summary, SaysHowOftenTheBudgetOfTheSolverWasSpent) {
   Summary summary(catalogue(), {}, 1000.0);
   const auto has = [&](const char* part) {
