@@ -61,7 +61,7 @@ TEST(PlaySeeds, TheScenariosOfStressBeginWell) {
                       .scenario = config::load_scenario(entry.path().string())});
     trials.back().scenario.duration_s = 1.5;
   }
-  EXPECT_EQ(trials.size(), 10U);
+  EXPECT_EQ(trials.size(), 11U);
   const std::vector<SeededRun> runs = play_seeds(trials, 1, 1, {});
   EXPECT_TRUE(have_all_held(runs)) << to_text(trials, runs);
 }
