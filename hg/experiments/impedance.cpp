@@ -77,7 +77,7 @@ config::Scenario prepared(const config::Scenario& scenario, const ImpedanceConfi
   device.control.error_max = kInfinity;  // how far it gives way, and not when tracking is lost
   device.monitor.unexplained_tolerance = kInfinity;  // nor when what is blind contradicts torques
   if (what.is_blind) {
-    device.monitor.frozen_samples = 0.0;  // that it shows nothing is meant
+    device.monitor.frozen_samples = 0.0;            // that it shows nothing is meant
     device.simulation.sensors.wrench.range = 1e-9;  // of full scale
     device.estimation.wrench.has_imu = false;       // which would show a wrench of its own
   }
