@@ -220,8 +220,11 @@ bool has_all_cycles(const std::filesystem::path& file, std::uint64_t cycles) {
 bool stands_still(const Truth& truth) {
   constexpr double kStandstill = 0.02;  // rad/s and m/s
   const double gantry = truth.dq_p.size() > 0 ? truth.dq_p.lpNorm<Eigen::Infinity>() : 0.0;
-  // motors that hold a load shake a little with the noise of the sensors, links do not
-  return truth.dq_m.lpNorm<Eigen::Infinity>() < kStandstill && gantry < kStandstill;
+  // of a joint whose brake is closed the motor stands, and the hand swings its link on the spring;
+  // one that is controlled holds its link, and its motor shakes a little with the sensors' noise
+  VectorM speed = truth.dq_m.cwiseAbs();
+  if (truth.dtheta_m.size() > 0) speed = speed.cwiseMin(truth.dtheta_m.cwiseAbs());
+  return speed.maxCoeff() < kStandstill && gantry < kStandstill;
 }
 
 Interval fault_times(const config::Scenario& scenario) {
