@@ -232,19 +232,15 @@ evaluation::Timing timing_of(const runtime::Options& options, const runtime::Rep
 // what the summary says besides what was observed
 evaluation::RunFacts facts_of(const PreparedRun& run, const runtime::Options& options,
                               const runtime::Report& report) {
-  const rendering::Options& law = run.scenario.device.rendering;
-  return {.scenario = run.scenario.title,
-          .version = kVersion,
-          .law = std::string(rendering::to_string(law.law)),
-          .bounds = std::string(rendering::to_string(law.bounds)),
-          .gantry = leader_of_gantry(run.scenario),
-          .braking = braking_of(run.scenario),
-          .rate_Hz = options.rate_Hz,
-          .timing = timing_of(options, report),
-          .dropped = report.dropped,
-          .allocations_in_loop = report.allocations,
-          .stop_timed_out = report.stop_timed_out,
-          .link = run.remote != nullptr ? run.remote->counts() : LinkCounts{}};
+  evaluation::RunFacts facts = facts_of_scenario(run.scenario);
+  facts.version = kVersion;
+  facts.rate_Hz = options.rate_Hz;
+  facts.timing = timing_of(options, report);
+  facts.dropped = report.dropped;
+  facts.allocations_in_loop = report.allocations;
+  facts.stop_timed_out = report.stop_timed_out;
+  if (run.remote != nullptr) facts.link = run.remote->counts();
+  return facts;
 }
 
 // the page of a run that a fault or the page itself has ended offers to start again

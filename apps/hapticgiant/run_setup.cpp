@@ -232,30 +232,31 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
 
 ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments,
                            const recording::Recorder* recorder) {
-  const rendering::Options& law = scenario.device.rendering;
+  const evaluation::RunFacts facts = facts_of_scenario(scenario);
   const auto now = std::chrono::system_clock::now();
   return ProblemDumps(
       {.folder = arguments.has_recording ? arguments.recordings : "",
        .stem = recorder != nullptr
                    ? recorder->stem()
                    : recording::stamped(recording_name(arguments.world.scenario), now),
-       .origin = fmt::format("{}, law {}, bounds {}, gantry {}, braking {}", scenario.title,
-                             rendering::to_string(law.law), rendering::to_string(law.bounds),
-                             leader_of_gantry(scenario), braking_of(scenario)),
+       .origin = fmt::format("{}, law {}, bounds {}, gantry {}, braking {}", facts.scenario,
+                             facts.law, facts.bounds, facts.gantry, facts.braking),
        .program = arguments.program});
 }
 
-std::string leader_of_gantry(const config::Scenario& scenario) {
-  const rendering::Options& options = scenario.device.rendering;
-  const bool is_law = options.law == rendering::Law::kGauss && scenario.device.model.n_p > 0;
-  return std::string(rendering::to_string(is_law ? options.gantry : rendering::Gantry::kRule));
-}
-
-std::string braking_of(const config::Scenario& scenario) {
-  using enum rendering::Braking;
-  const config::Device& device = scenario.device;
-  const bool is_together = rendering::brakes_together(device.model, device.rendering);
-  return std::string(rendering::to_string(is_together ? kTogether : kAlone));
+evaluation::RunFacts facts_of_scenario(const config::Scenario& scenario) {
+  using rendering::Braking;
+  using rendering::Gantry;
+  const rendering::DeviceModel& device = scenario.device.model;
+  const rendering::Options& law = scenario.device.rendering;
+  const Gantry gantry = rendering::leads_gantry(device, law) ? Gantry::kLaw : Gantry::kRule;
+  const Braking braking =
+      rendering::brakes_together(device, law) ? Braking::kTogether : Braking::kAlone;
+  return {.scenario = scenario.title,
+          .law = std::string(rendering::to_string(law.law)),
+          .bounds = std::string(rendering::to_string(law.bounds)),
+          .gantry = std::string(rendering::to_string(gantry)),
+          .braking = std::string(rendering::to_string(braking))};
 }
 
 explanation::Names part_names(const config::Scenario& scenario) {

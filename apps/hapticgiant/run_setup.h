@@ -8,6 +8,7 @@
 #include "apps/hapticgiant/problem_dumps.h"
 #include "apps/hapticgiant/run_command.h"
 #include "hg/config/scenario.h"
+#include "hg/evaluation/summary.h"
 #include "hg/explanation/fault_figures.h"
 #include "hg/recording/recorder.h"
 
@@ -28,11 +29,9 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
 ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments,
                            const recording::Recorder* recorder);
 
-/// "law" where the law has the gantry's accelerations as unknowns, else "rule".
-std::string leader_of_gantry(const config::Scenario& scenario);
-
-/// "together" where limits of the device brake together, else "alone".
-std::string braking_of(const config::Scenario& scenario);
+/// What the summary says of a run that its scenario tells: title, and the law as it really is, not
+/// what was asked for.
+evaluation::RunFacts facts_of_scenario(const config::Scenario& scenario);
 
 /// What the parts of the device are called in messages.
 explanation::Names part_names(const config::Scenario& scenario);

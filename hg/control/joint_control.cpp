@@ -220,7 +220,7 @@ void JointControl::begin(const ReferenceState& reference, const RobotState& robo
   state.modes.follow(scaled_mass(), kSweepsAtStart);
   state.w_H = robot.w_H;
   state.dw_H.setZero();
-  state.stiff = of_stiff_modes(tau, state);
+  state.stiff = of_stiff_modes(tau, stiffness_shares(state), state);
   state.is_started = true;
 }
 
@@ -237,13 +237,25 @@ JointControl::Feedforward JointControl::feedforward(const ReferenceState& refere
           .ddtheta = reference.ddq_m + state.ddtau_r.cwiseQuotient(K_)};
 }
 
-// The share of torques on the joints that bends stiff modes.
-VectorM JointControl::of_stiff_modes(const VectorM& tau, const State& state) const noexcept {
-  const VectorM scaled = tau.cwiseQuotient(sqrt_K_);
-  VectorM in_modes = state.modes.Q().transpose() * scaled;
-  for (int i = 0; i < n_m_; ++i) in_modes[i] *= stiffness_share(state.poles, state.modes.mu()[i]);
+// How stiff each mode is.
+VectorM JointControl::stiffness_shares(const State& state) const noexcept {
+  VectorM shares(n_m_);
+  for (int i = 0; i < n_m_; ++i) shares[i] = stiffness_share(state.poles, state.modes.mu()[i]);
+  return shares;
+}
+
+// Torques on the joints from what acts on the modes.
+VectorM JointControl::of_modes(const VectorM& in_modes, const State& state) const noexcept {
   const VectorM back = state.modes.Q() * in_modes;
   return sqrt_K_.cwiseProduct(back);
+}
+
+// The part of torques on the joints that bends stiff modes.
+VectorM JointControl::of_stiff_modes(const VectorM& tau, const VectorM& shares,
+                                     const State& state) const noexcept {
+  const VectorM scaled = tau.cwiseQuotient(sqrt_K_);
+  const VectorM in_modes = state.modes.Q().transpose() * scaled;
+  return of_modes(in_modes.cwiseProduct(shares), state);
 }
 
 // What sensor, filter and springs make late of the user's wrench is made up for by where it is
@@ -257,9 +269,10 @@ VectorM JointControl::timely(const VectorM& tau, const RobotState& robot,
   const model::Jacobian& J = chain_.jacobian(handle_);
   const Vector6 to_come = config_.wrench_lead * state.dw_H;
   const VectorM lead = J.rightCols(n_m_).transpose().lazyProduct(to_come);
-  const VectorM stiff = of_stiff_modes(tau, state);
+  const VectorM shares = stiffness_shares(state);
+  const VectorM stiff = of_stiff_modes(tau, shares, state);
   estimation::low_pass(stiff_pole_, stiff, state.stiff);
-  return tau - stiff + state.stiff - lead + of_stiff_modes(lead, state);
+  return tau - stiff + state.stiff - lead + of_stiff_modes(lead, shares, state);
 }
 
 // The springs cannot take a torque at once: their motors have to twist them. What is fed forward
@@ -314,8 +327,7 @@ VectorM JointControl::modal_torque(const Errors& errors, const RobotState& robot
   }
   const double w0_2 = state.poles.w0 * state.poles.w0;
   const VectorM Jt = K_ / w0_2;
-  const VectorM back = state.modes.Q() * v;
-  const VectorM feedback = sqrt_K_.cwiseProduct(back);
+  const VectorM feedback = of_modes(v, state);
   const VectorM share = Jm_.cwiseQuotient(Jt);  // of a torque on rotors that look like Jt
   learn_friction(forward, share.cwiseProduct(feedback), robot, state);
   const VectorM u = forward.tau + Jt.cwiseProduct(forward.ddtheta) + feedback;

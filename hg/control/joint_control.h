@@ -131,7 +131,10 @@ class JointControl {
     return tau.cwiseMin(feed_max_).cwiseMax(-feed_max_);
   }
   MatrixM scaled_mass() const noexcept;
-  VectorM of_stiff_modes(const VectorM& tau, const State& state) const noexcept;
+  VectorM stiffness_shares(const State& state) const noexcept;
+  VectorM of_modes(const VectorM& in_modes, const State& state) const noexcept;
+  VectorM of_stiff_modes(const VectorM& tau, const VectorM& shares,
+                         const State& state) const noexcept;
   VectorM timely(const VectorM& tau, const RobotState& robot, State& state) const noexcept;
   void begin(const ReferenceState& reference, const RobotState& robot, State& state) noexcept;
   Feedforward feedforward(const ReferenceState& reference, const RobotState& robot,

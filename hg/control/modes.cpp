@@ -28,25 +28,6 @@ void rotate(int p, int r, MatrixM& B, MatrixM& Q) noexcept {
   turn(Q.col(p), Q.col(r));
 }
 
-}  // namespace
-
-Poles poles_for(const Poles& fastest, double latency) noexcept {
-  Poles poles = fastest;
-  poles.w0 = std::min(fastest.w0, 0.265 / latency);
-  const double share = poles.w0 / fastest.w0;
-  poles.w1 *= share;
-  poles.w_motor *= share;
-  return poles;
-}
-
-double stiffness_share(const Poles& poles, double mu) noexcept {
-  constexpr double kHalfWidth = 0.1;  // of w2_max
-  const double w2 = std::sqrt(poles.w0 * poles.w0 + 1.0 / mu);
-  return std::clamp(0.5 + (w2 / poles.w2_max - 1.0) / (2.0 * kHalfWidth), 0.0, 1.0);
-}
-
-namespace {
-
 // by its motor alone, as if the spring had no end of stiffness
 ModeGains stiff_gains(const Poles& poles, double mu) noexcept {
   const double inertia = mu + 1.0 / (poles.w0 * poles.w0);
@@ -73,6 +54,21 @@ ModeGains soft_gains(const Poles& poles, double mu) noexcept {
 }
 
 }  // namespace
+
+Poles poles_for(const Poles& fastest, double latency) noexcept {
+  Poles poles = fastest;
+  poles.w0 = std::min(fastest.w0, 0.265 / latency);
+  const double share = poles.w0 / fastest.w0;
+  poles.w1 *= share;
+  poles.w_motor *= share;
+  return poles;
+}
+
+double stiffness_share(const Poles& poles, double mu) noexcept {
+  constexpr double kHalfWidth = 0.1;  // of w2_max
+  const double w2 = std::sqrt(poles.w0 * poles.w0 + 1.0 / mu);
+  return std::clamp(0.5 + (w2 / poles.w2_max - 1.0) / (2.0 * kHalfWidth), 0.0, 1.0);
+}
 
 ModeGains gains_of(const Poles& poles, double mu) noexcept {
   const double stiff = stiffness_share(poles, mu), soft = 1.0 - stiff;

@@ -144,19 +144,6 @@ Vector3d into(const Pose& pose, const Vector3d& p) noexcept {
   return pose.R.transpose() * (p - pose.p);
 }
 
-}  // namespace
-
-std::optional<Hit> first_hit(const Surface& surface, const Vector3d& from,
-                             const Vector3d& to) noexcept {
-  const Vector3d a = into(surface.pose, from), b = into(surface.pose, to);
-  std::optional<Hit> hit =
-      std::visit([&](const auto& shape) { return first_hit(shape, a, b); }, surface.shape);
-  if (hit) hit->normal = surface.pose.R * hit->normal;
-  return hit;
-}
-
-namespace {
-
 bool is_on(const Mesh& mesh, const Vector3d& p) noexcept {
   bool is_near = false;
   mesh.for_each_near(p, p, kOutside, [&](const Triangle& triangle) {
@@ -167,6 +154,15 @@ bool is_on(const Mesh& mesh, const Vector3d& p) noexcept {
 }
 
 }  // namespace
+
+std::optional<Hit> first_hit(const Surface& surface, const Vector3d& from,
+                             const Vector3d& to) noexcept {
+  const Vector3d a = into(surface.pose, from), b = into(surface.pose, to);
+  std::optional<Hit> hit =
+      std::visit([&](const auto& shape) { return first_hit(shape, a, b); }, surface.shape);
+  if (hit) hit->normal = surface.pose.R * hit->normal;
+  return hit;
+}
 
 bool is_inside(const Surface& surface, const Vector3d& point) noexcept {
   const Vector3d p = into(surface.pose, point);

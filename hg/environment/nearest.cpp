@@ -37,6 +37,40 @@ Vector3d nearest_on(const Triangle& triangle, const Vector3d& p) noexcept {
   return nearest;
 }
 
+// What a solid near a point shows it: how near a face that looks at it, and the nearest way out
+// through one that looks away.
+struct Side {
+  int solid = -1;
+  double front = kInfinity;
+  Facing out;
+
+  bool is_around() const noexcept { return out.distance < 0.0 && -out.distance < front; }
+};
+
+// those of the first few solids that are met
+class Sides {
+ public:
+  Side* of(int solid) noexcept {
+    for (Side& side : sides_) {
+      if (side.solid < 0) side.solid = solid;
+      if (side.solid == solid) return &side;
+    }
+    return nullptr;
+  }
+  const Side* nearest_around() const noexcept {
+    const Side* best = nullptr;
+    for (const Side& side : sides_) {
+      if (!side.is_around()) continue;
+      if (best == nullptr || side.out.distance > best->out.distance) best = &side;
+    }
+    return best;
+  }
+  bool has_front() const noexcept { return sides_[0].front < kInfinity; }
+
+ private:
+  std::array<Side, 8> sides_;
+};
+
 }  // namespace
 
 Facing facing(const Plane&, const Vector3d& p) noexcept { return {Vector3d::UnitZ(), p.z()}; }
@@ -80,44 +114,6 @@ Facing facing(const Triangle& triangle, const Vector3d& p) noexcept {
   }
   return height > 0.0 ? Facing{away / distance, distance, -1, true, triangle.solid} : Facing{};
 }
-
-namespace {
-
-// What a solid near a point shows it: how near a face that looks at it, and the nearest way out
-// through one that looks away.
-struct Side {
-  int solid = -1;
-  double front = kInfinity;
-  Facing out;
-
-  bool is_around() const noexcept { return out.distance < 0.0 && -out.distance < front; }
-};
-
-// those of the first few solids that are met
-class Sides {
- public:
-  Side* of(int solid) noexcept {
-    for (Side& side : sides_) {
-      if (side.solid < 0) side.solid = solid;
-      if (side.solid == solid) return &side;
-    }
-    return nullptr;
-  }
-  const Side* nearest_around() const noexcept {
-    const Side* best = nullptr;
-    for (const Side& side : sides_) {
-      if (!side.is_around()) continue;
-      if (best == nullptr || side.out.distance > best->out.distance) best = &side;
-    }
-    return best;
-  }
-  bool has_front() const noexcept { return sides_[0].front < kInfinity; }
-
- private:
-  std::array<Side, 8> sides_;
-};
-
-}  // namespace
 
 Facing way_out(const Mesh& mesh, const Vector3d& p, double reach) noexcept {
   // mostly it is near: look around in growing distances

@@ -16,7 +16,7 @@ constexpr double kJumped = 1.5;              // times the speed of a motor witho
 constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
 
 int led_axes(const DeviceModel& device, const Options& options) noexcept {
-  return options.law == Law::kGauss && options.gantry == Gantry::kLaw ? device.n_p : 0;
+  return leads_gantry(device, options) ? device.n_p : 0;
 }
 
 hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin, const Options& options,
@@ -64,6 +64,10 @@ double stop_rating(const DeviceModel& device) {
     rating = std::min(rating, axis.ddq_max);
   }
   return rating;
+}
+
+bool leads_gantry(const DeviceModel& device, const Options& options) noexcept {
+  return options.gantry == Gantry::kLaw && options.law == Law::kGauss && device.n_p > 0;
 }
 
 bool brakes_together(const DeviceModel& device, const Options& options) noexcept {

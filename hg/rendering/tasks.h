@@ -80,6 +80,10 @@ struct TaskInput {
 /// m/s^2.
 double stop_rating(const DeviceModel& device);
 
+/// Whether accelerations of the gantry are unknowns of the law. Where the law cannot have them, or
+/// there is no gantry, a rule leads it, whatever `options` ask for.
+bool leads_gantry(const DeviceModel& device, const Options& options) noexcept;
+
 /// Whether limits of the device brake together. Where the law does not know the motors, or bounds
 /// do not brake in time, each brakes by itself, whatever `options` ask for.
 bool brakes_together(const DeviceModel& device, const Options& options) noexcept;

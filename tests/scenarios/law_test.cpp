@@ -48,7 +48,7 @@ TEST_P(OtherLaws, CompleteTheScenario) {
   // paper reach 1e6 Nm: the solver does not prove the smallest of them, the joints are kept
   const bool may_lack_a_proof =
       scenario == std::string("free_space") && law == std::string("paper");
-  EXPECT_LE(run.quality().unsolved, may_lack_a_proof ? 10 : 0);
+  EXPECT_LE(run.quality().unsolved, may_lack_a_proof ? 5 : 0);
   EXPECT_EQ(run.quality().allocations, 0u);
   EXPECT_LT(run.quality().worst_budget, kBudgetMax);
   if (std::string(bounds) == "recoverable") {

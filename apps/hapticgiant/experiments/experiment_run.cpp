@@ -196,15 +196,10 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
   const runtime::Report report = runtime.join();
   if (watcher.recorder) settle(*watcher.recorder, arguments.recordings, result);
 
-  const rendering::Options& law = scenario.device.rendering;
-  evaluation::RunFacts facts = {.scenario = scenario.title,
-                                .version = kVersion,
-                                .law = std::string(rendering::to_string(law.law)),
-                                .bounds = std::string(rendering::to_string(law.bounds)),
-                                .gantry = leader_of_gantry(scenario),
-                                .braking = braking_of(scenario),
-                                .rate_Hz = options.rate_Hz,
-                                .allocations_in_loop = report.allocations};
+  evaluation::RunFacts facts = facts_of_scenario(scenario);
+  facts.version = kVersion;
+  facts.rate_Hz = options.rate_Hz;
+  facts.allocations_in_loop = report.allocations;
   facts.timing.is_fast = true;
   facts.wall_time_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

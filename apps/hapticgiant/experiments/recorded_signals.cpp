@@ -37,13 +37,8 @@ class Reader final : public recording::RecordingListener {
       signals_.marks.push_back(
           {is_expected ? paper_label(*rule) : event.name, event.time_s, event.text});
     }
-    const rendering::Options& law = scenario.device.rendering;
-    evaluation::RunFacts facts = {.scenario = scenario.title,
-                                  .law = std::string(rendering::to_string(law.law)),
-                                  .bounds = std::string(rendering::to_string(law.bounds)),
-                                  .gantry = leader_of_gantry(scenario),
-                                  .braking = braking_of(scenario),
-                                  .rate_Hz = scenario.device.rate_Hz};
+    evaluation::RunFacts facts = facts_of_scenario(scenario);
+    facts.rate_Hz = scenario.device.rate_Hz;
     signals_.summary = nlohmann::ordered_json::parse(summary_->to_json(facts, {}));
   }
 
