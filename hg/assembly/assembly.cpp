@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "hg/assembly/start_posture.h"
-#include "hg/control/loop_stability.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/rendering/catalogue.h"
@@ -159,50 +158,16 @@ constexpr int kStabilityPostures = 32;
 constexpr int kMostDraws = 1'000'000;  // of a posture; takes less than a second
 constexpr int kFurtherLatency = 4;     // periods beyond what is expected
 
-// postures all over the limits of the joints; one without limits is looked at in one turn. Throws
-// SetupError where hardly any is within the virtual limits.
-std::vector<Eigen::VectorXd> postures_of(const rendering::DeviceModel& device) {
-  std::mt19937 random(1);
-  std::vector<Eigen::VectorXd> postures;
-  for (int k = 0; k < kMostDraws; ++k) {
-    Eigen::VectorXd q = Eigen::VectorXd::Zero(device.n_p + device.n_m);
-    for (int i = 0; i < device.n_m; ++i) {
-      const limits::JointLimits& joint = device.joint_limits[static_cast<std::size_t>(i)];
-      const double lo = std::max(joint.q_min, -std::numbers::pi);
-      const double hi = std::min(joint.q_max, std::numbers::pi);
-      const double share = static_cast<double>(random()) / static_cast<double>(random.max());
-      q[device.n_p + i] = lo + (hi - lo) * share;
-    }
-    const auto is_within = [&](const rendering::VirtualJoint& joint) {
-      const double sum = joint.weights.dot(q.tail(device.n_m));
-      return joint.limits.q_min <= sum && sum <= joint.limits.q_max;
-    };
-    if (!std::ranges::all_of(device.virtual_joints, is_within)) continue;
-    postures.push_back(std::move(q));
-    if (postures.size() == kStabilityPostures) return postures;
-  }
-  throw SetupError(fmt::format(
-      "virtual_joints: only {} of {} random postures within the limits of the joints keep these "
-      "limits, {} are needed to check that the torque loop is stable: widen them, or tighten those "
-      "of the joints",
-      postures.size(), kMostDraws, kStabilityPostures));
-}
-
 // Elastic joints: until which latency the gains that follow from it are stable.
 control::Config checked_control(const config::Device& device) {
   control::Config control = device.control;
   if (control.method == control::Method::kDrives) return control;
-  const control::Loop loop = {.config = control,
-                              .filters = {.link_pole_Hz = device.estimation.link_pole_Hz,
-                                          .motor_low_pass_Hz = device.estimation.motor_low_pass_Hz},
-                              .chain = device.model.chain,
-                              .n_p = device.model.n_p,
-                              .n_m = device.model.n_m,
-                              .handle = device.model.handle};
+  const control::Loop loop = torque_loop(device);
   const int expected =
       std::max(1, static_cast<int>(std::ceil(control.loop.latency / control.dt - 1e-9)));
-  const int periods = control::longest_stable_latency(loop, postures_of(device.model),
-                                                      expected + kFurtherLatency, expected);
+  const int periods = control::longest_stable_latency(
+      loop, random_postures(device.model, kStabilityPostures, 1), expected + kFurtherLatency,
+      expected);
   control.latency_max = (periods + 0.25) * control.dt;  // what was measured is a mean
   if (control.loop.latency > control.latency_max) {
     throw SetupError(fmt::format(
@@ -225,6 +190,44 @@ compliance::Config compliance_of(const config::Device& device) {
 }
 
 }  // namespace
+
+std::vector<Eigen::VectorXd> random_postures(const rendering::DeviceModel& device, int count,
+                                             std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::vector<Eigen::VectorXd> postures;
+  for (int k = 0; k < kMostDraws; ++k) {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(device.n_p + device.n_m);
+    for (int i = 0; i < device.n_m; ++i) {
+      const limits::JointLimits& joint = device.joint_limits[static_cast<std::size_t>(i)];
+      const double lo = std::max(joint.q_min, -std::numbers::pi);
+      const double hi = std::min(joint.q_max, std::numbers::pi);
+      const double share = static_cast<double>(random()) / static_cast<double>(random.max());
+      q[device.n_p + i] = lo + (hi - lo) * share;
+    }
+    const auto is_within = [&](const rendering::VirtualJoint& joint) {
+      const double sum = joint.weights.dot(q.tail(device.n_m));
+      return joint.limits.q_min <= sum && sum <= joint.limits.q_max;
+    };
+    if (!std::ranges::all_of(device.virtual_joints, is_within)) continue;
+    postures.push_back(std::move(q));
+    if (static_cast<int>(postures.size()) == count) return postures;
+  }
+  throw SetupError(fmt::format(
+      "virtual_joints: only {} of {} random postures within the limits of the joints keep these "
+      "limits, {} are needed to check that the torque loop is stable: widen them, or tighten those "
+      "of the joints",
+      postures.size(), kMostDraws, count));
+}
+
+control::Loop torque_loop(const config::Device& device) {
+  return {.config = device.control,
+          .filters = {.link_pole_Hz = device.estimation.link_pole_Hz,
+                      .motor_low_pass_Hz = device.estimation.motor_low_pass_Hz},
+          .chain = device.model.chain,
+          .n_p = device.model.n_p,
+          .n_m = device.model.n_m,
+          .handle = device.model.handle};
+}
 
 bool notices_frozen_sensors(const config::Device& device) {
   const bool is_noisy = !device.simulation.is_from_file || has_noise(device.simulation.sensors);

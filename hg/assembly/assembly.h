@@ -1,8 +1,12 @@
 /// From a loaded scenario to the parts of a run.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "hg/assembly/start_posture.h"
 #include "hg/config/scenario.h"
+#include "hg/control/loop_stability.h"
 #include "hg/cycle/cycle.h"
 #include "hg/device/simulated_device.h"
 #include "hg/evaluation/summary.h"
@@ -12,6 +16,14 @@ namespace hg::assembly {
 
 /// The control cycle of the scenario's device and twin. Throws SetupError.
 cycle::Cycle make_cycle(const config::Scenario& scenario);
+
+/// The torque loop of a device with elastic joints, as its controller believes it to be.
+control::Loop torque_loop(const config::Device& device);
+
+/// `count` postures (gantry at 0 first) all over the limits of the joints; a joint without limits
+/// is looked at in one turn. Throws SetupError where hardly any is within the virtual limits.
+std::vector<Eigen::VectorXd> random_postures(const rendering::DeviceModel& device, int count,
+                                             std::uint32_t seed);
 
 /// Whether rule 105 is on: sensors that simulation.yaml describes without noise show the same bits
 /// for ever at rest.
