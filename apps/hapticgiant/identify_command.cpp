@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <system_error>
-
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/paths.h"
 #include "hg/config/device.h"
@@ -17,13 +14,6 @@ namespace {
 
 using identification::PayloadEstimate;
 using identification::StaticPose;
-
-// as given, or among the data that comes with the program
-std::string find_device(const std::string& file) {
-  std::error_code error;
-  if (std::filesystem::exists(file, error)) return file;
-  return (models_root() / file).string();
-}
 
 std::vector<StaticPose> simulated_poses(const config::Device& device, int count) {
   std::vector<StaticPose> poses;

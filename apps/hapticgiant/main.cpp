@@ -28,6 +28,7 @@
 #include "apps/hapticgiant/simulate_command.h"
 #include "apps/hapticgiant/stack.h"
 #include "apps/hapticgiant/start_test_command.h"
+#include "apps/hapticgiant/tune_command.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
@@ -36,6 +37,7 @@ namespace {
 
 using hg::apps::at_least;
 using hg::apps::number_that;
+using hg::apps::number_within;
 using hg::apps::print_error;
 using hg::apps::print_out;
 using hg::apps::whole_number;
@@ -522,6 +524,35 @@ void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::run_haptify(arguments); });
 }
 
+void add_tune(CLI::App& app, hg::apps::TuneArguments& arguments, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "tune", "Filters and poles for the torque control of a device, with their proof; minutes.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant tune models/haptic_giant/device.yaml         report in tune/report.md\n"
+      "  hapticgiant tune device.yaml --vibration 0.03 --front    less vibration, and the trade");
+  command->add_option("device", arguments.device, "device.yaml")->capture_default_str();
+  command->add_option("--out", arguments.out, "folder of the report")->capture_default_str();
+  command
+      ->add_option("--vibration", arguments.vibration,
+                   "largest above 20 Hz, m/s^2; without: what the device has now")
+      ->check(number_within(1e-4, 10.0));
+  command->add_option("--mass", arguments.mass, "of the body that is rendered, kg")
+      ->check(number_within(0.1, 100.0))
+      ->capture_default_str();
+  command->add_option("--damping", arguments.damping, "likewise, Ns/m")
+      ->check(number_within(0.0, 1000.0))
+      ->capture_default_str();
+  command->add_option("--postures", arguments.postures, "in which it must hold")
+      ->check(whole_number(1.0, 1000.0))
+      ->capture_default_str();
+  command->add_option("--seed", arguments.seed, "of the postures")
+      ->check(whole_number(0.0, 4294967295.0))
+      ->capture_default_str();
+  command->add_flag("--front", arguments.has_front, "also for less and for more vibration");
+  command->callback([&arguments, &exit_code] { exit_code = hg::apps::run_tune(arguments); });
+}
+
 // an empty text (a variable of a script that is not set) is no file, key or name
 void refuse_empty_values(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
@@ -582,6 +613,7 @@ int main(int argc, char** argv) {
   hg::apps::BenchArguments compared;
   hg::apps::FaultsArguments broken;
   hg::apps::HaptifyArguments haptified;
+  hg::apps::TuneArguments tuned;
   add_run(app, run, exit_code);
   add_doctor(app, examined, exit_code);
   add_replay(app, replayed, exit_code);
@@ -597,6 +629,7 @@ int main(int argc, char** argv) {
   add_bench(app, compared, exit_code);
   add_faults(app, broken, exit_code);
   add_haptify(app, haptified, exit_code);
+  add_tune(app, tuned, exit_code);
   refuse_empty_values(app);
 
   return hg::apps::code_after_output(parse(app, argc, argv, exit_code));

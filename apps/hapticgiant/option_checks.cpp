@@ -22,6 +22,11 @@ OptionCheck at_least(int least) {
   return number_that(fmt::format("at least {}", least), [=](double v) { return v >= least; });
 }
 
+OptionCheck number_within(double least, double most) {
+  return number_that(fmt::format("from {:g} to {:g}", least, most),
+                     [=](double v) { return v >= least && v <= most; });
+}
+
 OptionCheck whole_number(double least, double most) {
   return number_that(fmt::format("a whole number from {:.0f} to {:.0f}", least, most),
                      [=](double v) { return v >= least && v <= most && v == std::floor(v); });

@@ -14,6 +14,9 @@ OptionCheck number_that(const std::string& rule, const std::function<bool(double
 
 OptionCheck at_least(int least);
 
+/// Both ends belong to it.
+OptionCheck number_within(double least, double most);
+
 /// Both ends belong to it; the largest default is what a double can count to.
 OptionCheck whole_number(double least, double most = 9007199254740992.0);
 

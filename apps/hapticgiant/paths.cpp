@@ -51,4 +51,9 @@ fs::path find_scenario(const std::string& name) {
                                fmt::join(names, ", ")));
 }
 
+fs::path find_device(const std::string& file) {
+  std::error_code error;
+  return fs::exists(file, error) ? fs::path(file) : models_root() / file;
+}
+
 }  // namespace hg::apps

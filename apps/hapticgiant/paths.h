@@ -21,4 +21,7 @@ std::filesystem::path models_root();
 /// Throws SetupError naming the nearest one.
 std::filesystem::path find_scenario(const std::string& name);
 
+/// A device file as given, or among the data that comes with the program.
+std::filesystem::path find_device(const std::string& file);
+
 }  // namespace hg::apps

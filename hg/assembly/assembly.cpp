@@ -165,9 +165,9 @@ control::Config checked_control(const config::Device& device) {
   const control::Loop loop = torque_loop(device);
   const int expected =
       std::max(1, static_cast<int>(std::ceil(control.loop.latency / control.dt - 1e-9)));
-  const int periods = control::longest_stable_latency(
-      loop, random_postures(device.model, kStabilityPostures, 1), expected + kFurtherLatency,
-      expected);
+  const int periods =
+      control::longest_stable_latency(loop, random_postures(device.model, kStabilityPostures, 1),
+                                      expected + kFurtherLatency, expected);
   control.latency_max = (periods + 0.25) * control.dt;  // what was measured is a mean
   if (control.loop.latency > control.latency_max) {
     throw SetupError(fmt::format(

@@ -55,9 +55,11 @@ ModeGains soft_gains(const Poles& poles, double mu) noexcept {
 
 }  // namespace
 
+double largest_rotor_pole(double latency) noexcept { return 0.265 / latency; }
+
 Poles poles_for(const Poles& fastest, double latency) noexcept {
   Poles poles = fastest;
-  poles.w0 = std::min(fastest.w0, 0.265 / latency);
+  poles.w0 = std::min(fastest.w0, largest_rotor_pole(latency));
   const double share = poles.w0 / fastest.w0;
   poles.w1 *= share;
   poles.w_motor *= share;

@@ -26,8 +26,11 @@ struct Poles {
   double w_motor = 90.0;  ///< and have a double pole there
 };
 
-/// `fastest`, slowed down to what tolerates `latency` (s), which includes the lag of the current:
-/// w0 is at most 0.265 / latency; w1 and w_motor scale along, w2_max and damping ratios do not.
+/// The largest w0 that tolerates `latency` (s), which includes the lag of the current, rad/s.
+double largest_rotor_pole(double latency) noexcept;
+
+/// `fastest`, slowed down to largest_rotor_pole(); w1 and w_motor scale along, w2_max and damping
+/// ratios do not.
 Poles poles_for(const Poles& fastest, double latency) noexcept;
 
 /// How stiff a mode with the eigenvalue `mu` (s^2) is: 0 from 0.9 w2_max down, 1 from 1.1 w2_max

@@ -1,0 +1,89 @@
+#include "apps/hapticgiant/tune_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "apps/hapticgiant/output.h"
+#include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/tune_report.h"
+#include "apps/hapticgiant/version.h"
+#include "hg/assembly/assembly.h"
+#include "hg/config/device.h"
+#include "hg/tuning/tuned_device.h"
+
+namespace hg::apps {
+namespace {
+
+void tell(const std::string& what, std::size_t done, std::size_t total) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  draw_error(done < total ? fmt::format("{}: {} of {}", what, done, total) : "");
+}
+
+tuning::Problem problem_of(const config::Device& device, const TuneArguments& arguments) {
+  tuning::Problem problem = {
+      .device = tuning::device_of(device),
+      .noise = tuning::noise_of(device),
+      .reality = tuning::simulated(device),
+      .friction = tuning::unexpected_friction(device),
+      .body = {.mass = arguments.mass, .damping = arguments.damping},
+      .postures = assembly::random_postures(device.model, arguments.postures, arguments.seed)};
+  problem.friction_most_N =
+      tuning::figures_of(problem, tuning::values_of(problem.device)).friction_N;
+  return problem;
+}
+
+std::string command_of(const TuneArguments& arguments) {
+  std::string command = fmt::format("hapticgiant tune {}", arguments.device);
+  const TuneArguments usual;
+  if (arguments.vibration > 0.0) command += fmt::format(" --vibration {:g}", arguments.vibration);
+  if (arguments.mass != usual.mass) command += fmt::format(" --mass {:g}", arguments.mass);
+  if (arguments.damping != usual.damping) {
+    command += fmt::format(" --damping {:g}", arguments.damping);
+  }
+  if (arguments.postures != usual.postures) {
+    command += fmt::format(" --postures {}", arguments.postures);
+  }
+  if (arguments.seed != usual.seed) command += fmt::format(" --seed {}", arguments.seed);
+  return command + (arguments.has_front ? " --front" : "");
+}
+
+}  // namespace
+
+int run_tune(const TuneArguments& arguments) {
+  const config::Device device = config::load_device(find_device(arguments.device));
+  tuning::Problem problem = problem_of(device, arguments);
+  make_folder(arguments.out);
+  print_out("HapticGiant {}  tunes {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
+            kVersion, device.name, tuning::knobs().size(), problem.postures.size(), arguments.mass,
+            arguments.damping);
+  const double limit =
+      arguments.vibration > 0.0
+          ? arguments.vibration
+          : tuning::figures_of(problem, tuning::values_of(problem.device)).vibration;
+  std::vector<double> limits = {limit};
+  if (arguments.has_front) {
+    for (const double share : {0.75, 0.5, 1.5, 2.0}) limits.push_back(share * limit);
+  }
+  const tuning::Result result = tuning::search(problem, limits, tell);
+  const TuneReport report = {problem, result, device.name, command_of(arguments)};
+
+  constexpr std::size_t kChosen = 0;
+  print_out(tune_text(report, kChosen));
+  print_out(fmt::format("\nfor device.yaml:\n{}", tune_yaml(report, kChosen)));
+  const std::filesystem::path folder = arguments.out;
+  const auto write = [&](const char* name, const std::string& text) {
+    write_output((folder / name).string(), text);
+  };
+  write("report.md", tune_markdown(report, kChosen));
+  write("front.csv", tune_csv(report));
+  write("front.svg", tune_svg(report));
+  print_out(fmt::format("\nreport      {}\n", (folder / "report.md").string()));
+  if (result.proofs[kChosen].holds()) return 0;
+  print_error("not proven: the loop found is nearest to what was asked for; do not use it\n");
+  return 1;
+}
+
+}  // namespace hg::apps

@@ -1,0 +1,120 @@
+#include "hg/tuning/proof.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hg/experiments/stability_map.h"
+#include "hg/tuning/feel.h"
+
+namespace hg::tuning {
+namespace {
+
+Doubt late(const control::Config& believed) {
+  constexpr double kMore = 1.5;
+  control::Reality reality = {believed.actuators, believed.loop};
+  reality.loop.latency *= kMore;
+  return {fmt::format("latency x {:g}", kMore), reality};
+}
+
+
+}  // namespace
+
+std::vector<Doubt> doubts(const control::Config& believed) {
+  const control::Reality as_believed = {believed.actuators, believed.loop};
+  std::vector<Doubt> all = {{"as believed", as_believed}};
+  for (const double factor : {0.75, 1.25}) {
+    control::Reality rotors = as_believed, springs = as_believed, links = as_believed;
+    for (ActuatorModel& actuator : rotors.actuators) actuator.rotor_inertia *= factor;
+    for (ActuatorModel& actuator : springs.actuators) actuator.stiffness *= factor;
+    links.link_mass = factor;
+    all.push_back({fmt::format("rotors x {:g}", factor), rotors});
+    all.push_back({fmt::format("springs x {:g}", factor), springs});
+    all.push_back({fmt::format("links x {:g}", factor), links});
+  }
+  all.push_back(late(believed));
+  return all;
+}
+
+std::vector<Doubt> doubts_in_hand(const control::Config& believed) {
+  const control::Reality as_believed = {believed.actuators, believed.loop};
+  constexpr double kLighter = 0.65;
+  return {{"as believed", as_believed, 1.0, kLighter},
+          late(believed),
+          {"torques at their bounds", as_believed, 0.5, kLighter}};
+}
+
+std::vector<Grasp> grasps(const Body& body) {
+  const auto with_mass = [&](double mass) {
+    Body held = body;
+    held.mass = std::min(body.mass, mass);
+    return held;
+  };
+  std::vector<Grasp> all;
+  const auto add = [&](const std::string& what, const user::HandImpedance& hand, double mass) {
+    const Body held = with_mass(mass);
+    all.push_back({what, hand, held});
+  };
+  add("relaxed hand", user::hand(user::HandPreset::kRelaxed), 0.3);
+  add("normal hand", user::hand(user::HandPreset::kNormal), 0.4);
+  add("stiff hand", user::hand(user::HandPreset::kStiff), 0.9);
+  for (const double stiffness : {300.0, 1000.0, 2000.0}) {
+    add(fmt::format("spring of {:g} N/m", stiffness), experiments::spring_hand({}, stiffness), 2.0);
+  }
+  return all;
+}
+
+Demands::Demands(const control::Config& believed, const Body& body,
+                 std::vector<Eigen::VectorXd> postures)
+    : doubts_(doubts(believed)),
+      doubts_in_hand_(doubts_in_hand(believed)),
+      grasps_(grasps(body)),
+      postures_(std::move(postures)) {}
+
+std::vector<Case> Demands::cases(std::size_t posture) const {
+  std::vector<Case> all;
+  for (std::size_t doubt = 0; doubt < doubts_.size(); ++doubt) all.push_back({posture, doubt});
+  for (std::size_t doubt = 0; doubt < doubts_in_hand_.size(); ++doubt) {
+    for (int grasp = 0; grasp < static_cast<int>(grasps_.size()); ++grasp) {
+      all.push_back({posture, doubt, grasp});
+    }
+  }
+  return all;
+}
+
+const Doubt& Demands::doubt(const Case& one) const {
+  return (one.grasp < 0 ? doubts_ : doubts_in_hand_)[one.doubt];
+}
+
+double Demands::radius(const Device& device, const Case& one) const {
+  const Doubt& real = doubt(one);
+  const Eigen::VectorXd& q = postures_[one.posture];
+  const control::Config& config = device.loop.config;
+  const double scale = 1e-3 / config.dt;
+  if (one.grasp < 0) {
+    return std::pow(control::spectral_radius(device.loop, q, config.loop.latency, real.reality),
+                    scale);
+  }
+  const Grasp& grasp = grasps_[static_cast<std::size_t>(one.grasp)];
+  Body body = grasp.body;
+  body.mass *= real.mass;
+  Device doubted = device;
+  doubted.loop.config.flatness_Hz *= real.follower;
+  return std::pow(
+      spectral_radius(linearise(doubted, real.reality, body, grasp.hand, {}, q)), scale);
+}
+
+double Demands::excess(const Device& device, const Case& one) const {
+  return radius(device, one) - (one.grasp < 0 ? kArmRadius : kHandRadius);
+}
+
+std::string Demands::name(const Case& one) const {
+  const std::string& what = doubt(one).what;
+  if (one.grasp < 0) return what;
+  const Grasp& grasp = grasps_[static_cast<std::size_t>(one.grasp)];
+  return fmt::format("{}, {:.2g} kg, {}", grasp.what, doubt(one).mass * grasp.body.mass, what);
+}
+
+}  // namespace hg::tuning

@@ -1,0 +1,177 @@
+#include "hg/tuning/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hg/experiments/workers.h"
+#include "hg/tuning/evolution.h"
+
+namespace hg::tuning {
+namespace {
+
+constexpr double kFirstStep = 0.08;      // of a knob, share of its range
+constexpr int kMostProofs = 4;           // evolutions per limit
+constexpr double kProofReserve = 1e-4;   // of eigenvalues, against other postures
+
+// to three digits, as they will stand in a file
+Values rounded(Values values) {
+  for (double& value : values) {
+    if (value == 0.0) continue;
+    const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+    value = std::round(value / unit) * unit;
+  }
+  return values;
+}
+
+class Search {
+ public:
+  Search(const Problem& problem, const Told& told)
+      : problem_(problem),
+        told_(told),
+        demands_(problem.device.loop.config, problem.body, problem.postures) {
+    // every doubt once, in different postures; what else matters comes with the proofs
+    for (const Case& one : demands_.cases(0)) {
+      if (one.grasp >= 0) continue;
+      hard_.push_back({one.doubt % problem.postures.size(), one.doubt});
+    }
+  }
+
+  Candidate best(Values start, double limit, Proof& proof) {
+    for (int k = 0; k < kMostProofs; ++k) {
+      start = rounded(evolved(start, k == 0 ? kFirstStep : 0.3 * kFirstStep, limit));
+      proof = proof_everywhere(start);
+      if (proof.holds()) break;
+      mind(proof);
+    }
+    return {start, figures_of(problem_, start)};
+  }
+
+  // Where a loop came nearest to its limits counts from now on.
+  void mind(const Proof& proof) {
+    hard_.push_back(proof.worst_arm);
+    hard_.push_back(proof.worst_hand);
+  }
+
+  Proof proof_everywhere(const Values& values) {
+    const Device device = with_values(problem_.device, values);
+    std::vector<Proof> proofs(problem_.postures.size());
+    experiments::do_all(
+        proofs.size(),
+        [&](std::size_t i) {
+          Proof& here = proofs[i];
+          for (const Case& one : demands_.cases(i)) take(one, demands_.radius(device, one), here);
+        },
+        [&](std::size_t done, std::size_t total) { tell("proof", done, total); });
+    Proof all;
+    for (const Proof& one : proofs) {
+      take(one.worst_arm, one.arm, all);
+      take(one.worst_hand, one.hand, all);
+      all.cases += one.cases - 2;
+    }
+    return all;
+  }
+
+  const Demands& demands() const { return demands_; }
+  std::size_t tried() const { return tried_; }
+
+ private:
+  void tell(const std::string& what, std::size_t done, std::size_t total) const {
+    if (told_) told_(what, done, total);
+  }
+
+  static void take(const Case& one, double radius, Proof& proof) {
+    ++proof.cases;
+    double& worst = one.grasp < 0 ? proof.arm : proof.hand;
+    if (radius <= worst) return;
+    worst = radius;
+    (one.grasp < 0 ? proof.worst_arm : proof.worst_hand) = one;
+  }
+
+  // What shall be small: distortion, with what is forbidden made dear.
+  double cost(const Values& values, double limit) const {
+    const Figures figures = figures_of(problem_, values);
+    const Device device = with_values(problem_.device, values);
+    const double too_much = std::max(0.0, figures.vibration / limit - 1.0);
+    double excess = 0.0;
+    for (const Case& one : hard_) {
+      excess = std::max(excess, demands_.excess(device, one) + kProofReserve);
+    }
+    const double rough = std::max(0.0, figures.friction_N / problem_.friction_most_N - 1.0);
+    return figures.distortion + 5.0 * too_much + 5.0 * rough + 100.0 * excess;
+  }
+
+  // By evolution, among places within the range of each knob.
+  Values evolved(const Values& start, double step, double limit) {
+    const auto costs = [&](const std::vector<Eigen::VectorXd>& places) {
+      std::vector<double> result(places.size());
+      experiments::do_all(
+          places.size(),
+          [&](std::size_t i) {
+            const Eigen::VectorXd inside = places[i].cwiseMax(0.0).cwiseMin(1.0);
+            result[i] = cost(values_at(inside), limit) + (places[i] - inside).squaredNorm();
+          },
+          {});
+      tried_ += places.size();
+      return result;
+    };
+    const Eigen::VectorXd found =
+        minimise(costs, place_of(start), {.step = step, .generations = problem_.most_rounds},
+                 [&](int round, double best) {
+                   tell(fmt::format("vibration at most {:.3g} m/s^2: cost {:.3f}", limit, best),
+                        static_cast<std::size_t>(round),
+                        static_cast<std::size_t>(problem_.most_rounds) + 1);
+                 });
+    return values_of(
+        with_values(problem_.device, values_at(found.cwiseMax(0.0).cwiseMin(1.0))));
+  }
+
+  const Problem& problem_;
+  const Told& told_;
+  Demands demands_;
+  std::vector<Case> hard_;  // what counts during the search
+  std::size_t tried_ = 0;
+};
+
+}  // namespace
+
+Figures figures_of(const Problem& problem, const Values& values) {
+  const Device device = with_values(problem.device, values);
+  Figures worst = {.transparency_Hz = kInfinity};
+  const std::size_t count = std::min(problem.felt_postures, problem.postures.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Feel now = feel(linearise(device, problem.reality, problem.body, user::HandImpedance{},
+                                    problem.noise, problem.postures[i]),
+                          problem.body, problem.friction);
+    worst.transparency_Hz = std::min(worst.transparency_Hz, now.least_transparency_Hz());
+    worst.latency_s = std::max(worst.latency_s, now.largest_latency_s());
+    worst.distortion = std::max(worst.distortion, now.distortion);
+    worst.friction_N = std::max(worst.friction_N, now.friction_N);
+    if (now.vibration > worst.vibration) {
+      worst.vibration = now.vibration;
+      worst.centroid_Hz = now.centroid_Hz;
+    }
+  }
+  return worst;
+}
+
+Result search(const Problem& problem, const std::vector<double>& limits, const Told& told) {
+  Search searching(problem, told);
+  Result result = {.limits = limits};
+  const Values present = values_of(problem.device);
+  result.before = {present, figures_of(problem, present)};
+  result.proof_before = searching.proof_everywhere(present);
+  searching.mind(result.proof_before);
+  Values start = present;
+  for (const double limit : limits) {
+    Proof proof;
+    result.front.push_back(searching.best(start, limit, proof));
+    result.proofs.push_back(proof);
+    start = result.front.back().values;
+  }
+  result.tried = searching.tried();
+  return result;
+}
+
+}  // namespace hg::tuning

@@ -1,0 +1,135 @@
+#include "hg/tuning/handle_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "hg/assembly/assembly.h"
+#include "hg/config/scenario.h"
+#include "hg/experiments/changes.h"
+#include "hg/experiments/stability_map.h"
+#include "hg/haptify/measures.h"
+#include "hg/haptify/response.h"
+#include "hg/tuning/feel.h"
+#include "hg/tuning/tuned_device.h"
+
+namespace hg::tuning {
+namespace {
+
+// The middle of the workspace, where hg/haptify and the stability map measure.
+config::Scenario walk() {
+  config::Scenario scenario = config::load_scenario("models/scenarios/walk.yaml");
+  scenario.twin.model.q_start.head<3>() = haptify::ResponseConfig{}.position;
+  return scenario;
+}
+
+Eigen::VectorXd posture_of(const config::Scenario& scenario) {
+  const assembly::Start start = assembly::find_start(scenario);
+  Eigen::VectorXd q(start.q_p.size() + start.q_m.size());
+  q << start.q_p, start.q_m;
+  return q;
+}
+
+HandleLoop loop_of(const config::Scenario& scenario, const Body& body,
+                   const user::HandImpedance& hand) {
+  return linearise(device_of(scenario.device), simulated(scenario.device), body, hand,
+                   noise_of(scenario.device), posture_of(scenario));
+}
+
+TEST(Resolvent, SolvesLikeADenseDecomposition) {
+  std::srand(1);
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(17, 17), B = Eigen::MatrixXd::Random(17, 2),
+                        C = Eigen::MatrixXd::Random(3, 17);
+  Resolvent resolvent(A);
+  for (const std::complex<double> z : {std::polar(1.0, 0.3), std::polar(2.0, 2.0)}) {
+    const Eigen::MatrixXcd dense =
+        (z * Eigen::MatrixXcd::Identity(17, 17) - A.cast<std::complex<double>>()).inverse();
+    resolvent.at(z);
+    EXPECT_LT((resolvent.solve(B) - dense * B).norm(), 1e-9);
+    EXPECT_LT((resolvent.solve_transposed(C) - C * dense).norm(), 1e-9);
+  }
+}
+
+// The judge is the simulation, which shares no line with the linear loop but the controller: with
+// friction, noise, quantisation and a gantry that moves.
+TEST(HandleLoop, SaysWhatTheSimulationShows) {
+  const config::Scenario scenario = walk();
+  const HandleLoop loop = loop_of(scenario, {}, user::HandImpedance{});
+  const Feel said = feel(loop, {}, unexpected_friction(scenario.device));
+  haptify::ResponseConfig pushes;
+  pushes.frequency_Hz = {5, 8, 12, 16, 20};
+  pushes.periods = 3;
+  pushes.least_s = 0.6;
+  for (int axis = 0; axis < 2; ++axis) {
+    const haptify::Response shown = haptify::measure_response(scenario, pushes, axis, 1);
+    ASSERT_EQ(shown.failure, "");
+    std::vector<double> frequency, ratio;
+    for (const haptify::Answer& answer : shown.answers) {
+      frequency.push_back(answer.frequency_Hz);
+      ratio.push_back(std::abs(answer.impedance / answer.twin));
+    }
+    const double bandwidth = haptify::bandwidth(frequency, ratio, 1.4125);
+    EXPECT_NEAR(said.transparency_Hz[static_cast<std::size_t>(axis)], bandwidth, 0.15 * bandwidth);
+    const double latency_s = haptify::measure_latency(scenario, pushes, axis, 1).motion_s;
+    EXPECT_NEAR(said.latency_s[static_cast<std::size_t>(axis)], latency_s, 1e-3);
+  }
+}
+
+// How a kick that saturates nothing dies out, on a machine without friction.
+TEST(HandleLoop, IsStableWhereTheSimulationIs) {
+  config::Scenario scenario = walk();
+  experiments::take_friction(scenario.device.control);
+  experiments::StabilityConfig config;
+  config.kick.force = 0.3;
+  user::HandImpedance hand = user::hand(user::HandPreset::kStiff);
+  hand.tremor_rms = 0.0;
+  for (const auto& [mass, is_calm] : {std::pair{0.2, false}, {0.6, true}}) {
+    const experiments::KickOutcome shown = experiments::kick(scenario, config, hand, mass, 4.0);
+    EXPECT_EQ(experiments::is_stable(shown.verdict), is_calm) << mass;
+    EXPECT_EQ(spectral_radius(loop_of(scenario, {.mass = mass}, hand)) < 1.0, is_calm) << mass;
+  }
+}
+
+TEST(HandleLoop, ALateWrenchIsFeltLaterAndLessClearly) {
+  const config::Scenario scenario = walk();
+  Device late = device_of(scenario.device);
+  late.wrench.delay_s += 3e-3;
+  const auto felt = [&](const Device& device) {
+    return feel(linearise(device, simulated(scenario.device), {}, user::HandImpedance{},
+                          noise_of(scenario.device), posture_of(scenario)),
+                {}, unexpected_friction(scenario.device));
+  };
+  const Feel now = felt(device_of(scenario.device)), then = felt(late);
+  // a little more than the 3 ms, since the arm bends meanwhile
+  const double later_s = then.largest_latency_s() - now.largest_latency_s();
+  EXPECT_GT(later_s, 3e-3);
+  EXPECT_LT(later_s, 4e-3);
+  EXPECT_LT(then.least_transparency_Hz(), 0.7 * now.least_transparency_Hz());
+  EXPECT_GT(then.distortion, 1.3 * now.distortion);
+}
+
+TEST(HandleLoop, NoiseComesFromWhatIsNoisyAndNothingElse) {
+  const config::Scenario scenario = walk();
+  const auto vibration = [&](const Noise& noise) {
+    return feel(linearise(device_of(scenario.device), simulated(scenario.device), {},
+                          user::HandImpedance{}, noise, posture_of(scenario)),
+                {}, unexpected_friction(scenario.device))
+        .vibration;
+  };
+  EXPECT_EQ(vibration({}), 0.0);
+  const double of_force = vibration({.force = 1e-3});
+  EXPECT_GT(of_force, 0.0);
+  EXPECT_NEAR(vibration({.force = 2e-3}), 2.0 * of_force, 1e-9);
+}
+
+TEST(Device, OneWhoseDrivesFollowPositionsIsRefused) {
+  config::Scenario scenario = walk();
+  scenario.device.control.method = control::Method::kDrives;
+  EXPECT_THROW(device_of(scenario.device), SetupError);
+}
+
+}  // namespace
+}  // namespace hg::tuning

@@ -1,0 +1,102 @@
+#include "hg/tuning/search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hg/assembly/assembly.h"
+#include "hg/tuning/tuned_device.h"
+
+namespace hg::tuning {
+namespace {
+
+Problem problem_of(int postures) {
+  const config::Device device = config::load_device("models/haptic_giant/device.yaml");
+  Problem problem = {.device = device_of(device),
+                     .noise = noise_of(device),
+                     .reality = simulated(device),
+                     .friction = unexpected_friction(device),
+                     .postures = assembly::random_postures(device.model, postures, 1),
+                     .felt_postures = 1};
+  problem.friction_most_N = figures_of(problem, values_of(problem.device)).friction_N;
+  return problem;
+}
+
+Values with(const Problem& problem, std::string_view key, double value) {
+  Values values = values_of(problem.device);
+  for (std::size_t i = 0; i < knobs().size(); ++i) {
+    if (knobs()[i].key == key) values[static_cast<Eigen::Index>(i)] = value;
+  }
+  return values;
+}
+
+TEST(Knobs, GiveBackWhatTheyTook) {
+  const Device device = problem_of(1).device;
+  const Values values = 0.9 * values_of(device);
+  EXPECT_LT((values_of(with_values(device, values)) - values).norm(), 1e-12);
+}
+
+TEST(Knobs, TakeNoMoreThanLatencyAndRateAllow) {
+  const Problem problem = problem_of(1);
+  const Device fast =
+      with_values(problem.device, with(problem, "rotor_pole_rad_per_s", 1000.0));
+  EXPECT_LT(fast.loop.config.poles.w0, 0.2651 / 1.5e-3);
+  const Device wild = with_values(problem.device, with(problem, "flatness_Hz", 1e6));
+  EXPECT_LT(wild.loop.config.flatness_Hz, control::largest_flatness_Hz(1000.0));
+}
+
+// docs/control.md: what the notes had was unstable with light rotors
+TEST(Demands, RefuseTheDampingOfTheNotes) {
+  const Problem problem = problem_of(30);
+  const Demands demands(problem.device.loop.config, problem.body, problem.postures);
+  const auto failures = [&](const Device& device) {
+    int count = 0;
+    for (std::size_t i = 0; i < problem.postures.size(); ++i) {
+      for (const Case& one : demands.cases(i)) {
+        if (one.grasp < 0 && demands.excess(device, one) > 0.0) ++count;
+      }
+    }
+    return count;
+  };
+  EXPECT_EQ(failures(problem.device), 0);
+  EXPECT_GT(failures(with_values(problem.device, with(problem, "spring_damping", 0.5))), 0);
+}
+
+TEST(Demands, KnowALighterBodyIsHarderToHold) {
+  const Problem problem = problem_of(1);
+  const auto worst = [&](double mass) {
+    const Demands demands(problem.device.loop.config, {.mass = mass}, problem.postures);
+    double largest = 0.0;
+    for (const Case& one : demands.cases(0)) {
+      if (one.grasp >= 0) largest = std::max(largest, demands.radius(problem.device, one));
+    }
+    return largest;
+  };
+  EXPECT_GT(worst(0.1), worst(6.0) + 0.03);
+}
+
+// From a loop that is late to one that is not.
+TEST(Search, FindsWhatWasTakenAway) {
+  Problem problem = problem_of(3);
+  problem.device = with_values(problem.device, with(problem, "motor_low_pass_Hz", 400.0));
+  problem.device = with_values(problem.device, with(problem, "wrench_lead_s", 0.0));
+  problem.most_rounds = 15;
+  const double limit = 0.04;
+  const Result result = search(problem, {limit}, {});
+  const Candidate& found = result.front.front();
+  EXPECT_TRUE(result.proofs.front().holds());
+  EXPECT_LT(found.figures.vibration, 1.01 * limit);
+  EXPECT_LT(found.figures.distortion, 0.8 * result.before.figures.distortion);
+  EXPECT_LT(found.figures.friction_N, 1.01 * problem.friction_most_N);
+  for (const double value : found.values) {  // as a file will have them
+    if (value == 0.0) continue;
+    const double digits = value / std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+    EXPECT_NEAR(digits, std::round(digits), 1e-6);
+  }
+  // what is in a file gives the figures of the report
+  const Figures again = figures_of(problem, found.values);
+  EXPECT_EQ(again.distortion, found.figures.distortion);
+}
+
+}  // namespace
+}  // namespace hg::tuning

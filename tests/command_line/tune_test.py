@@ -1,0 +1,69 @@
+"""`hapticgiant tune` as its user meets it, in one posture.
+
+Usage: tune_test.py PROGRAM   (from the repository root)
+"""
+
+import csv
+import re
+import shutil
+import unittest
+
+from program import MODELS, TemporaryFolder, run
+
+
+class Tune(TemporaryFolder):
+    def test_its_lines_are_a_device_that_check_takes(self):
+        device = self.folder / "haptic_giant"
+        shutil.copytree(MODELS / "haptic_giant", device)
+        out = self.folder / "out"
+        code, told, err = run("tune", device / "device.yaml", "--postures", 1, "--out", out)
+        self.assertEqual((code, err), (0, ""), told)
+        self.assertIn("proven                              ", told)
+        lines = told[told.index("for device.yaml:\n") + 17:told.index("\nreport ")]
+        self.assertEqual(re.findall(r"^(\w+):$", lines, re.M), ["estimation", "control"])
+        found = {key: float(value) for key, value in re.findall(r"^  (\w+): (\S+)", lines, re.M)}
+
+        text = (device / "device.yaml").read_text()
+        for key, value in found.items():
+            if not re.search(rf"^  {key}: ", text, re.M):
+                text = text.replace("\ncontrol:\n", f"\ncontrol:\n  {key}: {value}\n")
+            text = re.sub(rf"^(  {key}:) [^ \n]+", rf"\1 {value}", text, flags=re.M)
+        (device / "device.yaml").write_text(text)
+        code, told, err = run("check", device / "device.yaml")
+        self.assertEqual(code, 0, told + err)
+
+        with open(out / "front.csv", newline="") as file:
+            rows = list(csv.DictReader(file, strict=True))
+        self.assertEqual(len(rows), 2)  # now, and tuned
+        self.assertEqual(rows[1]["is_proven"], "1")
+        self.assertLess(float(rows[1]["distortion"]), float(rows[0]["distortion"]))
+        for key, value in found.items():
+            self.assertAlmostEqual(float(rows[1][key]), value, places=9)
+        report = (out / "report.md").read_text()
+        self.assertIn(lines, report)
+        self.assertIn("front.svg", report)
+        self.assertTrue((out / "front.svg").read_text().startswith("<svg"))
+
+    def test_what_cannot_be_tuned_is_refused_in_one_line(self):
+        device = self.folder / "haptic_giant"
+        shutil.copytree(MODELS / "haptic_giant", device)
+        text = (device / "device.yaml").read_text()
+        for section in ("actuators", "control"):
+            text = re.sub(rf"^{section}:\n(?:[ ].*\n|\n)*", "", text, flags=re.M)
+        (device / "device.yaml").write_text(text)
+        cases = [
+            ((device / "device.yaml",), "its drives follow positions by themselves"),
+            (("devcie.yaml",), "devcie.yaml: no such file"),
+            (("--vibration", "-1"), "--vibration"),
+            (("--mass", "nan"), "--mass"),
+            (("--postures", "0"), "--postures"),
+        ]
+        for arguments, message in cases:
+            code, told, err = run("tune", *arguments, "--out", self.folder / "none")
+            self.assertEqual(code, 2, (arguments, told, err))
+            self.assertIn(message, err, arguments)
+            self.assertFalse((self.folder / "none").exists(), arguments)
+
+
+if __name__ == "__main__":
+    unittest.main()
