@@ -296,6 +296,8 @@ class Builder {
 Assembly build(const Urdf& urdf, const ChainOptions& options) {
   Urdf part = serial_part(urdf, options.root_link, options.tip_link);
   if (options.tool) attach(*options.tool, part);
+  for (const PassiveJoint& joint : options.passive)
+    insert_behind(joint.behind, joint.name, joint.axis, part);
   Assembly chain = Builder(part, options).build();
   if (chain.model.nv > kMaxTwin || chain.model.nq > kMaxTwinCoords) {
     throw SetupError(urdf.source + ": a chain has at most " + std::to_string(kMaxTwin) +

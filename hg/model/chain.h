@@ -52,10 +52,18 @@ struct Tool {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about the COM, axes of the link
 };
 
+/// A passive joint of the same kind that carries what a joint of the URDF carried.
+struct PassiveJoint {
+  std::string behind;                   ///< revolute, continuous or prismatic joint of the URDF
+  std::string name;                     ///< of the new joint; no joint or link has it
+  std::optional<Eigen::Vector3d> axis;  ///< unit vector in the child of `behind`; none = its axis
+};
+
 struct ChainOptions {
   Pose T_B_root;        ///< placement of the root link in frame B
   bool gravity = true;  ///< false: c() and inverse_dynamics() are without gravity
   std::optional<Tool> tool;
+  std::vector<PassiveJoint> passive;  ///< that the URDF does not have: a structure that yields
   bool floating_root = false;  ///< true: the root link moves freely in B by a floating joint "root"
   /// The serial part of a branched URDF, see serial_part() in urdf_parts.h; empty = all of it.
   std::string root_link, tip_link;

@@ -111,4 +111,38 @@ std::array<UrdfJoint, 3> planar_parts(const UrdfJoint& planar) {
   return parts;
 }
 
+void insert_behind(const std::string& behind, const std::string& name,
+                   const std::optional<Eigen::Vector3d>& axis, Urdf& urdf) {
+  const auto is_taken = [&](const auto& part) { return part.name == name; };
+  const auto found = std::ranges::find(urdf.joints, behind, &UrdfJoint::name);
+  const bool is_scalar = found != urdf.joints.end() && (found->type == UrdfJointType::kRevolute ||
+                                                        found->type == UrdfJointType::kContinuous ||
+                                                        found->type == UrdfJointType::kPrismatic);
+  if (!is_scalar) {
+    throw SetupError(urdf.source + ": a joint that yields must be behind a revolute or prismatic " +
+                     "joint, got '" + behind + "'");
+  }
+  if (std::ranges::any_of(urdf.links, is_taken) || std::ranges::any_of(urdf.joints, is_taken)) {
+    throw SetupError(urdf.source + ": the name of a joint that yields is taken, got '" + name +
+                     "'");
+  }
+  constexpr double kMass = 1e-9;  // kg; its inertia is that of 1 mm
+  UrdfJoint joint = *found;
+  joint.name = name;
+  joint.parent = static_cast<int>(urdf.links.size());
+  joint.T_parent_joint = {};
+  joint.position = {};
+  joint.velocity_max = joint.effort_max = kInfinity;
+  if (joint.type == UrdfJointType::kRevolute) joint.type = UrdfJointType::kContinuous;
+  if (axis) joint.axis = axis->normalized();
+  found->child = joint.parent;
+  urdf.links.push_back(
+      {.name = name,
+       .line = joint.line,
+       .inertial = Inertial{.mass = kMass, .inertia = 1e-6 * kMass * Eigen::Matrix3d::Identity()},
+       .inertial_fault = {},
+       .collisions = {}});
+  urdf.joints.push_back(std::move(joint));
+}
+
 }  // namespace hg::model

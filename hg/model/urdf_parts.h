@@ -1,7 +1,9 @@
-/// Parts of a URDF: the serial part of a branched robot, the scalar joints of a planar one.
+/// Parts of a URDF: the serial part of a branched robot, the scalar joints of a planar one, joints
+/// that yield.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "hg/model/urdf.h"
@@ -22,5 +24,13 @@ Urdf serial_part(const Urdf& urdf, const std::string& root, const std::string& t
 /// nearer to x than 45 degrees; y = normal x x. URDF defines <limit> for revolute and prismatic
 /// joints only: a planar joint has none.
 std::array<UrdfJoint, 3> planar_parts(const UrdfJoint& planar);
+
+/// Puts the joint `name` between the joint `behind` and the link that it carries: of the same kind
+/// without limits, about `axis` of that link (none: that of `behind`). The link in between has the
+/// least mass that a link may have.
+///
+/// Throws SetupError where there is no scalar joint `behind` or `name` is taken.
+void insert_behind(const std::string& behind, const std::string& name,
+                   const std::optional<Eigen::Vector3d>& axis, Urdf& urdf);
 
 }  // namespace hg::model

@@ -150,5 +150,28 @@ TEST(PlanarParts, HaveNoLimits) {
   }
 }
 
+TEST(InsertBehind, CarriesWhatTheJointCarried) {
+  const std::string text =
+      "<robot name='r'><link name='base'/><link name='arm'/><link name='hand'/>"
+      "<joint name='turn' type='revolute'><parent link='base'/><child link='arm'/><origin "
+      "xyz='1 2 3'/><axis xyz='0 0 1'/><limit lower='-1' upper='1'/></joint>"
+      "<joint name='grip' type='fixed'><parent link='arm'/><child link='hand'/></joint></robot>";
+  Urdf urdf = read_urdf_text(text, "r.urdf");
+  insert_behind("turn", "bend", Eigen::Vector3d(0.0, 2.0, 0.0), urdf);
+  ASSERT_EQ(urdf.joints.size(), 3u);
+  const UrdfJoint &turn = urdf.joints[0], &bend = urdf.joints[2];
+  EXPECT_EQ(turn.child, bend.parent);
+  EXPECT_EQ(urdf.links[static_cast<std::size_t>(bend.child)].name, "arm");
+  EXPECT_EQ(bend.type, UrdfJointType::kContinuous);
+  EXPECT_EQ(bend.axis, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(bend.T_parent_joint.p, Eigen::Vector3d::Zero());
+  EXPECT_EQ(turn.T_parent_joint.p, Eigen::Vector3d(1.0, 2.0, 3.0));
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"grip", "x"}, {"turn", "hand"}, {"none", "x"}};
+  for (const auto& [behind, name] : wrong) {
+    EXPECT_THROW(insert_behind(behind, name, {}, urdf), SetupError);
+  }
+}
+
 }  // namespace
 }  // namespace hg::model
