@@ -7,7 +7,9 @@
 /// that falls back to the least index (Murty; Judice and Pires): ends after at most
 /// (n + 1) (kPatience + 3^n) active sets; from the set of the step before nearly always after one.
 ///
-/// A unilateral stop is a row with f in [0, infinity); a brake one with an infinite box.
+/// A unilateral stop is a row with f in [0, infinity); a brake one with an infinite box. A spring
+/// in series with a row adds its give per force to the row's own entry of A: implicit, so that it
+/// never adds energy.
 /// No allocation, noexcept.
 #pragma once
 
@@ -18,7 +20,11 @@
 
 namespace hg::simulation {
 
-inline constexpr int kMaxBoxRows = 2 * kMaxManipulator;  ///< a motor and an end stop per joint
+/// Elements that the dry friction of a joint is shared out to, each in series with a bristle.
+inline constexpr int kMaxBristles = 3;
+/// Per joint: elements of its friction, hysteresis, two flanks of its gear, and an end stop.
+inline constexpr int kRowsPerJoint = kMaxBristles + 4;
+inline constexpr int kMaxBoxRows = kRowsPerJoint * kMaxManipulator;
 using VectorBox = VectorUpTo<kMaxBoxRows>;
 using MatrixBox = MatrixUpTo<kMaxBoxRows, kMaxBoxRows>;
 

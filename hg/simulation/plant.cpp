@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "hg/simulation/cholesky.h"
+#include "hg/simulation/random_stream.h"
 
 namespace hg::simulation {
 namespace {
@@ -37,13 +39,39 @@ Plant::Plant(const PlantConfig& config, const model::Chain& chain, int handle)
     links_[at(i)] = i < n_m_ ? config_.manipulator[at(i)] : config_.flexible[at(i - n_m_)].joint;
   }
   if (config_.end_stops.empty()) config_.end_stops.resize(at(n_m_));
+  if (config_.effects.empty()) config_.effects.resize(at(n_m_));
+  if (config_.waviness.empty()) config_.waviness.resize(at(n_p_));
+  draw_phases();
 
   q_ = dq_ = ddq_ = tau_user_ = tau_bystander_ = VectorQ::Zero(chain.nv());
-  for (int i = 0; i < n_p_; ++i) q_[config_.gantry[at(i)]] = config_.q_p_start[i];
+  travel_ = config_.q_p_start;
+  speed_ = VectorP::Zero(n_p_);
+  for (int i = 0; i < n_p_; ++i) q_[config_.gantry[at(i)]] = strayed(i).q;
   for (int i = 0; i < n_m_; ++i) q_[links_[at(i)]] = config_.q_m_start[i];
   current_ = VectorM::Zero(n_m_);
   if (config_.bystander) bystander_ = Bystander(*config_.bystander);
   start_in_balance();
+}
+
+void Plant::draw_phases() noexcept {
+  const auto phase = [&](RandomEffect effect, int channel) {
+    return 2.0 * std::numbers::pi * RandomStream(config_.seed, effect, channel).uniform();
+  };
+  for (int i = 0; i < n_m_; ++i) {
+    wave_phases_[at(i)] = {phase(RandomEffect::kCogging, i), phase(RandomEffect::kRipple, i)};
+  }
+  waviness_phase_.resize(n_p_);
+  for (int i = 0; i < n_p_; ++i) waviness_phase_[i] = phase(RandomEffect::kWaviness, i);
+}
+
+// Where an axis of the gantry really is and how fast, its drive being at travel_ and speed_.
+Plant::Motion Plant::strayed(int axis) const noexcept {
+  const Waviness& wave = config_.waviness[at(axis)];
+  if (wave.amplitude == 0.0) return {travel_[axis], speed_[axis]};
+  const double k = 2.0 * std::numbers::pi / wave.period;
+  const double phase = k * travel_[axis] + waviness_phase_[axis];
+  return {travel_[axis] + wave.amplitude * std::sin(phase),
+          speed_[axis] * (1.0 + wave.amplitude * k * std::cos(phase))};
 }
 
 model::Loads Plant::loads() const noexcept {
@@ -68,13 +96,16 @@ void Plant::start_in_balance() noexcept {
   forces_.ddq = forces_.tau_links = VectorL::Zero(n_l_);
   forces_.ddtheta = forces_.tau_friction = forces_.tau_stop = VectorM::Zero(n_m_);
   forces_.f_p = VectorP::Zero(n_p_);
+  flanks_ = friction_lost_ = hysteresis_lost_ = VectorM::Zero(n_m_);
   for (int i = 0; i < n_l_; ++i) forces_.tau_links[i] = chain_.c()[links_[at(i)]];
   truth_.is_known = true;
   truth_.tau_motor = truth_.dtheta_m = VectorM::Zero(n_m_);
   truth_.theta_m.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    truth_.theta_m[i] =
-        q_[links_[at(i)]] + forces_.tau_links[i] / config_.actuators[at(i)].stiffness;
+    const double tau = forces_.tau_links[i];
+    const double twist = tau / config_.actuators[at(i)].stiffness;
+    const double play = 0.5 * config_.effects[at(i)].backlash;
+    truth_.theta_m[i] = q_[links_[at(i)]] + twist + (tau < 0.0 ? -play : play);
   }
   truth_.ddq_p = VectorP::Zero(n_p_);
   observe();
@@ -82,16 +113,16 @@ void Plant::start_in_balance() noexcept {
 
 void Plant::step(const PlantInput& input) noexcept {
   move_motors(input.tau_command);
-  truth_.ddq_p = gantry_acceleration(input.dq_p_command);
+  const VectorP ddq_p = move_gantry(input.dq_p_command);
   truth_.w_H = input.w_H;
   tau_user_.noalias() = J_H_.transpose().lazyProduct(input.w_H);
   if (config_.bystander) meet_bystander();
 
-  Equations eq = equations(truth_.ddq_p);
-  const Contacts contacts = near_stops();
-  resist(eq, contacts, input);
-  accelerate(eq, contacts);
-  integrate(truth_.ddq_p);
+  Equations eq = equations(ddq_p);
+  const Rows felt = rows(input);
+  resist(eq, felt);
+  accelerate(eq, felt);
+  integrate(ddq_p);
   chain_.update(q_, dq_, loads());
   observe();
 }
@@ -103,7 +134,8 @@ void Plant::meet_bystander() noexcept {
   tau_bystander_.noalias() = J.topRows<3>().transpose().lazyProduct(force);
 }
 
-// Currents with their lag; a motor in motion has no more torque than its speed leaves.
+// Currents with their lag; a motor in motion has no more torque than its speed leaves. Ripple and
+// cogging come on top.
 void Plant::move_motors(const VectorM& tau_command) noexcept {
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& a = config_.actuators[at(i)];
@@ -113,42 +145,38 @@ void Plant::move_motors(const VectorM& tau_command) noexcept {
     const double driving = torque_available(a, dtheta);
     truth_.tau_motor[i] = std::clamp(current_[i], dtheta < 0.0 ? -driving : -a.torque_max,
                                      dtheta > 0.0 ? driving : a.torque_max);
+
+    const JointEffects& e = config_.effects[at(i)];
+    const double theta = truth_.theta_m[i];
+    if (e.ripple > 0.0) {
+      truth_.tau_motor[i] *=
+          1.0 + e.ripple * std::sin(e.ripple_wave * theta + wave_phases_[at(i)].ripple);
+    }
+    if (e.cogging > 0.0) {
+      truth_.tau_motor[i] +=
+          e.cogging * std::sin(e.cogging_wave * theta + wave_phases_[at(i)].cogging);
+    }
   }
 }
 
-VectorP Plant::gantry_acceleration(const VectorP& dq_p_command) noexcept {
+// One step of the drives; the accelerations with which the axes themselves move in it.
+VectorP Plant::move_gantry(const VectorP& dq_p_command) noexcept {
+  const double h = config_.step;
   VectorP ddq_p(n_p_);
   for (int i = 0; i < n_p_; ++i) {
     const double command = delays_[at(i)].shift(dq_p_command[i], dead_steps_);
-    const int joint = config_.gantry[at(i)];
-    ddq_p[i] = drive_acceleration(config_.drive, dq_[joint], command);
+    double ddq = drive_acceleration(config_.drive, speed_[i], command);
     if (!config_.gantry_stops.empty()) {
-      ddq_p[i] = stopped(config_.gantry_stops[at(i)], q_[joint], dq_[joint], ddq_p[i]);
+      ddq = stopped(config_.gantry_stops[at(i)], travel_[i], speed_[i], ddq);
     }
+    const double before = strayed(i).dq;
+    truth_.ddq_p[i] = ddq;
+    travel_[i] += h * (speed_[i] + 0.5 * h * ddq);
+    speed_[i] += h * ddq;
+    const bool is_true = config_.waviness[at(i)].amplitude == 0.0;
+    ddq_p[i] = is_true ? ddq : (strayed(i).dq - before) / h;
   }
   return ddq_p;
-}
-
-// Stops that a link can be at when the step ends. Of the damper only the way inside counts, so that
-// a link pays for all that a stop stores.
-Plant::Contacts Plant::near_stops() const noexcept {
-  constexpr double kSpeedGained = 1.0;  // rad/s, at most in one step
-  const double h = config_.step;
-  const EndStopModel& stop = config_.end_stop;
-  Contacts contacts;
-  for (int i = 0; i < n_m_; ++i) {
-    const int joint = links_[at(i)];
-    const Interval& travel = config_.end_stops[at(i)];
-    const double below = travel.lb - q_[joint], above = q_[joint] - travel.ub;
-    const double depth = std::max(below, above);
-    if (depth < -h * (std::abs(dq_[joint]) + kSpeedGained)) continue;
-    const double give =
-        h * stop.stiffness +
-        2.0 * stop.damping_ratio * std::sqrt(stop.stiffness * chain_.M()(joint, joint));
-    const double rest = depth > 0.0 ? stop.stiffness * depth / give : depth / h;
-    contacts.at[at(contacts.count++)] = {i, below > above ? 1.0 : -1.0, give, rest};
-  }
-  return contacts;
 }
 
 // [HANDBOOK] 4.4 (b), for accelerations instead of velocities: M times a velocity would be rounded
@@ -173,9 +201,12 @@ Plant::Equations Plant::equations(const VectorP& ddq_p) const noexcept {
     const ActuatorModel& a = config_.actuators[at(i)];
     const int joint = links_[at(i)];
     const double dtheta = truth_.dtheta_m[i], slip = dtheta - dq_[joint];
-    const double b = h * (h * a.stiffness + a.damping);
+    const bool has_flanks = config_.effects[at(i)].backlash > 0.0;  // rows instead of a spring
+    const double b = has_flanks ? 0.0 : h * (h * a.stiffness + a.damping);
     const double own = a.rotor_inertia + h * a.viscous_friction;
-    eq.spring[i] = a.stiffness * (truth_.theta_m[i] - q_[joint] + h * slip) + a.damping * slip;
+    eq.spring[i] =
+        has_flanks ? 0.0
+                   : a.stiffness * (truth_.theta_m[i] - q_[joint] + h * slip) + a.damping * slip;
     eq.motor[i] = truth_.tau_motor[i] - eq.spring[i] - a.viscous_friction * dtheta;
     eq.inertia[i] = own + b;
     eq.coupling[i] = b;
@@ -194,6 +225,8 @@ Plant::Equations Plant::equations(const VectorP& ddq_p) const noexcept {
 
 namespace {
 
+constexpr int kStopSlot = kRowsPerJoint - 1;
+
 bool is_held(const PlantInput& input, int joint) noexcept {
   if (has_bit(input.faults.closed_brakes, joint)) return true;
   return input.brakes_closed && !has_bit(input.faults.weak_brakes, joint);
@@ -206,58 +239,171 @@ double Plant::friction_bound(int joint) const noexcept {
                         forces_.tau_links[joint]);
 }
 
-// Friction, brakes and stops as one box problem in the speeds at the end of the step.
-void Plant::resist(const Equations& eq, const Contacts& contacts,
-                   const PlantInput& input) noexcept {
+// Friction of the motors first, so that row i is the only or first one of motor i.
+Plant::Rows Plant::rows(const PlantInput& input) const noexcept {
+  Rows rows;
+  for (int i = 0; i < n_m_; ++i) add_friction(i, 0, input, rows);
+  for (int i = 0; i < n_m_; ++i) {
+    const JointEffects& e = config_.effects[at(i)];
+    const bool yields = e.bristle_stiffness > 0.0 && !is_held(input, i);
+    for (int k = 1; yields && k < e.bristles; ++k) add_friction(i, k, input, rows);
+  }
+  for (int i = 0; i < n_m_; ++i) add_gear(i, rows);
+  for (int i = 0; i < n_m_; ++i) add_stop(i, rows);
+  return rows;
+}
+
+// An element of the dry friction: it slips at its bound, and before that its bristle gives way. A
+// closed brake holds the motor itself.
+void Plant::add_friction(int joint, int element, const PlantInput& input,
+                         Rows& rows) const noexcept {
+  const JointEffects& e = config_.effects[at(joint)];
+  Row row = {.joint = joint, .slot = joint * kRowsPerJoint + element, .motor = 1.0};
+  row.ub = is_held(input, joint) ? kInfinity : friction_bound(joint);
+  if (e.bristle_stiffness > 0.0 && !is_held(input, joint)) {
+    row.ub /= e.bristles;
+    row.stiffness = e.bristle_stiffness / (element + 1);
+    row.give = 1.0 / (config_.step * row.stiffness + e.bristle_damping / e.bristles);
+    row.offset = row.give * row.stiffness * bristles_[at(row.slot)];
+  }
+  row.lb = -row.ub;
+  rows.add(row);
+}
+
+// Between motor and link: hysteresis, and with backlash the flanks of the teeth that may touch when
+// the step ends. Of a flank's damper only the way inside counts, so that it never pulls.
+void Plant::add_gear(int joint, Rows& rows) const noexcept {
+  constexpr double kSpeedGained = 1.0;  // rad/s, at most in one step
+  constexpr int kHysteresisSlot = kMaxBristles, kFlankSlot = kMaxBristles + 1;
   const double h = config_.step;
-  const int n = n_m_ + contacts.count;
+  const JointEffects& e = config_.effects[at(joint)];
+  const int slot = joint * kRowsPerJoint;
+  if (e.hysteresis > 0.0) {
+    const double give = 1.0 / (h * e.hysteresis_stiffness);
+    const double way = bristles_[at(slot + kHysteresisSlot)];
+    rows.add({.joint = joint,
+              .slot = slot + kHysteresisSlot,
+              .motor = 1.0,
+              .link = -1.0,
+              .stiffness = e.hysteresis_stiffness,
+              .give = give,
+              .offset = way / h,
+              .lb = -e.hysteresis,
+              .ub = e.hysteresis});
+  }
+  if (e.backlash == 0.0) return;
+  const ActuatorModel& a = config_.actuators[at(joint)];
+  const double twist = truth_.theta_m[joint] - q_[links_[at(joint)]];
+  const double slip = truth_.dtheta_m[joint] - dq_[links_[at(joint)]];
+  for (const int flank : {0, 1}) {
+    const double side = flank == 0 ? 1.0 : -1.0;
+    const double depth = side * twist - 0.5 * e.backlash;
+    if (depth < -h * (std::abs(slip) + kSpeedGained)) continue;
+    const double give = 1.0 / (h * a.stiffness + a.damping);
+    const double rest = depth > 0.0 ? a.stiffness * depth * give : depth / h;
+    rows.add({.joint = joint,
+              .slot = slot + kFlankSlot + flank,
+              .motor = -side,
+              .link = side,
+              .give = give,
+              .offset = -rest,
+              .lb = 0.0,
+              .ub = kInfinity});
+  }
+}
+
+// A stop that the link can be at when the step ends. Of the damper only the way inside counts, so
+// that a link pays for all that a stop stores.
+void Plant::add_stop(int joint, Rows& rows) const noexcept {
+  constexpr double kSpeedGained = 1.0;  // rad/s, at most in one step
+  const double h = config_.step;
+  const EndStopModel& stop = config_.end_stop;
+  const int link = links_[at(joint)];
+  const Interval& travel = config_.end_stops[at(joint)];
+  const double below = travel.lb - q_[link], above = q_[link] - travel.ub;
+  const double depth = std::max(below, above);
+  if (depth < -h * (std::abs(dq_[link]) + kSpeedGained)) return;
+  const double damping =
+      2.0 * stop.damping_ratio * std::sqrt(stop.stiffness * chain_.M()(link, link));
+  const double stiff = h * stop.stiffness + damping;
+  const double rest = depth > 0.0 ? stop.stiffness * depth / stiff : depth / h;
+  rows.add({.joint = joint,
+            .slot = joint * kRowsPerJoint + kStopSlot,
+            .link = below > above ? 1.0 : -1.0,
+            .give = 1.0 / stiff,
+            .offset = -rest,
+            .lb = 0.0,
+            .ub = kInfinity});
+}
+
+// All rows as one box problem in the speeds at the end of the step.
+void Plant::resist(const Equations& eq, const Rows& rows) noexcept {
+  const double h = config_.step;
+  const int n = rows.count;
   MatrixUpTo<kMaxLinks, kMaxBoxRows> G = MatrixUpTo<kMaxLinks, kMaxBoxRows>::Zero(n_l_, n);
   box_.w_free.resize(n);
   box_.lb.resize(n);
   box_.ub.resize(n);
   VectorL ddq_free = eq.tau;
   solve_lower(eq.L, ddq_free);
-  for (int i = 0; i < n_m_; ++i) {
-    box_.ub[i] = is_held(input, i) ? kInfinity : friction_bound(i);
-    box_.lb[i] = -box_.ub[i];
-    box_solution_.state[at(i)] = friction_states_[at(i)];
-    G(i, i) = eq.coupling[i] / eq.inertia[i];
-    box_.w_free[i] = truth_.dtheta_m[i] + h * eq.motor[i] / eq.inertia[i];
-  }
-  for (int k = 0; k < contacts.count; ++k) {
-    const Contact& contact = contacts.at[at(k)];
-    box_.lb[n_m_ + k] = 0.0;
-    box_.ub[n_m_ + k] = kInfinity;
-    box_solution_.state[at(n_m_ + k)] = stop_states_[at(contact.joint)];
-    G(contact.joint, n_m_ + k) = contact.side;
-    box_.w_free[n_m_ + k] = contact.side * dq_[links_[at(contact.joint)]] - contact.rest;
-  }
   for (int k = 0; k < n; ++k) {
-    solve_lower(eq.L, G.col(k), k < n_m_ ? k : contacts.at[at(k - n_m_)].joint);
+    const Row& row = rows[k];
+    const int i = row.joint;
+    const double dtheta = truth_.dtheta_m[i] + h * eq.motor[i] / eq.inertia[i];
+    box_.lb[k] = row.lb;
+    box_.ub[k] = row.ub;
+    box_solution_.state[at(k)] = row_states_[at(row.slot)];
+    box_.w_free[k] = row.motor * dtheta + row.link * dq_[links_[at(i)]] + row.offset;
+    G(i, k) = row.motor * eq.coupling[i] / eq.inertia[i] + row.link;
+    solve_lower(eq.L, G.col(k), i);
   }
   box_.A.noalias() = h * G.transpose().lazyProduct(G);
   box_.w_free += h * G.transpose().lazyProduct(ddq_free);
-  for (int i = 0; i < n_m_; ++i) box_.A(i, i) += h / eq.inertia[i];
-  for (int k = 0; k < contacts.count; ++k) {
-    box_.A(n_m_ + k, n_m_ + k) += 1.0 / contacts.at[at(k)].give;
+  for (int k = 0; k < n; ++k) {
+    for (int l = 0; l < n; ++l) {
+      if (rows[k].joint != rows[l].joint) continue;
+      box_.A(k, l) += rows[k].motor * rows[l].motor * (h / eq.inertia[rows[k].joint]);
+    }
+    box_.A(k, k) += rows[k].give;
   }
   solve(box_, box_solution_);
 }
 
+// A bristle in series with a row of this force and rate moves on; what the row loses is noted.
+void Plant::stretch(const Row& row, double force, double rate) noexcept {
+  double& way = bristles_[at(row.slot)];
+  const double speed = row.stiffness > 0.0 ? -row.give * (force + row.stiffness * way) : 0.0;
+  way += config_.step * speed;
+  const double lost = -force * rate - (force + row.stiffness * way) * speed;
+  (row.link == 0.0 ? friction_lost_ : hysteresis_lost_)[row.joint] += lost;
+}
+
 // Accelerations under all forces; motors that friction holds stand still exactly.
-void Plant::accelerate(Equations& eq, const Contacts& contacts) noexcept {
+void Plant::accelerate(Equations& eq, const Rows& rows) noexcept {
   const double h = config_.step;
+  VectorM motor = VectorM::Zero(n_m_), link = VectorM::Zero(n_m_);
+  std::array<bool, kMaxManipulator> stands{};
   forces_.tau_stop.setZero();
-  stop_states_.fill(BoxState::kHeld);
-  for (int k = 0; k < contacts.count; ++k) {
-    const Contact& contact = contacts.at[at(k)];
-    forces_.tau_stop[contact.joint] = contact.side * box_solution_.f[n_m_ + k];
-    stop_states_[at(contact.joint)] = box_solution_.state[at(n_m_ + k)];
+  forces_.tau_friction.setZero();
+  friction_lost_.setZero();
+  hysteresis_lost_.setZero();
+  flanks_.setZero();
+  row_states_.fill(BoxState::kHeld);
+  for (int k = 0; k < rows.count; ++k) {
+    const Row& row = rows[k];
+    const int i = row.joint;
+    const double f = box_solution_.f[k];
+    row_states_[at(row.slot)] = box_solution_.state[at(k)];
+    motor[i] += row.motor * f;
+    link[i] += row.link * f;
+    if (row.motor == 0.0) forces_.tau_stop[i] = row.link * f;
+    if (row.link == 0.0) forces_.tau_friction[i] += f;
+    if (row.motor * row.link != 0.0 && row.lb == 0.0) flanks_[i] += row.link * f;
+    if (row.lb < 0.0) stretch(row, f, box_solution_.w[k]);
+    if (k < n_m_) stands[at(i)] = row.give == 0.0 && box_solution_.w[k] == 0.0;
   }
   for (int i = 0; i < n_m_; ++i) {
-    friction_states_[at(i)] = box_solution_.state[at(i)];
-    forces_.tau_friction[i] = box_solution_.f[i];
-    eq.tau[i] += eq.coupling[i] / eq.inertia[i] * forces_.tau_friction[i] + forces_.tau_stop[i];
+    eq.tau[i] += eq.coupling[i] / eq.inertia[i] * motor[i] + link[i];
   }
   forces_.ddq = eq.tau;
   solve_lower(eq.L, forces_.ddq);
@@ -265,13 +411,12 @@ void Plant::accelerate(Equations& eq, const Contacts& contacts) noexcept {
   forces_.tau_links = eq.spring;
   for (int i = 0; i < n_m_; ++i) {
     const double dtheta = truth_.dtheta_m[i];
-    const bool is_held = box_solution_.w[i] == 0.0;
     forces_.ddtheta[i] =
-        is_held ? -dtheta / h
-                : (eq.motor[i] + forces_.tau_friction[i] + eq.coupling[i] * forces_.ddq[i]) /
-                      eq.inertia[i];
-    truth_.dtheta_m[i] = is_held ? 0.0 : dtheta + h * forces_.ddtheta[i];
-    forces_.tau_links[i] += eq.coupling[i] * (forces_.ddtheta[i] - forces_.ddq[i]);
+        stands[at(i)] ? -dtheta / h
+                      : (eq.motor[i] + motor[i] + eq.coupling[i] * forces_.ddq[i]) / eq.inertia[i];
+    truth_.dtheta_m[i] = stands[at(i)] ? 0.0 : dtheta + h * forces_.ddtheta[i];
+    forces_.tau_links[i] +=
+        eq.coupling[i] * (forces_.ddtheta[i] - forces_.ddq[i]) + (link[i] - forces_.tau_stop[i]);
   }
   for (int i = n_m_; i < n_l_; ++i) {
     const FlexibleJoint& f = config_.flexible[at(i - n_m_)];
@@ -294,22 +439,19 @@ void Plant::integrate(const VectorP& ddq_p) noexcept {
   }
   dq_ += h * ddq_;
   for (int i = 0; i < n_p_; ++i) {
-    const int joint = config_.gantry[at(i)];
-    q_[joint] += h * (dq_before_[joint] + 0.5 * h * ddq_p[i]);
+    const Motion motion = strayed(i);
+    q_[config_.gantry[at(i)]] = motion.q;
+    dq_[config_.gantry[at(i)]] = motion.dq;
   }
   for (int i = 0; i < n_l_; ++i) q_[links_[at(i)]] += h * dq_[links_[at(i)]];
   truth_.theta_m += h * truth_.dtheta_m;
 }
 
 void Plant::observe() noexcept {
-  truth_.q_p.resize(n_p_);
-  truth_.dq_p.resize(n_p_);
   truth_.q_m.resize(n_m_);
   truth_.dq_m.resize(n_m_);
-  for (int i = 0; i < n_p_; ++i) {
-    truth_.q_p[i] = q_[config_.gantry[at(i)]];
-    truth_.dq_p[i] = dq_[config_.gantry[at(i)]];
-  }
+  truth_.q_p = travel_;
+  truth_.dq_p = speed_;
   for (int i = 0; i < n_m_; ++i) {
     truth_.q_m[i] = q_[links_[at(i)]];
     truth_.dq_m[i] = dq_[links_[at(i)]];

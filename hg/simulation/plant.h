@@ -5,7 +5,8 @@
 ///   M ddq = tau_J + tau_stop + J^T w - c - M_mp ddq_p,  tau_J = K (theta - q) + D (theta' - q')
 ///   Jm theta'' = tau_motor - tau_J - viscous theta' + tau_friction,
 /// in linearly implicit steps; springs, dampers, friction and stops at the end of the step.
-/// Coulomb friction, closed brakes and end stops are one box problem, see friction.h.
+/// Coulomb friction with its bristles, hysteresis, backlash, closed brakes and end stops are one
+/// box problem, see friction.h.
 ///
 /// SI units; for a prismatic joint read N for Nm and m for rad. Set-up throws SetupError. After it
 /// nothing allocates or throws. Copyable: a copy goes on by itself.
@@ -20,6 +21,7 @@
 #include "hg/simulation/friction.h"
 #include "hg/simulation/hardware_faults.h"
 #include "hg/simulation/plant_config.h"
+#include "hg/simulation/plant_report.h"
 
 namespace hg::simulation {
 
@@ -30,42 +32,6 @@ struct PlantInput {
   HardwareFaults faults;          ///< of single brakes
   VectorP dq_p_command;           ///< for the gantry's drives, before their dead time
   Vector6 w_H = Vector6::Zero();  ///< of the user on the handle, at H, in B, force first
-};
-
-/// Forces and accelerations of one step; its equations of motion hold with the M and c of its
-/// start. Links: manipulator joints, then flexible ones.
-struct PlantForces {
-  VectorL ddq;           ///< of the links
-  VectorM ddtheta;       ///< of the motors
-  VectorL tau_links;     ///< of springs and dampers on the links; a manipulator's are tau_J
-  VectorM tau_friction;  ///< Coulomb friction and brakes, on the motors
-  VectorM tau_stop;      ///< of the end stops, on the links
-  VectorP f_p;           ///< of the drives on the gantry
-  int tries = 0;         ///< active sets tried for the friction
-  bool is_exact = true;  ///< false: no active set was found in kMaxTries
-};
-
-struct PlantEnergy {
-  double kinetic = 0.0;    ///< links, gantry and rotors, J
-  double potential = 0.0;  ///< in gravity
-  double spring = 0.0;     ///< joints and flexible joints
-
-  double sum() const noexcept { return kinetic + potential + spring; }
-};
-
-/// Powers of the last step with the speeds at its end, W.
-struct PlantPower {
-  double motors = 0.0, user = 0.0, gantry = 0.0;                               ///< put in
-  double joint_damping = 0.0, viscous_friction = 0.0, coulomb_friction = 0.0;  ///< lost, >= 0
-  double flexible_damping = 0.0;                                               ///< lost, >= 0
-  double end_stops = 0.0;  ///< taken by the stops; a little of it comes back
-  double bystander = 0.0;  ///< taken by the bystander; what the body stores comes back
-
-  double put_in() const noexcept { return motors + user + gantry; }
-  double taken() const noexcept {
-    return joint_damping + viscous_friction + coulomb_friction + flexible_damping + end_stops +
-           bystander;
-  }
 };
 
 class Plant {
@@ -99,26 +65,45 @@ class Plant {
     VectorM motor;              // torques on the motors
     VectorM inertia, coupling;  // of the motors with all that is implicit; to their links
   };
-  // A link at an end stop: push = max(0, give (rest - speed)) with its speed away from the stop.
-  struct Contact {
-    int joint;
-    double side, give, rest;
+  struct WavePhases {
+    double cogging = 0.0, ripple = 0.0;
   };
-  struct Contacts {
-    std::array<Contact, kMaxManipulator> at;
+  // A force f of the box problem: motor f on the motor and link f on the link of a joint. Its rate
+  // is theirs, motor theta' + link q', plus give f + offset.
+  struct Row {
+    int joint = 0, slot = 0;  // slot: of its state and its bristle
+    double motor = 0.0, link = 0.0;
+    double stiffness = 0.0, give = 0.0, offset = 0.0;  // of a bristle, rad/s per Nm, rad/s
+    double lb = 0.0, ub = 0.0;
+  };
+  struct Rows {
+    std::array<Row, kMaxBoxRows> all;
     int count = 0;
+
+    void add(const Row& row) noexcept { all[static_cast<std::size_t>(count++)] = row; }
+    const Row& operator[](int k) const noexcept { return all[static_cast<std::size_t>(k)]; }
+  };
+  struct Motion {
+    double q, dq;
   };
 
   model::Loads loads() const noexcept;
   void start_in_balance() noexcept;
   void move_motors(const VectorM& tau_command) noexcept;
   void meet_bystander() noexcept;
-  VectorP gantry_acceleration(const VectorP& dq_p_command) noexcept;
-  Contacts near_stops() const noexcept;
+  void draw_phases() noexcept;
+  Motion strayed(int axis) const noexcept;
+  VectorP move_gantry(const VectorP& dq_p_command) noexcept;
   Equations equations(const VectorP& ddq_p) const noexcept;
-  void resist(const Equations& eq, const Contacts& contacts, const PlantInput& input) noexcept;
+  Rows rows(const PlantInput& input) const noexcept;
+  void add_friction(int joint, int element, const PlantInput& input, Rows& rows) const noexcept;
+  void add_gear(int joint, Rows& rows) const noexcept;
+  void add_stop(int joint, Rows& rows) const noexcept;
+  void resist(const Equations& eq, const Rows& rows) noexcept;
   double friction_bound(int joint) const noexcept;
-  void accelerate(Equations& eq, const Contacts& contacts) noexcept;
+  void accelerate(Equations& eq, const Rows& rows) noexcept;
+  double twist_beyond_play(int joint) const noexcept;
+  void stretch(const Row& row, double force, double rate) noexcept;
   void integrate(const VectorP& ddq_p) noexcept;
   void observe() noexcept;
 
@@ -129,7 +114,13 @@ class Plant {
   double current_share_;                // of the way to its command that a current goes in one step
   std::array<int, kMaxLinks> links_{};  // their joints
   std::array<CommandDelay, kMaxGantry> delays_;
-  std::array<BoxState, kMaxManipulator> friction_states_{}, stop_states_{};
+  std::array<BoxState, kMaxBoxRows> row_states_{};
+  std::array<double, kMaxBoxRows> bristles_{};  // way of those in series with a row, rad
+  std::array<WavePhases, kMaxManipulator> wave_phases_{};
+  VectorM flanks_;                           // torques of the flanks on the links, Nm
+  VectorM friction_lost_, hysteresis_lost_;  // powers of the last step, W
+  VectorP travel_, speed_;  // of the gantry as its drives know it, without waviness
+  VectorP waviness_phase_;
   VectorM current_;  // as torques of the motors without the limit of their speed
   model::Jacobian J_H_;
   VectorQ q_, dq_, ddq_;

@@ -1,6 +1,7 @@
 #include "hg/simulation/plant_config.h"
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "hg/core/error.h"
@@ -39,6 +40,30 @@ void check_actuator(const ActuatorModel& a, const std::string& joint) {
   require_positive(joint + " speed_full_torque", a.speed_full_torque);
   require(std::isfinite(a.speed_no_load) && a.speed_no_load > a.speed_full_torque,
           joint + " speed_no_load", "must exceed speed_full_torque", a.speed_no_load);
+}
+
+void check_effects(const JointEffects& e, const std::string& joint) {
+  require_not_negative(joint + " cogging", e.cogging);
+  require_not_negative(joint + " cogging_wave", e.cogging_wave);
+  require_not_negative(joint + " ripple", e.ripple);
+  require_not_negative(joint + " ripple_wave", e.ripple_wave);
+  require_not_negative(joint + " bristle_stiffness", e.bristle_stiffness);
+  require_not_negative(joint + " bristle_damping", e.bristle_damping);
+  require(e.bristles >= 1 && e.bristles <= kMaxBristles, joint + " bristles",
+          "must be 1 .. " + std::to_string(kMaxBristles), e.bristles);
+  require_not_negative(joint + " backlash", e.backlash);
+  require_not_negative(joint + " hysteresis", e.hysteresis);
+  if (e.hysteresis > 0.0) require_positive(joint + " hysteresis_stiffness", e.hysteresis_stiffness);
+}
+
+void check_waviness(const PlantConfig& config) {
+  if (config.waviness.empty()) return;
+  require_size("waviness", static_cast<Eigen::Index>(config.waviness.size()), config.gantry.size());
+  for (const Waviness& wave : config.waviness) {
+    require_not_negative("waviness amplitude", wave.amplitude);
+    require(std::isfinite(wave.period) && wave.period > 2.0 * std::numbers::pi * wave.amplitude,
+            "waviness period", "must exceed 2 pi amplitudes", wave.period);
+  }
 }
 
 // Every joint of the chain has one part to play.
@@ -105,6 +130,15 @@ void check(const PlantConfig& config, const model::Chain& chain) {
     const auto joint = static_cast<std::size_t>(config.manipulator[i]);
     check_actuator(config.actuators[i], "joint " + chain.joints()[joint].name);
   }
+  if (!config.effects.empty()) {
+    require_size("effects", static_cast<Eigen::Index>(config.effects.size()),
+                 config.manipulator.size());
+  }
+  for (std::size_t i = 0; i < config.effects.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(config.manipulator[i]);
+    check_effects(config.effects[i], "joint " + chain.joints()[joint].name);
+  }
+  check_waviness(config);
   for (const FlexibleJoint& flexible : config.flexible) {
     const std::string joint =
         "joint " + chain.joints()[static_cast<std::size_t>(flexible.joint)].name;

@@ -28,6 +28,9 @@ enum class RandomEffect : std::uint64_t {
   kGyroscopeNoise = 13,
   kGyroscopeErrors = 14,
   kGyroscopeDrift = 15,
+  kCogging = 16,
+  kRipple = 17,
+  kWaviness = 18,
 };
 
 class RandomStream {

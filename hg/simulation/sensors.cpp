@@ -31,6 +31,7 @@ SensorsConfig ideal_sensors() {
   config.wrench = {.force_noise = 0.0,
                    .torque_noise = 0.0,
                    .gain_error = 0.0,
+                   .shunt = 0.0,
                    .cross_talk = 0.0,
                    .bias = 0.0,
                    .bias_walk = 0.0,

@@ -28,7 +28,7 @@ WrenchSensor::WrenchSensor(const WrenchSensorConfig& config, double step, double
         cross_talk(i, j) =
             config.cross_talk * full_scale / config.full_scale[j] * errors.gaussian();
   }
-  gain_ = cross_talk * gain_;
+  gain_ = (1.0 - config.shunt) * cross_talk * gain_;
 }
 
 void WrenchSensor::observe(const Vector6& w_S) noexcept {

@@ -1,7 +1,8 @@
 /// A six-axis force/torque sensor. Source: [HANDBOOK] 1.6, 4.5.
 ///   raw = (I + X) G w + n, averaged and delayed;  y = sat(raw + b0 + walk + k_T (T - T0)), rounded
-/// with G = diag(1 + g_i) and X_ij scaled by FS_i / FS_j, X_ii = 0. Everything that belongs to one
-/// sensor for good is drawn from the seed. Differs from it: clips per axis, not per strain gauge.
+/// with G = (1 - shunt) diag(1 + g_i) and X_ij scaled by FS_i / FS_j, X_ii = 0. Everything that
+/// belongs to one sensor for good is drawn from the seed. Differs from it: clips per axis, not per
+/// strain gauge.
 ///
 /// Noise N is a random-walk coefficient (Allan): sigma = N / sqrt(averaging time).
 #pragma once
@@ -21,6 +22,7 @@ struct WrenchSensorConfig {
   double force_noise = 2.5e-3;  ///< N/sqrt(Hz), >= 0; [K] 1.6: 0.08 N after 1 ms
   double torque_noise = 8e-5;   ///< Nm/sqrt(Hz), >= 0; [K] 1.6: 2.5 mNm after 1 ms
   double gain_error = 5e-3;     ///< standard deviation, >= 0; [A] 4.5
+  double shunt = 0.0;           ///< share of w that goes past the sensor, 0..1
   double cross_talk = 1e-2;     ///< standard deviation, >= 0; [A] 4.5
   double bias = 4e-3;           ///< when switched on: standard deviation, share; [A] 2 N, 60 mNm
   double bias_walk = 4e-6;      ///< share/sqrt(s); [A] 15 mN in a minute
