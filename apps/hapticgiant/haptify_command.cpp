@@ -30,11 +30,13 @@ void tell(const std::string& what, std::size_t done, std::size_t total) {
   }
 }
 
-std::string command_of(const haptify::Options& options) {
+std::string command_of(const HaptifyArguments& arguments) {
+  const haptify::Options& options = arguments.options;
   std::string command = fmt::format("hapticgiant haptify --seed {}", options.seed);
   if (options.repetitions != haptify::Options{}.repetitions) {
     command += fmt::format(" --repetitions {}", options.repetitions);
   }
+  if (!arguments.simulation.empty()) command += " --simulation " + arguments.simulation;
   return command + (options.is_quick ? " --quick" : "");
 }
 
@@ -48,9 +50,14 @@ int run_haptify(const HaptifyArguments& arguments) {
   print_out(fmt::format(
       "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
       kVersion));
-  const config::Scenario scenario = config::load_scenario(find_scenario("walk"));
+  config::Scenario scenario = config::load_scenario(find_scenario("walk"));
+  if (!arguments.simulation.empty()) {
+    config::SourceReader reader;
+    config::take_simulation(scenario.device,
+                            find_simulation(arguments.simulation, scenario.device, reader), reader);
+  }
   const haptify::Benchmark result = haptify::measure(scenario, arguments.options, tell);
-  const std::string command = command_of(arguments.options);
+  const std::string command = command_of(arguments);
 
   print_out(haptify_text(result));
   const auto write = [&](const std::string& name, const std::string& text) {

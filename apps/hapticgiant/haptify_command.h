@@ -11,6 +11,7 @@ namespace hg::apps {
 struct HaptifyArguments {
   std::string out = "haptify";  ///< folder
   std::string docs;             ///< folder of documentation to refresh; empty = none
+  std::string simulation;       ///< see find_simulation(); empty = as the device says
   haptify::Options options;
 };
 

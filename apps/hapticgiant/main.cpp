@@ -42,6 +42,9 @@ using hg::apps::print_error;
 using hg::apps::print_out;
 using hg::apps::whole_number;
 
+constexpr char kSimulationHelp[] =
+    "simulation.yaml instead of the device's, or the NAME of a simulation_NAME.yaml beside it: "
+    "as_published, harder";
 constexpr int kInternalError = 1;
 constexpr int kBadInput = 2;
 
@@ -89,6 +92,7 @@ void add_scenario_options(CLI::App& command, hg::apps::ScenarioArguments& world)
   command.add_option("--twin", world.twin, "twin.yaml instead of the scenario's");
   command.add_option("--plant", world.plant, "elastic: all that makes haptics hard; or ideal")
       ->check(CLI::IsMember({"elastic", "ideal"}));
+  command.add_option("--simulation", world.simulation, kSimulationHelp);
   command.add_option("--sensors", world.sensors, "real: with all their errors; or ideal")
       ->check(CLI::IsMember({"real", "ideal"}));
   command.add_option("--hand", world.hand, "how hard the simulated hand is made")
@@ -510,7 +514,8 @@ void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit
       "Examples:\n"
       "  hapticgiant haptify                      report in haptify/report.html\n"
       "  hapticgiant haptify --quick              a look, in seconds\n"
-      "  hapticgiant haptify --seed 7 --repetitions 10 --out results");
+      "  hapticgiant haptify --seed 7 --repetitions 10 --out results\n"
+      "  hapticgiant haptify --quick --simulation as_published");
   command->add_option("--out", arguments.out, "folder of the report")->capture_default_str();
   command->add_option("--seed", arguments.options.seed, "of the first repetition")
       ->check(whole_number(0.0))
@@ -519,6 +524,7 @@ void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit
       ->check(whole_number(2.0, 100.0))
       ->capture_default_str();
   command->add_flag("--quick", arguments.options.is_quick, "few samples and short runs");
+  command->add_option("--simulation", arguments.simulation, kSimulationHelp);
   command->add_option("--docs", arguments.docs,
                       "refresh the page haptify.md of this folder (make experiments)");
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::run_haptify(arguments); });

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "apps/hapticgiant/build_folders.h"
@@ -54,6 +55,29 @@ fs::path find_scenario(const std::string& name) {
 fs::path find_device(const std::string& file) {
   std::error_code error;
   return fs::exists(file, error) ? fs::path(file) : models_root() / file;
+}
+
+fs::path find_simulation(const std::string& name, const config::Device& device,
+                         const config::SourceReader& reader) {
+  constexpr std::string_view kPrefix = "simulation_";
+  std::error_code error;
+  if (reader.exists(name)) return name;
+  const fs::path folder = fs::path(device.sources.front().name).parent_path();
+  const fs::path known = folder / fmt::format("{}{}.yaml", kPrefix, name);
+  if (reader.exists(known)) return known;
+
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
+    const std::string stem = entry.path().stem().string();
+    if (entry.path().extension() == ".yaml" && stem.starts_with(kPrefix)) {
+      names.push_back(stem.substr(kPrefix.size()));
+    }
+  }
+  std::sort(names.begin(), names.end());
+  if (names.empty()) throw SetupError(fmt::format("{}: no such simulation file", name));
+  throw SetupError(fmt::format("{}: no such simulation file, did you mean '{}'? Beside {} are {}",
+                               name, nearest_name(name, names), device.sources.front().name,
+                               fmt::join(names, ", ")));
 }
 
 }  // namespace hg::apps

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <string>
 
+#include "hg/config/device.h"
+
 namespace hg::apps {
 
 /// The folder of this program's viewer/, python/, .venv/ and models/: the sources of the build that
@@ -23,5 +25,10 @@ std::filesystem::path find_scenario(const std::string& name);
 
 /// A device file as given, or among the data that comes with the program.
 std::filesystem::path find_device(const std::string& file);
+
+/// A simulation file, or for NAME the file simulation_NAME.yaml beside that of the device. Throws
+/// SetupError naming the nearest one.
+std::filesystem::path find_simulation(const std::string& name, const config::Device& device,
+                                      const config::SourceReader& reader);
 
 }  // namespace hg::apps

@@ -23,8 +23,8 @@ namespace {
 
 constexpr char kArguments[] = "arguments";  // attachment of a recording
 
-// what --device, --twin, --user and --rate-hz change; expected events belong to the scenario as it
-// stands
+// what --device, --simulation, --twin, --user and --rate-hz change; expected events belong to the
+// scenario as it stands
 void apply(const ScenarioArguments& arguments, config::SourceReader& reader,
            config::Scenario& scenario) {
   const auto add_sources = [&](const std::vector<config::SourceText>& sources) {
@@ -33,6 +33,13 @@ void apply(const ScenarioArguments& arguments, config::SourceReader& reader,
   if (!arguments.device.empty()) {
     scenario.device = config::load_device(arguments.device, reader);
     add_sources(scenario.device.sources);
+  }
+  if (!arguments.simulation.empty()) {
+    const std::size_t first = scenario.device.sources.size();
+    config::take_simulation(scenario.device,
+                            find_simulation(arguments.simulation, scenario.device, reader), reader);
+    const auto& sources = scenario.device.sources;
+    add_sources({sources.begin() + static_cast<std::ptrdiff_t>(first), sources.end()});
   }
   if (!arguments.twin.empty()) {
     scenario.twin = config::load_twin(arguments.twin, reader);
@@ -106,6 +113,7 @@ void refuse_what_is_simulated(const ScenarioArguments& arguments) {
   if (arguments.seed) given.push_back("--seed");
   if (arguments.step_s) given.push_back("--step");
   if (!arguments.hand.empty()) given.push_back("--hand");
+  if (!arguments.simulation.empty()) given.push_back("--simulation");
   if (!arguments.sensors.empty()) given.push_back("--sensors");
   if (given.empty()) return;
   throw SetupError(
@@ -145,6 +153,7 @@ RunArguments recorded_arguments(const std::string& text) {
     if (option == "--device") world.device = value;
     if (option == "--twin") world.twin = value;
     if (option == "--rate-hz") world.rate_Hz = std::strtod(value.c_str(), nullptr);
+    if (option == "--simulation") world.simulation = value;
     if (option == "--plant") world.plant = value;
     if (option == "--law") arguments.law = value;
     if (option == "--bounds") arguments.bounds = value;
@@ -182,6 +191,7 @@ std::string changes(const RunArguments& arguments) {
   line("--user", world.user);
   if (world.rate_Hz) line("--rate-hz", fmt::format("{}", *world.rate_Hz));
   line("--plant", world.plant);
+  line("--simulation", world.simulation);
   line("--sensors", world.sensors);
   line("--hand", world.hand);
   if (world.seed) line("--seed", fmt::format("{}", *world.seed));

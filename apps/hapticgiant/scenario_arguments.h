@@ -14,6 +14,7 @@ struct ScenarioArguments {
   std::string user;                   ///< script file, "mouse" or "none"; empty = the scenario's
   std::optional<double> rate_Hz;      ///< unset: the device's
   std::string plant;                  ///< "elastic" or "ideal"; empty = as the device is
+  std::string simulation;             ///< see find_simulation(); empty = as the device says
   std::string sensors;                ///< "real" or "ideal"; empty = as the device's simulation
   std::string hand;                   ///< "relaxed", "normal" or "stiff"; empty = the script's
   std::optional<std::uint64_t> seed;  ///< of the simulation

@@ -63,6 +63,8 @@ simulation::PlantConfig elastic_plant(const config::Device& device, const Start&
       .mass = reality.factors.mass,
       .drive = actual(device.drive, reality.factors),
       .end_stop = reality.end_stop,
+      .waviness = reality.waviness,
+      .seed = reality.seed,
       .q_p_start = start.q_p,
       .q_m_start = start.q_m};
   if (!reality.chain) {
@@ -78,6 +80,8 @@ simulation::PlantConfig elastic_plant(const config::Device& device, const Start&
   for (int i = 0; i < device.model.n_m; ++i) {
     const auto joint = static_cast<std::size_t>(i);
     plant.actuators.push_back(actual(device.control.actuators[joint], reality.factors));
+    plant.effects.push_back(
+        effects_of(plant.actuators.back(), reality.motors, reality.gears, reality.gear_ratio[i]));
     const limits::JointLimits& limits = device.model.joint_limits[joint];
     plant.end_stops.push_back(end_stops(reality, joints[n_p + joint], limits.q_min, limits.q_max));
   }
@@ -139,8 +143,9 @@ void place(const config::BystanderInTheWay& bystander, const model::Chain& chain
 simulation::Simulation simulation_of(
     const config::Device& device, const Start& start, user::Person person,
     const std::optional<config::BystanderInTheWay>& bystander = {}) {
+  const bool is_elastic = device.control.method != control::Method::kDrives;
   const model::Chain& chain =
-      device.simulation.chain ? *device.simulation.chain : device.model.chain;
+      device.simulation.chain && is_elastic ? *device.simulation.chain : device.model.chain;
   const std::string& handle =
       device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
   simulation::Config config = device_simulation(device, start);

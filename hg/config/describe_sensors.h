@@ -43,6 +43,8 @@ void describe(V& v, simulation::WrenchSensorConfig& sensor) {
            "random-walk coefficient: after a mean over T the deviation is noise / sqrt(T)");
   v.number("noise_Nm_per_sqrt_Hz", sensor.torque_noise, kNotNegative, "the same of torques");
   v.number("gain_error", sensor.gain_error, kShare, "standard deviation");
+  v.number("shunt", sensor.shunt, {.lb = 0.0, .ub = 0.9},
+           "share of every wrench that a cable or cover carries past the sensor");
   v.number("cross_talk", sensor.cross_talk, kShare,
            "standard deviation, full scale of one axis on full scale of another");
   v.number("bias", sensor.bias, kShare,

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,19 +13,29 @@
 
 namespace hg::config {
 
+inline constexpr Range kShareOfOne = {.lb = 0.0, .ub = 1.0};
+inline constexpr Range kPeriods = {.lb = 0.0, .ub = 1e4};
+
 struct FlexibleDraft {
   JointUnit unit = JointUnit::kEither;
   double stiffness = 0.0, damping = 0.0;
+};
+
+struct StructureDraft {
+  double frequency_Hz = 0.0, damping_ratio = 0.02;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  bool has_axis = false;
 };
 
 /// What stands in simulation.yaml, before it becomes a Simulation.
 struct SimulationDraft {
   Simulation simulation;
   double seed = 1.0;
-  std::filesystem::path urdf;
-  std::vector<std::string> joint_names;                ///< of that URDF
-  std::vector<JointUnit> joint_units;                  ///< of that URDF
-  std::vector<std::optional<FlexibleDraft>> flexible;  ///< of its joints, where given
+  std::filesystem::path base, urdf;
+  std::vector<std::optional<StructureDraft>> structure;  ///< of the device's joints, where given
+  std::vector<std::string> joint_names;                  ///< of that URDF
+  std::vector<JointUnit> joint_units;                    ///< of that URDF
+  std::vector<std::optional<FlexibleDraft>> flexible;    ///< of its joints, where given
 };
 
 template <class V>
@@ -70,11 +81,66 @@ void describe(V& v, simulation::SafetyPlcConfig& safety) {
 }
 
 template <class V>
+void describe(V& v, MotorEffects& motors) {
+  v.number("cogging", motors.cogging, kShareOfOne,
+           "amplitude of the torque between magnets and iron, share of the joint's peak torque");
+  v.number("cogging_per_turn", motors.cogging_per_turn, kPeriods,
+           "its periods per turn of a motor");
+  v.number("ripple", motors.ripple, kShareOfOne, "amplitude, share of the torque of the moment");
+  v.number("ripple_per_turn", motors.ripple_per_turn, kPeriods, "its periods per turn of a motor");
+}
+
+template <class V>
+void describe(V& v, GearEffects& gears) {
+  v.number("presliding_rad", gears.presliding, kNotNegative,
+           "way of the motor, at the output of its gear, until all of its Coulomb friction slips: "
+           "before that friction is a spring; 0 = it is rigid");
+  v.number("presliding_damping_ratio", gears.presliding_damping_ratio, kShare,
+           "of the rotor on that spring");
+  v.number("presliding_elements", gears.presliding_elements,
+           {.lb = 1.0, .ub = simulation::kMaxBristles},
+           "of equal friction that slip one after the other (Maxwell slip), a whole number");
+  v.rule(gears.presliding_elements == std::floor(gears.presliding_elements), "presliding_elements",
+         "must be a whole number", model::to_text(gears.presliding_elements));
+  v.number("backlash_rad", gears.backlash, kNotNegative, "from flank to flank, at the output");
+  v.number("hysteresis", gears.hysteresis, kShareOfOne,
+           "friction parallel to the spring of the joint, share of its peak torque");
+  v.number("hysteresis_rad", gears.hysteresis_angle, kPositive,
+           "twist of the spring at which that friction slips");
+}
+
+template <class V>
+void describe(V& v, StructureDraft& joint) {
+  v.number("frequency_Hz", joint.frequency_Hz, kNotNegative,
+           "at which all that this joint carries swings, all joints at 0; 0 = rigid");
+  v.number("damping_ratio", joint.damping_ratio, kShare, "of that oscillation");
+  joint.has_axis = v.vector("axis", joint.axis, {.lb = -1e3, .ub = 1e3},
+                            "of the yielding, in the link that the joint carries; without it the "
+                            "axis of the joint itself");
+  v.rule(!joint.has_axis || joint.axis.norm() > 1e-6, "axis", "must have a direction");
+}
+
+template <class V>
+void describe(V& v, simulation::Waviness& wave) {
+  v.number("amplitude_m", wave.amplitude, kNotNegative,
+           "of the axis beside where its drive and encoder are; of a revolute axis in rad");
+  v.number("period_m", wave.period, kPositive, "of travel, more than 2 pi amplitudes");
+  v.rule(wave.period > 2.0 * std::numbers::pi * wave.amplitude, "period_m",
+         "must exceed 2 pi amplitudes: the axis never turns back", model::to_text(wave.period));
+}
+
+template <class V>
 void describe(V& v, FlexibleDraft& joint) {
   v.joint_number({"stiffness_Nm_per_rad", "stiffness_N_per_m"}, joint.unit, joint.stiffness,
                  kNotNegative, "towards position 0; 0 = it moves freely");
   v.joint_number({"damping_Nms_per_rad", "damping_Ns_per_m"}, joint.unit, joint.damping,
                  kNotNegative, "viscous");
+}
+
+template <class V>
+void describe_base(V& v, SimulationDraft& draft) {
+  v.path("base", draft.base,
+         "another simulation file: what this one does not say is as that one says");
 }
 
 /// The first part: what names the joints of the second.
@@ -92,7 +158,39 @@ void describe_plant(V& v, SimulationDraft& draft) {
 }
 
 template <class V>
-void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>& manipulator) {
+void describe_effects(V& v, SimulationDraft& draft, const std::vector<std::string>& gantry,
+                      const std::vector<std::string>& manipulator) {
+  v.group(
+      "motors", [&](auto& child) { describe(child, draft.simulation.motors); },
+      "of the manipulator: what the controller does not know about them");
+  v.group(
+      "gears", [&](auto& child) { describe(child, draft.simulation.gears); },
+      "of the manipulator, likewise");
+  std::vector<std::string> joints = gantry;
+  joints.insert(joints.end(), manipulator.begin(), manipulator.end());
+  draft.structure.resize(joints.size());
+  v.groups_by_name(
+      "structure", joints, "a joint of the device",
+      [&](auto& child, int index) {
+        auto& joint = draft.structure[static_cast<std::size_t>(index)];
+        if (!joint) joint.emplace();
+        describe(child, *joint);
+      },
+      "what yields behind a joint, seen by no encoder: belt and frame of a gantry axis, a link");
+  v.rule(!v.is_given("structure") || draft.urdf.empty(), "structure",
+         "cannot be given together with 'urdf': put the joints into that URDF and 'flexible'");
+  v.groups_by_name(
+      "waviness", gantry, "an axis of the gantry",
+      [&](auto& child, int index) {
+        draft.simulation.waviness.resize(gantry.size());
+        describe(child, draft.simulation.waviness[static_cast<std::size_t>(index)]);
+      },
+      "how belt, wheels and rail lead the gantry astray");
+}
+
+template <class V>
+void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>& gantry,
+                   const std::vector<std::string>& manipulator) {
   v.groups_by_name(
       "flexible", draft.joint_names, "a joint of the URDF",
       [&](auto& child, int index) {
@@ -102,7 +200,7 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
         describe(child, joint);
       },
       "joints of 'urdf' that nobody drives: bending links or frames");
-  v.rule(v.is_given("urdf") || !v.is_given("flexible"), "flexible",
+  v.rule(v.is_given("urdf") || !draft.urdf.empty() || !v.is_given("flexible"), "flexible",
          "needs 'urdf': the device has no joints but those that are driven");
   v.group(
       "factors", [&](auto& child) { describe(child, draft.simulation.factors); },
@@ -113,14 +211,20 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
   v.group(
       "end_stops", [&](auto& child) { describe_end_stops(child, draft.simulation); },
       "buffers at the ends of all joints");
-  draft.simulation.gear_ratio = per_joint(manipulator.size(), 1.0);
+  describe_effects(v, draft, gantry, manipulator);
+  VectorM& ratios = draft.simulation.gear_ratio;  // a base has given some
+  if (static_cast<std::size_t>(ratios.size()) != manipulator.size()) {
+    ratios = per_joint(manipulator.size(), 1.0);
+  }
   v.numbers_by_name(
       "gear_ratio", manipulator, "a joint of the manipulator", {.lb = 1e-3, .ub = 1e5},
       [&](int index, double ratio) { set_joint(draft.simulation.gear_ratio, index, ratio); },
       "turns of the motor per turn of the joint, 1 where not given");
   v.group(
       "sensors", [&](auto& child) { describe(child, draft.simulation.sensors); },
-      "of the device; each 0 switches an effect off, and so does .inf as a range", Need::kRequired);
+      "of the device; each 0 switches an effect off, and so does .inf as a range; a 'base' may "
+      "have them",
+      draft.base.empty() ? Need::kRequired : Need::kOptional);
 }
 
 }  // namespace hg::config

@@ -144,7 +144,8 @@ void check_actuators(LoaderFile& file, const DeviceDraft& draft) {
 
 // names for the simulation file; empty ones are not checked
 SimulatedDevice simulated_device(const DeviceDraft& draft, const model::ChainOptions& options) {
-  SimulatedDevice device = {.handle = name_of(draft.frame_names, draft.handle), .chain = options};
+  SimulatedDevice device = {
+      .handle = name_of(draft.frame_names, draft.handle), .chain = options, .urdf = draft.urdf};
   if (!draft.has_joints) return device;
   for (int i : draft.gantry) {
     device.gantry.push_back(draft.joint_names[static_cast<std::size_t>(i)]);
@@ -303,6 +304,13 @@ void set_rate(Device& device, double rate_Hz) {
   set_reaction(device, dt);
 }
 
+void take_simulation(Device& device, const std::filesystem::path& file, SourceReader& reader) {
+  const std::size_t first_source = reader.texts().size();
+  device.simulation = load_simulation(file, reader, device.simulated);
+  const std::vector<SourceText> sources = reader.since(first_source);
+  device.sources.insert(device.sources.end(), sources.begin(), sources.end());
+}
+
 Device load_device(const std::filesystem::path& file) {
   SourceReader reader;
   return load_device(file, reader);
@@ -366,6 +374,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
                    .collision = {.safe_distance = draft.safe_distance},
                    .unknown_links = {},
                    .simulation = simulation.value_or(ideal_simulation(draft)),
+                   .simulated = simulated_device(draft, options),
                    .sources = reader.since(first_source),
                    .places = std::move(file.places)};
   if (tool) {

@@ -52,6 +52,7 @@ struct Device {
   collision::Config collision;             ///< no shapes: not watched
   std::vector<std::string> unknown_links;  ///< moving, whose shape nobody knows
   Simulation simulation;                   ///< of this device; without a file its defaults
+  SimulatedDevice simulated;               ///< what a simulation file has to fit
   std::vector<SourceText> sources;         ///< the YAML file first
   Places places;                           ///< of the keys of the YAML file
 };
@@ -63,6 +64,10 @@ void settle_law(Device& device);
 /// Changes the rate and all that follows from it. Throws SetupError when the drive's dead time
 /// would span too many periods.
 void set_rate(Device& device, double rate_Hz);
+
+/// The simulation of this file instead of that which the device names; its texts join those of the
+/// device. Throws SetupError as load_simulation() does.
+void take_simulation(Device& device, const std::filesystem::path& file, SourceReader& reader);
 
 /// Throws SetupError with all faults of the file, one per line.
 Device load_device(const std::filesystem::path& file);

@@ -64,8 +64,9 @@ std::string simulation_table() {
   draft.joint_units.push_back(JointUnit::kEither);  // stands for every joint
   draft.flexible.emplace_back();
   DocWriter writer;
+  describe_base(writer, draft);
   describe_plant(writer, draft);
-  describe_rest(writer, draft, {"NAME"});
+  describe_rest(writer, draft, {"NAME"}, {"NAME"});
   return writer.table();
 }
 

@@ -1,11 +1,14 @@
 #include "hg/config/simulation.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "hg/config/describe_simulation.h"
 #include "hg/config/loader.h"
 #include "hg/config/read_chain.h"
+#include "hg/core/error.h"
 
 namespace hg::config {
 namespace {
@@ -61,6 +64,44 @@ void take_plant(Loader& loader, const SimulatedDevice& device, SimulationDraft& 
               "urdf", "must have the handle of the device", "no link '" + device.handle + "'");
 }
 
+constexpr char kSuffix[] = "_structure";  // of a joint that yields
+
+// The chain of the device with a joint where its structure yields; its stiffness from the inertia
+// that it carries.
+void yield(Loader& loader, LoaderFile& file, const SimulatedDevice& device,
+           SimulationDraft& draft) {
+  std::vector<std::string> names = device.gantry;
+  names.insert(names.end(), device.manipulator.begin(), device.manipulator.end());
+  model::ChainOptions options = device.chain;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& joint = draft.structure[i];
+    if (!joint || joint->frequency_Hz == 0.0) continue;
+    options.passive.push_back({names[i], names[i] + kSuffix, {}});
+    if (joint->has_axis) options.passive.back().axis = joint->axis.normalized();
+  }
+  loader.rule(options.passive.size() <= simulation::kMaxFlexible, "structure",
+              "at most 8 joints are possible");
+  if (options.passive.empty() || device.urdf.empty() || file.faults.count() > 0) return;
+  const std::optional<UrdfText> urdf = read_urdf(file, device.urdf);
+  if (urdf) draft.simulation.chain = read_chain(file, *urdf, options);
+  if (!draft.simulation.chain) return;
+  model::Chain& chain = *draft.simulation.chain;
+  take_joints(chain, draft);
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(chain.nv());
+  chain.update(rest, rest);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& joint = draft.structure[i];
+    if (!joint || joint->frequency_Hz == 0.0) continue;
+    const int index = chain.joint(names[i] + kSuffix);
+    const double inertia = draft.simulation.factors.mass * chain.M()(index, index);
+    const double omega = 2.0 * std::numbers::pi * joint->frequency_Hz;
+    draft.flexible[static_cast<std::size_t>(index)] = {
+        .unit = draft.joint_units[static_cast<std::size_t>(index)],
+        .stiffness = omega * omega * inertia,
+        .damping = 2.0 * joint->damping_ratio * omega * inertia};
+  }
+}
+
 void check_filters(Loader& loader, const Simulation& simulation) {
   const double longest = simulation::kMaxFilterSteps * simulation.step_s;
   for (const simulation::SensorFilterConfig& filter :
@@ -101,23 +142,70 @@ Payload actual(Payload told, const RealityFactors& factors) {
   return told;
 }
 
-Simulation load_simulation(const std::filesystem::path& path, SourceReader& reader,
-                           const SimulatedDevice& device) {
+simulation::JointEffects effects_of(const ActuatorModel& actuator, const MotorEffects& motors,
+                                    const GearEffects& gears, double gear_ratio) {
+  simulation::JointEffects effects = {
+      .cogging = motors.cogging * actuator.torque_max,
+      .cogging_wave = motors.cogging_per_turn * gear_ratio,
+      .ripple = motors.ripple,
+      .ripple_wave = motors.ripple_per_turn * gear_ratio,
+      .bristles = static_cast<int>(gears.presliding_elements),
+      .backlash = gears.backlash,
+      .hysteresis = gears.hysteresis * actuator.torque_max,
+      .hysteresis_stiffness = gears.hysteresis * actuator.torque_max / gears.hysteresis_angle};
+  if (gears.presliding > 0.0) {
+    effects.bristle_stiffness = actuator.coulomb_friction / gears.presliding;
+    effects.bristle_damping = 2.0 * gears.presliding_damping_ratio *
+                              std::sqrt(effects.bristle_stiffness * actuator.rotor_inertia);
+  }
+  return effects;
+}
+
+namespace {
+
+void load(const std::filesystem::path& path, SourceReader& reader, const SimulatedDevice& device,
+          bool is_base, SimulationDraft& draft);
+
+void load_base(LoaderFile& file, const SimulatedDevice& device, SimulationDraft& draft) {
+  try {
+    load(draft.base, file.sources, device, true, draft);
+  } catch (const SetupError& error) {
+    file.faults.add_complete(error.what());
+  }
+}
+
+void load(const std::filesystem::path& path, SourceReader& reader, const SimulatedDevice& device,
+          bool is_base, SimulationDraft& draft) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
-  SimulationDraft draft;
   load_file(file, [&](Loader& loader) {
+    describe_base(loader, draft);
+    const bool has_base = loader.is_given("base");
+    loader.rule(!is_base || !has_base, "base", "a base must not have a base itself");
+    if (has_base && !is_base && !draft.base.empty()) load_base(file, device, draft);
     describe_plant(loader, draft);
     std::optional<UrdfText> urdf;
     if (!draft.urdf.empty()) urdf = read_urdf(file, draft.urdf);
     if (urdf) draft.simulation.chain = read_chain(file, *urdf, device.chain);
-    if (draft.simulation.chain) take_joints(*draft.simulation.chain, draft);
+    if (draft.simulation.chain && draft.joint_names.empty()) {
+      take_joints(*draft.simulation.chain, draft);
+    }
     file.knows_names = false;  // of a plant without URDF, of an unknown device
-    describe_rest(loader, draft, device.manipulator);
+    describe_rest(loader, draft, device.gantry, device.manipulator);
     check_filters(loader, draft.simulation);
+    if (is_base) return;
+    if (draft.urdf.empty()) yield(loader, file, device, draft);
     if (draft.simulation.chain && !device.manipulator.empty() && file.faults.count() == 0) {
       take_plant(loader, device, draft, *draft.simulation.chain);
     }
   });
+}
+
+}  // namespace
+
+Simulation load_simulation(const std::filesystem::path& path, SourceReader& reader,
+                           const SimulatedDevice& device) {
+  SimulationDraft draft;
+  load(path, reader, device, false, draft);
   draft.simulation.is_from_file = true;
   draft.simulation.seed = static_cast<std::uint64_t>(draft.seed);
   draft.simulation.sensors.seed = draft.simulation.seed;

@@ -33,6 +33,28 @@ struct RealityFactors {
   double gantry_lag = 1.0;     ///< of its drives
 };
 
+/// What motors do that a pure torque source does not. Shares are of the joint's peak torque.
+struct MotorEffects {
+  double cogging = 0.0;          ///< amplitude, share
+  double cogging_per_turn = 24;  ///< periods per turn of the motor
+  double ripple = 0.0;           ///< amplitude, share of the torque of the moment
+  double ripple_per_turn = 6;    ///< periods per turn of the motor
+};
+
+/// What gears do that a linear spring with Coulomb friction does not; angles at their output.
+struct GearEffects {
+  double presliding = 0.0;                ///< way until all of the Coulomb friction slips, rad
+  double presliding_damping_ratio = 0.0;  ///< of the rotor on its bristles
+  double presliding_elements = 1.0;       ///< 1..kMaxBristles
+  double backlash = 0.0;                  ///< from flank to flank, rad
+  double hysteresis = 0.0;                ///< friction parallel to the spring, share of peak torque
+  double hysteresis_angle = 1e-4;         ///< twist at which it slips, rad, > 0
+};
+
+/// As the plant takes them, for a joint of this actuator.
+simulation::JointEffects effects_of(const ActuatorModel& actuator, const MotorEffects& motors,
+                                    const GearEffects& gears, double gear_ratio);
+
 /// What is really the case where the device file says `told`.
 ActuatorModel actual(ActuatorModel told, const RealityFactors& factors);
 TorqueLoop actual(TorqueLoop told, const RealityFactors& factors);
@@ -50,8 +72,12 @@ struct Simulation {
   simulation::SensorsConfig sensors;  ///< with `seed`
   simulation::SafetyPlcConfig safety;
   VectorM gear_ratio;  ///< of the manipulator joints
+  MotorEffects motors;
+  GearEffects gears;
+  std::vector<simulation::Waviness> waviness;  ///< per axis of the gantry; empty = none
 
-  /// A plant with more joints than the controller's model; without it the chain of the device.
+  /// A plant with more joints than the controller's model, from `urdf` or with those of
+  /// `structure`; without it the chain of the device.
   std::optional<model::Chain> chain;
   std::vector<int> gantry, manipulator;  ///< indices of its joints, in the device's order
   std::vector<simulation::FlexibleJoint> flexible;  ///< all its other joints
@@ -62,6 +88,7 @@ struct SimulatedDevice {
   std::vector<std::string> gantry, manipulator;  ///< names of its joints
   std::string handle;                            ///< name of its frame H
   model::ChainOptions chain;                     ///< with which its URDF was read
+  std::filesystem::path urdf;
 };
 
 /// Throws SetupError with all faults of the file, one per line.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,11 @@ std::string urdf(const std::string& bend) {
 
 Simulation load(const std::string& yaml, const SimulatedDevice& device = kDevice) {
   SourceReader reader({{"simulation.yaml", yaml},
+                       {"base.yaml",
+                        "seed: 5\ngear_ratio: {lift: 50}\nfactors: {mass: 2}\n"
+                        "motors: {cogging: 0.01, ripple: 0.02}\n"
+                        "sensors: {ideal: true, torque_sensor: {noise: 0.1}}\n"},
+                       {"second.yaml", "base: base.yaml\n"},
                        {"bent.urdf", urdf("revolute")},
                        {"slid.urdf", urdf("prismatic")},
                        {"free.urdf", urdf("floating")},
@@ -241,6 +247,87 @@ TEST(SimulationFile, AUrdfMayHaveFurtherJointsThatBend) {
   EXPECT_EQ(message("urdf: plain.urdf\n"), "no error");
 }
 
+TEST(SimulationFile, WhatItDoesNotSayIsAsInItsBase) {
+  const Simulation simulation = load(
+      "base: base.yaml\nfactors: {friction: 3}\nmotors: {ripple: 0}\n"
+      "sensors: {torque_sensor: {offset: 0.2}}\n");
+  EXPECT_EQ(simulation.seed, 5u);
+  EXPECT_EQ(simulation.gear_ratio[1], 50.0);
+  EXPECT_EQ(simulation.factors.mass, 2.0);
+  EXPECT_EQ(simulation.factors.friction, 3.0);
+  EXPECT_EQ(simulation.motors.cogging, 0.01);
+  EXPECT_EQ(simulation.motors.ripple, 0.0);
+  EXPECT_EQ(simulation.sensors.torque.noise, 0.1);
+  EXPECT_EQ(simulation.sensors.torque.offset, 0.2);
+  EXPECT_EQ(simulation.sensors.wrench.force_noise, 0.0);
+  EXPECT_EQ(load("base: base.yaml\n").sensors.torque.noise, 0.1);
+}
+
+TEST(SimulationFile, EffectsReachTheJointsInTheirUnits) {
+  const Simulation simulation = load(
+      "motors: {cogging: 0.01, cogging_per_turn: 24, ripple: 0.02, ripple_per_turn: 6}\n"
+      "gears: {presliding_rad: 1e-4, presliding_damping_ratio: 0.5, presliding_elements: 2, "
+      "backlash_rad: 3e-4, hysteresis: 0.03, hysteresis_rad: 2e-4}\n"
+      "waviness: {slide: {amplitude_m: 1e-5, period_m: 0.02}}\n"
+      "sensors: {wrench_sensor: {shunt: 0.08}}\n");
+  const ActuatorModel actuator = {
+      .rotor_inertia = 2.0, .coulomb_friction = 4.0, .torque_max = 100.0};
+  const simulation::JointEffects effects =
+      effects_of(actuator, simulation.motors, simulation.gears, 50.0);
+  EXPECT_DOUBLE_EQ(effects.cogging, 1.0);
+  EXPECT_DOUBLE_EQ(effects.cogging_wave, 1200.0);
+  EXPECT_DOUBLE_EQ(effects.ripple, 0.02);
+  EXPECT_DOUBLE_EQ(effects.ripple_wave, 300.0);
+  EXPECT_DOUBLE_EQ(effects.bristle_stiffness, 4e4);
+  EXPECT_DOUBLE_EQ(effects.bristle_damping, std::sqrt(4e4 * 2.0));
+  EXPECT_EQ(effects.bristles, 2);
+  EXPECT_DOUBLE_EQ(effects.backlash, 3e-4);
+  EXPECT_DOUBLE_EQ(effects.hysteresis, 3.0);
+  EXPECT_DOUBLE_EQ(effects.hysteresis_stiffness, 1.5e4);
+  ASSERT_EQ(simulation.waviness.size(), 1u);
+  EXPECT_EQ(simulation.waviness[0].amplitude, 1e-5);
+  EXPECT_EQ(simulation.waviness[0].period, 0.02);
+  EXPECT_EQ(simulation.sensors.wrench.shunt, 0.08);
+}
+
+TEST(SimulationFile, WithoutThemThereAreNoEffects) {
+  const Simulation simulation = load("sensors: {}\n");
+  const simulation::JointEffects effects =
+      effects_of({.rotor_inertia = 2.0, .coulomb_friction = 4.0, .torque_max = 100.0},
+                 simulation.motors, simulation.gears, 50.0);
+  EXPECT_EQ(effects.cogging, 0.0);
+  EXPECT_EQ(effects.ripple, 0.0);
+  EXPECT_EQ(effects.bristle_stiffness, 0.0);
+  EXPECT_EQ(effects.backlash, 0.0);
+  EXPECT_EQ(effects.hysteresis, 0.0);
+  EXPECT_TRUE(simulation.waviness.empty());
+  EXPECT_EQ(simulation.sensors.wrench.shunt, 0.0);
+  EXPECT_FALSE(simulation.chain);
+}
+
+TEST(SimulationFile, AStructureThatYieldsIsAPassiveJointOfItsFrequency) {
+  SimulatedDevice device = kDevice;
+  device.urdf = "plain.urdf";
+  const Simulation yields = load(
+      "factors: {mass: 2}\n"
+      "structure: {slide: {frequency_Hz: 10, damping_ratio: 0.05}, "
+      "turn: {frequency_Hz: 5, axis: [2, 0, 0]}, lift: {frequency_Hz: 0}}\nsensors: {}\n",
+      device);
+  ASSERT_TRUE(yields.chain);
+  ASSERT_EQ(yields.chain->joints().size(), 5u);
+  EXPECT_EQ(yields.chain->joints()[1].name, "slide_structure");
+  EXPECT_EQ(yields.chain->joints()[3].name, "turn_structure");
+  EXPECT_EQ(yields.chain->joints()[3].axis, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(yields.gantry, std::vector<int>{0});
+  EXPECT_EQ(yields.manipulator, (std::vector<int>{2, 4}));
+  ASSERT_EQ(yields.flexible.size(), 2u);
+  const double omega = 2.0 * 3.14159265358979 * 10.0, mass = 2.0 * 3.0;  // trolley, arm and hand
+  EXPECT_EQ(yields.flexible[0].joint, 1);
+  EXPECT_NEAR(yields.flexible[0].stiffness, omega * omega * mass, 1e-4);
+  EXPECT_NEAR(yields.flexible[0].damping, 2.0 * 0.05 * omega * mass, 1e-6);
+  EXPECT_EQ(yields.flexible[1].joint, 3);
+}
+
 struct Case {
   const char* name;
   const char* yaml;
@@ -297,6 +384,24 @@ INSTANTIATE_TEST_SUITE_P(
              "urdf: bent.urdf\nflexible: {bend: {stiffness_N_per_m: 1}}\n",
              "simulation.yaml:3:19: flexible.bend.stiffness_N_per_m: unknown key, did you mean "
              "'stiffness_Nm_per_rad'?"},
+        Case{"BaseOfABase", "base: second.yaml\n",
+             "second.yaml:1:7: base: a base must not have a base itself"},
+        Case{"CoggingInPercent", "motors: {cogging: 3}\n",
+             "simulation.yaml:2:19: motors.cogging: must be 0 .. 1, got 3"},
+        Case{"TooManyElements", "gears: {presliding_elements: 4}\n",
+             "simulation.yaml:2:30: gears.presliding_elements: must be 1 .. 3, got 4"},
+        Case{"ElementsWithAFraction", "gears: {presliding_elements: 1.5}\n",
+             "simulation.yaml:2:30: gears.presliding_elements: must be a whole number, got 1.5"},
+        Case{"StructureOfAnUnknownJoint", "structure: {slid: {frequency_Hz: 9}}\n",
+             "simulation.yaml:2:13: structure.slid: must be a joint of the device, got 'slid', did "
+             "you mean 'slide'?"},
+        Case{
+            "StructureBesideAUrdf", "urdf: plain.urdf\nstructure: {slide: {frequency_Hz: 9}}\n",
+            "simulation.yaml:3:12: structure: cannot be given together with 'urdf': put the joints "
+            "into that URDF and 'flexible'"},
+        Case{"WavesThatTurnBack", "waviness: {slide: {amplitude_m: 0.1, period_m: 0.5}}\n",
+             "simulation.yaml:2:48: waviness.slide.period_m: must exceed 2 pi amplitudes: the axis "
+             "never turns back, got 0.5"},
         Case{"FloatingJoint", "urdf: free.urdf\nflexible: {bend: {}}\n",
              "simulation.yaml:2:7: urdf: a device has no floating joints, got 'bend'"}),
     name_of);
