@@ -56,9 +56,10 @@ int run_tune(const TuneArguments& arguments) {
   const config::Device device = config::load_device(find_device(arguments.device));
   tuning::Problem problem = problem_of(device, arguments);
   make_folder(arguments.out);
-  print_out("HapticGiant {}  tunes {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
-            kVersion, device.name, tuning::knobs().size(), problem.postures.size(), arguments.mass,
-            arguments.damping);
+  print_out(
+      "HapticGiant {}  tunes {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
+      kVersion, device.name, tuning::knobs().size(), problem.postures.size(), arguments.mass,
+      arguments.damping);
   const double limit =
       arguments.vibration > 0.0
           ? arguments.vibration

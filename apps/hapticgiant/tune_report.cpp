@@ -50,7 +50,9 @@ void all_rows(const TuneReport& report, std::size_t chosen, const Row& row) {
   const Proof& is = report.result.proofs[chosen];
   row("errors left after 0.1 s", decay(was.arm), decay(is.arm));
   row("the same in a hand", decay(was.hand), decay(is.hand));
-  const auto verdict = [](const Proof& proof) -> std::string { return proof.holds() ? "yes" : "NO"; };
+  const auto verdict = [](const Proof& proof) -> std::string {
+    return proof.holds() ? "yes" : "NO";
+  };
   row("proven", verdict(was), verdict(is));
 }
 
@@ -130,14 +132,15 @@ std::string tune_markdown(const TuneReport& report, std::size_t chosen) {
 }
 
 std::string tune_csv(const TuneReport& report) {
-  std::string text = "limit_m_per_s2,vibration_m_per_s2,centroid_Hz,transparency_Hz,latency_s,"
-                     "distortion,friction_N,arm_radius,hand_radius,is_proven";
+  std::string text =
+      "limit_m_per_s2,vibration_m_per_s2,centroid_Hz,transparency_Hz,latency_s,"
+      "distortion,friction_N,arm_radius,hand_radius,is_proven";
   for (const tuning::Knob& knob : tuning::knobs()) text += fmt::format(",{}", knob.key);
   const auto add = [&](double limit, const Candidate& candidate, const Proof& proof) {
     const Figures& f = candidate.figures;
-    text += fmt::format("\n{:g},{:g},{:g},{:g},{:g},{:g},{:g},{:.6f},{:.6f},{}", limit,
-                        f.vibration, f.centroid_Hz, f.transparency_Hz, f.latency_s, f.distortion,
-                        f.friction_N, proof.arm, proof.hand, proof.holds() ? 1 : 0);
+    text += fmt::format("\n{:g},{:g},{:g},{:g},{:g},{:g},{:g},{:.6f},{:.6f},{}", limit, f.vibration,
+                        f.centroid_Hz, f.transparency_Hz, f.latency_s, f.distortion, f.friction_N,
+                        proof.arm, proof.hand, proof.holds() ? 1 : 0);
     for (const double value : candidate.values) text += fmt::format(",{:g}", value);
   };
   const tuning::Result& result = report.result;

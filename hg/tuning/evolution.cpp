@@ -19,7 +19,8 @@ Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
   const double mu = 1.0 / weights.squaredNorm();
   // Table 1 of the tutorial
   const double c_sigma = (mu + 2.0) / (n + mu + 5.0);
-  const double d_sigma = 1.0 + 2.0 * std::max(0.0, std::sqrt((mu - 1.0) / (n + 1.0)) - 1.0) + c_sigma;
+  const double d_sigma =
+      1.0 + 2.0 * std::max(0.0, std::sqrt((mu - 1.0) / (n + 1.0)) - 1.0) + c_sigma;
   const double c_c = (4.0 + mu / n) / (n + 4.0 + 2.0 * mu / n);
   const double c_1 = 2.0 / ((n + 1.3) * (n + 1.3) + mu);
   const double c_mu =
@@ -51,7 +52,8 @@ Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
       best = children[order.front()];
     }
     Eigen::VectorXd step = Eigen::VectorXd::Zero(start.size());
-    for (int i = 0; i < parents; ++i) step += weights[i] * steps[order[static_cast<std::size_t>(i)]];
+    for (int i = 0; i < parents; ++i)
+      step += weights[i] * steps[order[static_cast<std::size_t>(i)]];
     mean += sigma * step;
 
     const Eigen::VectorXd whitened =

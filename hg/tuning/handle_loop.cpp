@@ -14,10 +14,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kSteps = 8;              // of the plant per period: latencies are rounded to them
-constexpr int kGroup = 4;              // steps whose wrenches are one mean: half a period
+constexpr int kSteps = 8;  // of the plant per period: latencies are rounded to them
+constexpr int kGroup = 4;  // steps whose wrenches are one mean: half a period
 constexpr int kGroups = kSteps / kGroup;
-constexpr int kNoises = 6;             // wrench; joints come behind
+constexpr int kNoises = 6;  // wrench; joints come behind
 
 // Where the parts of the loop stand in its state.
 class Layout {
@@ -49,13 +49,13 @@ class Layout {
   }
 
   int n, slots, groups;
-  int theta, dtheta, q, dq, current, hand, dhand;                       // plant
-  int theta_last, dtheta_filtered, q_observed, dq_observed, ddq_last;   // estimation
-  int wrench;                                                           // low-passed
-  int twin, dtwin;                                                      // body
-  int integral, tau_r, dtau_r, w_last, dw, stiff;                       // control
-  int commands;                                                         // the oldest first
-  int means;                                                            // likewise, of the wrench
+  int theta, dtheta, q, dq, current, hand, dhand;                      // plant
+  int theta_last, dtheta_filtered, q_observed, dq_observed, ddq_last;  // estimation
+  int wrench;                                                          // low-passed
+  int twin, dtwin;                                                     // body
+  int integral, tau_r, dtau_r, w_last, dw, stiff;                      // control
+  int commands;                                                        // the oldest first
+  int means;                                                           // likewise, of the wrench
   int size = 0;
 
   int plant_size() const { return 5 * n + 6; }
@@ -81,8 +81,7 @@ HandMatrices matrices_of(const user::HandImpedance& hand, const Eigen::Matrix3d&
   const bool is_upright = along.head<2>().norm() < 1e-6;
   const Eigen::Vector3d ahead = is_upright ? Eigen::Vector3d(R_B_H.col(0)) : along;
   const double heading = std::atan2(ahead.y(), ahead.x());
-  const Eigen::Matrix3d P =
-      Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d P = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const auto turned = [](const Eigen::Matrix3d& R, const Eigen::Vector3d& values) {
     return Eigen::Matrix3d(R * values.asDiagonal() * R.transpose());
   };
@@ -169,10 +168,9 @@ class Period {
       next[at.q_observed + i] = link.q;
       next[at.dq_observed + i] = link.dq;
     }
-    const VectorXd tau =
-        plus(K_.cwiseProduct(part(now, at.theta) - part(now, at.q)) +
-                 D_.cwiseProduct(part(now, at.dtheta) - part(now, at.dq)),
-             disturbance.tau);
+    const VectorXd tau = plus(K_.cwiseProduct(part(now, at.theta) - part(now, at.q)) +
+                                  D_.cwiseProduct(part(now, at.dtheta) - part(now, at.dq)),
+                              disturbance.tau);
     Vector6 mean = Vector6::Zero();
     for (int i = 0; i < average_; ++i) mean += now.segment<6>(at.means + 6 * i);
     Vector6 w = now.segment<6>(at.wrench);
@@ -248,9 +246,8 @@ class Period {
     // the oldest go
     for (int i = 0; i < at.groups; ++i) {
       const int from = i + kGroups;
-      const Vector6 value = from < at.groups
-                                ? Vector6(now.segment<6>(at.means + 6 * from))
-                                : means[static_cast<std::size_t>(from - at.groups)];
+      const Vector6 value = from < at.groups ? Vector6(now.segment<6>(at.means + 6 * from))
+                                             : means[static_cast<std::size_t>(from - at.groups)];
       next.segment<6>(at.means + 6 * i) = value;
     }
     return next;

@@ -33,9 +33,9 @@ struct WrenchPath {
 
 /// Standard deviations of white noise, of one sample unless it says otherwise.
 struct Noise {
-  double force = 0.0;          ///< of the wrench, N/sqrt(Hz), with the accelerometer's on the payload
-  double torque = 0.0;         ///< likewise, Nm/sqrt(Hz)
-  Eigen::VectorXd joint;       ///< of the joint torque sensors, Nm
+  double force = 0.0;     ///< of the wrench, N/sqrt(Hz), with the accelerometer's on the payload
+  double torque = 0.0;    ///< likewise, Nm/sqrt(Hz)
+  Eigen::VectorXd joint;  ///< of the joint torque sensors, Nm
   double link_encoder = 0.0;   ///< rad
   double motor_encoder = 0.0;  ///< rad at the joint
 };
@@ -79,10 +79,10 @@ class Resolvent {
   Eigen::MatrixXcd solve_transposed(const Eigen::MatrixXd& C) const;  ///< C (z 1 - A)^-1
 
  private:
-  Eigen::MatrixXd H_, Q_;             // A = Q H Q^T
-  Eigen::MatrixXcd U_;                // of the rows in the order of the pivots
-  Eigen::VectorXcd multipliers_;      // one per step of the elimination
-  std::vector<bool> is_exchanged_;    // rows i and i + 1 in step i
+  Eigen::MatrixXd H_, Q_;           // A = Q H Q^T
+  Eigen::MatrixXcd U_;              // of the rows in the order of the pivots
+  Eigen::VectorXcd multipliers_;    // one per step of the elimination
+  std::vector<bool> is_exchanged_;  // rows i and i + 1 in step i
 };
 
 }  // namespace hg::tuning

@@ -46,8 +46,8 @@ constexpr std::array<Knob, 11> kKnobs = {{
 double most_of(const Knob& knob, const Device& device) {
   const control::Config& config = device.loop.config;
   if (knob.key == "rotor_pole_rad_per_s") {
-    return std::min(knob.most, control::largest_rotor_pole(config.loop.latency +
-                                                           config.loop.current_lag));
+    return std::min(knob.most,
+                    control::largest_rotor_pole(config.loop.latency + config.loop.current_lag));
   }
   if (knob.key == "flatness_Hz") {
     return std::min(knob.most, 0.8 * control::largest_flatness_Hz(1.0 / config.dt));
@@ -70,8 +70,8 @@ Values values_of(const Device& device) {
 Device with_values(Device device, const Values& values) {
   for (std::size_t i = 0; i < kKnobs.size(); ++i) {
     const Knob& knob = kKnobs[i];
-    knob.set(device, std::clamp(values[static_cast<Eigen::Index>(i)], knob.least,
-                                most_of(knob, device)));
+    knob.set(device,
+             std::clamp(values[static_cast<Eigen::Index>(i)], knob.least, most_of(knob, device)));
   }
   return device;
 }

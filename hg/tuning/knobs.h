@@ -9,7 +9,7 @@
 namespace hg::tuning {
 
 struct Knob {
-  std::string_view section, key;  ///< of device.yaml
+  std::string_view section, key;   ///< of device.yaml
   double least = 0.0, most = 0.0;  ///< of the search
   double (*get)(const Device&);
   void (*set)(Device&, double);

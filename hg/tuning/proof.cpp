@@ -19,7 +19,6 @@ Doubt late(const control::Config& believed) {
   return {fmt::format("latency x {:g}", kMore), reality};
 }
 
-
 }  // namespace
 
 std::vector<Doubt> doubts(const control::Config& believed) {
@@ -102,8 +101,8 @@ double Demands::radius(const Device& device, const Case& one) const {
   body.mass *= real.mass;
   Device doubted = device;
   doubted.loop.config.flatness_Hz *= real.follower;
-  return std::pow(
-      spectral_radius(linearise(doubted, real.reality, body, grasp.hand, {}, q)), scale);
+  return std::pow(spectral_radius(linearise(doubted, real.reality, body, grasp.hand, {}, q)),
+                  scale);
 }
 
 double Demands::excess(const Device& device, const Case& one) const {

@@ -49,8 +49,7 @@ inline constexpr double kHandRadius = 0.9996;  ///< 2.5 s: a hand's own slow mot
 /// Everything that a torque loop must tolerate.
 class Demands {
  public:
-  Demands(const control::Config& believed, const Body& body,
-          std::vector<Eigen::VectorXd> postures);
+  Demands(const control::Config& believed, const Body& body, std::vector<Eigen::VectorXd> postures);
 
   const std::vector<Eigen::VectorXd>& postures() const { return postures_; }
   /// All cases of a posture.

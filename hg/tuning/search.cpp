@@ -11,9 +11,9 @@
 namespace hg::tuning {
 namespace {
 
-constexpr double kFirstStep = 0.08;      // of a knob, share of its range
-constexpr int kMostProofs = 4;           // evolutions per limit
-constexpr double kProofReserve = 1e-4;   // of eigenvalues, against other postures
+constexpr double kFirstStep = 0.08;     // of a knob, share of its range
+constexpr int kMostProofs = 4;          // evolutions per limit
+constexpr double kProofReserve = 1e-4;  // of eigenvalues, against other postures
 
 // to three digits, as they will stand in a file
 Values rounded(Values values) {
@@ -46,6 +46,19 @@ class Search {
       mind(proof);
     }
     return {start, figures_of(problem_, start)};
+  }
+
+  // Of what is there already what costs least under a new limit.
+  Values nearest(const Result& result, double limit) const {
+    Values least = result.before.values;
+    double lowest = cost(least, limit);
+    for (const Candidate& candidate : result.front) {
+      const double here = cost(candidate.values, limit);
+      if (here >= lowest) continue;
+      lowest = here;
+      least = candidate.values;
+    }
+    return least;
   }
 
   // Where a loop came nearest to its limits counts from now on.
@@ -106,25 +119,23 @@ class Search {
   Values evolved(const Values& start, double step, double limit) {
     const auto costs = [&](const std::vector<Eigen::VectorXd>& places) {
       std::vector<double> result(places.size());
-      experiments::do_all(
-          places.size(),
-          [&](std::size_t i) {
-            const Eigen::VectorXd inside = places[i].cwiseMax(0.0).cwiseMin(1.0);
-            result[i] = cost(values_at(inside), limit) + (places[i] - inside).squaredNorm();
-          },
-          {});
+      experiments::do_all(places.size(),
+                          [&](std::size_t i) {
+                            const Eigen::VectorXd inside = places[i].cwiseMax(0.0).cwiseMin(1.0);
+                            result[i] =
+                                cost(values_at(inside), limit) + (places[i] - inside).squaredNorm();
+                          },
+                          {});
       tried_ += places.size();
       return result;
     };
-    const Eigen::VectorXd found =
-        minimise(costs, place_of(start), {.step = step, .generations = problem_.most_rounds},
-                 [&](int round, double best) {
-                   tell(fmt::format("vibration at most {:.3g} m/s^2: cost {:.3f}", limit, best),
-                        static_cast<std::size_t>(round),
-                        static_cast<std::size_t>(problem_.most_rounds) + 1);
-                 });
-    return values_of(
-        with_values(problem_.device, values_at(found.cwiseMax(0.0).cwiseMin(1.0))));
+    const Eigen::VectorXd found = minimise(
+        costs, place_of(start), {.step = step, .generations = problem_.most_rounds},
+        [&](int round, double best) {
+          tell(fmt::format("vibration at most {:.3g} m/s^2: cost {:.3f}", limit, best),
+               static_cast<std::size_t>(round), static_cast<std::size_t>(problem_.most_rounds) + 1);
+        });
+    return values_of(with_values(problem_.device, values_at(found.cwiseMax(0.0).cwiseMin(1.0))));
   }
 
   const Problem& problem_;
@@ -163,12 +174,10 @@ Result search(const Problem& problem, const std::vector<double>& limits, const T
   result.before = {present, figures_of(problem, present)};
   result.proof_before = searching.proof_everywhere(present);
   searching.mind(result.proof_before);
-  Values start = present;
   for (const double limit : limits) {
     Proof proof;
-    result.front.push_back(searching.best(start, limit, proof));
+    result.front.push_back(searching.best(searching.nearest(result, limit), limit, proof));
     result.proofs.push_back(proof);
-    start = result.front.back().values;
   }
   result.tried = searching.tried();
   return result;

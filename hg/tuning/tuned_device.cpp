@@ -48,11 +48,12 @@ Noise noise_of(const config::Device& device) {
                  .joint = Eigen::VectorXd(device.model.n_m),
                  .link_encoder = rounding(sensors.link_encoder.resolution)};
   double least_ratio = 1.0;
-  if (device.simulation.gear_ratio.size() > 0) least_ratio = device.simulation.gear_ratio.minCoeff();
+  if (device.simulation.gear_ratio.size() > 0)
+    least_ratio = device.simulation.gear_ratio.minCoeff();
   noise.motor_encoder = rounding(sensors.motor_encoder.resolution) / least_ratio;
   for (int i = 0; i < device.model.n_m; ++i) {
-    noise.joint[i] = sensors.torque.noise *
-                     device.control.actuators[static_cast<std::size_t>(i)].torque_max;
+    noise.joint[i] =
+        sensors.torque.noise * device.control.actuators[static_cast<std::size_t>(i)].torque_max;
   }
   return noise;
 }

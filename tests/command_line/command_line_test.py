@@ -85,6 +85,20 @@ class MainJob(TemporaryFolder):
             self.assertEqual((code, err), (0, ""), f"{rate} Hz\n{out}")
             self.assertEqual(json.loads(summary.read_text())["rate_Hz"], rate)
 
+    def test_other_simulated_machines_lie_beside_the_shipped_one(self):
+        peaks = {}
+        for machine in (None, "as_published", "harder"):
+            summary = self.folder / "summary.json"
+            choice = ("--simulation", machine) if machine else ()
+            code, out, err = run("run", "walk", "--fast", "--no-recording", "--summary", summary,
+                                 *choice)
+            self.assertEqual((code, err), (0, ""), out)
+            peaks[machine] = json.loads(summary.read_text())["force"]["max_N"]
+        self.assertEqual(len(set(peaks.values())), 3, peaks)
+        code, _, err = run("run", "walk", "--fast", "--no-recording", "--simulation", "harde")
+        self.assertEqual(code, 2)
+        self.assertIn("did you mean 'harder'", err)
+
     def test_an_expected_event_that_does_not_happen_is_1(self):
         code, out, _ = run("run", "door", "--fast", "--no-recording", "--duration", "2")
         self.assertEqual(code, 1)

@@ -38,8 +38,7 @@ TEST(Knobs, GiveBackWhatTheyTook) {
 
 TEST(Knobs, TakeNoMoreThanLatencyAndRateAllow) {
   const Problem problem = problem_of(1);
-  const Device fast =
-      with_values(problem.device, with(problem, "rotor_pole_rad_per_s", 1000.0));
+  const Device fast = with_values(problem.device, with(problem, "rotor_pole_rad_per_s", 1000.0));
   EXPECT_LT(fast.loop.config.poles.w0, 0.2651 / 1.5e-3);
   const Device wild = with_values(problem.device, with(problem, "flatness_Hz", 1e6));
   EXPECT_LT(wild.loop.config.flatness_Hz, control::largest_flatness_Hz(1000.0));
@@ -60,6 +59,21 @@ TEST(Demands, RefuseTheDampingOfTheNotes) {
   };
   EXPECT_EQ(failures(problem.device), 0);
   EXPECT_GT(failures(with_values(problem.device, with(problem, "spring_damping", 0.5))), 0);
+}
+
+// the body that is shipped, in hands up to 2000 N/m and with 1.5 times the latency
+TEST(Demands, EveryHandHoldsTheShippedBodyInEveryPosture) {
+  const Problem problem = problem_of(20);
+  for (const Doubt& doubt : doubts_in_hand(problem.device.loop.config)) {
+    for (const Grasp& grasp : grasps(problem.body)) {
+      double worst = 0.0;
+      for (const Eigen::VectorXd& q : problem.postures) {
+        worst = std::max(worst, spectral_radius(linearise(problem.device, doubt.reality,
+                                                          problem.body, grasp.hand, {}, q)));
+      }
+      EXPECT_LT(worst, kHandRadius) << grasp.what << ", " << doubt.what;
+    }
+  }
 }
 
 TEST(Demands, KnowALighterBodyIsHarderToHold) {
