@@ -30,8 +30,7 @@ tuning::Problem problem_of(const config::Device& device, const TuneArguments& ar
       .friction = tuning::unexpected_friction(device),
       .body = {.mass = arguments.mass, .damping = arguments.damping},
       .postures = assembly::random_postures(device.model, arguments.postures, arguments.seed)};
-  problem.friction_most_N =
-      tuning::figures_of(problem, tuning::values_of(problem.device)).friction_N;
+  problem.friction_most_N = tuning::figures_of(problem, problem.device).friction_N;
   return problem;
 }
 
@@ -60,10 +59,9 @@ int run_tune(const TuneArguments& arguments) {
       "HapticGiant {}  tunes {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
       kVersion, device.name, tuning::knobs().size(), problem.postures.size(), arguments.mass,
       arguments.damping);
-  const double limit =
-      arguments.vibration > 0.0
-          ? arguments.vibration
-          : tuning::figures_of(problem, tuning::values_of(problem.device)).vibration;
+  const double limit = arguments.vibration > 0.0
+                           ? arguments.vibration
+                           : tuning::figures_of(problem, problem.device).vibration;
   std::vector<double> limits = {limit};
   if (arguments.has_front) {
     for (const double share : {0.75, 0.5, 1.5, 2.0}) limits.push_back(share * limit);
@@ -82,9 +80,22 @@ int run_tune(const TuneArguments& arguments) {
   write("front.csv", tune_csv(report));
   write("front.svg", tune_svg(report));
   print_out(fmt::format("\nreport      {}\n", (folder / "report.md").string()));
-  if (result.proofs[kChosen].holds()) return 0;
-  print_error("not proven: the loop found is nearest to what was asked for; do not use it\n");
-  return 1;
+  const tuning::Figures& found = result.front[kChosen].figures;
+  constexpr double kTolerated = 1.01;  // of limits that the search approaches from both sides
+  if (!result.proofs[kChosen].holds()) {
+    print_error(
+        "not proven: do not use these lines; more vibration (--vibration) leaves more room\n");
+    return 1;
+  }
+  if (found.vibration > kTolerated * limit ||
+      found.friction_N > kTolerated * problem.friction_most_N) {
+    print_error(
+        "missed: vibration {:.4f} m/s^2, at most {:.4f}; unexpected friction {:.3f} N, at most "
+        "{:.3f}\n",
+        found.vibration, limit, found.friction_N, problem.friction_most_N);
+    return 1;
+  }
+  return 0;
 }
 
 }  // namespace hg::apps

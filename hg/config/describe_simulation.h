@@ -113,6 +113,9 @@ template <class V>
 void describe(V& v, StructureDraft& joint) {
   v.number("frequency_Hz", joint.frequency_Hz, kNotNegative,
            "at which all that this joint carries swings, all joints at 0; 0 = rigid");
+  v.rule(joint.frequency_Hz == 0.0 || joint.frequency_Hz >= 1.0, "frequency_Hz",
+         "must be 0 or at least 1: what is softer sags without end",
+         model::to_text(joint.frequency_Hz));
   v.number("damping_ratio", joint.damping_ratio, kShare, "of that oscillation");
   joint.has_axis = v.vector("axis", joint.axis, {.lb = -1e3, .ub = 1e3},
                             "of the yielding, in the link that the joint carries; without it the "
@@ -177,8 +180,11 @@ void describe_effects(V& v, SimulationDraft& draft, const std::vector<std::strin
         describe(child, *joint);
       },
       "what yields behind a joint, seen by no encoder: belt and frame of a gantry axis, a link");
-  v.rule(!v.is_given("structure") || draft.urdf.empty(), "structure",
-         "cannot be given together with 'urdf': put the joints into that URDF and 'flexible'");
+  const bool yields =
+      std::ranges::any_of(draft.structure, [](const auto& joint) { return joint.has_value(); });
+  v.rule(!yields || draft.urdf.empty(), v.is_given("structure") ? "structure" : "urdf",
+         "'structure' and 'urdf' exclude each other, also in a base: put the joints into that URDF "
+         "and 'flexible'");
   v.groups_by_name(
       "waviness", gantry, "an axis of the gantry",
       [&](auto& child, int index) {

@@ -14,6 +14,9 @@ namespace hg::config {
 namespace {
 
 void take_joints(const model::Chain& chain, SimulationDraft& draft) {
+  draft.joint_names.clear();  // of a base, which has another URDF
+  draft.joint_units.clear();
+  draft.flexible.clear();
   for (const model::Joint& joint : chain.joints()) {
     draft.joint_names.push_back(joint.name);
     draft.joint_units.push_back(unit_of(joint.type));
@@ -186,9 +189,8 @@ void load(const std::filesystem::path& path, SourceReader& reader, const Simulat
     std::optional<UrdfText> urdf;
     if (!draft.urdf.empty()) urdf = read_urdf(file, draft.urdf);
     if (urdf) draft.simulation.chain = read_chain(file, *urdf, device.chain);
-    if (draft.simulation.chain && draft.joint_names.empty()) {
-      take_joints(*draft.simulation.chain, draft);
-    }
+    const bool is_another = loader.is_given("urdf") || draft.joint_names.empty();
+    if (draft.simulation.chain && is_another) take_joints(*draft.simulation.chain, draft);
     file.knows_names = false;  // of a plant without URDF, of an unknown device
     describe_rest(loader, draft, device.gantry, device.manipulator);
     check_filters(loader, draft.simulation);

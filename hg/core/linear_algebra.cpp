@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
 
 namespace hg {
@@ -40,7 +41,11 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A) {
 }
 
 double spectral_radius(const Eigen::MatrixXd& A) {
-  return Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues().cwiseAbs().maxCoeff();
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  if (!A.allFinite()) return kInfinite;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A, false);
+  if (solver.info() != Eigen::Success) return kInfinite;
+  return solver.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 Eigen::MatrixXd matrix_exponential(const Eigen::MatrixXd& A) { return A.exp(); }

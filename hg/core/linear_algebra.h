@@ -45,7 +45,7 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
-/// Largest magnitude of an eigenvalue of a square matrix.
+/// Largest magnitude of an eigenvalue of a square matrix; infinity where it is not finite.
 double spectral_radius(const Eigen::MatrixXd& A);
 
 /// e^A.

@@ -13,7 +13,7 @@ struct Truth {
   VectorM theta_m, dtheta_m;        ///< motor side at the output of the gear
   VectorM tau_J;                    ///< transmitted by the springs, Nm
   VectorM tau_motor;                ///< of the motors, Nm
-  VectorP q_p, dq_p, ddq_p;         ///< gantry
+  VectorP q_p, dq_p, ddq_p;         ///< gantry, where its drives and encoders are
   Pose T_B_H;                       ///< handle
   Vector6 twist = Vector6::Zero();  ///< (v; omega) of H
   Vector6 acceleration = Vector6::Zero();  ///< (classical acceleration of H; d omega/dt)

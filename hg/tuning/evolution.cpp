@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "hg/core/interval.h"
 #include "hg/core/linear_algebra.h"
 
 namespace hg::tuning {
@@ -43,7 +44,10 @@ Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
       steps.push_back(eigen.vectors * scale.cwiseProduct(z));
       children.push_back(mean + sigma * steps.back());
     }
-    const std::vector<double> found = costs(children);
+    std::vector<double> found = costs(children);
+    for (double& cost : found) {
+      if (std::isnan(cost)) cost = kInfinity;  // what cannot be computed is no solution
+    }
     std::vector<std::size_t> order(found.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, {}, [&](std::size_t i) { return found[i]; });

@@ -3,8 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/estimation/joint_observer.h"
 
@@ -17,7 +19,9 @@ using Eigen::VectorXd;
 constexpr int kSteps = 8;  // of the plant per period: latencies are rounded to them
 constexpr int kGroup = 4;  // steps whose wrenches are one mean: half a period
 constexpr int kGroups = kSteps / kGroup;
-constexpr int kNoises = 6;  // wrench; joints come behind
+constexpr int kNoises = 6 * kGroups;  // the wrench of each mean of a period; joints come behind
+constexpr int kMostStates = 600;
+constexpr double kSlowestIntegral = 1.0;  // 1/s; a slower one would be the slowest motion of all
 
 // Where the parts of the loop stand in its state.
 class Layout {
@@ -109,6 +113,11 @@ class Period {
         delay_(rounded_groups(device.wrench.delay_s)),
         layout_(device.loop.n_m, (latency_steps_ + kSteps - 1) / kSteps, average_ + delay_),
         control_(config_, device.loop.chain, device.loop.n_p, device.loop.n_m, device.loop.handle) {
+    if (layout_.size > kMostStates) {
+      throw SetupError("the loop around the handle has " + std::to_string(layout_.size) +
+                       " states with this rate, latency and delay of the wrench, at most " +
+                       std::to_string(kMostStates) + " are computed");
+    }
     model::Chain chain = device.loop.chain;
     const VectorXd at_rest = VectorXd::Zero(q.size());
     chain.update(q, at_rest);
@@ -141,8 +150,9 @@ class Period {
   struct Disturbance {
     Eigen::Vector3d push = Eigen::Vector3d::Zero();  // on the hand
     VectorXd motor;                                  // torques on the motors; empty = none
-    Vector6 wrench = Vector6::Zero();                // of the newest mean
-    VectorXd tau, q, theta;                          // of sensors; empty = none
+    Eigen::Matrix<double, 6, kGroups> wrench =
+        Eigen::Matrix<double, 6, kGroups>::Zero();  // of means
+    VectorXd tau, q, theta;                         // of sensors; empty = none
   };
 
   VectorXd advance(const VectorXd& now, const Disturbance& disturbance) {
@@ -179,9 +189,11 @@ class Period {
 
     // twin and reference
     Vector6 ddE = w;
-    ddE.head<3>() = (w.head<3>() - body_.damping * now.segment<3>(at.dtwin)) / body_.mass;
-    ddE.tail<3>() =
-        (w.tail<3>() - body_.angular_damping * now.segment<3>(at.dtwin + 3)) / body_.inertia;
+    ddE.head<3>() =
+        (w.head<3>() - damper(body_.damping, body_.mass) * now.segment<3>(at.dtwin)) / body_.mass;
+    ddE.tail<3>() = (w.tail<3>() -
+                     damper(body_.angular_damping, body_.inertia) * now.segment<3>(at.dtwin + 3)) /
+                    body_.inertia;
     next.segment<6>(at.twin) += dt_ * now.segment<6>(at.dtwin) + 0.5 * dt_ * dt_ * ddE;
     next.segment<6>(at.dtwin) += dt_ * ddE;
     const VectorXd ddq_r = to_joints_ * ddE;
@@ -207,7 +219,9 @@ class Period {
     TrackingReport report;
     control_.step(here, there, robot, state, command, report);
     const VectorXd tau_command = command.tau_m - at_rest_;
-    next.segment(at.integral, n) = state.integral - started_.integral;
+    if (config_.integral_rate >= kSlowestIntegral) {
+      next.segment(at.integral, n) = state.integral - started_.integral;
+    }
     next.segment(at.tau_r, n) = state.tau_r - started_.tau_r;
     next.segment(at.dtau_r, n) = state.dtau_r;
     next.segment<6>(at.w_last) = state.w_H;
@@ -238,7 +252,9 @@ class Period {
       }
       means.push_back(sum / kGroup);
     }
-    means.back() += disturbance.wrench;
+    for (int group = 0; group < kGroups; ++group) {
+      means[static_cast<std::size_t>(group)] += disturbance.wrench.col(group);
+    }
     next.head(size) = x.head(size);
     for (int slot = 0; slot < at.slots; ++slot) {
       next.segment(at.commands + slot * n, n) = commands[static_cast<std::size_t>(slot + 1)];
@@ -259,6 +275,13 @@ class Period {
       actuator.coulomb_friction = actuator.load_friction = 0.0;
     }
     return config;
+  }
+
+  // As the law has it: one that would stop the body within a sample acts in series with one that
+  // just does (rendering/twin_forces.h).
+  double damper(double damping, double inertia) const {
+    if (damping * dt_ <= inertia) return damping;
+    return 1.0 / (1.0 / damping + dt_ / inertia);
   }
 
   int rounded_groups(double seconds) const {
@@ -365,10 +388,17 @@ class Period {
 
 HandleLoop linearise(const Device& device, const control::Reality& reality, const Body& body,
                      const user::HandImpedance& hand, const Noise& noise, const VectorXd& q) {
-  constexpr double kUnit = 1e-6;  // small against every limit of the controller
+  // small against every limit of the controller, large against its rounding
+  constexpr double kUnit = 1e-6, kTorque = 1e-3, kTorqueRate = 0.1;
   Period period(device, reality, body, hand, q);
   const Layout& at = period.layout();
   const int n = at.n;
+  VectorXd unit_of = VectorXd::Constant(at.size, kUnit);
+  for (const int first : {at.current, at.tau_r, at.stiff}) unit_of.segment(first, n).fill(kTorque);
+  for (const int first : {at.wrench, at.w_last}) unit_of.segment(first, 6).fill(kTorque);
+  unit_of.segment(at.dtau_r, n).fill(kTorqueRate);
+  unit_of.segment(at.dw, 6).fill(kTorqueRate);
+  unit_of.tail(at.size - at.commands).fill(kTorque);
   using Disturbance = Period::Disturbance;
   const VectorXd nothing = VectorXd::Zero(at.size);
   const VectorXd rest = period.advance(nothing, {});
@@ -382,16 +412,18 @@ HandleLoop linearise(const Device& device, const control::Reality& reality, cons
                      .C = MatrixXd::Zero(12, at.size),
                      .period_s = device.loop.config.dt};
   for (int i = 0; i < at.size; ++i) {
-    loop.A.col(i) = answer(kUnit * VectorXd::Unit(at.size, i), {});
+    const VectorXd one = unit_of[i] * VectorXd::Unit(at.size, i);
+    loop.A.col(i) = (period.advance(one, {}) - rest) / unit_of[i];
   }
   for (int i = 0; i < 3; ++i) {
     loop.B_push.col(i) = answer(nothing, {.push = kUnit * period.R_B_H().col(i)});
   }
-  // the noise of all means of a period in one of them
-  const double per_root_s = kGroups / std::sqrt(loop.period_s);
+  const double per_root_s = std::sqrt(kGroups / loop.period_s);
   for (int i = 0; i < kNoises; ++i) {
-    const double deviation = per_root_s * (i < 3 ? noise.force : noise.torque);
-    loop.B_noise.col(i) = deviation * answer(nothing, {.wrench = kUnit * Vector6::Unit(i)});
+    Disturbance disturbance;
+    disturbance.wrench(i % 6, i / 6) = kUnit;
+    const double deviation = per_root_s * (i % 6 < 3 ? noise.force : noise.torque);
+    loop.B_noise.col(i) = deviation * answer(nothing, disturbance);
   }
   for (int i = 0; i < n; ++i) {
     const VectorXd unit = kUnit * VectorXd::Unit(n, i);

@@ -70,8 +70,9 @@ Values values_of(const Device& device) {
 Device with_values(Device device, const Values& values) {
   for (std::size_t i = 0; i < kKnobs.size(); ++i) {
     const Knob& knob = kKnobs[i];
-    knob.set(device,
-             std::clamp(values[static_cast<Eigen::Index>(i)], knob.least, most_of(knob, device)));
+    const double most = most_of(knob, device);
+    const double value = values[static_cast<Eigen::Index>(i)];
+    knob.set(device, std::clamp(value, std::min(knob.least, most), most));
   }
   return device;
 }

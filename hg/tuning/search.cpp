@@ -15,14 +15,20 @@ constexpr double kFirstStep = 0.08;     // of a knob, share of its range
 constexpr int kMostProofs = 4;          // evolutions per limit
 constexpr double kProofReserve = 1e-4;  // of eigenvalues, against other postures
 
-// to three digits, as they will stand in a file
-Values rounded(Values values) {
-  for (double& value : values) {
-    if (value == 0.0) continue;
-    const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
-    value = std::round(value / unit) * unit;
+double with_three_digits(double value, double (*rounding)(double)) {
+  if (value == 0.0) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+  return rounding(value / unit) * unit;
+}
+
+// As they will stand in a file, and within what the device takes.
+Values rounded(const Device& device, const Values& values) {
+  Values result = values.unaryExpr([](double x) { return with_three_digits(x, std::round); });
+  const Values taken = values_of(with_values(device, result));
+  for (Eigen::Index i = 0; i < result.size(); ++i) {
+    if (taken[i] < result[i]) result[i] = with_three_digits(taken[i], std::floor);
   }
-  return values;
+  return result;
 }
 
 class Search {
@@ -38,14 +44,16 @@ class Search {
     }
   }
 
-  Candidate best(Values start, double limit, Proof& proof) {
+  Candidate best(const Values& start, double limit, Proof& proof) {
+    Values found = start;
     for (int k = 0; k < kMostProofs; ++k) {
-      start = rounded(evolved(start, k == 0 ? kFirstStep : 0.3 * kFirstStep, limit));
-      proof = proof_everywhere(start);
+      const double step = k == 0 ? kFirstStep : 0.3 * kFirstStep;
+      found = rounded(problem_.device, evolved(found, step, limit));
+      proof = proof_everywhere(with_values(problem_.device, found));
       if (proof.holds()) break;
       mind(proof);
     }
-    return {start, figures_of(problem_, start)};
+    return {found, figures_of(problem_, with_values(problem_.device, found))};
   }
 
   // Of what is there already what costs least under a new limit.
@@ -63,12 +71,12 @@ class Search {
 
   // Where a loop came nearest to its limits counts from now on.
   void mind(const Proof& proof) {
-    hard_.push_back(proof.worst_arm);
-    hard_.push_back(proof.worst_hand);
+    for (const Case& one : {proof.worst_arm, proof.worst_hand}) {
+      if (std::ranges::find(hard_, one) == hard_.end()) hard_.push_back(one);
+    }
   }
 
-  Proof proof_everywhere(const Values& values) {
-    const Device device = with_values(problem_.device, values);
+  Proof proof_everywhere(const Device& device) {
     std::vector<Proof> proofs(problem_.postures.size());
     experiments::do_all(
         proofs.size(),
@@ -86,9 +94,6 @@ class Search {
     return all;
   }
 
-  const Demands& demands() const { return demands_; }
-  std::size_t tried() const { return tried_; }
-
  private:
   void tell(const std::string& what, std::size_t done, std::size_t total) const {
     if (told_) told_(what, done, total);
@@ -97,15 +102,15 @@ class Search {
   static void take(const Case& one, double radius, Proof& proof) {
     ++proof.cases;
     double& worst = one.grasp < 0 ? proof.arm : proof.hand;
-    if (radius <= worst) return;
+    if (!(radius > worst)) return;
     worst = radius;
     (one.grasp < 0 ? proof.worst_arm : proof.worst_hand) = one;
   }
 
   // What shall be small: distortion, with what is forbidden made dear.
   double cost(const Values& values, double limit) const {
-    const Figures figures = figures_of(problem_, values);
     const Device device = with_values(problem_.device, values);
+    const Figures figures = figures_of(problem_, device);
     const double too_much = std::max(0.0, figures.vibration / limit - 1.0);
     double excess = 0.0;
     for (const Case& one : hard_) {
@@ -126,7 +131,6 @@ class Search {
                                 cost(values_at(inside), limit) + (places[i] - inside).squaredNorm();
                           },
                           {});
-      tried_ += places.size();
       return result;
     };
     const Eigen::VectorXd found = minimise(
@@ -142,13 +146,11 @@ class Search {
   const Told& told_;
   Demands demands_;
   std::vector<Case> hard_;  // what counts during the search
-  std::size_t tried_ = 0;
 };
 
 }  // namespace
 
-Figures figures_of(const Problem& problem, const Values& values) {
-  const Device device = with_values(problem.device, values);
+Figures figures_of(const Problem& problem, const Device& device) {
   Figures worst = {.transparency_Hz = kInfinity};
   const std::size_t count = std::min(problem.felt_postures, problem.postures.size());
   for (std::size_t i = 0; i < count; ++i) {
@@ -171,15 +173,14 @@ Result search(const Problem& problem, const std::vector<double>& limits, const T
   Search searching(problem, told);
   Result result = {.limits = limits};
   const Values present = values_of(problem.device);
-  result.before = {present, figures_of(problem, present)};
-  result.proof_before = searching.proof_everywhere(present);
+  result.before = {present, figures_of(problem, problem.device)};
+  result.proof_before = searching.proof_everywhere(problem.device);
   searching.mind(result.proof_before);
   for (const double limit : limits) {
     Proof proof;
     result.front.push_back(searching.best(searching.nearest(result, limit), limit, proof));
     result.proofs.push_back(proof);
   }
-  result.tried = searching.tried();
   return result;
 }
 

@@ -35,7 +35,7 @@ struct Figures {
   double friction_N = 0.0;
   double vibration = 0.0, centroid_Hz = 0.0;
 };
-Figures figures_of(const Problem& problem, const Values& values);
+Figures figures_of(const Problem& problem, const Device& device);
 
 struct Candidate {
   Values values;
@@ -48,10 +48,9 @@ using Told = std::function<void(const std::string& what, std::size_t done, std::
 struct Result {
   Candidate before;
   Proof proof_before;
-  std::vector<Candidate> front;  ///< one per limit of vibration, all proven
+  std::vector<Candidate> front;  ///< one per limit of vibration, proven where that was possible
   std::vector<double> limits;    ///< the limits, m/s^2
   std::vector<Proof> proofs;     ///< of the front, in all postures
-  std::size_t tried = 0;         ///< loops that were computed
 };
 
 /// The best loop for each of `limits` of vibration (rms above 20 Hz, m/s^2), by evolution;

@@ -16,33 +16,43 @@ double rounding(double step) { return step / std::sqrt(12.0); }
 }  // namespace
 
 Device device_of(const config::Device& device) {
-  if (device.control.method != control::Method::kModal) {
+  const auto refuse = [&](const std::string& why) {
     throw SetupError(fmt::format(
-        "{}: {}", device.sources.empty() ? device.name : device.sources.front().name,
-        device.control.method == control::Method::kDrives
-            ? "tune is for joints whose torque we control: the device has no 'actuators', its "
-              "drives follow positions by themselves"
-            : "tune is for control.method: modal, got motor_pd"));
+        "{}: {}", device.sources.empty() ? device.name : device.sources.front().name, why));
+  };
+  if (device.control.method == control::Method::kDrives) {
+    refuse(
+        "tune is for joints whose torque we control: the device has no 'actuators', its drives "
+        "follow positions by themselves");
   }
-  const simulation::SensorFilterConfig& filter = device.simulation.sensors.wrench.filter;
+  if (device.control.method != control::Method::kModal) {
+    refuse("tune is for control.method: modal, got motor_pd");
+  }
+  if (device.model.n_m < 6) {
+    refuse(
+        fmt::format("tune needs six joints, with which the handle moves in every direction, got "
+                    "{}",
+                    device.model.n_m));
+  }
+  if (!device.estimation.wrench.has_imu) {
+    refuse("tune needs estimation.has_imu: true, it takes the inertia of the payload as known");
+  }
+  const simulation::WrenchSensorConfig& sensor = device.simulation.sensors.wrench;
+  if (!(sensor.force_noise > 0.0)) {
+    refuse(
+        "tune weighs what is felt against the noise of the force/torque sensor, and there is "
+        "none: give 'simulation:' a file with sensors.wrench_sensor.noise_N_per_sqrt_Hz");
+  }
   return {.loop = assembly::torque_loop(device),
-          .wrench = {.average_s = filter.average,
-                     .delay_s = filter.delay,
+          .wrench = {.average_s = sensor.filter.average,
+                     .delay_s = sensor.filter.delay,
                      .low_pass_Hz = device.estimation.wrench.low_pass_Hz}};
-}
-
-void apply(const Device& tuned, config::Device& device) {
-  device.control = tuned.loop.config;
-  device.estimation.link_pole_Hz = tuned.loop.filters.link_pole_Hz;
-  device.estimation.motor_low_pass_Hz = tuned.loop.filters.motor_low_pass_Hz;
-  device.estimation.wrench.low_pass_Hz = tuned.wrench.low_pass_Hz;
 }
 
 Noise noise_of(const config::Device& device) {
   const simulation::SensorsConfig& sensors = device.simulation.sensors;
   const Payload& payload = device.estimation.wrench.payload;
-  const double accelerometer =
-      device.estimation.wrench.has_imu ? sensors.accelerometer.noise * payload.mass : 0.0;
+  const double accelerometer = sensors.accelerometer.noise * payload.mass;
   Noise noise = {.force = std::hypot(sensors.wrench.force_noise, accelerometer),
                  .torque = sensors.wrench.torque_noise,
                  .joint = Eigen::VectorXd(device.model.n_m),

@@ -6,12 +6,10 @@
 
 namespace hg::tuning {
 
-/// The loop of a device with elastic joints, its sensors as its simulation has them. Throws
-/// SetupError for a device whose drives follow positions: there is nothing to tune.
+/// The loop of a device with elastic joints, with the delay of the wrench that its simulation has.
+/// Throws SetupError for a device that cannot be tuned: one whose drives follow positions, with
+/// fewer than six joints, without an accelerometer, or whose sensors have no noise.
 Device device_of(const config::Device& device);
-
-/// Gives `device` the filters and poles of `tuned`.
-void apply(const Device& tuned, config::Device& device);
 
 /// What the simulation adds to what is measured.
 Noise noise_of(const config::Device& device);

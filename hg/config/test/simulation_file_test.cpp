@@ -38,6 +38,8 @@ Simulation load(const std::string& yaml, const SimulatedDevice& device = kDevice
                         "motors: {cogging: 0.01, ripple: 0.02}\n"
                         "sensors: {ideal: true, torque_sensor: {noise: 0.1}}\n"},
                        {"second.yaml", "base: base.yaml\n"},
+                       {"plain.yaml", "urdf: plain.urdf\n"},
+                       {"yielding.yaml", "structure: {slide: {frequency_Hz: 9}}\n"},
                        {"bent.urdf", urdf("revolute")},
                        {"slid.urdf", urdf("prismatic")},
                        {"free.urdf", urdf("floating")},
@@ -48,6 +50,14 @@ Simulation load(const std::string& yaml, const SimulatedDevice& device = kDevice
 // What is wrong with the file; the text starts in line 2.
 std::string message(const std::string& yaml, const SimulatedDevice& device = kDevice) {
   return message_of([&] { load("sensors: {}\n" + yaml, device); });
+}
+
+TEST(SimulationFile, AnotherUrdfThanThatOfItsBaseHasItsOwnJoints) {
+  const Simulation simulation = load(
+      "base: plain.yaml\nurdf: bent.urdf\n"
+      "flexible: {bend: {stiffness_Nm_per_rad: 10, damping_Nms_per_rad: 1}}\n");
+  ASSERT_EQ(simulation.flexible.size(), 1u);
+  EXPECT_EQ(simulation.flexible[0].stiffness, 10.0);
 }
 
 TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
@@ -397,8 +407,15 @@ INSTANTIATE_TEST_SUITE_P(
              "you mean 'slide'?"},
         Case{
             "StructureBesideAUrdf", "urdf: plain.urdf\nstructure: {slide: {frequency_Hz: 9}}\n",
-            "simulation.yaml:3:12: structure: cannot be given together with 'urdf': put the joints "
-            "into that URDF and 'flexible'"},
+            "simulation.yaml:3:12: structure: 'structure' and 'urdf' exclude each other, also in a "
+            "base: put the joints into that URDF and 'flexible'"},
+        Case{
+            "UrdfBesideTheStructureOfABase", "base: yielding.yaml\nurdf: plain.urdf\n",
+            "simulation.yaml:3:7: urdf: 'structure' and 'urdf' exclude each other, also in a base: "
+            "put the joints into that URDF and 'flexible'"},
+        Case{"StructureThatSags", "structure: {slide: {frequency_Hz: 0.001}}\n",
+             "simulation.yaml:2:35: structure.slide.frequency_Hz: must be 0 or at least 1: what is "
+             "softer sags without end, got 0.001"},
         Case{"WavesThatTurnBack", "waviness: {slide: {amplitude_m: 0.1, period_m: 0.5}}\n",
              "simulation.yaml:2:48: waviness.slide.period_m: must exceed 2 pi amplitudes: the axis "
              "never turns back, got 0.5"},

@@ -11,6 +11,7 @@
 #include "hg/config/scenario.h"
 #include "hg/experiments/changes.h"
 #include "hg/experiments/stability_map.h"
+#include "hg/haptify/free_space.h"
 #include "hg/haptify/measures.h"
 #include "hg/haptify/response.h"
 #include "hg/tuning/feel.h"
@@ -76,6 +77,10 @@ TEST(HandleLoop, SaysWhatTheSimulationShows) {
     const double latency_s = haptify::measure_latency(scenario, pushes, axis, 1).motion_s;
     EXPECT_NEAR(said.latency_s[static_cast<std::size_t>(axis)], latency_s, 1e-3);
   }
+  const haptify::FreeSpace walked = haptify::measure_free_space(scenario, {.duration_s = 8.0}, 1);
+  ASSERT_EQ(walked.failure, "");
+  EXPECT_NEAR(said.vibration, walked.vibration_rms, 0.25 * walked.vibration_rms);
+  EXPECT_NEAR(said.centroid_Hz, walked.centroid_Hz, 0.1 * walked.centroid_Hz);
 }
 
 // How a kick that saturates nothing dies out, on a machine without friction.
@@ -123,6 +128,37 @@ TEST(HandleLoop, NoiseComesFromWhatIsNoisyAndNothingElse) {
   const double of_force = vibration({.force = 1e-3});
   EXPECT_GT(of_force, 0.0);
   EXPECT_NEAR(vibration({.force = 2e-3}), 2.0 * of_force, 1e-9);
+}
+
+// the sensor's mean and delay fall between samples then
+TEST(HandleLoop, HasTheNoiseOfTheWrenchAtOtherRates) {
+  const config::Scenario scenario = walk();
+  const auto vibration = [&](double rate_Hz) {
+    config::Device device = scenario.device;
+    device.control.flatness_Hz = 40.0;
+    config::set_rate(device, rate_Hz);
+    return feel(linearise(device_of(device), simulated(device), {}, user::HandImpedance{},
+                          {.force = 2.5e-3}, posture_of(scenario)),
+                {}, unexpected_friction(device))
+        .vibration;
+  };
+  EXPECT_GT(vibration(400.0), 1e-3);
+  EXPECT_NEAR(vibration(2000.0), vibration(1000.0), 0.35 * vibration(1000.0));
+}
+
+// dt d / m = 2.7: with the damper as it stands the body would be thrown to and fro
+TEST(HandleLoop, AStrongDamperDoesNotRing) {
+  const config::Scenario scenario = walk();
+  const Body damped = {.mass = 0.3, .damping = 800.0};
+  EXPECT_LT(spectral_radius(loop_of(scenario, damped, user::HandImpedance{})), 1.0);
+}
+
+TEST(Device, WithoutNoiseOrAccelerometerIsRefused) {
+  config::Scenario silent = walk(), blind = walk();
+  silent.device.simulation.sensors.wrench.force_noise = 0.0;
+  EXPECT_THROW(device_of(silent.device), SetupError);
+  blind.device.estimation.wrench.has_imu = false;
+  EXPECT_THROW(device_of(blind.device), SetupError);
 }
 
 TEST(Device, OneWhoseDrivesFollowPositionsIsRefused) {
