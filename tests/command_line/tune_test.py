@@ -16,7 +16,8 @@ class Tune(TemporaryFolder):
         device = self.folder / "haptic_giant"
         shutil.copytree(MODELS / "haptic_giant", device)
         out = self.folder / "out"
-        code, told, err = run("tune", device / "device.yaml", "--postures", 1, "--out", out)
+        code, told, err = run("tune", device / "device.yaml", "--postures", 1, "--out", out,
+                              timeout=900)
         self.assertEqual((code, err), (0, ""), told)
         self.assertIn("proven                              ", told)
         lines = told[told.index("for device.yaml:\n") + 17:told.index("\nreport ")]
