@@ -9,9 +9,8 @@
 #include "apps/hapticgiant/haptify_report.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/config/scenario.h"
 #include "hg/core/error.h"
 #include "hg/haptify/benchmark.h"
 
@@ -50,12 +49,8 @@ int run_haptify(const HaptifyArguments& arguments) {
   print_out(fmt::format(
       "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
       kVersion));
-  config::Scenario scenario = config::load_scenario(find_scenario("walk"));
-  if (!arguments.simulation.empty()) {
-    config::SourceReader reader;
-    config::take_simulation(scenario.device,
-                            find_simulation(arguments.simulation, scenario.device, reader), reader);
-  }
+  const config::Scenario scenario =
+      make_scenario({.scenario = "walk", .simulation = arguments.simulation});
   const haptify::Benchmark result = haptify::measure(scenario, arguments.options, tell);
   const std::string command = command_of(arguments);
 

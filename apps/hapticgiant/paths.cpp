@@ -14,6 +14,23 @@
 namespace hg::apps {
 namespace fs = std::filesystem;
 
+namespace {
+
+// Of the YAML files in a folder whose stem begins with `prefix`, what follows it; sorted.
+std::vector<std::string> names_in(const fs::path& folder, std::string_view prefix) {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
+    const std::string stem = entry.path().stem().string();
+    if (entry.path().extension() != ".yaml" || !stem.starts_with(prefix)) continue;
+    names.push_back(stem.substr(prefix.size()));
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
 fs::path installation_root() {
   std::error_code error;
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
@@ -42,11 +59,7 @@ fs::path find_scenario(const std::string& name) {
   const fs::path known = folder / (name + ".yaml");
   if (fs::is_regular_file(known, error)) return known;
 
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
+  const std::vector<std::string> names = names_in(folder, "");
   throw SetupError(fmt::format("{}: no such scenario file, did you mean '{}'? Shipped are {}", name,
                                nearest_name(fs::path(name).stem().string(), names),
                                fmt::join(names, ", ")));
@@ -60,20 +73,12 @@ fs::path find_device(const std::string& file) {
 fs::path find_simulation(const std::string& name, const config::Device& device,
                          const config::SourceReader& reader) {
   constexpr std::string_view kPrefix = "simulation_";
-  std::error_code error;
   if (reader.exists(name)) return name;
   const fs::path folder = fs::path(device.sources.front().name).parent_path();
   const fs::path known = folder / fmt::format("{}{}.yaml", kPrefix, name);
   if (reader.exists(known)) return known;
 
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
-    const std::string stem = entry.path().stem().string();
-    if (entry.path().extension() == ".yaml" && stem.starts_with(kPrefix)) {
-      names.push_back(stem.substr(kPrefix.size()));
-    }
-  }
-  std::sort(names.begin(), names.end());
+  const std::vector<std::string> names = names_in(folder, kPrefix);
   if (names.empty()) throw SetupError(fmt::format("{}: no such simulation file", name));
   throw SetupError(fmt::format("{}: no such simulation file, did you mean '{}'? Beside {} are {}",
                                name, nearest_name(name, names), device.sources.front().name,

@@ -1,13 +1,13 @@
 #include "apps/hapticgiant/tune_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
+#include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/tune_report.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/assembly/assembly.h"
@@ -17,21 +17,13 @@
 namespace hg::apps {
 namespace {
 
-void tell(const std::string& what, std::size_t done, std::size_t total) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  draw_error(done < total ? fmt::format("{}: {} of {}", what, done, total) : "");
-}
-
 tuning::Problem problem_of(const config::Device& device, const TuneArguments& arguments) {
-  tuning::Problem problem = {
-      .device = tuning::device_of(device),
-      .noise = tuning::noise_of(device),
-      .reality = tuning::simulated(device),
-      .friction = tuning::unexpected_friction(device),
-      .body = {.mass = arguments.mass, .damping = arguments.damping},
-      .postures = assembly::random_postures(device.model, arguments.postures, arguments.seed)};
-  problem.friction_most_N = tuning::figures_of(problem, problem.device).friction_N;
-  return problem;
+  return {.device = tuning::device_of(device),
+          .noise = tuning::noise_of(device),
+          .reality = tuning::simulated(device),
+          .friction = tuning::unexpected_friction(device),
+          .body = {.mass = arguments.mass, .damping = arguments.damping},
+          .postures = assembly::random_postures(device.model, arguments.postures, arguments.seed)};
 }
 
 std::string command_of(const TuneArguments& arguments) {
@@ -54,35 +46,42 @@ std::string command_of(const TuneArguments& arguments) {
 int run_tune(const TuneArguments& arguments) {
   const config::Device device = config::load_device(find_device(arguments.device));
   tuning::Problem problem = problem_of(device, arguments);
+  const tuning::Figures now = tuning::figures_of(problem, problem.device);
+  problem.friction_most_N = now.friction_N;
   make_folder(arguments.out);
   print_out(
       "HapticGiant {}  tunes {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
       kVersion, device.name, tuning::knobs().size(), problem.postures.size(), arguments.mass,
       arguments.damping);
-  const double limit = arguments.vibration > 0.0
-                           ? arguments.vibration
-                           : tuning::figures_of(problem, problem.device).vibration;
+  const double limit = arguments.vibration > 0.0 ? arguments.vibration : now.vibration;
   std::vector<double> limits = {limit};
   if (arguments.has_front) {
     for (const double share : {0.75, 0.5, 1.5, 2.0}) limits.push_back(share * limit);
   }
-  const tuning::Result result = tuning::search(problem, limits, tell);
-  const TuneReport report = {problem, result, device.name, command_of(arguments)};
+  const tuning::Result result = tuning::search(
+      problem, limits, [](const std::string& what, std::size_t done, std::size_t total) {
+        if (const auto tell = progress_of(what)) tell(done, total);
+      });
+  const TuneReport report = {
+      .problem = problem,
+      .result = result,
+      .demands = {problem.device.loop.config, problem.body, problem.postures},
+      .name = device.name,
+      .command = command_of(arguments)};
 
-  constexpr std::size_t kChosen = 0;
-  print_out(tune_text(report, kChosen));
-  print_out(fmt::format("\nfor device.yaml:\n{}", tune_yaml(report, kChosen)));
+  print_out(tune_text(report));
+  print_out(fmt::format("\nfor device.yaml:\n{}", tune_yaml(report)));
   const std::filesystem::path folder = arguments.out;
   const auto write = [&](const char* name, const std::string& text) {
     write_output((folder / name).string(), text);
   };
-  write("report.md", tune_markdown(report, kChosen));
+  write("report.md", tune_markdown(report));
   write("front.csv", tune_csv(report));
   write("front.svg", tune_svg(report));
   print_out(fmt::format("\nreport      {}\n", (folder / "report.md").string()));
-  const tuning::Figures& found = result.front[kChosen].figures;
+  const tuning::Figures& found = result.front.front().figures;
   constexpr double kTolerated = 1.01;  // of limits that the search approaches from both sides
-  if (!result.proofs[kChosen].holds()) {
+  if (!result.proofs.front().holds()) {
     print_error(
         "not proven: do not use these lines; more vibration (--vibration) leaves more room\n");
     return 1;

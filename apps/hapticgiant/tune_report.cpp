@@ -39,15 +39,15 @@ std::string decay(double radius) { return fmt::format("{:.3f}", std::pow(radius,
 
 using Row = std::function<void(const std::string&, const std::string&, const std::string&)>;
 
-void all_rows(const TuneReport& report, std::size_t chosen, const Row& row) {
+void all_rows(const TuneReport& report, const Row& row) {
   const Figures& before = report.result.before.figures;
-  const Figures& after = report.result.front[chosen].figures;
+  const Figures& after = report.result.front.front().figures;
   for (const Column& column : kColumns) {
     const std::string unit = column.unit[0] != '\0' ? fmt::format(", {}", column.unit) : "";
     row(column.name + unit, value_of(column, before), value_of(column, after));
   }
   const Proof& was = report.result.proof_before;
-  const Proof& is = report.result.proofs[chosen];
+  const Proof& is = report.result.proofs.front();
   row("errors left after 0.1 s", decay(was.arm), decay(is.arm));
   row("the same in a hand", decay(was.hand), decay(is.hand));
   const auto verdict = [](const Proof& proof) -> std::string {
@@ -61,30 +61,26 @@ std::string worst_of(const tuning::Demands& demands, const Proof& proof) {
                      demands.name(proof.worst_hand));
 }
 
-tuning::Demands demands_of(const tuning::Problem& problem) {
-  return tuning::Demands(problem.device.loop.config, problem.body, problem.postures);
-}
-
 }  // namespace
 
-std::string tune_text(const TuneReport& report, std::size_t chosen) {
+std::string tune_text(const TuneReport& report) {
   std::string text = fmt::format("{:28}{:>10}{:>10}\n", "", "now", "tuned");
-  all_rows(report, chosen,
+  all_rows(report,
            [&](const std::string& name, const std::string& before, const std::string& after) {
              text += fmt::format("{:28}{:>10}{:>10}\n", name, before, after);
            });
+  const std::size_t postures = report.problem.postures.size();
   text += fmt::format("\nproof       {} cases in {} postures; {}\n",
-                      report.result.proofs[chosen].cases, report.problem.postures.size(),
-                      worst_of(demands_of(report.problem), report.result.proofs[chosen]));
+                      postures * report.demands.cases(0).size(), postures,
+                      worst_of(report.demands, report.result.proofs.front()));
   if (!report.result.proof_before.holds()) {
-    text += fmt::format("now         {}\n",
-                        worst_of(demands_of(report.problem), report.result.proof_before));
+    text += fmt::format("now         {}\n", worst_of(report.demands, report.result.proof_before));
   }
   return text;
 }
 
-std::string tune_yaml(const TuneReport& report, std::size_t chosen) {
-  const Candidate& candidate = report.result.front[chosen];
+std::string tune_yaml(const TuneReport& report) {
+  const Candidate& candidate = report.result.front.front();
   const Figures& figures = candidate.figures;
   std::string text = fmt::format(
       "# {}\n# transparency {:.1f} Hz, latency {:.1f} ms, vibration {:.3f} m/s^2 in the worst of "
@@ -103,24 +99,23 @@ std::string tune_yaml(const TuneReport& report, std::size_t chosen) {
   return text;
 }
 
-std::string tune_markdown(const TuneReport& report, std::size_t chosen) {
+std::string tune_markdown(const TuneReport& report) {
   std::string text = fmt::format(
       "# Filters and poles of {}\n\n`{}`\n\nComputed from the linear loop around the handle "
       "(docs/control.md): without torque limits and with no friction but that of the row that says "
       "so. Play it before you trust it: `hapticgiant haptify`, `hapticgiant experiment "
       "stability-map`.\n\n| | now | tuned |\n| --- | --- | --- |\n",
       report.name, report.command);
-  all_rows(report, chosen,
+  all_rows(report,
            [&](const std::string& name, const std::string& before, const std::string& after) {
              text += fmt::format("| {} | {} | {} |\n", name, before, after);
            });
-  const tuning::Demands demands = demands_of(report.problem);
   text += fmt::format(
       "\nNow: {}. Tuned: {}.\n\n## Front\n\n![front](front.svg)\n\n| vibration at most | vibration "
       "| transparency Hz | latency ms | distortion | unexpected friction N | proven |\n| --- | --- "
       "| --- | --- | --- | --- | --- |\n",
-      worst_of(demands, report.result.proof_before),
-      worst_of(demands, report.result.proofs[chosen]));
+      worst_of(report.demands, report.result.proof_before),
+      worst_of(report.demands, report.result.proofs.front()));
   for (std::size_t i = 0; i < report.result.front.size(); ++i) {
     const Figures& figures = report.result.front[i].figures;
     text += fmt::format("| {:.4f} | {:.4f} | {:.1f} | {:.2f} | {:.3f} | {:.3f} | {} |\n",
@@ -128,7 +123,7 @@ std::string tune_markdown(const TuneReport& report, std::size_t chosen) {
                         1e3 * figures.latency_s, figures.distortion, figures.friction_N,
                         report.result.proofs[i].holds() ? "yes" : "no");
   }
-  return text + fmt::format("\n## For device.yaml\n\n```yaml\n{}```\n", tune_yaml(report, chosen));
+  return text + fmt::format("\n## For device.yaml\n\n```yaml\n{}```\n", tune_yaml(report));
 }
 
 std::string tune_csv(const TuneReport& report) {

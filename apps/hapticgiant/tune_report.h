@@ -10,16 +10,17 @@ namespace hg::apps {
 /// A report with its command, and the lines for device.yaml.
 struct TuneReport {
   const tuning::Problem& problem;
-  const tuning::Result& result;
+  const tuning::Result& result;  ///< the first of its front is what was asked for
+  tuning::Demands demands;
   std::string name, command;
 };
 
-/// Before and after, for a terminal; `chosen` of the front.
-std::string tune_text(const TuneReport& report, std::size_t chosen);
+/// Before and after, for a terminal.
+std::string tune_text(const TuneReport& report);
 /// Lines for device.yaml, with the figures behind them.
-std::string tune_yaml(const TuneReport& report, std::size_t chosen);
+std::string tune_yaml(const TuneReport& report);
 /// A page of all that.
-std::string tune_markdown(const TuneReport& report, std::size_t chosen);
+std::string tune_markdown(const TuneReport& report);
 /// One row per loop: limit, figures, proof, values.
 std::string tune_csv(const TuneReport& report);
 /// Transparency and latency over vibration.

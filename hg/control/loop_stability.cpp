@@ -1,64 +1,21 @@
 #include "hg/control/loop_stability.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
+#include "hg/control/sampled_arm.h"
 #include "hg/core/linear_algebra.h"
-#include "hg/estimation/joint_observer.h"
+#include "hg/estimation/low_pass.h"
 
 namespace hg::control {
 namespace {
 
-constexpr int kSteps = 8;  // per period: latencies are rounded to them
-
 // Where the parts of the sampled loop stand in its state.
 struct Layout {
   int n, slots;
-  int theta() const { return 0; }
-  int dtheta() const { return n; }
-  int q() const { return 2 * n; }
-  int dq() const { return 3 * n; }
-  int tau() const { return 4 * n; }
-  int theta_last() const { return 5 * n; }
-  int dtheta_filtered() const { return 6 * n; }
-  int q_observed() const { return 7 * n; }
-  int dq_observed() const { return 8 * n; }
-  int commands() const { return 9 * n; }  // the oldest first
+  // theta, theta', q, q', current; LinearObservers; commands under way, the oldest first
+  int observers() const { return 5 * n; }
   int size() const { return (9 + slots) * n; }
 };
-
-// d/dt (theta, theta', q, q', tau) for a constant command: A x + B tau_command
-Eigen::MatrixXd plant_with_input(const Config& config, const MatrixM& M) {
-  const int n = static_cast<int>(M.rows());
-  Eigen::VectorXd Jm(n), K(n), D(n), viscous(n);
-  for (int i = 0; i < n; ++i) {
-    const ActuatorModel& actuator = config.actuators[static_cast<std::size_t>(i)];
-    Jm[i] = actuator.rotor_inertia;
-    K[i] = actuator.stiffness;
-    D[i] = actuator.damping;
-    viscous[i] = actuator.viscous_friction;
-  }
-  const Eigen::MatrixXd M_inverse = inverse(M);
-  const Eigen::VectorXd Jm_inverse = Jm.cwiseInverse();
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6 * n, 6 * n);
-  const auto block = [&](int row, int column) { return A.block(row * n, column * n, n, n); };
-  block(0, 1).setIdentity();
-  block(2, 3).setIdentity();
-  block(1, 0) = (-Jm_inverse.cwiseProduct(K)).asDiagonal();
-  block(1, 1) = (-Jm_inverse.cwiseProduct(D + viscous)).asDiagonal();
-  block(1, 2) = Jm_inverse.cwiseProduct(K).asDiagonal();
-  block(1, 3) = Jm_inverse.cwiseProduct(D).asDiagonal();
-  block(1, 4) = Jm_inverse.asDiagonal();
-  block(3, 0) = M_inverse * K.asDiagonal();
-  block(3, 1) = M_inverse * D.asDiagonal();
-  block(3, 2) = -(M_inverse * K.asDiagonal());
-  block(3, 3) = -(M_inverse * D.asDiagonal());
-  const double rate = 1.0 / std::max(config.loop.current_lag, 1e-6);
-  block(4, 4) = -rate * Eigen::MatrixXd::Identity(n, n);
-  block(4, 5) = rate * Eigen::MatrixXd::Identity(n, n);
-  return A;
-}
 
 // Torques that the controller answers with to unit errors of theta, theta', q, q' and tau_J.
 // `weight` holds the links in posture `q`.
@@ -69,19 +26,8 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const Vecto
   JointControl control(loop.config, loop.chain, loop.n_p, n, loop.handle);
   State at_start = control.start();
   at_start.latency = latency / loop.config.dt;
-  const VectorM at_rest = VectorM::Zero(n);
-  const ReferenceState reference = {.q_m = q.tail(n), .dq_m = at_rest, .ddq_m = at_rest};
-  RobotState robot;
-  robot.q_m = q.tail(n);
-  robot.tau_m = weight;
-  robot.theta_m = robot.q_m;
-  for (int i = 0; i < n; ++i) {
-    robot.theta_m[i] +=
-        robot.tau_m[i] / loop.config.actuators[static_cast<std::size_t>(i)].stiffness;
-  }
-  robot.dq_m = robot.dtheta_m = at_rest;
-  robot.q_p = q.head(loop.n_p);
-  robot.dq_p = robot.ddq_p = VectorP::Zero(loop.n_p);
+  const RobotState robot = standing(loop.config.actuators, q, weight);
+  const ReferenceState reference = standing_reference(robot);
   const auto torque = [&](const RobotState& seen) -> Eigen::VectorXd {
     State state = at_start;
     CommandFrame command;
@@ -103,26 +49,23 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const Vecto
   return answers;
 }
 
-Config with(Config config, const Reality& reality) {
-  config.actuators = reality.actuators;
-  config.loop = reality.loop;
-  return config;
-}
-
 // One period of the loop as a matrix, column by column.
 class SampledLoop {
  public:
   SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency, const Reality& reality)
-      : config_(with(loop.config, reality)),
-        layout_{loop.n_m, static_cast<int>(std::ceil(config_.loop.latency / config_.dt - 1e-9))},
-        latency_steps_(static_cast<int>(std::lround(config_.loop.latency / config_.dt * kSteps))) {
+      : actuators_(reality.actuators),
+        delay_(reality.loop.latency, loop.config.dt),
+        layout_{loop.n_m, delay_.slots()} {
+    const double dt = loop.config.dt;
     model::Chain chain = loop.chain;
     chain.update(q, Eigen::VectorXd::Zero(q.size()));
     const MatrixM M = reality.link_mass * chain.M().bottomRightCorner(loop.n_m, loop.n_m);
-    step_ = matrix_exponential(plant_with_input(config_, M) * (config_.dt / kSteps));
+    step_ = matrix_exponential(plant_with_input(actuators_, reality.loop.current_lag, M) *
+                               (dt / kPlantSteps));
     feedback_ = feedback(loop, q, chain.c().tail(loop.n_m), latency);
-    link_pole_ = estimation::low_pass_pole(loop.filters.link_pole_Hz, config_.dt);
-    motor_pole_ = estimation::low_pass_pole(loop.filters.motor_low_pass_Hz, config_.dt);
+    observers_ = {.dt = dt,
+                  .motor_pole = estimation::low_pass_pole(loop.filters.motor_low_pass_Hz, dt),
+                  .link_pole = estimation::low_pass_pole(loop.filters.link_pole_Hz, dt)};
   }
 
   Eigen::MatrixXd period() const {
@@ -137,59 +80,39 @@ class SampledLoop {
   Eigen::VectorXd advance(const Eigen::VectorXd& now) const {
     const Layout& at = layout_;
     const int n = at.n;
+    const Eigen::VectorXd theta = now.segment(0, n), dtheta = now.segment(n, n),
+                          q = now.segment(2 * n, n), dq = now.segment(3 * n, n);
     Eigen::VectorXd next = now;
-    const auto part = [n](auto& state, int first) { return state.segment(first, n); };
+    observers_.advance(theta, q, Eigen::VectorXd::Zero(n), next.segment(at.observers(), 4 * n));
 
+    Eigen::VectorXd seen(5 * n);  // theta, theta', q, q', joint torque
+    seen << theta, next.segment(at.observers() + n, 3 * n), Eigen::VectorXd::Zero(n);
     for (int i = 0; i < n; ++i) {
-      estimation::MotorObserver motor{now[at.theta_last() + i], now[at.dtheta_filtered() + i]};
-      estimation::observe(motor_pole_, config_.dt, now[at.theta() + i], motor);
-      next[at.theta_last() + i] = motor.theta;
-      next[at.dtheta_filtered() + i] = motor.dtheta;
-      estimation::LinkObserver link{now[at.q_observed() + i], now[at.dq_observed() + i]};
-      estimation::observe(link_pole_, config_.dt, 0.0, now[at.q() + i], link);
-      next[at.q_observed() + i] = link.q;
-      next[at.dq_observed() + i] = link.dq;
+      const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
+      seen[4 * n + i] =
+          actuator.stiffness * (theta[i] - q[i]) + actuator.damping * (dtheta[i] - dq[i]);
     }
 
-    Eigen::VectorXd tau_J(n);
-    for (int i = 0; i < n; ++i) {
-      const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
-      tau_J[i] = actuator.stiffness * (now[at.theta() + i] - now[at.q() + i]) +
-                 actuator.damping * (now[at.dtheta() + i] - now[at.dq() + i]);
-    }
-    Eigen::VectorXd state(5 * n);
-    state << part(now, at.theta()), part(next, at.dtheta_filtered()), part(next, at.q_observed()),
-        part(next, at.dq_observed()), tau_J;
-    const Eigen::VectorXd command = feedback_ * state;
-
-    // the plant under the commands that arrive during this period
-    std::vector<Eigen::VectorXd> commands;
-    for (int slot = 0; slot < at.slots; ++slot) {
-      commands.emplace_back(now.segment(at.commands() + slot * n, n));
-    }
-    commands.push_back(command);
+    // the plant under the commands that arrive during this period, the oldest first
+    Eigen::VectorXd commands((at.slots + 1) * n);
+    commands << now.tail(at.slots * n), feedback_ * seen;
     Eigen::VectorXd x(6 * n);
     x.head(5 * n) = now.head(5 * n);
-    for (int i = 0; i < kSteps; ++i) {
-      // the command of k periods ago has arrived when k kSteps + i >= latency_steps_
-      const int age = (latency_steps_ - i + kSteps - 1) / kSteps;
-      const int k = std::clamp(age, 0, at.slots);
-      x.tail(n) = commands[static_cast<std::size_t>(at.slots - k)];
+    for (int i = 0; i < kPlantSteps; ++i) {
+      x.tail(n) = commands.segment((at.slots - delay_.age(i)) * n, n);
       x = (step_ * x).eval();
     }
     next.head(5 * n) = x.head(5 * n);
-    for (int slot = 0; slot < at.slots; ++slot) {
-      next.segment(at.commands() + slot * n, n) = commands[static_cast<std::size_t>(slot + 1)];
-    }
+    next.tail(at.slots * n) = commands.tail(at.slots * n);
     return next;
   }
 
-  Config config_;  // of what is real
+  std::vector<ActuatorModel> actuators_;  // as they really are
+  CommandDelay delay_;
   Layout layout_;
-  int latency_steps_;
+  LinearObservers observers_;
   Eigen::MatrixXd step_;
   Eigen::MatrixXd feedback_;  // torques from theta, theta', q, q', tau_J
-  double link_pole_ = 0.0, motor_pole_ = 0.0;
 };
 
 }  // namespace

@@ -22,7 +22,6 @@ namespace {
 using Values = std::vector<double>;
 
 constexpr int kAxes = 3;
-constexpr double kWithin3dB = 1.4125;  // 3 dB
 
 std::string mean_text(const Values& values, int digits) {
   return fmt::format("{:.{}f}", mean_value(values), digits);

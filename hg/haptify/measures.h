@@ -15,6 +15,8 @@ namespace hg::haptify {
 
 /// Lowest frequency that counts as vibration, Hz; [HANDBOOK] 7.
 inline constexpr double kVibrationBand = 20.0;
+/// Ratio of two magnitudes that are 3 dB apart.
+inline constexpr double kWithin3dB = 1.4125;
 
 /// One signal with the energy of three at every frequency: |A|^2 = sum |A_i|^2, and the phase of
 /// their sum.

@@ -14,7 +14,6 @@ namespace hg::haptify {
 namespace {
 
 constexpr int kAxes = 3;
-constexpr double kWithin3dB = 1.4125;  // 3 dB
 
 double degrees(const std::complex<double>& value) {
   return std::arg(value) * 180.0 / std::numbers::pi;

@@ -273,20 +273,18 @@ void Plant::add_friction(int joint, int element, const PlantInput& input,
 // Between motor and link: hysteresis, and with backlash the flanks of the teeth that may touch when
 // the step ends. Of a flank's damper only the way inside counts, so that it never pulls.
 void Plant::add_gear(int joint, Rows& rows) const noexcept {
-  constexpr double kSpeedGained = 1.0;  // rad/s, at most in one step
   constexpr int kHysteresisSlot = kMaxBristles, kFlankSlot = kMaxBristles + 1;
-  const double h = config_.step;
   const JointEffects& e = config_.effects[at(joint)];
   const int slot = joint * kRowsPerJoint;
   if (e.hysteresis > 0.0) {
-    const double give = 1.0 / (h * e.hysteresis_stiffness);
+    const double h = config_.step;
     const double way = bristles_[at(slot + kHysteresisSlot)];
     rows.add({.joint = joint,
               .slot = slot + kHysteresisSlot,
               .motor = 1.0,
               .link = -1.0,
               .stiffness = e.hysteresis_stiffness,
-              .give = give,
+              .give = 1.0 / (h * e.hysteresis_stiffness),
               .offset = way / h,
               .lb = -e.hysteresis,
               .ub = e.hysteresis});
@@ -297,43 +295,39 @@ void Plant::add_gear(int joint, Rows& rows) const noexcept {
   const double slip = truth_.dtheta_m[joint] - dq_[links_[at(joint)]];
   for (const int flank : {0, 1}) {
     const double side = flank == 0 ? 1.0 : -1.0;
-    const double depth = side * twist - 0.5 * e.backlash;
-    if (depth < -h * (std::abs(slip) + kSpeedGained)) continue;
-    const double give = 1.0 / (h * a.stiffness + a.damping);
-    const double rest = depth > 0.0 ? a.stiffness * depth * give : depth / h;
-    rows.add({.joint = joint,
-              .slot = slot + kFlankSlot + flank,
-              .motor = -side,
-              .link = side,
-              .give = give,
-              .offset = -rest,
-              .lb = 0.0,
-              .ub = kInfinity});
+    add_touch({.joint = joint, .slot = slot + kFlankSlot + flank, .motor = -side, .link = side},
+              side * twist - 0.5 * e.backlash, slip, a.stiffness, a.damping, rows);
   }
 }
 
 // A stop that the link can be at when the step ends. Of the damper only the way inside counts, so
 // that a link pays for all that a stop stores.
 void Plant::add_stop(int joint, Rows& rows) const noexcept {
-  constexpr double kSpeedGained = 1.0;  // rad/s, at most in one step
-  const double h = config_.step;
   const EndStopModel& stop = config_.end_stop;
   const int link = links_[at(joint)];
   const Interval& travel = config_.end_stops[at(joint)];
   const double below = travel.lb - q_[link], above = q_[link] - travel.ub;
-  const double depth = std::max(below, above);
-  if (depth < -h * (std::abs(dq_[link]) + kSpeedGained)) return;
   const double damping =
       2.0 * stop.damping_ratio * std::sqrt(stop.stiffness * chain_.M()(link, link));
-  const double stiff = h * stop.stiffness + damping;
-  const double rest = depth > 0.0 ? stop.stiffness * depth / stiff : depth / h;
-  rows.add({.joint = joint,
-            .slot = joint * kRowsPerJoint + kStopSlot,
-            .link = below > above ? 1.0 : -1.0,
-            .give = 1.0 / stiff,
-            .offset = -rest,
-            .lb = 0.0,
-            .ub = kInfinity});
+  add_touch({.joint = joint,
+             .slot = joint * kRowsPerJoint + kStopSlot,
+             .link = below > above ? 1.0 : -1.0},
+            std::max(below, above), dq_[link], stop.stiffness, damping, rows);
+}
+
+// `row` pushes from a spring that it is `depth` inside of and that gives way with `speed`; nothing
+// where they cannot touch before the step ends.
+void Plant::add_touch(Row row, double depth, double speed, double stiffness, double damping,
+                      Rows& rows) const noexcept {
+  constexpr double kSpeedGained = 1.0;  // rad/s, at most in one step
+  const double h = config_.step;
+  if (depth < -h * (std::abs(speed) + kSpeedGained)) return;
+  const double stiff = h * stiffness + damping;
+  row.give = 1.0 / stiff;
+  row.offset = -(depth > 0.0 ? stiffness * depth / stiff : depth / h);
+  row.lb = 0.0;
+  row.ub = kInfinity;
+  rows.add(row);
 }
 
 // All rows as one box problem in the speeds at the end of the step.

@@ -99,6 +99,8 @@ class Plant {
   void add_friction(int joint, int element, const PlantInput& input, Rows& rows) const noexcept;
   void add_gear(int joint, Rows& rows) const noexcept;
   void add_stop(int joint, Rows& rows) const noexcept;
+  void add_touch(Row row, double depth, double speed, double stiffness, double damping,
+                 Rows& rows) const noexcept;
   void resist(const Equations& eq, const Rows& rows) noexcept;
   double friction_bound(int joint) const noexcept;
   void accelerate(Equations& eq, const Rows& rows) noexcept;

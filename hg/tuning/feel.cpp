@@ -13,7 +13,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kWithin3dB = 1.4125;
 constexpr double kSlowest_Hz = 1.0, kFastest_Hz = 40.0;  // of transparency
 constexpr double kDistortionTo_Hz = 20.0;
 constexpr int kPerDecade = 10;
@@ -59,7 +58,7 @@ Feel feel(const HandleLoop& loop, const Body& body, const Eigen::VectorXd& frict
   result.distortion = *std::ranges::max_element(deviation) / counted;
   const auto slow = relative(kLatencyAt);
   for (std::size_t i = 0; i < 3; ++i) {
-    result.transparency_Hz[i] = haptify::bandwidth(frequencies, ratios[i], kWithin3dB);
+    result.transparency_Hz[i] = haptify::bandwidth(frequencies, ratios[i], haptify::kWithin3dB);
     result.latency_s[i] = std::arg(slow[i]) / (2.0 * std::numbers::pi * kLatencyAt);
   }
 
@@ -91,7 +90,5 @@ Feel feel(const HandleLoop& loop, const Body& body, const Eigen::VectorXd& frict
   result.centroid_Hz = weights > 0.0 ? moments / weights : 0.0;
   return result;
 }
-
-double spectral_radius(const HandleLoop& loop) { return hg::spectral_radius(loop.A); }
 
 }  // namespace hg::tuning

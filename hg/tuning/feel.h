@@ -33,7 +33,4 @@ inline constexpr double kLatencyAt = 3.0;  ///< Hz
 /// `friction` (n): torques on the motors that nobody expects, Nm.
 Feel feel(const HandleLoop& loop, const Body& body, const Eigen::VectorXd& friction);
 
-/// Largest modulus of the eigenvalues: below 1 every motion dies out.
-double spectral_radius(const HandleLoop& loop);
-
 }  // namespace hg::tuning

@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "hg/config/twin.h"
+#include "hg/control/sampled_arm.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
-#include "hg/estimation/joint_observer.h"
+#include "hg/estimation/low_pass.h"
+#include "hg/rendering/twin_forces.h"
 
 namespace hg::tuning {
 namespace {
@@ -16,9 +19,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kSteps = 8;  // of the plant per period: latencies are rounded to them
-constexpr int kGroup = 4;  // steps whose wrenches are one mean: half a period
-constexpr int kGroups = kSteps / kGroup;
+constexpr int kGroup = 4;  // steps of the plant whose wrenches are one mean: half a period
+constexpr int kGroups = control::kPlantSteps / kGroup;
 constexpr int kNoises = 6 * kGroups;  // the wrench of each mean of a period; joints come behind
 constexpr int kMostStates = 600;
 constexpr double kSlowestIntegral = 1.0;  // 1/s; a slower one would be the slowest motion of all
@@ -34,10 +36,7 @@ class Layout {
     current = take(n);
     hand = take(3);
     dhand = take(3);
-    theta_last = take(n);
-    dtheta_filtered = take(n);
-    q_observed = take(n);
-    dq_observed = take(n);
+    observers = take(4 * n);
     ddq_last = take(n);
     wrench = take(6);
     twin = take(6);
@@ -53,13 +52,14 @@ class Layout {
   }
 
   int n, slots, groups;
-  int theta, dtheta, q, dq, current, hand, dhand;                      // plant
-  int theta_last, dtheta_filtered, q_observed, dq_observed, ddq_last;  // estimation
-  int wrench;                                                          // low-passed
-  int twin, dtwin;                                                     // body
-  int integral, tau_r, dtau_r, w_last, dw, stiff;                      // control
-  int commands;                                                        // the oldest first
-  int means;                                                           // likewise, of the wrench
+  int theta, dtheta, q, dq, current;               // of control::plant_with_input()
+  int hand, dhand;                                 // joins the plant
+  int observers, ddq_last;                         // of control::LinearObservers
+  int wrench;                                      // low-passed
+  int twin, dtwin;                                 // body
+  int integral, tau_r, dtau_r, w_last, dw, stiff;  // control
+  int commands;                                    // the oldest first
+  int means;                                       // likewise, of the wrench
   int size = 0;
 
   int plant_size() const { return 5 * n + 6; }
@@ -81,10 +81,7 @@ struct HandMatrices {
 
 HandMatrices matrices_of(const user::HandImpedance& hand, const Eigen::Matrix3d& R_B_H) {
   // the person stands along the horizontal heading of the handle
-  const Eigen::Vector3d along = R_B_H.col(2);
-  const bool is_upright = along.head<2>().norm() < 1e-6;
-  const Eigen::Vector3d ahead = is_upright ? Eigen::Vector3d(R_B_H.col(0)) : along;
-  const double heading = std::atan2(ahead.y(), ahead.x());
+  const double heading = config::hand_of({.R = R_B_H}).azimuth;
   const Eigen::Matrix3d P = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const auto turned = [](const Eigen::Matrix3d& R, const Eigen::Vector3d& values) {
     return Eigen::Matrix3d(R * values.asDiagonal() * R.transpose());
@@ -98,20 +95,36 @@ HandMatrices matrices_of(const user::HandImpedance& hand, const Eigen::Matrix3d&
           .grip_damping = hand.grip_damping};
 }
 
+// What damps a free body, as the law has it: the Cholesky factor of its mass, and its dampers.
+struct Dampers {
+  rendering::MatrixA L = rendering::MatrixA::Zero(6, 6);
+  rendering::TwinValues values;
+};
+
+Dampers dampers_of(const Body& body) {
+  Dampers dampers;
+  for (int i = 0; i < 6; ++i) {
+    dampers.L(i, i) = std::sqrt(i < 3 ? body.mass : body.inertia);
+    dampers.values.dofs[static_cast<std::size_t>(i)].damping =
+        i < 3 ? body.damping : body.angular_damping;
+  }
+  return dampers;
+}
+
 // Everything that one period needs, column by column.
 class Period {
  public:
   Period(const Device& device, const control::Reality& reality, const Body& body,
          const user::HandImpedance& hand, const VectorXd& q)
-      : device_(device),
-        body_(body),
+      : body_(body),
+        dampers_(dampers_of(body)),
         config_(without_friction(device.loop.config)),
         reality_(reality),
         dt_(config_.dt),
-        latency_steps_(static_cast<int>(std::lround(reality.loop.latency / dt_ * kSteps))),
+        command_delay_(reality.loop.latency, dt_),
         average_(std::max(1, rounded_groups(device.wrench.average_s))),
         delay_(rounded_groups(device.wrench.delay_s)),
-        layout_(device.loop.n_m, (latency_steps_ + kSteps - 1) / kSteps, average_ + delay_),
+        layout_(device.loop.n_m, command_delay_.slots(), average_ + delay_),
         control_(config_, device.loop.chain, device.loop.n_p, device.loop.n_m, device.loop.handle) {
     if (layout_.size > kMostStates) {
       throw SetupError("the loop around the handle has " + std::to_string(layout_.size) +
@@ -134,8 +147,10 @@ class Period {
       D_[i] = actuator.damping;
     }
     make_plant(reality.link_mass * chain.M().bottomRightCorner(n, n));
-    motor_pole_ = estimation::low_pass_pole(device.loop.filters.motor_low_pass_Hz, dt_);
-    link_pole_ = estimation::low_pass_pole(device.loop.filters.link_pole_Hz, dt_);
+    observers_ = {
+        .dt = dt_,
+        .motor_pole = estimation::low_pass_pole(device.loop.filters.motor_low_pass_Hz, dt_),
+        .link_pole = estimation::low_pass_pole(device.loop.filters.link_pole_Hz, dt_)};
     wrench_pole_ = estimation::low_pass_pole(device.wrench.low_pass_Hz, dt_);
     start_control(q, chain.c().tail(n));
   }
@@ -168,16 +183,7 @@ class Period {
     // estimation
     const VectorXd theta = plus(part(now, at.theta), disturbance.theta);
     const VectorXd q = plus(part(now, at.q), disturbance.q);
-    for (int i = 0; i < n; ++i) {
-      estimation::MotorObserver motor{now[at.theta_last + i], now[at.dtheta_filtered + i]};
-      estimation::observe(motor_pole_, dt_, theta[i], motor);
-      next[at.theta_last + i] = motor.theta;
-      next[at.dtheta_filtered + i] = motor.dtheta;
-      estimation::LinkObserver link{now[at.q_observed + i], now[at.dq_observed + i]};
-      estimation::observe(link_pole_, dt_, now[at.ddq_last + i], q[i], link);
-      next[at.q_observed + i] = link.q;
-      next[at.dq_observed + i] = link.dq;
-    }
+    observers_.advance(theta, q, part(now, at.ddq_last), next.segment(at.observers, 4 * n));
     const VectorXd tau = plus(K_.cwiseProduct(part(now, at.theta) - part(now, at.q)) +
                                   D_.cwiseProduct(part(now, at.dtheta) - part(now, at.dq)),
                               disturbance.tau);
@@ -188,18 +194,15 @@ class Period {
     next.segment<6>(at.wrench) = w;
 
     // twin and reference
-    Vector6 ddE = w;
-    ddE.head<3>() =
-        (w.head<3>() - damper(body_.damping, body_.mass) * now.segment<3>(at.dtwin)) / body_.mass;
-    ddE.tail<3>() = (w.tail<3>() -
-                     damper(body_.angular_damping, body_.inertia) * now.segment<3>(at.dtwin + 3)) /
-                    body_.inertia;
+    Vector6 ddE =
+        w - rendering::damping_torque(dampers_.L, now.segment<6>(at.dtwin), dt_, dampers_.values);
+    ddE.head<3>() /= body_.mass;
+    ddE.tail<3>() /= body_.inertia;
     next.segment<6>(at.twin) += dt_ * now.segment<6>(at.dtwin) + 0.5 * dt_ * dt_ * ddE;
     next.segment<6>(at.dtwin) += dt_ * ddE;
     const VectorXd ddq_r = to_joints_ * ddE;
     next.segment(at.ddq_last, n) = ddq_r;
-    const control::State before = state_of(now);
-    control::State state = before;
+    control::State state = state_of(now);
     const ReferenceState here = {.q_m = q_m_ + to_joints_ * now.segment<6>(at.twin),
                                  .dq_m = to_joints_ * now.segment<6>(at.dtwin),
                                  .ddq_m = ddq_r};
@@ -209,10 +212,10 @@ class Period {
 
     // control
     RobotState robot = robot_;
-    robot.q_m += part(next, at.q_observed);
-    robot.dq_m = part(next, at.dq_observed);
     robot.theta_m += theta;
-    robot.dtheta_m = part(next, at.dtheta_filtered);
+    robot.dtheta_m = part(next, at.observers + n);
+    robot.q_m += part(next, at.observers + 2 * n);
+    robot.dq_m = part(next, at.observers + 3 * n);
     robot.tau_m += tau;
     robot.w_H = w;
     CommandFrame command;
@@ -229,11 +232,8 @@ class Period {
     next.segment(at.stiff, n) = state.stiff - started_.stiff;
 
     // arm and hand under the commands that arrive during this period
-    std::vector<VectorXd> commands;
-    for (int slot = 0; slot < at.slots; ++slot) {
-      commands.emplace_back(now.segment(at.commands + slot * n, n));
-    }
-    commands.push_back(tau_command);
+    VectorXd commands((at.slots + 1) * n);
+    commands << now.segment(at.commands, at.slots * n), tau_command;
     const int size = at.plant_size();
     VectorXd x = VectorXd::Zero(size + 2 * n + 3);
     x.head(size) = now.head(size);
@@ -243,10 +243,8 @@ class Period {
     for (int group = 0; group < kGroups; ++group) {
       Vector6 sum = Vector6::Zero();
       for (int i = 0; i < kGroup; ++i) {
-        // the command of k periods ago has arrived when k kSteps + step >= latency_steps_
-        const int age = (latency_steps_ - (group * kGroup + i) + kSteps - 1) / kSteps;
-        const int k = std::clamp(age, 0, at.slots);
-        x.segment(size, n) = commands[static_cast<std::size_t>(at.slots - k)];
+        const int age = command_delay_.age(group * kGroup + i);
+        x.segment(size, n) = commands.segment((at.slots - age) * n, n);
         x = (step_ * x).eval();
         sum += grip_ * x.head(size);
       }
@@ -256,9 +254,7 @@ class Period {
       means[static_cast<std::size_t>(group)] += disturbance.wrench.col(group);
     }
     next.head(size) = x.head(size);
-    for (int slot = 0; slot < at.slots; ++slot) {
-      next.segment(at.commands + slot * n, n) = commands[static_cast<std::size_t>(slot + 1)];
-    }
+    next.segment(at.commands, at.slots * n) = commands.tail(at.slots * n);
     // the oldest go
     for (int i = 0; i < at.groups; ++i) {
       const int from = i + kGroups;
@@ -277,18 +273,11 @@ class Period {
     return config;
   }
 
-  // As the law has it: one that would stop the body within a sample acts in series with one that
-  // just does (rendering/twin_forces.h).
-  double damper(double damping, double inertia) const {
-    if (damping * dt_ <= inertia) return damping;
-    return 1.0 / (1.0 / damping + dt_ / inertia);
-  }
-
   int rounded_groups(double seconds) const {
     return static_cast<int>(std::lround(seconds / dt_ * kGroups));
   }
 
-  // d/dt (theta, theta', q, q', current, hand, hand') and what one step makes of it, of of
+  // d/dt (theta, theta', q, q', current, hand, hand') and what one step makes of it with
   // constant inputs
   void make_plant(const MatrixXd& M) {
     const Layout& at = layout_;
@@ -306,48 +295,28 @@ class Period {
 
     const int inputs = 2 * n + 3;  // commands, push, torques on the motors
     MatrixXd A = MatrixXd::Zero(size + inputs, size + inputs);
-    const MatrixXd M_inverse = inverse(M);
-    const double rate = 1.0 / std::max(reality_.loop.current_lag, 1e-6);
+    const MatrixXd arm =
+        control::plant_with_input(reality_.actuators, reality_.loop.current_lag, M);
+    A.topLeftCorner(5 * n, 5 * n) = arm.topLeftCorner(5 * n, 5 * n);
+    A.block(0, size, 5 * n, n) = arm.topRightCorner(5 * n, n);
     for (int i = 0; i < n; ++i) {
-      const ActuatorModel& actuator = reality_.actuators[static_cast<std::size_t>(i)];
-      const double Jm = actuator.rotor_inertia;
-      A(at.theta + i, at.dtheta + i) = 1.0;
-      A(at.q + i, at.dq + i) = 1.0;
-      A(at.dtheta + i, at.theta + i) = -K_[i] / Jm;
-      A(at.dtheta + i, at.q + i) = K_[i] / Jm;
-      A(at.dtheta + i, at.dtheta + i) = -(D_[i] + actuator.viscous_friction) / Jm;
-      A(at.dtheta + i, at.dq + i) = D_[i] / Jm;
-      A(at.dtheta + i, at.current + i) = 1.0 / Jm;
-      A(at.current + i, at.current + i) = -rate;
-      A(at.current + i, size + i) = rate;
-      A(at.dtheta + i, size + n + 3 + i) = 1.0 / Jm;
+      A(at.dtheta + i, size + n + 3 + i) =
+          1.0 / reality_.actuators[static_cast<std::size_t>(i)].rotor_inertia;
     }
-    A.block(at.dq, at.theta, n, n) = M_inverse * K_.asDiagonal();
-    A.block(at.dq, at.dtheta, n, n) = M_inverse * D_.asDiagonal();
-    A.block(at.dq, at.q, n, n) = -A.block(at.dq, at.theta, n, n);
-    A.block(at.dq, at.dq, n, n) = -A.block(at.dq, at.dtheta, n, n);
-    A.block(at.dq, 0, n, size) += M_inverse * J_.transpose() * grip_;
+    A.block(at.dq, 0, n, size) += inverse(M) * J_.transpose() * grip_;
     A.block(at.hand, at.dhand, 3, 3) = I;
     A.block(at.dhand, 0, 3, size) = -hand_.mass_inverse * grip_.topRows<3>();
     A.block(at.dhand, at.hand, 3, 3) -= hand_.mass_inverse * hand_.stiffness;
     A.block(at.dhand, at.dhand, 3, 3) -= hand_.mass_inverse * hand_.damping;
     A.block(at.dhand, size + n, 3, 3) = hand_.mass_inverse;
-    step_ = matrix_exponential(A * (dt_ / kSteps));
+    step_ = matrix_exponential(A * (dt_ / control::kPlantSteps));
   }
 
   // The controller at rest, the springs carrying `weight`.
   void start_control(const VectorXd& q, const VectorM& weight) {
-    const int n = layout_.n, n_p = device_.loop.n_p;
-    q_m_ = q.tail(n);
-    robot_.q_m = robot_.theta_m = q_m_;
-    robot_.tau_m = weight;
-    for (int i = 0; i < n; ++i) {
-      robot_.theta_m[i] += weight[i] / config_.actuators[static_cast<std::size_t>(i)].stiffness;
-    }
-    robot_.dq_m = robot_.dtheta_m = VectorM::Zero(n);
-    robot_.q_p = q.head(n_p);
-    robot_.dq_p = robot_.ddq_p = VectorP::Zero(n_p);
-    const ReferenceState rest = {.q_m = q_m_, .dq_m = robot_.dq_m, .ddq_m = robot_.dq_m};
+    robot_ = control::standing(config_.actuators, q, weight);
+    q_m_ = robot_.q_m;
+    const ReferenceState rest = control::standing_reference(robot_);
     started_ = control_.start();
     CommandFrame command;
     TrackingReport report;
@@ -367,19 +336,21 @@ class Period {
     return state;
   }
 
-  const Device& device_;
   Body body_;
+  Dampers dampers_;
   control::Config config_;
   control::Reality reality_;
   double dt_;
-  int latency_steps_, average_, delay_;
+  control::CommandDelay command_delay_;
+  int average_, delay_;  // of the wrench, half periods
   Layout layout_;
   control::JointControl control_;
   MatrixXd J_, to_joints_, grip_, step_;
   Eigen::Matrix3d R_B_H_;
   HandMatrices hand_;
   VectorXd K_, D_, q_m_, at_rest_;
-  double motor_pole_ = 0.0, link_pole_ = 0.0, wrench_pole_ = 0.0;
+  control::LinearObservers observers_;
+  double wrench_pole_ = 0.0;
   RobotState robot_;
   control::State started_;
 };

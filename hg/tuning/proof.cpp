@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hg/core/linear_algebra.h"
 #include "hg/experiments/stability_map.h"
-#include "hg/tuning/feel.h"
 
 namespace hg::tuning {
 namespace {
@@ -46,14 +46,10 @@ std::vector<Doubt> doubts_in_hand(const control::Config& believed) {
 }
 
 std::vector<Grasp> grasps(const Body& body) {
-  const auto with_mass = [&](double mass) {
-    Body held = body;
-    held.mass = std::min(body.mass, mass);
-    return held;
-  };
   std::vector<Grasp> all;
   const auto add = [&](const std::string& what, const user::HandImpedance& hand, double mass) {
-    const Body held = with_mass(mass);
+    Body held = body;
+    held.mass = std::min(body.mass, mass);
     all.push_back({what, hand, held});
   };
   add("relaxed hand", user::hand(user::HandPreset::kRelaxed), 0.3);
@@ -101,7 +97,7 @@ double Demands::radius(const Device& device, const Case& one) const {
   body.mass *= real.mass;
   Device doubted = device;
   doubted.loop.config.flatness_Hz *= real.follower;
-  return std::pow(spectral_radius(linearise(doubted, real.reality, body, grasp.hand, {}, q)),
+  return std::pow(hg::spectral_radius(linearise(doubted, real.reality, body, grasp.hand, {}, q).A),
                   scale);
 }
 

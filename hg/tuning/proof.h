@@ -75,7 +75,6 @@ class Demands {
 struct Proof {
   double arm = 0.0, hand = 0.0;  ///< largest radius without and with a hand
   Case worst_arm, worst_hand;
-  std::size_t cases = 0;
 
   bool holds() const { return arm < kArmRadius && hand < kHandRadius; }
 };

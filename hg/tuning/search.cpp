@@ -89,7 +89,6 @@ class Search {
     for (const Proof& one : proofs) {
       take(one.worst_arm, one.arm, all);
       take(one.worst_hand, one.hand, all);
-      all.cases += one.cases - 2;
     }
     return all;
   }
@@ -100,7 +99,6 @@ class Search {
   }
 
   static void take(const Case& one, double radius, Proof& proof) {
-    ++proof.cases;
     double& worst = one.grasp < 0 ? proof.arm : proof.hand;
     if (!(radius > worst)) return;
     worst = radius;

@@ -11,6 +11,7 @@
 
 #include "hg/core/error.h"
 #include "hg/simulation/plant.h"
+#include "hg/simulation/test/plant_setup.h"
 
 namespace {
 
@@ -44,16 +45,9 @@ void print(const std::string& effect, double step) {
   config.drive.dead_time = 0.0;
   config.q_p_start = VectorP::Zero(1);
   config.q_m_start = VectorM::Constant(1, 0.7);
-  ActuatorModel motor = {.rotor_inertia = 0.5,
-                         .stiffness = 3000.0,
-                         .damping = 5.0,
-                         .viscous_friction = 1.0,
-                         .load_friction = 0.0,
-                         .stiction = 1.0,
-                         .torque_max = 1e3,
-                         .torque_rated = 1e3,
-                         .speed_full_torque = 100.0,
-                         .speed_no_load = 200.0};
+  ActuatorModel motor = simulation::bare_actuator(0.5, 3000.0);
+  motor.damping = 5.0;
+  motor.viscous_friction = 1.0;
   simulation::JointEffects& e = config.effects.emplace_back();
   if (effect == "friction" || effect == "presliding") motor.coulomb_friction = 3.0;
   if (effect == "presliding") e.bristle_stiffness = 5e3, e.bristle_damping = 5.0;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hg/assembly/assembly.h"
+#include "hg/core/linear_algebra.h"
 #include "hg/tuning/tuned_device.h"
 
 namespace hg::tuning {
@@ -92,8 +93,9 @@ TEST(Demands, EveryHandHoldsTheShippedBodyInEveryPosture) {
       device.loop.config.flatness_Hz *= doubt.follower;
       double worst = 0.0;
       for (const Eigen::VectorXd& q : problem.postures) {
-        worst = std::max(worst, spectral_radius(linearise(device, doubt.reality, problem.body,
-                                                          grasp.hand, {}, q)));
+        worst = std::max(
+            worst,
+            spectral_radius(linearise(device, doubt.reality, problem.body, grasp.hand, {}, q).A));
       }
       EXPECT_LT(worst, kHandRadius) << grasp.what << ", " << doubt.what;
     }

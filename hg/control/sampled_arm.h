@@ -1,0 +1,56 @@
+/// What every linear model of the torque loop shares, from sample to sample: the arm between
+/// commands and encoders, when commands arrive, the observers, and the controller at rest.
+///
+/// SI units; set-up only.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "hg/control/joint_control.h"
+
+namespace hg::control {
+
+/// Steps of the plant per period: latencies are rounded to them.
+inline constexpr int kPlantSteps = 8;
+
+/// Rate of change of (theta, theta', q, q', current) under constant torque commands: a square
+/// matrix of 6 n rows whose last n columns are those of the commands (its last n rows are 0). `M`
+/// is the mass matrix of the links (n x n, kg m^2), `current_lag` in s.
+Eigen::MatrixXd plant_with_input(const std::vector<ActuatorModel>& actuators, double current_lag,
+                                 const MatrixM& M);
+
+/// When torque commands arrive at the motors.
+class CommandDelay {
+ public:
+  CommandDelay(double latency_s, double period_s);
+
+  /// How many earlier commands are still under way at a sample.
+  int slots() const { return (steps_ + kPlantSteps - 1) / kPlantSteps; }
+  /// The command at work in step `step` (0..kPlantSteps - 1) of a period was given so many periods
+  /// ago; 0 = at the beginning of this one.
+  int age(int step) const;
+
+ private:
+  int steps_;
+};
+
+/// The observers of motors and links as part of a linear state: theta of the last sample, filtered
+/// theta', observed q, observed q' (n values each).
+struct LinearObservers {
+  double dt = 1e-3;                          ///< s
+  double motor_pole = 0.0, link_pole = 0.0;  ///< from sample to sample
+
+  /// What encoders that show `theta` and `q` make of `observed` (4 n values), with the
+  /// accelerations `ddq` that the links are believed to have.
+  void advance(const Eigen::VectorXd& theta, const Eigen::VectorXd& q, const Eigen::VectorXd& ddq,
+               Eigen::Ref<Eigen::VectorXd> observed) const;
+};
+
+/// A robot that stands still in posture `q` (gantry first), its springs carrying `weight` (Nm).
+RobotState standing(const std::vector<ActuatorModel>& actuators, const Eigen::VectorXd& q,
+                    const VectorM& weight);
+/// The reference that such a robot follows.
+ReferenceState standing_reference(const RobotState& robot);
+
+}  // namespace hg::control
