@@ -147,36 +147,49 @@ std::string tune_csv(const TuneReport& report) {
 }
 
 std::string tune_svg(const TuneReport& report) {
-  constexpr double kWidth = 640.0, kHeight = 360.0, kLeft = 60.0, kBottom = 310.0, kTop = 30.0;
+  constexpr double kWidth = 640.0, kHeight = 360.0, kLeft = 60.0, kBottom = 300.0, kTop = 40.0;
+  constexpr double kVibrationTick = 0.01, kHzTick = 5.0;
   std::vector<const Candidate*> all = {&report.result.before};
   for (const Candidate& candidate : report.result.front) all.push_back(&candidate);
   double most_vibration = 0.0, most_Hz = 0.0;
   for (const Candidate* one : all) {
-    most_vibration = std::max(most_vibration, 1.1 * one->figures.vibration);
+    most_vibration = std::max(most_vibration, 1.2 * one->figures.vibration);
     most_Hz = std::max(most_Hz, 1.15 * one->figures.transparency_Hz);
   }
-  const auto x = [&](const Candidate& one) {
-    return kLeft + (kWidth - kLeft - 20.0) * one.figures.vibration / most_vibration;
+  const auto x = [&](double vibration) {
+    return kLeft + (kWidth - kLeft - 20.0) * vibration / most_vibration;
   };
-  const auto y = [&](const Candidate& one) {
-    return kBottom - (kBottom - kTop) * one.figures.transparency_Hz / most_Hz;
-  };
+  const auto y = [&](double Hz) { return kBottom - (kBottom - kTop) * Hz / most_Hz; };
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"{0}\" height=\"{1}\" "
       "fill=\"#fff\"/>\n<path d=\"M{2} {3}V{4}H{5}\" fill=\"none\" stroke=\"#444\"/>\n"
-      "<text x=\"{6}\" y=\"{7}\" text-anchor=\"middle\">vibration above 20 Hz, m/s^2 (axis ends at "
-      "{8:.3f})</text>\n<text x=\"{2}\" y=\"20\">transparency, Hz (axis ends at {9:.0f}); beside "
-      "each point the latency</text>\n",
-      kWidth, kHeight, kLeft, kTop, kBottom, kWidth - 20.0, 0.5 * (kLeft + kWidth), kBottom + 34.0,
-      most_vibration, most_Hz);
+      "<text x=\"{6}\" y=\"{7}\" text-anchor=\"middle\">vibration above 20 Hz, m/s^2</text>\n"
+      "<text x=\"20\" y=\"20\">transparency, Hz; at each point the latency</text>\n",
+      kWidth, kHeight, kLeft, kTop, kBottom, kWidth - 20.0, 0.5 * (kLeft + kWidth), kBottom + 44.0);
+  const double vibration_tick = kVibrationTick * std::max(1.0, std::round(most_vibration / 0.06));
+  for (double at = 0.0; at < most_vibration; at += vibration_tick) {
+    svg += fmt::format(
+        "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\" fill=\"#444\">{:g}</text>\n", x(at),
+        kBottom + 20.0, at);
+  }
+  const double Hz_tick = kHzTick * std::max(1.0, std::round(most_Hz / 30.0));
+  for (double at = Hz_tick; at < most_Hz; at += Hz_tick) {
+    svg += fmt::format(
+        "<path d=\"M{} {:.1f}H{}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{:.1f}\" "
+        "text-anchor=\"end\" fill=\"#444\">{:g}</text>\n",
+        kLeft, y(at), kWidth - 20.0, kLeft - 8.0, y(at) + 4.0, at);
+  }
+  // what is there now stands below the front: its label goes there, too
   for (const Candidate* one : all) {
     const bool is_before = one == all.front();
+    const double px = x(one->figures.vibration), py = y(one->figures.transparency_Hz);
     svg += fmt::format(
         "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\" fill=\"{}\"/><text x=\"{:.1f}\" "
-        "y=\"{:.1f}\">{}{:.1f} Hz, {:.1f} ms</text>\n",
-        x(*one), y(*one), is_before ? "#d55e00" : "#0072b2", x(*one) - 46.0, y(*one) - 10.0,
-        is_before ? "now: " : "", one->figures.transparency_Hz, 1e3 * one->figures.latency_s);
+        "y=\"{:.1f}\" text-anchor=\"{}\">{}{:.1f} ms</text>\n",
+        px, py, is_before ? "#d55e00" : "#0072b2", px + (is_before ? 9.0 : -9.0),
+        py + (is_before ? 16.0 : -6.0), is_before ? "start" : "end", is_before ? "now: " : "",
+        1e3 * one->figures.latency_s);
   }
   return svg + "</svg>\n";
 }
