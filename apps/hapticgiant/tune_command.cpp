@@ -62,12 +62,11 @@ int run_tune(const TuneArguments& arguments) {
       problem, limits, [](const std::string& what, std::size_t done, std::size_t total) {
         if (const auto tell = progress_of(what)) tell(done, total);
       });
-  const TuneReport report = {
-      .problem = problem,
-      .result = result,
-      .demands = {problem.device.loop.config, problem.body, problem.postures},
-      .name = device.name,
-      .command = command_of(arguments)};
+  const TuneReport report = {.problem = problem,
+                             .result = result,
+                             .demands = tuning::demands_of(problem),
+                             .name = device.name,
+                             .command = command_of(arguments)};
 
   print_out(tune_text(report));
   print_out(fmt::format("\nfor device.yaml:\n{}", tune_yaml(report)));

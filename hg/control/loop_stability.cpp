@@ -4,7 +4,6 @@
 
 #include "hg/control/sampled_arm.h"
 #include "hg/core/linear_algebra.h"
-#include "hg/estimation/low_pass.h"
 
 namespace hg::control {
 namespace {
@@ -55,17 +54,14 @@ class SampledLoop {
   SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency, const Reality& reality)
       : actuators_(reality.actuators),
         delay_(reality.loop.latency, loop.config.dt),
-        layout_{loop.n_m, delay_.slots()} {
-    const double dt = loop.config.dt;
+        layout_{loop.n_m, delay_.slots()},
+        observers_(loop.filters, loop.config.dt) {
     model::Chain chain = loop.chain;
     chain.update(q, Eigen::VectorXd::Zero(q.size()));
     const MatrixM M = reality.link_mass * chain.M().bottomRightCorner(loop.n_m, loop.n_m);
     step_ = matrix_exponential(plant_with_input(actuators_, reality.loop.current_lag, M) *
-                               (dt / kPlantSteps));
+                               (loop.config.dt / kPlantSteps));
     feedback_ = feedback(loop, q, chain.c().tail(loop.n_m), latency);
-    observers_ = {.dt = dt,
-                  .motor_pole = estimation::low_pass_pole(loop.filters.motor_low_pass_Hz, dt),
-                  .link_pole = estimation::low_pass_pole(loop.filters.link_pole_Hz, dt)};
   }
 
   Eigen::MatrixXd period() const {

@@ -5,6 +5,7 @@
 
 #include "hg/core/linear_algebra.h"
 #include "hg/estimation/joint_observer.h"
+#include "hg/estimation/low_pass.h"
 
 namespace hg::control {
 
@@ -48,15 +49,20 @@ int CommandDelay::age(int step) const {
   return std::clamp((steps_ - step + kPlantSteps - 1) / kPlantSteps, 0, slots());
 }
 
+LinearObservers::LinearObservers(const LoopFilters& filters, double period_s)
+    : dt_(period_s),
+      motor_pole_(estimation::low_pass_pole(filters.motor_low_pass_Hz, period_s)),
+      link_pole_(estimation::low_pass_pole(filters.link_pole_Hz, period_s)) {}
+
 void LinearObservers::advance(const Eigen::VectorXd& theta, const Eigen::VectorXd& q,
                               const Eigen::VectorXd& ddq,
                               Eigen::Ref<Eigen::VectorXd> observed) const {
   const Eigen::Index n = theta.size();
   for (Eigen::Index i = 0; i < n; ++i) {
     estimation::MotorObserver motor{observed[i], observed[n + i]};
-    estimation::observe(motor_pole, dt, theta[i], motor);
+    estimation::observe(motor_pole_, dt_, theta[i], motor);
     estimation::LinkObserver link{observed[2 * n + i], observed[3 * n + i]};
-    estimation::observe(link_pole, dt, ddq[i], q[i], link);
+    estimation::observe(link_pole_, dt_, ddq[i], q[i], link);
     observed[i] = motor.theta;
     observed[n + i] = motor.dtheta;
     observed[2 * n + i] = link.q;

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "hg/control/joint_control.h"
+#include "hg/control/loop_stability.h"
 
 namespace hg::control {
 
@@ -37,14 +37,17 @@ class CommandDelay {
 
 /// The observers of motors and links as part of a linear state: theta of the last sample, filtered
 /// theta', observed q, observed q' (n values each).
-struct LinearObservers {
-  double dt = 1e-3;                          ///< s
-  double motor_pole = 0.0, link_pole = 0.0;  ///< from sample to sample
+class LinearObservers {
+ public:
+  LinearObservers(const LoopFilters& filters, double period_s);
 
   /// What encoders that show `theta` and `q` make of `observed` (4 n values), with the
   /// accelerations `ddq` that the links are believed to have.
   void advance(const Eigen::VectorXd& theta, const Eigen::VectorXd& q, const Eigen::VectorXd& ddq,
                Eigen::Ref<Eigen::VectorXd> observed) const;
+
+ private:
+  double dt_, motor_pole_, link_pole_;  // poles from sample to sample
 };
 
 /// A robot that stands still in posture `q` (gantry first), its springs carrying `weight` (Nm).

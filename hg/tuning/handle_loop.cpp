@@ -122,6 +122,7 @@ class Period {
         reality_(reality),
         dt_(config_.dt),
         command_delay_(reality.loop.latency, dt_),
+        observers_(device.loop.filters, dt_),
         average_(std::max(1, rounded_groups(device.wrench.average_s))),
         delay_(rounded_groups(device.wrench.delay_s)),
         layout_(device.loop.n_m, command_delay_.slots(), average_ + delay_),
@@ -147,10 +148,6 @@ class Period {
       D_[i] = actuator.damping;
     }
     make_plant(reality.link_mass * chain.M().bottomRightCorner(n, n));
-    observers_ = {
-        .dt = dt_,
-        .motor_pole = estimation::low_pass_pole(device.loop.filters.motor_low_pass_Hz, dt_),
-        .link_pole = estimation::low_pass_pole(device.loop.filters.link_pole_Hz, dt_)};
     wrench_pole_ = estimation::low_pass_pole(device.wrench.low_pass_Hz, dt_);
     start_control(q, chain.c().tail(n));
   }
@@ -342,6 +339,7 @@ class Period {
   control::Reality reality_;
   double dt_;
   control::CommandDelay command_delay_;
+  control::LinearObservers observers_;
   int average_, delay_;  // of the wrench, half periods
   Layout layout_;
   control::JointControl control_;
@@ -349,7 +347,6 @@ class Period {
   Eigen::Matrix3d R_B_H_;
   HandMatrices hand_;
   VectorXd K_, D_, q_m_, at_rest_;
-  control::LinearObservers observers_;
   double wrench_pole_ = 0.0;
   RobotState robot_;
   control::State started_;

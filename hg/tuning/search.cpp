@@ -34,9 +34,7 @@ Values rounded(const Device& device, const Values& values) {
 class Search {
  public:
   Search(const Problem& problem, const Told& told)
-      : problem_(problem),
-        told_(told),
-        demands_(problem.device.loop.config, problem.body, problem.postures) {
+      : problem_(problem), told_(told), demands_(demands_of(problem)) {
     // every doubt once, in different postures; what else matters comes with the proofs
     for (const Case& one : demands_.cases(0)) {
       if (one.grasp >= 0) continue;
@@ -147,6 +145,10 @@ class Search {
 };
 
 }  // namespace
+
+Demands demands_of(const Problem& problem) {
+  return {problem.device.loop.config, problem.body, problem.postures};
+}
 
 Figures figures_of(const Problem& problem, const Device& device) {
   Figures worst = {.transparency_Hz = kInfinity};

@@ -26,6 +26,9 @@ struct Problem {
   int most_rounds = 40;                   ///< generations between two proofs
 };
 
+/// What the loops of a problem must tolerate.
+Demands demands_of(const Problem& problem);
+
 /// Of the worst posture and axis.
 struct Figures {
   double transparency_Hz = 0.0, latency_s = 0.0;

@@ -70,7 +70,7 @@ TEST(Knobs, TakeNoMoreThanLatencyAndRateAllow) {
 // docs/control.md: what the notes had was unstable with light rotors
 TEST(Demands, RefuseTheDampingOfTheNotes) {
   const Problem problem = problem_of(30);
-  const Demands demands(problem.device.loop.config, problem.body, problem.postures);
+  const Demands demands = demands_of(problem);
   const auto failures = [&](const Device& device) {
     int count = 0;
     for (std::size_t i = 0; i < problem.postures.size(); ++i) {
