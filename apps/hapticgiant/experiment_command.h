@@ -8,14 +8,23 @@
 namespace hg::apps {
 
 struct ExperimentArguments {
-  std::string json;  ///< file for all figures; empty = none
-  std::string svg;   ///< file for the drawing; empty = none
+  std::string json;                ///< file for all figures; empty = none
+  std::string svg;                 ///< file for the drawing; empty = none
+  std::string device, simulation;  ///< files instead of those of the scenario; empty = those
 };
 
 struct ContactArguments {
   std::string json;  ///< file for all figures; empty = none
   std::string docs;  ///< folder of documentation to refresh; empty = none
   int seeds = 4;
+};
+
+struct InertialArguments {
+  std::vector<std::string> scenarios = {"walk", "door"};
+  std::string simulation;  ///< see find_simulation(); empty = as the device says
+  int seeds = 4;
+  bool feels = false;  ///< also what a hand feels of it
+  std::string json;    ///< file for all figures; empty = none
 };
 
 struct SeedsArguments {
@@ -36,6 +45,7 @@ int experiment_free_space(const ExperimentArguments& arguments);
 int experiment_stability_map(const ExperimentArguments& arguments);
 int experiment_impedance(const ExperimentArguments& arguments);
 int experiment_contact(const ContactArguments& arguments);
+int experiment_inertial(const InertialArguments& arguments);
 /// Exit code 1 when a run ended in a fault or left a limit.
 int experiment_seeds(const SeedsArguments& arguments);
 

@@ -149,6 +149,11 @@ simulation::Simulation simulation_of(
   const std::string& handle =
       device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
   simulation::Config config = device_simulation(device, start);
+  for (const int frame : device.estimation.units.frames) {
+    const auto index = static_cast<std::size_t>(frame);
+    config.link_units.push_back(chain.frame(device.model.chain.frame_names()[index]));
+  }
+  config.sensed.link_units = static_cast<int>(config.link_units.size());
   if (bystander) place(*bystander, chain, config);
   return simulation::Simulation(config, chain, chain.frame(handle), std::move(person));
 }

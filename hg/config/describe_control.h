@@ -27,6 +27,15 @@ void describe(V& v, ActuatorModel& actuator) {
   v.number("stiction", actuator.stiction, kFromOne, "break-away torque over Coulomb friction");
   v.number("stribeck_rad_per_s", actuator.stribeck_speed, kPositive,
            "speed at which stiction has mostly gone");
+  v.number("presliding_rad", actuator.presliding, {.lb = 0.0, .ub = 0.01},
+           "way until dry friction slips, as its feedforward has it; 0 = at once, its sign changes "
+           "over friction_speed_rad_per_s");
+  v.number("presliding_elements", actuator.presliding_elements,
+           {.lb = 1.0, .ub = static_cast<double>(kSlipElements)},
+           "equal elements in which it begins to slip, one after the other");
+  v.rule(actuator.presliding_elements == std::floor(actuator.presliding_elements),
+         "presliding_elements", "must be a whole number",
+         model::to_text(actuator.presliding_elements));
   v.number("torque_max_Nm", actuator.torque_max, kPositive, "peak torque", kNeeded);
   v.number("torque_rated_Nm", actuator.torque_rated, kPositive, "that it gives for ever", kNeeded);
   v.number("full_torque_to_rad_per_s", actuator.speed_full_torque, kPositive,

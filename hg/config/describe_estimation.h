@@ -32,6 +32,31 @@ void describe_wrench(V& v, estimation::WrenchConfig& wrench) {
 }
 
 template <class V>
+void describe_inertial_units(V& v, DeviceDraft& d) {
+  estimation::InertialUnitsConfig& units = d.estimation.units;
+  v.names("inertial_units", units.frames, d.frame_names, "a link of the chain",
+          "links that carry an inertial unit, from root to tip; how it sits there is learnt");
+  v.rule(units.frames.size() <= kMaxInertialUnits, "inertial_units",
+         "at most " + std::to_string(kMaxInertialUnits) + " are possible",
+         std::to_string(units.frames.size()));
+  v.rule(std::ranges::is_sorted(units.frames), "inertial_units",
+         "must be in the order from root to tip");
+  v.number("inertial_delay_s", units.delay, kNotNegative,
+           "from motion to reading; rounded to periods, at least one");
+  const double longest = (estimation::InertialUnitsState::kPast - 2) / d.rate_Hz;
+  v.rule(units.delay <= longest, "inertial_delay_s",
+         "must be at most " + std::to_string(estimation::InertialUnitsState::kPast - 2) +
+             " periods, here " + model::to_text(longest) + " s",
+         model::to_text(units.delay));
+  v.flag("inertial_feed_back", units.feeds_back,
+         "true: the control uses what the units say; false: it is only recorded");
+  const bool has_units = !units.frames.empty();
+  for (const char* key : {"inertial_delay_s", "inertial_feed_back"}) {
+    v.rule(has_units || !v.is_given(key), key, "concerns inertial_units, and there are none");
+  }
+}
+
+template <class V>
 void describe_estimation(V& v, DeviceDraft& d) {
   const bool has_gantry = !d.has_joints || !d.gantry.empty();
   v.group(
@@ -46,6 +71,7 @@ void describe_estimation(V& v, DeviceDraft& d) {
         child.number("motor_low_pass_Hz", d.estimation.motor_low_pass_Hz, kNotNegative,
                      "first-order low-pass of the motor side's speed, 0 = none");
         describe_wrench(child, d.estimation.wrench);
+        describe_inertial_units(child, d);
       },
       "from sensors to state");
   v.group(

@@ -76,6 +76,21 @@ void describe(V& v, simulation::InertialSensorConfig& sensor, const InertialKeys
 }
 
 template <class V>
+void describe(V& v, simulation::LinkUnitConfig& unit) {
+  v.number("place_m", unit.place, kNotNegative,
+           "standard deviation of each coordinate of a unit in its link");
+  v.flag("turned", unit.is_turned, "true: anyhow; false: its axes are those of the link");
+  v.group(
+      "accelerometer",
+      [&](auto& child) { describe(child, unit.accelerometer, kAccelerometerKeys); }, "of a unit");
+  v.group(
+      "gyroscope", [&](auto& child) { describe(child, unit.gyroscope, kGyroscopeKeys); },
+      "of a unit");
+  v.group(
+      "filter", [&](auto& child) { describe(child, unit.filter); }, "of its digital output");
+}
+
+template <class V>
 void describe(V& v, simulation::TemperatureConfig& temperature) {
   v.number("environment_K", temperature.environment, kAnyNumber,
            "room minus temperature of the calibration");
@@ -118,6 +133,9 @@ void describe(V& v, simulation::SensorsConfig& sensors) {
   v.group(
       "imu_filter", [&](auto& child) { describe(child, sensors.imu_filter); },
       "of accelerometer and gyroscope; best the same as that of the wrench");
+  v.group(
+      "inertial_unit", [&](auto& child) { describe(child, sensors.link_unit); },
+      "on each link that device.yaml names in estimation.inertial_units");
   v.group(
       "temperature", [&](auto& child) { describe(child, sensors.temperature); },
       "of the force/torque sensor");

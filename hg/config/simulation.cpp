@@ -108,7 +108,8 @@ void yield(Loader& loader, LoaderFile& file, const SimulatedDevice& device,
 void check_filters(Loader& loader, const Simulation& simulation) {
   const double longest = simulation::kMaxFilterSteps * simulation.step_s;
   for (const simulation::SensorFilterConfig& filter :
-       {simulation.sensors.wrench.filter, simulation.sensors.imu_filter}) {
+       {simulation.sensors.wrench.filter, simulation.sensors.imu_filter,
+        simulation.sensors.link_unit.filter}) {
     loader.rule(filter.average + filter.delay <= longest, "sensors",
                 "window and delay of a filter must not exceed 128 steps of the plant, " +
                     model::to_text(longest) + " s",

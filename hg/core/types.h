@@ -19,6 +19,7 @@ inline constexpr int kMaxTwinCoords =
     36;  ///< coordinates of a twin; a floating joint has 7 for 6 DOF
 inline constexpr int kMaxVirtualJoints = 2;    ///< virtual joints: sums of manipulator joints
 inline constexpr int kMaxCartesianFrames = 2;  ///< frames with Cartesian limits
+inline constexpr int kMaxInertialUnits = 8;    ///< inertial units on links
 
 template <int kCapacity>
 using VectorUpTo = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kCapacity, 1>;

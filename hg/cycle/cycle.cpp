@@ -143,6 +143,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   if (safety::is_finite(monitor_.config(), sensors)) {
     record.robot =
         estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
+    if (estimation_.has_units()) record.inertial = estimation_.inertial_report(state_.estimation);
     trust_wrench(sensors, record.robot);
     estimation_.check_motion(sensors, safety::is_powered(state_.supervisor.state),
                              state_.estimation);

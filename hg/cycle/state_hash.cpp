@@ -110,6 +110,23 @@ void mix(const estimation::TareState& tare, Hash& hash) noexcept {
   hash.mix(tare.q_p);
 }
 
+void mix(const estimation::InertialUnitsState& state, Hash& hash) noexcept {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(state.trust.size()); ++i) {
+    const estimation::UnitCalibration& unit = state.units[i];
+    hash.mix(unit.slower);
+    hash.mix(unit.gyroscope);
+    hash.mix(unit.accelerometer);
+    hash.mix(unit.moved_s, unit.variance, unit.misfit, unit.information.trace());
+    hash.mix(static_cast<std::uint64_t>(state.same[i]));
+  }
+  const estimation::EncoderSample& newest = state.past[state.newest];
+  hash.mix(newest.measured, newest.q, newest.dq, newest.ddq_expected);
+  hash.mix(state.trust, state.found, state.carried, state.unseen, state.q, state.dq);
+  hash.mix(state.variance, state.error);
+  hash.mix(state.bend_rate, state.bend);
+  hash.mix(state.share);
+}
+
 void mix(const estimation::State& state, Hash& hash) noexcept {
   for (const estimation::GantryObserver& axis : state.gantry) {
     hash.mix(axis.q, axis.dq, axis.ddq, axis.disturbance);
@@ -134,6 +151,7 @@ void mix(const estimation::State& state, Hash& hash) noexcept {
            inertial.p_S, inertial.v_S, inertial.slip);
   hash.mix(inertial.turned_in_all);
   hash.mix(inertial.offset_at_rest);
+  if (state.units.is_started) mix(state.units, hash);
 }
 
 void mix(const collision::State& state, Hash& hash) noexcept {
@@ -236,6 +254,7 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
            control.unexplained, control.stiff);
   hash.mix(control.w_H);
   hash.mix(control.dw_H);
+  if (control.feet.size() > 0) hash.mix(control.feet);  // some joint has presliding
   hash.mix(state.w_H);
   if (state.touch.dq.size() > 0) {  // somebody feels for it
     mix(state.touch, hash);

@@ -17,7 +17,8 @@ Estimation::Estimation(const Config& config, const model::Chain& chain, int n_p,
       dead_periods_(static_cast<int>(std::lround(config.drive.dead_time / config.dt))),
       gantry_gains_(gantry_gains(config.observer_pole_Hz, config.dt)),
       link_pole_(low_pass_pole(config.link_pole_Hz, config.dt)),
-      motor_pole_(low_pass_pole(config.motor_low_pass_Hz, config.dt)) {}
+      motor_pole_(low_pass_pole(config.motor_low_pass_Hz, config.dt)),
+      units_(config.units, config.dt, config.link_pole_Hz, config.observer_pole_Hz, chain, n_p) {}
 
 bool Estimation::turns_without_end(int joint) const noexcept {
   return chain_.joints()[static_cast<std::size_t>(joint)].type == model::JointType::kContinuous;
@@ -47,8 +48,17 @@ RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
                             const VectorM& ddq_m_reference, State& state) noexcept {
   if (!state.is_started) start(sensors, state);
   RobotState robot;
-  observe_joints(sensors, ddq_m_reference, state, robot);
-  observe_gantry(sensors, dq_p_cmd, state, robot);
+  const VectorM q_m = observe_joints(sensors, ddq_m_reference, state, robot);
+  const VectorP q_p = observe_gantry(sensors, dq_p_cmd, state, robot);
+  if (units_.has_any()) {
+    units_.step(sensors.inertial,
+                {.measured = stacked(q_p, q_m),
+                 .q = stacked(robot.q_p, robot.q_m),
+                 .dq = stacked(robot.dq_p, robot.dq_m),
+                 .ddq_expected = stacked(robot.ddq_p, ddq_m_reference)},
+                state.units);
+    units_.feed_back(state.units, robot);
+  }
   observe_wrench(sensors, state, robot);
   return robot;
 }
@@ -66,8 +76,10 @@ void Estimation::start(const SensorFrame& sensors, State& state) const noexcept 
   state.is_started = true;
 }
 
-void Estimation::observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference,
-                                State& state, RobotState& robot) const noexcept {
+// Returns what the encoders show, unwrapped.
+VectorM Estimation::observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference,
+                                   State& state, RobotState& robot) const noexcept {
+  VectorM measured(n_m_);
   robot.q_m = sensors.q_m;
   robot.dq_m = sensors.dq_m;
   robot.tau_m = sensors.tau_m;
@@ -75,7 +87,7 @@ void Estimation::observe_joints(const SensorFrame& sensors, const VectorM& ddq_m
   if (has_motor_encoders) robot.theta_m = robot.dtheta_m = sensors.theta_m;
   for (int i = 0; i < n_m_; ++i) {
     const auto joint = static_cast<std::size_t>(i);
-    robot.q_m[i] = unwrapped(n_p_ + i, sensors.q_m[i], state.q_m[i]);
+    robot.q_m[i] = measured[i] = unwrapped(n_p_ + i, sensors.q_m[i], state.q_m[i]);
     if (!has_motor_encoders) continue;
 
     LinkObserver& link = state.link[joint];
@@ -90,21 +102,26 @@ void Estimation::observe_joints(const SensorFrame& sensors, const VectorM& ddq_m
     robot.dtheta_m[i] = motor.dtheta;
   }
   state.q_m = robot.q_m;
+  return measured;
 }
 
-void Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd, State& state,
-                                RobotState& robot) const noexcept {
+// The same of the gantry.
+VectorP Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd,
+                                   State& state, RobotState& robot) const noexcept {
+  VectorP measured(n_p_);
   robot.q_p.resize(n_p_);
   robot.dq_p.resize(n_p_);
   robot.ddq_p.resize(n_p_);
   for (int i = 0; i < n_p_; ++i) {
     GantryObserver& axis = state.gantry[static_cast<std::size_t>(i)];
-    observe(config_.drive, gantry_gains_, config_.dt, unwrapped(i, sensors.q_p[i], axis.q),
+    measured[i] = unwrapped(i, sensors.q_p[i], axis.q);
+    observe(config_.drive, gantry_gains_, config_.dt, measured[i],
             axis.delay.shift(dq_p_cmd[i], dead_periods_), axis);
     robot.q_p[i] = axis.q;
     robot.dq_p[i] = axis.dq;
     robot.ddq_p[i] = axis.ddq;
   }
+  return measured;
 }
 
 VectorP Estimation::gantry_disturbance(const State& state) const noexcept {

@@ -10,6 +10,7 @@
 #include "hg/core/types.h"
 #include "hg/estimation/gantry_observer.h"
 #include "hg/estimation/inertial_check.h"
+#include "hg/estimation/inertial_units.h"
 #include "hg/estimation/joint_observer.h"
 #include "hg/estimation/user_wrench.h"
 #include "hg/model/chain.h"
@@ -27,6 +28,7 @@ struct Config {
   double motor_low_pass_Hz = 200.0;  ///< of the motor side's speed
   Pose T_H_S;                        ///< force/torque sensor S in the handle frame H
   WrenchConfig wrench;
+  InertialUnitsConfig units;  ///< on links
 };
 
 struct State {
@@ -37,6 +39,7 @@ struct State {
   std::array<MotorObserver, kMaxManipulator> motor;
   WrenchState wrench;
   InertialCheck inertial;
+  InertialUnitsState units;
 };
 
 class Estimation {
@@ -59,6 +62,11 @@ class Estimation {
   bool is_tared(const State& state) const noexcept {
     return state.wrench.tare.is_valid || !config_.wrench.tare.is_needed;
   }
+  bool has_units() const noexcept { return units_.has_any(); }
+  /// What the units on the links say; empty without.
+  InertialReport inertial_report(const State& state) const noexcept {
+    return units_.report(state.units);
+  }
   /// Acceleration of the gantry, n_p, that its drives were not told to have, m/s^2 or rad/s^2.
   VectorP gantry_disturbance(const State& state) const noexcept;
 
@@ -66,10 +74,10 @@ class Estimation {
   bool turns_without_end(int joint) const noexcept;
   double unwrapped(int joint, double measured, double last) const noexcept;
   void start(const SensorFrame& sensors, State& state) const noexcept;
-  void observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference, State& state,
-                      RobotState& robot) const noexcept;
-  void observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd, State& state,
-                      RobotState& robot) const noexcept;
+  VectorM observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference, State& state,
+                         RobotState& robot) const noexcept;
+  VectorP observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd, State& state,
+                         RobotState& robot) const noexcept;
   void observe_wrench(const SensorFrame& sensors, State& state, RobotState& robot) noexcept;
 
   Config config_;
@@ -78,6 +86,7 @@ class Estimation {
   int dead_periods_;
   GantryGains gantry_gains_;
   double link_pole_, motor_pole_;
+  InertialUnits units_;
 };
 
 }  // namespace hg::estimation

@@ -40,6 +40,8 @@ class Player {
   }
   /// Between begin() and end(): at the time of the sensors.
   const Truth& truth() const noexcept { return *device_.truth(); }
+  /// For faults: what is changed between begin() and run() is what the cycle gets.
+  SensorFrame& sensors() noexcept { return sample_->sensors; }
   /// For disturbances: what is changed between run() and end() is what the device gets.
   CommandFrame& command() noexcept { return sample_->command; }
   bool is_running() const noexcept { return record().mode == Mode::kRunning; }

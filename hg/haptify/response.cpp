@@ -92,6 +92,15 @@ config::Scenario prepared(const config::Scenario& scenario, const ResponseConfig
 
 }  // namespace
 
+double transparency_Hz(const Response& response) {
+  std::vector<double> frequency, ratio;
+  for (const Answer& answer : response.answers) {
+    frequency.push_back(answer.frequency_Hz);
+    ratio.push_back(std::abs(answer.impedance / answer.twin));
+  }
+  return bandwidth(frequency, ratio, kWithin3dB);
+}
+
 Response measure_response(const config::Scenario& scenario, const ResponseConfig& config, int axis,
                           std::uint64_t seed) {
   const experiments::FreeTwin twin = experiments::free_twin_of(scenario);

@@ -36,6 +36,9 @@ struct Response {
   std::string failure;
 };
 
+/// Up to which frequency the felt impedance is within 3 dB of the body's, Hz; needs answers.
+double transparency_Hz(const Response& response);
+
 /// `axis` 0..2 of H. Throws SetupError when the twin is not a free body.
 Response measure_response(const config::Scenario& scenario, const ResponseConfig& config, int axis,
                           std::uint64_t seed);

@@ -71,20 +71,19 @@ void add_transparency(const Group& group) {
       has_all = false;
       continue;
     }
-    std::vector<double> frequency, ratio, following;
+    std::vector<double> frequency, following;
     for (const Answer& answer : axes[axis].answers) {
       const std::complex<double> relative = answer.impedance / answer.twin;
       frequency.push_back(answer.frequency_Hz);
-      ratio.push_back(std::abs(relative));
       following.push_back(std::abs(answer.following));
-      table.rows.push_back({name, amount(answer.frequency_Hz), amount(std::abs(answer.impedance)),
-                            amount(std::abs(answer.twin)), fmt::format("{:.3f}", ratio.back()),
-                            fmt::format("{:.1f}", degrees(relative)),
-                            fmt::format("{:.3f}", following.back()),
-                            fmt::format("{:.1f}", degrees(answer.following))});
+      table.rows.push_back(
+          {name, amount(answer.frequency_Hz), amount(std::abs(answer.impedance)),
+           amount(std::abs(answer.twin)), fmt::format("{:.3f}", std::abs(relative)),
+           fmt::format("{:.1f}", degrees(relative)), fmt::format("{:.3f}", following.back()),
+           fmt::format("{:.1f}", degrees(answer.following))});
     }
     if (frequency.empty()) continue;
-    keep_lowest(bandwidth(frequency, ratio, kWithin3dB), felt);
+    keep_lowest(transparency_Hz(axes[axis]), felt);
     keep_lowest(bandwidth(frequency, following, kWithin3dB), position);
   }
   if (!has_all) felt.values = position.values = {};  // the worst axis may be the one that failed

@@ -77,6 +77,8 @@ void fields(Archive& a, T& sensors) {
   a("temperature_m", sensors.temperature_m, "of the motors, degrees Celsius");
   a("bus_errors", sensors.bus_errors, "fieldbus answers missing in this sample");
   a("driver_fault", sensors.driver_fault, "0 none; numbers are listed in hg/signals/fault.h");
+  a("inertial", sensors.inertial,
+    "units on links: accelerometer m/s^2, gyroscope rad/s, each in its own axes; empty without");
 }
 
 template <typename Archive, Is<HandTarget> T>

@@ -24,6 +24,8 @@ inline constexpr std::string_view kMessageName<LimitReport> = "hapticgiant_msgs/
 template <>
 inline constexpr std::string_view kMessageName<TrackingReport> = "hapticgiant_msgs/TrackingReport";
 template <>
+inline constexpr std::string_view kMessageName<InertialReport> = "hapticgiant_msgs/InertialReport";
+template <>
 inline constexpr std::string_view kMessageName<CollisionReport> =
     "hapticgiant_msgs/CollisionReport";
 template <>
@@ -111,6 +113,17 @@ void fields(Archive& a, T& touch) {
   a("wrench", touch.wrench, "on the handle, that does the same to the joints");
 }
 
+template <typename Archive, Is<InertialReport> T>
+void fields(Archive& a, T& inertial) {
+  a("q", inertial.q, "all joints, the gantry's first, rad or m; empty without units");
+  a("dq", inertial.dq, "rad/s or m/s");
+  a("ddq", inertial.ddq, "rad/s^2 or m/s^2");
+  a("bend", inertial.bend, "of the root, resolved in the base: m, rad");
+  a("bend_rate", inertial.bend_rate, "m/s, rad/s");
+  a("bend_acceleration", inertial.bend_acceleration, "m/s^2, rad/s^2");
+  a("trust", inertial.trust, "share with which each unit takes part, 0..1");
+}
+
 template <typename Archive, Is<CycleRecord> T>
 void fields(Archive& a, T& record) {
   a("cycle", record.cycle);
@@ -152,6 +165,7 @@ void fields(Archive& a, T& record) {
   a("solver_iterations", record.solver_iterations);
   a("active_set_changes", record.active_set_changes);
   a("state_hash", record.state_hash, "equal in a replay");
+  a("inertial", record.inertial, "what inertial units on the links say");
 }
 
 template <typename Archive, Is<BystanderReport> T>

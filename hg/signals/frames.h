@@ -20,6 +20,9 @@ struct SafetyInputs {
   bool has_disagreement = false;  ///< channels of one input differed longer than allowed
 };
 
+/// Six numbers per inertial unit on a link, root to tip: accelerometer, then gyroscope.
+using InertialReadings = VectorUpTo<6 * kMaxInertialUnits>;
+
 /// What a device measured in one sample, as its sensors give it.
 struct SensorFrame {
   std::uint64_t sequence = 0;     ///< counts up by one per sample
@@ -40,6 +43,8 @@ struct SensorFrame {
   VectorM temperature_m;         ///< of the motors, degrees Celsius; empty = not measured
   std::uint32_t bus_errors = 0;  ///< fieldbus answers that are missing in this sample
   FaultCode driver_fault = FaultCode::kNone;  ///< why the driver has no (good) values
+  /// Units on links: acceleration minus gravity, m/s^2, and rad/s, in their own axes; empty = none.
+  InertialReadings inertial;
 };
 
 /// Where a simulated person wants the handle. Only simulated devices look at it.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "hg/core/stacked.h"
 #include "hg/core/types.h"
 #include "hg/signals/fault.h"
 #include "hg/signals/frames.h"
@@ -69,6 +70,15 @@ struct RobotState {
   VectorM tau_m;                  ///< joint torque sensors
   VectorP q_p, dq_p, ddq_p;       ///< gantry, from the observer with the drive model
   Vector6 w_H = Vector6::Zero();  ///< wrench of the user, filtered, without the payload's share
+};
+
+/// What inertial units on the links say of the device; empty without them. "pm": all joints, the
+/// gantry's first. Bending is that of the root, the first unit's link, as if all of it were there:
+/// a twist and what is integrated of it, resolved in B, forgotten within a third of a second.
+struct InertialReport {
+  VectorPM q, dq, ddq;                               ///< joints: rad or m, and its derivatives
+  VectorUpTo<6> bend, bend_rate, bend_acceleration;  ///< m and rad, and their derivatives
+  VectorUpTo<kMaxInertialUnits> trust;  ///< share with which each unit takes part, 0..1
 };
 
 /// Integrated reference of the manipulator.
@@ -201,6 +211,7 @@ struct CycleRecord {
   int solver_iterations = 0;
   int active_set_changes = 0;
   std::uint64_t state_hash = 0;  ///< of the state after this cycle; equal in a replay
+  InertialReport inertial;
 };
 
 /// One cycle, complete: what is recorded.

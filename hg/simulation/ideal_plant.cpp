@@ -45,7 +45,8 @@ void IdealPlant::observe(const VectorM& ddq_m) noexcept {
   truth_.T_B_H = chain_.pose(handle_);
   truth_.twist = chain_.twist(handle_);
   truth_.acceleration = chain_.bias_acceleration(handle_);
-  truth_.acceleration.noalias() += chain_.jacobian(handle_) * stacked(truth_.ddq_p, ddq_m);
+  ddq_ = stacked(truth_.ddq_p, ddq_m);
+  truth_.acceleration.noalias() += chain_.jacobian(handle_) * ddq_;
 }
 
 }  // namespace hg::simulation

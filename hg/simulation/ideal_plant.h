@@ -6,11 +6,13 @@
 
 #include <array>
 
+#include "hg/core/stacked.h"
 #include "hg/core/types.h"
 #include "hg/model/chain.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/truth.h"
+#include "hg/simulation/body_motion.h"
 
 namespace hg::simulation {
 
@@ -30,6 +32,8 @@ class IdealPlant {
   /// Lives one period with drives that are on, or off and held by their brakes.
   void step(const CommandFrame& command, bool is_on) noexcept;
   const Truth& truth() const noexcept { return truth_; }
+  /// Of a link of the chain.
+  BodyMotion motion(int frame) const noexcept { return motion_of(chain_, frame, ddq_); }
 
  private:
   void observe(const VectorM& ddq_m) noexcept;
@@ -38,6 +42,7 @@ class IdealPlant {
   model::Chain chain_;
   int handle_, dead_periods_;
   std::array<CommandDelay, kMaxGantry> delays_;
+  VectorPM ddq_;
   Truth truth_;
 };
 

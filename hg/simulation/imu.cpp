@@ -46,9 +46,10 @@ InertialSensor::InertialSensor(const InertialSensorConfig& config, const SensorF
   Eigen::Vector3d scale, turn;
   for (int i = 0; i < 3; ++i) {
     const auto axis = static_cast<std::size_t>(i);
-    noise_[axis] = RandomStream(seed, effects.noise, i);
-    drift_[axis] = RandomStream(seed, effects.drift, i);
-    RandomStream errors(seed, effects.errors, i);
+    const int channel = effects.first_channel + i;
+    noise_[axis] = RandomStream(seed, effects.noise, channel);
+    drift_[axis] = RandomStream(seed, effects.drift, channel);
+    RandomStream errors(seed, effects.errors, channel);
     bias_[i] = config.bias * errors.gaussian();
     per_kelvin_[i] = config.temperature_drift * errors.gaussian();
     scale[i] = 1.0 + config.scale_error * errors.gaussian();

@@ -38,6 +38,7 @@ InertialSensorConfig mems_gyroscope();
 /// Streams of a sensor.
 struct InertialEffects {
   RandomEffect noise, errors, drift;
+  int first_channel = 0;  ///< of its three axes
 };
 
 class InertialSensor {

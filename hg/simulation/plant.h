@@ -18,6 +18,7 @@
 #include "hg/model/chain.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/truth.h"
+#include "hg/simulation/body_motion.h"
 #include "hg/simulation/friction.h"
 #include "hg/simulation/hardware_faults.h"
 #include "hg/simulation/plant_config.h"
@@ -44,6 +45,8 @@ class Plant {
 
   /// What is the case now; accelerations are those of the last step.
   const Truth& truth() const noexcept { return truth_; }
+  /// Of a link of the chain, likewise.
+  BodyMotion motion(int frame) const noexcept { return motion_of(chain_, frame, ddq_); }
   /// Of the last step; zero before the first.
   const PlantForces& forces() const noexcept { return forces_; }
   PlantEnergy energy() const noexcept;

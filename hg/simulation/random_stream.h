@@ -31,6 +31,13 @@ enum class RandomEffect : std::uint64_t {
   kCogging = 16,
   kRipple = 17,
   kWaviness = 18,
+  kLinkAccelerometerNoise = 19,
+  kLinkAccelerometerErrors = 20,
+  kLinkAccelerometerDrift = 21,
+  kLinkGyroscopeNoise = 22,
+  kLinkGyroscopeErrors = 23,
+  kLinkGyroscopeDrift = 24,
+  kLinkMounting = 25,
 };
 
 class RandomStream {

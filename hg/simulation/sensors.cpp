@@ -14,8 +14,6 @@ SensorFilterConfig no_filter() { return {.average = 0.0, .delay = 0.0}; }
 
 std::size_t at(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
 
-const Eigen::Vector3d kGravity_B(0.0, 0.0, -9.81);
-
 }  // namespace
 
 SensorsConfig ideal_sensors() {
@@ -41,6 +39,7 @@ SensorsConfig ideal_sensors() {
                    .filter = no_filter()};
   config.accelerometer = config.gyroscope = {};
   config.imu_filter = no_filter();
+  config.link_unit.accelerometer = config.link_unit.gyroscope = {};
   return config;
 }
 
@@ -58,6 +57,9 @@ Sensors::Sensors(const SensorsConfig& config, const SensedDevice& device)
       temperature_(config.temperature, device.period,
                    RandomStream(config.seed, RandomEffect::kTemperature)) {
   const std::uint64_t seed = config.seed;
+  for (int unit = 0; unit < device.link_units; ++unit) {
+    units_.emplace_back(config.link_unit, device.step, device.period, seed, unit);
+  }
   for (Eigen::Index i = 0; i < device.gear_ratio.size(); ++i) {
     const int joint = static_cast<int>(i);
     const double ratio = device.gear_ratio[i];
@@ -78,13 +80,10 @@ Sensors::Sensors(const SensorsConfig& config, const SensedDevice& device)
 }
 
 void Sensors::observe(const Truth& truth) noexcept {
-  // the sensor is fixed to the handle: same angular motion, further terms by the lever
   const Eigen::Matrix3d R_S_B = (truth.T_B_H.R * device_.T_H_S.R).transpose();
   const Eigen::Vector3d p_H_S_in_S = device_.T_H_S.R.transpose() * device_.T_H_S.p;
-  const Eigen::Vector3d omega_S = R_S_B * truth.twist.tail<3>();
-  const Eigen::Vector3d alpha_S = R_S_B * truth.acceleration.tail<3>();
-  const Eigen::Vector3d a_S = R_S_B * (truth.acceleration.head<3>() - kGravity_B) +
-                              alpha_S.cross(p_H_S_in_S) + omega_S.cross(omega_S.cross(p_H_S_in_S));
+  const auto [a_S, omega_S, alpha_S] =
+      felt_at(device_.T_H_S, {truth.T_B_H.R, truth.twist, truth.acceleration});
 
   const Eigen::Vector3d f = R_S_B * truth.w_H.head<3>();
   Vector6 w_S = payload_wrench(device_.payload, a_S, omega_S, alpha_S);
@@ -108,6 +107,10 @@ void Sensors::sample(const Truth& truth, SensorFrame& frame) noexcept {
   frame.w_S = wrench_sensor_.sample(warmer);
   frame.a_S = accelerometer_.sample(warmer);
   frame.omega_S = gyroscope_.sample(warmer);
+  frame.inertial.resize(6 * static_cast<Eigen::Index>(units_.size()));
+  for (std::size_t unit = 0; unit < units_.size(); ++unit) {
+    frame.inertial.segment<6>(6 * static_cast<Eigen::Index>(unit)) = units_[unit].sample(warmer);
+  }
   ++samples_;
 }
 

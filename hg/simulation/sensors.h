@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "hg/core/types.h"
 #include "hg/signals/frames.h"
@@ -14,6 +15,7 @@
 #include "hg/signals/truth.h"
 #include "hg/simulation/encoder.h"
 #include "hg/simulation/imu.h"
+#include "hg/simulation/link_unit.h"
 #include "hg/simulation/motor_heat.h"
 #include "hg/simulation/temperature.h"
 #include "hg/simulation/torque_sensor.h"
@@ -41,6 +43,7 @@ struct SensorsConfig {
   InertialSensorConfig accelerometer = mems_accelerometer();
   InertialSensorConfig gyroscope = mems_gyroscope();
   SensorFilterConfig imu_filter;
+  LinkUnitConfig link_unit;       ///< of every inertial unit on a link
   TemperatureConfig temperature;  ///< of the force/torque sensor with the IMU inside
   MotorHeatConfig motor_heat;
 };
@@ -58,6 +61,7 @@ struct SensedDevice {
   VectorM torque_rated;  ///< of the motors, Nm; empty: their heat is unknown
   Pose T_H_S;            ///< force/torque sensor in the handle frame
   Payload payload;       ///< beyond the force/torque sensor
+  int link_units = 0;    ///< inertial units on links, at most kMaxInertialUnits
 };
 
 class Sensors {
@@ -67,9 +71,12 @@ class Sensors {
 
   /// After every step of the plant; the first call counts as a device at rest there for ever.
   void observe(const Truth& truth) noexcept;
+  /// The same of the link that a unit sits on.
+  void observe(std::size_t unit, const BodyMotion& link) noexcept { units_[unit].observe(link); }
   /// At the end of a period, after observe() of the same `truth`: fills q_m, dq_m, theta_m, tau_m,
-  /// q_p, w_S, a_S, omega_S, temperature_m and time_s of `frame`. theta_m, tau_m and temperature_m
-  /// stay empty where the truth has no motors. time_s counts periods from 0 at the first call.
+  /// q_p, w_S, a_S, omega_S, inertial, temperature_m and time_s of `frame`. theta_m, tau_m and
+  /// temperature_m stay empty where the truth has no motors. time_s counts periods from 0 at the
+  /// first call.
   void sample(const Truth& truth, SensorFrame& frame) noexcept;
 
  private:
@@ -83,6 +90,7 @@ class Sensors {
   std::array<MotorHeat, kMaxManipulator> motor_heat_;
   WrenchSensor wrench_sensor_;
   InertialSensor accelerometer_, gyroscope_;
+  std::vector<LinkUnit> units_;
   Temperature temperature_;
   VectorM q_m_before_;  // readings of the link encoders a period ago; empty before the first sample
   std::uint64_t samples_ = 0;

@@ -117,6 +117,11 @@ void Simulation::look(const HandTarget& target) noexcept {
   w_H_ = person_.wrench(time_s, {truth_.T_B_H, truth_.twist}, target);
   if (std::holds_alternative<IdealPlant>(plant_)) truth_.w_H = w_H_;
   sensors_.observe(truth_);
+  for (std::size_t unit = 0; unit < config_.link_units.size(); ++unit) {
+    const int frame = config_.link_units[unit];
+    sensors_.observe(
+        unit, std::visit([&](const auto& plant) noexcept { return plant.motion(frame); }, plant_));
+  }
 }
 
 void Simulation::sample() noexcept {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <variant>
+#include <vector>
 
 #include "hg/core/types.h"
 #include "hg/model/chain.h"
@@ -27,7 +28,8 @@ struct Config {
   int steps = 1;         ///< of the plant per period; 1 for an ideal one
   double latency = 0.0;  ///< of torque commands, s; rounded to steps of the plant
   SensorsConfig sensors = ideal_sensors();
-  SensedDevice sensed;  ///< with the step of the plant and the period
+  SensedDevice sensed;          ///< with the step of the plant and the period
+  std::vector<int> link_units;  ///< frames of the plant's chain that carry an inertial unit
   bool has_dead_man = true;
   SafetyPlcConfig safety;  ///< with the period
   /// Without a new command for so long the drives switch themselves off, s; [HANDBOOK] 6.6. A

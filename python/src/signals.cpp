@@ -184,6 +184,7 @@ void bind_signals(nb::module_& module) {
   bind_fields<CommandFrame>(module, "CommandFrame", "What the device is asked to do.");
   bind_fields<Fault>(module, "Fault", "What stopped the device.");
   bind_fields<RobotState>(module, "RobotState", "What estimation knows about the device.");
+  bind_fields<InertialReport>(module, "InertialReport", "What inertial units on links say.");
   bind_fields<ReferenceState>(module, "ReferenceState", "Reference of the manipulator.");
   bind_fields<TwinState>(module, "TwinState", "State of the twin.");
   bind_fields<TrackingReport>(module, "TrackingReport", "How well the device follows.");

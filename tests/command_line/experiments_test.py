@@ -128,6 +128,22 @@ class Experiments(TemporaryFolder):
         self.assertEqual(run("experiment", "door", "--duration", "-1")[0], 2)
         self.assertEqual(run("experiment", "timing", "--rates", "50")[0], 2)
 
+    def test_units_on_the_links_know_more_than_encoders_and_one_may_die(self):
+        file = self.folder / "inertial.json"
+        code, out, err = run_without_figures("experiment", "inertial", "walk", "--seeds", 1,
+                                             "--json", file)
+        self.assertEqual(code, 0, err)
+        self.assertIn("encoders and units", out)
+        runs = {one["units"]: one for one in read(file)["runs"]}
+        for name in ("all", "all, one dies", "arm", "last link"):
+            told = runs[name]
+            for what in ("joint_speed", "joint_acceleration"):
+                self.assertLess(told["inertial"][what], 0.8 * told["reference"][what], name)
+            self.assertEqual(told["least_trust"], 0.0 if "dies" in name else 1.0)
+        self.assertLess(runs["all, one dies"]["largest_change"],
+                        1.2 * runs["all"]["largest_change"])
+        self.assertEqual(run("experiment", "inertial", "walkk")[0], 2)
+
     def test_timing_stands_beside_the_paper(self):
         code, out, err = run("experiment", "timing", "--rates", "1000,2000", "--duration", "2",
                              "--law", "gauss", "--out", self.folder)

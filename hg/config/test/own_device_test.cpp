@@ -151,6 +151,26 @@ TEST(OwnDevice, SaysHowSensorsAreReadAndWhatHangsBeyondThem) {
             "none");
 }
 
+TEST(OwnDevice, InertialUnitsAreLinksOfTheChainFromRootToTip) {
+  const auto said = [](const std::string& estimation) {
+    return message("handle: l7\nroot_link: l1\nestimation: {" + estimation + "}\n");
+  };
+  EXPECT_EQ(said("inertial_units: [l3, l5], inertial_delay_s: 0.002"), "no error");
+  EXPECT_EQ(said("inertial_units: [l5, l3]"),
+            "device.yaml:6:30: estimation.inertial_units: must be in the order from root to tip");
+  EXPECT_EQ(
+      said("inertial_units: [l3, l55]"),
+      "device.yaml:6:35: estimation.inertial_units[1]: must be a link of the chain, got 'l55', "
+      "did you mean 'l5'?");
+  EXPECT_EQ(said("inertial_delay_s: 0.002"),
+            "device.yaml:6:32: estimation.inertial_delay_s: concerns inertial_units, and there are "
+            "none");
+  EXPECT_EQ(
+      said("inertial_units: [l3], inertial_delay_s: 0.05"),
+      "device.yaml:6:54: estimation.inertial_delay_s: must be at most 14 periods, here 0.014 s, "
+      "got 0.05");
+}
+
 TEST(OwnDevice, WithoutPrepositioningTheGantryKeepsWithinItsDrive) {
   const auto load = [](const std::string& rest) {
     SourceReader reader = reader_of(kGantry + "handle: l7\n" + rest, arm_urdf("revolute"), kTool);

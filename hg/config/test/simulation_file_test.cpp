@@ -146,6 +146,12 @@ sensors:
   imu_filter: {average_s: 0.0054, delay_s: 0.0055}
   temperature: {environment_K: 56, self_heating_K: 57, time_constant_s: 58,
     fluctuation_K_per_sqrt_s: 59, time_on_s: 60}
+  inertial_unit:
+    place_m: 61
+    turned: false
+    filter: {average_s: 0.0062, delay_s: 0.0063}
+    accelerometer: {noise_m_per_s2_per_sqrt_Hz: 64}
+    gyroscope: {range_rad_per_s: 65}
 )")
                                                 .sensors;
   std::vector<double> values;
@@ -178,7 +184,12 @@ sensors:
                        temperature.environment, temperature.self_heating, temperature.time_constant,
                        temperature.fluctuation, temperature.time_on})
     values.push_back(value);
-  ASSERT_EQ(values.size(), 60u);
+  const simulation::LinkUnitConfig& unit = sensors.link_unit;
+  EXPECT_FALSE(unit.is_turned);
+  for (double value : {unit.place, 1e4 * unit.filter.average, 1e4 * unit.filter.delay,
+                       unit.accelerometer.noise, unit.gyroscope.range})
+    values.push_back(value);
+  ASSERT_EQ(values.size(), 65u);
   for (std::size_t k = 0; k < values.size(); ++k) EXPECT_EQ(values[k], static_cast<double>(k + 1));
 }
 

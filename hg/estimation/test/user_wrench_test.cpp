@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "hg/core/cross.h"
+
 namespace hg::estimation {
 namespace {
 
@@ -17,10 +19,6 @@ Payload handle() {
   Payload payload = {.mass = 1.18, .com = {0.01, -0.02, 0.03}};
   payload.inertia << 3.5e-3, 1e-4, 0, 1e-4, 3.0e-3, -2e-4, 0, -2e-4, 1.2e-3;
   return payload;
-}
-
-Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
-  return (Eigen::Matrix3d() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
 }
 
 // The sensor on a path: position and orientation (rotation about a fixed axis and another about the
@@ -177,7 +175,7 @@ TEST(PayloadWrench, IsTheWeightAtRest) {
   const Payload payload = handle();
   const Vector6 w = payload_wrench(payload, kUp, {0, 0, 0}, {0, 0, 0});
   EXPECT_LT((w.head<3>() - Eigen::Vector3d(0, 0, -1.18 * 9.81)).norm(), 1e-12);
-  EXPECT_LT((w.tail<3>() - cross(payload.com) * w.head<3>()).norm(), 1e-12);
+  EXPECT_LT((w.tail<3>() - cross_matrix(payload.com) * w.head<3>()).norm(), 1e-12);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hg/core/allocation_counter.h"
+#include "hg/core/cross.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/test/dh_reference.h"
@@ -36,12 +37,6 @@ void for_all_chains(Law law) {
       if (testing::Test::HasFailure()) return;
     }
   }
-}
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
 }
 
 TEST(Chain, JointsAreListedWithTheirPlacesInQAndDq) {

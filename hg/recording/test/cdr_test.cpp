@@ -168,6 +168,7 @@ TEST(Fields, NameEveryMemberOfEveryStruct) {
   expect_all_members_recorded<TwinState>();
   expect_all_members_recorded<Budget>();
   expect_all_members_recorded<LimitReport>();
+  expect_all_members_recorded<InertialReport>();
   expect_all_members_recorded<CycleRecord>();
   expect_all_members_recorded<Sample>();
 }

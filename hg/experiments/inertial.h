@@ -1,0 +1,70 @@
+/// What inertial units on the links know that encoders do not: errors of speeds and accelerations
+/// against the truth of the simulation, with all of them, with some, and when one dies.
+///
+/// The control does not use what the units say here: encoders and units see the same motion.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "hg/config/scenario.h"
+#include "hg/experiments/workers.h"
+#include "hg/signals/fault.h"
+
+namespace hg::experiments {
+
+/// Which links carry a unit, by name.
+struct UnitSet {
+  std::string name;
+  std::vector<std::string> links;  ///< root to tip
+  bool loses_one = false;          ///< halfway the middle one shows NaN for ever
+};
+
+/// One unit on each link that another joint moves; and subsets. Without gantry those of the arm.
+std::vector<UnitSet> unit_sets(const config::Device& device);
+
+/// Their frames in the device's chain.
+std::vector<int> frames_of(const config::Device& device, const std::vector<std::string>& links);
+
+/// rms of an estimate minus the truth. Joints of the manipulator are taken together.
+struct EstimateErrors {
+  double joint_speed = 0.0;          ///< rad/s
+  double joint_acceleration = 0.0;   ///< rad/s^2
+  double gantry_acceleration = 0.0;  ///< m/s^2
+  double handle_speed = 0.0;         ///< m/s
+  double handle_acceleration = 0.0;  ///< m/s^2
+};
+
+struct InertialRun {
+  std::string scenario, units;
+  std::uint64_t seed = 0;
+  double judged_s = 0.0;     ///< from the middle of the run on; 0 after a fault before it
+  EstimateErrors reference;  ///< what the joints should do; its speeds are those of the encoders
+  EstimateErrors encoders;   ///< accelerations from differences of the speeds
+  EstimateErrors inertial;   ///< encoders and units
+  double lateness = 0.0;     ///< of what the units say beyond the reference, s
+  double trust = 0.0;        ///< least of a unit, at the end
+  double bump = 0.0;         ///< largest change of a joint's acceleration in a period, rad/s^2
+  FaultCode fault = FaultCode::kNone;
+};
+
+/// Plays a scenario with inertial units: what they have learnt of how they sit is known from then
+/// on.
+void learn_mounting(config::Scenario& scenario);
+
+/// A scenario with a planned end, played twice: units learn how they sit, then they are judged.
+InertialRun play_with_units(const config::Scenario& scenario, const std::string& name,
+                            const UnitSet& units, std::uint64_t seed);
+
+/// All sets with all scenarios and seeds 1..`seeds`, on all cores.
+std::vector<InertialRun> measure_inertial(const std::vector<config::Scenario>& scenarios,
+                                          const std::vector<std::string>& names, int seeds,
+                                          const Progress& progress);
+
+/// A table with medians over the seeds.
+std::string to_text(const std::vector<InertialRun>& runs);
+nlohmann::ordered_json to_json(const std::vector<InertialRun>& runs);
+
+}  // namespace hg::experiments
