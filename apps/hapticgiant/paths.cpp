@@ -29,6 +29,23 @@ std::vector<std::string> names_in(const fs::path& folder, std::string_view prefi
   return names;
 }
 
+// A file, or the shipped one of this name in models/KINDs. `words` is what the option takes beside.
+fs::path find_shipped(const std::string& name, std::string_view kind,
+                      const std::vector<std::string>& words = {}) {
+  std::error_code error;  // a name may be longer than the system takes
+  if (fs::is_regular_file(name, error)) return name;
+  const fs::path folder = models_root() / "models" / fmt::format("{}s", kind);
+  const fs::path known = folder / (name + ".yaml");
+  if (fs::is_regular_file(known, error)) return known;
+
+  const std::vector<std::string> shipped = names_in(folder, "");
+  std::vector<std::string> names = words;
+  names.insert(names.end(), shipped.begin(), shipped.end());
+  throw SetupError(fmt::format("{}: no such {} file, did you mean '{}'? Shipped are {}", name, kind,
+                               nearest_name(fs::path(name).stem().string(), names),
+                               fmt::join(shipped, ", ")));
+}
+
 }  // namespace
 
 fs::path installation_root() {
@@ -52,17 +69,10 @@ fs::path models_root() {
       "installed");
 }
 
-fs::path find_scenario(const std::string& name) {
-  std::error_code error;  // a name may be longer than the system takes
-  if (fs::is_regular_file(name, error)) return name;
-  const fs::path folder = models_root() / "models" / "scenarios";
-  const fs::path known = folder / (name + ".yaml");
-  if (fs::is_regular_file(known, error)) return known;
+fs::path find_scenario(const std::string& name) { return find_shipped(name, "scenario"); }
 
-  const std::vector<std::string> names = names_in(folder, "");
-  throw SetupError(fmt::format("{}: no such scenario file, did you mean '{}'? Shipped are {}", name,
-                               nearest_name(fs::path(name).stem().string(), names),
-                               fmt::join(names, ", ")));
+fs::path find_script(const std::string& name) {
+  return find_shipped(name, "script", {"mouse", "none"});
 }
 
 fs::path find_device(const std::string& file) {

@@ -23,6 +23,9 @@ std::filesystem::path models_root();
 /// Throws SetupError naming the nearest one.
 std::filesystem::path find_scenario(const std::string& name);
 
+/// The same of a script of a person.
+std::filesystem::path find_script(const std::string& name);
+
 /// A device file as given, or among the data that comes with the program.
 std::filesystem::path find_device(const std::string& file);
 

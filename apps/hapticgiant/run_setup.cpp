@@ -65,7 +65,7 @@ void apply(const ScenarioArguments& arguments, config::SourceReader& reader,
     scenario.person = user::PersonKind::kNone;
   } else if (!arguments.user.empty()) {
     scenario.person = user::PersonKind::kScript;
-    scenario.script = config::load_script(arguments.user, scenario.twin.model, reader);
+    scenario.script = config::load_script(find_script(arguments.user), scenario.twin.model, reader);
     scenario.duration_s = 0.0;  // as long as this script
     add_sources(scenario.script.sources);
   } else if (!arguments.twin.empty()) {

@@ -9,9 +9,9 @@ namespace hg::apps {
 
 struct ScenarioArguments {
   std::string scenario = "door";
-  std::string device;                 ///< device.yaml instead of the scenario's; empty = its own
-  std::string twin;                   ///< twin.yaml likewise
-  std::string user;                   ///< script file, "mouse" or "none"; empty = the scenario's
+  std::string device;  ///< device.yaml instead of the scenario's; empty = its own
+  std::string twin;    ///< twin.yaml likewise
+  std::string user;    ///< see find_script(), or "mouse" or "none"; empty = the scenario's
   std::optional<double> rate_Hz;      ///< unset: the device's
   std::string plant;                  ///< "elastic" or "ideal"; empty = as the device is
   std::string simulation;             ///< see find_simulation(); empty = as the device says
