@@ -102,7 +102,7 @@ void add_scenario_options(CLI::App& command, hg::apps::ScenarioArguments& world)
   command.add_option("--step", world.step_s, "largest step of the simulated machine, s")
       ->check(number_that("from 1e-5 to 2e-3",
                           [](double value) { return value >= 1e-5 && value <= 2e-3; }));
-  command.add_option("--user", world.user, "script file, mouse or none");
+  command.add_option("--user", world.user, "file or name of a script, mouse or none");
   command.add_option("--rate-hz", world.rate_Hz, "control rate, 100..20000; default: the device's")
       ->check(number_that("from 100 to 20000",
                           [](double value) { return value >= 100.0 && value <= 20000.0; }));
@@ -383,7 +383,8 @@ void add_check(CLI::App& app, hg::apps::CheckArguments& check, int& exit_code) {
   command->callback([&check, &exit_code] { exit_code = hg::apps::run_check(check); });
 }
 
-void add_identify(CLI::App& app, hg::apps::IdentifyArguments& arguments, int& exit_code) {
+void add_identify(CLI::App& app, hg::apps::IdentifyArguments& arguments,
+                  hg::apps::IdentifyFrictionArguments& recorded, int& exit_code) {
   CLI::App* identify = app.add_subcommand("identify", "Parameters of a device from measurements.");
   identify->require_subcommand(1);
   CLI::App* payload = identify->add_subcommand(
@@ -400,6 +401,20 @@ void add_identify(CLI::App& app, hg::apps::IdentifyArguments& arguments, int& ex
       ->capture_default_str();
   payload->callback(
       [&arguments, &exit_code] { exit_code = hg::apps::identify_payload(arguments); });
+  CLI::App* friction = identify->add_subcommand(
+      "friction", "Friction of each joint from a recording of its motion (docs/friction.md).");
+  friction->footer(
+      "Examples:\n"
+      "  hapticgiant run free_space --user friction --fast   moves all joints\n"
+      "  hapticgiant identify friction recordings/latest.mcap");
+  friction->add_option("file", recorded.file, "recording of hapticgiant run")
+      ->required()
+      ->check(CLI::ExistingFile);
+  friction->add_option("--device", recorded.device,
+                       "device.yaml to compare with instead of that of the recording");
+  friction->add_option("--json", recorded.json, "write all figures as JSON to this file");
+  friction->callback(
+      [&recorded, &exit_code] { exit_code = hg::apps::identify_friction(recorded); });
 }
 
 void add_seeds(CLI::App& experiment, hg::apps::SeedsArguments& arguments, int& exit_code) {
@@ -445,9 +460,27 @@ void add_contact(CLI::App& experiment, hg::apps::ContactArguments& arguments, in
       [&arguments, &exit_code] { exit_code = hg::apps::experiment_contact(arguments); });
 }
 
+void add_inertial(CLI::App& experiment, hg::apps::InertialArguments& arguments, int& exit_code) {
+  CLI::App* command = experiment.add_subcommand(
+      "inertial", "what inertial units on the links know that encoders do not");
+  command->add_option("scenarios", arguments.scenarios, "scenario files or names")
+      ->capture_default_str();
+  command->add_option("--simulation", arguments.simulation, kSimulationHelp);
+  command->add_option("--seeds", arguments.seeds, "seeds per case, from 1 on")
+      ->check(whole_number(1.0, 1e3))
+      ->capture_default_str();
+  command->add_option("--json", arguments.json, "write all figures as JSON to this file");
+  command->add_flag(
+      "--feel", arguments.feels,
+      "what a hand feels where the control uses them: transparency, light bodies, wall");
+  command->callback(
+      [&arguments, &exit_code] { exit_code = hg::apps::experiment_inertial(arguments); });
+}
+
 void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
-                    hg::apps::ContactArguments& contact, hg::apps::SeedsArguments& seeds,
-                    hg::apps::ExperimentsArguments& more, int& exit_code) {
+                    hg::apps::ContactArguments& contact, hg::apps::InertialArguments& inertial,
+                    hg::apps::SeedsArguments& seeds, hg::apps::ExperimentsArguments& more,
+                    int& exit_code) {
   CLI::App* command =
       app.add_subcommand("experiment",
                          "The paper's experiments, and what the simulated device is like to hold "
@@ -462,6 +495,7 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
       "  hapticgiant experiment stability-map --svg stability.svg\n"
       "  hapticgiant experiment impedance --json impedance.json\n"
       "  hapticgiant experiment contact           the arm hits somebody in its way\n"
+      "  hapticgiant experiment inertial --simulation harder\n"
       "  hapticgiant experiment seeds free_space --hands own,stiff --count 16");
   hg::apps::add_paper_experiments(*command, more.paper, exit_code);
   const auto add = [&](const char* name, const char* text,
@@ -473,12 +507,16 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
   };
   add("free-space", "force and vibration at the handle of a free body, and what makes them",
       hg::apps::experiment_free_space);
-  add("stability-map", "how stiff a hand may be for how light a body, before contact is unstable",
-      hg::apps::experiment_stability_map)
-      ->add_option("--svg", arguments.svg, "draw the map to this file");
+  CLI::App* map = add("stability-map",
+                      "how stiff a hand may be for how light a body, before contact is unstable",
+                      hg::apps::experiment_stability_map);
+  map->add_option("--svg", arguments.svg, "draw the map to this file");
+  map->add_option("--device", arguments.device, "device.yaml instead of the reference device's");
+  map->add_option("--simulation", arguments.simulation, kSimulationHelp);
   add("impedance", "how far the handle gives way, by frequency and under a constant push",
       hg::apps::experiment_impedance);
   add_contact(*command, contact, exit_code);
+  add_inertial(*command, inertial, exit_code);
   add_seeds(*command, seeds, exit_code);
 }
 
@@ -612,8 +650,10 @@ int main(int argc, char** argv) {
   hg::apps::NewArguments created;
   hg::apps::HqpSolveArguments hqp;
   hg::apps::IdentifyArguments identified;
+  hg::apps::IdentifyFrictionArguments rubbed;
   hg::apps::ExperimentArguments measured;
   hg::apps::ContactArguments contact;
+  hg::apps::InertialArguments inertial;
   hg::apps::SeedsArguments seeds;
   hg::apps::ExperimentsArguments experiments;
   hg::apps::BenchArguments compared;
@@ -629,8 +669,8 @@ int main(int argc, char** argv) {
   add_check(app, check, exit_code);
   add_new(app, created, exit_code);
   add_hqp(app, hqp, exit_code);
-  add_identify(app, identified, exit_code);
-  add_experiment(app, measured, contact, seeds, experiments, exit_code);
+  add_identify(app, identified, rubbed, exit_code);
+  add_experiment(app, measured, contact, inertial, seeds, experiments, exit_code);
   hg::apps::add_plot_and_compare(app, experiments, exit_code);
   add_bench(app, compared, exit_code);
   add_faults(app, broken, exit_code);

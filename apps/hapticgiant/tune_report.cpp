@@ -50,6 +50,9 @@ void all_rows(const TuneReport& report, const Row& row) {
   const Proof& is = report.result.proofs.front();
   row("errors left after 0.1 s", decay(was.arm), decay(is.arm));
   row("the same in a hand", decay(was.hand), decay(is.hand));
+  if (was.friction > 0.0) {
+    row("while friction gives way", decay(was.friction), decay(is.friction));
+  }
   const auto verdict = [](const Proof& proof) -> std::string {
     return proof.holds() ? "yes" : "NO";
   };
@@ -57,8 +60,12 @@ void all_rows(const TuneReport& report, const Row& row) {
 }
 
 std::string worst_of(const tuning::Demands& demands, const Proof& proof) {
-  return fmt::format("nearest to its limit: {}; in a hand: {}", demands.name(proof.worst_arm),
-                     demands.name(proof.worst_hand));
+  std::string text = fmt::format("nearest to its limit: {}; in a hand: {}",
+                                 demands.name(proof.worst_arm), demands.name(proof.worst_hand));
+  if (proof.friction > 0.0) {
+    text += fmt::format("; while friction gives way: {}", demands.name(proof.worst_friction));
+  }
+  return text;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ constexpr double kFeedforwardShare = 0.7;  // of the peak torque, the rest is fo
 constexpr double kUnexplained_s = 0.1;     // over which unexplained torques are averaged
 const double kFastestFilter = std::sqrt(5.0) - 1.0;  // rad per period, see largest_flatness_Hz()
 constexpr double kSlides = 0.5;          // share of friction_speed's tanh from which a joint slides
-constexpr double kMostFriction = 2.0;    // times what is configured; more would be another fault
+constexpr double kSlips = 0.999;         // share of all bristles that slip, up to rounding
 constexpr int kSweepsAtStart = 12;       // far more than any matrix of seven rows needs
 constexpr double kMotorPdDamping = 1.4;  // [C] 1: Kd = 1.4 sqrt(K Jm)
 
@@ -82,6 +82,7 @@ JointControl::JointControl(const Config& config, const model::Chain& chain, int 
     feed_max_[i] = kFeedforwardShare * config_.actuators[static_cast<std::size_t>(i)].torque_max;
   }
   sqrt_K_ = K_.cwiseSqrt();
+  has_feet_ = std::ranges::any_of(config_.actuators, has_presliding);
 }
 
 State JointControl::start() const {
@@ -91,6 +92,7 @@ State JointControl::start() const {
   state.integral = VectorM::Zero(n_m_);
   state.friction = VectorM::Constant(n_m_, config_.friction_share);
   state.tau_r = state.dtau_r = state.ddtau_r = state.stiff = VectorM::Zero(n_m_);
+  if (has_feet_) state.feet = BristleFeet::Zero(n_m_, kSlipElements);
   return state;
 }
 
@@ -221,6 +223,9 @@ void JointControl::begin(const ReferenceState& reference, const RobotState& robo
   state.w_H = robot.w_H;
   state.dw_H.setZero();
   state.stiff = of_stiff_modes(tau, stiffness_shares(state), state);
+  if (has_feet_) {
+    state.feet.colwise() = reference.q_m + state.tau_r.cwiseQuotient(K_);
+  }
   state.is_started = true;
 }
 
@@ -232,9 +237,13 @@ JointControl::Feedforward JointControl::feedforward(const ReferenceState& refere
   ddq_r_ = reference.ddq_m;
   state.unexplained += config_.dt / kUnexplained_s * (robot.tau_m - tau - state.unexplained);
   follow_torque(fed(config_.method == Method::kModal ? timely(tau, robot, state) : tau), state);
-  return {.tau = state.tau_r,
-          .dtheta = reference.dq_m + state.dtau_r.cwiseQuotient(K_),
-          .ddtheta = reference.ddq_m + state.ddtau_r.cwiseQuotient(K_)};
+  Feedforward forward = {.tau = state.tau_r,
+                         .dtheta = reference.dq_m + state.dtau_r.cwiseQuotient(K_),
+                         .ddtheta = reference.ddq_m + state.ddtau_r.cwiseQuotient(K_),
+                         .dry = VectorM(n_m_),
+                         .along = VectorM(n_m_)};
+  dry_friction(reference, state, forward);
+  return forward;
 }
 
 // How stiff each mode is.
@@ -342,14 +351,28 @@ VectorM JointControl::motor_pd_torque(const Errors& errors,
          Kd.cwiseProduct(errors.dtheta);
 }
 
+// By the motion of the reference, whose sign is known before the motor turns.
+void JointControl::dry_friction(const ReferenceState& reference, State& state,
+                                Feedforward& forward) const noexcept {
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    const double dtheta = forward.dtheta[i];
+    forward.dry[i] = coulomb_torque(actuator, dtheta, forward.tau[i]);
+    if (has_presliding(actuator)) {
+      const double theta = reference.q_m[i] + forward.tau[i] / K_[i];
+      forward.along[i] = slip(actuator, theta, forward.dry[i], i, state.feet) / forward.dry[i];
+    } else {
+      forward.along[i] = std::tanh(dtheta / config_.friction_speed);
+    }
+  }
+}
+
 VectorM JointControl::friction(const Feedforward& forward, const State& state) const noexcept {
   VectorM tau(n_m_);
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
-    const double dtheta = forward.dtheta[i];
-    tau[i] = state.friction[i] * coulomb_torque(actuator, dtheta, forward.tau[i]) *
-                 std::tanh(dtheta / config_.friction_speed) +
-             actuator.viscous_friction * dtheta;
+    tau[i] = state.friction[i] * forward.dry[i] * forward.along[i] +
+             actuator.viscous_friction * forward.dtheta[i];
   }
   return tau;
 }
@@ -362,11 +385,11 @@ void JointControl::learn_friction(const Feedforward& forward, const VectorM& fee
   if (state.is_saturated) return;
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
-    const double along = std::tanh(forward.dtheta[i] / config_.friction_speed);
+    const double along = forward.along[i];
     const double slides = std::tanh(robot.dtheta_m[i] / config_.friction_speed) * along;
     if (!(slides >= kSlides)) continue;
-    const double missing =
-        feedback[i] * along / coulomb_torque(actuator, forward.dtheta[i], forward.tau[i]);
+    if (has_presliding(actuator) && std::abs(along) < kSlips) continue;
+    const double missing = feedback[i] * along / forward.dry[i];
     state.friction[i] += config_.dt * config_.friction_learning * missing;
     state.friction[i] = std::clamp(state.friction[i], 0.0, kMostFriction);
   }

@@ -13,11 +13,14 @@
 #include "hg/core/types.h"
 #include "hg/model/chain.h"
 #include "hg/signals/actuator_model.h"
+#include "hg/signals/presliding.h"
 #include "hg/signals/state.h"
 
 namespace hg::control {
 
 inline constexpr int kAnswersNeeded = 100;  ///< samples until the latency counts as known
+/// Largest factor on the friction of the configuration; more would be another fault.
+inline constexpr double kMostFriction = 2.0;
 
 enum class Method {
   kDrives,   ///< the drives follow the reference by themselves
@@ -41,7 +44,7 @@ struct Config {
   double stiff_low_pass_Hz = 0.0;  ///< of kModal: of what is fed forward to stiff modes; 0 = none
   double error_max = kInfinity;    ///< by which the reference may be ahead, rad or m
   double friction_share = 0.8;     ///< of the Coulomb friction that is fed forward, 0..1
-  double friction_speed = 0.01;    ///< rad/s over which it changes its sign
+  double friction_speed = 0.01;    ///< rad/s over which it changes its sign, without presliding
   double friction_learning = 1.0;  ///< of kModal: rate at which the true friction is learnt, 1/s
 };
 
@@ -68,6 +71,7 @@ struct State {
   Vector6 w_H = Vector6::Zero();   ///< the user's wrench of the last sample
   Vector6 dw_H = Vector6::Zero();  ///< its rate of change, low-passed
   VectorM stiff;                   ///< low-passed torques of stiff modes, Nm
+  BristleFeet feet;                ///< of the friction fed forward; empty: no joint has presliding
   /// Joint torques that reference and user's wrench do not explain, a moving mean, Nm.
   VectorM unexplained;
   bool is_saturated = false;
@@ -124,6 +128,7 @@ class JointControl {
   /// For the next period: torques of the springs, motion of the motors.
   struct Feedforward {
     VectorM tau, dtheta, ddtheta;
+    VectorM dry, along;  ///< dry friction: at most, Nm, and the share of that, -1..1
   };
   Fault link_fault(const SensorFrame& sensors, const State& state) const noexcept;
   VectorM link_torque(const ReferenceState& reference, const RobotState& robot) noexcept;
@@ -144,6 +149,8 @@ class JointControl {
   VectorM modal_torque(const Errors& errors, const RobotState& robot, const Feedforward& forward,
                        State& state) const noexcept;
   VectorM motor_pd_torque(const Errors& errors, const Feedforward& forward) const noexcept;
+  void dry_friction(const ReferenceState& reference, State& state,
+                    Feedforward& forward) const noexcept;
   VectorM friction(const Feedforward& forward, const State& state) const noexcept;
   void learn_friction(const Feedforward& forward, const VectorM& feedback, const RobotState& robot,
                       State& state) const noexcept;
@@ -153,6 +160,7 @@ class JointControl {
   int n_p_, n_m_, handle_;
   double lead_pole_ = 0.0, stiff_pole_ = 0.0;  ///< of the low-passes
   VectorM K_, sqrt_K_, Jm_;
+  bool has_feet_ = false;        ///< some joint has presliding
   VectorM feed_max_;             ///< largest torque that is fed forward, Nm
   VectorM link_torque_, ddq_r_;  ///< of this step: what link_torque() gave, and for which ddq
 };

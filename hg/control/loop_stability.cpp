@@ -59,8 +59,7 @@ class SampledLoop {
     model::Chain chain = loop.chain;
     chain.update(q, Eigen::VectorXd::Zero(q.size()));
     const MatrixM M = reality.link_mass * chain.M().bottomRightCorner(loop.n_m, loop.n_m);
-    step_ = matrix_exponential(plant_with_input(actuators_, reality.loop.current_lag, M) *
-                               (loop.config.dt / kPlantSteps));
+    step_ = matrix_exponential(plant_with_input(reality, M) * (loop.config.dt / kPlantSteps));
     feedback_ = feedback(loop, q, chain.c().tail(loop.n_m), latency);
   }
 

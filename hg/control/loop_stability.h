@@ -31,6 +31,7 @@ struct Reality {
   std::vector<ActuatorModel> actuators;
   TorqueLoop loop;
   double link_mass = 1.0;  ///< masses and inertias of the links over those that are believed
+  VectorM bristles;        ///< stiffness of friction that has not slipped, Nm/rad; empty = none
 };
 
 /// Largest modulus of the eigenvalues of one period at rest in posture `q` (gantry first), with the

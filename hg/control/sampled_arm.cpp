@@ -9,12 +9,12 @@
 
 namespace hg::control {
 
-Eigen::MatrixXd plant_with_input(const std::vector<ActuatorModel>& actuators, double current_lag,
-                                 const MatrixM& M) {
+Eigen::MatrixXd plant_with_input(const Reality& reality, const MatrixM& M) {
   const int n = static_cast<int>(M.rows());
-  Eigen::VectorXd Jm(n), K(n), D(n), viscous(n);
+  Eigen::VectorXd Jm(n), K(n), D(n), viscous(n), bristles = Eigen::VectorXd::Zero(n);
+  if (reality.bristles.size() > 0) bristles = reality.bristles;
   for (int i = 0; i < n; ++i) {
-    const ActuatorModel& actuator = actuators[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = reality.actuators[static_cast<std::size_t>(i)];
     Jm[i] = actuator.rotor_inertia;
     K[i] = actuator.stiffness;
     D[i] = actuator.damping;
@@ -26,7 +26,7 @@ Eigen::MatrixXd plant_with_input(const std::vector<ActuatorModel>& actuators, do
   const auto block = [&](int row, int column) { return A.block(row * n, column * n, n, n); };
   block(0, 1).setIdentity();
   block(2, 3).setIdentity();
-  block(1, 0) = (-Jm_inverse.cwiseProduct(K)).asDiagonal();
+  block(1, 0) = (-Jm_inverse.cwiseProduct(K + bristles)).asDiagonal();
   block(1, 1) = (-Jm_inverse.cwiseProduct(D + viscous)).asDiagonal();
   block(1, 2) = Jm_inverse.cwiseProduct(K).asDiagonal();
   block(1, 3) = Jm_inverse.cwiseProduct(D).asDiagonal();
@@ -35,7 +35,7 @@ Eigen::MatrixXd plant_with_input(const std::vector<ActuatorModel>& actuators, do
   block(3, 1) = M_inverse * D.asDiagonal();
   block(3, 2) = -(M_inverse * K.asDiagonal());
   block(3, 3) = -(M_inverse * D.asDiagonal());
-  const double rate = 1.0 / std::max(current_lag, 1e-6);
+  const double rate = 1.0 / std::max(reality.loop.current_lag, 1e-6);
   block(4, 4) = -rate * Eigen::MatrixXd::Identity(n, n);
   block(4, 5) = rate * Eigen::MatrixXd::Identity(n, n);
   return A;

@@ -16,9 +16,8 @@ inline constexpr int kPlantSteps = 8;
 
 /// Rate of change of (theta, theta', q, q', current) under constant torque commands: a square
 /// matrix of 6 n rows whose last n columns are those of the commands (its last n rows are 0). `M`
-/// is the mass matrix of the links (n x n, kg m^2), `current_lag` in s.
-Eigen::MatrixXd plant_with_input(const std::vector<ActuatorModel>& actuators, double current_lag,
-                                 const MatrixM& M);
+/// is the mass matrix of the links (n x n, kg m^2).
+Eigen::MatrixXd plant_with_input(const Reality& reality, const MatrixM& M);
 
 /// When torque commands arrive at the motors.
 class CommandDelay {

@@ -207,6 +207,16 @@ std::string to_text(const StabilityMap& map) {
     }
     text += fmt::format("       {}\n", mass_text(map, row.stable_from));
   }
+  const auto count = [&](Verdict verdict) {
+    std::ptrdiff_t sum = 0;
+    for (const StabilityRow& row : map.rows) {
+      sum += std::ranges::count(row.outcomes, verdict, &KickOutcome::verdict);
+    }
+    return sum;
+  };
+  text += fmt::format("\n{} of {} cells hunt (h), {} swing or diverge without end (U, X)\n",
+                      count(Verdict::kHunts), map.rows.size() * map.config.mass.size(),
+                      count(Verdict::kSustained) + count(Verdict::kDiverges));
   return text +
          fmt::format(
              "\n.  stable        r  calms down, but not within {0:g} s        X  diverges\n"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/core/cross.h"
 #include "hg/core/interval.h"
 #include "hg/core/linear_algebra.h"
 
@@ -14,10 +15,6 @@ namespace {
 constexpr double kGravity = 9.81;
 // least variance of gravity's direction, about 6 degrees: less cannot be told from an offset
 constexpr double kLeastSpread = 0.01;
-
-Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
-  return (Eigen::Matrix3d() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
-}
 
 // How gravity's direction varies in S: variances along three axes, the largest last.
 struct Spread {
@@ -92,7 +89,7 @@ PayloadEstimate identify_payload(std::span<const StaticPose> poses) {
     for (Eigen::Index i = 0; i < n; ++i) {
       const StaticPose& pose = poses[static_cast<std::size_t>(i)];
       A_f.middleRows<3>(3 * i) << -pose.a_S, Eigen::Matrix3d::Identity();
-      A_n.middleRows<3>(3 * i) << cross(pose.a_S), Eigen::Matrix3d::Identity();
+      A_n.middleRows<3>(3 * i) << cross_matrix(pose.a_S), Eigen::Matrix3d::Identity();
       f.segment<3>(3 * i) = pose.w_S.head<3>();
       torque.segment<3>(3 * i) = pose.w_S.tail<3>();
     }

@@ -13,18 +13,20 @@ namespace hg {
 
 /// Set-up data.
 struct ActuatorModel {
-  double rotor_inertia = 0.0;    ///< Jm, kg m^2, > 0
-  double stiffness = 0.0;        ///< K, Nm/rad, > 0
-  double damping = 0.0;          ///< D, Nms/rad, >= 0
-  double coulomb_friction = 0;   ///< Nm, >= 0, on the motor side like all friction
-  double viscous_friction = 0;   ///< Nms/rad, >= 0
-  double load_friction = 0.06;   ///< further Coulomb friction per |tau_J|, >= 0
-  double stiction = 1.2;         ///< break-away torque over Coulomb friction, >= 1
-  double stribeck_speed = 0.05;  ///< at which stiction has mostly gone, rad/s, > 0
-  double torque_max = 0.0;       ///< peak torque of the motor, Nm, > 0
-  double torque_rated = 0.0;     ///< that it can give for ever, Nm, > 0
-  double speed_full_torque = 0;  ///< up to which the peak torque is available, rad/s, > 0
-  double speed_no_load = 0.0;    ///< at which no torque is left, rad/s, > speed_full_torque
+  double rotor_inertia = 0.0;      ///< Jm, kg m^2, > 0
+  double stiffness = 0.0;          ///< K, Nm/rad, > 0
+  double damping = 0.0;            ///< D, Nms/rad, >= 0
+  double coulomb_friction = 0;     ///< Nm, >= 0, on the motor side like all friction
+  double viscous_friction = 0;     ///< Nms/rad, >= 0
+  double load_friction = 0.06;     ///< further Coulomb friction per |tau_J|, >= 0
+  double stiction = 1.2;           ///< break-away torque over Coulomb friction, >= 1
+  double stribeck_speed = 0.05;    ///< at which stiction has mostly gone, rad/s, > 0
+  double presliding = 0.0;         ///< way until dry friction slips, rad, >= 0; 0 = it does at once
+  double presliding_elements = 3;  ///< in which it begins to, 1..kSlipElements of presliding.h
+  double torque_max = 0.0;         ///< peak torque of the motor, Nm, > 0
+  double torque_rated = 0.0;       ///< that it can give for ever, Nm, > 0
+  double speed_full_torque = 0;    ///< up to which the peak torque is available, rad/s, > 0
+  double speed_no_load = 0.0;      ///< at which no torque is left, rad/s, > speed_full_torque
 };
 
 /// Largest motor torque in the direction of its motion at speed `dtheta`; braking has all of it.

@@ -263,9 +263,13 @@ class Period {
   }
 
  private:
+  // nor does what gives way slip, its stiffness being the same
   static control::Config without_friction(control::Config config) {
+    constexpr double kFar = 1e3;
     for (ActuatorModel& actuator : config.actuators) {
-      actuator.coulomb_friction = actuator.load_friction = 0.0;
+      actuator.presliding *= kFar;
+      actuator.coulomb_friction *= has_presliding(actuator) ? kFar : 0.0;
+      actuator.load_friction = 0.0;
     }
     return config;
   }
@@ -292,8 +296,7 @@ class Period {
 
     const int inputs = 2 * n + 3;  // commands, push, torques on the motors
     MatrixXd A = MatrixXd::Zero(size + inputs, size + inputs);
-    const MatrixXd arm =
-        control::plant_with_input(reality_.actuators, reality_.loop.current_lag, M);
+    const MatrixXd arm = control::plant_with_input(reality_, M);
     A.topLeftCorner(5 * n, 5 * n) = arm.topLeftCorner(5 * n, 5 * n);
     A.block(0, size, 5 * n, n) = arm.topRightCorner(5 * n, n);
     for (int i = 0; i < n; ++i) {

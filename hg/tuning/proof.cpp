@@ -45,6 +45,25 @@ std::vector<Doubt> doubts_in_hand(const control::Config& believed) {
           {"torques at their bounds", as_believed, 0.5, kLighter}};
 }
 
+std::vector<Doubt> doubts_in_friction(const control::Config& believed) {
+  std::vector<Doubt> all;
+  if (std::ranges::none_of(believed.actuators, has_presliding)) return all;
+  for (const double real : {0.5, 1.0, 1.25}) {
+    for (const double share : {0.5, 1.0, 1.25}) {
+      control::Reality reality = {believed.actuators, believed.loop};
+      reality.bristles.resize(static_cast<Eigen::Index>(believed.actuators.size()));
+      for (Eigen::Index i = 0; i < reality.bristles.size(); ++i) {
+        reality.bristles[i] =
+            real * presliding_stiffness(believed.actuators[static_cast<std::size_t>(i)]);
+      }
+      all.push_back({.what = fmt::format("bristles x {:g}, fed forward x {:g}", real, share * real),
+                     .reality = reality,
+                     .fed = share * real});
+    }
+  }
+  return all;
+}
+
 std::vector<Grasp> grasps(const Body& body) {
   std::vector<Grasp> all;
   const auto add = [&](const std::string& what, const user::HandImpedance& hand, double mass) {
@@ -63,10 +82,13 @@ std::vector<Grasp> grasps(const Body& body) {
 
 Demands::Demands(const control::Config& believed, const Body& body,
                  std::vector<Eigen::VectorXd> postures)
-    : doubts_(doubts(believed)),
+    : body_(body),
+      doubts_(doubts(believed)),
       doubts_in_hand_(doubts_in_hand(believed)),
       grasps_(grasps(body)),
-      postures_(std::move(postures)) {}
+      postures_(std::move(postures)) {
+  for (Doubt& doubt : doubts_in_friction(believed)) doubts_in_hand_.push_back(std::move(doubt));
+}
 
 std::vector<Case> Demands::cases(std::size_t posture) const {
   std::vector<Case> all;
@@ -93,23 +115,26 @@ double Demands::radius(const Device& device, const Case& one) const {
                     scale);
   }
   const Grasp& grasp = grasps_[static_cast<std::size_t>(one.grasp)];
-  Body body = grasp.body;
+  Body body = is_friction(one) ? body_ : grasp.body;
   body.mass *= real.mass;
   Device doubted = device;
+  if (is_friction(one)) doubted.loop.config.friction_share = real.fed;
   doubted.loop.config.flatness_Hz *= real.follower;
   return std::pow(hg::spectral_radius(linearise(doubted, real.reality, body, grasp.hand, {}, q).A),
                   scale);
 }
 
 double Demands::excess(const Device& device, const Case& one) const {
-  return radius(device, one) - (one.grasp < 0 ? kArmRadius : kHandRadius);
+  const double in_hand = is_friction(one) ? kFrictionRadius : kHandRadius;
+  return radius(device, one) - (one.grasp < 0 ? kArmRadius : in_hand);
 }
 
 std::string Demands::name(const Case& one) const {
   const std::string& what = doubt(one).what;
   if (one.grasp < 0) return what;
   const Grasp& grasp = grasps_[static_cast<std::size_t>(one.grasp)];
-  return fmt::format("{}, {:.2g} kg, {}", grasp.what, doubt(one).mass * grasp.body.mass, what);
+  const double mass = is_friction(one) ? body_.mass : doubt(one).mass * grasp.body.mass;
+  return fmt::format("{}, {:.2g} kg, {}", grasp.what, mass, what);
 }
 
 }  // namespace hg::tuning

@@ -14,6 +14,7 @@ struct Doubt {
   control::Reality reality;
   double follower = 1.0;  ///< factor of flatness_Hz
   double mass = 1.0;      ///< factor of the lightest bodies
+  double fed = -1.0;      ///< factor of friction that gives way and is fed forward; < 0: none does
 };
 
 /// As believed; rotors, springs and links of 0.75 and 1.25 times what is believed; each by itself,
@@ -24,6 +25,11 @@ std::vector<Doubt> doubts(const control::Config& believed);
 /// They do that where motors are at their peak (follow_torque() in control/joint_control.cpp), and
 /// a hand that is stable without may swing for ever with it.
 std::vector<Doubt> doubts_in_hand(const control::Config& believed);
+
+/// Where joints have presliding: their friction has not slipped, and is as stiff as half of what is
+/// believed, as that, and as 1.25 times that; what is fed forward is 0.5 to 1.25 times as stiff as
+/// it is. In hands, with the body itself. Empty for a device without presliding.
+std::vector<Doubt> doubts_in_friction(const control::Config& believed);
 
 /// A hand that holds the handle of a body.
 struct Grasp {
@@ -36,8 +42,8 @@ struct Grasp {
 /// so light (no heavier than `body`) that little is left where nothing is known for sure.
 std::vector<Grasp> grasps(const Body& body);
 
-/// What a loop must tolerate in one posture: one of doubts() without a hand, of doubts_in_hand()
-/// with one.
+/// What a loop must tolerate in one posture: one of doubts() without a hand, with one of
+/// doubts_in_hand() and, behind them, of doubts_in_friction().
 struct Case {
   std::size_t posture = 0, doubt = 0;
   int grasp = -1;  ///< -1 = without a hand
@@ -47,6 +53,8 @@ struct Case {
 
 inline constexpr double kArmRadius = 0.995;    ///< per millisecond: errors fall to 37 % in 0.2 s
 inline constexpr double kHandRadius = 0.9996;  ///< in 2.5 s: a hand's own slow motions count
+/// Friction that holds lets go of nothing fast: small motions must die out at all.
+inline constexpr double kFrictionRadius = 1.0;
 
 /// Everything that a torque loop must tolerate.
 class Demands {
@@ -54,6 +62,8 @@ class Demands {
   Demands(const control::Config& believed, const Body& body, std::vector<Eigen::VectorXd> postures);
 
   const std::vector<Eigen::VectorXd>& postures() const { return postures_; }
+  /// Whether it is one of doubts_in_friction().
+  bool is_friction(const Case& one) const { return doubt(one).fed >= 0.0; }
   /// All cases of a posture.
   std::vector<Case> cases(std::size_t posture) const;
   /// Largest modulus of the eigenvalues of `device`, per millisecond.
@@ -66,6 +76,7 @@ class Demands {
  private:
   const Doubt& doubt(const Case& one) const;
 
+  Body body_;
   std::vector<Doubt> doubts_, doubts_in_hand_;
   std::vector<Grasp> grasps_;
   std::vector<Eigen::VectorXd> postures_;
@@ -74,9 +85,12 @@ class Demands {
 /// Where a loop comes nearest to its limits.
 struct Proof {
   double arm = 0.0, hand = 0.0;  ///< largest radius without and with a hand
-  Case worst_arm, worst_hand;
+  double friction = 0.0;         ///< in a hand while friction gives way; 0 without presliding
+  Case worst_arm, worst_hand, worst_friction;
 
-  bool holds() const { return arm < kArmRadius && hand < kHandRadius; }
+  bool holds() const {
+    return arm < kArmRadius && hand < kHandRadius && friction < kFrictionRadius;
+  }
 };
 
 }  // namespace hg::tuning

@@ -69,7 +69,7 @@ class Search {
 
   // Where a loop came nearest to its limits counts from now on.
   void mind(const Proof& proof) {
-    for (const Case& one : {proof.worst_arm, proof.worst_hand}) {
+    for (const Case& one : {proof.worst_arm, proof.worst_hand, proof.worst_friction}) {
       if (std::ranges::find(hard_, one) == hard_.end()) hard_.push_back(one);
     }
   }
@@ -87,6 +87,7 @@ class Search {
     for (const Proof& one : proofs) {
       take(one.worst_arm, one.arm, all);
       take(one.worst_hand, one.hand, all);
+      take(one.worst_friction, one.friction, all);
     }
     return all;
   }
@@ -96,11 +97,12 @@ class Search {
     if (told_) told_(what, done, total);
   }
 
-  static void take(const Case& one, double radius, Proof& proof) {
-    double& worst = one.grasp < 0 ? proof.arm : proof.hand;
+  void take(const Case& one, double radius, Proof& proof) const {
+    const bool is_friction = demands_.is_friction(one);
+    double& worst = is_friction ? proof.friction : one.grasp < 0 ? proof.arm : proof.hand;
     if (!(radius > worst)) return;
     worst = radius;
-    (one.grasp < 0 ? proof.worst_arm : proof.worst_hand) = one;
+    (is_friction ? proof.worst_friction : one.grasp < 0 ? proof.worst_arm : proof.worst_hand) = one;
   }
 
   // What shall be small: distortion, with what is forbidden made dear.

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "hg/control/joint_control.h"
+#include "hg/core/allocation_counter.h"
 #include "hg/model/chain.h"
 #include "hg/signals/test/reference_actuators.h"
 
@@ -75,6 +77,29 @@ inline RobotState following(const ReferenceState& reference, const VectorM& tau)
   robot.tau_m = tau;
   robot.q_p = robot.dq_p = robot.ddq_p = VectorP::Zero(2);
   return robot;
+}
+
+/// A sample in whose period the command of so many periods ago is at work.
+inline SensorFrame answered(std::uint64_t sequence, std::uint64_t periods_ago) {
+  SensorFrame frame;
+  frame.sequence = sequence;
+  frame.answered_sequence = sequence - periods_ago;
+  return frame;
+}
+
+/// Of everything that a controller does in a period, ten times.
+inline std::uint64_t allocations_of_steps(const Config& config) {
+  JointControl control = control_of(config);
+  State state = control.start();
+  const ReferenceState reference = at_rest(home());
+  const RobotState robot = following(reference, VectorM::Zero(6));
+  CommandFrame command;
+  TrackingReport report;
+  const AllocationCounter counter;
+  for (int k = 0; k < 10; ++k) control.step(reference, reference, robot, state, command, report);
+  control.listen(answered(7, 2), false, state);
+  control.rest(reference, state, command);
+  return counter.count();
 }
 
 }  // namespace hg::control

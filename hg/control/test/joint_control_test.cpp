@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "hg/control/test/control_setup.h"
-#include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
 
 namespace hg::control {
@@ -421,13 +420,6 @@ TEST(JointControl, TheFilterOfTheFeedforwardIsStableUpToItsBoundAndRefusedBeyond
   EXPECT_LT(swing, 1e-6);
 }
 
-SensorFrame answered(std::uint64_t sequence, std::uint64_t periods_ago) {
-  SensorFrame frame;
-  frame.sequence = sequence;
-  frame.answered_sequence = sequence - periods_ago;
-  return frame;
-}
-
 TEST(Latency, IsMeasuredFromTheAnsweredCommandWhileTheDrivesAreOff) {
   for (const std::uint64_t periods : {1u, 2u, 3u}) {
     SCOPED_TRACE(periods);
@@ -516,17 +508,7 @@ TEST(JointControl, NeedsOneActuatorPerJoint) {
 }
 
 TEST_P(BothMethods, StepsWithoutAllocating) {
-  JointControl control = control_of(reference_config(GetParam()));
-  State state = control.start();
-  const ReferenceState reference = at_rest(home());
-  const RobotState robot = following(reference, VectorM::Zero(6));
-  CommandFrame command;
-  TrackingReport report;
-  const AllocationCounter counter;
-  for (int k = 0; k < 10; ++k) control.step(reference, reference, robot, state, command, report);
-  control.listen(answered(7, 2), false, state);
-  control.rest(reference, state, command);
-  EXPECT_EQ(counter.count(), 0u);
+  EXPECT_EQ(allocations_of_steps(reference_config(GetParam())), 0u);
 }
 
 }  // namespace

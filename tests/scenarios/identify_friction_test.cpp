@@ -1,0 +1,77 @@
+// What `hapticgiant identify friction` finds of simulated machines, which know the truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "apps/hapticgiant/run_setup.h"
+#include "hg/experiments/player.h"
+#include "hg/identification/friction_traces.h"
+
+namespace hg::apps {
+namespace {
+
+using identification::FrictionEstimate;
+using identification::FrictionFigure;
+
+std::vector<FrictionEstimate> identified(const std::string& simulation) {
+  const config::Scenario scenario = make_scenario(
+      ScenarioArguments{.scenario = "free_space", .user = "friction", .simulation = simulation});
+  identification::FrictionTraces traces(scenario.device.control);
+  experiments::Player player(scenario);
+  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    player.begin();
+    player.run();
+    traces.add(player.sample());
+  }
+  EXPECT_EQ(player.record().fault.code, FaultCode::kNone);
+  std::vector<FrictionEstimate> found;
+  for (std::size_t i = 0; i < traces.joints().size(); ++i) {
+    found.push_back(identification::identify_friction(traces.joints()[i],
+                                                      scenario.device.control.actuators[i]));
+  }
+  return found;
+}
+
+const std::vector<double> kCoulomb = {4.0, 4.0, 2.5, 2.5, 1.0, 1.0};
+const std::vector<double> kViscous = {3.0, 3.0, 1.5, 1.5, 0.5, 0.5};
+
+// Within its deviations, or within `share` of the truth, which is what the model leaves out.
+void expect_near(const FrictionFigure& found, double truth, double share, const char* what) {
+  EXPECT_TRUE(found.is_found) << what;
+  EXPECT_LT(std::abs(found.value - truth), std::max(3.0 * found.deviation, share * truth))
+      << what << " " << found.value << " +- " << found.deviation;
+}
+
+// From joint `first` on.
+void expect_friction(const std::vector<FrictionEstimate>& found, double factor, std::size_t first) {
+  ASSERT_EQ(found.size(), 6u);
+  for (std::size_t i = first; i < 6; ++i) {
+    SCOPED_TRACE("m" + std::to_string(i + 1));
+    expect_near(found[i].coulomb, factor * kCoulomb[i], 0.03, "coulomb");
+    expect_near(found[i].viscous, factor * kViscous[i], 0.05, "viscous");
+    expect_near(found[i].stiction, 1.2, 0.08, "stiction");
+    if (i < 5) expect_near(found[i].load, factor * 0.06, 0.05, "load");
+  }
+  EXPECT_FALSE(found[5].load.is_found) << "m6 carries next to nothing";
+}
+
+TEST(IdentifyFriction, FindsThatOfTheShippedSimulationAndNoPresliding) {
+  const std::vector<FrictionEstimate> found = identified("");
+  expect_friction(found, 1.333, 0);
+  for (const FrictionEstimate& joint : found) EXPECT_FALSE(joint.presliding.is_found);
+}
+
+TEST(IdentifyFriction, FindsPreslidingOfAnotherSimulation) {
+  const std::vector<FrictionEstimate> found = identified("as_published");
+  constexpr std::size_t kFirst = 2;  // m1 and m2 are shaken, docs/friction.md
+  expect_friction(found, 1.333, kFirst);
+  for (std::size_t i = kFirst; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].presliding_elements, 2);
+    expect_near(found[i].presliding, 1e-4, 0.08, "presliding");
+  }
+}
+
+}  // namespace
+}  // namespace hg::apps
