@@ -13,6 +13,7 @@
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 #include "hg/haptify/benchmark.h"
+#include "hg/haptify/goals.h"
 
 namespace hg::apps {
 namespace {
@@ -36,7 +37,28 @@ std::string command_of(const HaptifyArguments& arguments) {
     command += fmt::format(" --repetitions {}", options.repetitions);
   }
   if (!arguments.simulation.empty()) command += " --simulation " + arguments.simulation;
+  if (!arguments.twin.empty()) command += " --twin " + arguments.twin;
+  if (arguments.only_goals) command += " --goals";
   return command + (options.is_quick ? " --quick" : "");
+}
+
+int write_goals(const HaptifyArguments& arguments) {
+  const config::Scenario scenario =
+      make_scenario({.scenario = "walk", .simulation = arguments.simulation});
+  const config::Scenario light =
+      make_scenario({.scenario = "walk",
+                     .twin = arguments.twin.empty() ? "light" : arguments.twin,
+                     .simulation = arguments.simulation});
+  const haptify::Benchmark goals = haptify::measure_goals(scenario, light, arguments.options, tell);
+  print_out(goals_text(goals));
+  const fs::path folder = arguments.out;
+  const std::string markdown = goals_markdown(goals, command_of(arguments));
+  write_output((folder / "goals.md").string(), "# Goals\n\n" + markdown);
+  write_output((folder / "goals.csv").string(), table_csv(haptify::goals_table(goals)));
+  write_output((folder / "goals_runs.csv").string(), repetitions_csv(goals));
+  if (!arguments.docs.empty()) refresh_page(arguments.docs, "goals", markdown, {});
+  print_out(fmt::format("\nreport      {}\n", (folder / "goals.md").string()));
+  return goals.failures.empty() ? 0 : 1;
 }
 
 }  // namespace
@@ -49,8 +71,9 @@ int run_haptify(const HaptifyArguments& arguments) {
   print_out(fmt::format(
       "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
       kVersion));
-  const config::Scenario scenario =
-      make_scenario({.scenario = "walk", .simulation = arguments.simulation});
+  if (arguments.only_goals) return write_goals(arguments);
+  const config::Scenario scenario = make_scenario(
+      {.scenario = "walk", .twin = arguments.twin, .simulation = arguments.simulation});
   const haptify::Benchmark result = haptify::measure(scenario, arguments.options, tell);
   const std::string command = command_of(arguments);
 

@@ -12,6 +12,8 @@ struct HaptifyArguments {
   std::string out = "haptify";  ///< folder
   std::string docs;             ///< folder of documentation to refresh; empty = none
   std::string simulation;       ///< see find_simulation(); empty = as the device says
+  std::string twin;             ///< twin.yaml of a free body instead of the shipped one
+  bool only_goals = false;      ///< over seeds, heights and hands
   haptify::Options options;
 };
 

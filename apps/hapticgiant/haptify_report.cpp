@@ -9,6 +9,7 @@
 #include "apps/hapticgiant/experiments/html.h"
 #include "apps/hapticgiant/haptify_method.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/haptify/goals.h"
 
 namespace hg::apps {
 namespace {
@@ -27,21 +28,13 @@ std::string measured(const Figure& figure) {
   return text;
 }
 
-std::string goal_text(const Figure& figure) {
-  const Interval& goal = figure.goal;
-  if (!goal.bounded()) return "-";
-  if (!std::isfinite(goal.ub)) return fmt::format(">= {:g}", goal.lb);
-  if (!std::isfinite(goal.lb)) return fmt::format("<= {:g}", goal.ub);
-  return fmt::format("{:g} .. {:g}", goal.lb, goal.ub);
-}
-
 Rows table_rows(const Benchmark& result) {
   Rows rows = {{"", "unit", "ours, simulated", "HapticGiant, paper, real", "Touch, real",
                 "Touch X, real", "goal", "met"}};
   for (const Figure& figure : result.table) {
     const haptify::Published& other = figure.published;
     rows.push_back({figure.name, figure.unit, measured(figure), given(other.paper),
-                    given(other.touch), given(other.touch_x), goal_text(figure),
+                    given(other.touch), given(other.touch_x), haptify::to_text(figure.goal),
                     !figure.is_measured() || !figure.goal.bounded() ? "-"
                     : figure.meets_goal()                           ? "yes"
                                                                     : "no"});
@@ -69,7 +62,7 @@ std::vector<std::string> missed(const Benchmark& result) {
   for (const Figure& figure : result.table) {
     if (!figure.is_measured() || figure.meets_goal()) continue;
     sentences.push_back(fmt::format("{}: {} instead of {} {}. {}", figure.name, measured(figure),
-                                    goal_text(figure), figure.unit,
+                                    haptify::to_text(figure.goal), figure.unit,
                                     figure.why.empty() ? "The reason is not known." : figure.why));
   }
   return sentences;
@@ -110,6 +103,23 @@ std::string latex_number(std::string text) {
 }
 
 }  // namespace
+
+std::string goals_text(const Benchmark& goals) {
+  std::string text;
+  for (const std::vector<std::string>& row : rows_of(haptify::goals_table(goals))) {
+    text += fmt::format("{:<38}{:<7}{:>10}{:>9}{:>9}{:>9}{:>14}\n", row[0], row[1], row[2], row[3],
+                        row[4], row[5], row[6]);
+  }
+  text += fmt::format("\n{}\n", kRealAndSimulated);
+  for (const std::string& failure : goals.failures) text += fmt::format("\nFAILED  {}\n", failure);
+  return text;
+}
+
+std::string goals_markdown(const Benchmark& goals, const std::string& command) {
+  std::string text = facts(goals, command) + "\n\n";
+  for (const std::string& failure : goals.failures) text += "**Failed: " + failure + "**\n\n";
+  return text + markdown_table(rows_of(haptify::goals_table(goals)));
+}
 
 std::string haptify_text(const Benchmark& result) {
   std::string text;

@@ -8,6 +8,11 @@
 
 namespace hg::apps {
 
+/// The table of goals.h for a terminal, and what failed.
+std::string goals_text(const haptify::Benchmark& goals);
+/// The same in Markdown, without a title; `command` repeats it.
+std::string goals_markdown(const haptify::Benchmark& goals, const std::string& command);
+
 /// The table for a terminal, goals that are missed, failures.
 std::string haptify_text(const haptify::Benchmark& result);
 /// One self-contained page; `command` repeats it.

@@ -89,7 +89,7 @@ void add_scenario_options(CLI::App& command, hg::apps::ScenarioArguments& world)
                   "scenario file, or door, excavator, free_space, path, walk, surfaces")
       ->capture_default_str();
   command.add_option("--device", world.device, "device.yaml instead of the scenario's");
-  command.add_option("--twin", world.twin, "twin.yaml instead of the scenario's");
+  command.add_option("--twin", world.twin, "twin.yaml, or the name of a shipped one, instead of the scenario's");
   command.add_option("--plant", world.plant, "elastic: all that makes haptics hard; or ideal")
       ->check(CLI::IsMember({"elastic", "ideal"}));
   command.add_option("--simulation", world.simulation, kSimulationHelp);
@@ -553,7 +553,8 @@ void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit
       "  hapticgiant haptify                      report in haptify/report.html\n"
       "  hapticgiant haptify --quick              a look, in seconds\n"
       "  hapticgiant haptify --seed 7 --repetitions 10 --out results\n"
-      "  hapticgiant haptify --quick --simulation as_published");
+      "  hapticgiant haptify --quick --simulation as_published\n"
+      "  hapticgiant haptify --goals --repetitions 16   the worst of seeds, heights and hands");
   command->add_option("--out", arguments.out, "folder of the report")->capture_default_str();
   command->add_option("--seed", arguments.options.seed, "of the first repetition")
       ->check(whole_number(0.0))
@@ -562,6 +563,9 @@ void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit
       ->check(whole_number(2.0, 100.0))
       ->capture_default_str();
   command->add_flag("--quick", arguments.options.is_quick, "few samples and short runs");
+  command->add_flag("--goals", arguments.only_goals,
+                    "only what the device shall reach, at three heights in three hands");
+  command->add_option("--twin", arguments.twin, "free body that is held (with --goals: the light one), as a file or a shipped name");
   command->add_option("--simulation", arguments.simulation, kSimulationHelp);
   command->add_option("--docs", arguments.docs,
                       "refresh the page haptify.md of this folder (make experiments)");

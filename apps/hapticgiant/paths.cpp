@@ -29,16 +29,29 @@ std::vector<std::string> names_in(const fs::path& folder, std::string_view prefi
   return names;
 }
 
-// A file, or the shipped one of this name in models/KINDs. `words` is what the option takes beside.
-fs::path find_shipped(const std::string& name, std::string_view kind,
+// Names of the folders in a folder; sorted.
+std::vector<std::string> folders_in(const fs::path& folder) {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_directory(error)) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// A file, or the shipped one of this name in models/KINDs: NAME.yaml, or where `has_folder`
+// NAME/KIND.yaml. `words` is what the option takes beside.
+fs::path find_shipped(const std::string& name, std::string_view kind, bool has_folder = false,
                       const std::vector<std::string>& words = {}) {
   std::error_code error;  // a name may be longer than the system takes
   if (fs::is_regular_file(name, error)) return name;
   const fs::path folder = models_root() / "models" / fmt::format("{}s", kind);
-  const fs::path known = folder / (name + ".yaml");
+  const fs::path known =
+      has_folder ? folder / name / fmt::format("{}.yaml", kind) : folder / (name + ".yaml");
   if (fs::is_regular_file(known, error)) return known;
 
-  const std::vector<std::string> shipped = names_in(folder, "");
+  const std::vector<std::string> shipped = has_folder ? folders_in(folder) : names_in(folder, "");
   std::vector<std::string> names = words;
   names.insert(names.end(), shipped.begin(), shipped.end());
   throw SetupError(fmt::format("{}: no such {} file, did you mean '{}'? Shipped are {}", name, kind,
@@ -72,7 +85,11 @@ fs::path models_root() {
 fs::path find_scenario(const std::string& name) { return find_shipped(name, "scenario"); }
 
 fs::path find_script(const std::string& name) {
-  return find_shipped(name, "script", {"mouse", "none"});
+  return find_shipped(name, "script", false, {"mouse", "none"});
+}
+
+fs::path find_twin(const std::string& name, const config::SourceReader& reader) {
+  return reader.exists(name) ? fs::path(name) : find_shipped(name, "twin", true);
 }
 
 fs::path find_device(const std::string& file) {

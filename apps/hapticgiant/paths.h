@@ -26,6 +26,10 @@ std::filesystem::path find_scenario(const std::string& name);
 /// The same of a script of a person.
 std::filesystem::path find_script(const std::string& name);
 
+/// A twin file that `reader` has, or the shipped one of this name ("light"). Throws SetupError
+/// naming the nearest one.
+std::filesystem::path find_twin(const std::string& name, const config::SourceReader& reader);
+
 /// A device file as given, or among the data that comes with the program.
 std::filesystem::path find_device(const std::string& file);
 

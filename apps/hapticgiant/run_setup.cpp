@@ -42,7 +42,7 @@ void apply(const ScenarioArguments& arguments, config::SourceReader& reader,
     add_sources({sources.begin() + static_cast<std::ptrdiff_t>(first), sources.end()});
   }
   if (!arguments.twin.empty()) {
-    scenario.twin = config::load_twin(arguments.twin, reader);
+    scenario.twin = config::load_twin(find_twin(arguments.twin, reader), reader);
     scenario.title = scenario.twin.name;
     scenario.description = "You hold the " + scenario.twin.name + " by the handle of the " +
                            scenario.device.name + ".";
@@ -187,7 +187,7 @@ std::string changes(const RunArguments& arguments) {
   };
   const ScenarioArguments& world = arguments.world;
   line("--device", world.device);
-  line("--twin", world.twin);
+  if (!world.twin.empty()) line("--twin", find_twin(world.twin, {}).string());
   line("--user", world.user);
   if (world.rate_Hz) line("--rate-hz", fmt::format("{}", *world.rate_Hz));
   line("--plant", world.plant);

@@ -34,6 +34,9 @@ struct Figure {
   bool meets_goal() const { return is_measured() && goal.contains(mean().value); }
 };
 
+/// ">= 3", "<= 3", "3 .. 4" or "-".
+std::string to_text(const Interval& goal);
+
 /// Numbers in rows, one file each.
 struct Table {
   std::string id;     ///< of the file

@@ -60,7 +60,7 @@ FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceCo
   std::vector<experiments::HandleSample> motion;
   std::vector<Eigen::Vector3d> acceleration;
   FreeSpace result = {.failure = played.failure};
-  double squares = 0.0, limited = 0.0;
+  double squares = 0.0, limited = 0.0, apart = 0.0;
   for (const Instant& now : played.instants) {
     motion.push_back(
         {now.T_B_H.p, now.twist.head<3>(), now.acceleration.head<3>(), now.w_H.head<3>()});
@@ -69,6 +69,7 @@ FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceCo
     squares += now.twist.head<3>().squaredNorm();
     result.path += now.twist.head<3>().norm() / rate_Hz;
     limited += now.is_limited ? 1.0 : 0.0;
+    apart += (now.T_B_H.p - now.p_B_E).squaredNorm();
   }
   if (acceleration.empty()) return result;
   const auto count = static_cast<double>(acceleration.size());
@@ -86,6 +87,7 @@ FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceCo
   result.seen_rms = seen.rms;
   result.seen_centroid_Hz = seen.centroid_Hz;
   result.limited_share = limited / count;
+  result.distance_rms = std::sqrt(apart / count);
   return result;
 }
 

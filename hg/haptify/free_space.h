@@ -40,6 +40,7 @@ struct FreeSpace {
   double seen_centroid_Hz = 0.0;
   double limited_share = 0.0;  ///< of the time, on which a limit was felt
   double path = 0.0;           ///< m
+  double distance_rms = 0.0;   ///< of the true handle from the twin, m
   std::string failure;
 };
 

@@ -193,7 +193,7 @@ Peak measure_peak(const config::Scenario& scenario, const SurfaceConfig& config,
 Knock knock(const config::Scenario& scenario, const SurfaceConfig& config, double stiffness,
             double damping) {
   const experiments::Kick kick;
-  user::HandImpedance hand = user::hand(user::HandPreset::kNormal);
+  user::HandImpedance hand = user::hand(config.knock_hand);
   hand.tremor_rms = 0.0;
   const double down = aim(hand, stiffness, config.clearance, config.knock_press);
   const double kick_s = kRest + 2.0, watched_s = 3.5 * config.calm.window;

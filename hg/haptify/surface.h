@@ -10,6 +10,7 @@
 #include "hg/config/scenario.h"
 #include "hg/experiments/motion_analysis.h"
 #include "hg/haptify/play.h"
+#include "hg/user/hand.h"
 
 namespace hg::haptify {
 
@@ -33,6 +34,7 @@ struct SurfaceConfig {
   double peak_tolerance = 0.1;  ///< of the force from the line: farther off it is not the surface
   // knocking
   double knock_press = 10.0;  ///< N, with which the person presses
+  user::HandPreset knock_hand = user::HandPreset::kNormal;
   experiments::CalmRule calm;
 };
 
