@@ -107,6 +107,12 @@ def nearest(word, words):
     return f"nearest: {close[0] if close else 'none'}"
 
 
+def nearest_section(number, known):
+    """Of the same chapter, if it has any."""
+    chapter = [other for other in known if other.partition(".")[0] == number.partition(".")[0]]
+    return nearest(number, chapter or known)
+
+
 class Checker:
     def __init__(self, files):
         self.files = files
@@ -127,9 +133,9 @@ class Checker:
         known = self.sections["HANDBOOK" if tag == "H" else tag]
         for number in single(numbers or ""):
             if number not in known:
-                what = " ".join(match.group(0).split())
+                what = re.sub(r"\s+(?:///?|#|\*)?\s*", " ", match.group(0))
                 self.fault(name, match.start(), f"{what}, expected a heading {number} in {HANDBOOK}; "
-                                                f"{nearest(number, known)}")
+                                                f"{nearest_section(number, known)}")
 
     def check_citations(self, name):
         text = self.files[name]
