@@ -129,6 +129,7 @@ format:
 check:
 	@git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
 	@.venv/bin/python tools/check_modules.py
+	@.venv/bin/python tools/check_citations.py
 
 audit:
 	@.venv/bin/python tools/third_party.py --audit

@@ -139,7 +139,7 @@ void describe(V& v, rendering::CartesianLimit& limit, const std::vector<std::str
   v.words("name", limit.name, "shown with the limit", Need::kRequired);
   v.name("frame", limit.frame, frames, "a link of the URDF", "its origin is limited",
          Need::kRequired);
-  limits::JointLimits ratings = {.dq_max = 1.5, .ddq_max = 5.0};  // [DESIGN] 4
+  limits::JointLimits ratings = {.dq_max = 1.5, .ddq_max = 5.0};  // [HANDBOOK] 3.7
   describe_ratings(v, ratings, JointUnit::kLength, Need::kOptional);
   v.number("margin_m", limit.margin, kNotNegative, "the rendered box is smaller on every side");
   constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};

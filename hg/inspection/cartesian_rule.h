@@ -1,8 +1,8 @@
 /// Whether the joints can give what the Cartesian limits promise, over the workspace.
 ///
-/// Source: [DESIGN] 4. A Cartesian row brakes with A_c; that takes A_c <= 1/2 sum |J_xi| A_i of the
-/// manipulator joints i along axis x. The half is left to the other rows. A speed limit needs no
-/// such rule: where the joints are slower it does not act.
+/// A Cartesian row brakes with A_c; that takes A_c <= 1/2 sum |J_xi| A_i of the manipulator joints
+/// i along axis x (docs/check.md). The half is left to the other rows. A speed limit needs no such
+/// rule: where the joints are slower it does not act.
 #pragma once
 
 #include <vector>

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kPostures = 500;
 constexpr std::uint64_t kSeed = 1;
-constexpr double kLightMass = 1.5, kLightInertia = 0.015;  // kg, kg m^2: half of [DESIGN] 7 (6)
+constexpr double kLightMass = 1.5, kLightInertia = 0.015;  // kg, kg m^2: half of [C] 3
 
 // "joints.hinge.damping_Nms_per_rad" for ("damping", "Nms_per_rad", "Ns_per_m")
 std::string dof_key(const rendering::TwinDof& dof, const char* quantity, const char* angle,

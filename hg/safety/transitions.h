@@ -1,7 +1,7 @@
 /// The operating states and what may follow what, as data: `advance` does what stands here, and the
 /// table of docs/safety.md is made from it.
 ///
-/// Source: DESIGN.md section 8, [HANDBOOK] 6.5. Every transition to a state with power needs an
+/// Source: [HANDBOOK] 6.5, docs/safety.md. Every transition to a state with power needs an
 /// edge of a request.
 #pragma once
 

@@ -11,7 +11,7 @@
 
 namespace hg {
 
-/// What the safety controller of a device (its PLC) says, DESIGN.md section 8, [HANDBOOK] 6.8.
+/// What the safety controller of a device (its PLC) says, docs/safety.md, [HANDBOOK] 6.8.
 struct SafetyInputs {
   bool emergency_stop = false;    ///< a stop is asked for: button, or the controller's own fault
   bool operator_enable = true;    ///< the operator holds the enabling switch

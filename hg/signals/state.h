@@ -19,7 +19,7 @@
 
 namespace hg {
 
-/// Operating states of DESIGN.md section 8.
+/// Operating states, docs/safety.md.
 enum class Mode : std::uint8_t {
   kOff = 0,
   kReady = 1,

@@ -65,7 +65,7 @@ struct PlantConfig {
   std::vector<int> manipulator;  ///< joints with actuators
   std::vector<FlexibleJoint> flexible;
   std::vector<ActuatorModel> actuators;  ///< one per manipulator joint
-  double current_lag = 0.5e-3;           ///< from torque command to torque, s, >= 0; CONTROL_NOTES
+  double current_lag = 0.5e-3;           ///< from torque command to torque, s, >= 0; [C] 0
   double mass = 1.0;                     ///< all masses of the chain times this, > 0
   DriveModel drive;                      ///< of every gantry axis
   std::vector<Interval> gantry_stops;    ///< buffers at the ends of the gantry; empty = none

@@ -29,8 +29,8 @@ struct SensorsConfig {
   /// [A] 1.2: 20 bit absolute; offset and errors: what calibration leaves.
   EncoderConfig link_encoder{
       .resolution = 5.992e-6, .offset = 1e-4, .error_1 = 5e-5, .error_2 = 2e-5};
-  /// [A] 1.2: 17 bit on the motor; error_2 is the kinematic error of the gear as well ([C]), which
-  /// the encoder sees and the output does not.
+  /// [A] 1.2: 17 bit on the motor; error_2 is the kinematic error of the gear as well ([C] 0),
+  /// which the encoder sees and the output does not.
   EncoderConfig motor_encoder{
       .resolution = 4.794e-5, .offset = 1e-4, .error_1 = 4e-6, .error_2 = 3e-5};
   /// [K] 1.5: 10 um, accuracy 0.15 mm + 0.02 mm/m, here for 5 m, as a smooth error.

@@ -90,11 +90,11 @@ inline bool any_limit(const CycleRecord& record, int first, int last) {
 
 /// [HANDBOOK] 10.1: largest distance of hand and twin, m.
 inline constexpr double kSyncMax = 1e-3;
-/// Share of cycles in which a limit begins or ceases to act: DESIGN 3 measured up to 3.9 % without
-/// chatter and 45 % and more with it.
+/// Share of cycles in which a limit begins or ceases to act: up to 3.9 % were measured without
+/// chatter, with independent implementations of both laws, and 45 % and more with it.
 inline constexpr double kChangesPerCycleMax = 0.039;
-/// Mean change of the hand's acceleration per cycle, m/s^2: DESIGN 3 measured 0.01-0.25 at 1 kHz
-/// with smooth laws, 13-25 with chatter. These scenarios are gentler: the bound is in their middle.
+/// Mean change of the hand's acceleration per cycle, m/s^2: there it was 0.01-0.25 at 1 kHz without
+/// chatter, 13-25 with it. These scenarios are gentler: the bound is in their middle.
 inline constexpr double kAccelerationChangeMax = 0.05;
 /// Rounding, relative to the largest part.
 inline constexpr double kBudgetMax = 1e-9;

@@ -68,7 +68,7 @@ TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
                                               .handle = "handle",
                                               .chain = {}});
   EXPECT_EQ(shipped.step_s, 0.25e-3);
-  EXPECT_NEAR(1.0 / shipped.factors.stiffness, 1.1, 1e-3);  // [C]: what the controller believes
+  EXPECT_NEAR(1.0 / shipped.factors.stiffness, 1.1, 1e-3);  // [C] 0: what the controller believes
   EXPECT_NEAR(1.0 / shipped.factors.friction, 0.75, 1e-3);
   EXPECT_NEAR(1.0 / shipped.factors.mass, 0.95, 1e-3);
   EXPECT_EQ(shipped.gear_ratio[0], 121.0);

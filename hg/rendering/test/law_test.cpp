@@ -170,7 +170,7 @@ TwinModel two_coupled_joints() {
                         "handle");
 }
 
-// [DESIGN] 3: with a_free = 0 and a <= (-1, -0.9), Gauss leaves the second row alone: pushing the
+// docs/law.md: with a_free = 0 and a <= (-1, -0.9), Gauss leaves the second row alone: pushing the
 // first joint takes the second one along by 0.8. Law paper, once both limits have been touched,
 // minimises |alpha| and pushes with the second one, too, although nothing touches it.
 TEST(Laws, DifferWithTwoCoupledLimits) {
