@@ -89,7 +89,8 @@ void add_scenario_options(CLI::App& command, hg::apps::ScenarioArguments& world)
                   "scenario file, or door, excavator, free_space, path, walk, surfaces")
       ->capture_default_str();
   command.add_option("--device", world.device, "device.yaml instead of the scenario's");
-  command.add_option("--twin", world.twin, "twin.yaml, or the name of a shipped one, instead of the scenario's");
+  command.add_option("--twin", world.twin,
+                     "twin.yaml, or the name of a shipped one, instead of the scenario's");
   command.add_option("--plant", world.plant, "elastic: all that makes haptics hard; or ideal")
       ->check(CLI::IsMember({"elastic", "ideal"}));
   command.add_option("--simulation", world.simulation, kSimulationHelp);
@@ -565,7 +566,9 @@ void add_haptify(CLI::App& app, hg::apps::HaptifyArguments& arguments, int& exit
   command->add_flag("--quick", arguments.options.is_quick, "few samples and short runs");
   command->add_flag("--goals", arguments.only_goals,
                     "only what the device shall reach, at three heights in three hands");
-  command->add_option("--twin", arguments.twin, "free body that is held (with --goals: the light one), as a file or a shipped name");
+  command->add_option(
+      "--twin", arguments.twin,
+      "free body that is held (with --goals: the light one), as a file or a shipped name");
   command->add_option("--simulation", arguments.simulation, kSimulationHelp);
   command->add_option("--docs", arguments.docs,
                       "refresh the page haptify.md of this folder (make experiments)");

@@ -342,20 +342,19 @@ Table goals_table(const Benchmark& goals) {
   Table table = {
       .id = "goals",
       .title = "Goals over seeds, heights and hands",
-      .columns = {"", "unit", "goal", "median", "least", "largest", "within", "conditions"}};
+      .columns = {"figure", "unit", "goal", "median", "least", "largest", "within", "conditions"}};
   for (const Figure& figure : goals.beyond) {
     std::vector<double> values = figure.values;
     std::ranges::sort(values);
-    const auto within = std::ranges::count_if(
-        values, [&](double value) { return figure.goal.contains(value); });
+    const auto within =
+        std::ranges::count_if(values, [&](double value) { return figure.goal.contains(value); });
     const auto at = [&](std::size_t i) { return fmt::format("{:.{}f}", values[i], figure.digits); };
     const bool is_there = !values.empty();
-    table.rows.push_back({figure.name, figure.unit, to_text(figure.goal),
-                          is_there ? at(values.size() / 2) : "-", is_there ? at(0) : "-",
-                          is_there ? at(values.size() - 1) : "-",
-                          figure.goal.bounded() ? fmt::format("{} of {}", within, values.size())
-                                                : "-",
-                          figure.note});
+    table.rows.push_back(
+        {figure.name, figure.unit, to_text(figure.goal), is_there ? at(values.size() / 2) : "-",
+         is_there ? at(0) : "-", is_there ? at(values.size() - 1) : "-",
+         figure.goal.bounded() ? fmt::format("{} of {}", within, values.size()) : "-",
+         figure.note});
   }
   return table;
 }

@@ -37,8 +37,8 @@ std::vector<Eigen::Vector3d> with_noise(std::span<const Eigen::Vector3d> signal,
                                         double rate_Hz, std::uint64_t seed);
 
 /// Of the acceleration of a handle: above kVibrationBand (Butterworth of fourth order without
-/// phase), reduced by dft321(); its first and last quarter of a second serve the filter only.
-/// Zero for less than 1.5 s.
+/// phase), reduced by dft321(); its first and last quarter of a second, and up to a few hundredths
+/// of it more, serve the filter only. Zero for less than 1.5 s.
 Vibration vibration(std::span<const Eigen::Vector3d> acceleration, double rate_Hz);
 
 /// f = inertia a + damping v + friction sign(v), for forces or torques.

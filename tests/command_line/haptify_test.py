@@ -89,11 +89,49 @@ class Haptify(TemporaryFolder):
                 mean = float(rows[name]["mean"])
                 self.assertAlmostEqual(sum(values) / len(values), mean, delta=1e-4 * abs(mean))
 
+    def read_goals(self, folder):
+        """Rows by their names, and the values behind each."""
+        with open(folder / "goals.csv") as stream:
+            rows = {row["figure"]: row for row in csv.DictReader(stream)}
+        values = {}
+        with open(folder / "goals_runs.csv") as stream:
+            for run_ in csv.DictReader(stream):
+                values.setdefault(run_["id"], []).append(float(run_["value"]))
+        self.assertEqual(len(rows), len(values))
+        return rows, dict(zip(rows, values.values()))
+
+    def test_goals_are_said_at_their_worst(self):
+        folder, out = self.measure("goals", "--goals")
+        rows, values = self.read_goals(folder)
+        report = (folder / "goals.md").read_text()
+        for name, row in rows.items():
+            self.assertEqual(len(values[name]), 2, name)  # one per seed
+            digits = len(row["least"].partition(".")[2])
+            for column, value in (("least", min(values[name])), ("largest", max(values[name]))):
+                self.assertAlmostEqual(float(row[column]), value, delta=0.51 * 10 ** -digits)
+            if row["goal"] == "-":
+                self.assertEqual(row["within"], "-")
+            else:
+                first, _, last = row["goal"].partition(" ")
+                low = float({">=": last, "<=": "-inf"}.get(first, first))
+                high = float({">=": "inf", "<=": last}.get(first, last.split(" ")[-1]))
+                met = sum(low <= value <= high for value in values[name])
+                self.assertEqual(row["within"], f"{met} of 2", name)
+            self.assertIn(f"| {name} | {row['unit']} | {row['goal']} |", report)
+            self.assertIn(name, out)
+        # a light body needs little force, one of 6 kg more than Touch X in the paper
+        heavy, _ = self.read_goals(self.measure("heavy", "--goals", "--twin", "free_space")[0])
+        self.assertLess(float(rows["Free-space force"]["largest"]), 0.87)
+        self.assertGreater(float(heavy["Free-space force"]["least"]), 0.87)
+
     def test_bad_options_are_refused(self):
         for option, value in (("--repetitions", "1"), ("--seed", "-1"), ("--repetitions", "2.5")):
             code, _, err = run("haptify", option, value)
             self.assertEqual(code, 2)
             self.assertIn(option, err)
+        code, _, err = run("haptify", "--goals", "--twin", "lihgt")
+        self.assertEqual(code, 2)
+        self.assertIn("lihgt: no such twin file, did you mean 'light'?", err)
 
 
 if __name__ == "__main__":
