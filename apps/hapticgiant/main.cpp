@@ -581,7 +581,8 @@ void add_tune(CLI::App& app, hg::apps::TuneArguments& arguments, int& exit_code)
   command->footer(
       "Examples:\n"
       "  hapticgiant tune models/haptic_giant/device.yaml         report in tune/report.md\n"
-      "  hapticgiant tune device.yaml --vibration 0.03 --front    less vibration, and the trade");
+      "  hapticgiant tune device.yaml --vibration 0.03 --front    less vibration, and the trade\n"
+      "  hapticgiant tune device.yaml --check                     the proof of what is there");
   command->add_option("device", arguments.device, "device.yaml")->capture_default_str();
   command->add_option("--out", arguments.out, "folder of the report")->capture_default_str();
   command
@@ -600,7 +601,12 @@ void add_tune(CLI::App& app, hg::apps::TuneArguments& arguments, int& exit_code)
   command->add_option("--seed", arguments.seed, "of the postures")
       ->check(whole_number(0.0, 4294967295.0))
       ->capture_default_str();
-  command->add_flag("--front", arguments.has_front, "also for less and for more vibration");
+  CLI::Option* front =
+      command->add_flag("--front", arguments.has_front, "also for less and for more vibration");
+  command
+      ->add_flag("--check", arguments.only_checks,
+                 "figures and proof of what the device has now; searches and writes nothing")
+      ->excludes(front);
   command->callback([&arguments, &exit_code] { exit_code = hg::apps::run_tune(arguments); });
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
@@ -48,13 +49,13 @@ int run_tune(const TuneArguments& arguments) {
   tuning::Problem problem = problem_of(device, arguments);
   const tuning::Figures now = tuning::figures_of(problem, problem.device);
   problem.friction_most_N = now.friction_N;
-  make_folder(arguments.out);
-  print_out(
-      "HapticGiant {}  tunes {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
-      kVersion, device.name, tuning::knobs().size(), problem.postures.size(), arguments.mass,
-      arguments.damping);
+  if (!arguments.only_checks) make_folder(arguments.out);
+  print_out("HapticGiant {}  {} {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
+            kVersion, arguments.only_checks ? "checks" : "tunes", device.name,
+            tuning::knobs().size(), problem.postures.size(), arguments.mass, arguments.damping);
   const double limit = arguments.vibration > 0.0 ? arguments.vibration : now.vibration;
-  std::vector<double> limits = {limit};
+  std::vector<double> limits;
+  if (!arguments.only_checks) limits.push_back(limit);
   if (arguments.has_front) {
     for (const double share : {0.75, 0.5, 1.5, 2.0}) limits.push_back(share * limit);
   }
@@ -68,6 +69,10 @@ int run_tune(const TuneArguments& arguments) {
                              .name = device.name,
                              .command = command_of(arguments)};
 
+  if (arguments.only_checks) {
+    print_out(tune_check_text(report));
+    return result.proof_before.holds() ? 0 : 1;
+  }
   print_out(tune_text(report));
   print_out(fmt::format("\nfor device.yaml:\n{}", tune_yaml(report)));
   const std::filesystem::path folder = arguments.out;
@@ -76,7 +81,10 @@ int run_tune(const TuneArguments& arguments) {
   };
   write("report.md", tune_markdown(report));
   write("front.csv", tune_csv(report));
-  write("front.svg", tune_svg(report));
+  write("run.json", tune_figure(report));
+  if (const std::string why = draw_figures(folder, {folder}); !why.empty()) {
+    print_error("{}\n", why);
+  }
   print_out(fmt::format("\nreport      {}\n", (folder / "report.md").string()));
   const tuning::Figures& found = result.front.front().figures;
   constexpr double kTolerated = 1.01;  // of limits that the search approaches from both sides

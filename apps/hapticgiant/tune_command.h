@@ -15,9 +15,11 @@ struct TuneArguments {
   int postures = 40;         ///< of the proof
   std::uint32_t seed = 1;    ///< of the postures
   bool has_front = false;    ///< also for less and more vibration
+  bool only_checks = false;  ///< what the device has now, nothing is searched or written
 };
 
-/// Exit code: 0 found and proven, 1 nothing that is proven. Throws SetupError for bad input.
+/// Exit code: 0 found (or there already) and proven, 1 nothing that is proven. Throws SetupError
+/// for bad input.
 int run_tune(const TuneArguments& arguments);
 
 }  // namespace hg::apps

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
+
+#include "hg/tuning/feel.h"
 
 namespace hg::apps {
 namespace {
@@ -70,6 +74,24 @@ std::string worst_of(const tuning::Demands& demands, const Proof& proof) {
 
 }  // namespace
 
+std::string tune_check_text(const TuneReport& report) {
+  const tuning::Result& result = report.result;
+  std::string text;
+  for (const Column& column : kColumns) {
+    text += fmt::format("{:28}{:>10} {}\n", column.name, value_of(column, result.before.figures),
+                        column.unit);
+  }
+  const Proof& proof = result.proof_before;
+  text += fmt::format("{:28}{:>10}\n{:28}{:>10}\n", "errors left after 0.1 s", decay(proof.arm),
+                      "the same in a hand", decay(proof.hand));
+  const auto failed = std::ranges::count_if(result.everywhere_before,
+                                            [](const Proof& one) { return !one.holds(); });
+  return text + fmt::format("{:28}{:>10}\n\nproof       holds in {} of {} postures; {}\n", "proven",
+                            proof.holds() ? "yes" : "NO",
+                            result.everywhere_before.size() - static_cast<std::size_t>(failed),
+                            result.everywhere_before.size(), worst_of(report.demands, proof));
+}
+
 std::string tune_text(const TuneReport& report) {
   std::string text = fmt::format("{:28}{:>10}{:>10}\n", "", "now", "tuned");
   all_rows(report,
@@ -118,7 +140,8 @@ std::string tune_markdown(const TuneReport& report) {
              text += fmt::format("| {} | {} | {} |\n", name, before, after);
            });
   text += fmt::format(
-      "\nNow: {}. Tuned: {}.\n\n## Front\n\n![front](front.svg)\n\n| vibration at most | vibration "
+      "\nNow: {}. Tuned: {}.\n\n## Front\n\n![what is felt, front, proof](figure.svg)\n\n| "
+      "vibration at most | vibration "
       "| transparency Hz | latency ms | distortion | unexpected friction N | proven |\n| --- | --- "
       "| --- | --- | --- | --- | --- |\n",
       worst_of(report.demands, report.result.proof_before),
@@ -153,52 +176,72 @@ std::string tune_csv(const TuneReport& report) {
   return text + "\n";
 }
 
-std::string tune_svg(const TuneReport& report) {
-  constexpr double kWidth = 640.0, kHeight = 360.0, kLeft = 60.0, kBottom = 300.0, kTop = 40.0;
-  constexpr double kVibrationTick = 0.01, kHzTick = 5.0;
-  std::vector<const Candidate*> all = {&report.result.before};
-  for (const Candidate& candidate : report.result.front) all.push_back(&candidate);
-  double most_vibration = 0.0, most_Hz = 0.0;
-  for (const Candidate* one : all) {
-    most_vibration = std::max(most_vibration, 1.2 * one->figures.vibration);
-    most_Hz = std::max(most_Hz, 1.15 * one->figures.transparency_Hz);
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json point_of(const Candidate& candidate, const Proof& proof) {
+  const Figures& figures = candidate.figures;
+  return {{"vibration_m_per_s2", figures.vibration},
+          {"transparency_Hz", figures.transparency_Hz},
+          {"latency_s", figures.latency_s},
+          {"is_proven", proof.holds()}};
+}
+
+// What is felt over what is rendered, largest and least of all axes and postures that are felt.
+Json felt_of(const tuning::Problem& problem, const tuning::Device& device) {
+  constexpr double kFrom_Hz = 0.5, kTo_Hz = 60.0, kPerDecade = 24.0;
+  std::vector<double> frequencies;
+  for (double f = kFrom_Hz; f <= kTo_Hz; f *= std::pow(10.0, 1.0 / kPerDecade)) {
+    frequencies.push_back(f);
   }
-  const auto x = [&](double vibration) {
-    return kLeft + (kWidth - kLeft - 20.0) * vibration / most_vibration;
-  };
-  const auto y = [&](double Hz) { return kBottom - (kBottom - kTop) * Hz / most_Hz; };
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"{0}\" height=\"{1}\" "
-      "fill=\"#fff\"/>\n<path d=\"M{2} {3}V{4}H{5}\" fill=\"none\" stroke=\"#444\"/>\n"
-      "<text x=\"{6}\" y=\"{7}\" text-anchor=\"middle\">vibration above 20 Hz, m/s^2</text>\n"
-      "<text x=\"20\" y=\"20\">transparency, Hz; at each point the latency</text>\n",
-      kWidth, kHeight, kLeft, kTop, kBottom, kWidth - 20.0, 0.5 * (kLeft + kWidth), kBottom + 44.0);
-  const double vibration_tick = kVibrationTick * std::max(1.0, std::round(most_vibration / 0.06));
-  for (double at = 0.0; at < most_vibration; at += vibration_tick) {
-    svg += fmt::format(
-        "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\" fill=\"#444\">{:g}</text>\n", x(at),
-        kBottom + 20.0, at);
+  std::vector<double> least(frequencies.size(), kInfinity), largest(frequencies.size(), 0.0);
+  for (std::size_t k = 0; k < std::min(problem.felt_postures, problem.postures.size()); ++k) {
+    const tuning::HandleLoop loop =
+        tuning::linearise(device, problem.reality, problem.body, user::HandImpedance{},
+                          problem.noise, problem.postures[k]);
+    tuning::Resolvent resolvent(loop.A);
+    for (std::size_t i = 0; i < frequencies.size(); ++i) {
+      for (const auto& ratio :
+           tuning::felt_over_body(resolvent, loop, problem.body, frequencies[i])) {
+        least[i] = std::min(least[i], std::abs(ratio));
+        largest[i] = std::max(largest[i], std::abs(ratio));
+      }
+    }
   }
-  const double Hz_tick = kHzTick * std::max(1.0, std::round(most_Hz / 30.0));
-  for (double at = Hz_tick; at < most_Hz; at += Hz_tick) {
-    svg += fmt::format(
-        "<path d=\"M{} {:.1f}H{}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{:.1f}\" "
-        "text-anchor=\"end\" fill=\"#444\">{:g}</text>\n",
-        kLeft, y(at), kWidth - 20.0, kLeft - 8.0, y(at) + 4.0, at);
+  return {{"frequency_Hz", frequencies}, {"least", least}, {"largest", largest}};
+}
+
+Json radii_of(const std::vector<Proof>& everywhere) {
+  Json arm = Json::array(), hand = Json::array();
+  for (const Proof& proof : everywhere) {
+    arm.push_back(proof.arm);
+    hand.push_back(proof.hand);
   }
-  // what is there now stands below the front: its label goes there, too
-  for (const Candidate* one : all) {
-    const bool is_before = one == all.front();
-    const double px = x(one->figures.vibration), py = y(one->figures.transparency_Hz);
-    svg += fmt::format(
-        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\" fill=\"{}\"/><text x=\"{:.1f}\" "
-        "y=\"{:.1f}\" text-anchor=\"{}\">{}{:.1f} ms</text>\n",
-        px, py, is_before ? "#d55e00" : "#0072b2", px + (is_before ? 9.0 : -9.0),
-        py + (is_before ? 16.0 : -6.0), is_before ? "start" : "end", is_before ? "now: " : "",
-        1e3 * one->figures.latency_s);
+  return {{"arm", arm}, {"hand", hand}};
+}
+
+}  // namespace
+
+std::string tune_figure(const TuneReport& report) {
+  const tuning::Result& result = report.result;
+  Json front = Json::array();
+  for (std::size_t i = 0; i < result.front.size(); ++i) {
+    front.push_back(point_of(result.front[i], result.proofs[i]));
   }
-  return svg + "</svg>\n";
+  const tuning::Device tuned =
+      tuning::with_values(report.problem.device, result.front.front().values);
+  const Json json = {{"kind", "tuning"},
+                     {"device", report.name},
+                     {"before", point_of(result.before, result.proof_before)},
+                     {"front", front},
+                     {"felt_before", felt_of(report.problem, report.problem.device)},
+                     {"felt", felt_of(report.problem, tuned)},
+                     {"radii_before", radii_of(result.everywhere_before)},
+                     {"radii", radii_of(result.everywhere)},
+                     {"arm_limit", tuning::kArmRadius},
+                     {"hand_limit", tuning::kHandRadius}};
+  return json.dump(2) + "\n";
 }
 
 }  // namespace hg::apps

@@ -15,6 +15,8 @@ struct TuneReport {
   std::string name, command;
 };
 
+/// What the device has now, for a terminal; nothing else of the result need be there.
+std::string tune_check_text(const TuneReport& report);
 /// Before and after, for a terminal.
 std::string tune_text(const TuneReport& report);
 /// Lines for device.yaml, with the figures behind them.
@@ -23,7 +25,8 @@ std::string tune_yaml(const TuneReport& report);
 std::string tune_markdown(const TuneReport& report);
 /// One row per loop: limit, figures, proof, values.
 std::string tune_csv(const TuneReport& report);
-/// Transparency and latency over vibration.
-std::string tune_svg(const TuneReport& report);
+/// run.json of its figure (figure_program.h): what is felt over what is rendered, the front, and
+/// how far each posture is from its limits.
+std::string tune_figure(const TuneReport& report);
 
 }  // namespace hg::apps

@@ -22,24 +22,30 @@ Complex turn(double frequency_Hz, double period_s) {
   return std::polar(1.0, 2.0 * std::numbers::pi * frequency_Hz * period_s);
 }
 
+Complex impedance(const Body& body, double frequency_Hz) {
+  return {body.damping, 2.0 * std::numbers::pi * frequency_Hz * body.mass};
+}
+
 }  // namespace
 
 double Feel::least_transparency_Hz() const { return *std::ranges::min_element(transparency_Hz); }
 
 double Feel::largest_latency_s() const { return *std::ranges::max_element(latency_s); }
 
+std::array<Complex, 3> felt_over_body(Resolvent& resolvent, const HandleLoop& loop,
+                                      const Body& body, double frequency_Hz) {
+  resolvent.at(turn(frequency_Hz, loop.period_s));
+  const Eigen::MatrixXcd y = loop.C * resolvent.solve(loop.B_push);
+  const Complex own = impedance(body, frequency_Hz);
+  std::array<Complex, 3> ratio;
+  for (int i = 0; i < 3; ++i) ratio[static_cast<std::size_t>(i)] = y(3 + i, i) / y(i, i) / own;
+  return ratio;
+}
+
 Feel feel(const HandleLoop& loop, const Body& body, const Eigen::VectorXd& friction) {
   Resolvent resolvent(loop.A);
-  // felt impedance over the body's, along each axis
   const auto relative = [&](double frequency_Hz) {
-    resolvent.at(turn(frequency_Hz, loop.period_s));
-    const Eigen::MatrixXcd y = loop.C * resolvent.solve(loop.B_push);
-    const Complex own = {body.damping, 2.0 * std::numbers::pi * frequency_Hz * body.mass};
-    std::array<Complex, 3> ratio;
-    for (int i = 0; i < 3; ++i) {
-      ratio[static_cast<std::size_t>(i)] = y(3 + i, i) / y(i, i) / own;
-    }
-    return ratio;
+    return felt_over_body(resolvent, loop, body, frequency_Hz);
   };
   Feel result;
   std::vector<double> frequencies;
@@ -65,7 +71,7 @@ Feel feel(const HandleLoop& loop, const Body& body, const Eigen::VectorXd& frict
   constexpr std::array kFriction_Hz = {0.5, 1.0, 2.0, 4.0, 8.0};
   for (const double f : kFriction_Hz) {
     resolvent.at(turn(f, loop.period_s));
-    const Complex own = {body.damping, 2.0 * std::numbers::pi * f * body.mass};
+    const Complex own = impedance(body, f);
     const Eigen::MatrixXcd y =
         loop.C.topRows(6) * resolvent.solve(loop.B_motor * friction.asDiagonal());
     result.friction_N += (y.bottomRows(3) - own * y.topRows(3)).norm() / kFriction_Hz.size();

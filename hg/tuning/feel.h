@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <vector>
 
 #include "hg/tuning/handle_loop.h"
@@ -28,6 +29,11 @@ struct Feel {
 };
 
 inline constexpr double kLatencyAt = 3.0;  ///< Hz
+
+/// Felt impedance over that of the body along the axes of H, at one frequency; 1 = nothing but the
+/// body is felt. `resolvent`: of `loop.A`.
+std::array<std::complex<double>, 3> felt_over_body(Resolvent& resolvent, const HandleLoop& loop,
+                                                   const Body& body, double frequency_Hz);
 
 /// Source: [HANDBOOK] 7, as hg/haptify measures them in simulation.
 /// `friction` (n): torques on the motors that nobody expects, Nm.

@@ -42,12 +42,13 @@ class Search {
     }
   }
 
-  Candidate best(const Values& start, double limit, Proof& proof) {
+  Candidate best(const Values& start, double limit, std::vector<Proof>& everywhere) {
     Values found = start;
     for (int k = 0; k < kMostProofs; ++k) {
       const double step = k == 0 ? kFirstStep : 0.3 * kFirstStep;
       found = rounded(problem_.device, evolved(found, step, limit));
-      proof = proof_everywhere(with_values(problem_.device, found));
+      everywhere = proof_everywhere(with_values(problem_.device, found));
+      const Proof proof = worst(everywhere);
       if (proof.holds()) break;
       mind(proof);
     }
@@ -74,7 +75,8 @@ class Search {
     }
   }
 
-  Proof proof_everywhere(const Device& device) {
+  // One per posture.
+  std::vector<Proof> proof_everywhere(const Device& device) {
     std::vector<Proof> proofs(problem_.postures.size());
     experiments::do_all(
         proofs.size(),
@@ -83,8 +85,12 @@ class Search {
           for (const Case& one : demands_.cases(i)) take(one, demands_.radius(device, one), here);
         },
         [&](std::size_t done, std::size_t total) { tell("proof", done, total); });
+    return proofs;
+  }
+
+  Proof worst(const std::vector<Proof>& everywhere) const {
     Proof all;
-    for (const Proof& one : proofs) {
+    for (const Proof& one : everywhere) {
       take(one.worst_arm, one.arm, all);
       take(one.worst_hand, one.hand, all);
       take(one.worst_friction, one.friction, all);
@@ -176,12 +182,14 @@ Result search(const Problem& problem, const std::vector<double>& limits, const T
   Result result = {.limits = limits};
   const Values present = values_of(problem.device);
   result.before = {present, figures_of(problem, problem.device)};
-  result.proof_before = searching.proof_everywhere(problem.device);
+  result.everywhere_before = searching.proof_everywhere(problem.device);
+  result.proof_before = searching.worst(result.everywhere_before);
   searching.mind(result.proof_before);
   for (const double limit : limits) {
-    Proof proof;
-    result.front.push_back(searching.best(searching.nearest(result, limit), limit, proof));
-    result.proofs.push_back(proof);
+    std::vector<Proof> everywhere;
+    result.front.push_back(searching.best(searching.nearest(result, limit), limit, everywhere));
+    result.proofs.push_back(searching.worst(everywhere));
+    if (result.front.size() == 1) result.everywhere = std::move(everywhere);
   }
   return result;
 }

@@ -54,6 +54,8 @@ struct Result {
   std::vector<Candidate> front;  ///< one per limit of vibration, proven where that was possible
   std::vector<double> limits;    ///< the limits, m/s^2
   std::vector<Proof> proofs;     ///< of the front, in all postures
+  /// In each posture: of `before`, and of the first of the front.
+  std::vector<Proof> everywhere_before, everywhere;
 };
 
 /// The best loop for each of `limits` of vibration (rms above 20 Hz, m/s^2), by evolution;

@@ -4,6 +4,7 @@ Usage: tune_test.py PROGRAM   (from the repository root)
 """
 
 import csv
+import json
 import re
 import shutil
 import unittest
@@ -32,6 +33,9 @@ class Tune(TemporaryFolder):
         (device / "device.yaml").write_text(text)
         code, told, err = run("check", device / "device.yaml")
         self.assertEqual(code, 0, told + err)
+        code, told, err = run("tune", device / "device.yaml", "--postures", 1, "--check")
+        self.assertEqual((code, err), (0, ""), told)
+        self.assertIn("holds in 1 of 1 postures", told)
 
         with open(out / "front.csv", newline="") as file:
             rows = list(csv.DictReader(file, strict=True))
@@ -42,8 +46,18 @@ class Tune(TemporaryFolder):
             self.assertAlmostEqual(float(rows[1][key]), value, places=9)
         report = (out / "report.md").read_text()
         self.assertIn(lines, report)
-        self.assertIn("front.svg", report)
-        self.assertTrue((out / "front.svg").read_text().startswith("<svg"))
+        self.assertIn("figure.svg", report)
+        self.assertIn("<svg", (out / "figure.svg").read_text())
+        facts = json.loads((out / "run.json").read_text())
+        for name in ("radii_before", "radii"):  # one posture
+            self.assertEqual([len(facts[name][loop]) for loop in ("arm", "hand")], [1, 1])
+        self.assertLess(facts["radii"]["arm"][0], facts["arm_limit"])
+        self.assertLess(facts["radii"]["hand"][0], facts["hand_limit"])
+        for felt in (facts["felt_before"], facts["felt"]):
+            slow = [k for k, f in enumerate(felt["frequency_Hz"]) if f < 1.0]
+            for k in slow:  # a slow hand feels the body
+                self.assertAlmostEqual(felt["least"][k], 1.0, delta=0.1)
+                self.assertAlmostEqual(felt["largest"][k], 1.0, delta=0.1)
 
     def test_what_cannot_be_tuned_is_refused_in_one_line(self):
         device = self.folder / "haptic_giant"
