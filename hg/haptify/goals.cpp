@@ -64,11 +64,34 @@ config::Scenario under(const Condition& condition, config::Scenario scenario) {
   return scenario;
 }
 
+std::string name_of(user::HandPreset hand) {
+  const auto found =
+      std::ranges::find(config::kHandPresets, hand, &config::Choice<user::HandPreset>::value);
+  return fmt::format("{} hand", found->name);
+}
+
 std::string words(const std::string& what, const Condition& condition) {
-  const auto hand = std::ranges::find(config::kHandPresets, condition.hand,
-                                      &config::Choice<user::HandPreset>::value);
-  return fmt::format("{}, seed {}, {:g} m, {} hand", what, condition.seed, condition.height,
-                     hand->name);
+  return fmt::format("{}, seed {}, {:g} m, {}", what, condition.seed, condition.height,
+                     name_of(condition.hand));
+}
+
+// The mean of `each` runs per condition, where all of them have worked.
+template <typename Run>
+std::vector<double> means(const Group& group, const std::string& what,
+                          const std::vector<Condition>& all, std::size_t each,
+                          const std::vector<Run>& found, double (*value)(const Run&)) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    double sum = 0.0;
+    bool has_all = true;
+    for (std::size_t k = 0; k < each; ++k) {
+      const Run& one = found[each * i + k];
+      has_all = group.has_worked(words(what, all[i]), one.failure) && has_all;
+      sum += value(one);
+    }
+    if (has_all) result.push_back(sum / static_cast<double>(each));
+  }
+  return result;
 }
 
 std::string body_of(const config::Scenario& scenario) {
@@ -126,16 +149,8 @@ void add_latencies(const Group& group) {
                    .unit = "ms",
                    .goal = {.ub = 4.5},
                    .note = "after a step of 10 N; mean of three axes"};
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    double sum = 0.0;
-    bool has_all = true;
-    for (std::size_t axis = 0; axis < kAxes; ++axis) {
-      const Latency& one = found[kAxes * i + axis];
-      has_all = group.has_worked(words(what, all[i]), one.failure) && has_all;
-      sum += one.motion_s;
-    }
-    if (has_all) figure.values.push_back(1e3 * sum / kAxes);
-  }
+  figure.values = means<Latency>(group, what, all, kAxes, found,
+                                 [](const Latency& one) { return 1e3 * one.motion_s; });
   group.out.beyond.push_back(figure);
 }
 
@@ -215,8 +230,7 @@ void add_strokes(const Group& group, std::vector<StrokeFigure> figures) {
 void add_light_body(const Group& group, user::HandPreset hand, double mass) {
   constexpr double kDamping = 4.0;  // Ns/m
   const auto all = in_one_hand(group, hand);
-  const std::string what =
-      words(fmt::format("{:g} kg after a kick", mass), {.height = 0.0, .hand = hand});
+  const std::string what = fmt::format("{:g} kg after a kick, {}", mass, name_of(hand));
   const auto found = group.measure_all(what, all.size(), [&](std::size_t i) {
     experiments::StabilityConfig config;
     config.position.z() = all[i].height;
@@ -304,16 +318,8 @@ void add_presses(const Group& group) {
                    .digits = 1,
                    .goal = {.lb = 99.0, .ub = 101.0},
                    .note = "mean of 1000, 2000 and 4000 N/m, pressed slowly up to 40 N"};
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    double sum = 0.0;
-    bool has_all = true;
-    for (std::size_t k = 0; k < n; ++k) {
-      const Press& one = found[n * i + k];
-      has_all = group.has_worked(words(what, all[i]), one.failure) && has_all;
-      sum += one.accuracy;
-    }
-    if (has_all) figure.values.push_back(sum / static_cast<double>(n));
-  }
+  figure.values =
+      means<Press>(group, what, all, n, found, [](const Press& one) { return one.accuracy; });
   group.out.beyond.push_back(figure);
 }
 
