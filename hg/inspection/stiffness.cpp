@@ -19,7 +19,7 @@ namespace hg::inspection {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kPhase = 18.5 / 360.0;  // of a period, see frequency_Hz()
+constexpr double kPhase = 16.5 / 360.0;  // of a period, see frequency_Hz()
 constexpr double kLeastWay = 0.01;       // m at the handle, over which a spring should be followed
 
 // Mean delay between a wrench and what the motors do about it.
@@ -121,7 +121,7 @@ void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Co
       [&](const Spring& spring) {
         return fmt::format(
             "swing with {:.1f} Hz; this device shows up to {:.1f} Hz, where the "
-            "{:.1f} ms from wrench to motion are 18.5 degrees",
+            "{:.1f} ms from wrench to motion are 16.5 degrees",
             std::sqrt(spring.stiffness / spring.inertia) / kTurn, fastest, 1e3 * limits.delay);
       },
       out);
@@ -179,7 +179,7 @@ void inspect_stiffness(const config::Device& device, const config::Twin& twin, C
   out.add(Severity::kNote, "end_effector",
           fmt::format(
               "surfaces and springs that this device can show with this twin ({}): up to "
-              "{:.1f} Hz, where T_d is 18.5 degrees, which is {} = m (2 pi f)^2; {}; passive in "
+              "{:.1f} Hz, where T_d is 16.5 degrees, which is {} = m (2 pi f)^2; {}; passive in "
               "any hand up to {} = b / (T / 2 + T_d), with 20 Ns/m of a surface {}",
               known_of(limits), limits.frequency_Hz(), kilo(limits.by_frequency()),
               acceleration_text(limits), kilo(limits.by_passivity(0.0)),

@@ -21,7 +21,7 @@ struct StiffnessLimits {
   double delay = 0.0;               ///< T_d of the wrench: sensor, low-pass and torque loop, s
   double acceleration = kInfinity;  ///< a, along the worst axis of B, m/s^2
 
-  /// Up to here T_d turns what swings by 18.5 degrees at most. Measured: 6 kg and 3 kg on surfaces
+  /// Up to here T_d turns what swings by 16.5 degrees at most. Measured: 6 kg and 3 kg on surfaces
   /// are calm at 8.2 Hz and not at 11.6 Hz with 6 ms.
   double frequency_Hz() const noexcept;
   /// m (2 pi f)^2, N/m.

@@ -51,7 +51,8 @@ void expect_friction(const std::vector<FrictionEstimate>& found, double factor, 
     SCOPED_TRACE("m" + std::to_string(i + 1));
     expect_near(found[i].coulomb, factor * kCoulomb[i], 0.03, "coulomb");
     expect_near(found[i].viscous, factor * kViscous[i], 0.05, "viscous");
-    expect_near(found[i].stiction, 1.2, 0.08, "stiction");
+    // docs/friction.md: the heavier the arm behind a joint, the more of the peak at rest is missed
+    expect_near(found[i].stiction, 1.2, i < 2 ? 0.09 : 0.03, "stiction");
     if (i < 5) expect_near(found[i].load, factor * 0.06, 0.05, "load");
   }
   EXPECT_FALSE(found[5].load.is_found) << "m6 carries next to nothing";

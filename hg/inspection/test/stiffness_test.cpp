@@ -27,7 +27,7 @@ TEST(Stiffness, FollowsFromMassDampingDelayAndAcceleration) {
   EXPECT_NEAR(limits.acceleration, 6.7, 0.3);  // upwards; the handle's rating is 3 m/s^2
   // low-pass of 100 Hz, torque loop, sensor: haptify measures 3.5 to 4.4 ms
   EXPECT_NEAR(limits.delay, 4e-3, 1e-3);
-  EXPECT_NEAR(limits.frequency_Hz() * limits.delay, 18.5 / 360.0, 1e-12);
+  EXPECT_NEAR(limits.frequency_Hz() * limits.delay, 16.5 / 360.0, 1e-12);
   EXPECT_NEAR(std::sqrt(limits.by_frequency() / 6.0) / (2.0 * std::numbers::pi),
               limits.frequency_Hz(), 1e-9);
   EXPECT_NEAR(limits.by_passivity(20.0), 24.0 / (0.5e-3 + limits.delay), 1e-6);
@@ -42,7 +42,7 @@ TEST(Stiffness, FollowsFromMassDampingDelayAndAcceleration) {
 
   scenario.device.estimation.wrench.low_pass_Hz = 0.0;
   const StiffnessLimits prompt = stiffness_limits(scenario.device, scenario.twin);
-  EXPECT_NEAR(limits.delay - prompt.delay, 1.0 / (200.0 * std::numbers::pi), 1e-12);
+  EXPECT_NEAR(limits.delay - prompt.delay, 1.0 / (320.0 * std::numbers::pi), 1e-12);
   EXPECT_GT(prompt.by_frequency(), limits.by_frequency());
 }
 
