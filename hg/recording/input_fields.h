@@ -92,14 +92,14 @@ void fields(Archive& a, T& target) {
 
 template <typename Archive, Is<ParameterChange> T>
 void fields(Archive& a, T& change) {
-  a("parameter", change.parameter, "0 none; numbers are listed in hg/signals/frames.h");
+  a("parameter", change.parameter);
   a("index", change.index, "degree of freedom of the twin, or component of the wrench");
   a("value", change.value, "new value, SI units");
 }
 
 template <typename Archive, Is<OperatorFrame> T>
 void fields(Archive& a, T& input) {
-  a("request", input.request, "0 none, 1 arm, 2 run, 3 stop, 4 reset, 5 tare, 6 autonomous");
+  a("request", input.request);
   a("hand_target", input.hand_target);
   a("panel", input.panel, "of a simulated operator");
   a("change", input.change, "of a parameter of the twin");

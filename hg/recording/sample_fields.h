@@ -61,10 +61,8 @@ void fields(Archive& a, T& budget) {
 
 template <typename Archive, Is<LimitReport> T>
 void fields(Archive& a, T& report) {
-  a("state", report.state, "0 inactive, 1 lower, 2 upper, 3 violated");
-  a("cause", report.cause,
-    "0 none, 1 position, 2 velocity, 3 acceleration, 4 lock, 5 latch, 6 friction, "
-    "7 contradiction");
+  a("state", report.state);
+  a("cause", report.cause);
   a("position", report.position, "of the limited quantity, rad or m");
   a("to_lower", report.to_lower, "distance left to the limit as rendered");
   a("to_upper", report.to_upper);
@@ -128,18 +126,17 @@ template <typename Archive, Is<CycleRecord> T>
 void fields(Archive& a, T& record) {
   a("cycle", record.cycle);
   a("time_s", record.time_s, "nominal time; the log time is this plus the start of the run");
-  a("mode", record.mode, "0 off, 1 ready, 2 armed, 3 running, 4 stopping, 5 fault");
+  a("mode", record.mode);
   a("is_autonomous", record.is_autonomous, "runs with nobody at the handle");
-  a("stop", record.stop, "0 none, 1 SS2, 2 SS1, 3 STO");
+  a("stop", record.stop);
   a("fault", record.fault);
   a("warning", record.warning, "the rule nearest to its threshold, beyond its warning");
   a("sanitised", record.sanitised, "bit i: command of joint i was changed; from bit 16: gantry");
-  a("change", record.change, "of a parameter: 0 none, 1 taken, 2 refused");
-  a("tare", record.tare,
-    "0 none, 1 under way, 2 done, 3 refused: held, 4 moving, 5 unsteady, 6 running");
+  a("change", record.change, "of a parameter");
+  a("tare", record.tare);
   a("is_tared", record.is_tared, "a tare is there, or this device needs none");
   a("is_latency_known", record.is_latency_known, "of the torque loop, or there is none");
-  a("refusal", record.refusal, "of the request: 0 none; why else, docs/recording.md");
+  a("refusal", record.refusal, "of the request");
   a("robot", record.robot, "estimated state of the device");
   a("reference", record.reference, "integrated reference of the manipulator");
   a("twin", record.twin);
@@ -161,7 +158,7 @@ void fields(Archive& a, T& record) {
   a("contact", record.contact);
   a("touch", record.touch);
   a("q_p_target", record.q_p_target, "where prepositioning wants the gantry, m");
-  a("solver_status", record.solver_status, "0 not run, 1 solved, 2 budget spent, 3 failed");
+  a("solver_status", record.solver_status);
   a("solver_iterations", record.solver_iterations);
   a("active_set_changes", record.active_set_changes);
   a("state_hash", record.state_hash, "equal in a replay");

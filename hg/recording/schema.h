@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "hg/core/enumerators.h"
 #include "hg/core/types.h"
 #include "hg/recording/message.h"
 
@@ -25,7 +26,7 @@ class SchemaWriter {
 
   template <typename T>
   void operator()(const char* name, const T&, const char* note = "") {
-    line(type_name(static_cast<const T*>(nullptr)), name, note);
+    line(type_name(static_cast<const T*>(nullptr)), name, with_numbers<T>(note));
   }
 
   template <typename T, std::size_t kCapacity>
@@ -40,6 +41,16 @@ class SchemaWriter {
   std::vector<Definition> inner;  ///< messages inside it
 
  private:
+  // what the numbers of an enum mean; codes of faults have a table of their own, docs/safety.md
+  template <typename T>
+  static std::string with_numbers(const std::string& note) {
+    if constexpr (std::is_enum_v<T> && sizeof(T) == 1) {
+      return note.empty() ? numbers_of<T>() : note + ": " + numbers_of<T>();
+    } else {
+      return note;
+    }
+  }
+
   template <IsScalar T>
   static std::string type_name(const T*) {
     if constexpr (std::is_enum_v<T>) {

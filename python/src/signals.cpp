@@ -7,125 +7,27 @@
 
 #include "hg/signals/limit.h"
 #include "python/src/bind.h"
+#include "python/src/bind_enum.h"
 #include "python/src/fields.h"
 
 namespace hg::python {
 namespace {
 
-void bind_modes(nb::module_& module) {
-  nb::enum_<Mode>(module, "Mode", nb::is_arithmetic(), "Operating state.")
-      .value("OFF", Mode::kOff)
-      .value("READY", Mode::kReady)
-      .value("ARMED", Mode::kArmed)
-      .value("RUNNING", Mode::kRunning)
-      .value("STOPPING", Mode::kStopping)
-      .value("FAULT", Mode::kFault);
-  nb::enum_<ModeRequest>(module, "ModeRequest", nb::is_arithmetic(), "What an operator asks for.")
-      .value("NONE", ModeRequest::kNone)
-      .value("ARM", ModeRequest::kArm)
-      .value("RUN", ModeRequest::kRun)
-      .value("STOP", ModeRequest::kStop)
-      .value("RESET", ModeRequest::kReset)
-      .value("TARE", ModeRequest::kTare)
-      .value("AUTONOMOUS", ModeRequest::kAutonomous);
-  nb::enum_<Stop>(module, "Stop", nb::is_arithmetic(), "How the device is being stopped.")
-      .value("NONE", Stop::kNone)
-      .value("SS2", Stop::kSs2)
-      .value("SS1", Stop::kSs1)
-      .value("STO", Stop::kSto);
-  nb::enum_<TareStatus>(module, "TareStatus", nb::is_arithmetic(), "How the last tare went.")
-      .value("NONE", TareStatus::kNone)
-      .value("UNDER_WAY", TareStatus::kUnderWay)
-      .value("DONE", TareStatus::kDone)
-      .value("REFUSED_HELD", TareStatus::kRefusedHeld)
-      .value("REFUSED_MOVING", TareStatus::kRefusedMoving)
-      .value("REFUSED_UNSTEADY", TareStatus::kRefusedUnsteady)
-      .value("REFUSED_RUNNING", TareStatus::kRefusedRunning);
-  nb::enum_<Refusal>(module, "Refusal", nb::is_arithmetic(), "Why a request was not followed.")
-      .value("NONE", Refusal::kNone)
-      .value("NOT_TARED", Refusal::kNotTared)
-      .value("LATENCY_TOO_LONG", Refusal::kLatencyTooLong)
-      .value("LATENCY_UNKNOWN", Refusal::kLatencyUnknown)
-      .value("NOT_READY", Refusal::kNotReady)
-      .value("NOT_ARMED", Refusal::kNotArmed)
-      .value("FAULT_PRESENT", Refusal::kFaultPresent)
-      .value("CAUSE_REMAINS", Refusal::kCauseRemains)
-      .value("NO_FAULT", Refusal::kNoFault)
-      .value("OPERATOR_RELEASED", Refusal::kOperatorReleased)
-      .value("NOBODY_HOLDS", Refusal::kNobodyHolds)
-      .value("SOMEBODY_HOLDS", Refusal::kSomebodyHolds)
-      .value("NO_OVERRIDE", Refusal::kNoOverride)
-      .value("FIELD_OCCUPIED", Refusal::kFieldOccupied);
-  nb::enum_<SolverStatus>(module, "SolverStatus", nb::is_arithmetic())
-      .value("NOT_RUN", SolverStatus::kNotRun)
-      .value("SOLVED", SolverStatus::kSolved)
-      .value("BUDGET_SPENT", SolverStatus::kBudgetSpent,
-             "ended before it was proven; the joints keep their limits")
-      .value("FAILED", SolverStatus::kFailed);
+void bind_enums(nb::module_& module) {
+  bind_enum<Mode>(module, "Mode", "Operating state.");
+  bind_enum<ModeRequest>(module, "ModeRequest", "What an operator asks for.");
+  bind_enum<Stop>(module, "Stop", "How the device is being stopped.");
+  bind_enum<TareStatus>(module, "TareStatus", "How the last tare went.");
+  bind_enum<Refusal>(module, "Refusal", "Why a request was not followed.");
+  bind_enum<SolverStatus>(module, "SolverStatus", "How the solver ended.");
+  bind_enum<FaultCode, 512>(module, "FaultCode", "Why the device stopped.");
+  bind_enum<LimitState>(module, "LimitState", "Side on which a limit acts.");
+  bind_enum<LimitCause>(module, "LimitCause", "Which rating of it acts.");
+  bind_enum<Parameter>(module, "Parameter", "What of a twin may change while it runs.");
+  bind_enum<ChangeStatus>(module, "ChangeStatus", "What became of the change of a parameter.");
 }
 
-void bind_fault_codes(nb::module_& module) {
-  nb::enum_<FaultCode> codes(module, "FaultCode", nb::is_arithmetic(), "Why the device stopped.");
-  codes.value("NONE", FaultCode::kNone)
-      .value("SENSOR_NOT_FINITE", FaultCode::kSensorNotFinite)
-      .value("SEQUENCE_GAP", FaultCode::kSequenceGap)
-      .value("EMERGENCY_STOP", FaultCode::kEmergencyStop)
-      .value("DEVICE_SILENT", FaultCode::kDeviceSilent)
-      .value("DEVICE_GONE", FaultCode::kDeviceGone)
-      .value("SENSOR_FROZEN", FaultCode::kSensorFrozen)
-      .value("SENSOR_IMPLAUSIBLE", FaultCode::kSensorImplausible)
-      .value("SENSOR_JUMP", FaultCode::kSensorJump)
-      .value("CLOCK_WRONG", FaultCode::kClockWrong)
-      .value("BUS_ERRORS", FaultCode::kBusErrors)
-      .value("WRENCH_TOO_LARGE", FaultCode::kWrenchTooLarge)
-      .value("JOINT_TORQUE_EXCEEDED", FaultCode::kJointTorqueExceeded)
-      .value("TOO_HOT", FaultCode::kTooHot)
-      .value("DRIVE_FAULT", FaultCode::kDriveFault)
-      .value("MOTOR_DEVIATES", FaultCode::kMotorDeviates)
-      .value("TORQUE_UNEXPLAINED", FaultCode::kTorqueUnexplained)
-      .value("COMMANDS_LOST", FaultCode::kCommandsLost)
-      .value("OPERATOR_RELEASED", FaultCode::kOperatorReleased)
-      .value("SCANNER_FIELD", FaultCode::kScannerField)
-      .value("SAFETY_INPUTS_DISAGREE", FaultCode::kSafetyInputsDisagree)
-      .value("SAFE_SPEED_EXCEEDED", FaultCode::kSafeSpeedExceeded)
-      .value("SOLVER_FAILED", FaultCode::kSolverFailed)
-      .value("REFERENCE_NOT_FINITE", FaultCode::kReferenceNotFinite)
-      .value("COMMAND_NOT_FINITE", FaultCode::kCommandNotFinite)
-      .value("CYCLE_OVERRUN", FaultCode::kCycleOverrun)
-      .value("LIMIT_EXCEEDED", FaultCode::kLimitExceeded)
-      .value("SPEED_EXCEEDED", FaultCode::kSpeedExceeded)
-      .value("TRACKING_LOST", FaultCode::kTrackingLost)
-      .value("SYNC_LOST", FaultCode::kSyncLost)
-      .value("LATENCY_GREW", FaultCode::kLatencyGrew)
-      .value("COLLISION_AHEAD", FaultCode::kCollisionAhead)
-      .value("GANTRY_EXCEEDED", FaultCode::kGantryExceeded)
-      .value("GANTRY_DEVIATES", FaultCode::kGantryDeviates)
-      .value("OSCILLATION", FaultCode::kOscillation)
-      .value("ENERGY", FaultCode::kEnergy)
-      .value("STOP_TOO_SLOW", FaultCode::kStopTooSlow)
-      .value("ACCELERATION_EXCEEDED", FaultCode::kAccelerationExceeded)
-      .value("TURN_UNEXPLAINED", FaultCode::kTurnUnexplained)
-      .value("MOTION_UNEXPLAINED", FaultCode::kMotionUnexplained)
-      .value("BRAKING_POSITION", FaultCode::kBrakingPosition)
-      .value("BRAKING_SPEED", FaultCode::kBrakingSpeed)
-      .value("STOP_TOO_FAR", FaultCode::kStopTooFar)
-      .value("BRAKES_SLIP", FaultCode::kBrakesSlip);
-}
-
-void bind_limit_words(nb::module_& module) {
-  nb::enum_<LimitState>(module, "LimitState", nb::is_arithmetic(), "Side on which a limit acts.")
-      .value("INACTIVE", LimitState::kInactive)
-      .value("LOWER", LimitState::kLower)
-      .value("UPPER", LimitState::kUpper)
-      .value("VIOLATED", LimitState::kViolated);
-  nb::enum_<LimitCause>(module, "LimitCause", nb::is_arithmetic(), "Which rating of it acts.")
-      .value("NONE", LimitCause::kNone)
-      .value("POSITION", LimitCause::kPosition)
-      .value("VELOCITY", LimitCause::kVelocity)
-      .value("ACCELERATION", LimitCause::kAcceleration)
-      .value("LOCK", LimitCause::kLock)
-      .value("LATCH", LimitCause::kLatch)
-      .value("FRICTION", LimitCause::kFriction);
+void bind_limit_info(nb::module_& module) {
   nb::class_<LimitInfo>(module, "LimitInfo", "One limited quantity of device or twin.")
       .def_ro("name", &LimitInfo::name)
       .def_ro("is_angle", &LimitInfo::is_angle, "rad and Nm, otherwise m and N")
@@ -133,36 +35,11 @@ void bind_limit_words(nb::module_& module) {
       .def_prop_ro("upper", [](const LimitInfo& limit) { return limit.range.ub; });
 }
 
-void bind_parameters(nb::module_& module) {
-  nb::enum_<Parameter>(module, "Parameter", nb::is_arithmetic(),
-                       "What of a twin may change while it runs.")
-      .value("NONE", Parameter::kNone)
-      .value("STIFFNESS", Parameter::kStiffness)
-      .value("REST", Parameter::kRest)
-      .value("PRELOAD", Parameter::kPreload)
-      .value("DAMPING", Parameter::kDamping)
-      .value("QUADRATIC_DAMPING", Parameter::kQuadraticDamping)
-      .value("FRICTION", Parameter::kFriction)
-      .value("LOWER_LIMIT", Parameter::kLowerLimit)
-      .value("UPPER_LIMIT", Parameter::kUpperLimit)
-      .value("SPEED_LIMIT", Parameter::kSpeedLimit)
-      .value("REFERENCE_WRENCH", Parameter::kReferenceWrench)
-      .value("GRAVITY", Parameter::kGravity)
-      .value("MASS_SCALE", Parameter::kMassScale);
-  nb::enum_<ChangeStatus>(module, "ChangeStatus", nb::is_arithmetic(),
-                          "What became of the change of a parameter.")
-      .value("NONE", ChangeStatus::kNone)
-      .value("TAKEN", ChangeStatus::kTaken)
-      .value("REFUSED", ChangeStatus::kRefused);
-}
-
 }  // namespace
 
 void bind_signals(nb::module_& module) {
-  bind_modes(module);
-  bind_fault_codes(module);
-  bind_limit_words(module);
-  bind_parameters(module);
+  bind_enums(module);
+  bind_limit_info(module);
 
   bind_fields<Pose>(module, "Pose", "Pose of a frame relative to another.")
       .def(

@@ -38,6 +38,17 @@ TEST(SchemaText, SpellsTypesAsRosDoes) {
   }
 }
 
+TEST(SchemaText, SaysWhatEveryNumberOfAnEnumMeans) {
+  const std::string text = schema_text<Sample>();
+  for (const char* line : {"\nuint8 cause  # 0 none, 1 position, 2 velocity, 3 acceleration, 4 "
+                           "lock, 5 latch, 6 friction, "
+                           "7 contradiction, 8 torque\n",
+                           "\nuint8 change  # of a parameter: 0 none, 1 taken, 2 refused\n",
+                           "14 still moving, 15 twin apart, 16 posture implausible\n"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  }
+}
+
 TEST(SchemaText, HasOnlyNamesThatRosAllows) {
   const std::regex allowed(
       R"(=+|MSG: [a-z_]+/[A-Z]\w*|[a-z0-9_]+(/[A-Z]\w*)?(\[\d*\])? [a-z](_?[a-z0-9]+)*(  # .*)?)");

@@ -11,9 +11,12 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "hg/core/enumerators.h"
 #include "hg/core/open_file.h"
 #include "hg/viewer_server/access.h"
+#include "hg/viewer_server/frame_parts_message.h"
 #include "hg/viewer_server/limit_text.h"
+#include "hg/viewer_server/scene_parts_message.h"
 #include "hg/viewer_server/typescript.h"
 
 namespace hg::viewer_server {
@@ -450,6 +453,25 @@ TEST(LimitText, NamesSideCauseAndReaction) {
       limit_text(elbow,
                  {.state = LimitState::kViolated, .cause = LimitCause::kPosition, .excess = 0.003}),
       "elbow x: limit, exceeded by 3 mm");
+}
+
+// The words of the page are those of the program, all of them.
+template <typename E>
+void expect_all_words() {
+  const auto all = enumerators<E>();
+  ASSERT_EQ(kWords<E>.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(all[i].value), i);
+    EXPECT_EQ(kWords<E>[i], to_string(all[i].value)) << all[i].name;
+  }
+}
+
+TEST(Words, AreThoseOfEveryEnumerator) {
+  expect_all_words<Mode>();
+  expect_all_words<Stop>();
+  expect_all_words<LimitKind>();
+  expect_all_words<LimitState>();
+  expect_all_words<LimitCause>();
 }
 
 }  // namespace

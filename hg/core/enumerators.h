@@ -1,0 +1,87 @@
+/// The enumerators of an enum as the compiler knows them, so that nobody lists them a second time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace hg {
+
+/// One enumerator, its name as in the source: "kStillMoving".
+template <typename E>
+struct Enumerator {
+  E value{};
+  std::string_view name;
+};
+
+namespace detail {
+
+// GCC and Clang write an enumerator as "hg::Refusal::kNone" and any other value as
+// "(hg::Refusal)99".
+template <auto value>
+constexpr std::string_view name_of() {
+  std::string_view text = __PRETTY_FUNCTION__;
+  text = text.substr(text.find("value = ") + 8);
+  text = text.substr(0, text.find_first_of(";]"));
+  return text.starts_with('(') ? std::string_view{} : text.substr(text.rfind(':') + 1);
+}
+
+template <typename E, std::size_t... i>
+constexpr auto candidates(std::index_sequence<i...>) {
+  return std::array{Enumerator<E>{static_cast<E>(i), name_of<static_cast<E>(i)>()}...};
+}
+
+}  // namespace detail
+
+/// Those with values from 0 to below `end`, in the order of their values.
+template <typename E, std::size_t end = 64>
+constexpr auto enumerators() {
+  constexpr auto all = detail::candidates<E>(std::make_index_sequence<end>{});
+  constexpr std::size_t count = [&] {
+    std::size_t named = 0;
+    for (const Enumerator<E>& one : all) named += one.name.empty() ? 0 : 1;
+    return named;
+  }();
+  std::array<Enumerator<E>, count> found{};
+  std::size_t next = 0;
+  for (const Enumerator<E>& one : all) {
+    if (!one.name.empty()) found[next++] = one;
+  }
+  return found;
+}
+
+/// The words of an enumerator: "kStillMoving" is "still moving".
+inline std::string words_of(std::string_view enumerator) {
+  std::string words;
+  for (const char c : enumerator.substr(1)) {
+    const bool is_upper = c >= 'A' && c <= 'Z';
+    if (is_upper && !words.empty()) words += ' ';
+    words += is_upper ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return words;
+}
+
+/// Its name in other languages: "kStillMoving" is "STILL_MOVING".
+inline std::string constant_name(std::string_view enumerator) {
+  std::string name = words_of(enumerator);
+  for (char& c : name) {
+    if (c == ' ') c = '_';
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  }
+  return name;
+}
+
+/// All of an enum with their numbers: "0 none, 1 not tared".
+template <typename E>
+std::string numbers_of() {
+  std::string text;
+  for (const Enumerator<E>& one : enumerators<E>()) {
+    if (!text.empty()) text += ", ";
+    text += std::to_string(static_cast<int>(one.value)) + " " + words_of(one.name);
+  }
+  return text;
+}
+
+}  // namespace hg
