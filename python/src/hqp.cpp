@@ -158,7 +158,6 @@ void bind_enums(nb::module_& module) {
       .value("SOLVED", hqp::Status::kSolved, "every level is optimal")
       .value("ITERATION_LIMIT", hqp::Status::kIterationLimit,
              "levels from completed_levels on are not known to be optimal")
-      .value("BAD_ROW", hqp::Status::kBadRow, "bad_row is not finite, has lb > ub or a weight <= 0")
       .value("NUMERICAL_FAILURE", hqp::Status::kNumericalFailure, "x is the last finite point");
   nb::enum_<RowState>(module, "RowState", nb::is_arithmetic(), "Place of a row in its interval.")
       .value("INACTIVE", RowState::kInactive, "inside")

@@ -27,6 +27,8 @@ ENUMS = {
     hqp.RowState: "hqp/solution.h",
     haptic_giant.InverseStatus: "model/haptic_giant.h",
 }
+# a row that is not right is a ValueError
+ABSENT = {"BAD_ROW"}
 
 
 def enumerators(header: str, enum: str) -> list[str]:
@@ -42,7 +44,7 @@ class Enums(unittest.TestCase):
         for enum, header in ENUMS.items():
             with self.subTest(enum.__name__):
                 names = enumerators(header, enum.__name__)
-                self.assertEqual(sorted(one.name for one in enum), sorted(names))
+                self.assertEqual(sorted(one.name for one in enum), sorted(set(names) - ABSENT))
 
     def test_every_enum_is_looked_at(self):
         public = [hg, hqp, haptic_giant]
