@@ -177,8 +177,8 @@ class OwnLoop(unittest.TestCase):
         sensors = self.device.read()
         sensors.w_s = sensors.w_s + [5.0, 0, 0, 0, 0, 0]
         _, record = self.cycle.step(sensors, self.operator)
-        # what a low-pass of 100 Hz lets through in a millisecond, beside the sensor's noise
-        share = 1.0 - np.exp(-2.0 * np.pi * 100.0 * 1e-3)
+        # what a low-pass of 160 Hz lets through in a millisecond, beside the sensor's noise
+        share = 1.0 - np.exp(-2.0 * np.pi * 160.0 * 1e-3)
         self.assertAlmostEqual(np.linalg.norm(record.robot.w_h[:3] - before), 5.0 * share,
                                delta=0.3)
 
