@@ -1,15 +1,16 @@
-/// The paper's cascade as a baseline, where it was built: it needs the wheel eiquadprog, which
-/// building and running the program do not.
+/// The paper's cascade as an optional baseline: it needs the wheel eiquadprog, which the program
+/// itself does not.
 #pragma once
 
 #include "hg/hqp/problem.h"
 
 namespace hg::bench {
 
-/// Writes problem.variables() numbers to `x`; false when the QP of a level was not solved.
+/// Solver function that writes problem.variables() numbers to `x`; false when the QP of a level was
+/// not solved.
 using BaselineSolve = bool (*)(const hqp::Problem& problem, double* x);
 
-/// Loads the cascade from the folder of the program, once; null when it is not there.
+/// Loads the cascade from the folder of the program, once; null when absent.
 BaselineSolve find_baseline();
 
 inline constexpr const char* kHowToGetBaseline =

@@ -6,8 +6,8 @@
 namespace hg::bench {
 namespace {
 
-// Of 1 + norm: a level that is worse by more has given something. Less than the cascade relaxes
-// bounds by, 1e-9, which near dependent rows buys 1e-4 of a level below.
+// Of 1 + norm: a level that is worse by more counts as a loss. Less than the cascade relaxes bounds
+// by, 1e-9, which near dependent rows buys 1e-4 of a level below.
 constexpr double kNothing = 1e-10;
 
 double value_of(const hqp::Problem& problem, int row, std::span<const double> x) {

@@ -1,4 +1,4 @@
-/// Time of Cycle::step and of its stages, in scenarios.
+/// Computation time of Cycle::step and of its stages, in scenarios.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace hg::bench {
 
-/// Cycles that render; the fastest of several plays counts for each cycle and stage.
+/// Times of rendering cycles; the fastest of several plays counts for each cycle and stage.
 struct CycleTimes {
   std::string scenario;
-  Times total;  ///< in plays of its own, that nobody watches
+  Times total;  ///< time of the whole cycle, in separate plays without stage timing
   std::array<Times, kStageCount> stages;
 };
 
@@ -23,7 +23,7 @@ CycleTimes measure_cycle(const std::string& name, const config::Scenario& scenar
 
 std::string cycle_header();
 std::string to_text(const CycleTimes& times);
-/// A flat row for the whole and for each stage.
+/// JSON with a flat row for the whole cycle and for each stage.
 nlohmann::ordered_json to_json(const CycleTimes& times);
 
 }  // namespace hg::bench

@@ -13,7 +13,7 @@ namespace {
 constexpr int kColumns = 2, kWidth = 440, kHeight = 244;
 constexpr int kLeft = 62, kRight = 26, kTop = 44, kBottom = 36, kHead = 40;
 
-// told apart by those who do not see all colours as well (Okabe, Ito)
+// distinguishable with colour vision deficiency (Okabe, Ito)
 constexpr std::array<const char*, 6> kColours = {"#0072b2", "#d55e00", "#009e73",
                                                  "#cc79a7", "#56b4e9", "#e69f00"};
 

@@ -17,20 +17,20 @@ struct Series {
 struct Panel {
   std::string title;
   std::vector<Series>
-      series;  ///< at most 6; the place gives colour and marker, empty ones are not shown
+      series;  ///< at most 6 series; the index gives colour and marker, empty ones are not shown
 };
 
-/// All panels share their axes, so that they can be compared.
+/// Figure whose panels share their axes, for comparison.
 struct Figure {
   std::string title, x_label, y_label;
   std::vector<Panel> panels;
-  bool has_markers = false;  ///< at every point, one shape per place, for few points
+  bool has_markers = false;  ///< markers at every point, one shape per series, for few points
 };
 
 /// Outline of the histogram of the times; bins without any are at half a count.
 Series outline(const std::string& label, const Times& times);
 
-/// Empty panels are left out; an empty figure has its title only.
+/// The figure as SVG. Empty panels are left out; an empty figure has its title only.
 std::string to_svg(const Figure& figure);
 
 }  // namespace hg::bench

@@ -1,4 +1,4 @@
-/// How the solver's time grows with variables and levels, on random well-posed problems.
+/// Growth of the solver's time with variables and levels, on random well-posed problems.
 #pragma once
 
 #include <Eigen/Dense>
@@ -27,15 +27,15 @@ class GrowingProblem {
 
   void step();
   const hqp::Problem& problem() const { return problem_; }
-  /// Fulfils every row but the wishes.
+  /// Point that fulfils every row except the wishes.
   const Eigen::VectorXd& point() const { return point_; }
   /// Id of the first wish; the others follow.
   int first_wish() const { return problem_.rows() - problem_.variables(); }
 
  private:
   struct Row {
-    int variable;               ///< -1: dense
-    Eigen::VectorXd direction;  ///< of a dense row
+    int variable;               ///< index of the variable; -1 = dense row
+    Eigen::VectorXd direction;  ///< direction of a dense row
     double below, above;        ///< width of the interval on either side of the point
   };
 
@@ -47,30 +47,30 @@ class GrowingProblem {
   std::mt19937 random_;
   std::normal_distribution<double> normal_;
   Eigen::VectorXd point_, wish_;
-  std::vector<Row> rows_;  ///< by id, without the wishes
+  std::vector<Row> rows_;  ///< rows by id, without the wishes
   hqp::Problem problem_;
 };
 
-/// One size: times of all its problems and steps.
+/// Times of all problems and steps of one size.
 struct GrowthRow {
   int variables = 0, levels = 0, rows = 0;
   Times cold, warm;
-  double cold_iterations = 0.0, warm_iterations = 0.0;  ///< mean
+  double cold_iterations = 0.0, warm_iterations = 0.0;  ///< mean number of iterations
   std::size_t failures = 0;
 };
 
-/// median time ~ size^exponent, by least squares on logarithms.
+/// Growth exponent: median time ~ size^exponent, by least squares on logarithms.
 struct GrowthExponent {
-  std::string with;  ///< "variables" or "levels"
-  std::string at;    ///< what is kept, "5 levels"
+  std::string with;  ///< varied size, "variables" or "levels"
+  std::string at;    ///< fixed size, e.g. "5 levels"
   double cold = 0.0, warm = 0.0;
 };
 
-/// Five problems of the size, four steps each after one that is not timed.
+/// Times five problems of the size, four steps each after one that is not timed.
 GrowthRow measure_growth(int variables, int levels, int passes);
 
-/// Over variables for each number of levels, over levels for the most variables. What has only one
-/// size is left out.
+/// Fits exponents over variables for each number of levels, and over levels for the most variables.
+/// Series with only one size are left out.
 std::vector<GrowthExponent> fit(std::span<const GrowthRow> rows);
 
 std::string growth_header();

@@ -1,4 +1,4 @@
-/// Does one thing of the benchmark for callgrind to count: figures without noise.
+/// Runs one part of the benchmark under callgrind: instruction counts without noise.
 ///
 ///   bench_instructions cycle SCENARIO         Cycle::step, law gauss, bounds recoverable
 ///   bench_instructions warm|cold SET          the solver

@@ -1,4 +1,4 @@
-/// Both laws with both kinds of bounds on the same scenario.
+/// Comparison of both laws with both kinds of bounds on the same scenario.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,24 +10,24 @@
 
 namespace hg::bench {
 
-/// What a scenario was like under one law; accelerations of the hand in m/s^2.
+/// Results of a scenario under one law; accelerations of the hand in m/s^2.
 struct LawRun {
   std::string scenario, law, bounds;
   std::size_t events = 0, expected_events = 0;
   std::vector<std::string> missing;
   FaultCode fault = FaultCode::kNone;
-  int cycles = 0;  ///< that render
+  int cycles = 0;  ///< number of rendering cycles
   int unsolved = 0;
   double duration_s = 0.0;
-  int changes = 0;         ///< limits that begin or cease to act
-  int changed_cycles = 0;  ///< cycles in which one does
+  int changes = 0;         ///< number of limits that begin or cease to act
+  int changed_cycles = 0;  ///< number of cycles in which a limit begins or ceases to act
   double sum_acceleration_change = 0.0, max_acceleration_change = 0.0;
   double worst_violation = 0.0;  ///< rad or m
   bool worst_is_angle = false;
   std::string worst_limit = "none";
   evaluation::Histogram solver_us, cycle_us;
 
-  /// Nothing missing, no fault, every cycle solved.
+  /// Whether no event is missing, no fault occurred and every cycle was solved.
   bool is_well() const;
 };
 

@@ -1,11 +1,11 @@
-/// What figures have to be read with: when, on what, and from which sources they were measured.
+/// Measurement conditions of figures: date, machine and sources.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 
 namespace hg::bench {
 
-/// date (UTC), cpu, cores, compiler, flags, commit.
+/// JSON with date (UTC), cpu, cores, compiler, flags, commit.
 nlohmann::ordered_json describe_machine();
 
 }  // namespace hg::bench

@@ -1,5 +1,4 @@
-/// Times and mistakes of our solver, cold and warm, and of the paper's cascade on the same
-/// problems.
+/// Times and errors of our solver, cold and warm, and of the paper's cascade on the same problems.
 #pragma once
 
 #include <optional>
@@ -15,32 +14,34 @@ namespace hg::bench {
 
 /// One solver on one set of problems.
 struct SolverRun {
-  std::string_view solver;  ///< "warm", "cold" or "cascade"
+  std::string_view solver;  ///< solver and start: "warm", "cold" or "cascade"
   Times times;
-  double iterations = 0.0;           ///< active sets tried, sum over the problems; cascade: 0
-  std::size_t failures = 0;          ///< problems that the solver says it has not solved
-  std::optional<std::size_t> wrong;  ///< problems with other slack norms; none: nothing to compare
+  double iterations = 0.0;   ///< active sets tried, sum over the problems; cascade: 0
+  std::size_t failures = 0;  ///< number of problems that the solver reports as unsolved
+  /// Number of problems with differing slack norms; none = no reference
+  std::optional<std::size_t> wrong;
 };
 
-/// Ours first. Warm is left out where neighbours are not alike.
+/// Runs of several solvers on one set of problems, ours first. Warm is left out unless successive
+/// problems are similar.
 struct SolverSet {
   std::string name;
-  int variables = 0, levels = 0;  ///< largest
+  int variables = 0, levels = 0;  ///< largest number of variables and levels
   std::size_t problems = 0;
   std::vector<SolverRun> runs;
 };
 
 /// Solves all problems of `source` `passes` times with each solver, warm from the guess of the
 /// problem where its file has one, else from the problem before. `baseline` may be null, and is
-/// left out where neighbours are not alike: on such problems it may never return. Each
-/// problem is copied into place just before it is solved, as a cycle does. `wrong` compares with
-/// the reference of the source; without one the cascade is compared with ours, and ours with the
-/// cascade: wrong is then where the cascade is better.
+/// left out unless successive problems are similar: on others it may never return. Each problem is
+/// copied into place just before it is solved, as a cycle does. `wrong` compares with the reference
+/// of the source; without one the cascade is compared with ours, and ours with the cascade: wrong
+/// is then where the cascade is better.
 SolverSet measure_solvers(ProblemSource& source, BaselineSolve baseline, int passes);
 
 std::string solver_header();
 std::string to_text(const SolverSet& set);
-/// A flat row per solver.
+/// JSON with a flat row per solver.
 nlohmann::ordered_json to_json(const SolverSet& set);
 
 }  // namespace hg::bench

@@ -1,4 +1,4 @@
-/// Time of each stage of a control cycle.
+/// Measures the time of each stage of a control cycle.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace hg::bench {
 
-/// Gives the time since the stage before to each stage that ends; a stage may end several times.
+/// Adds the time since the previous stage to each stage that ends; a stage may end several times.
 class StopWatch {
  public:
-  /// Runs the cycle that the player has begun; the times are those of this cycle.
+  /// Runs the cycle begun by the player; the times are those of this cycle.
   void run(Player& player) noexcept {
     us_.fill(0.0);
     player.cycle().watch({.ended = lap, .listener = this});

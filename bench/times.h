@@ -1,4 +1,4 @@
-/// Times of things that several passes do again and again: the fastest of each counts, so that
+/// Times of tasks repeated in several passes: the fastest of each task counts, so that
 /// interruptions by the system do not show.
 #pragma once
 
@@ -18,18 +18,18 @@ inline double microseconds_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
 }
 
-/// Of fewer times 99.9 % is nothing but the maximum.
+/// Fewest times for a 99.9th percentile; with fewer it equals the maximum.
 inline constexpr std::size_t kEnoughForTail = 1000;
 
 class Times {
  public:
-  /// A time of thing `index`, us; indices grow by one in the first pass.
+  /// Adds a time of task `index`, us; indices grow by one in the first pass.
   void add(std::size_t index, double us);
 
   std::size_t count() const { return us_.size(); }
   const std::vector<double>& us() const { return us_; }
-  /// Exact, of the fastest times; zeros when there are none. p99_9 is not a number when there are
-  /// fewer than kEnoughForTail.
+  /// Exact distribution of the fastest times; zeros without times. p99_9 is NaN with fewer than
+  /// kEnoughForTail times.
   evaluation::Distribution distribution() const;
   double mean() const;
 
@@ -37,7 +37,7 @@ class Times {
   std::vector<double> us_;
 };
 
-/// How many of the times lie in [low, high) us.
+/// Histogram bin: number of times in [low, high) us.
 struct Bin {
   double low, high;
   std::size_t count;
@@ -46,12 +46,12 @@ struct Bin {
 /// Bins of equal width on a logarithmic axis, 20 per decade, from the first to the last time.
 std::vector<Bin> histogram(const Times& times);
 
-/// "-" for what is not a number.
+/// Time as text; "-" for NaN.
 std::string to_text(double us, int decimals);
-/// null for what is not a number.
+/// Time as JSON; null for NaN.
 nlohmann::ordered_json to_json(double us);
 
-/// The keys median_us, p99_9_us and max_us.
+/// Adds the keys median_us, p99_9_us and max_us.
 void add_to(nlohmann::ordered_json& row, const evaluation::Distribution& distribution);
 
 }  // namespace hg::bench

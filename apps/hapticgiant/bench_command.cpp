@@ -27,17 +27,17 @@ constexpr std::array<std::pair<Law, Bounds>, 4> kVariants = {{{Law::kGauss, Boun
                                                               {Law::kPaper, Bounds::kRecoverable},
                                                               {Law::kGauss, Bounds::kPaper},
                                                               {Law::kPaper, Bounds::kPaper}}};
-// what the table of the cycle has besides the scenarios, unless some are named
+// rows of the cycle table besides the scenarios, unless some are named
 constexpr std::array<const char*, 2> kLargeTwins = {"chain_20", "chain_30"};
 constexpr std::array<int, 6> kVariables = {6, 12, 24, 48, 84, 120};
 constexpr std::array<int, 5> kLevels = {1, 2, 5, 10, 20};
 
-/// How much is done.
+/// Amount of work.
 struct Effort {
   int passes;
-  std::size_t problems;  ///< of a set, at most
-  std::size_t cycles;    ///< of a scenario, at most
-  int variables;         ///< of the growth table, at most
+  std::size_t problems;  ///< largest number of problems of a set
+  std::size_t cycles;    ///< largest number of cycles of a scenario
+  int variables;         ///< largest number of variables of the growth table
 };
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 constexpr Effort kFull = {.passes = 5, .problems = kAll, .cycles = kAll, .variables = 120};
@@ -57,7 +57,7 @@ std::string only_first(std::size_t most, const char* what) {
   return most == kAll ? "" : fmt::format("--quick: only the first {} {}\n", most, what);
 }
 
-// Until the rows of what is being measured take its place.
+// Shows the current measurement until its rows replace the text.
 void announce(const std::string& what) {
   if (isatty(STDERR_FILENO) != 0) draw_error(fmt::format("measuring {} ...", what));
 }

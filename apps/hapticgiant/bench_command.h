@@ -8,21 +8,21 @@
 
 namespace hg::apps {
 
-/// The scenario `name` as benchmarks play it: solver and law are compared without what an elastic
-/// machine adds. Throws SetupError, also for a scenario without a script.
+/// The scenario `name` as benchmarks play it: solver and law are compared without the effects of an
+/// elastic machine. Throws SetupError, also for a scenario without a script.
 config::Scenario bench_scenario(const std::string& name);
 
 struct BenchArguments {
   std::vector<std::string> scenarios = {"door", "free_space", "excavator"};
   bool is_quick = false;  ///< fewer problems and passes: for a first look
-  std::string json;       ///< file; empty = none
+  std::string json;       ///< JSON file; empty = none
   std::string out;        ///< folder of tables and figures; empty = none
 };
 
-/// Four tables: our solver and the paper's cascade on the problems of the scenarios and of the
-/// reference data; Cycle::step by stages; growth with the size of a problem; both laws with both
-/// kinds of bounds. Exit code 0, or 1 when an expected event is missing, a device was stopped by a
-/// fault, or our solver has failed or was wrong. Throws SetupError for bad input.
+/// Prints four tables: our solver and the paper's cascade on the problems of the scenarios and of
+/// the reference data; Cycle::step by stages; growth with the size of a problem; both laws with
+/// both kinds of bounds. Exit code 0, or 1 when an expected event is missing, a device was stopped
+/// by a fault, or our solver has failed or was wrong. Throws SetupError for bad input.
 int bench(const BenchArguments& arguments);
 
 }  // namespace hg::apps

@@ -1,4 +1,4 @@
-/// What `hapticgiant bench` leaves behind: JSON, CSV tables, figures.
+/// Output files of `hapticgiant bench`: JSON, CSV tables, figures.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -23,13 +23,13 @@ struct BenchResults {
 
 nlohmann::ordered_json to_json(const BenchResults& results);
 
-/// Rows are flat objects with the same keys; the first line has the keys. Null is empty.
+/// CSV text of flat objects with the same keys; the first line has the keys. Null becomes empty.
 std::string to_csv(const nlohmann::ordered_json& rows);
 
-/// Makes the folder where it is missing. Throws SetupError; "" means "no folder".
+/// Creates the folder if it is missing. Throws SetupError; "" means "no folder".
 void check_folder(const std::string& folder);
 
-/// machine.txt, and per table a CSV file and a figure. Throws SetupError.
+/// Writes machine.txt, and per table a CSV file and a figure. Throws SetupError.
 void write_files(const std::string& folder, const BenchResults& results);
 
 }  // namespace hg::apps

@@ -1,5 +1,5 @@
-/// `hapticgiant check FILE...`: what is wrong with devices, twins, scenarios, tools and scripts,
-/// and how to mend it; a datasheet for every device.
+/// `hapticgiant check FILE...`: faults of devices, twins, scenarios, tools and scripts, with
+/// suggested changes; a datasheet for every device.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-/// What `hapticgiant check` has found: for people on stdout, for programs as JSON.
+/// Findings of `hapticgiant check`: as text on stdout, or as JSON.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct CheckReport {
   std::vector<inspection::Datasheet> datasheets;
 };
 
-/// Orders the findings by file and line; each is kept once, however many ways led to it.
+/// Orders the findings by file and line; duplicates are merged.
 void sort_and_merge(CheckReport& report);
 int count(const CheckReport& report, inspection::Severity severity);
 

@@ -25,7 +25,7 @@ namespace {
 constexpr double kBraked = 0.2;   // s after which brakes have closed and nothing moves any more
 constexpr double kWatched = 1.0;  // s in which nothing may move then
 
-// Nothing: there is none. Throws SetupError where there is one that cannot be read.
+// Text of a file; empty if there is none. Throws SetupError if it cannot be read.
 std::optional<std::string> text_of(const std::string& file) {
   constexpr std::uintmax_t kMost = 1'000'000;  // bytes
   if (access(file.c_str(), F_OK) != 0 && errno == ENOENT) return std::nullopt;
@@ -52,7 +52,7 @@ std::vector<start_test::Position> posture_of(const config::Device& device,
   return posture;
 }
 
-// With drives off and brakes closed. Nothing: the device has gone.
+// Posture with drives off and brakes closed; empty if the connection to the device is lost.
 std::optional<std::vector<start_test::Position>> braked_posture(const config::Device& device,
                                                                 remote::RemoteDevice& remote,
                                                                 double duration_s = kBraked) {

@@ -24,7 +24,7 @@ using readiness::Line;
 
 constexpr double kRates_Hz[] = {1000.0, 10000.0};
 
-/// At one rate.
+/// Measurements at one rate.
 struct Measured {
   Jitter ordinary, real_time;
 };

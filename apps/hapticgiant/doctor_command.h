@@ -1,4 +1,4 @@
-/// Says how ready this computer is for a control loop, and what to change.
+/// Reports how suitable this computer is for a control loop, and what to change.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 namespace hg::apps {
 
 struct DoctorArguments {
-  double seconds = 3.0;  ///< of each of the four measurements
-  int priority = 80;     ///< as in run
-  int cpu = -1;          ///< as in run
-  std::string json;      ///< file; empty = none
+  double seconds = 3.0;  ///< duration of each of the four measurements
+  int priority = 80;     ///< SCHED_FIFO priority, as in run
+  int cpu = -1;          ///< CPU, as in run
+  std::string json;      ///< JSON file; empty = none
 };
 
 /// Exit code: 0 nothing is bad, 1 something is. Throws SetupError.

@@ -36,7 +36,7 @@ class Reader final : public recording::RecordingListener {
   double last_s() const { return explainer_->last_s(); }
   std::vector<explanation::Entry> entries() {
     for (const recording::Event& event : events_) {
-      // these the samples tell as well, and more of them
+      // the samples contain these events as well, in more detail
       if (event.name == "tare" || event.name == "request" || event.name == "fault" ||
           event.name == "stopped" || event.name == "contact") {
         continue;

@@ -1,4 +1,4 @@
-/// `hapticgiant faults`: faults on purpose in many simulated runs.
+/// `hapticgiant faults`: injected faults in many simulated runs.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ namespace hg::apps {
 struct FaultsArguments {
   std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
   experiments::CampaignConfig campaign;
-  bool plays_processes = false;  ///< faults of the controller's process instead, in real time
-  int repetitions = 1;           ///< of these
+  bool plays_processes = false;  ///< plays faults of the controller's process instead, in real time
+  int repetitions = 1;           ///< repetitions of the process faults
   std::string json;              ///< file for all cases; empty = none
   std::string markdown;          ///< file for the table as a page; empty = none
 };

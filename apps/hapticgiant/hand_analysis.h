@@ -1,5 +1,5 @@
-/// What a page tells about the hand beyond the record of a cycle: the user's wrench part by part,
-/// and how near the device is to a singular posture.
+/// Hand data of a page beyond the record of a cycle: the user's wrench part by part, and the
+/// distance to a singular posture.
 ///
 /// Moves chains of its own; allocates. For one observer thread.
 #pragma once
@@ -15,19 +15,19 @@ class HandAnalysis {
  public:
   explicit HandAnalysis(const config::Scenario& scenario);
 
-  /// The budget of the record, which is in joints of the twin, as wrenches on the hand: of all
-  /// wrenches with the same torques the smallest, so that the parts and what the bearings carry add
-  /// up to the user's.
+  /// Converts the budget of the record, in joints of the twin, to wrenches on the hand: the
+  /// smallest wrench with the same torques, so that the parts and the bearing reactions add up to
+  /// the user's.
   viewer_server::HandBudget budget(const CycleRecord& record);
 
-  /// Nothing until the device has a posture.
+  /// Distance to a singular posture; empty until the device has a posture.
   std::optional<viewer_server::Singularity> singularity(const CycleRecord& record);
 
  private:
   model::Chain twin_;
   int end_effector_;
   rendering::DeviceModel device_;
-  double best_ = 0.0;  ///< of the dexterity of many postures
+  double best_ = 0.0;  ///< best dexterity of many postures
 };
 
 }  // namespace hg::apps

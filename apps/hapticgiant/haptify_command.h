@@ -9,16 +9,16 @@
 namespace hg::apps {
 
 struct HaptifyArguments {
-  std::string out = "haptify";  ///< folder
+  std::string out = "haptify";  ///< output folder
   std::string docs;             ///< folder of documentation to refresh; empty = none
-  std::string simulation;       ///< see find_simulation(); empty = as the device says
+  std::string simulation;       ///< simulation, see find_simulation(); empty = that of the device
   std::string twin;             ///< twin.yaml of a free body instead of the shipped one
-  bool only_goals = false;      ///< over seeds, heights and hands
+  bool only_goals = false;      ///< measures only the design goals, over seeds, heights and hands
   haptify::Options options;
 };
 
-/// Exit code: 0 all measured, 1 a measurement failed: fault, limit exceeded. A goal that is missed
-/// is no failure: the report says why. Throws SetupError for bad input.
+/// Exit code: 0 all measured, 1 a measurement failed: fault, limit exceeded. A missed goal is no
+/// failure: the report explains it. Throws SetupError for bad input.
 int run_haptify(const HaptifyArguments& arguments);
 
 }  // namespace hg::apps

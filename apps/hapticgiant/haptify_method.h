@@ -1,4 +1,4 @@
-/// How `hapticgiant haptify` measures, in words for its report.
+/// Description of the methods of `hapticgiant haptify` for its report.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace hg::apps {
 
-/// Stands wherever figures of both stand side by side.
+/// Note shown wherever figures of real and simulated devices are side by side.
 inline constexpr std::string_view kRealAndSimulated =
     "The paper's HapticGiant, Touch and Touch X were real machines in real hands; ours is a "
     "simulated machine with assumed friction, noise and delays in a simulated hand.";
 
-/// One sentence or two per measurement, with the conditions of this one.
+/// One or two sentences per measurement, with the conditions of this result.
 std::vector<std::string> method_of(const haptify::Benchmark& result);
 
 }  // namespace hg::apps

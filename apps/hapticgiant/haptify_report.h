@@ -1,5 +1,5 @@
-/// What the benchmark leaves behind: a page, Markdown, LaTeX and CSV, without time and place, so
-/// that the same figures give the same bytes.
+/// Reports of the benchmark: a page, Markdown, LaTeX and CSV, without time and place, so that the
+/// same figures give the same bytes.
 #pragma once
 
 #include <string>
@@ -8,22 +8,22 @@
 
 namespace hg::apps {
 
-/// The table of goals.h for a terminal, and what failed.
+/// The table of goals.h for a terminal, and the failures.
 std::string goals_text(const haptify::Benchmark& goals);
-/// The same in Markdown, without a title; `command` repeats it.
+/// The goals in Markdown, without a title; `command` reproduces them.
 std::string goals_markdown(const haptify::Benchmark& goals, const std::string& command);
 
-/// The table for a terminal, goals that are missed, failures.
+/// The benchmark for a terminal: table, missed goals, failures.
 std::string haptify_text(const haptify::Benchmark& result);
-/// One self-contained page; `command` repeats it.
+/// The benchmark as a self-contained page; `command` reproduces it.
 std::string haptify_html(const haptify::Benchmark& result, const std::string& command);
-/// The same without a title.
+/// The benchmark in Markdown, without a title; `command` reproduces it.
 std::string haptify_markdown(const haptify::Benchmark& result, const std::string& command);
 /// Table III with our column: a tabular for the package booktabs.
 std::string haptify_latex(const haptify::Benchmark& result);
-/// One row per figure: mean, half width, repetitions, the published values.
+/// CSV with one row per figure: mean, half width, repetitions, the published values.
 std::string haptify_csv(const haptify::Benchmark& result);
-/// One row per figure and repetition.
+/// CSV with one row per figure and repetition.
 std::string repetitions_csv(const haptify::Benchmark& result);
 std::string table_csv(const haptify::Table& table);
 

@@ -7,11 +7,11 @@
 namespace hg::apps {
 
 struct HqpSolveArguments {
-  std::string file;            ///< text format of hg/hqp/text.h, plain or gzipped
-  std::optional<int> problem;  ///< index of the only one to solve; unset: all
-  std::optional<int> level;    ///< whose multipliers are shown
-  bool explains = false;       ///< in words instead of numbers
-  bool has_timing = false;     ///< times instead of solutions; not with `level` or `explains`
+  std::string file;            ///< file in the text format of hg/hqp/text.h, plain or gzipped
+  std::optional<int> problem;  ///< index of the only problem to solve; unset = all
+  std::optional<int> level;    ///< level whose multipliers are shown
+  bool explains = false;       ///< shows the solution in words instead of numbers
+  bool has_timing = false;     ///< shows times instead of solutions; not with `level` or `explains`
 };
 
 /// Solves the problems of a file with their options. Each starts from its own guess; without one,
@@ -23,10 +23,10 @@ struct HqpSolveArguments {
 /// 99.9 % and maximum, from a cold start and as above; each problem counts with the fastest of
 /// several runs, so that interruptions by the system do not show.
 ///
-/// Problems that the solver does not settle are named on stderr with their status.
-/// Returns the exit code: 0, or 1 when a problem was not settled. Throws SetupError with
-/// "file:line: ..." when the file is not right, when there is no such problem or level, and when
-/// times and explanations are asked for.
+/// Problems that the solver does not solve are reported on stderr with their status. Returns the
+/// exit code: 0, or 1 when a problem was not solved. Throws SetupError with "file:line: ..." when
+/// the file is invalid, when there is no such problem or level, and when times and explanations are
+/// both requested.
 int run_hqp_solve(const HqpSolveArguments& arguments);
 
 }  // namespace hg::apps

@@ -1,6 +1,6 @@
-/// `hapticgiant identify payload [FILE...]`: what hangs beyond the force/torque sensor, from poses
-/// at rest; of the simulated device, which takes them by itself, or from CSV files.
-/// `hapticgiant identify friction RECORDING`: the friction of each joint, from a run.
+/// `hapticgiant identify payload [FILE...]`: the payload beyond the force/torque sensor, from poses
+/// at rest: of the simulated device, which takes them autonomously, or from CSV files. `hapticgiant
+/// identify friction RECORDING`: the friction of each joint, from a run.
 #pragma once
 
 #include <string>
@@ -9,20 +9,22 @@
 namespace hg::apps {
 
 struct IdentifyArguments {
-  std::vector<std::string> files;                          ///< CSV; empty: simulate
-  std::string device = "models/haptic_giant/device.yaml";  ///< simulated, and compared with
-  int poses = 12;                                          ///< to take on the simulated device
+  std::vector<std::string> files;                          ///< CSV files; empty = simulate
+  std::string device = "models/haptic_giant/device.yaml";  ///< device to simulate and compare with
+  int poses = 12;  ///< number of poses taken on the simulated device
 };
 
 struct IdentifyFrictionArguments {
-  std::string file;    ///< recording
-  std::string device;  ///< device.yaml; empty: the one of the recording
+  std::string file;    ///< recording file
+  std::string device;  ///< device.yaml; empty = that of the recording
   std::string json;    ///< file for all figures; empty = none
 };
 
-/// Prints to stdout. Returns the exit code: 0, or 2 when the poses do not suffice.
+/// Identifies the payload and prints to stdout. Returns the exit code: 0, or 2 when the poses do
+/// not suffice.
 int identify_payload(const IdentifyArguments& arguments);
-/// Likewise; 2 when no joint moved enough.
+/// Identifies friction and prints to stdout. Returns the exit code: 0, or 2 when no joint moved
+/// enough.
 int identify_friction(const IdentifyFrictionArguments& arguments);
 
 }  // namespace hg::apps

@@ -82,7 +82,7 @@ std::string without_brackets(const std::string& text) {
   return has_both ? text.substr(1, text.size() - 2) : text;
 }
 
-// what run and simulate share
+// options shared by run and simulate
 void add_scenario_options(CLI::App& command, hg::apps::ScenarioArguments& world) {
   command
       .add_option("scenario", world.scenario,

@@ -14,8 +14,8 @@ struct NewArguments {
   bool may_overwrite = false;
 };
 
-/// Write the file, say what to do next, return the exit code. Throw SetupError when the URDF cannot
-/// be used or the file exists already.
+/// Writes the file, prints the next step, returns the exit code. Throws SetupError when the URDF
+/// cannot be used or the file exists already.
 int new_device(const NewArguments& arguments);
 int new_twin(const NewArguments& arguments);
 

@@ -23,7 +23,7 @@ bool has_display() {
   return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY");
 }
 
-// does not wait for it; without xdg-open nothing happens
+// does not wait for it; no effect without xdg-open
 void open_browser(const std::string& url) {
   std::string program = "xdg-open", link = url;
   char* const arguments[] = {program.data(), link.data(), nullptr};

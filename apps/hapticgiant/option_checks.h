@@ -1,4 +1,4 @@
-/// What is checked of numbers on the command line.
+/// Checks of numbers on the command line.
 #pragma once
 
 #include <functional>
@@ -6,18 +6,19 @@
 
 namespace hg::apps {
 
-/// For CLI::Option::check: what is wrong with a text; empty = nothing.
+/// Check for CLI::Option::check: returns the fault of a text; empty = valid.
 using OptionCheck = std::function<std::string(const std::string&)>;
 
-/// `rule` completes "must be ...".
+/// Check that `holds` is true for a number; `rule` completes "must be ...".
 OptionCheck number_that(const std::string& rule, const std::function<bool(double)>& holds);
 
 OptionCheck at_least(int least);
 
-/// Both ends belong to it.
+/// Check for a number within [least, most].
 OptionCheck number_within(double least, double most);
 
-/// Both ends belong to it; the largest default is what a double can count to.
+/// Check for a whole number within [least, most]; the default of `most` is the largest exact count
+/// of a double.
 OptionCheck whole_number(double least, double most = 9007199254740992.0);
 
 }  // namespace hg::apps

@@ -25,14 +25,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostBytes = 1 << 20;  // that wait
+constexpr std::size_t kMostBytes = 1 << 20;  // most bytes that wait
 constexpr std::size_t kAtOnce = 512;         // a pipe that takes any takes as many
 constexpr int kLook_ms = 50;
 constexpr std::chrono::milliseconds kPatience(500);  // after an interruption
 
-// why standard output could not be written; 0 = it could
+// error that prevented writing standard output; 0 = none
 std::atomic<int> output_error{0};
-// texts for it that nobody read in time
+// texts for standard output that were not read in time
 std::atomic<std::uint64_t> lost_texts{0};
 
 // no error of the program: a pipe is closed, a terminal hung up
@@ -82,7 +82,7 @@ class BackgroundOutput::Queue {
     return !texts_.empty();
   }
 
-  // until end(), and what was pushed before
+  // runs until end(), and writes everything pushed before
   void write_all() {
     Text text;
     while (take(text)) apps::write_all(text.file, text.text);
@@ -143,7 +143,7 @@ class BackgroundOutput::Queue {
   mutable std::mutex mutex_;  // never held while writing
   std::condition_variable news_;
   std::deque<Text> texts_;
-  Text under_way_ = {};  // that is being written, without its words
+  Text under_way_ = {};  // text being written, without its content
   std::size_t waiting_bytes_ = 0;
   std::uint64_t left_out_ = 0;  // texts, since that was last said
   bool is_ending_ = false, has_ended_ = false;
@@ -151,7 +151,7 @@ class BackgroundOutput::Queue {
 
 namespace {
 
-// that of the only BackgroundOutput
+// the only BackgroundOutput, if any
 std::atomic<BackgroundOutput*> background{nullptr};
 
 // as it is
@@ -197,7 +197,7 @@ int code_after_output(int code) {
   const std::string why =
       error != 0 ? std::strerror(error)
                  : fmt::format("nobody read {} text{} of it", lost, lost == 1 ? "" : "s");
-  // who reads none of it may be the same
+  // standard error may have the same reader, which does not read
   write_all(STDERR_FILENO, fmt::format("standard output could not be written: {}\n", why),
             Clock::now() + kPatience);
   return code == 0 ? kNotWritten : code;

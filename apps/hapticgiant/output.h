@@ -1,4 +1,4 @@
-/// What the program says on standard output and standard error.
+/// Output of the program on standard output and standard error.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,19 +12,17 @@
 
 namespace hg::apps {
 
-/// Exit code where it would be 0: what was asked for is done, but the recording or standard output
-/// does not hold all of it.
+/// Exit code instead of 0: the task is done, but the recording or standard output is incomplete.
 inline constexpr int kNotWritten = 4;
 
-/// Opens those of the descriptors 0, 1 and 2 that are closed, for the wrong direction: no file and
-/// no socket of the program becomes one of them, and what is printed there fails. Call it before
-/// anything else is opened.
+/// Opens closed descriptors among 0, 1 and 2 in the wrong direction, so that no file or socket of
+/// the program gets their number and output to them fails. Call it before opening anything else.
 void open_standard_files();
 
-/// To standard output, made visible() (hg/core/visible.h). Nothing happens when nobody reads it any
-/// more: the run goes on.
+/// Prints to standard output, made visible() (hg/core/visible.h). No effect when the reader has
+/// closed: the run continues.
 void print_out(const std::string& text);
-/// To standard error, made visible().
+/// Prints to standard error, made visible().
 void print_error(const std::string& text);
 
 template <typename First, typename... Rest>
@@ -40,16 +38,16 @@ void print_error(fmt::format_string<First, Rest...> format, First&& first, Rest&
 void draw_out(const std::string& line);
 void draw_error(const std::string& line);
 
-/// The exit code of a program that would end with `code`. Says on standard error when standard
-/// output could not be written, or did not get all; a reader that has gone is none of that.
+/// The exit code of a program that would end with `code`. Reports on standard error when standard
+/// output could not be written completely; a closed reader does not count.
 int code_after_output(int code);
 
-/// While it lives, print_out() and print_error() never wait for who reads them: a thread of its own
-/// writes. Of more than 1 MiB that wait, for example while a terminal is stopped with Ctrl-S, the
-/// rest is left out; how many texts that were is said as soon as somebody reads again. What
-/// standard output has not got at the end, code_after_output() tells.
+/// While it exists, print_out() and print_error() never wait for the reader: a separate thread
+/// writes. Beyond 1 MiB of waiting text, for example while a terminal is stopped with Ctrl-S, texts
+/// are dropped; their number is reported once reading continues. code_after_output() reports text
+/// missing on standard output at the end.
 ///
-/// One at a time, made and destroyed by one thread.
+/// One instance at a time, created and destroyed by one thread.
 class BackgroundOutput {
  public:
   /// `interrupted` must outlive it.
@@ -59,19 +57,20 @@ class BackgroundOutput {
   BackgroundOutput(const BackgroundOutput&) = delete;
   BackgroundOutput& operator=(const BackgroundOutput&) = delete;
 
-  /// Nobody misses a decoration, for example a line that shows how far it is.
+  /// Importance of a text; a decoration, for example a progress line, may be dropped.
   enum class Worth { kText, kDecoration };
-  /// Takes a text for descriptor `file`, as it is.
+  /// Queues a text for descriptor `file`, unchanged.
   void push(int file, const std::string& text, Worth worth);
 
-  /// Whether something waits to be read: no time for what is only nice to know.
+  /// Whether text is waiting to be read; decorations should then be skipped.
   bool is_behind() const;
 
  private:
   class Queue;
 
   const std::atomic<bool>& interrupted_;
-  std::shared_ptr<Queue> queue_;  ///< its thread may outlive this: a write can be stuck for ever
+  /// Shared with the thread, which may outlive this: a write can block for ever
+  std::shared_ptr<Queue> queue_;
   std::thread thread_;
 };
 

@@ -51,7 +51,7 @@ bool is_whole(const OpenFile& file, std::string_view text) {
   return true;
 }
 
-// what goes there has its place behind what was printed before
+// output to it follows the text printed before
 bool is_standard_output(const std::string& file) {
   struct stat named {
   }, standard{};
@@ -59,7 +59,7 @@ bool is_standard_output(const std::string& file) {
          named.st_dev == standard.st_dev && named.st_ino == standard.st_ino;
 }
 
-// what is there of another kind stays
+// existing content of another kind is kept
 void check_replaced(const std::string& file, std::string_view beginning) {
   std::error_code error;
   if (beginning.empty() || !fs::is_regular_file(file, error)) return;

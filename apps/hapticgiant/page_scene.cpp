@@ -133,7 +133,7 @@ void sort(std::vector<Choice>& choices) {
             [](const Choice& a, const Choice& b) { return a.name < b.name; });
 }
 
-// what somebody has chosen on the command line
+// adds a choice given on the command line
 void add_own(const std::string& name, std::vector<Choice>& choices) {
   if (!is_choice(choices, name)) choices.push_back({name, fs::path(name).filename().string()});
 }

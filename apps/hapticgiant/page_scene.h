@@ -1,4 +1,4 @@
-/// What a page shows and offers of a scenario, fixed during a run.
+/// Scene and choices of a scenario for a page, fixed during a run.
 #pragma once
 
 #include <vector>
@@ -12,11 +12,11 @@
 
 namespace hg::apps {
 
-/// Chains, limits, box and surroundings: of a run or of a recording.
+/// Scene of a run or of a recording: chains, limits, box and surroundings.
 viewer_server::Scene page_scene(const config::Scenario& scenario);
 
-/// Scenarios, twins, laws and people that come with the program, and those of `arguments`. Names
-/// are what RunArguments takes; empty twin and person stand for the scenario's own.
+/// Choices of scenarios, twins, laws and people shipped with the program, and those of `arguments`.
+/// Names are as in RunArguments; empty twin and person stand for the scenario's own.
 viewer_server::Choices page_choices(const RunArguments& arguments);
 
 /// True when `name` is one of `choices`.
@@ -24,7 +24,7 @@ bool is_choice(const std::vector<viewer_server::Choice>& choices, const std::str
 
 std::vector<viewer_server::Setting> page_settings(const std::vector<config::FormField>& form);
 
-/// What stops the device, in words, at `sample`.
+/// Text on what stops the device at `sample`.
 viewer_server::SafetyView safety_view(const Sample& sample, const explanation::Names& names);
 
 }  // namespace hg::apps

@@ -1,7 +1,7 @@
-/// Where the program finds what comes with it: models, the built page, Python code.
+/// Paths of files shipped with the program: models, the built page, Python code.
 ///
 /// Code (the page, Python, its interpreter) is only ever taken from the installation, never from
-/// the working directory, which may hold anybody's files.
+/// the working directory, which may hold untrusted files.
 #pragma once
 
 #include <filesystem>
@@ -12,18 +12,20 @@
 namespace hg::apps {
 
 /// The folder of this program's viewer/, python/, .venv/ and models/: the sources of the build that
-/// the program lies in, or share/hapticgiant of the prefix whose bin/ it lies in. Empty if neither.
+/// contains the program, or share/hapticgiant of the prefix whose bin/ contains it. Empty if
+/// neither.
 std::filesystem::path installation_root();
 
 /// The folder that holds models/: the working directory, or the installation. Throws SetupError
-/// when neither has any.
+/// when neither has one.
 std::filesystem::path models_root();
 
-/// A scenario by file name, or by the name of one that comes with the program ("door").
-/// Throws SetupError naming the nearest one.
+/// Finds a scenario by file name, or by the name of a shipped one ("door"). Throws SetupError with
+/// the nearest name.
 std::filesystem::path find_scenario(const std::string& name);
 
-/// The same of a script of a person.
+/// Finds a person's script by file name, or by the name of a shipped one. Throws SetupError with
+/// the nearest name.
 std::filesystem::path find_script(const std::string& name);
 
 /// A twin file that `reader` has, or the shipped one of this name ("light"). Throws SetupError

@@ -1,4 +1,4 @@
-/// Everything that one run needs before its clock starts.
+/// All parts of a run, prepared before its clock starts.
 #pragma once
 
 #include <memory>
@@ -13,16 +13,18 @@
 namespace hg::apps {
 
 struct PreparedRun {
-  /// Throws SetupError.
+  /// Prepares a run. Throws SetupError.
   explicit PreparedRun(const RunArguments& arguments);
 
   const RunArguments arguments;
   const config::Scenario scenario;
   cycle::Cycle cycle;
   std::unique_ptr<device::Device> device;
-  remote::RemoteDevice* remote = nullptr;  ///< the same; nullptr: it is simulated here
-  bool is_machine = false;                 ///< nothing is simulated
-  std::string start_test, posture;         ///< of a machine, in words; see device_memory.h
+  /// `device` as a remote device; nullptr = simulated here
+  remote::RemoteDevice* remote = nullptr;
+  bool is_machine = false;  ///< the device is a real machine
+  /// Messages on a machine's start test and posture; see device_memory.h
+  std::string start_test, posture;
 };
 
 }  // namespace hg::apps

@@ -152,7 +152,7 @@ nlohmann::json joint_json(const JointLine& joint) {
           {"gravity_max_" + effort, finite(joint.gravity_max)}};
 }
 
-// of axes with the same limit the one that needs most of it
+// prints, of axes with the same limit, the one that needs most of it
 void print_stopping(const Datasheet& sheet) {
   std::map<std::string, const inspection::Stopping*> most;
   for (const inspection::Stopping& axis : sheet.stopping) {

@@ -82,7 +82,7 @@ std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
     }
   }
   if (!has_next(problems)) return text;
-  // with copies: the thread may outlive the run, or for ever wait for a disk
+  // with copies: the thread may outlive the run, or wait for a disk for ever
   std::promise<Written> promise;
   writing_ = promise.get_future();
   auto write_one = [promise = std::move(promise), write = write_, place = place_,
@@ -95,7 +95,7 @@ std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
           fmt::format("{}, cycle {}, {}", place.origin, kept.cycle, written.ended);
       written.is_whole = write(written.file, text_of(kept, name));
     } catch (const std::exception&) {
-      written.is_whole = false;  // no memory: told as any file that cannot be written
+      written.is_whole = false;  // no memory: reported as any file that cannot be written
     }
     promise.set_value(std::move(written));
   };

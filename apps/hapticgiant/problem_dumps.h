@@ -1,4 +1,4 @@
-/// Writes the solver's problems that failed or were slow while a run goes on.
+/// Writes the solver's failed or slow problems during a run.
 #pragma once
 
 #include <cstddef>
@@ -15,35 +15,36 @@ namespace hg::apps {
 class ProblemDumps {
  public:
   struct Place {
-    std::filesystem::path folder;  ///< empty: nothing is written
+    std::filesystem::path folder;  ///< output folder; empty = no output
     std::string stem;              ///< files are folder/STEM_hqp_CYCLE.hqp
-    std::string origin;            ///< what the files say about where they come from
-    std::string program;           ///< how it was called, for the command that shows a file
+    std::string origin;            ///< origin stated in the files
+    std::string program;           ///< program name as called, for the command that shows a file
   };
 
-  /// Writes a file whole or not at all; false: not. On a thread of its own.
+  /// Function that writes a file completely or not at all; false = not written. Called on a
+  /// separate thread.
   using Write = std::function<bool(const std::filesystem::path& file, const std::string& text)>;
 
   explicit ProblemDumps(Place place);
-  /// With another way to write.
+  /// Uses `write` to write files.
   ProblemDumps(Place place, Write write);
 
-  /// Has the next one of `problems` written, if there is one, by a thread of its own. Returns what
-  /// the user should know now: how to look at the first file, or that a file cannot be written,
-  /// after which no more is tried; else empty.
+  /// Writes the next one of `problems`, if any, on a separate thread. Returns a message for the
+  /// user: how to view the first file, or that a file cannot be written, after which writing stops;
+  /// else empty.
   std::string look_at(const hqp::KeptProblems& problems);
-  /// The same until all are written, or until one has not been within two seconds (a network disk
-  /// that hangs): then it says how many are lost.
+  /// Writes all remaining problems; gives up when one takes more than two seconds (a network disk
+  /// that hangs) and then reports how many are lost.
   std::string finish(const hqp::KeptProblems& problems);
 
-  /// How many there were, for the end of a run; empty when there was none.
+  /// Number of problems as text for the end of a run; empty without problems.
   std::string summary(const hqp::KeptProblems& problems) const;
 
  private:
   struct Written {
     std::filesystem::path file;
     std::uint64_t cycle;
-    std::string ended;  ///< how the solve did
+    std::string ended;  ///< end of the solve, as text
     bool is_whole;
   };
   bool has_next(const hqp::KeptProblems& problems) const;

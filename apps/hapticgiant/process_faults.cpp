@@ -42,16 +42,16 @@ constexpr auto kUntilRunning = std::chrono::seconds(60);
 constexpr auto kUntilEnded = std::chrono::seconds(30);
 constexpr auto kFaultToStop = milliseconds(300);
 constexpr auto kFrozen = std::chrono::seconds(1);
-constexpr double kWatchedAfter_s = 1.0;     // beyond the session: the device lives on by itself
+constexpr double kWatchedAfter_s = 1.0;     // after the session: the device continues autonomously
 constexpr std::uint64_t kUnwritten = 1000;  // samples that a recording may lack at its end
 
 struct Description {
   ProcessFault fault;
   std::string_view name, what;
-  bool may_die = false;     ///< by a signal
-  bool is_recorded = true;  ///< its recording has all but the end
-  bool is_told = false;     ///< by an exit code other than 0
-  bool is_stop = false;     ///< the device has to stop by itself: no command comes any more
+  bool may_die = false;     ///< the controller may end by a signal
+  bool is_recorded = true;  ///< the recording is complete except for its end
+  bool is_told = false;     ///< reported by an exit code other than 0
+  bool is_stop = false;     ///< the device has to stop autonomously: no more commands arrive
 };
 
 constexpr auto kDescriptions = std::to_array<Description>({
@@ -72,8 +72,9 @@ const Description& description_of(ProcessFault fault) {
   return *std::ranges::find(kDescriptions, fault, &Description::fault);
 }
 
-// The simulated device, and what its axes really do from a moment on. Written by the thread that
-// serves it; the atomics are for others, the rest is read when that thread has ended.
+// The simulated device, and the true motion of its axes from a given moment on. Written by the
+// thread that serves it; the atomics are for other threads, the rest is read when that thread has
+// ended.
 class Witness final : public device::Device {
  public:
   Witness(const config::Scenario& scenario)
@@ -111,8 +112,8 @@ class Witness final : public device::Device {
   }
 
   std::atomic<std::uint64_t> periods{0};
-  std::atomic<bool> is_on{false};       ///< the drives were told to be
-  std::atomic<bool> is_watched{false};  ///< from the stop on
+  std::atomic<bool> is_on{false};       ///< drives are commanded on
+  std::atomic<bool> is_watched{false};  ///< motion is evaluated, from the stop on
   double share = 0.0, most_energy = 0.0;
   double rest_s = std::numeric_limits<double>::quiet_NaN();
 
@@ -126,7 +127,7 @@ class Witness final : public device::Device {
   double energy_ = 0.0, watched_s_ = 0.0;
 };
 
-// Serves the device to one controller, and lets it live on by itself afterwards.
+// Serves the device to one controller, and lets it continue autonomously afterwards.
 void serve(remote::DeviceServer& server, Witness& witness, double dt,
            const std::atomic<bool>& stop) {
   if (!server.wait_for_client(stop)) return;
@@ -182,7 +183,7 @@ class Controller {
     prlimit(pid_, what, &none, nullptr);
   }
 
-  // Nobody reads any more, and the pipe is full.
+  // Stops reading and fills the pipe.
   void stall() {
     stop_reading();
     const int other = open(fmt::format("/proc/self/fd/{}", program_end_).c_str(),
@@ -229,7 +230,7 @@ class Controller {
   std::thread reader_;
 };
 
-// Threads that take what processors give.
+// Threads that occupy the processors.
 class Load {
  public:
   void begin() {
@@ -320,7 +321,7 @@ bool has_done_well(const ProcessCase& result) {
          (!expected.is_recorded || result.recorded + kUnwritten >= result.periods);
 }
 
-// Says so at the end of a scope, however it is left.
+// Sets a flag at the end of a scope, however it is left.
 class GivesUp {
  public:
   explicit GivesUp(std::atomic<bool>& flag) : flag_(flag) {}

@@ -1,9 +1,9 @@
-/// `hapticgiant faults --processes`: what becomes of a moving device when the process that controls
-/// it gets into trouble: its terminal, its disk, its memory, its processors, itself.
+/// `hapticgiant faults --processes`: reaction of a moving device to faults of the controller's
+/// process: terminal, disk, memory, processors, or the process itself.
 ///
-/// The device is served from here, in real time, over the network protocol; the controller is a
-/// `hapticgiant run` of its own. So whatever becomes of the controller, the device's side has seen
-/// it, and judges by how its axes really moved.
+/// The device is served here, in real time, over the network protocol; the controller is a separate
+/// `hapticgiant run`. The device's side thus observes every failure of the controller, and
+/// evaluates the true motion of its axes.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +14,34 @@
 namespace hg::apps {
 
 enum class ProcessFault : std::uint8_t {
-  kNone = 0,             ///< only the stop
-  kTerminalStalled = 1,  ///< nobody reads what it prints
-  kTerminalClosed = 2,   ///< what it prints has no reader any more
+  kNone = 0,             ///< no fault, only the stop
+  kTerminalStalled = 1,  ///< the output is not read
+  kTerminalClosed = 2,   ///< the reader of the output has closed
   kDiskFull = 3,         ///< no file may grow
   kFolderGone = 4,       ///< the folder of its recording is removed
-  kNoDescriptors = 5,    ///< it may open nothing more
-  kNoMemory = 6,         ///< it gets no more memory
-  kBusy = 7,             ///< others take all processors
-  kFrozen = 8,           ///< it is suspended, and goes on a second later
-  kSuspended = 9,        ///< it is suspended for good
+  kNoDescriptors = 5,    ///< no more descriptors can be opened
+  kNoMemory = 6,         ///< no more memory is available
+  kBusy = 7,             ///< other processes occupy all processors
+  kFrozen = 8,           ///< the process is suspended, and continues a second later
+  kSuspended = 9,        ///< the process is suspended permanently
   kKilled = 10,
 };
 
-/// What became of one of them.
+/// Result of one process fault.
 struct ProcessCase {
   ProcessFault fault = ProcessFault::kNone;
   std::string scenario;
-  bool has_run = false;       ///< otherwise nothing below was measured
-  double rest_s = 0.0;        ///< from the stop until all axes stood still for good; NaN: never
-  double travel_share = 0.0;  ///< largest way of an axis from the stop on, of its stopping distance
-  double energy = 0.0;        ///< given to the person from the stop on, J
-  int exit_code = -1;         ///< of the controller; -1: a signal ended it
-  bool has_ended = false;     ///< by itself
-  std::uint64_t recorded = 0;  ///< samples of its recording that can be read
-  std::uint64_t periods = 0;   ///< that the device lived with it
-  bool is_good = false;        ///< it did what it must
+  bool has_run = false;  ///< false = the values below were not measured
+  double rest_s = 0.0;   ///< time from the stop until all axes stood still permanently; NaN = never
+  /// Largest travel of an axis from the stop on, share of its stopping distance
+  double travel_share = 0.0;
+  double energy = 0.0;  ///< energy given to the person from the stop on, J
+  int exit_code = -1;   ///< exit code of the controller; -1 = ended by a signal
+  /// The controller (for kSuspended, the device's session with it) ended in time
+  bool has_ended = false;
+  std::uint64_t recorded = 0;  ///< number of readable samples of its recording
+  std::uint64_t periods = 0;   ///< number of periods of the device with this controller
+  bool is_good = false;        ///< all requirements are met
 };
 
 /// Plays all faults in the scenarios (names or files) in turn, `repetitions` times at random
@@ -48,7 +50,7 @@ struct ProcessCase {
 std::vector<ProcessCase> play_process_faults(const std::vector<std::string>& scenarios,
                                              int repetitions, std::uint64_t seed);
 
-/// A row per case, and the verdict.
+/// Table with a row per case, and the verdict.
 std::string to_text(const std::vector<ProcessCase>& cases);
 nlohmann::ordered_json to_json(const std::vector<ProcessCase>& cases);
 

@@ -1,4 +1,4 @@
-/// How far long work has come, for those who watch.
+/// Progress display of long tasks.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace hg::apps {
 
-/// "WHAT: 12 of 180" in place on a terminal; nobody elsewhere.
+/// Callback that shows "WHAT: 12 of 180" in place on a terminal; elsewhere it shows nothing.
 experiments::Progress progress_of(const std::string& what);
 
 }  // namespace hg::apps

@@ -1,4 +1,4 @@
-/// From a scenario to either end of a connection to a remote device.
+/// Sets up either end of a connection to a remote device from a scenario.
 #pragma once
 
 #include <memory>
@@ -9,14 +9,14 @@
 
 namespace hg::apps {
 
-/// What the scenario's device must be, or is.
+/// Description of the scenario's device, required or offered.
 remote::Description describe(const config::Scenario& scenario, bool is_lock_step);
 
-/// The key of --key-file; none without a file. Throws SetupError.
+/// Key of --key-file; none without a file. Throws SetupError.
 remote::Key key_of(const std::string& file);
 
-/// The scenario's device behind `address` (HOST:PORT of --device-address). One that has another
-/// client is asked again for `busy_patience_s`. Throws SetupError.
+/// The scenario's device behind `address` (HOST:PORT of --device-address). A device busy with
+/// another client is retried for `busy_patience_s`. Throws SetupError.
 std::unique_ptr<remote::RemoteDevice> connect_device(const std::string& address,
                                                      const remote::Key& key,
                                                      const config::Scenario& scenario,

@@ -72,7 +72,7 @@ class Show {
     return scene;
   }
 
-  // What the page sees now.
+  // Current view of the page.
   viewer_server::View view(HandAnalysis& analysis) {
     const std::size_t index = run_.at(playback_.position_s());
     viewer_server::View view;
@@ -94,7 +94,7 @@ class Show {
     return view;
   }
 
-  // Why not; empty = followed.
+  // Executes a command; returns the reason for a refusal, empty = executed.
   std::string obey(const Command& command) {
     switch (command.name) {
       case CommandName::kPause:

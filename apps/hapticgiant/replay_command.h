@@ -1,5 +1,5 @@
-/// Runs the cycle of a recording again and compares, or looks at it in the page, alone or against
-/// another one.
+/// `hapticgiant replay`: runs the cycle of a recording again and compares, or shows it on the page,
+/// alone or with another recording.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@ namespace hg::apps {
 struct ReplayArguments {
   std::string file;
   std::string compare;    ///< second recording, shown through the first; empty = none
-  bool has_view = false;  ///< false: say what is in it and run it again
+  bool has_view = false;  ///< shows the page; false = print the content and run it again
   double speed = 1.0;
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;
   bool opens_browser = true;
 };
 
-/// Exit code: 0 fine, 1 the cycle gives something else now. Throws SetupError for bad input.
+/// Exit code: 0 fine, 1 the cycle now gives a different result. Throws SetupError for bad input.
 int replay(const ReplayArguments& arguments);
 
 }  // namespace hg::apps

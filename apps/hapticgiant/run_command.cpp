@@ -40,34 +40,35 @@ constexpr std::chrono::milliseconds kIdle(2);
 constexpr std::chrono::milliseconds kStatusPeriod(100);
 constexpr double kSlowCycle = 0.5;  // of the period
 
-/// Everything that watches a run from outside the control thread.
+/// All observers of a run outside the control thread.
 struct Observers {
   const std::atomic<bool>& interrupted;  ///< ends the run; its recording is completed
   const config::Scenario& scenario;
   evaluation::EventDetector detector;
   evaluation::Summary summary;
   StatusLine status_line;
-  RunPage* page;  ///< nullptr: there is none
+  RunPage* page;  ///< page; nullptr = none
   RunRecording recording;
   ProblemDumps dumps;
   bool is_fast = false;
   Clock::time_point last_status = {};
-  double script_end_s = 0.0;  ///< > 0: the run goes on after the script, tell so
+  /// End of the script, to report if the run continues after it; 0 = it does not
+  double script_end_s = 0.0;
   TareStatus told_tare = TareStatus::kNone;
   FaultCode told_fault = FaultCode::kNone;
   bool told_touch = false;
   explanation::Names names;
-  std::string fault_figures = {};  ///< of the summary's fault
+  std::string fault_figures = {};  ///< figures of the summary's fault
 };
 
-// what somebody did to the run
+// reports and records an intervention in the run
 void tell(Observers& observers, double time_s, std::string_view name, std::string_view what) {
   observers.status_line.print(fmt::format("{:8.3f} s  {:<18} {}", time_s, name, what));
   observers.recording.event(time_s, name, what);
   if (observers.page != nullptr) observers.page->announce(time_s, name, what);
 }
 
-// how a tare went, once per answer however often it is tried, and what was refused
+// reports the result of a tare, once per answer regardless of retries, and refused requests
 void tell_requests(Observers& observers, const CycleRecord& record) {
   const bool has_ended = record.tare != TareStatus::kNone && record.tare != TareStatus::kUnderWay;
   if (has_ended && record.tare != observers.told_tare) {
@@ -86,7 +87,7 @@ void tell_fault(Observers& observers, const Sample& sample) {
        fmt::format("{} {}", static_cast<int>(code), to_string(code)));
 }
 
-// whenever something begins to touch the arm
+// reports the begin of a contact with the arm
 void tell_touch(Observers& observers, const CycleRecord& record) {
   const TouchReport& touch = record.touch;
   if (std::exchange(observers.told_touch, touch.is_told) || !touch.is_told) return;
@@ -96,7 +97,7 @@ void tell_touch(Observers& observers, const CycleRecord& record) {
   tell(observers, record.time_s, "contact", "something touches the arm" + where + ": it gives way");
 }
 
-// for what pages change, at the time of `sample`
+// callback for changes by pages, at the time of `sample`
 RunPage::Note note(Observers& observers, const Sample& sample) {
   return [&observers, &sample](std::string_view name, const std::string& text) {
     tell(observers, sample.record.time_s, name, text);
@@ -125,7 +126,7 @@ void observe(Observers& observers, const Sample& sample) {
   if (observers.page != nullptr) observers.page->observe(sample, note(observers, sample));
 }
 
-// as often as people look
+// shows the sample at display rate
 void show(Observers& observers, const Sample& sample) {
   if (observers.page != nullptr) observers.page->show(sample);
   const auto now = Clock::now();
@@ -189,7 +190,7 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   options.longest_stop_s = assembly::longest_stop_s(scenario);
   if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / options.rate_Hz;
   options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};
-  // a simulated device waits for its controller: late cycles hurt nobody
+  // a simulated device waits for its controller: late cycles do no harm
   options.tells_late_cycles = !arguments.device_address.empty();
   options.duration_s =
       arguments.duration_s.value_or(goes_on ? 0.0 : assembly::planned_duration_s(scenario));
@@ -229,7 +230,7 @@ evaluation::Timing timing_of(const runtime::Options& options, const runtime::Rep
   return timing;
 }
 
-// what the summary says besides what was observed
+// facts of the summary besides the observed ones
 evaluation::RunFacts facts_of(const PreparedRun& run, const runtime::Options& options,
                               const runtime::Report& report) {
   evaluation::RunFacts facts = facts_of_scenario(run.scenario);

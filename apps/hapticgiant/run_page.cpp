@@ -27,7 +27,7 @@ std::vector<double> values_of(const std::vector<config::FormField>& form) {
 // commands that a run follows whatever its device is
 constexpr CommandName kAlways[] = {CommandName::kStop, CommandName::kSet, CommandName::kMode,
                                    CommandName::kEmergencyStop, CommandName::kReleaseStop};
-// and those that need a simulated device, which waits and can begin anew
+// and those that need a simulated device, which waits and can be reset
 constexpr CommandName kSimulated[] = {
     CommandName::kPause,   CommandName::kResume,   CommandName::kStep, CommandName::kSpeed,
     CommandName::kRestart, CommandName::kScenario, CommandName::kTwin, CommandName::kLaw,
@@ -108,7 +108,7 @@ void RunPage::begin(const PreparedRun& run, const std::string& recording) {
   has_news_ = false;
 }
 
-// The device's supervisor has the last word. Where that sample was lost nobody knows it.
+// The device's supervisor decides. If that sample was lost, the result is unknown.
 void RunPage::answer_asked(const Sample& sample) {
   if (asked_.empty()) return;
   Asked& first = asked_.front();
@@ -217,7 +217,7 @@ void RunPage::tell_done(const Command& command, const Note& note) const {
   }
 }
 
-// why not; empty = followed, or another run is being prepared
+// reason for a refusal; empty = executed, or another run is being prepared
 std::string RunPage::obey(const Command& command, runtime::Runtime* runtime, const Note& note) {
   const std::string refusal = refusal_of_device(*run_);
   const bool needs_simulation =
@@ -231,7 +231,7 @@ std::string RunPage::obey(const Command& command, runtime::Runtime* runtime, con
   if (command.name == CommandName::kStop) {
     runtime->request_stop();
     stop_was_asked_ = true;
-    next_.reset();  // what was chosen before
+    next_.reset();  // discards the previous choice
     note("stop", "asked for in the page");
     return {};
   }
@@ -280,7 +280,7 @@ std::string RunPage::obey_pace(const Command& command, runtime::Pace& pace, cons
   }
 }
 
-// prepares the run that follows; the present one goes on meanwhile, and when that fails
+// prepares the next run; the present one continues meanwhile, and also if that fails
 std::string RunPage::choose(const Command& command) {
   if (is_preparing()) return "another run is being prepared";
   RunArguments arguments = run_->arguments;

@@ -1,8 +1,8 @@
-/// The page of a run: what it is shown, and what its commands change. Stays while runs follow each
-/// other. Stops do not wait for it: the server takes them to the operator's desk, where the control
-/// loop finds them; here they are told.
+/// Page of a run: updates its display and executes its commands. It persists over successive runs.
+/// Stops do not wait for it: the server passes them to the operator's desk, where the control loop
+/// reads them; here they are only reported.
 ///
-/// For the observer thread.
+/// Used by the observer thread.
 #pragma once
 
 #include <deque>
@@ -26,7 +26,7 @@ namespace hg::apps {
 
 class RunPage {
  public:
-  /// Called for everything that a command has changed: what, and how in words.
+  /// Callback for every change by a command: name, and description in words.
   using Note = std::function<void(std::string_view name, const std::string& text)>;
 
   RunPage(const viewer_server::Options& options, const PreparedRun& first);
@@ -35,42 +35,43 @@ class RunPage {
   /// Number of pages connected.
   std::uint64_t clients() const { return server_.counters().clients; }
 
-  /// Where the control loop finds what pages do.
+  /// Operator's desk, from which the control loop reads the actions of pages.
   OperatorDesk& desk() { return *desk_; }
 
   /// Shows `run` from now on; it outlives the next call. `recording` is the name of its file.
   void begin(const PreparedRun& run, const std::string& recording);
 
-  /// Every sample, in their order.
+  /// Processes every sample, in order.
   void observe(const Sample& sample, const Note& note);
-  /// The newest sample, as often as there is one.
+  /// Shows the newest sample.
   void show(const Sample& sample);
   void announce(double time_s, std::string_view name, std::string_view text) {
     server_.announce_event(time_s, name, text);
   }
 
-  /// Follows hand and commands. `runtime` is nullptr when the run is over.
+  /// Applies hand input and commands. `runtime` is nullptr when the run is over.
   void follow(runtime::Runtime* runtime, const Note& note);
 
   bool stop_was_asked() const { return stop_was_asked_; }
   bool has_next() const { return next_ != nullptr; }
-  /// One has been chosen, and is not ready yet.
+  /// Whether a chosen run is still being prepared.
   bool is_preparing() const { return prepared_.valid(); }
-  /// The run that was chosen to follow, once.
+  /// Returns the chosen next run, once.
   std::unique_ptr<PreparedRun> take_next();
 
  private:
-  /// A run that was chosen, or why there is none.
+  /// A chosen run, or the reason why there is none.
   struct Prepared {
     std::unique_ptr<PreparedRun> run;
     std::string refusal;
   };
-  /// A mode that a page has asked for, until a cycle has followed or refused it.
+  /// A mode requested by a page, until a cycle has accepted or refused it.
   struct Asked {
     viewer_server::Command command;
     ModeRequest request = ModeRequest::kNone;
-    bool is_next = false;  ///< the pause before the request has been seen: they act on their edge
-    std::uint32_t samples = 0;  ///< seen since it is the first
+    /// The pause before the request has been seen: requests act on their edge
+    bool is_next = false;
+    std::uint32_t samples = 0;  ///< number of samples seen since the request is the first
   };
 
   void tell_done(const viewer_server::Command& command, const Note& note) const;
@@ -93,29 +94,29 @@ class RunPage {
   const PreparedRun* run_;
   std::uint64_t number_ = 1;
   std::vector<config::FormField> form_;
-  std::vector<double> values_;  ///< of the form, as targets
+  std::vector<double> values_;  ///< values of the form, as targets
   std::unique_ptr<OperatorDesk> desk_ = std::make_unique<OperatorDesk>();
   viewer_server::ViewerServer server_;
   explanation::Names names_;
   std::optional<HandAnalysis> analysis_;
   viewer_server::View view_;
   std::unique_ptr<Sample> newest_;
-  bool has_news_ = false;  ///< that no page has seen
+  bool has_news_ = false;  ///< there is news not yet shown on any page
   bool stop_was_asked_ = false;
-  std::deque<Asked> asked_;  ///< in their order
+  std::deque<Asked> asked_;  ///< requested modes, in order
   std::unique_ptr<PreparedRun> next_;
-  viewer_server::Command chosen_;   ///< what `prepared_` comes from
-  std::future<Prepared> prepared_;  ///< by a thread of its own: it takes seconds
+  viewer_server::Command chosen_;   ///< command from which `prepared_` results
+  std::future<Prepared> prepared_;  ///< run prepared on a separate thread, which takes seconds
 };
 
-/// The page's server for `run`, or nullptr: not wanted, or not built, which is said.
+/// Opens the page's server for `run`; nullptr if not wanted, or if not built, which is reported.
 std::unique_ptr<RunPage> open_page(const PreparedRun& run);
 
-/// Where the built page lies; empty when it is not built, after saying how to get it.
+/// Path of the built page; empty when it is not built, after printing how to get it.
 std::string find_page();
 
-/// Says where the page is, who can reach it, and opens it where there is a display and somebody at
-/// a terminal.
+/// Prints the page's URL and who can reach it, and opens it if there is a display and an
+/// interactive terminal.
 void present_page(const std::string& url, const std::string& address, bool opens_browser);
 
 }  // namespace hg::apps

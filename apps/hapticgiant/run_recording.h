@@ -1,6 +1,6 @@
-/// What a run leaves on the disk: its recording and, after a fault, its last seconds.
+/// Files written by a run: its recording and, after a fault, its last seconds.
 ///
-/// For the observer thread.
+/// Used by the observer thread.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,28 @@
 
 namespace hg::apps {
 
-/// What is said where a recording is wanted and cannot be made.
+/// Message when a recording is wanted but not available.
 inline constexpr char kNoRecording[] = "recording   off (the program was built without Rust)\n";
 
 class RunRecording {
  public:
-  /// Says on stdout why there is no recording. Throws SetupError.
+  /// Starts the recording; prints on stdout why there is none. Throws SetupError.
   RunRecording(const config::Scenario& scenario, const RunArguments& arguments);
 
-  /// nullptr: the run is not recorded.
+  /// Recorder of the run; nullptr = not recorded.
   const recording::Recorder* recorder() const { return recorder_.get(); }
-  /// Every sample, in their order.
+  /// Records every sample, in order.
   void push(const Sample& sample);
   void event(double time_s, std::string_view name, std::string_view text);
-  /// Told once: why the recording has ended while the run goes on; empty = nothing new.
+  /// Reason, returned once, why the recording has ended during the run; empty = no news.
   std::string news();
   struct Result {
-    std::string file;              ///< the recording; empty = there is none
-    std::uint64_t unrecorded = 0;  ///< samples that are not in it
-    std::string error;             ///< why it ended before the run; empty = it did not
-    bool is_whole = true;          ///< of everything that was to be written
+    std::string file;              ///< recording file; empty = none
+    std::uint64_t unrecorded = 0;  ///< number of samples missing in the recording
+    std::string error;     ///< reason why the recording ended before the run; empty = it did not
+    bool is_whole = true;  ///< all files were written completely
   };
-  /// Completes all files and says what there is to say about them.
+  /// Completes all files, prints messages about them and returns the result.
   Result close();
 
  private:
@@ -49,8 +49,8 @@ class RunRecording {
   std::unique_ptr<recording::Recorder> recorder_;
   std::unique_ptr<recording::FlightRecorder> flight_;
   bool has_told_ = false;
-  FaultCode fault_ = FaultCode::kNone;  ///< of the last sample
-  std::string cause_;                   ///< of a stop that is not written yet; empty = none
+  FaultCode fault_ = FaultCode::kNone;  ///< fault of the last sample
+  std::string cause_;                   ///< cause of a stop that is not written yet; empty = none
   double write_at_s_ = 0.0;
 };
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr char kArguments[] = "arguments";  // attachment of a recording
 
-// what --device, --simulation, --twin, --user and --rate-hz change; expected events belong to the
+// applies --device, --simulation, --twin, --user and --rate-hz; expected events belong to the
 // scenario as it stands
 void apply(const ScenarioArguments& arguments, config::SourceReader& reader,
            config::Scenario& scenario) {
@@ -87,7 +87,7 @@ void choose(const char* option, const std::string& text, config::Choices<T> choi
   throw SetupError(fmt::format("{}: expected one of the names of --help, got '{}'", option, text));
 }
 
-// what --plant, --sensors, --hand, --seed and --step change
+// applies --plant, --sensors, --hand, --seed and --step
 void apply_to_simulation(const ScenarioArguments& arguments, config::Scenario& scenario) {
   config::Device& device = scenario.device;
   if (arguments.plant == "ideal") device.control.method = control::Method::kDrives;
@@ -141,7 +141,7 @@ std::string recording_name(const std::filesystem::path& scenario) {
   return name;
 }
 
-// those of changes() below that say what the cycle is
+// the arguments of changes() below that determine the cycle
 RunArguments recorded_arguments(const std::string& text) {
   RunArguments arguments;
   ScenarioArguments& world = arguments.world;

@@ -1,4 +1,4 @@
-/// From arguments and files to the parts of a run.
+/// Builds the parts of a run from arguments and files.
 #pragma once
 
 #include <memory>
@@ -14,26 +14,25 @@
 
 namespace hg::apps {
 
-/// The scenario with everything that the command line changes. Throws SetupError.
+/// Loads the scenario and applies the command line. Throws SetupError.
 config::Scenario make_scenario(const ScenarioArguments& arguments);
-/// The same, for a controller: also law and bounds. With a remote device, what only a simulation
-/// looks at is refused.
+/// Loads the scenario for a controller: also applies law and bounds. With a remote device,
+/// simulation-only options are refused.
 config::Scenario make_scenario(const RunArguments& arguments);
 
 /// The scenario of a recording, from the files that it holds; the disk is not touched. Throws
 /// SetupError.
 config::Scenario recorded_scenario(const std::vector<recording::NamedText>& configuration);
 
-/// Beside the recording of `recorder`, under its name; nullptr: there is none, it may have been
-/// switched off.
+/// Problem dumps beside the recording of `recorder`, under its name; nullptr = no recording, which
+/// may have been switched off.
 ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments,
                            const recording::Recorder* recorder);
 
-/// What the summary says of a run that its scenario tells: title, and the law as it really is, not
-/// what was asked for.
+/// Summary facts of a run given by its scenario: title, and the actual law, not the requested one.
 evaluation::RunFacts facts_of_scenario(const config::Scenario& scenario);
 
-/// What the parts of the device are called in messages.
+/// Names of the parts of the device for messages.
 explanation::Names part_names(const config::Scenario& scenario);
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,

@@ -1,4 +1,4 @@
-/// A place for files that nobody keeps.
+/// Temporary folder for files that are not kept.
 #pragma once
 
 #include <cerrno>
@@ -14,7 +14,7 @@ namespace hg::apps {
 /// A folder among the temporary files, removed with all that is in it.
 class ScratchFolder {
  public:
-  /// Throws SetupError.
+  /// Creates the folder. Throws SetupError.
   ScratchFolder() {
     path_ = (std::filesystem::temp_directory_path() / "hapticgiant_XXXXXX").string();
     if (mkdtemp(path_.data()) == nullptr) {

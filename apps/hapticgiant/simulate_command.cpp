@@ -31,7 +31,7 @@ std::string how_it_ended(const remote::SessionReport& report) {
   return {};
 }
 
-/// A device of which the truth is watched: what no controller can know.
+/// A device whose true state is observed, which no controller knows.
 class WatchedDevice final : public device::Device {
  public:
   WatchedDevice(const device::SimulatedDevice& device, const rendering::DeviceModel& model)
@@ -52,7 +52,8 @@ class WatchedDevice final : public device::Device {
     max_force_ = std::max(max_force_, truth.w_H.head<3>().norm());
   }
 
-  /// "joint limits exceeded by at most 0.31e-3 rad or m (m4); force of the user at most 38.2 N".
+  /// True maxima as text: "joint limits exceeded by at most 0.31e-3 rad or m (m4); force of the
+  /// user at most 38.2 N".
   std::string truth_text() const {
     std::string limits = "joint limits held";
     if (worst_joint_ >= 0) {
@@ -106,7 +107,7 @@ int simulate(const SimulateArguments& arguments) {
 
   print_out(fmt::format("HapticGiant {}  {}, simulated\n", kVersion, scenario.title));
   print_out(fmt::format("address     {}\nstop        Ctrl-C\n", server.address()));
-  std::string lost;  // of the capture
+  std::string lost;  // reason why the capture is incomplete
   const auto look_at_capture = [&] {
     if (!lost.empty()) return;
     lost = server.capture_error();

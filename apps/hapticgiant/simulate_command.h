@@ -10,15 +10,14 @@ namespace hg::apps {
 
 struct SimulateArguments {
   ScenarioArguments world;
-  std::string listen;    ///< HOST:PORT
-  std::string key_file;  ///< of the key that clients must have; empty = none
+  std::string listen;    ///< address to listen on, HOST:PORT
+  std::string key_file;  ///< file of the key that clients must have; empty = none
   bool is_fast = false;  ///< lock-step instead of real time
   std::string capture;   ///< pcap file of all datagrams; empty = none
 };
 
-/// Serves one client after the other until Ctrl-C, each with a world that begins anew. Exit code
-/// 0, or 4 (kNotWritten) where the capture does not hold everything.
-/// Throws SetupError for bad input.
+/// Serves one client after the other until Ctrl-C, each with a reset world. Exit code 0, or 4
+/// (kNotWritten) if the capture is incomplete. Throws SetupError for bad input.
 int simulate(const SimulateArguments& arguments);
 
 }  // namespace hg::apps

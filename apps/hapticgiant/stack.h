@@ -5,8 +5,8 @@
 
 namespace hg::apps {
 
-/// Raises a small limit of the system (ulimit -s) as far as it may, for all threads from now on.
-/// Returns what is missing where that is not enough; empty: it is. Call it first.
+/// Raises a small stack limit of the system (ulimit -s) as far as permitted, for all threads
+/// created afterwards. Returns an error text if that is not enough, else empty. Call it first.
 std::string provide_stack();
 
 }  // namespace hg::apps

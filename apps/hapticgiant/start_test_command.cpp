@@ -34,8 +34,7 @@ using start_test::Wish;
 
 constexpr std::uint64_t kResetEdge = 50;  // cycles between a request and the pause before the next
 
-/// The control cycle on the device, and whoever operates it: a person at the terminal, or a
-/// simulated one.
+/// The control cycle on the device, and its operator: a person at the terminal, or a simulated one.
 class DeviceStation final : public start_test::Station {
  public:
   DeviceStation(const config::Scenario& scenario, device::Device& device, bool is_simulated,
@@ -74,12 +73,12 @@ class DeviceStation final : public start_test::Station {
     print_out(fmt::format("{:8.1f} s  {}\n", sample_.sensors.time_s, words));
   }
 
-  /// Drives off.
+  /// Switches the drives off.
   void release() {
     leave();
     device_.write(sample_.command);
   }
-  /// kNone: the device is still there.
+  /// Fault that ended the connection; kNone = the device is still connected.
   FaultCode end() const { return end_; }
 
  private:

@@ -1,4 +1,4 @@
-/// Tests brakes and stop inputs of a device, with a person at it.
+/// Tests brakes and stop inputs of a device, with an operator present.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@ namespace hg::apps {
 struct StartTestArguments {
   ScenarioArguments world{.scenario = "free_space"};
   std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
-  std::string key_file;        ///< of the key that it must have, too; empty = none
+  std::string key_file;        ///< file of the key shared with the device; empty = none
   bool is_fast = false;        ///< lock-step with a remote device
-  int priority = 80;           ///< SCHED_FIFO, with a remote device in real time; 0 = ordinary
-  std::string recordings = "recordings";  ///< folder that keeps the result
+  int priority = 80;  ///< SCHED_FIFO priority, with a remote device in real time; 0 = ordinary
+  std::string recordings = "recordings";  ///< folder for the result
 };
 
 /// Exit code: 0 passed, 1 something failed or the test was broken off, 3 the device has gone.

@@ -1,4 +1,4 @@
-/// One line on the terminal that tells what the hand feels; events scroll above it.
+/// Status line on the terminal with the forces on the hand; events scroll above it.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace hg::apps {
 
-/// For example "12.3 s  running  F 23 N  hinge 0.42  lever 0.61  hinge: upper limit, 4 Nm  21 us".
+/// Text of the status line, for example "12.3 s running F 23 N hinge 0.42 lever 0.61 hinge: upper
+/// limit, 4 Nm 21 us".
 std::string status_text(const Sample& sample, const LimitCatalogue& limits,
                         const rendering::TwinModel& twin);
 
@@ -20,9 +21,9 @@ class StatusLine {
       : is_terminal_(is_terminal), output_(&output) {}
   ~StatusLine() { clear(); }
 
-  /// Cut to the width of the terminal.
+  /// Shows the status text, cut to the width of the terminal.
   void show(const std::string& text);
-  /// A line that stays.
+  /// Prints a permanent line.
   void print(const std::string& text);
   void clear();
 

@@ -9,17 +9,18 @@ namespace hg::apps {
 struct TuneArguments {
   std::string device = "models/haptic_giant/device.yaml";
   std::string out = "tune";  ///< folder of the report
-  double vibration = 0.0;    ///< largest, m/s^2; 0 = what the device has now
-  double mass = 6.0;         ///< of the body that is rendered, kg
-  double damping = 4.0;      ///< likewise, Ns/m
-  int postures = 40;         ///< of the proof
-  std::uint32_t seed = 1;    ///< of the postures
-  bool has_front = false;    ///< also for less and more vibration
-  bool only_checks = false;  ///< what the device has now, nothing is searched or written
+  double vibration = 0.0;    ///< largest vibration, m/s^2; 0 = the device's present one
+  double mass = 6.0;         ///< mass of the rendered body, kg
+  double damping = 4.0;      ///< damping of the rendered body, Ns/m
+  int postures = 40;         ///< number of postures of the proof
+  std::uint32_t seed = 1;    ///< seed of the postures
+  bool has_front = false;    ///< also tunes for less and more vibration
+  /// Checks the device's present values only; no search, no output files
+  bool only_checks = false;
 };
 
-/// Exit code: 0 found (or there already) and proven, 1 nothing that is proven. Throws SetupError
-/// for bad input.
+/// Exit code: 0 proven values found (or already present), 1 no proven values. Throws SetupError for
+/// bad input.
 int run_tune(const TuneArguments& arguments);
 
 }  // namespace hg::apps

@@ -38,7 +38,7 @@ std::string value_of(const Column& column, const Figures& figures) {
   return fmt::format("{:.{}f}", column.of(figures), column.digits);
 }
 
-// by how much errors shrink within 0.1 s
+// factor by which errors shrink within 0.1 s
 std::string decay(double radius) { return fmt::format("{:.3f}", std::pow(radius, 100.0)); }
 
 using Row = std::function<void(const std::string&, const std::string&, const std::string&)>;
@@ -188,7 +188,7 @@ Json point_of(const Candidate& candidate, const Proof& proof) {
           {"is_proven", proof.holds()}};
 }
 
-// What is felt over what is rendered, largest and least of all axes and postures that are felt.
+// Felt over rendered impedance, largest and least over the axes and postures evaluated for feel.
 Json felt_of(const tuning::Problem& problem, const tuning::Device& device) {
   constexpr double kFrom_Hz = 0.5, kTo_Hz = 60.0, kPerDecade = 24.0;
   std::vector<double> frequencies;

@@ -1,4 +1,4 @@
-/// What `tune` leaves behind.
+/// Reports of `tune`.
 #pragma once
 
 #include <string>
@@ -10,23 +10,23 @@ namespace hg::apps {
 /// A report with its command, and the lines for device.yaml.
 struct TuneReport {
   const tuning::Problem& problem;
-  const tuning::Result& result;  ///< the first of its front is what was asked for
+  const tuning::Result& result;  ///< result; the first of its front is the requested one
   tuning::Demands demands;
   std::string name, command;
 };
 
-/// What the device has now, for a terminal; nothing else of the result need be there.
+/// Present values of the device, for a terminal; the rest of the result may be missing.
 std::string tune_check_text(const TuneReport& report);
-/// Before and after, for a terminal.
+/// Comparison before and after, for a terminal.
 std::string tune_text(const TuneReport& report);
 /// Lines for device.yaml, with the figures behind them.
 std::string tune_yaml(const TuneReport& report);
-/// A page of all that.
+/// The whole report as a Markdown page.
 std::string tune_markdown(const TuneReport& report);
-/// One row per loop: limit, figures, proof, values.
+/// CSV with one row per loop: limit, figures, proof, values.
 std::string tune_csv(const TuneReport& report);
-/// run.json of its figure (figure_program.h): what is felt over what is rendered, the front, and
-/// how far each posture is from its limits.
+/// run.json of its figure (figure_program.h): felt over rendered impedance, the front, and how far
+/// each posture is from its limits.
 std::string tune_figure(const TuneReport& report);
 
 }  // namespace hg::apps

@@ -131,7 +131,7 @@ void Cascade::shrink_null_space() {
 
 }  // namespace hg::bench
 
-/// What the program looks up after loading; the cascade lives as long as the program.
+/// Entry point looked up after loading; the cascade exists as long as the program.
 extern "C" bool hg_cascade_solve(const hg::hqp::Problem& problem, double* x) {
   static hg::bench::Cascade cascade;
   return cascade.solve(problem, x);

@@ -2,11 +2,11 @@
 ///
 /// Source: [HG] (2)-(6). Level p: with x = x* + Z z, Z spanning the null space of the equality rows
 /// above (3)-(4), minimise |A (x* + Z z) - b|^2 + |v|^2 subject to the rows of this level with
-/// slack v and all rows above with the slack they got. As [HG] says, the diagonal of the Hessian
+/// slack v and all rows above with their optimal slack. As [HG] says, the diagonal of the Hessian
 /// and the bounds get small epsilons. Back end: eiquadprog-fast (dual active set, Goldfarb,
 /// Idnani), where [HG] has QuadProg++. Rows with lb = ub count as equalities. Differs from [HG]: a
-/// level whose QP fails leaves x as it is and the next ones go on. Uses only what is inline in
-/// hg/hqp/problem.h, so that it can be loaded by a running program.
+/// level whose QP fails leaves x unchanged and the next levels continue. Uses only inline functions
+/// of hg/hqp/problem.h, so that it can be loaded by a running program.
 #pragma once
 
 #include <Eigen/Dense>
@@ -17,7 +17,8 @@
 
 namespace hg::bench {
 
-/// Chosen so that fewest of the recorded problems come out wrong (docs/benchmarks.md).
+/// Options of the cascade, chosen for the fewest errors on the recorded problems
+/// (docs/benchmarks.md).
 struct CascadeOptions {
   double hessian_epsilon = 1e-11;
   double bound_epsilon = 1e-9;
@@ -32,7 +33,7 @@ class Cascade {
   bool solve(const hqp::Problem& problem, double* x);
 
  private:
-  /// An inequality row of a level above, with the slack it got.
+  /// An inequality row of a level above, with its optimal slack.
   struct Kept {
     int row;
     double slack;
@@ -51,7 +52,7 @@ class Cascade {
   Eigen::MatrixXd Z_, A_, AZ_;
   Eigen::VectorXd b_;
   std::vector<int> own_;    ///< inequality rows of the level
-  std::vector<Kept> kept_;  ///< those of the levels above
+  std::vector<Kept> kept_;  ///< inequality rows of the levels above
   Eigen::MatrixXd H_, CI_, CE_;
   Eigen::VectorXd g_, ci0_, ce0_, c_;
 };

@@ -127,7 +127,7 @@ simulation::Config device_simulation(const config::Device& device, const Start& 
   return config;
 }
 
-// Throws SetupError where nobody can be hit.
+// Places the bystander. Throws SetupError where the arm cannot hit anyone.
 void place(const config::BystanderInTheWay& bystander, const model::Chain& chain,
            simulation::Config& simulation) {
   auto* plant = std::get_if<simulation::PlantConfig>(&simulation.plant);

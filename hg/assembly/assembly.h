@@ -1,4 +1,4 @@
-/// From a loaded scenario to the parts of a run.
+/// Builds the parts of a run from a loaded scenario.
 #pragma once
 
 #include <cstdint>
@@ -21,32 +21,31 @@ cycle::Cycle make_cycle(const config::Scenario& scenario);
 control::Loop torque_loop(const config::Device& device);
 
 /// `count` postures (gantry at 0 first) all over the limits of the joints; a joint without limits
-/// is looked at in one turn. Throws SetupError where hardly any is within the virtual limits.
+/// is sampled over one turn. Throws SetupError if hardly any is within the virtual limits.
 std::vector<Eigen::VectorXd> random_postures(const rendering::DeviceModel& device, int count,
                                              std::uint32_t seed);
 
-/// Whether rule 105 is on: sensors that simulation.yaml describes without noise show the same bits
-/// for ever at rest.
+/// Whether rule 105 is on: sensors without noise in simulation.yaml give constant values at rest.
 bool notices_frozen_sensors(const config::Device& device);
 
-/// The scenario's person, who takes the handle of a device at `start`.
+/// The scenario's person, who grasps the handle of a device at `start`.
 user::Person make_person(const config::Scenario& scenario, const Start& start);
 
 /// A simulated world that starts where the twin starts, held by the scenario's person. Throws
 /// SetupError when the device cannot reach that pose.
 simulation::Simulation make_simulation(const config::Scenario& scenario);
-/// The device alone at `start` (of which the pose of the handle does not matter): nobody holds it.
+/// The device alone at `start` (the pose of the handle does not matter), with a free handle.
 simulation::Simulation make_unheld_simulation(const config::Device& device, const Start& start);
-/// The same as make_simulation() behind the boundary of a device.
+/// The world of make_simulation() behind the interface of a device.
 device::SimulatedDevice make_simulated_device(const config::Scenario& scenario);
 
-/// The judge of a run of the scenario.
+/// Evaluation of a run of the scenario.
 evaluation::Summary make_summary(const config::Scenario& scenario);
 
 /// Seconds until everything planned has happened; 0 = nothing is planned.
 double planned_duration_s(const config::Scenario& scenario);
 
-/// After which a device that is being stopped is left to its brakes: rule 310 has acted by then.
+/// Time in s after which a stopping device is left to its brakes: rule 310 has acted by then.
 double longest_stop_s(const config::Scenario& scenario);
 
 }  // namespace hg::assembly

@@ -70,7 +70,7 @@ void check_limits(const config::Scenario& scenario, const Start& start) {
 }
 
 // throws SetupError when the handle or a part of the device would be in the floor at `start`: the
-// guard takes a device as it stands, so nothing else would say it
+// guard accepts a device in its present posture, so no other check reports it
 void check_floor(const config::Scenario& scenario, const Start& start) {
   const config::Device& device = scenario.device;
   if (!device.has_floor) return;
@@ -169,7 +169,7 @@ Start numeric_start(const config::Scenario& scenario) {
         scenario.twin.name, p.x(), p.y(), p.z(), found.position_error, found.angle_error,
         joints_at_limits(device.chain, problem, found.q)));
   }
-  // where no solution was permitted, the limits of the nearest one tell why
+  // where no solution was permitted, the limits of the nearest one give the reason
   start.q_p = found.q.head(n_p);
   start.q_m = found.q.tail(device.n_m);
   return start;

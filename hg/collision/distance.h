@@ -19,7 +19,7 @@ class Distance {
   Distance& operator=(Distance other) noexcept;
   ~Distance();
 
-  /// m; with the frames of the shapes at these poses; negative or zero where they touch.
+  /// Distance with the frames of the shapes at these poses, m; negative or zero where they touch.
   double operator()(const Pose& T_B_a, const Pose& T_B_b) const noexcept;
 
  private:

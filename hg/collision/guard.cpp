@@ -10,9 +10,9 @@ namespace hg::collision {
 namespace {
 
 constexpr double kApproach = 5e-3;  // m: how much nearer a pair may come that began too near
-constexpr double kAhead = 20.0;     // cycles: what may fade away so soon is computed anew
-constexpr double kClose = 0.05;     // m: what has less left is computed anew in every cycle
-constexpr int kHalvings = 16;       // of a path
+constexpr double kAhead = 20.0;     // cycles: bounds that may be used up this soon are recomputed
+constexpr double kClose = 0.05;     // m: smaller bounds are recomputed in every cycle
+constexpr int kHalvings = 16;       // largest number of pending intervals of a path
 
 void check(const Config& config, const model::Chain& chain) {
   const auto require = [](bool holds, const char* rule) {
@@ -43,7 +43,7 @@ struct Guard::Path {
     }
   }
 
-  // until the joints that move this pair stand still
+  // time until the joints that move this pair are at rest
   double duration(const Pair& pair) const noexcept {
     double longest = 0.0;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -111,7 +111,7 @@ double Guard::distance(int pair, const Path& path, double time) noexcept {
                            pose(config_.pairs.watched[index].b));
 }
 
-// Depth first from the start of the path; the ends of what is still to be done wait in `ends`.
+// Depth first from the start of the path; `ends` holds the ends of pending intervals.
 void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
                      State& state) noexcept {
   struct Place {
@@ -152,7 +152,7 @@ void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
   state.left[static_cast<std::size_t>(index)] = smallest - allowed;
 }
 
-// What is left of each bound after the path has moved from the last cycle's to this one.
+// Reduces each bound by the change of the path since the last cycle.
 void Guard::fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept {
   const VectorPM change = (q - state.q).cwiseAbs().cwiseMax((stop - state.stop).cwiseAbs());
   for (std::size_t i = 0; i < config_.pairs.watched.size(); ++i) {

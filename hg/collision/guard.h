@@ -1,19 +1,21 @@
-/// Says when a device has to brake in order not to hit itself, its gantry, its frame or the floor.
+/// Predicts when a device must brake so as not to hit itself, its gantry, its frame or the floor.
 ///
-/// Source: [HANDBOOK] 6.4. Braking from the state (q, dq) takes each joint along
+/// Source: [HANDBOOK] 6.4. Braking from the state (q, dq) moves each joint along
 ///   q_i(t) = q_i + dq_i t while t < r_i, then with the deceleration A_i to its stop
 ///   s_i = q_i + dq_i r_i + dq_i |dq_i| / (2 A_i).
-/// For each pair of shapes the smallest distance on that path is bounded from below: between two
-/// places with the distances D1, D2 by (D1 + D2 - sum_i L_i |q_i(t2) - q_i(t1)|) / 2, with the
-/// levers L_i of Pair; intervals for which that is not enough are halved.
-/// The paths from two states differ nowhere by more than e_i = max(|q_i - q'_i|, |s_i - s'_i|), so
-/// a bound found once loses at most sum_i L_i e_i from cycle to cycle and is computed anew only
-/// when little of it is left.
+/// For each pair of shapes the smallest distance on that path is bounded from below. Between two
+/// points of the path with distances D1 and D2 the bound is
+/// (D1 + D2 - sum_i L_i |q_i(t2) - q_i(t1)|) / 2, with the levers L_i of Pair. Intervals for which
+/// this bound is too small are halved.
 ///
-/// A cycle computes at most kMaxDistances distances, for the pairs with the least left first; only
-/// the first one, with the drives off, so many for each pair. What did not get its turn and has
-/// nothing left counts as a collision ahead: too much work brakes the device, it never lets it
-/// through. Deterministic; no allocation, noexcept after set-up.
+/// Bounds are reused in later cycles. Braking paths from two states differ in joint i by at most
+/// e_i = max(|q_i - q'_i|, |s_i - s'_i|), so a bound shrinks by at most sum_i L_i e_i per cycle. It
+/// is recomputed only when little of it is left.
+///
+/// A cycle computes at most kMaxDistances distances, for the pairs with the smallest bounds first.
+/// The first cycle, with the drives off, may compute that many for each pair. A pair that was not
+/// recomputed and whose bound is used up counts as a collision ahead: overload brakes the device
+/// and never hides a collision. Deterministic; no allocation, noexcept after set-up.
 #pragma once
 
 #include <array>
@@ -27,35 +29,35 @@
 
 namespace hg::collision {
 
-inline constexpr int kMaxPairs = 96;      ///< watched at a time; set-up refuses more
-inline constexpr int kMaxDistances = 24;  ///< computed in a cycle
-/// Pairs that stay so much farther apart than the safe distance need not be watched, m.
+inline constexpr int kMaxPairs = 96;      ///< Largest number of watched pairs; set-up refuses more
+inline constexpr int kMaxDistances = 24;  ///< Largest number of distances computed in a cycle
+/// Pairs that always stay farther apart than the safe distance plus this need not be watched, m.
 inline constexpr double kFarEnough = 0.02;
 
 /// Set-up data.
 struct Config {
-  std::vector<Shape> shapes;    ///< empty: nothing is watched
-  Pairs pairs;                  ///< by choose_pairs()
-  VectorPM reaction;            ///< of each joint, s, until it brakes
-  VectorPM deceleration;        ///< of each joint, rad/s^2 or m/s^2, > 0
-  double safe_distance = 0.03;  ///< [HANDBOOK] 6.4, m
+  std::vector<Shape> shapes;    ///< Collision shapes; empty: nothing is watched
+  Pairs pairs;                  ///< Pairs found by choose_pairs()
+  VectorPM reaction;            ///< Reaction time of each joint until it brakes, s
+  VectorPM deceleration;        ///< Deceleration of each joint, rad/s^2 or m/s^2, > 0
+  double safe_distance = 0.03;  ///< Safe distance, [HANDBOOK] 6.4, m
 };
 
-/// "link1 - forearm", one per watched pair.
+/// Names like "link1 - forearm", one per watched pair.
 std::vector<std::string> pair_names(const Config& config);
 
 struct State {
-  int count = 0;                            ///< pairs that are watched; 0 = not started
-  VectorPM q, stop;                         ///< of the last cycle
-  std::array<double, kMaxPairs> left{};     ///< bound on the distance minus `allowed`, m
-  std::array<double, kMaxPairs> allowed{};  ///< the safe distance, less where it began too near, m
+  int count = 0;                            ///< Number of watched pairs; 0 = not started
+  VectorPM q, stop;                         ///< Joint and stopping positions of the last cycle
+  std::array<double, kMaxPairs> left{};     ///< Lower bound on the distance minus `allowed`, m
+  std::array<double, kMaxPairs> allowed{};  ///< Safe distance, less for pairs that began nearer, m
 };
 
 struct Prediction {
   CollisionReport report;
   bool must_brake = false;
-  double allowed = 0.0;  ///< what `report.distance` fell below, m
-  int distances = 0;     ///< that were computed
+  double allowed = 0.0;  ///< Allowed distance of the reported pair, m
+  int distances = 0;     ///< Number of distances computed
 };
 
 class Guard {
@@ -64,12 +66,13 @@ class Guard {
   /// Throws SetupError when too many pairs would have to be watched.
   Guard(const Config& config, const model::Chain& chain);
 
-  /// `is_moving` = the device may move by itself. As long as it does not, pairs that are nearer
-  /// than the safe distance are accepted as they are: from there on they may not come 5 mm nearer.
+  /// Predicts braking from `q` and `dq`. `is_moving` = the device may move autonomously. As long as
+  /// it may not, pairs nearer than the safe distance are accepted as they are; afterwards they must
+  /// not come 5 mm nearer.
   Prediction step(const VectorPM& q, const VectorPM& dq, bool is_moving, State& state) noexcept;
 
  private:
-  struct Path;  // of braking
+  struct Path;  // braking path
 
   double distance(int pair, const Path& path, double time) noexcept;
   void evaluate(int pair, const Path& path, bool is_moving, int& budget, State& state) noexcept;
@@ -78,7 +81,7 @@ class Guard {
   Config config_;
   std::vector<Distance> distances_;
   std::vector<model::Chain> chain_;         // one, or none without shapes
-  std::array<double, kMaxPairs> fading_{};  // of the last cycle, m
+  std::array<double, kMaxPairs> fading_{};  // decrease of each bound since the last cycle, m
 };
 
 }  // namespace hg::collision

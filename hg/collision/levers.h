@@ -1,4 +1,4 @@
-/// How far joints can move points of a shape: bounds that hold in every posture. Set-up only.
+/// Bounds on how far joints can move points of a shape, valid in every posture. Set-up only.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace hg::collision {
 /// Joints of a chain at its neutral posture.
 class Levers {
  public:
-  /// `range` of each joint: prismatic joints carry what is behind them that far.
+  /// `range`: range of each joint; a prismatic joint shifts the bodies behind it that far.
   Levers(model::Chain chain, std::vector<Interval> range);
 
   /// Bounds as in Pair::lever for `shape` as seen from body `from`.
@@ -22,9 +22,9 @@ class Levers {
   double lever(int joint, const Shape& shape) const;
 
   model::Chain chain_;
-  std::vector<double> stroke_;           // of prismatic joints, else 0
-  std::vector<Eigen::Vector3d> origin_;  // in B
-  std::vector<Eigen::Vector3d> axis_;    // in B
+  std::vector<double> stroke_;           // stroke of prismatic joints, else 0
+  std::vector<Eigen::Vector3d> origin_;  // joint origins in B
+  std::vector<Eigen::Vector3d> axis_;    // joint axes in B
 };
 
 }  // namespace hg::collision

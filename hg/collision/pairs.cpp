@@ -76,11 +76,11 @@ void sample(const std::vector<Shape>& shapes, const std::vector<Interval>& range
   }
 }
 
-// Goes on from a good sample, joint by joint with shrinking steps, until nearer than `near`.
+// Searches from a good sample, joint by joint with shrinking steps, until nearer than `near`.
 void search(const std::vector<Shape>& shapes, const std::vector<Interval>& range, double near,
             Candidate::Nearest best, model::Chain& chain, Candidate& candidate) {
   constexpr int kRounds = 40;
-  constexpr double kSmallest = 1e-3;  // of the range
+  constexpr double kSmallest = 1e-3;  // smallest step, share of the range
   double step = 0.15;
   for (int round = 0; round < kRounds && step > kSmallest; ++round) {
     bool is_better = false;

@@ -1,4 +1,4 @@
-/// Which pairs of shapes are worth watching, and how fast joints can bring them together.
+/// Selects the pairs of shapes to watch and bounds how fast joints can bring them together.
 ///
 /// Set-up only: samples the whole range of the joints with a fixed seed, so that the same device
 /// always has the same pairs.
@@ -17,13 +17,13 @@ namespace hg::collision {
 struct Pair {
   int a = 0;
   int b = 0;
-  /// Per joint: no point of `b` moves faster relative to `a` than this, per unit of speed of that
-  /// joint, in whatever posture: m/rad, or 1 for a prismatic joint between the two, 0 for others.
+  /// Bound per joint on the speed of any point of `b` relative to `a`, per unit of joint speed, in
+  /// every posture: m/rad, or 1 for a prismatic joint between the two, 0 for others.
   VectorPM lever;
 };
 
 enum class Exclusion : std::uint8_t {
-  kNeighbours,  ///< one joint is all that is between them: they touch there by design
+  kNeighbours,  ///< only one joint is between them: they touch there by design
   kAlways,      ///< touch in every posture
   kNever,       ///< never come near each other within the range of the joints
 };
@@ -32,7 +32,7 @@ struct Excluded {
   int a = 0;
   int b = 0;
   Exclusion reason = Exclusion::kNever;
-  double distance = 0.0;  ///< the smallest that was found (kNever) or the largest (kAlways), m
+  double distance = 0.0;  ///< Smallest distance found (kNever) or largest (kAlways), m
 };
 
 struct Pairs {

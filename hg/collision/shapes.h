@@ -16,20 +16,20 @@ namespace hg::collision {
 
 /// All points within `radius` of a segment (capsule) or all points of a box.
 struct Shape {
-  std::string name;  ///< of the collision element, else of its link
-  int body = 0;      ///< joints of the chain that move it: 0 = fixed to B
-  int frame = -1;    ///< frame of the chain that it is fixed to; -1 = B
+  std::string name;  ///< Name of the collision element, else of its link
+  int body = 0;      ///< Number of chain joints that move it: 0 = fixed to B
+  int frame = -1;    ///< Frame of the chain that it is fixed to; -1 = B
   Pose T_frame_shape;
-  double radius = 0.0;                                   ///< m, of a capsule
-  double half_length = 0.0;                              ///< m, of its segment, along z
-  Eigen::Vector3d half_edges = Eigen::Vector3d::Zero();  ///< m, of a box
+  double radius = 0.0;                                   ///< Radius of a capsule, m
+  double half_length = 0.0;                              ///< Half length of its segment, along z, m
+  Eigen::Vector3d half_edges = Eigen::Vector3d::Zero();  ///< Half edges of a box, m
   bool is_box = false;
-  bool is_surrounding = false;  ///< no part of the device: nothing touches it by design
+  bool is_surrounding = false;  ///< Not part of the device: nothing touches it by design
 };
 
 struct Geometry {
   std::vector<Shape> shapes;
-  std::vector<std::string> links_without;  ///< moving links with mass whose geometry is unknown
+  std::vector<std::string> links_without;  ///< Moving links with mass but without known geometry
 };
 
 /// The shapes of `urdf`, the URDF or the part of it that `chain` was made of.

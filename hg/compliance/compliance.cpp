@@ -11,12 +11,12 @@ constexpr double kFilter_s = 0.005;
 constexpr double kLeast = 0.05;  // threshold without noise and motion, times the peak torque
 constexpr double kLeastOfArm =
     0.035;                           // and times that of the strongest joint: wrists feel the user
-constexpr double kDeviations = 6.0;  // of the noise
-constexpr double kModelError = 0.2;  // of what moves the joints
-constexpr double kNoiseMemory_s = 1.0;  // over which the noise is known
+constexpr double kDeviations = 6.0;  // threshold, standard deviations of the noise
+constexpr double kModelError = 0.2;  // threshold, share of the torque that moves the joint
+constexpr double kNoiseMemory_s = 1.0;  // averaging time of the noise
 constexpr double kLoadMemory_s = 0.15;  // a model is wrong for as long as filters remember
-constexpr double kEnds = 0.5;           // of its threshold below which a contact ends
-constexpr double kQuiet_s = 0.05;       // for as long
+constexpr double kEnds = 0.5;           // share of its threshold below which a contact ends
+constexpr double kQuiet_s = 0.05;       // time below that share until a contact ends
 constexpr double kGantryGain = 0.01;    // m/s per N, rad/s per Nm
 constexpr double kDamping = 0.1;        // m or rad: singular directions of the arm carry nothing
 
@@ -31,7 +31,8 @@ void start(const Input& input, State& state) noexcept {
   state.is_started = true;
 }
 
-// What is far from a contact is noise. It never lifts a threshold to more than twice the least.
+// Learns the noise from torques far below a contact. Noise raises a threshold to at most twice the
+// minimum.
 void learn(const Config& config, State& state) noexcept {
   for (int i = 0; i < state.torque.size(); ++i) {
     const double most = least_threshold(config, i) / kDeviations;
@@ -41,7 +42,7 @@ void learn(const Config& config, State& state) noexcept {
   }
 }
 
-// w with J^T w = torque of the manipulator's part of J.
+// Wrench w with J^T w = torque of the manipulator's part of J.
 Vector6 wrench_of(const Input& input, const VectorM& torque) noexcept {
   const auto J = input.J.rightCols(torque.size());
   Eigen::Matrix<double, 6, 6> normal = J.lazyProduct(J.transpose());
@@ -53,7 +54,7 @@ Vector6 wrench_of(const Input& input, const VectorM& torque) noexcept {
   return share > 1.0 ? Vector6(w / share) : w;
 }
 
-// What is beyond the thresholds, so that it begins and ends without a jump.
+// Torques beyond the thresholds, continuous where a contact begins and ends.
 VectorM beyond(const Config& config, const State& state) noexcept {
   VectorM torque = state.torque;
   for (int i = 0; i < torque.size(); ++i) {

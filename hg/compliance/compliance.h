@@ -1,14 +1,14 @@
-/// Something touches the arm: is it felt, and how does the arm give way?
+/// Detects contacts of the arm and computes how the arm yields to them.
 ///
 /// Detection: the torque of the joints that neither motion nor user explain, M ddq + c - J^T w -
 /// tau_J with measured speeds, low-passed. With ddq as their difference this is the observer of the
 /// generalised momentum of De Luca et al. (IROS 2006), discrete, gain 1 / filter. A threshold is
-/// the sum of a least one, of six standard deviations of the noise while nothing touches, and of a
-/// share of what the joint has just been moved with, since that is what the model is wrong by.
+/// the sum of a minimum, of six standard deviations of the noise without contact, and of a share of
+/// the torque that has just moved the joint, to cover model errors.
 ///
-/// Giving way: of the torques, what is beyond the thresholds becomes the wrench on the handle that
-/// does the same to the joints, by damped least squares. It pushes the twin, which yields where it
-/// is free; the gantry moves away from the contact.
+/// Yielding: the torques beyond the thresholds are mapped to the wrench on the handle with the same
+/// effect on the joints, by damped least squares. It pushes the twin, which yields where it is
+/// free; the gantry moves away from the contact.
 ///
 /// Pure functions of arguments and state: deterministic, no allocation, noexcept.
 #pragma once
@@ -22,10 +22,10 @@ namespace hg::compliance {
 struct Config {
   bool is_on = false;
   double dt = 1e-3;    ///< period, s
-  VectorM torque_max;  ///< peak of each joint, Nm; empty: the joints have no torque sensors
+  VectorM torque_max;  ///< Peak torque of each joint, Nm; empty: the joints have no torque sensors
 };
 
-/// The wrench with which the twin gives way is never larger than this.
+/// The twin yields with no larger wrench than kForceMax and kMomentMax.
 inline constexpr double kForceMax = 100.0;   // N
 inline constexpr double kMomentMax = 30.0;   // Nm
 inline constexpr double kGantrySpeed = 0.3;  // m/s or rad/s, away from the contact
@@ -33,29 +33,29 @@ inline constexpr double kGantrySpeed = 0.3;  // m/s or rad/s, away from the cont
 /// Part of the copyable state of a cycle.
 struct State {
   bool is_started = false;
-  VectorM dq;        ///< of the joints in the last sample, rad/s
-  VectorM torque;    ///< by what touches the arm, Nm
-  VectorM variance;  ///< of it while nothing touches, Nm^2
-  VectorM load;      ///< with which the joints have just been moved, Nm
+  VectorM dq;        ///< Joint speeds in the last sample, rad/s
+  VectorM torque;    ///< Joint torques of the contact, low-passed, Nm
+  VectorM variance;  ///< Variance of `torque` without contact, Nm^2
+  VectorM load;      ///< Torques that have just moved the joints, Nm
   bool is_told = false;
-  double quiet_s = 0.0;  ///< since when less than half of the thresholds is felt
-  VectorP away;          ///< velocity of the gantry, m/s or rad/s; empty: its own aim
+  double quiet_s = 0.0;  ///< Time for which less than half of the thresholds is felt, s
+  VectorP away;          ///< Velocity of the gantry, m/s or rad/s; empty: its own aim
 };
 
 using JacobianIn = Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>;
 
 /// One sample.
 struct Input {
-  VectorM torque;  ///< that neither motion nor user explain, Nm
-  VectorM load;    ///< that moves and holds the joints by the model, Nm
-  JacobianIn J;    ///< of the handle; gantry joints first
-  int n_p = 0;     ///< of these
+  VectorM torque;  ///< Joint torques explained by neither motion nor user, Nm
+  VectorM load;    ///< Model torques that move and hold the joints, Nm
+  JacobianIn J;    ///< Jacobian of the handle; gantry joints first
+  int n_p = 0;     ///< Number of gantry joints
 };
 
-/// Once per cycle with the drives on.
+/// Advances by one sample; call once per cycle with the drives on.
 TouchReport step(const Config& config, const Input& input, State& state) noexcept;
 
-/// Torque from which a joint feels a contact, Nm.
+/// Torque from which a joint reports a contact, Nm.
 double threshold(const Config& config, const State& state, int joint) noexcept;
 
 }  // namespace hg::compliance

@@ -1,4 +1,4 @@
-/// Description of scenario.yaml, sixth part: somebody who stands in the way of the arm.
+/// Description of scenario.yaml, sixth part: a bystander in the way of the arm.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,11 @@
 
 namespace hg::config {
 
-/// Whom the arm may hit, before frames have numbers.
+/// A bystander whom the arm may hit, before frames have numbers.
 struct BystanderDraft {
-  std::vector<std::string> parts;   ///< of a body
-  std::vector<std::string> frames;  ///< of the device
-  std::string hit_by;               ///< one of these
+  std::vector<std::string> parts;   ///< names of body parts
+  std::vector<std::string> frames;  ///< frame names of the device
+  std::string hit_by;               ///< frame that hits, one of `frames`
   std::optional<simulation::BystanderConfig> bystander;
 };
 

@@ -12,15 +12,15 @@
 
 namespace hg::config {
 
-/// A joint of the twin as changes see it.
+/// A joint of the twin, as needed to check changes.
 struct ChangeJoint {
   JointUnit unit = JointUnit::kEither;
   bool is_floating = false;
-  int dof = 0;     ///< its first degree of freedom
-  Interval range;  ///< of its positions, after the changes so far
+  int dof = 0;     ///< index of its first degree of freedom
+  Interval range;  ///< range of its positions, after the changes so far
 };
 
-/// What stands in the list `changes`.
+/// Content of the list `changes`.
 struct ChangesDraft {
   std::vector<std::string> joint_names;
   std::vector<ChangeJoint> joints;
@@ -32,7 +32,7 @@ struct ChangesDraft {
   }
 };
 
-/// Without changes yet, for the joints of `twin`.
+/// Draft for the joints of `twin`, without changes.
 inline ChangesDraft changes_of(const rendering::TwinModel& twin) {
   ChangesDraft draft;
   for (const model::Joint& joint : twin.chain.joints()) {

@@ -81,8 +81,8 @@ void describe(V& v, Placement& placement) {
   v.number("yaw_rad", placement.yaw, kAnyNumber, "about z, last");
 }
 
-/// A value per manipulator joint. A faulty file may name more of them than a device can have: those
-/// are told elsewhere, and left out here.
+/// A value per manipulator joint. A faulty file may name more joints than a device can have: these
+/// are reported elsewhere and left out here.
 inline VectorM per_joint(std::size_t joints, double value) {
   return VectorM::Constant(std::min(static_cast<int>(joints), kMaxManipulator), value);
 }

@@ -20,15 +20,15 @@ struct DeviceJoint {
   limits::JointLimits limits;
 };
 
-/// What stands in device.yaml, before it becomes a Device.
+/// Content of device.yaml, before it becomes a Device.
 struct DeviceDraft {
   std::string name;
   std::filesystem::path urdf, tool, simulation;
   ChainPart part;
-  std::vector<std::string> link_names;  ///< of the URDF
+  std::vector<std::string> link_names;  ///< link names of the URDF
   int flange = -1;
-  std::vector<std::string> joint_names, frame_names;  ///< of the chain
-  std::vector<DeviceJoint> joints;                    ///< all, with the limits of the URDF
+  std::vector<std::string> joint_names, frame_names;  ///< names of the chain
+  std::vector<DeviceJoint> joints;                    ///< all joints, with the limits of the URDF
   std::vector<int> gantry, manipulator;               ///< indices of joints
   bool has_joints = false;                            ///< both lists are usable
   JointUnit gantry_unit = JointUnit::kEither;
@@ -42,7 +42,7 @@ struct DeviceDraft {
   std::vector<rendering::VirtualJoint> virtual_joints;
   std::vector<rendering::CartesianLimit> cartesian_limits;
   DriveModel drive;
-  std::vector<std::optional<ActuatorModel>> actuators;  ///< of all joints, where given
+  std::vector<std::optional<ActuatorModel>> actuators;  ///< actuator per joint, where given
   control::Config control;
   rendering::Options rendering;
   prepositioning::Config prepositioning;

@@ -154,7 +154,7 @@ void describe(V& v, rendering::Options& options, std::size_t manipulator_joints)
 
 template <class V>
 void describe_prepositioning(V& v, DeviceDraft& d) {
-  // what is not given keeps within what the drive can do
+  // values not given stay within the drive's limits
   d.prepositioning.dq_max = std::min(d.prepositioning.dq_max, d.drive.dq_max);
   d.prepositioning.drive.ddq_max = std::min(d.prepositioning.drive.ddq_max, d.drive.ddq_max);
   v.group(

@@ -1,4 +1,4 @@
-/// Description of device.yaml: from sensors to state, and what hangs beyond the sensor.
+/// Description of device.yaml: state estimation from sensors, and the payload beyond the sensor.
 #pragma once
 
 #include "hg/config/describe_device.h"

@@ -1,4 +1,4 @@
-/// Description of scenario.yaml, fourth part: faults on purpose.
+/// Description of scenario.yaml, fourth part: injected faults.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,17 +12,17 @@
 
 namespace hg::config {
 
-/// What stands in the list `faults`.
+/// Content of the list `faults`.
 struct InjectionsDraft {
-  std::vector<std::string> manipulator, gantry;  ///< joints by name
-  std::vector<std::string> components;           ///< of the sensor at the handle
-  std::vector<std::string> inputs;               ///< of the safety controller
-  std::vector<std::string> names;                ///< all that a fault may concern
+  std::vector<std::string> manipulator, gantry;  ///< joint names
+  std::vector<std::string> components;           ///< components of the sensor at the handle
+  std::vector<std::string> inputs;               ///< inputs of the safety controller
+  std::vector<std::string> names;                ///< names of everything that a fault may concern
   std::vector<std::string> kinds;
   std::vector<injection::Injection> injections;
 };
 
-/// Without faults yet.
+/// Draft without faults.
 inline InjectionsDraft injections_of(const std::vector<std::string>& manipulator,
                                      const std::vector<std::string>& gantry) {
   InjectionsDraft draft = {
@@ -37,7 +37,7 @@ inline InjectionsDraft injections_of(const std::vector<std::string>& manipulator
   return draft;
 }
 
-/// Index of what `name` (in InjectionsDraft::names) is among the parts of `kind`; -1 = none of
+/// Index among the parts of `kind` of the entry `name` of InjectionsDraft::names; -1 = none of
 /// them.
 inline int part_index(const InjectionsDraft& d, const injection::Kind& kind, int name) {
   const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());

@@ -1,4 +1,4 @@
-/// Description of scenario.yaml, third part: what a simulated operator does while it runs.
+/// Description of scenario.yaml, third part: actions of a simulated operator during the run.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ inline constexpr std::array<Choice<ModeRequest>, 6> kRequests = {
 template <class V>
 void describe(V& v, std::vector<TimedPanel>& panels) {
   TimedPanel now;
-  if (!panels.empty()) now = panels.back();  // what is not given stays as it is
+  if (!panels.empty()) now = panels.back();  // values not given stay unchanged
   const double last_s = now.at_s;
   now.request = ModeRequest::kNone;
   now.panel.reset = false;

@@ -12,17 +12,17 @@
 
 namespace hg::config {
 
-/// Names that events may use, and what they stand for.
+/// Names that events may use, and their meaning.
 struct EventNames {
-  std::vector<std::string> limits;       ///< of the catalogue
-  std::vector<std::string> twin_joints;  ///< without floating ones
-  std::vector<int> twin_limits;          ///< their indices in the catalogue
-  std::vector<int> twin_coordinates;     ///< their indices in q_a
+  std::vector<std::string> limits;       ///< limits of the catalogue
+  std::vector<std::string> twin_joints;  ///< twin joints that are not floating
+  std::vector<int> twin_limits;          ///< indices of the twin joints in the catalogue
+  std::vector<int> twin_coordinates;     ///< indices of the twin joints in q_a
   std::vector<std::string> manipulator;
   std::vector<std::string> gantry;
 };
 
-/// What stands in scenario.yaml, before it becomes a Scenario.
+/// Content of scenario.yaml, before it becomes a Scenario.
 struct ScenarioDraft {
   std::string title, description;
   std::filesystem::path device, twin, script;

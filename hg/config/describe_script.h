@@ -11,7 +11,7 @@
 
 namespace hg::config {
 
-/// Something that segments move.
+/// A signal that segments move.
 struct Channel {
   std::string key;
   int index = 0;
@@ -24,13 +24,13 @@ std::vector<Channel> common_channels();
 /// Pose channels of `frame`; those of kTwinJoints are the joints of a twin, not listed here.
 std::vector<Channel> pose_channels(user::ScriptFrame frame);
 
-/// What stands in script.yaml, before it becomes a Script.
+/// Content of script.yaml, before it becomes a Script.
 struct ScriptDraft {
   user::ScriptFrame frame = user::ScriptFrame::kBase;
   user::HandImpedance hand;
   double grasp_s = user::Script{}.grasp_s;
   user::Walk walk;
-  std::vector<Channel> channels;  ///< those of the frame, then wrench and grip
+  std::vector<Channel> channels;  ///< channels of the frame, then wrench and grip
   std::array<double, user::kChannels> start{};
   std::array<bool, user::kChannels> start_given{};
   std::vector<user::Segment> segments;
@@ -119,7 +119,7 @@ void describe_frame(V& v, ScriptDraft& d) {
          "a walk needs frame base");
 }
 
-/// Gives the channels in this map to take(channel index, value).
+/// Calls take(channel index, value) for each channel in this map.
 template <class V, class Take>
 void describe_channels(V& v, const ScriptDraft& d, Take take) {
   for (const Channel& channel : d.channels) {

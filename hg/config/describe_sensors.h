@@ -6,7 +6,7 @@
 
 namespace hg::config {
 
-/// Keys of the same value for gyroscope and accelerometer.
+/// Keys of corresponding values of gyroscope and accelerometer.
 struct InertialKeys {
   const char *noise, *bias_instability, *random_walk, *bias, *temperature_drift, *range,
       *resolution;

@@ -27,15 +27,17 @@ struct StructureDraft {
   bool has_axis = false;
 };
 
-/// What stands in simulation.yaml, before it becomes a Simulation.
+/// Content of simulation.yaml, before it becomes a Simulation.
 struct SimulationDraft {
   Simulation simulation;
   double seed = 1.0;
   std::filesystem::path base, urdf;
-  std::vector<std::optional<StructureDraft>> structure;  ///< of the device's joints, where given
-  std::vector<std::string> joint_names;                  ///< of that URDF
-  std::vector<JointUnit> joint_units;                    ///< of that URDF
-  std::vector<std::optional<FlexibleDraft>> flexible;    ///< of its joints, where given
+  /// Structure per joint of the device, where given
+  std::vector<std::optional<StructureDraft>> structure;
+  std::vector<std::string> joint_names;  ///< joint names of that URDF
+  std::vector<JointUnit> joint_units;    ///< joint units of that URDF
+  /// Flexibility per joint of that URDF, where given
+  std::vector<std::optional<FlexibleDraft>> flexible;
 };
 
 template <class V>
@@ -146,7 +148,7 @@ void describe_base(V& v, SimulationDraft& draft) {
          "another simulation file: what this one does not say is as that one says");
 }
 
-/// The first part: what names the joints of the second.
+/// The first part, which defines the joint names that the second uses.
 template <class V>
 void describe_plant(V& v, SimulationDraft& draft) {
   constexpr double kLargestSeed = 9007199254740992.0;  // 2^53: a number of YAML is exact so far

@@ -25,9 +25,9 @@ inline constexpr std::array<Choice<SurfaceShape>, 5> kSurfaceShapes = {
      {"cylinder", SurfaceShape::kCylinder},
      {"mesh", SurfaceShape::kMesh}}};
 
-/// What stands under `surfaces`, before it becomes a Surface.
+/// Content of an item of `surfaces`, before it becomes a Surface.
 struct SurfaceDraft {
-  environment::Surface surface;  ///< without its shape, place and damping
+  environment::Surface surface;  ///< surface without its shape, place and damping
   SurfaceShape shape = SurfaceShape::kPlane;
   Eigen::Vector3d size = Eigen::Vector3d::Constant(kNoDefault);
   double radius = 0.0, length = 0.0, scale = 1.0;
@@ -96,7 +96,7 @@ void describe_surfaces(V& v, std::vector<SurfaceDraft>& surfaces) {
   v.rule(surfaces.size() <= environment::kMaxSurfaces, "surfaces", "at most 64 surfaces");
 }
 
-/// Reads the file of a mesh. Throws SetupError.
+/// The surface of a draft; reads the file of a mesh. Throws SetupError.
 environment::Surface surface_of(const SurfaceDraft& draft, SourceReader& reader);
 
 }  // namespace hg::config

@@ -8,7 +8,7 @@
 
 namespace hg::config {
 
-/// What stands in tool.yaml, before it becomes a Tool.
+/// Content of tool.yaml, before it becomes a Tool.
 struct ToolDraft {
   std::string name;
   double mass = 0.0;

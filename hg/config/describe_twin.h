@@ -33,7 +33,7 @@ struct TwinJoint {
   FloatingPart floating;
 };
 
-/// What stands in twin.yaml, before it becomes a Twin.
+/// Content of twin.yaml, before it becomes a Twin.
 struct TwinDraft {
   std::string name;
   std::filesystem::path urdf;
@@ -49,8 +49,8 @@ struct TwinDraft {
   double mass_scale = 1.0;
   std::vector<std::string> joint_names, frame_names;
   std::vector<TwinJoint> joints;
-  std::vector<std::string> scalar_names;  ///< of the joints that are not floating
-  std::vector<int> scalar_joints;         ///< their indices in joints
+  std::vector<std::string> scalar_names;  ///< names of the joints that are not floating
+  std::vector<int> scalar_joints;         ///< indices of these in `joints`
   int end_effector = -1;
   std::vector<rendering::Lock> locks;
   std::vector<rendering::ConditionalLimit> conditional_limits;
@@ -86,7 +86,7 @@ void describe_chain(V& v, TwinDraft& d) {
          "whether the root link of the URDF moves freely, by a joint 'root'");
 }
 
-/// What may change while the twin runs and belongs to no joint.
+/// Values that may change while the twin runs and belong to no joint.
 template <class V>
 void describe_reference_wrench(V& v, Eigen::Vector3d& force, Eigen::Vector3d& torque) {
   v.group(

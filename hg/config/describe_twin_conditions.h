@@ -10,7 +10,7 @@ namespace hg::config {
 
 inline constexpr JointKey kLockPosition = {"position_rad", "position_m"};
 
-/// Ranges of joints, all of which must hold.
+/// Ranges of joints that must all hold.
 template <class V>
 void describe_conditions(V& v, const char* key, const TwinDraft& d,
                          std::vector<rendering::JointCondition>& conditions, const char* text) {

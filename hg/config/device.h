@@ -24,7 +24,7 @@
 
 namespace hg::config {
 
-/// How a posture for a handle pose is found at the start.
+/// Method that finds a posture for a handle pose at the start.
 enum class Kinematics {
   kHapticGiant,  ///< closed form of [HANDBOOK] 2.3: two gantry axes, six joints
   kGeneric,      ///< numerically, for any device
@@ -35,10 +35,10 @@ struct Device {
   std::filesystem::path urdf;
   double rate_Hz = 1000.0;
   double floor_z = 0.0;    ///< height of the floor in B, m
-  bool has_floor = false;  ///< it is not only drawn but must not be hit
+  bool has_floor = false;  ///< collisions with the floor are watched; false = it is only drawn
   Kinematics kinematics = Kinematics::kGeneric;
   DriveModel drive;
-  control::Config control;  ///< its method is kDrives for a device without actuators
+  control::Config control;  ///< control, with method kDrives for a device without actuators
   Pose T_H_S;               ///< force/torque sensor S in the handle frame H
   rendering::DeviceModel model;
   rendering::Options rendering;
@@ -47,29 +47,29 @@ struct Device {
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
   passivity::Config passivity;
-  compliance::Config compliance;  ///< without period and torques of the joints
+  compliance::Config compliance;  ///< compliance, without period and joint torques
   StartTestConfig start_test;
-  collision::Config collision;             ///< no shapes: not watched
-  std::vector<std::string> unknown_links;  ///< moving, whose shape nobody knows
-  Simulation simulation;                   ///< of this device; without a file its defaults
-  SimulatedDevice simulated;               ///< what a simulation file has to fit
-  std::vector<SourceText> sources;         ///< the YAML file first
-  Places places;                           ///< of the keys of the YAML file
+  collision::Config collision;  ///< collision model; without shapes collisions are not watched
+  std::vector<std::string> unknown_links;  ///< moving links of unknown shape
+  Simulation simulation;                   ///< simulation of this device; defaults without a file
+  SimulatedDevice simulated;               ///< properties that a simulation file has to fit
+  std::vector<SourceText> sources;         ///< source texts, the YAML file first
+  Places places;                           ///< places of the keys of the YAML file
 };
 
-/// What follows from law, bounds and method of control: whether the law knows the torques of the
-/// motors. Of a scenario settle_law() in scenario.h.
+/// Sets the values that follow from law, bounds and control method: whether the law knows the motor
+/// torques. For a scenario, see settle_law() in scenario.h.
 void settle_law(Device& device);
 
-/// Changes the rate and all that follows from it. Throws SetupError when the drive's dead time
+/// Sets the rate and all values that follow from it. Throws SetupError when the drive's dead time
 /// would span too many periods.
 void set_rate(Device& device, double rate_Hz);
 
-/// The simulation of this file instead of that which the device names; its texts join those of the
-/// device. Throws SetupError as load_simulation() does.
+/// Replaces the device's simulation by that of this file; its texts join those of the device.
+/// Throws SetupError as load_simulation() does.
 void take_simulation(Device& device, const std::filesystem::path& file, SourceReader& reader);
 
-/// Throws SetupError with all faults of the file, one per line.
+/// Loads a device. Throws SetupError with all faults of the file, one per line.
 Device load_device(const std::filesystem::path& file);
 Device load_device(const std::filesystem::path& file, SourceReader& reader);
 

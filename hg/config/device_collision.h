@@ -1,4 +1,4 @@
-/// What of a device may touch something, from its URDF.
+/// Collision shapes of a device, from its URDF.
 #pragma once
 
 #include "hg/config/describe_device.h"
@@ -7,11 +7,11 @@
 
 namespace hg::config {
 
-/// Shapes and pairs into `device.collision`; the rest of `device` must be complete.
+/// Writes shapes and pairs into `device.collision`; the rest of `device` must be complete.
 void watch_collisions(const UrdfText& urdf, const model::ChainOptions& options,
                       const DeviceDraft& draft, Device& device);
 
-/// What follows from the period `dt`, s: how soon joints and gantry begin to brake.
+/// Sets the reaction time from the period `dt`, s: how soon joints and gantry begin to brake.
 void set_reaction(Device& device, double dt);
 
 }  // namespace hg::config

@@ -52,7 +52,7 @@ class DocWriter {
              std::string_view text, Need need = Need::kOptional);
   bool list(std::string_view key, const std::function<void(DocWriter&)>& write,
             std::string_view text, Need need = Need::kOptional);
-  /// Writes the thing with index 0, which stands for all of them.
+  /// Writes the item with index 0 as an example for all.
   bool groups_by_name(std::string_view key, Names names, std::string_view kind,
                       const std::function<void(DocWriter&, int index)>& write,
                       std::string_view text);

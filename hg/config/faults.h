@@ -1,4 +1,4 @@
-/// Collects everything that is wrong with one configuration file, to be told at once.
+/// Collects all faults of one configuration file, to report them together.
 #pragma once
 
 #include <map>
@@ -14,8 +14,8 @@ struct Place {
   int column = 1;
 };
 
-/// Where each key of a file stands, by its path: "joints.m1.q_max_rad", "virtual_joints[0]". A
-/// value that is a word or a number counts with its own place, a map or list with that of its key.
+/// Place of each key of a file, by its path: "joints.m1.q_max_rad", "virtual_joints[0]". A value
+/// that is a word or a number counts with its own place, a map or list with that of its key.
 class Places {
  public:
   /// The first place of an item counts.
@@ -29,12 +29,12 @@ class Places {
 
 class Faults {
  public:
-  /// `file` stands before every message.
+  /// Creates a collector; `file` is put before every message.
   explicit Faults(std::string file) : file_(std::move(file)) {}
 
-  /// "file:line:column: item: what".
+  /// Adds the fault "file:line:column: item: what".
   void add(Place place, std::string_view item, std::string_view what);
-  /// A message of another file or reader, which says itself where it belongs.
+  /// Adds a message of another file or reader that already contains its place.
   void add_complete(std::string_view message);
 
   std::size_t count() const noexcept { return faults_.size(); }

@@ -1,4 +1,4 @@
-/// Which kind of configuration file a file is, told from its keys.
+/// Kind of a configuration file, recognised by its keys.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@ enum class FileKind { kDevice, kTwin, kScenario, kScript, kTool, kSimulation };
 
 std::string_view to_string(FileKind kind) noexcept;
 
-/// The kind that has the most keys of the file as its own. Throws SetupError, "file:line:column:
-/// what", when the file is no YAML map or has no key that tells.
+/// The kind to which most keys of the file belong. Throws SetupError, "file:line:column: what",
+/// when the file is no YAML map or has no key that identifies a kind.
 FileKind kind_of(const std::filesystem::path& file, SourceReader& reader);
 
 }  // namespace hg::config

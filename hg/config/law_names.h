@@ -1,5 +1,5 @@
-/// Names of law, bounds, what moves the gantry, how limits are braked for, and what is done about
-/// passivity, in device.yaml and on the command line.
+/// Names of law, bounds, gantry guidance, braking before limits, and passivity reaction, in
+/// device.yaml and on the command line.
 #pragma once
 
 #include <array>

@@ -26,7 +26,7 @@ std::string in_quotes(std::string_view text) {
   return result += "'";
 }
 
-// What stands in the file, for "got ...".
+// Content of a node of the file, for "got ...".
 std::string shown(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Scalar:

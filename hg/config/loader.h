@@ -1,9 +1,8 @@
 /// Visitor that reads a described thing from one map of a YAML file.
 ///
-/// A description (describe_*.h) calls one function per key: key, field, what is allowed, and one
-/// line of text, which is for the reference page. The field keeps its value, the default, unless
-/// the key is given and right. Every function returns whether it was. Whatever is wrong goes into
-/// Faults.
+/// A description (describe_*.h) calls one function per key: key, field, allowed values, and one
+/// line of text for the reference page. The field keeps its value, the default, unless the key is
+/// given and valid. Every function returns whether it was. Faults are collected in Faults.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -28,7 +27,7 @@ struct LoaderFile {
   SourceReader& sources;
   Faults faults;
   Places places = {};
-  /// False: without a chain no joint or link has a name, and any name is taken as right.
+  /// False: without a chain no joint or link has a name, and any name is accepted.
   bool knows_names = true;
 };
 
@@ -41,21 +40,22 @@ class Loader {
 
   bool number(std::string_view key, double& value, const Range& range, std::string_view text,
               Need need = Need::kOptional);
-  /// A number whose key depends on the joint: rad family or m family; of an unknown joint either.
+  /// Reads a number whose key depends on the joint: rad family or m family; either for an unknown
+  /// joint.
   bool joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,
                     std::string_view text, Need need = Need::kOptional);
-  /// [x, y, z].
+  /// Reads a vector [x, y, z].
   bool vector(std::string_view key, Eigen::Vector3d& value, const Range& range,
               std::string_view text);
-  /// [xx, yy, zz] or [xx, yy, zz, xy, xz, yz].
+  /// Reads an inertia [xx, yy, zz] or [xx, yy, zz, xy, xz, yz].
   bool inertia(std::string_view key, Eigen::Matrix3d& value, std::string_view text);
   bool flag(std::string_view key, bool& value, std::string_view text);
   bool words(std::string_view key, std::string& value, std::string_view text,
              Need need = Need::kOptional);
-  /// An existing file; a relative path starts at the folder of this file.
+  /// Reads the path of an existing file; a relative path starts at the folder of this file.
   bool path(std::string_view key, std::filesystem::path& value, std::string_view text,
             Need need = Need::kOptional);
-  /// A file as above, or one of `choices`: it sets `choice` and leaves `value` alone.
+  /// Reads a path as above, or one of `choices`, which sets `choice` and leaves `value` unchanged.
   template <class T>
   bool path_or_choice(std::string_view key, std::filesystem::path& value, T& choice,
                       Choices<T> choices, std::string_view text, Need need = Need::kOptional) {
@@ -75,33 +75,33 @@ class Loader {
     value = choices[static_cast<std::size_t>(index)].value;
     return true;
   }
-  /// Index in `names`; `kind` says what they are, for example "a joint".
+  /// Reads a name as its index in `names`; `kind` describes them, for example "a joint".
   bool name(std::string_view key, int& index, Names names, std::string_view kind,
             std::string_view text, Need need = Need::kOptional);
-  /// A list of names, each at most once.
+  /// Reads a list of names, each at most once.
   bool names(std::string_view key, std::vector<int>& indices, Names names, std::string_view kind,
              std::string_view text, Need need = Need::kOptional);
 
-  /// A map with keys of its own.
+  /// Reads a map with keys of its own.
   bool group(std::string_view key, const std::function<void(Loader&)>& read, std::string_view text,
              Need need = Need::kOptional);
-  /// A list of maps; `read` is called for each.
+  /// Reads a list of maps; `read` is called for each.
   bool list(std::string_view key, const std::function<void(Loader&)>& read, std::string_view text,
             Need need = Need::kOptional);
-  /// A map of maps, keyed by some of `names`.
+  /// Reads a map of maps, keyed by some of `names`.
   bool groups_by_name(std::string_view key, Names names, std::string_view kind,
                       const std::function<void(Loader&, int index)>& read, std::string_view text);
-  /// A map of numbers without a unit, keyed by some of `names`.
+  /// Reads a map of numbers without a unit, keyed by some of `names`.
   bool numbers_by_name(std::string_view key, Names names, std::string_view kind, const Range& range,
                        const std::function<void(int index, double value)>& read,
                        std::string_view text);
 
-  /// What concerns more than one value: `what` must hold. Reported at `key`, or at the map if the
-  /// key is not given; below the top map only where nothing else is wrong, so that one fault does
-  /// not cause another.
+  /// Checks a rule on more than one value: `what` must hold. A fault is reported at `key`, or at
+  /// the map if the key is not given; below the top map only if there is no other fault, so that
+  /// one fault does not cause another.
   void rule(bool holds, std::string_view key, std::string_view what, std::string_view got = {});
   bool is_given(std::string_view key) const;
-  /// Whether the thing at hand has the keys that follow; the reference page shows them always.
+  /// Whether the keys that follow apply to the current item; the reference page always shows them.
   bool covers(bool applies) const { return applies; }
 
   /// Reports the keys that no function has asked for, and broken rules. Called last.
@@ -145,11 +145,11 @@ class Loader {
   LoaderFile& file_;
   std::vector<Entry> entries_;
   std::vector<std::string> known_keys_;
-  std::size_t faults_before_;  ///< in the file, before this map
+  std::size_t faults_before_;  ///< number of faults in the file before this map
   std::vector<BrokenRule> broken_rules_;
 };
 
-/// Keys of the file's top map, in its order. Throws SetupError when it is no YAML map.
+/// Reads the keys of the file's top map, in its order. Throws SetupError when it is no YAML map.
 std::vector<std::string> read_keys(LoaderFile& file);
 
 /// Reads the file and lets `read` visit its top map. Throws SetupError with all faults at once.

@@ -10,8 +10,8 @@
 namespace hg::config {
 namespace {
 
-// Sizes between which every machine that makes sense has its values; 0 is allowed as well where a
-// description allows it.
+// Bounds on the magnitude of values of any plausible machine; 0 is also allowed where a description
+// allows it.
 struct Sizes {
   double least, largest;
 };

@@ -1,8 +1,8 @@
-/// What a number in a configuration file may be, and the unit that its key carries.
+/// Allowed values of numbers in configuration files, and the units in their keys.
 ///
 /// Keys end in their unit: `q_max_rad`, `stiffness_N_per_m`; a key without a known suffix has no
-/// unit. A unit says how large and how small its values may be in any machine that makes sense; a
-/// description narrows that where a key needs it, and must do so where there is no unit.
+/// unit. A unit bounds its values to those of any plausible machine; a description narrows that
+/// where a key needs it, and must do so where there is no unit.
 #pragma once
 
 #include <limits>
@@ -17,15 +17,16 @@ namespace hg::config {
 
 enum class Need { kOptional, kRequired };
 
-/// What a description says about a number; the unit of its key does the rest.
+/// Range of a number as given by a description; the unit of its key adds its own bounds.
 struct Range {
   double lb = -kInfinity;
   double ub = kInfinity;
-  bool excludes_lb = false;      ///< with lb 0: a positive number, from the least of its unit on
+  /// Excludes lb 0: a positive number, at least the smallest of its unit
+  bool excludes_lb = false;
   bool allows_infinity = false;  ///< ".inf" stands for "no limit"
 };
 
-/// Default of a number that has none: it only counts when it is given.
+/// Marks a number without default: it counts only when given.
 inline constexpr double kNoDefault = std::numeric_limits<double>::quiet_NaN();
 
 inline constexpr Range kAnyNumber = {};
@@ -34,11 +35,11 @@ inline constexpr Range kNotNegative = {.lb = 0.0};
 inline constexpr Range kUnlimited = {.allows_infinity = true};
 inline constexpr Range kPositiveOrNone = {.lb = 0.0, .excludes_lb = true, .allows_infinity = true};
 
-// of numbers without a unit
-inline constexpr Range kFactor = {.lb = 1e-3, .ub = 1e3};     ///< true over told
+// ranges of numbers without a unit
+inline constexpr Range kFactor = {.lb = 1e-3, .ub = 1e3};     ///< true value over assumed value
 inline constexpr Range kTolerance = {.lb = 1e-6, .ub = 1e6};  ///< share or multiple of a rating
 inline constexpr Range kFromOne = {.lb = 1.0, .ub = 1e6};     ///< multiple of a rating
-inline constexpr Range kShare = {.lb = 0.0, .ub = 1e3};       ///< of a full scale, of a load
+inline constexpr Range kShare = {.lb = 0.0, .ub = 1e3};       ///< share of a full scale or a load
 inline constexpr Range kShareOrNone = {.lb = 1e-6, .ub = 1e3, .allows_infinity = true};
 inline constexpr Range kCount = {.lb = 0.0, .ub = 1e6};
 /// Position of a joint in rad or m, under a key that is its name.
@@ -47,12 +48,12 @@ inline constexpr Range kJointPosition = {.lb = -1e3, .ub = 1e3};
 /// The allowed values of a number: finite ends always, NaN never.
 class Bounds {
  public:
-  /// `range` within what the unit of `key` allows. Throws std::logic_error where that leaves an end
-  /// open: the description must give it.
+  /// Intersects `range` with what the unit of `key` allows. Throws std::logic_error if an end
+  /// remains open: the description must give it.
   Bounds(const Range& range, std::string_view key);
 
   bool contains(double value) const noexcept;
-  /// For example "0 .. 1" or "1e-09 .. 1000 or .inf".
+  /// The bounds as text, for example "0 .. 1" or "1e-09 .. 1000 or .inf".
   std::string text() const;
 
  private:
@@ -60,10 +61,10 @@ class Bounds {
   bool allows_infinity_;
 };
 
-/// "rad/s^2" for "ddq_max_rad_per_s2"; empty if the key names no unit.
+/// Unit named by a key: "rad/s^2" for "ddq_max_rad_per_s2"; empty if there is none.
 std::string_view unit_of(std::string_view key) noexcept;
 
-/// What a joint's position is measured in; kEither stands for any joint on the reference page.
+/// Kind of unit of a joint's position; kEither stands for any joint on the reference page.
 enum class JointUnit { kAngle, kLength, kEither };
 
 /// The two spellings of a key that belongs to a joint: rad family and m family.

@@ -1,6 +1,6 @@
 /// Chains from the URDFs that configuration files name.
 ///
-/// Where there is no chain the fault is told, and the rest of the file is read without the names of
+/// Without a chain the fault is reported, and the rest of the file is read without the names of
 /// joints and links: LoaderFile::knows_names.
 #pragma once
 
@@ -21,16 +21,17 @@ struct UrdfText {
   std::vector<std::string> link_names;
 };
 
-/// Empty, and told, where `urdf` cannot be read; an empty path has been told before.
+/// Reads a URDF. Empty, with a fault reported, if it cannot be read; an empty path was reported
+/// before.
 std::optional<UrdfText> read_urdf(LoaderFile& file, const std::filesystem::path& urdf);
 
-/// Notes that there is no chain, for a reason that has been told.
+/// Records that there is no chain, for a reason already reported.
 std::optional<model::Chain> no_chain(LoaderFile& file);
 
-/// The name with this index; empty for -1.
+/// Name with this index; empty for -1.
 std::string name_of(const std::vector<std::string>& names, int index);
 
-/// Empty, and told, where the URDF holds no such chain.
+/// Builds a chain from the URDF. Empty, with a fault reported, if the URDF holds no such chain.
 std::optional<model::Chain> read_chain(LoaderFile& file, const UrdfText& urdf,
                                        const model::ChainOptions& options);
 

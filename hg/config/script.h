@@ -15,14 +15,14 @@ namespace hg::config {
 struct Script {
   user::HandImpedance hand;
   user::Script script;
-  /// Pose channels whose start value is in the file. The others start where the twin starts: who
-  /// builds the run fills them in.
+  /// Pose channels whose start value is in the file. The others start where the twin starts and are
+  /// filled in when the run is built.
   std::array<bool, user::kPoseChannels> start_given{};
   std::vector<SourceText> sources;
 };
 
-/// The channels of frame twin_joints are the joints of `twin`. Throws SetupError with all faults of
-/// the file, one per line.
+/// Loads a script. The channels of frame twin_joints are the joints of `twin`. Throws SetupError
+/// with all faults of the file, one per line.
 Script load_script(const std::filesystem::path& file, const rendering::TwinModel& twin);
 Script load_script(const std::filesystem::path& file, const rendering::TwinModel& twin,
                    SourceReader& reader);

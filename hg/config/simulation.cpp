@@ -67,7 +67,7 @@ void take_plant(Loader& loader, const SimulatedDevice& device, SimulationDraft& 
               "urdf", "must have the handle of the device", "no link '" + device.handle + "'");
 }
 
-constexpr char kSuffix[] = "_structure";  // of a joint that yields
+constexpr char kSuffix[] = "_structure";  // suffix for the name of a joint that yields
 
 // The chain of the device with a joint where its structure yields; its stiffness from the inertia
 // that it carries.

@@ -1,4 +1,4 @@
-/// How the simulated machine differs from what the controller is told, and its sensors, from a YAML
+/// Sensors of the simulated machine and its differences from the controller's model, from a YAML
 /// file: simulation.yaml, described in docs/configuration.md.
 #pragma once
 
@@ -22,76 +22,76 @@ namespace hg::config {
 
 /// True values over those of the device file and its URDF, all > 0.
 struct RealityFactors {
-  double stiffness = 1.0;      ///< of the joints
-  double damping = 1.0;        ///< parallel to it
-  double friction = 1.0;       ///< Coulomb, viscous and load-dependent
-  double rotor_inertia = 1.0;  ///< of the motors
-  double mass = 1.0;           ///< of all links, with their inertia
-  double payload = 1.0;        ///< of what hangs beyond the force/torque sensor
-  double latency = 1.0;        ///< of the torque loop
-  double current_lag = 1.0;    ///< of the motors
-  double gantry_lag = 1.0;     ///< of its drives
+  double stiffness = 1.0;      ///< stiffness of the joints
+  double damping = 1.0;        ///< damping parallel to the joint stiffness
+  double friction = 1.0;       ///< Coulomb, viscous and load-dependent friction
+  double rotor_inertia = 1.0;  ///< rotor inertia of the motors
+  double mass = 1.0;           ///< mass of all links, with their inertia
+  double payload = 1.0;        ///< payload beyond the force/torque sensor
+  double latency = 1.0;        ///< latency of the torque loop
+  double current_lag = 1.0;    ///< current lag of the motors
+  double gantry_lag = 1.0;     ///< lag of the gantry's drives
 };
 
-/// What motors do that a pure torque source does not. Shares are of the joint's peak torque.
+/// Effects of motors beyond a pure torque source. Shares are of the joint's peak torque.
 struct MotorEffects {
-  double cogging = 0.0;          ///< amplitude, share
-  double cogging_per_turn = 24;  ///< periods per turn of the motor
-  double ripple = 0.0;           ///< amplitude, share of the torque of the moment
-  double ripple_per_turn = 6;    ///< periods per turn of the motor
+  double cogging = 0.0;          ///< cogging amplitude, share
+  double cogging_per_turn = 24;  ///< cogging periods per turn of the motor
+  double ripple = 0.0;           ///< ripple amplitude, share of the present torque
+  double ripple_per_turn = 6;    ///< ripple periods per turn of the motor
 };
 
-/// What gears do that a linear spring with Coulomb friction does not; angles at their output.
+/// Effects of gears beyond a linear spring with Coulomb friction; angles at their output.
 struct GearEffects {
-  double presliding = 0.0;                ///< way until all of the Coulomb friction slips, rad
-  double presliding_damping_ratio = 0.0;  ///< of the rotor on its bristles
-  double presliding_elements = 1.0;       ///< 1..kMaxBristles
-  double backlash = 0.0;                  ///< from flank to flank, rad
+  double presliding = 0.0;  ///< displacement until all of the Coulomb friction slips, rad
+  double presliding_damping_ratio = 0.0;  ///< damping ratio of the rotor on its bristles
+  double presliding_elements = 1.0;       ///< number of elements, 1..kMaxBristles
+  double backlash = 0.0;                  ///< backlash from flank to flank, rad
   double hysteresis = 0.0;                ///< friction parallel to the spring, share of peak torque
-  double hysteresis_angle = 1e-4;         ///< twist at which it slips, rad, > 0
+  double hysteresis_angle = 1e-4;         ///< twist at which the hysteresis slips, rad, > 0
 };
 
-/// As the plant takes them, for a joint of this actuator.
+/// Joint effects in the form of the plant, for a joint of this actuator.
 simulation::JointEffects effects_of(const ActuatorModel& actuator, const MotorEffects& motors,
                                     const GearEffects& gears, double gear_ratio);
 
-/// What is really the case where the device file says `told`.
+/// Actual model where the device file says `told`.
 ActuatorModel actual(ActuatorModel told, const RealityFactors& factors);
 TorqueLoop actual(TorqueLoop told, const RealityFactors& factors);
 DriveModel actual(DriveModel told, const RealityFactors& factors);
 Payload actual(Payload told, const RealityFactors& factors);
 
 struct Simulation {
-  bool is_from_file = false;  ///< false: there is none, all is as the device file says
+  bool is_from_file = false;  ///< false: no simulation file, the device file is exact
   double step_s = 0.25e-3;    ///< largest step of the plant; a period is a whole number of steps
   std::uint64_t seed = 1;
   RealityFactors factors;
-  double stop_distance_angle = 0.05;   ///< of the end stops beyond the limits, rad
-  double stop_distance_length = 0.02;  ///< the same of prismatic joints, m
+  double stop_distance_angle = 0.05;   ///< distance of the end stops beyond the limits, rad
+  double stop_distance_length = 0.02;  ///< distance of the end stops of prismatic joints, m
   simulation::EndStopModel end_stop;
-  simulation::SensorsConfig sensors;  ///< with `seed`
+  simulation::SensorsConfig sensors;  ///< sensors, seeded with `seed`
   simulation::SafetyPlcConfig safety;
-  VectorM gear_ratio;  ///< of the manipulator joints
+  VectorM gear_ratio;  ///< gear ratio per manipulator joint
   MotorEffects motors;
   GearEffects gears;
-  std::vector<simulation::Waviness> waviness;  ///< per axis of the gantry; empty = none
+  std::vector<simulation::Waviness> waviness;  ///< waviness per axis of the gantry; empty = none
 
   /// A plant with more joints than the controller's model, from `urdf` or with those of
   /// `structure`; without it the chain of the device.
   std::optional<model::Chain> chain;
-  std::vector<int> gantry, manipulator;  ///< indices of its joints, in the device's order
-  std::vector<simulation::FlexibleJoint> flexible;  ///< all its other joints
+  std::vector<int> gantry, manipulator;  ///< indices of the chain's joints, in the device's order
+  std::vector<simulation::FlexibleJoint> flexible;  ///< all other joints of the chain
 };
 
-/// The device that a simulation file belongs to. Without names of joints they are not checked.
+/// The device that a simulation file belongs to. Without joint names, names are not checked.
 struct SimulatedDevice {
-  std::vector<std::string> gantry, manipulator;  ///< names of its joints
-  std::string handle;                            ///< name of its frame H
-  model::ChainOptions chain;                     ///< with which its URDF was read
+  std::vector<std::string> gantry, manipulator;  ///< joint names
+  std::string handle;                            ///< name of the frame H
+  model::ChainOptions chain;                     ///< options with which its URDF was read
   std::filesystem::path urdf;
 };
 
-/// Throws SetupError with all faults of the file, one per line.
+/// Loads a simulation. Throws SetupError with all faults of the file, one per line.
 Simulation load_simulation(const std::filesystem::path& file, SourceReader& reader,
                            const SimulatedDevice& device);
 

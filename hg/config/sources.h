@@ -1,4 +1,4 @@
-/// The texts that a configuration was made from: read from disk, or from a recording.
+/// Source texts of a configuration: read from disk, or from a recording.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ struct SourceText {
   std::string content;
 };
 
-/// Reads files and remembers what it has read.
+/// Reads files and keeps their texts.
 class SourceReader {
  public:
   /// Reads from disk.
@@ -28,7 +28,7 @@ class SourceReader {
 
   /// Everything read so far, in order.
   const std::vector<SourceText>& texts() const noexcept { return texts_; }
-  /// What has been read since texts() had `count` entries.
+  /// Texts read since texts() had `count` entries.
   std::vector<SourceText> since(std::size_t count) const;
 
  private:

@@ -1,4 +1,4 @@
-/// A tool from its YAML file: what the user holds, described in docs/configuration.md.
+/// A tool, held by the user, from its YAML file, described in docs/configuration.md.
 #pragma once
 
 #include <filesystem>
@@ -12,12 +12,12 @@ namespace hg::config {
 
 struct Tool {
   std::string name;
-  model::Tool body;  ///< without its link
+  model::Tool body;  ///< body of the tool, without its link
   Pose T_H_S;        ///< force/torque sensor S in the handle frame H
   bool has_dead_man = true;
 };
 
-/// Throws SetupError with all faults of the file, one per line.
+/// Loads a tool. Throws SetupError with all faults of the file, one per line.
 Tool load_tool(const std::filesystem::path& file, SourceReader& reader);
 
 }  // namespace hg::config

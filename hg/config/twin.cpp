@@ -28,7 +28,7 @@ std::optional<model::Chain> make_free_body(LoaderFile& file, TwinDraft& draft,
 }
 
 std::optional<model::Chain> make_chain(LoaderFile& file, Loader& loader, TwinDraft& draft) {
-  // that of a free body is only drawn, but a recording needs it, too
+  // the URDF of a free body is only drawn, but a recording needs it, too
   const bool has_urdf = !draft.is_free_body || !draft.urdf.empty();
   const std::optional<UrdfText> urdf =
       has_urdf ? read_urdf(file, draft.urdf) : std::optional<UrdfText>();

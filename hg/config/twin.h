@@ -12,25 +12,25 @@
 
 namespace hg::config {
 
-/// What a page draws around a twin; none of it can be felt.
+/// Scenery that a page draws around a twin; it cannot be felt.
 enum class Surroundings { kRoom, kDoor, kExcavator };
 
 struct Twin {
   std::string name;
-  std::filesystem::path urdf;  ///< what a page draws; empty for a free body without one
+  std::filesystem::path urdf;  ///< URDF that a page draws; empty for a free body without one
   Surroundings surroundings = Surroundings::kRoom;
   Pose T_B_root;  ///< placement of the root link
   rendering::TwinModel model;
-  std::vector<SourceText> sources;  ///< the YAML file first
-  Places places;                    ///< of the keys of the YAML file
+  std::vector<SourceText> sources;  ///< source texts, the YAML file first
+  Places places;                    ///< places of the keys of the YAML file
 };
 
-/// Throws SetupError with all faults of the file, one per line.
+/// Loads a twin. Throws SetupError with all faults of the file, one per line.
 Twin load_twin(const std::filesystem::path& file);
 Twin load_twin(const std::filesystem::path& file, SourceReader& reader);
 
-/// Pose from what people can say about a hand: position in B, heading of the forearm, tilt s = q4 +
-/// q5 and roll q6 of the HapticGiant: R = Rz(azimuth) Ry(pi - pitch) Rz(pi + roll).
+/// Pose of a hand in intuitive parameters: position in B, heading of the forearm, tilt s = q4 + q5
+/// and roll q6 of the HapticGiant: R = Rz(azimuth) Ry(pi - pitch) Rz(pi + roll).
 struct HandPose {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   double azimuth = 0.0;
@@ -38,7 +38,7 @@ struct HandPose {
   double roll = 0.0;
 };
 Pose pose_of(const HandPose& hand);
-/// The hand of a pose, pitch in [0, pi]; at 0 and pi, where only a sum is determined, roll is 0.
+/// Hand pose of a pose, pitch in [0, pi]; at 0 and pi, where only a sum is determined, roll is 0.
 HandPose hand_of(const Pose& pose);
 
 }  // namespace hg::config

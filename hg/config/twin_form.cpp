@@ -122,7 +122,7 @@ double value_of(const rendering::TwinModel& twin, const ParameterChange& change)
   return 0.0;
 }
 
-// what a person can tell from nothing and still likes to hold
+// usual largest value: perceptible and still comfortable to hold
 double usual_largest(std::string_view unit) {
   constexpr std::pair<std::string_view, double> kLargest[] = {
       {"Nm/rad", 100.0}, {"N/m", 2000.0}, {"Nms/rad", 20.0},     {"Ns/m", 200.0},
@@ -159,7 +159,7 @@ std::string label_of(std::string_view key) {
     component = key.substr(key.size() - 1);
     key.remove_suffix(2);
   }
-  key.remove_prefix(key.find('.') + 1);  // of a group; npos + 1 is 0
+  key.remove_prefix(key.find('.') + 1);  // removes the group; npos + 1 is 0
   for (const std::string_view suffix :
        {"_Nms2_per_rad2", "_Ns2_per_m2", "_Nms_per_rad", "_Ns_per_m", "_Nm_per_rad", "_N_per_m",
         "_rad_per_s", "_m_per_s", "_Nm", "_N", "_rad", "_m"}) {

@@ -12,25 +12,26 @@
 namespace hg::config {
 
 struct FormField {
-  std::string name;   ///< "hinge.damping_Nms_per_rad": joint, key and for vectors the component
-  std::string group;  ///< the joint; empty for the whole twin
-  std::string label;  ///< "damping"
+  /// Name such as "hinge.damping_Nms_per_rad": joint, key and for vectors the component
+  std::string name;
+  std::string group;  ///< name of the joint; empty for the whole twin
+  std::string label;  ///< label such as "damping"
   std::string unit;
   std::string help;
-  double min = 0.0, max = 0.0;  ///< of what a person may choose, both included
-  double value = 0.0;           ///< as the twin is set up; may be infinite
+  double min = 0.0, max = 0.0;  ///< range that a person may choose from, ends included
+  double value = 0.0;           ///< value as the twin is set up; may be infinite
   double step = 0.0;
-  std::vector<ParameterChange> changes;  ///< that set it, all to the same value
+  std::vector<ParameterChange> changes;  ///< changes that set the field, all to the same value
 };
 
-/// Fields of all joints, then those of the whole twin. Where the configuration has no upper end,
-/// ten times the value or a force that a person still likes to hold takes its place.
+/// Fields of all joints, then those of the whole twin. If the configuration has no upper end, ten
+/// times the value or a force that is still comfortable to hold is used.
 std::vector<FormField> twin_form(const rendering::TwinModel& twin);
 
 /// Index of the field that `change` concerns; -1 = none.
 int field_of(const std::vector<FormField>& form, const ParameterChange& change) noexcept;
 
-/// Why `value` may not be set while the others are `values` (one per field); empty: it may.
+/// Reason why `value` may not be set while the others are `values` (one per field); empty = it may.
 std::string refusal(const std::vector<FormField>& form, int field, double value,
                     const std::vector<double>& values);
 

@@ -18,7 +18,7 @@ constexpr double kLatencyMargin = 0.5;     // periods; with gains for one period
 constexpr double kLateFor = 0.05;          // s; a device hears no command for as long, too
 constexpr double kDisturbedFor = 0.005;    // s; three frames that were filled in are less
 constexpr double kFeedforwardShare = 0.7;  // of the peak torque, the rest is for feedback
-constexpr double kUnexplained_s = 0.1;     // over which unexplained torques are averaged
+constexpr double kUnexplained_s = 0.1;     // averaging time of unexplained torques
 const double kFastestFilter = std::sqrt(5.0) - 1.0;  // rad per period, see largest_flatness_Hz()
 constexpr double kSlides = 0.5;          // share of friction_speed's tanh from which a joint slides
 constexpr double kSlips = 0.999;         // share of all bristles that slip, up to rounding
@@ -40,8 +40,8 @@ double age_of(const SensorFrame& sensors) noexcept {
 
 }  // namespace
 
-// The eigenvalues of the filter in follow_torque() with z = 2 pi flatness / rate have the product
-// 1 - z and the sum 2 - z - z^2: within the unit circle while 4 - 2 z - z^2 > 0.
+// The eigenvalues of the filter in follow_torque() with z = 2 pi flatness / rate have the product 1
+// - z and the sum 2 - z - z^2: within the unit circle while 4 - 2 z - z^2 > 0.
 double largest_flatness_Hz(double rate_Hz) noexcept {
   return kFastestFilter * rate_Hz / (2.0 * std::numbers::pi);
 }
@@ -128,8 +128,8 @@ Fault JointControl::link_disturbance(const SensorFrame& sensors,
   return state.late * config_.dt < kDisturbedFor ? Fault{} : link_fault(sensors, state);
 }
 
-// The command at work is from before it became late: none has come since. Where it is younger they
-// come, but late; where it is not late at all they come again.
+// Commands are lost when the command at work dates from before it became late: none has arrived
+// since. Where it is younger they arrive late; where it is not late at all they arrive again.
 Fault JointControl::link_fault(const SensorFrame& sensors, const State& state) const noexcept {
   const double age = age_of(sensors), most = state.latency + kLatencyMargin;
   const bool has_grown = age < 0.0 || (age > most && age < state.late);
@@ -267,9 +267,9 @@ VectorM JointControl::of_stiff_modes(const VectorM& tau, const VectorM& shares,
   return of_modes(in_modes.cwiseProduct(shares), state);
 }
 
-// What sensor, filter and springs make late of the user's wrench is made up for by where it is
-// going. Stiff modes follow soon enough without, and would pass the noise of the sensor on to the
-// handle: they get what is slow.
+// Compensates the delay of the user's wrench by sensor, filter and springs with its rate of change.
+// Stiff modes are fast enough without, and would pass the sensor's noise on to the handle: they get
+// the low-passed part.
 VectorM JointControl::timely(const VectorM& tau, const RobotState& robot,
                              State& state) const noexcept {
   const Vector6 rate = (robot.w_H - state.w_H) / config_.dt;
@@ -306,7 +306,7 @@ void JointControl::follow_torque(const VectorM& tau, State& state) const noexcep
   }
 }
 
-// While a motor has no more to give, what has been integrated may only shrink.
+// While a motor is saturated, the integral may only shrink.
 void JointControl::integrate(const VectorM& error, State& state) const noexcept {
   for (int i = 0; i < n_m_; ++i) {
     double& integral = state.integral[i];

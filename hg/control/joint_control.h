@@ -1,4 +1,4 @@
-/// From the reference of the manipulator to the commands of its drives.
+/// Control of the manipulator joints: from the reference to the commands of the drives.
 ///
 /// Drives that follow a position get the reference itself. Series elastic joints get motor torques:
 /// feedforward of everything the model knows (weight, inertia, gantry, user, friction, and the
@@ -23,7 +23,7 @@ inline constexpr int kAnswersNeeded = 100;  ///< samples until the latency count
 inline constexpr double kMostFriction = 2.0;
 
 enum class Method {
-  kDrives,   ///< the drives follow the reference by themselves
+  kDrives,   ///< the drives follow the reference autonomously
   kModal,    ///< full-state feedback in the modes of the arm
   kMotorPd,  ///< stiffness and damping on the motor side of each joint alone
 };
@@ -32,26 +32,29 @@ enum class Method {
 struct Config {
   double dt = 1e-3;  ///< period, s
   Method method = Method::kDrives;
-  std::vector<ActuatorModel> actuators;  ///< one per manipulator joint; empty with kDrives
-  TorqueLoop loop;                       ///< its latency is measured, this one is expected
-  double latency_max = kInfinity;        ///< measured, with which the loop is known to be stable, s
-  double integral_rate = 2.0;            ///< of kModal: error of the links goes with it, 1/s
-  double integral_max = 3.5e-4;          ///< of the link error, rad s: no wind-up beyond
-  Poles poles;                           ///< of kModal, without latency
-  double flatness_Hz = 40.0;       ///< low-pass of derivatives of feedforward torques; check()
-  double wrench_lead = 0.0;        ///< of kModal: the user's wrench is fed forward so much early, s
-  double lead_low_pass_Hz = 65.0;  ///< of the wrench's rate of change for that
-  double stiff_low_pass_Hz = 0.0;  ///< of kModal: of what is fed forward to stiff modes; 0 = none
-  double error_max = kInfinity;    ///< by which the reference may be ahead, rad or m
-  double friction_share = 0.8;     ///< of the Coulomb friction that is fed forward, 0..1
-  double friction_speed = 0.01;    ///< rad/s over which it changes its sign, without presliding
-  double friction_learning = 1.0;  ///< of kModal: rate at which the true friction is learnt, 1/s
+  /// Actuators, one per manipulator joint; empty with kDrives.
+  std::vector<ActuatorModel> actuators;
+  TorqueLoop loop;  ///< Torque loop with the expected latency; the true latency is measured
+  /// Largest measured latency with which the loop is known to be stable, s.
+  double latency_max = kInfinity;
+  double integral_rate = 2.0;      ///< kModal: decay rate of the link error, 1/s
+  double integral_max = 3.5e-4;    ///< Largest integral of the link error, rad s: no wind-up beyond
+  Poles poles;                     ///< kModal: poles without latency
+  double flatness_Hz = 40.0;       ///< Low-pass of derivatives of feedforward torques; see check()
+  double wrench_lead = 0.0;        ///< kModal: lead of the user's wrench in the feedforward, s
+  double lead_low_pass_Hz = 65.0;  ///< Low-pass of the wrench's rate of change for that lead
+  double stiff_low_pass_Hz = 0.0;  ///< kModal: low-pass of the feedforward to stiff modes; 0 = none
+  double error_max = kInfinity;    ///< Largest lead of the reference over the joint, rad or m
+  double friction_share = 0.8;     ///< Share of the Coulomb friction that is fed forward, 0..1
+  /// Speed over which the fed-forward friction changes its sign, without presliding, rad/s.
+  double friction_speed = 0.01;
+  double friction_learning = 1.0;  ///< kModal: rate at which the true friction is learnt, 1/s
 };
 
-/// Largest flatness_Hz of a loop with `rate_Hz`: beyond, what is fed forward oscillates by itself.
+/// Largest flatness_Hz of a loop with `rate_Hz`; beyond it the feedforward filter is unstable.
 double largest_flatness_Hz(double rate_Hz) noexcept;
 
-/// Largest expected latency: that a loop with more is stable nobody checks.
+/// Largest expected latency; stability with more is not checked.
 inline constexpr int kMostLatency = 64;  // periods
 
 /// Throws SetupError where the period is too long for flatness_Hz or too short for the latency.
@@ -60,18 +63,18 @@ void check(const Config& config);
 /// Part of the copyable state of a cycle.
 struct State {
   bool is_started = false;
-  double latency = 0.0;  ///< mean of what was measured while the drives were off, periods
-  int answers = 0;       ///< samples that this mean is made of, counted up to kAnswersNeeded
-  int late = 0;          ///< samples with old commands over those without, drives on; >= 0
-  Poles poles;           ///< that the latency allows; chosen at the start
+  double latency = 0.0;  ///< Mean latency measured while the drives were off, periods
+  int answers = 0;       ///< Samples in that mean, counted up to kAnswersNeeded
+  int late = 0;          ///< Samples with old commands minus those without, drives on; >= 0
+  Poles poles;           ///< Poles that the latency allows; chosen at the start
   Modes modes;
-  VectorM integral;  ///< of q_r - q, rad s
-  VectorM friction;  ///< what is fed forward over the Coulomb friction of the configuration
-  VectorM tau_r, dtau_r, ddtau_r;  ///< feedforward torque of the links and its derivatives
-  Vector6 w_H = Vector6::Zero();   ///< the user's wrench of the last sample
-  Vector6 dw_H = Vector6::Zero();  ///< its rate of change, low-passed
-  VectorM stiff;                   ///< low-passed torques of stiff modes, Nm
-  BristleFeet feet;                ///< of the friction fed forward; empty: no joint has presliding
+  VectorM integral;  ///< Integral of q_r - q, rad s
+  VectorM friction;  ///< Fed-forward friction over the Coulomb friction of the configuration
+  VectorM tau_r, dtau_r, ddtau_r;  ///< Feedforward torque of the links and its derivatives
+  Vector6 w_H = Vector6::Zero();   ///< User's wrench in the last sample
+  Vector6 dw_H = Vector6::Zero();  ///< Rate of change of the user's wrench, low-passed
+  VectorM stiff;                   ///< Torques of stiff modes, low-passed, Nm
+  BristleFeet feet;  ///< Bristle feet of the friction fed forward; empty: no joint has presliding
   /// Joint torques that reference and user's wrench do not explain, a moving mean, Nm.
   VectorM unexplained;
   bool is_saturated = false;
@@ -84,27 +87,27 @@ class JointControl {
   JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
 
   State start() const;
-  /// After a fault: as at the start, but for the latency that was measured.
+  /// Resets the state after a fault, except for the measured latency.
   void restart(State& state) const noexcept;
-  /// Once per sample, with drives `on` or off: how old is the command that is at work? Off, the
-  /// latency is learnt from that; on, it is watched.
+  /// Evaluates the age of the command at work; call once per sample, with drives `on` or off. Off,
+  /// the latency is learnt from it; on, it is monitored.
   void listen(const SensorFrame& sensors, bool on, State& state) const noexcept;
   /// Whether enough commands were answered to know the latency, or there is no torque loop.
   bool is_latency_known(const State& state) const noexcept {
     return config_.method == Method::kDrives || state.answers >= kAnswersNeeded;
   }
-  /// Whether the loop may be closed with the latency that was measured, or there is none.
+  /// Whether the loop is stable with the measured latency; true without a torque loop.
   bool is_stable(const State& state) const noexcept {
     return config_.method == Method::kDrives || state.latency * config_.dt <= config_.latency_max;
   }
-  /// kCommandsLost or kLatencyGrew when the command at work was half a period older than the
-  /// latency that the gains know in 50 ms more of samples than it was not; kNone otherwise, and
-  /// where there is no torque loop.
+  /// kCommandsLost or kLatencyGrew once the samples with a command more than half a period older
+  /// than the latency assumed by the gains outnumber the others by 50 ms; kNone otherwise, and
+  /// without a torque loop.
   Fault check_latency(const SensorFrame& sensors, const State& state) const noexcept;
-  /// The same from 5 ms on, of any device that answers: enough to be why it does not move as
-  /// commanded.
+  /// Like check_latency(), but from 5 ms on and for any device that answers: enough to explain why
+  /// the device does not move as commanded.
   Fault link_disturbance(const SensorFrame& sensors, const State& state) const noexcept;
-  /// Drives are off: the next step begins anew.
+  /// Fills `command` while the drives are off and resets the control for the next step().
   void rest(const ReferenceState& reference, State& state, CommandFrame& command) const noexcept;
   /// Fills the manipulator part of `command`: `now` is the reference at the time of the sample,
   /// `next` where the drives should be a period later.
@@ -113,11 +116,11 @@ class JointControl {
 
   /// Torques on the joints, Nm.
   struct JointTorques {
-    VectorM external;  ///< that neither motion nor user explain: something touches the arm
-    VectorM motion;    ///< that move and hold it by the model, and the user's
+    VectorM external;  ///< Torques explained by neither motion nor user: contact of the arm
+    VectorM motion;    ///< Model torques that move and hold the joints, and the user's
   };
-  /// In the step() just done, with the measured acceleration `ddq` of the links instead of that of
-  /// the reference. Only with torque control.
+  /// Joint torques in the last step(), with the measured acceleration `ddq` of the links instead of
+  /// that of the reference. Only with torque control.
   JointTorques joint_torques(const RobotState& robot, const VectorM& ddq) const noexcept;
 
  private:
@@ -158,11 +161,11 @@ class JointControl {
   Config config_;
   model::Chain chain_;
   int n_p_, n_m_, handle_;
-  double lead_pole_ = 0.0, stiff_pole_ = 0.0;  ///< of the low-passes
+  double lead_pole_ = 0.0, stiff_pole_ = 0.0;  ///< Poles of the low-passes
   VectorM K_, sqrt_K_, Jm_;
-  bool has_feet_ = false;        ///< some joint has presliding
-  VectorM feed_max_;             ///< largest torque that is fed forward, Nm
-  VectorM link_torque_, ddq_r_;  ///< of this step: what link_torque() gave, and for which ddq
+  bool has_feet_ = false;        ///< Some joint has presliding
+  VectorM feed_max_;             ///< Largest torque that is fed forward, Nm
+  VectorM link_torque_, ddq_r_;  ///< Result of link_torque() in this step, and its ddq
 };
 
 }  // namespace hg::control

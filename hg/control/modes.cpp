@@ -7,7 +7,7 @@
 namespace hg::control {
 namespace {
 
-// turns columns p and r of Q and rows and columns p and r of B so that B(p, r) vanishes
+// rotates columns p and r of Q and rows and columns p and r of B so that B(p, r) vanishes
 void rotate(int p, int r, MatrixM& B, MatrixM& Q) noexcept {
   const double off = B(p, r);
   if (std::abs(off) <= std::numeric_limits<double>::min()) return;
@@ -28,14 +28,14 @@ void rotate(int p, int r, MatrixM& B, MatrixM& Q) noexcept {
   turn(Q.col(p), Q.col(r));
 }
 
-// by its motor alone, as if the spring had no end of stiffness
+// gains of the motor side alone, as if the spring were infinitely stiff
 ModeGains stiff_gains(const Poles& poles, double mu) noexcept {
   const double inertia = mu + 1.0 / (poles.w0 * poles.w0);
   return {.motor = poles.w_motor * poles.w_motor * inertia,
           .motor_rate = 2.0 * poles.w_motor * inertia};
 }
 
-// four poles where they are wanted
+// gains that place all four poles
 ModeGains soft_gains(const Poles& poles, double mu) noexcept {
   const double w0_2 = poles.w0 * poles.w0;
   const double w2_2 = w0_2 + 1.0 / mu;

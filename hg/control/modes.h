@@ -13,37 +13,39 @@ using MatrixM = MatrixUpTo<kMaxManipulator, kMaxManipulator>;
 
 /// Poles of the closed loop. rad/s; slowed down for the latency of the loop by poles_for().
 ///
-/// The fast pair is damped as little as this because damping is what latency takes away first: with
+/// The fast pair has little damping because latency reduces damping first: with
 /// z2 = 0.5, [C] 1, modes of 28 to 40 Hz are unstable at 200 rad/s (9 of 200 random postures,
 /// loop_stability.h), with 0.25 none is at 175 rad/s, also where rotors, links and springs differ
 /// by a quarter or the latency by a half. Modes near w2_max tolerate least, hence 270 rad/s.
 struct Poles {
-  double w0 = 175.0;      ///< of the shaped rotor on its spring
-  double w1 = 57.0;       ///< slow pair: how the link follows
-  double z1 = 0.85;       ///< its damping ratio
-  double z2 = 0.25;       ///< damping ratio of the fast pair, which keeps its natural frequency
-  double w2_max = 270.0;  ///< from about here on a mode is controlled from the motor side alone
-  double w_motor = 90.0;  ///< and have a double pole there
+  double w0 = 175.0;  ///< Pole of the shaped rotor on its spring
+  double w1 = 57.0;   ///< Slow pair: how the link follows
+  double z1 = 0.85;   ///< Damping ratio of the slow pair
+  double z2 = 0.25;   ///< Damping ratio of the fast pair, which keeps its natural frequency
+  /// Frequency from about which a mode is controlled from the motor side alone.
+  double w2_max = 270.0;
+  double w_motor = 90.0;  ///< Double pole of modes controlled from the motor side alone
 };
 
-/// The largest w0 that tolerates `latency` (s), which includes the lag of the current, rad/s.
+/// Largest w0 that tolerates `latency` (s), which includes the lag of the current, rad/s.
 double largest_rotor_pole(double latency) noexcept;
 
-/// `fastest`, slowed down to largest_rotor_pole(); w1 and w_motor scale along, w2_max and damping
-/// ratios do not.
+/// Poles `fastest`, slowed down to largest_rotor_pole(); w1 and w_motor scale along, w2_max and
+/// damping ratios do not.
 Poles poles_for(const Poles& fastest, double latency) noexcept;
 
-/// How stiff a mode with the eigenvalue `mu` (s^2) is: 0 from 0.9 w2_max down, 1 from 1.1 w2_max
-/// up, linear between. w2 is its frequency with motors free, sqrt(w0^2 + 1 / mu).
+/// Stiffness share of a mode with the eigenvalue `mu` (s^2): 0 from 0.9 w2_max down, 1 from 1.1
+/// w2_max up, linear between. w2 is its frequency with motors free, sqrt(w0^2 + 1 / mu).
 double stiffness_share(const Poles& poles, double mu) noexcept;
 
-/// v = motor (theta_r - theta) + motor_rate (theta_r' - theta') + link (q_r - q) + link_rate (..)
+/// Gains of v = motor (theta_r - theta) + motor_rate (theta_r' - theta') + link (q_r - q) +
+/// link_rate (..).
 struct ModeGains {
   double motor = 0.0, motor_rate = 0.0, link = 0.0, link_rate = 0.0;
 };
 
-/// `mu` is the eigenvalue of the mode in s^2: 1/sqrt(mu) is its frequency with brakes closed. From
-/// soft to stiff modes they change with stiffness_share().
+/// Gains of a mode with the eigenvalue `mu` in s^2: 1/sqrt(mu) is its frequency with brakes closed.
+/// From soft to stiff modes they change with stiffness_share().
 ModeGains gains_of(const Poles& poles, double mu) noexcept;
 
 /// Eigenvectors Q and eigenvalues mu of a symmetric matrix that changes slowly: every call turns

@@ -1,5 +1,5 @@
-/// What every linear model of the torque loop shares, from sample to sample: the arm between
-/// commands and encoders, when commands arrive, the observers, and the controller at rest.
+/// Parts shared by all linear models of the torque loop, from sample to sample: the arm between
+/// commands and encoders, the arrival of commands, the observers, and the controller at rest.
 ///
 /// SI units; set-up only.
 #pragma once
@@ -19,15 +19,15 @@ inline constexpr int kPlantSteps = 8;
 /// is the mass matrix of the links (n x n, kg m^2).
 Eigen::MatrixXd plant_with_input(const Reality& reality, const MatrixM& M);
 
-/// When torque commands arrive at the motors.
+/// Delay with which torque commands arrive at the motors.
 class CommandDelay {
  public:
   CommandDelay(double latency_s, double period_s);
 
-  /// How many earlier commands are still under way at a sample.
+  /// Number of earlier commands still under way at a sample.
   int slots() const { return (steps_ + kPlantSteps - 1) / kPlantSteps; }
-  /// The command at work in step `step` (0..kPlantSteps - 1) of a period was given so many periods
-  /// ago; 0 = at the beginning of this one.
+  /// Age in periods of the command at work in step `step` (0..kPlantSteps - 1) of a period; 0 =
+  /// given at the beginning of this one.
   int age(int step) const;
 
  private:
@@ -40,8 +40,8 @@ class LinearObservers {
  public:
   LinearObservers(const LoopFilters& filters, double period_s);
 
-  /// What encoders that show `theta` and `q` make of `observed` (4 n values), with the
-  /// accelerations `ddq` that the links are believed to have.
+  /// Updates `observed` (4 n values) with encoder positions `theta` and `q`, given the link
+  /// accelerations `ddq` that the observers assume.
   void advance(const Eigen::VectorXd& theta, const Eigen::VectorXd& q, const Eigen::VectorXd& ddq,
                Eigen::Ref<Eigen::VectorXd> observed) const;
 
@@ -49,10 +49,10 @@ class LinearObservers {
   double dt_, motor_pole_, link_pole_;  // poles from sample to sample
 };
 
-/// A robot that stands still in posture `q` (gantry first), its springs carrying `weight` (Nm).
+/// State of a robot at rest in posture `q` (gantry first), its springs carrying `weight` (Nm).
 RobotState standing(const std::vector<ActuatorModel>& actuators, const Eigen::VectorXd& q,
                     const VectorM& weight);
-/// The reference that such a robot follows.
+/// Reference followed by a robot at rest.
 ReferenceState standing_reference(const RobotState& robot);
 
 }  // namespace hg::control

@@ -8,7 +8,7 @@
 
 namespace hg {
 
-/// Counts from construction to destruction, on the calling thread only. Not to be nested.
+/// Counts allocations of the calling thread from construction to destruction. Must not be nested.
 class AllocationCounter {
  public:
   AllocationCounter() noexcept;
@@ -20,7 +20,7 @@ class AllocationCounter {
   std::uint64_t count() const noexcept;
 };
 
-/// For malloc: one allocation of the calling thread.
+/// Adds one allocation of the calling thread; called by malloc.
 void count_allocation() noexcept;
 
 }  // namespace hg

@@ -1,4 +1,4 @@
-/// Where a thread that otherwise must not wait may: a loop that nothing keeps time for.
+/// Exempts a section of a real-time thread from the rule not to block, for loops without a clock.
 #pragma once
 
 #if defined(__has_feature)
@@ -10,13 +10,13 @@
 
 namespace hg {
 
-/// While it lives, RealtimeSanitizer does not look at this thread.
+/// Disables RealtimeSanitizer on this thread for its lifetime.
 class AllowedToWait {
 #ifdef HG_HAS_REALTIME_SANITIZER
   __rtsan::ScopedDisabler disabler_;
 #else
  public:
-  AllowedToWait() noexcept {}  // not trivial: it is no unused variable
+  AllowedToWait() noexcept {}  // not trivial: avoids the warning of an unused variable
 #endif
 };
 

@@ -1,4 +1,4 @@
-/// The enumerators of an enum as the compiler knows them, so that nobody lists them a second time.
+/// Enumerators of an enum as the compiler knows them, without a second list by hand.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ constexpr auto candidates(std::index_sequence<i...>) {
 
 }  // namespace detail
 
-/// Those with values from 0 to below `end`, in the order of their values.
+/// All enumerators of E with values from 0 to below `end`, in the order of their values.
 template <typename E, std::size_t end = 64>
 constexpr auto enumerators() {
   constexpr auto all = detail::candidates<E>(std::make_index_sequence<end>{});
@@ -52,7 +52,7 @@ constexpr auto enumerators() {
   return found;
 }
 
-/// The words of an enumerator: "kStillMoving" is "still moving".
+/// Words of an enumerator's name: "kStillMoving" becomes "still moving".
 inline std::string words_of(std::string_view enumerator) {
   std::string words;
   for (const char c : enumerator.substr(1)) {
@@ -63,7 +63,7 @@ inline std::string words_of(std::string_view enumerator) {
   return words;
 }
 
-/// Its name in other languages: "kStillMoving" is "STILL_MOVING".
+/// Constant name of an enumerator in other languages: "kStillMoving" becomes "STILL_MOVING".
 inline std::string constant_name(std::string_view enumerator) {
   std::string name = words_of(enumerator);
   for (char& c : name) {
@@ -73,7 +73,7 @@ inline std::string constant_name(std::string_view enumerator) {
   return name;
 }
 
-/// All of an enum with their numbers: "0 none, 1 not tared".
+/// Text of all enumerators of E with their numbers: "0 none, 1 not tared".
 template <typename E>
 std::string numbers_of() {
   std::string text;

@@ -6,7 +6,7 @@
 
 namespace hg {
 
-/// Bad input: the message names the item, its value, the rule it breaks and, for files,
+/// Invalid input: the message names the item, its value, the rule it breaks and, for files,
 /// `file:line:column` first. Programs print it and exit with 2.
 struct SetupError : std::runtime_error {
   using std::runtime_error::runtime_error;

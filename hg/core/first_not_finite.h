@@ -1,14 +1,14 @@
-/// Which number of several vectors is none.
+/// Index of the first NaN or infinity in several vectors.
 #pragma once
 
 #include <cmath>
 
 namespace hg {
 
-/// The first component that is NaN or infinite, counted through all vectors; -1 = there is none.
+/// Index of the first component that is NaN or infinite, counted through all vectors; -1 = none.
 template <typename... Vectors>
 int first_not_finite(const Vectors&... vectors) noexcept {
-  double nothing = 0.0;  // x - x is NaN for those and 0 for all others
+  double nothing = 0.0;  // x - x is NaN if x is not finite, else 0
   const auto subtract = [&](const auto& v) {
     for (int i = 0; i < v.size(); ++i) nothing += v[i] - v[i];
   };

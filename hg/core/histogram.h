@@ -1,4 +1,4 @@
-/// Counts values in bins 1 % wide, so that hours of samples need no more memory than seconds.
+/// Histogram with bins 1 % wide: memory does not grow with the number of samples.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,16 @@ struct Distribution {
   double median = 0.0, p99_9 = 0.0, max = 0.0;
 };
 
-/// Allocates at construction only.
+/// Counts values in logarithmic bins. Allocates at construction only.
 class Histogram {
  public:
-  /// Values below 1e-9, which count as zero, and above 1e9 are not told apart.
+  /// Adds a value. Values below 1e-9 (counted as zero) and above 1e9 share one bin each.
   void add(double value) noexcept;
+  /// Number of values.
   std::uint64_t count() const noexcept { return count_; }
-  /// Median and percentile to 1 %, the maximum exactly; zeros when there are no values.
+  /// Distribution of the values: median and percentile to 1 %, exact maximum; zeros without values.
   Distribution distribution() const noexcept;
-  /// How many values are below `bound`, to 1 % of it.
+  /// Number of values below `bound`, to 1 % of it.
   std::uint64_t below(double bound) const noexcept;
 
  private:

@@ -18,12 +18,13 @@ struct Interval {
   constexpr bool bounded() const noexcept { return lb > -kInfinity || ub < kInfinity; }
 };
 
+/// Intersection of two intervals; empty if they are disjoint.
 constexpr Interval intersect(Interval a, Interval b) noexcept {
   return {std::max(a.lb, b.lb), std::min(a.ub, b.ub)};
 }
 
-/// The intersection; where there is none, the point of `stronger` nearest to `weaker`. An empty
-/// `stronger` has nothing to say.
+/// Intersection of both; if disjoint, the point of `stronger` nearest to `weaker`. An empty
+/// `stronger` is ignored.
 constexpr Interval moved_into(Interval weaker, Interval stronger) noexcept {
   if (stronger.empty()) return weaker;
   return {std::clamp(weaker.lb, stronger.lb, stronger.ub),

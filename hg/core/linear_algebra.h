@@ -12,14 +12,14 @@ namespace hg {
 /// Complete orthogonal decomposition of A (m x n) of any rank.
 class LeastSquares {
  public:
-  /// Pivots below `threshold` times the largest one count as zero; 0 = a few roundings.
+  /// Decomposes A. Pivots below `threshold` times the largest count as zero; 0 = a few roundings.
   explicit LeastSquares(const Eigen::MatrixXd& A, double threshold = 0.0);
   LeastSquares(LeastSquares&&) noexcept;
   ~LeastSquares();
 
-  /// The shortest x (n) that minimises |A x - b|.
+  /// Least-squares solution x (n) of A x = b with the smallest norm.
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
-  /// (n x m).
+  /// Pseudoinverse of A (n x m).
   Eigen::MatrixXd pseudo_inverse() const;
 
  private:
@@ -32,8 +32,8 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
 
 /// Singular value decomposition A = U diag(sigma) V^T.
 struct SingularValues {
-  Eigen::VectorXd sigma;  ///< largest first, as many as the smaller side of A
-  Eigen::MatrixXd U, V;   ///< as many columns
+  Eigen::VectorXd sigma;  ///< Singular values, largest first, min(rows, columns) of A
+  Eigen::MatrixXd U, V;   ///< Left and right singular vectors as columns, one per value
 };
 SingularValues singular_value_decomposition(const Eigen::MatrixXd& A);
 
@@ -45,10 +45,10 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
-/// Largest magnitude of an eigenvalue of a square matrix; infinity where it is not finite.
+/// Largest magnitude of an eigenvalue of a square matrix; infinity if the matrix is not finite.
 double spectral_radius(const Eigen::MatrixXd& A);
 
-/// e^A.
+/// Matrix exponential e^A.
 Eigen::MatrixXd matrix_exponential(const Eigen::MatrixXd& A);
 
 }  // namespace hg

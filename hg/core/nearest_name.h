@@ -7,8 +7,8 @@
 
 namespace hg {
 
-/// The candidate with the smallest edit distance to `name`, upper and lower case alike; the first
-/// of equals; empty if there is no candidate.
+/// Candidate with the smallest edit distance to `name`, ignoring case; on a tie the first; empty
+/// without candidates.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace hg

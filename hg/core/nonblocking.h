@@ -1,7 +1,7 @@
-/// Marks what the control thread calls: no allocation, lock, system call or exception inside.
+/// Marks functions of the control thread: no allocation, lock, system call or exception inside.
 ///
 /// `make rtsan` builds with RealtimeSanitizer of clang, which ends the program when a marked
-/// function does one of these, however deep. Other compilers ignore the mark. Stands behind
+/// function does one of these, at any depth. Other compilers ignore the mark. Placed after
 /// noexcept.
 #pragma once
 

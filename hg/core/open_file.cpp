@@ -20,7 +20,7 @@ constexpr mode_t kNewFile = 0666;  // less the umask
   throw SetupError(file.string() + ": cannot be " + what + ": " + why);
 }
 
-// the descriptor of standard output or error of which these are the facts; -1: neither's
+// standard output or error, whichever `facts` belong to; -1: neither
 int standard_output(const struct stat& facts) noexcept {
   for (const int standard : {STDOUT_FILENO, STDERR_FILENO}) {
     struct stat own {};
@@ -58,7 +58,7 @@ const char* kind_of_file(unsigned mode) noexcept {
 }
 
 OpenFile open_to_read(const std::filesystem::path& file) {
-  // a named pipe would be waited for; of regular files O_NONBLOCK means nothing
+  // O_NONBLOCK: do not wait for a named pipe; no effect on regular files
   OpenFile opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK));
   struct stat facts {};
   if (opened.descriptor() < 0 || fstat(opened.descriptor(), &facts) != 0) {
@@ -87,7 +87,7 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t most_byt
 }
 
 OpenFile open_to_write(const std::filesystem::path& file, Content content) {
-  // without O_TRUNC: what is refused stays as it is
+  // without O_TRUNC: a refused file stays unchanged
   OpenFile opened(
       open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOCTTY | O_NONBLOCK, kNewFile));
   const int error = errno;
@@ -101,7 +101,7 @@ OpenFile open_to_write(const std::filesystem::path& file, Content content) {
   }
   if (fstat(opened.descriptor(), &facts) != 0) refuse(file, "written", std::strerror(errno));
   if (S_ISCHR(facts.st_mode)) return opened;
-  // behind what has been printed
+  // shares the file offset: appends to the printed output
   const int standard = standard_output(facts);
   if (standard >= 0) return OpenFile(fcntl(standard, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
   if (!S_ISREG(facts.st_mode)) {

@@ -1,7 +1,7 @@
-/// Opens files by name so that no name can hold the program up: a named pipe that nobody writes, a
-/// device, a folder are refused instead of waited for.
+/// Opens files by name without ever blocking: named pipes, devices and folders are refused instead
+/// of waited for.
 ///
-/// For set-up and for what is written beside the loop. Descriptors are closed on exec.
+/// For set-up and for output outside the control loop. Descriptors are closed on exec.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace hg {
 
-/// Closes its descriptor at the end.
+/// Owner of a file descriptor; closes it on destruction.
 class OpenFile {
  public:
   explicit OpenFile(int descriptor) noexcept : descriptor_(descriptor) {}
@@ -20,29 +20,30 @@ class OpenFile {
   ~OpenFile();
 
   int descriptor() const noexcept { return descriptor_; }
-  /// Leaves closing it to somebody else.
+  /// Gives up ownership: returns the descriptor, which the caller must close.
   int release() noexcept;
 
  private:
   int descriptor_;
 };
 
-/// For reading. Throws SetupError "FILE: cannot be read: why"; only regular files can be.
+/// Opens a regular file for reading. Throws SetupError "FILE: cannot be read: why"; anything but a
+/// regular file is refused.
 OpenFile open_to_read(const std::filesystem::path& file);
 
-/// The whole content. Throws SetupError; a file of more than `most_bytes` is refused.
+/// Reads the whole content. Throws SetupError; a file of more than `most_bytes` is refused.
 std::string read_file(const std::filesystem::path& file,
                       std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
 
-/// Of a regular file that is opened to be written.
+/// What happens to the content of a regular file opened for writing.
 enum class Content { kEmptied, kKept };
 
-/// For writing: a regular file, which is made where it is missing; a character device such as
-/// /dev/null; what the standard output or error of this program is, which is written behind what is
-/// printed. Nothing else. Throws SetupError "FILE: cannot be written: why".
+/// Opens for writing: a regular file, created if missing; a character device such as /dev/null; or
+/// the target of this program's standard output or error, appended to its output. All else is
+/// refused. Throws SetupError "FILE: cannot be written: why".
 OpenFile open_to_write(const std::filesystem::path& file, Content content);
 
-/// What a file is, of its st_mode: "a named pipe".
+/// Name of a file's kind by its st_mode, for example "a named pipe".
 const char* kind_of_file(unsigned mode) noexcept;
 
 }  // namespace hg

@@ -1,12 +1,13 @@
-/// One vector for all joints of a device: the gantry's first, then the manipulator's.
+/// Stacked vectors of all joints of a device: gantry first, then manipulator.
 #pragma once
 
 #include "hg/core/types.h"
 
 namespace hg {
 
-using VectorPM = VectorUpTo<kMaxGantry + kMaxManipulator>;  ///< chains p and m, stacked
+using VectorPM = VectorUpTo<kMaxGantry + kMaxManipulator>;  ///< Chains p and m, stacked
 
+/// Joins gantry and manipulator vectors: p first, then m.
 VectorPM stacked(const VectorP& p, const VectorM& m) noexcept;
 
 }  // namespace hg

@@ -1,7 +1,7 @@
-/// Lets somebody outside follow a control cycle stage by stage, for example with a stop watch.
+/// Callback per stage of a control cycle, for example to measure durations.
 ///
-/// The cycle itself has no clock: it only says which stage has just ended. Without a listener that
-/// is one comparison per stage. A probe is not part of any state and changes no result.
+/// The cycle itself has no clock: it only reports which stage has ended. Without a callback the
+/// cost is one comparison per stage. A probe is not part of any state and changes no result.
 #pragma once
 
 #include <array>
@@ -9,15 +9,15 @@
 
 namespace hg {
 
-/// Parts of Cycle::step in the order of the data; every nanosecond of a step that renders belongs
-/// to one of them.
+/// Parts of Cycle::step in the order of the data flow. They cover the whole time of a step that
+/// renders.
 enum class Stage : std::uint8_t {
   kSupervision,     ///< sensor check, operating state, changes of parameters
   kEstimation,      ///< sensors to states
   kPrepositioning,  ///< check of the reference, target of the gantry
   kRenderingSetUp,  ///< device and twin models, torques, rows of the problem
   kSolver,          ///< the lexicographic solver
-  kReactions,       ///< split of the constraint torque, report of the rendering
+  kReactions,       ///< constraint torque split, report of the rendering
   kIntegration,     ///< check of the solution, reference and twin advance by one period
   kControl,         ///< commands of the drives
   kSafety,          ///< sanitiser
@@ -32,11 +32,11 @@ constexpr const char* to_string(Stage stage) noexcept {
   return kNames[static_cast<std::size_t>(stage)];
 }
 
+/// Callback with its context.
 struct StageProbe {
-  /// Called at the end of each stage, several times per step for stages that are repeated; null:
-  /// nobody listens.
+  /// Callback at the end of each stage, several times per step for repeated stages; null: none.
   void (*ended)(void* listener, Stage stage) noexcept = nullptr;
-  void* listener = nullptr;  ///< handed on; must outlive the probe
+  void* listener = nullptr;  ///< Argument passed to `ended`; must outlive the probe
 
   void operator()(Stage stage) const noexcept {
     if (ended != nullptr) ended(listener, stage);

@@ -1,5 +1,5 @@
-/// Counts how often a signal in space turns round: what swings does so again and again, a push or
-/// an impact does not.
+/// Counts reversals of a 3D signal: an oscillation reverses repeatedly, a push or an impact does
+/// not.
 ///
 /// State of a filter: copyable, no allocation, noexcept.
 #pragma once
@@ -8,12 +8,13 @@
 
 namespace hg {
 
+/// Counter of reversals.
 struct Turns {
-  Eigen::Vector3d farthest = Eigen::Vector3d::Zero();  ///< since it last turned
-  double since_s = 0.0;                                ///< since it last turned
-  int count = 0;                                       ///< without a pause
+  Eigen::Vector3d farthest = Eigen::Vector3d::Zero();  ///< Largest value since the last reversal
+  double since_s = 0.0;                                ///< Time since the last reversal, s
+  int count = 0;                                       ///< Reversals without a pause
 
-  /// Smaller values than `least` do not count; after `pause_s` without a turn it begins anew.
+  /// Adds a sample. Ignores values below `least`; resets after `pause_s` without a reversal.
   void step(const Eigen::Vector3d& x, double least, double dt, double pause_s) noexcept {
     since_s += dt;
     if (since_s > pause_s) *this = {};

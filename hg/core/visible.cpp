@@ -7,7 +7,7 @@
 namespace hg {
 namespace {
 
-// first and last character of what is not shown beyond ASCII
+// ranges (first, last) of hidden characters beyond ASCII
 constexpr std::array<std::pair<char32_t, char32_t>, 9> kHidden = {{
     {0x80, 0x9f},        // control characters
     {0x61c, 0x61c},      // directions of writing, here and below
@@ -37,7 +37,7 @@ std::size_t shown_bytes(std::string_view text) noexcept {
     if ((byte(i) & 0xc0) != 0x80) return 0;
     character = character << 6U | (byte(i) & 0x3fU);
   }
-  constexpr std::array<char32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};  // by size
+  constexpr std::array<char32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};  // smallest, by bytes
   const bool is_character = character >= kLeast[size] && character <= 0x10ffff;
   const bool is_hidden = std::ranges::any_of(kHidden, [=](const auto& range) {
     return character >= range.first && character <= range.second;

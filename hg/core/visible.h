@@ -1,5 +1,5 @@
-/// Text from elsewhere (titles, names, recordings, the network) as people may be shown it: it says
-/// nothing to a terminal or a page but what it looks like.
+/// Makes untrusted text (titles, names, recordings, the network) safe to show: escapes everything
+/// that a terminal or page would interpret instead of display.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace hg {
 
-/// How many bytes of `text`, which is not empty, are one character that is shown as it is; 0: its
-/// first byte begins none. None are control characters but line feed and tab, line separators, what
-/// turns the direction of writing (U+202E), and what is no UTF-8 in its shortest form (C0 9B).
+/// Number of bytes of the first character of `text` (not empty) if it may be shown unchanged; 0: it
+/// must be escaped. Escaped are control characters other than line feed and tab, line separators,
+/// marks of writing direction (U+202E), and invalid or overlong UTF-8 (C0 9B).
 std::size_t shown_bytes(std::string_view text) noexcept;
 
-/// `text` with the bytes of everything that is not shown as escapes such as \x1b.
+/// `text` with the bytes of all characters that must not be shown as escapes such as \x1b.
 std::string visible(std::string_view text);
 
 }  // namespace hg

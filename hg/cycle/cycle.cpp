@@ -15,9 +15,9 @@ using safety::kBrakingRate;
 using safety::kRampOut;
 using safety::kStandstill;
 
-constexpr double kSafeShare = 0.9;  // of the safe speed, which is watched
-constexpr double kCoasting = 0.1;   // rad/s and m/s
-constexpr double kRampIn = 0.3;     // s in which the forces of a run come in
+constexpr double kSafeShare = 0.9;  // of the monitored safe speed
+constexpr double kCoasting = 0.1;   // rad/s and m/s, threshold of motion
+constexpr double kRampIn = 0.3;     // s, ramp of the forces at the start of a run
 
 bool stands_still(const CycleRecord& record) noexcept {
   return record.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
@@ -25,7 +25,8 @@ bool stands_still(const CycleRecord& record) noexcept {
          record.robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
 }
 
-// Measured, so above what encoders and a hand on the springs of a braked arm make of rest.
+// On measured speeds: the threshold is above encoder noise and the motion of a braked arm's springs
+// under a hand.
 bool is_coasting(const RobotState& robot) noexcept {
   return robot.dq_m.lpNorm<Eigen::Infinity>() > kCoasting ||
          robot.dq_p.lpNorm<Eigen::Infinity>() > kCoasting;
@@ -33,7 +34,7 @@ bool is_coasting(const RobotState& robot) noexcept {
 
 bool is_moving(Mode mode) noexcept { return mode == Mode::kRunning || mode == Mode::kStopping; }
 
-// With which joints brake that the law does not brake.
+// Deceleration of joints braked without the law.
 VectorM braking_of(const rendering::DeviceModel& device) {
   constexpr double kWithoutRating = 10.0;  // rad/s^2 or m/s^2
   VectorM ddq(device.n_m);
@@ -65,7 +66,7 @@ prepositioning::TargetConfig target_of(const prepositioning::Config& gantry,
   return target;
 }
 
-// What a device does that no longer hears its commands.
+// Whether a lost command link can cause this fault as a consequence.
 bool follows_from_link(FaultCode code) noexcept {
   switch (code) {
     case FaultCode::kJointTorqueExceeded:
@@ -126,12 +127,12 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
 
 void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input,
                  CommandFrame& command, CycleRecord& record) noexcept HG_NONBLOCKING {
-  std::destroy_at(&record);  // made anew in its place: `record = {}` would copy an empty one
+  std::destroy_at(&record);  // rebuilt in place: `record = {}` would copy an empty one
   ::new (&record) CycleRecord;
   record.cycle = state_.cycle;
   record.time_s = static_cast<double>(state_.cycle) * config_.rendering.dt;
 
-  // supervisor: may this sample be used, and what is the device allowed to do
+  // supervisor: is this sample usable, which mode is permitted
   if (state_.cycle == 0) state_.next_sequence = sensors.sequence;
   supervise(sensors, operator_input, record);
 
@@ -149,7 +150,7 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
                              state_.estimation);
     state_.is_coasting = is_coasting(record.robot);
     ended_(Stage::kEstimation);
-    // what has jumped says nothing about where parts are, and is itself the fault
+    // positions after a jump are unusable, and the jump is itself the fault
     if (!monitor_.has_jumped(sensors, state_.monitor)) look_ahead(record);
     if (is_moving(state_.supervisor.mode())) {
       render(is_held(sensors), record);
@@ -200,7 +201,7 @@ void Cycle::supervise(const SensorFrame& sensors, const OperatorFrame& operator_
                       CycleRecord& record) noexcept {
   safety::SupervisorState& supervisor = state_.supervisor;
   const ModeRequest request = operator_input.request;
-  // whatever the device makes of the panel
+  // the panel's emergency stop acts on every device
   SafetyInputs safety = sensors.safety;
   safety.emergency_stop = safety.emergency_stop || operator_input.panel.emergency_stop;
   const bool is_new = request != supervisor.last_request;
@@ -214,7 +215,7 @@ void Cycle::supervise(const SensorFrame& sensors, const OperatorFrame& operator_
       .to_arm = is_arming ? refusal_to_arm() : Refusal::kNone,
       .is_broken = state_.monitor.is_broken || state_.brakes.slip.code != FaultCode::kNone,
       .fault = safety::check_safety_inputs(safety, supervisor),
-      // such a sample cannot be controlled with
+      // no control with such a sample
       .reaction = fault.code != FaultCode::kNone ? Stop::kSto : Stop::kNone};
   if (input.fault.code == FaultCode::kNone) input.fault = fault;
   record.refusal = safety::advance(input, supervisor);
@@ -244,7 +245,7 @@ Refusal Cycle::refusal_to_arm() const noexcept {
   return Refusal::kNone;
 }
 
-// Whatever a fault has left in estimation and control goes; what was measured at rest stays.
+// Resets estimation and control after a fault; keeps what was measured at rest.
 void Cycle::begin_anew() noexcept {
   const estimation::TareState tare = state_.estimation.wrench.tare;
   const estimation::InertialCheck& before = state_.estimation.inertial;
@@ -259,8 +260,8 @@ void Cycle::begin_anew() noexcept {
   state_.rendering = rendering_.start(state_.rendering.reference.q_m);
 }
 
-// Beyond its range the sensor says nothing about the user: the last good wrench holds while the
-// rule waits and during the stop.
+// Beyond the sensor's range its reading is invalid: the last valid wrench is used until the rule
+// trips and during the stop.
 void Cycle::trust_wrench(const SensorFrame& sensors, RobotState& robot) noexcept {
   if (safety::is_wrench_in_range(monitor_.config(), sensors)) {
     state_.w_H = robot.w_H;
@@ -269,8 +270,8 @@ void Cycle::trust_wrench(const SensorFrame& sensors, RobotState& robot) noexcept
   }
 }
 
-// Whether braking now still keeps all parts of the device apart. What is foreseen is that all
-// joints brake at once, so that is what is done then: the law's own way to rest may lead elsewhere.
+// Checks whether braking now avoids all collisions. The prediction assumes that all joints brake at
+// once, so the joints then brake like that: the law's own stopping path may differ.
 void Cycle::look_ahead(CycleRecord& record) noexcept {
   const RobotState& robot = record.robot;
   const safety::State state = state_.supervisor.state;
@@ -288,7 +289,7 @@ void Cycle::look_ahead(CycleRecord& record) noexcept {
                      state_.supervisor);
 }
 
-// Energy and oscillation at the handle; what calms the twin acts from the next cycle on.
+// Monitors energy and oscillation at the handle; added damping and inertia act from the next cycle.
 void Cycle::watch_energy(CycleRecord& record) noexcept {
   if (config_.passivity.reaction == passivity::Reaction::kOff) return;
   const rendering::State& rendering = state_.rendering;
@@ -311,10 +312,10 @@ void Cycle::watch_energy(CycleRecord& record) noexcept {
   if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
 }
 
-// What touches the arm pushes twin and gantry from the next cycle on. It is felt for where the
-// control knows torques, while the law moves the arm. A stop that it has caused gives way in the
-// first third of its time and lets go of that within 50 ms, so that the rest is left for braking;
-// any other stop does not.
+// Contact with the arm pushes twin and gantry from the next cycle on. Detection needs joint torques
+// and is active while the law moves the arm. During a stop caused by the contact the arm yields in
+// the first third of the stop time, faded out within 50 ms to leave time for braking; during any
+// other stop it does not.
 void Cycle::feel_touch(bool is_on, CycleRecord& record) noexcept {
   const safety::SupervisorState& supervisor = state_.supervisor;
   constexpr double kFade = 0.05;  // s
@@ -347,8 +348,8 @@ void Cycle::feel_touch(bool is_on, CycleRecord& record) noexcept {
   state_.rendering.touch = share * record.touch.wrench;
 }
 
-// Nothing moves. Before it is armed the device may be moved by others: the twin goes along. Where
-// joints have braked by themselves the twin was left behind, and meets the handle again.
+// Standstill. Before arming, the device may be moved from outside: the twin follows. After joints
+// braked without the law the twin is realigned with the handle.
 void Cycle::hold(CycleRecord& record) noexcept {
   rendering::State& rendering = state_.rendering;
   const bool is_armed = state_.supervisor.state == safety::State::kArmed;
@@ -374,7 +375,7 @@ void Cycle::hold(CycleRecord& record) noexcept {
   rendering.calming = {};
 }
 
-// A stop that was asked for comes gently to whoever held the handle, all others at once.
+// A requested stop ramps forces down if the handle is held; all other stops drop them at once.
 void Cycle::render(bool is_held, CycleRecord& record) noexcept {
   const bool is_stopping = state_.supervisor.mode() == Mode::kStopping;
   double& share = state_.force_share;
@@ -434,10 +435,9 @@ void Cycle::render(bool is_held, CycleRecord& record) noexcept {
   ended_(Stage::kIntegration);
 }
 
-// Where the law has no solution it cannot brake, and its way to rest may lead to a collision: each
-// joint goes to rest with its own rating, which its position limits leave room for, and twin and
-// gantry are left behind. [HANDBOOK] 6.2 has a ramp of 50 ms, for which the motors of a stretched
-// arm have not got the torque.
+// Without a solution the law cannot brake, and its stopping path may lead to a collision: joints
+// brake with their own ratings, for which their position limits leave room; twin and gantry do not
+// follow. [HANDBOOK] 6.2 has a ramp of 50 ms, which exceeds the motor torques of a stretched arm.
 void Cycle::brake_joints(CycleRecord& record) noexcept {
   rendering::State& rendering = state_.rendering;
   ReferenceState& reference = rendering.reference;

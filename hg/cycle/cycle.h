@@ -36,11 +36,11 @@ struct Config {
   collision::Config collision;
   passivity::Config passivity;
   compliance::Config compliance;
-  std::vector<environment::Surface> surfaces;  ///< that the twin meets
+  std::vector<environment::Surface> surfaces;  ///< Virtual surfaces in contact with the twin
 };
 
-/// All that a cycle remembers. Copy it to take a snapshot, assign it to go back. What is added here
-/// or below belongs into state_hash.cpp, too.
+/// Complete state of a cycle. Copy it for a snapshot, assign it to restore. Members added here or
+/// in nested states must be added to state_hash.cpp, too.
 struct State {
   std::uint64_t cycle = 0;
   std::uint64_t next_sequence = 0;
@@ -54,44 +54,47 @@ struct State {
   collision::State collision;
   passivity::State passivity;
   compliance::State touch;
-  Vector6 w_H = Vector6::Zero();  ///< of the user: the last one within the sensor's range
-  VectorP dq_p;                   ///< gantry command of the last cycle
-  prepositioning::Room room;      ///< of the gantry, in the last cycle
-  VectorM q_m, tau_m;             ///< positions and torques of the last command
-  bool was_on = false;            ///< the last command had the drives on
-  bool is_blocked = false;        ///< a device limit could not be met in the last cycle
-  bool brakes_joints = false;     ///< no solution, or a collision ahead: each brakes by itself
-  bool is_coasting = false;       ///< joints or gantry moved in the last sample
-  bool is_apart = false;          ///< the held twin cannot be where the handle is
-  bool was_alone = false;         ///< ran autonomously when it last rendered without stopping
-  double force_share = 0.0;       ///< of the forces that act on the twin, 0..1: come in by a ramp
+  Vector6 w_H = Vector6::Zero();  ///< Wrench of the user, the last one within the sensor's range
+  VectorP dq_p;                   ///< Gantry command of the last cycle
+  prepositioning::Room room;      ///< Room of the gantry in the last cycle
+  VectorM q_m, tau_m;             ///< Positions and torques of the last command
+  bool was_on = false;            ///< The last command had the drives on
+  bool is_blocked = false;        ///< A device limit could not be met in the last cycle
+  bool brakes_joints = false;     ///< No solution, or a collision ahead: joints brake one by one
+  bool is_coasting = false;       ///< Joints or gantry moved in the last sample
+  bool is_apart = false;          ///< The twin cannot reach the handle's pose while held
+  bool was_alone = false;         ///< Last rendering without stopping was autonomous
+  double force_share = 0.0;       ///< Ramped share of the forces on the twin, 0..1
 };
 
+/// The control cycle with all its parts.
 class Cycle {
  public:
-  /// Throws SetupError when the parts do not fit together.
+  /// Builds all parts. Throws SetupError if they do not fit together.
   Cycle(const Config& config, const rendering::DeviceModel& device,
         const rendering::TwinModel& twin);
 
+  /// Runs one cycle: computes `command` and `record` from sensors and operator input.
   void step(const SensorFrame& sensors, const OperatorFrame& operator_input, CommandFrame& command,
             CycleRecord& record) noexcept HG_NONBLOCKING;
 
-  /// Whether somebody holds the handle, as far as the device can tell.
+  /// Whether the handle is held, as far as the device can detect.
   bool is_held(const SensorFrame& sensors) const noexcept {
     return safety::is_held(monitor_.config(), sensors);
   }
 
-  /// Who is told from now on how far a step has come; the default probe tells nobody.
+  /// Installs a callback per stage; the default probe does nothing.
   void watch(const StageProbe& probe) noexcept;
 
   const State& state() const noexcept { return state_; }
   void restore(const State& state) noexcept { state_ = state; }
-  /// What the solver was given in the last step.
+  /// Problem that the solver received in the last step.
   const hqp::Problem& problem() const noexcept { return rendering_.problem(); }
-  /// Solves that failed or were slow, see Rendering::kept_problems(). For one other thread.
+  /// Problems of failed or slow solves, see Rendering::kept_problems(). May be read by one other
+  /// thread.
   const hqp::KeptProblems& kept_problems() const noexcept { return rendering_.kept_problems(); }
-  /// Keeps the last solve of the last step, too, which took that long; nothing when the step solved
-  /// nothing: its sensor values were not finite.
+  /// Keeps the last solve of the last step, too, with the cycle's duration; no effect if the step
+  /// had no solve because sensor values were not finite.
   void keep_problem(double cycle_time_us) noexcept {
     rendering_.keep_problem(state_.cycle - 1, cycle_time_us);
   }
@@ -115,8 +118,8 @@ class Cycle {
                      CommandFrame& command, CycleRecord& record) noexcept;
 
   Config config_;
-  VectorM ddq_max_;   ///< of the joints, with which they brake by themselves
-  int longest_stop_;  ///< cycles
+  VectorM ddq_max_;   ///< Deceleration of joints that brake without the law, rad/s^2 or m/s^2
+  int longest_stop_;  ///< Longest controlled stop, cycles
   estimation::Estimation estimation_;
   rendering::Rendering rendering_;
   control::JointControl control_;
@@ -124,7 +127,7 @@ class Cycle {
   collision::Guard guard_;
   safety::Monitor monitor_;
   safety::Sanitiser sanitiser_;
-  VectorM pulled_back_;  ///< this cycle: by how much the reference came back; empty = it did not
+  VectorM pulled_back_;  ///< Shift of the reference back to the device; empty = none
   State state_;
   StageProbe ended_;
 };

@@ -23,7 +23,7 @@ class Hash {
     mix(interval.lb);
     mix(interval.ub);
   }
-  // the first `count` values, as many in a word as fit
+  // mixes the first `count` values, packed into words
   template <typename T>
   void mix_packed(const T* values, std::size_t count) noexcept {
     constexpr std::size_t kInWord = sizeof(std::uint64_t) / sizeof(T);
@@ -256,7 +256,7 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
   hash.mix(control.dw_H);
   if (control.feet.size() > 0) hash.mix(control.feet);  // some joint has presliding
   hash.mix(state.w_H);
-  if (state.touch.dq.size() > 0) {  // somebody feels for it
+  if (state.touch.dq.size() > 0) {  // contact detection is active
     mix(state.touch, hash);
     hash.mix(state.rendering.touch);
   }

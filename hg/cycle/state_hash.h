@@ -1,7 +1,7 @@
-/// One number for the state after a cycle: two runs that show the same numbers are the same run.
+/// Hash of the state after a cycle: runs with equal hashes are identical.
 ///
-/// The words of the state, one after the other: hash = (rotated hash ^ word) * odd constant, a
-/// bijection of each word, so that one value that differs always shows. Not cryptographic. About a
+/// Over the words of the state: hash = (rotated hash ^ word) * odd constant, a bijection of each
+/// word, so that a single differing value always changes the hash. Not cryptographic. About a
 /// nanosecond per word. No allocation, noexcept.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace hg::cycle {
 
-/// Hash of everything in `state`; of the drives' past commands only the last one, the others were
-/// in earlier hashes. `rows` is the number of rows of the rendering problem, of which the state
-/// holds the active set.
+/// Hash of everything in `state`, except that of the drives' past commands only the last one counts
+/// (earlier hashes cover the others). `rows` is the number of rows of the rendering problem, whose
+/// active set is in the state.
 std::uint64_t hash_of(const State& state, int rows) noexcept;
 
 }  // namespace hg::cycle

@@ -1,4 +1,4 @@
-/// The boundary between controller and machine. The controller cannot tell drivers apart.
+/// Interface between controller and machine. The controller cannot distinguish drivers.
 #pragma once
 
 #include "hg/signals/frames.h"
@@ -6,19 +6,22 @@
 
 namespace hg::device {
 
-/// One call of read() and one of write() per period, from the control thread only. Neither
-/// allocates or throws, and only the read() of a device that is the clock blocks.
+/// A real or simulated machine. One call of read() and one of write() per period, from the control
+/// thread only. Neither allocates or throws, and only the read() of a device that is the clock
+/// blocks.
 class Device {
  public:
   virtual ~Device() = default;
+  /// Reads the sensors of one sample.
   virtual void read(SensorFrame& sensors) noexcept = 0;
+  /// Sends the command until the next sample.
   virtual void write(const CommandFrame& command) noexcept = 0;
-  /// What is really the case at the last read(); null where nobody knows: the device is real.
+  /// Ground truth at the last read(); null: unknown, the device is real.
   virtual const Truth* truth() const noexcept { return nullptr; }
-  /// Faults on purpose of the computer that runs the cycle, after read(); only simulated devices
-  /// have some.
+  /// Injects faults of the computer that runs the cycle, after read(); simulated devices only, else
+  /// no effect.
   virtual void spoil(OperatorFrame& /*input*/) const noexcept {}
-  /// Whether read() waits for the next sample, at most a fixed time: then nobody else keeps time.
+  /// Whether read() waits for the next sample (for a bounded time) and so clocks the loop.
   virtual bool is_clock() const noexcept { return false; }
 };
 

@@ -1,4 +1,4 @@
-/// The simulation behind the device boundary, and faults on purpose between the two.
+/// Simulation behind the device interface, with fault injection in between.
 #pragma once
 
 #include "hg/device/device.h"
@@ -7,6 +7,7 @@
 
 namespace hg::device {
 
+/// Simulated machine with injected faults.
 class SimulatedDevice final : public Device {
  public:
   explicit SimulatedDevice(simulation::Simulation simulation, injection::Injector injector = {});
@@ -18,8 +19,8 @@ class SimulatedDevice final : public Device {
 
  private:
   simulation::Simulation simulation_;
-  injection::Injector injector_;  ///< faults on purpose
-  CommandFrame arrived_;
+  injection::Injector injector_;  ///< Injected faults
+  CommandFrame arrived_;          ///< Command after injected faults
 };
 
 }  // namespace hg::device

@@ -8,13 +8,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The part of a way from `a` to `b` that lies inside a convex solid, which is cut out of space one
-// side after the other.
+// The part of a path from `a` to `b` inside a convex solid, which is clipped by one side after the
+// other.
 class Clip {
  public:
   Clip(const Vector3d& a, const Vector3d& b) noexcept : a_(a), d_(b - a) {}
 
-  // a half space: what is at most `height` along the unit vector `normal`
+  // half-space: points at most `height` along the unit vector `normal`
   void flat(const Vector3d& normal, double height) noexcept {
     const double from = normal.dot(a_) - (height + kGrown);
     const double rise = normal.dot(d_);
@@ -28,7 +28,7 @@ class Clip {
     }
   }
 
-  // what is within `radius` of the origin, along the axes where `mask` is 1
+  // points within `radius` of the origin, along the axes where `mask` is 1
   void round(const Vector3d& mask, double said_radius) noexcept {
     const double radius = said_radius + kGrown;
     const Vector3d a = mask.cwiseProduct(a_), d = mask.cwiseProduct(d_);
@@ -55,18 +55,18 @@ class Clip {
     }
   }
 
-  // where the way is stopped
+  // point where the path is stopped
   std::optional<Hit> hit() const noexcept {
     if (is_empty_) return {};
     if (enter_ <= 0.0) {
-      // it begins inside: of no matter where it comes out, or on the surface but for rounding
+      // the path begins inside: no hit wherever it leaves; or on the surface but for rounding
       if (depth_ > kOutside || slope_ >= 0.0) return {};
       return Hit{0.0, nearest_};
     }
     if (enter_ >= std::min(1.0, leave_)) return {};
     return Hit{std::clamp(stop_, 0.0, 1.0), normal_};
   }
-  // of its begin; negative outside
+  // depth of the start point; negative outside
   double depth() const noexcept { return depth_; }
 
  private:
@@ -88,7 +88,7 @@ class Clip {
   bool is_empty_ = false;
   double enter_ = -kInfinity, leave_ = kInfinity, stop_ = 0.0;
   Vector3d normal_ = Vector3d::Zero();
-  // of the side that the begin is nearest to
+  // values of the side nearest to the start point
   double depth_ = kInfinity, slope_ = 0.0;
   Vector3d nearest_ = Vector3d::Zero();
 };

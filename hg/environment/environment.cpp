@@ -11,12 +11,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNear = 0.05;    // m; how far a stop looks, and twice its braking distance
-constexpr double kDeepest = 0.2;  // m; from where a mesh at least brings back what is inside
-constexpr double kFlat = 1e-6;    // m; triangles that differ by less are of one plane or touch
+constexpr double kNear = 0.05;  // m; range of a stop, plus twice its braking distance
+// m; depth down to which a mesh at least pushes back a point inside
+constexpr double kDeepest = 0.2;
+constexpr double kFlat = 1e-6;    // m; triangles that differ by less are coplanar or touch
 constexpr double kStill = 1e-10;  // m; a proxy that moves less has arrived
 
-// Never pulls, and along the surface within the cone of friction.
+// Contact force: never pulls, and its tangential part stays within the friction cone.
 Vector3d force_of(const Spread& spread, double pressed, const Vector3d& velocity) noexcept {
   const double damping =
       spread.damping * std::min(1.0, spread.stiffness * spread.depth / kFullDamping);
@@ -30,8 +31,8 @@ Vector3d force_of(const Spread& spread, double pressed, const Vector3d& velocity
   return f_normal * spread.normal + f_tangent;
 }
 
-// Whether a point behind a triangle of a mesh is not in the solid there: next to it, around an edge
-// that is bent outwards, it is in front of another triangle of this solid, or less far behind it.
+// Whether a point behind a triangle of a mesh is outside the solid there: near a convex edge it is
+// in front of another triangle of this solid, or less far behind it.
 bool is_beside(const Surface& surface, const Vector3d& point, const Facing& behind) noexcept {
   const Mesh* mesh = std::get_if<Mesh>(&surface.shape);
   if (mesh == nullptr) return false;
@@ -42,7 +43,7 @@ bool is_beside(const Surface& surface, const Vector3d& point, const Facing& behi
     if (triangle.solid != behind.solid || !is_over(triangle, p, kFlat)) return;
     const double distance = triangle.normal.dot(p - triangle.corners[0]);
     if (distance > 0.0 ? distance >= kBehind : distance <= behind.distance) return;
-    // inwards along the other triangle's plane, from their edge, is behind it
+    // inwards along the other triangle's plane, seen from the common edge, is behind this one
     const Vector3d middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
     const double height = normal.dot(middle - (p - behind.distance * normal));
     if (height < -kFlat) is_beside = true;
@@ -106,8 +107,8 @@ ContactReport Environment::step(const Vector3d& position, const Vector3d& veloci
   return contact;
 }
 
-// What comes in is stopped with a time constant and no harder. So the spring holds what the person
-// pushes when it stands still, and does not throw it back.
+// An impact is stopped with a time constant and no harder. So the spring balances the person's push
+// at rest, and does not throw it back.
 void Environment::catch_it(const Spread& spread, double mass_scale, const Vector3d& velocity,
                            const Vector3d& push, ContactReport& contact,
                            State& state) const noexcept {
@@ -186,9 +187,9 @@ Environment::Found Environment::first_hit(const Vector3d& from, const Vector3d& 
   return first;
 }
 
-// From the surface that the proxy meets on its way to the handle along that surface and whatever
-// it then meets. A round ends where the way is free; on a curved surface and behind an edge the
-// next one begins from there. No planes: the proxy has reached the handle.
+// Follows the surface that the proxy meets on its way to the handle, and all it then meets. A round
+// ends where the path is free; on a curved surface and behind an edge the next one starts from
+// there. No planes: the proxy has reached the handle.
 void Environment::follow(const Vector3d& handle, double mass_scale, Planes& planes,
                          Vector3d& proxy) const noexcept {
   for (int round = 0; round < kMaxRounds; ++round) {

@@ -25,10 +25,10 @@ Vector3d middle(const Triangle& triangle) {
   return (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
 }
 
-// What triangles have in common: corners at the same place, and edges.
+// Connectivity of triangles: corners at the same place, and edges.
 class Seams {
  public:
-  // The number of one corner.
+  // Number of a corner.
   int add(const Corners& corners) {
     std::array<int, 3> numbers{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -46,7 +46,7 @@ class Seams {
     }
     return numbers[0];
   }
-  // The same of all corners that hang together.
+  // Representative of all connected corners.
   int last(int corner) {
     const auto next = [&](int at) -> int& { return next_[static_cast<std::size_t>(at)]; };
     for (; next(corner) != corner; corner = next(corner)) next(corner) = next(next(corner));
@@ -58,8 +58,9 @@ class Seams {
 
  private:
   std::map<std::array<double, 3>, int> places_;
-  std::vector<int> next_;                       // of each corner, one that it hangs together with
-  std::map<std::pair<int, int>, int> surplus_;  // of triangles that run along an edge one way
+  std::vector<int> next_;  // link from each corner to one connected with it
+  // Per edge: triangles in one direction minus the other
+  std::map<std::pair<int, int>, int> surplus_;
 };
 
 std::uint32_t count_of(std::string_view content) {
@@ -82,7 +83,7 @@ std::vector<Corners> read_binary(std::string_view content, double scale) {
   return triangles;
 }
 
-// The words of a text, with the lines that they stand in.
+// Words of a text, with their line numbers.
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
@@ -187,8 +188,8 @@ void Mesh::build(std::vector<int>& order, std::size_t begin, std::size_t end) {
   nodes_[index].next = static_cast<int>(nodes_.size());
 }
 
-// The solid angle of all triangles seen from there is the whole sphere inside, nothing outside
-// (A. van Oosterom, J. Strackee, IEEE Trans. Biomedical Engineering 30(2), 1983).
+// The solid angle of all triangles seen from the point is the whole sphere inside, zero outside (A.
+// van Oosterom, J. Strackee, IEEE Trans. Biomedical Engineering 30(2), 1983).
 bool Mesh::encloses(const Vector3d& point) const noexcept {
   double angle = 0.0;
   for (const Triangle& triangle : triangles_) {

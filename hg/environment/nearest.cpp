@@ -11,8 +11,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kOnIt = 1e-9;       // m; from here no direction of the way to a point is known
-constexpr double kBeside = 1e-3;     // m; what is so near to a triangle is over it
+constexpr double kOnIt = 1e-9;       // m; below it the direction to a point is undefined
+constexpr double kBeside = 1e-3;     // m; points so near beside a triangle count as over it
 constexpr double kBent = 1e-6;       // m
 constexpr double kParallel = 0.999;  // cosine between normals
 
@@ -37,8 +37,8 @@ Vector3d nearest_on(const Triangle& triangle, const Vector3d& p) noexcept {
   return nearest;
 }
 
-// What a solid near a point shows it: how near a face that looks at it, and the nearest way out
-// through one that looks away.
+// Sides of a solid near a point: distance of the nearest face towards it, and the nearest way out
+// through a face away from it.
 struct Side {
   int solid = -1;
   double front = kInfinity;
@@ -47,7 +47,7 @@ struct Side {
   bool is_around() const noexcept { return out.distance < 0.0 && -out.distance < front; }
 };
 
-// those of the first few solids that are met
+// sides of the first few solids met
 class Sides {
  public:
   Side* of(int solid) noexcept {
@@ -108,7 +108,7 @@ Facing facing(const Triangle& triangle, const Vector3d& p) noexcept {
   if (height < -kBehind) return {};
   const Vector3d away = p - nearest_on(triangle, p);
   const double distance = away.norm();
-  // over it, or touching it: its own plane, from whatever side
+  // over it, or touching it: the triangle's own plane, on either side
   if (distance <= std::abs(height) + kOnIt) {
     return {triangle.normal, height, -1, false, triangle.solid};
   }
@@ -116,7 +116,7 @@ Facing facing(const Triangle& triangle, const Vector3d& p) noexcept {
 }
 
 Facing way_out(const Mesh& mesh, const Vector3d& p, double reach) noexcept {
-  // mostly it is near: look around in growing distances
+  // usually near: search in growing distances
   for (double radius = std::min(2.0 * kBehind, reach);; radius = std::min(2.0 * radius, reach)) {
     Sides sides;
     mesh.for_each_near(p, p, radius, [&](const Triangle& triangle) {

@@ -1,4 +1,4 @@
-/// Where solids are nearest to a point: the planes in front of what must not enter them.
+/// Nearest points of solids to a point, as planes that the point must not pass.
 ///
 /// SI units, frame B. No allocation.
 #pragma once
@@ -11,23 +11,23 @@ namespace hg::environment {
 
 inline constexpr int kMostFacing = 3;
 
-/// A plane that a point must stay in front of.
+/// Plane that bounds the free space of a point.
 struct Facing {
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< out of the surface, unit
-  double distance = kInfinity;                       ///< of the point along it, m; negative inside
-  int surface = -1;                                  ///< -1: none
-  bool is_edge = false;  ///< of a mesh: the nearest point is not inside of its triangle
-  int solid = 0;         ///< of a mesh: Triangle::solid
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< outward normal of the surface, unit
+  double distance = kInfinity;  ///< distance of the point along it, m; negative inside
+  int surface = -1;             ///< surface index; -1: none
+  bool is_edge = false;  ///< mesh only: the nearest point is not in the interior of its triangle
+  int solid = 0;         ///< mesh only: Triangle::solid
 };
 
-/// The planes with the least to spare, and how much that is.
+/// The planes with the smallest margins.
 class FacingPlanes {
  public:
-  /// Keeps the plane if it has less to spare than one of those that are kept. One that is nearly
-  /// parallel to another takes its place or is left out.
+  /// Keeps the plane if its margin `to_spare` is smaller than one of those kept. Of two nearly
+  /// parallel planes only one is kept.
   void add(const Facing& facing, double to_spare) noexcept;
-  /// Whether the nearest point that belongs to an edge lies on or behind a plane of the same
-  /// surface that is kept, which then is enough: the edge of a flat or outward bent neighbour.
+  /// Whether the nearest point of an edge lies on or behind a kept plane of the same surface, which
+  /// then suffices: the edge belongs to a flat or convex neighbour.
   bool covers(const Facing& edge) const noexcept;
   const std::array<Facing, kMostFacing>& planes() const noexcept { return planes_; }
 
@@ -37,25 +37,26 @@ class FacingPlanes {
 };
 
 /// Calls `visit` with the plane, without its surface, of each part of `surface` in front of
-/// `point`: of a convex solid the one at its nearest point, of a mesh those of all triangles within
-/// `reach` that face it. What is deeper than kBehind behind a triangle is not in front of it.
+/// `point`: for a convex solid the one at its nearest point, for a mesh those of all triangles
+/// within `reach` that face it. A point deeper than kBehind behind a triangle does not face it.
 template <class Visit>
 void for_each_facing(const Surface& surface, const Eigen::Vector3d& point, double reach,
                      const Visit& visit) noexcept;
 
-inline constexpr double kBehind = 5e-3;  ///< m
+/// Depth behind a triangle up to which it is considered, m
+inline constexpr double kBehind = 5e-3;
 
-/// Out of a closed mesh: the surface nearest to the point `p` (frame of the mesh), if the point is
-/// behind all that is as near. Nothing is farther away than `reach` (m). Distance infinite: there
-/// is none.
+/// Plane leading out of a closed mesh: the surface nearest to the point `p` (frame of the mesh), if
+/// the point is behind all surfaces that are as near. Searches up to `reach` (m). Distance
+/// infinite: none.
 Facing way_out(const Mesh& mesh, const Eigen::Vector3d& p, double reach) noexcept;
 
-// Of shapes in their own frame; normal out of it and distance.
+// Nearest planes of shapes in their own frame: outward normal and distance.
 Facing facing(const Plane& plane, const Eigen::Vector3d& p) noexcept;
 Facing facing(const Box& box, const Eigen::Vector3d& p) noexcept;
 Facing facing(const Sphere& sphere, const Eigen::Vector3d& p) noexcept;
 Facing facing(const Cylinder& cylinder, const Eigen::Vector3d& p) noexcept;
-/// Distance infinite: it does not face the point.
+/// The same for a triangle; distance infinite: it does not face the point.
 Facing facing(const Triangle& triangle, const Eigen::Vector3d& p) noexcept;
 
 template <class Visit>

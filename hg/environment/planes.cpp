@@ -9,8 +9,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kParallel = 1e-9;  // 1 - cosine; single precision of mesh files is below it
-constexpr double kFlat = 1e-12;     // m; less deep is no contact
+constexpr double kParallel = 1e-9;  // 1 - cosine; above the single precision of mesh files
+constexpr double kFlat = 1e-12;     // m; smaller depths are no contact
 
 }  // namespace
 
@@ -28,7 +28,8 @@ bool Planes::add(const Vector3d& normal, const Surface& surface, double damping,
 }
 
 // Shares s >= 0 of the normals N in the shortest way out: to_handle + N s is the nearest point with
-// N^T x >= 0. The first set of planes that meets the conditions of that point is the right one.
+// N^T x >= 0. The first set of planes that meets the optimality conditions of that point is the
+// right one.
 Vector3d Planes::shares(const Vector3d& to_handle) const noexcept {
   Matrix3d N = Matrix3d::Zero();
   for (int i = 0; i < count_; ++i) N.col(i) = planes_[static_cast<std::size_t>(i)].normal;
@@ -52,7 +53,7 @@ Vector3d Planes::shares(const Vector3d& to_handle) const noexcept {
     const Vector3d left = N.transpose() * (to_handle + N * s);
     if (s.minCoeff() >= 0.0 && left.minCoeff() >= -rounding) return s;
   }
-  // planes that leave no way: the proxy stays, the deepest one pushes
+  // planes without a way out: the proxy stays, the deepest one pushes
   Eigen::Index deepest = 0;
   const double depth = depths.maxCoeff(&deepest);
   return std::max(0.0, depth) * Vector3d::Unit(deepest);

@@ -105,7 +105,7 @@ VectorM Estimation::observe_joints(const SensorFrame& sensors, const VectorM& dd
   return measured;
 }
 
-// The same of the gantry.
+// Observes the gantry. Returns what its encoders show, unwrapped.
 VectorP Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd,
                                    State& state, RobotState& robot) const noexcept {
   VectorP measured(n_p_);

@@ -22,13 +22,13 @@ namespace hg::estimation {
 /// Set-up data.
 struct Config {
   double dt = 1e-3;                  ///< period, s
-  DriveModel drive;                  ///< of every gantry axis
-  double observer_pole_Hz = 8.0;     ///< of the gantry, see gantry_observer.h
-  double link_pole_Hz = 100.0;       ///< of the link side; [C] 2: 60-160 equal, 40 marginal
-  double motor_low_pass_Hz = 200.0;  ///< of the motor side's speed
-  Pose T_H_S;                        ///< force/torque sensor S in the handle frame H
+  DriveModel drive;                  ///< Drive model of every gantry axis
+  double observer_pole_Hz = 8.0;     ///< Pole of the gantry observer, see gantry_observer.h
+  double link_pole_Hz = 100.0;       ///< Pole of the link side; [C] 2: 60-160 equal, 40 marginal
+  double motor_low_pass_Hz = 200.0;  ///< Low-pass of the motor side's speed
+  Pose T_H_S;                        ///< Pose of the force/torque sensor S in the handle frame H
   WrenchConfig wrench;
-  InertialUnitsConfig units;  ///< on links
+  InertialUnitsConfig units;  ///< Inertial units on links
 };
 
 struct State {
@@ -47,27 +47,28 @@ class Estimation {
   /// `chain` holds the gantry joints first; `handle` is its frame H.
   Estimation(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
 
-  /// `dq_p_cmd` is the gantry command that was sent in the last cycle (n_p), `ddq_m_reference` the
-  /// acceleration of the manipulator's reference since then (n_m).
+  /// Estimates the state of a sample. `dq_p_cmd` is the gantry command that was sent in the last
+  /// cycle (n_p), `ddq_m_reference` the acceleration of the manipulator's reference since then
+  /// (n_m).
   RobotState step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
                   const VectorM& ddq_m_reference, State& state) noexcept;
 
-  /// Compares inertial unit and encoders, after step(); nothing without one. `is_on`: the
+  /// Compares inertial unit and encoders, after step(); no effect without a unit. `is_on`: the
   /// drives have power.
   void check_motion(const SensorFrame& sensors, bool is_on, State& state) const noexcept;
 
-  /// Starts a tare of the wrench when asked for; ends one under way unless the device is at rest.
+  /// Starts a tare of the wrench when requested; ends a running one unless the device is at rest.
   void tare(bool is_asked_for, bool is_at_rest, State& state) const noexcept;
-  /// Whether the wrench is as good as this device needs it for running.
+  /// Whether the wrench is tared, or the device needs no tare for running.
   bool is_tared(const State& state) const noexcept {
     return state.wrench.tare.is_valid || !config_.wrench.tare.is_needed;
   }
   bool has_units() const noexcept { return units_.has_any(); }
-  /// What the units on the links say; empty without.
+  /// Report of the units on the links; empty without.
   InertialReport inertial_report(const State& state) const noexcept {
     return units_.report(state.units);
   }
-  /// Acceleration of the gantry, n_p, that its drives were not told to have, m/s^2 or rad/s^2.
+  /// Acceleration of the gantry not commanded to its drives, n_p, m/s^2 or rad/s^2.
   VectorP gantry_disturbance(const State& state) const noexcept;
 
  private:

@@ -23,7 +23,7 @@ struct GantryObserver {
   CommandDelay delay;
 };
 
-/// By how much an innovation of the position corrects q, dq and the disturbance.
+/// Corrections of q, dq and the disturbance per innovation of the position.
 struct GantryGains {
   double q = 0.0, dq = 0.0, disturbance = 0.0;
 };
@@ -31,7 +31,7 @@ struct GantryGains {
 /// Stationary gains for a = 2 pi `pole_Hz`, > 0.
 GantryGains gantry_gains(double pole_Hz, double dt) noexcept;
 
-/// One period on: predicts with the drive model, corrects by the encoder (unwrapped).
+/// Advances by one period: predicts with the drive model, corrects by the encoder (unwrapped).
 void observe(const DriveModel& drive, const GantryGains& gains, double dt, double q_measured,
              double dq_cmd_delayed, GantryObserver& axis) noexcept;
 

@@ -8,11 +8,12 @@
 namespace hg::estimation {
 namespace {
 
-constexpr double kMemory_s = 4.0;         // with power, after which a turn is forgotten
-constexpr double kMemoryAtRest_s = 0.5;   // without, in which zero and gravity are learnt
+constexpr double kMemory_s = 4.0;  // time constant of forgetting a turn, with power
+// the same without power; also for learning zero and gravity
+constexpr double kMemoryAtRest_s = 0.5;
 constexpr double kMostBias = 0.03;        // rad/s; more is no zero but a drift
-constexpr double kSlipMemory_s = 0.5;     // after which a difference of speeds is forgotten
-constexpr double kOffsetMemory_s = 2.0;   // in which the zero of the accelerometer is learnt
+constexpr double kSlipMemory_s = 0.5;     // time constant of forgetting a difference of speeds
+constexpr double kOffsetMemory_s = 2.0;   // time constant of learning the zero of the accelerometer
 constexpr double kMostOffset = 1.0;       // m/s^2: 0.1 rad off level; more is no zero
 constexpr double kTypicalGravity = 9.81;  // m/s^2
 

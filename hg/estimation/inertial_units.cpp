@@ -19,15 +19,15 @@ constexpr double kBendShift = 0.3, kBendTurn = 0.3;           // m/s^2, rad/s^2
 constexpr double kReading = 0.1;                              // of what a known unit shows, m/s^2
 constexpr double kLeastReading = 0.03;                        // m/s^2
 constexpr double kLeastVariance = 1e-2, kMostVariance = 1e3;  // times those above
-constexpr double kUsual_s = 0.3;                              // over which deviations are averaged
+constexpr double kUsual_s = 0.3;                              // averaging time of deviations
 constexpr double kTurnReading = 5e-3;                         // the same of a gyroscope, rad/s
 constexpr double kTurnRate = 5e-4;  // by which a bend is unsure in a period
 constexpr double kNonsense = 20.0;  // beyond what is expected, m/s^2
 constexpr double kMostShown = 1e3;  // m/s^2 or rad/s, of any sensor
 constexpr int kFrozen = 20;         // periods without any new bit
-constexpr double kTrust_s = 0.5;    // from no trust to all
-constexpr double kFade_s = 0.02;    // of what a unit that has gone leaves
-constexpr double kBend_s = 0.3;     // in which a steady bend is forgotten
+constexpr double kTrust_s = 0.5;    // time from no trust to full trust
+constexpr double kFade_s = 0.02;    // time constant of fading out a unit that dropped out
+constexpr double kBend_s = 0.3;     // time constant of forgetting a steady bend
 constexpr double kSlow_Hz = 60.0;   // observer of a joint whose acceleration is seen
 
 }  // namespace
@@ -122,7 +122,8 @@ void InertialUnits::start(const EncoderSample& encoders, InertialUnitsState& sta
   state.dq = encoders.dq;
 }
 
-// Learns from what a unit shows and how far it is trusted; false: it took part and is out at once.
+// Learns from the reading of a unit and updates its trust; false: the unit took part and drops out
+// at once.
 bool InertialUnits::judge(std::size_t j, const UnitReading& reading, const LinkMotion& by_encoders,
                           const Eigen::Vector3d& beyond, InertialUnitsState& state) const noexcept {
   double& trust = state.trust[static_cast<Eigen::Index>(j)];
@@ -263,7 +264,7 @@ void InertialUnits::feed_back(const InertialUnitsState& state, RobotState& robot
   robot.dq_m += state.share * (now.dq.tail(n_m) - robot.dq_m);
   robot.q_p += state.share * (now.q.head(n_p_) - robot.q_p);
   robot.dq_p += state.share * (now.dq.head(n_p_) - robot.dq_p);
-  // what bends under the arm shakes it as the axis beneath would
+  // bending under the arm shakes it like a motion of the axis beneath
   const model::Jacobian& J = chain_.jacobian(config_.frames.front());
   for (int i = 0; i < n_p_; ++i) {
     const double bent = J.col(i).dot(state.found.tail<6>()) / J.col(i).squaredNorm();

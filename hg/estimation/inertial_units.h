@@ -1,16 +1,16 @@
-/// Accelerations of the joints, and what links and gantry bend, from inertial units on the links.
+/// Joint accelerations, and bending of links and gantry, from inertial units on the links.
 ///
-/// Encoders say where joints are; how they are accelerated is known from the reference (which the
-/// joints do not follow exactly) or by differences (which are noise). Units on the links see
-/// accelerations themselves, and what no encoder sees: that the structure bends. In each period
-/// the accelerations of all joints and those of a bent root are the most likely ones (ridge
-/// regression) of what the units show, what the reference says being the prior. How far joints and
-/// structure usually are from that, and how the units sit (unit_calibration.h), is learnt while the
-/// device moves. Works with any number of units anywhere; a
-/// unit that shows nothing new, nonsense, or what nothing explains, does not take part.
+/// Encoders measure joint positions; accelerations are known from the reference (which the joints
+/// do not follow exactly) or by differences (which are noise). Units on the links measure
+/// accelerations directly, and also the bending of the structure, which no encoder shows. In each
+/// period the accelerations of all joints and those of a bent root are the most likely ones (ridge
+/// regression) given the readings of the units, with the reference as prior. The usual deviations
+/// of joints and structure from it, and the mounting of the units (unit_calibration.h), are learnt
+/// while the device moves. Works with any number of units anywhere; a unit that shows nothing new,
+/// nonsense, or what nothing explains, is ignored.
 ///
-/// "pm" are all joints, the gantry's first. The root is the origin of the first unit's link, where
-/// the bending is told as if all of it were there. No allocation, noexcept after set-up.
+/// "pm" are all joints, the gantry's first. The root is the origin of the first unit's link, to
+/// which all bending is attributed. No allocation, noexcept after set-up.
 #pragma once
 
 #include <array>
@@ -29,41 +29,43 @@ using UnitCalibrations = std::array<UnitCalibration, kMaxInertialUnits>;
 
 /// Set-up data.
 struct InertialUnitsConfig {
-  std::vector<int>
-      frames;           ///< of the chain: links with a unit, root to tip; empty = there are none
-  double delay = 1e-3;  ///< from motion to reading, s; rounded to periods, at least one
-  bool feeds_back = false;  ///< true: the control uses what they say; false: it is only reported
-  /// How they sit, where that is known from an earlier run of the same device; null = it is learnt.
+  std::vector<int> frames;  ///< Chain frames of links with a unit, root to tip; empty = no units
+  double delay = 1e-3;      ///< Delay from motion to reading, s; rounded to periods, at least one
+  /// true: the control uses the units; false: their results are only reported.
+  bool feeds_back = false;
+  /// Mounting of the units known from an earlier run of the same device; null = it is learnt.
   std::shared_ptr<const UnitCalibrations> known;
 };
 
 /// Joints by encoders alone.
 struct EncoderSample {
-  VectorPM measured;      ///< what the encoders show, unwrapped
-  VectorPM q, dq;         ///< what their observers make of it
-  VectorPM ddq_expected;  ///< since the last sample, of the reference and of the drives' model
+  VectorPM measured;      ///< Encoder positions, unwrapped
+  VectorPM q, dq;         ///< Positions and speeds by the encoders' observers
+  VectorPM ddq_expected;  ///< Acceleration since the last sample, by reference and drive model
 };
 
 struct InertialUnitsState {
-  static constexpr int kPast = 16;  ///< periods that are remembered
+  static constexpr int kPast = 16;  ///< Number of stored periods
 
   bool is_started = false;
   UnitCalibrations units;
-  std::array<UnitReading, kMaxInertialUnits> last;  ///< readings of the last period
-  std::array<int, kMaxInertialUnits> same{};        ///< for how many periods they have not changed
-  VectorUpTo<kMaxInertialUnits> trust;              ///< share with which each takes part, 0..1
-  std::array<EncoderSample, kPast> past;            ///< a ring
+  std::array<UnitReading, kMaxInertialUnits> last;  ///< Readings of the last period
+  std::array<int, kMaxInertialUnits> same{};  ///< Periods for which each reading has not changed
+  VectorUpTo<kMaxInertialUnits> trust;        ///< Share with which each unit takes part, 0..1
+  std::array<EncoderSample, kPast> past;      ///< Ring buffer of the last periods
   std::size_t newest = 0;
-  int seen = 0;          ///< periods since the start, up to kPast
-  std::size_t turn = 0;  ///< the unit whose calibration is solved next
-  VectorUpTo<kMaxGantry + kMaxManipulator + 6> found;  ///< accelerations beyond the expected, root
-  VectorUpTo<kMaxGantry + kMaxManipulator + 6> carried;   ///< of a unit that has gone, fading
-  VectorUpTo<kMaxGantry + kMaxManipulator + 6> variance;  ///< usual ones of what is found
-  VectorUpTo<kMaxInertialUnits> error;  ///< mean square of what remains unexplained, (m/s^2)^2
-  VectorPM unseen;  ///< variance of each joint's acceleration that is left, 0..1
-  VectorPM q, dq;   ///< at the time of the readings
+  int seen = 0;          ///< Periods since the start, up to kPast
+  std::size_t turn = 0;  ///< Index of the unit whose calibration is solved next
+  /// Accelerations beyond the expected: joints, root.
+  VectorUpTo<kMaxGantry + kMaxManipulator + 6> found;
+  /// Part of a unit that dropped out, fading.
+  VectorUpTo<kMaxGantry + kMaxManipulator + 6> carried;
+  VectorUpTo<kMaxGantry + kMaxManipulator + 6> variance;  ///< Usual variances of `found`
+  VectorUpTo<kMaxInertialUnits> error;  ///< Mean square of what remains unexplained, (m/s^2)^2
+  VectorPM unseen;                      ///< Remaining variance of each joint's acceleration, 0..1
+  VectorPM q, dq;                       ///< Joints at the time of the readings
   Vector6 bend_rate = Vector6::Zero(), bend = Vector6::Zero();
-  double share = 0.0;  ///< with which the control uses it, 0..1
+  double share = 0.0;  ///< Share with which the control uses the units, 0..1
 };
 
 class InertialUnits {
@@ -74,13 +76,13 @@ class InertialUnits {
                 double gantry_pole_Hz, const model::Chain& chain, int n_p);
 
   bool has_any() const noexcept { return !config_.frames.empty(); }
-  /// Takes the readings of a period, as SensorFrame::inertial has them, and the encoders'.
+  /// Processes the readings of a period, as SensorFrame::inertial has them, and the encoders'.
   void step(const InertialReadings& readings, const EncoderSample& encoders,
             InertialUnitsState& state) noexcept;
-  /// Joints now, with what the units say; bending as it was when they saw it.
+  /// Present joint state by the units; bending as at the time of the readings.
   InertialReport report(const InertialUnitsState& state) const noexcept;
-  /// Puts it in the place of the encoders' estimates, as far as it is trusted; nothing unless it
-  /// feeds back.
+  /// Replaces the encoders' estimates by the units', as far as these are trusted; no effect unless
+  /// feeds_back.
   void feed_back(const InertialUnitsState& state, RobotState& robot) const noexcept;
 
  private:
@@ -105,12 +107,12 @@ class InertialUnits {
 
   InertialUnitsConfig config_;
   double dt_;
-  VectorPM slow_Hz_;   ///< poles of joints whose acceleration is seen
-  VectorPM fast_Hz_;   ///< and of those where it is not
-  Unknowns variance_;  ///< of what is to be found, before anything is known
+  VectorPM slow_Hz_;   ///< Observer poles of joints whose acceleration is seen
+  VectorPM fast_Hz_;   ///< Observer poles of joints whose acceleration is not seen
+  Unknowns variance_;  ///< Prior variances of the unknowns
   model::Chain chain_;
   int n_p_, n_;
-  int delay_;  ///< periods
+  int delay_;  ///< Delay in periods
 };
 
 }  // namespace hg::estimation

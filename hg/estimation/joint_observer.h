@@ -12,8 +12,8 @@ struct LinkObserver {
   double q = 0.0, dq = 0.0;
 };
 
-/// One period on: `ddq` acted since the last sample, `q_measured` is unwrapped. `pole` is the
-/// double pole of the estimation error.
+/// Advances by one period: `ddq` acted since the last sample, `q_measured` is unwrapped. `pole` is
+/// the double pole of the estimation error.
 inline void observe(double pole, double dt, double ddq, double q_measured,
                     LinkObserver& link) noexcept {
   link.q += dt * link.dq + 0.5 * dt * dt * ddq;
@@ -28,7 +28,8 @@ struct MotorObserver {
   double theta = 0.0, dtheta = 0.0;
 };
 
-/// One period on; `theta_measured` is unwrapped, `pole` is that of the low-pass of the speed.
+/// Advances by one period; `theta_measured` is unwrapped, `pole` is that of the low-pass of the
+/// speed.
 inline void observe(double pole, double dt, double theta_measured, MotorObserver& motor) noexcept {
   low_pass(pole, (theta_measured - motor.theta) / dt, motor.dtheta);
   motor.theta = theta_measured;

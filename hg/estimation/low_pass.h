@@ -1,4 +1,4 @@
-/// First-order low-pass of sampled signals, and the delay that it costs.
+/// First-order low-pass of sampled signals, and its delay.
 ///
 /// y_k = p y_(k-1) + (1 - p) x_k with p = exp(-2 pi f dt): the pole of the continuous filter.
 #pragma once
@@ -13,10 +13,10 @@ inline double low_pass_pole(double f_Hz, double dt) noexcept {
   return f_Hz > 0.0 ? std::exp(-2.0 * std::numbers::pi * f_Hz * dt) : 0.0;
 }
 
-/// By how much the filter delays slow signals, s.
+/// Delay of slow signals by the filter, s.
 inline double low_pass_delay(double pole, double dt) noexcept { return pole / (1.0 - pole) * dt; }
 
-/// Takes the next sample x into the filtered value y.
+/// Filters the next sample x into the value y.
 template <typename X, typename Y>
 void low_pass(double pole, const X& x, Y& y) noexcept {
   y = pole * y + (1.0 - pole) * x;

@@ -9,10 +9,10 @@ namespace hg::estimation {
 namespace {
 
 constexpr double kCompared_Hz = 10.0;          // below which encoders and unit are compared
-constexpr double kMean_s = 5.0;                // over which the acceleration of a link is averaged
+constexpr double kMean_s = 5.0;                // averaging time of a link's acceleration
 constexpr double kMoves = 0.05;                // m/s^2 from that mean: the link is accelerated
-constexpr double kMovedEnough_s = 5.0;         // with which a unit counts as known
-constexpr double kMisfit_s = 1.0;              // over which the misfit is averaged
+constexpr double kMovedEnough_s = 5.0;         // time of motion after which a unit counts as known
+constexpr double kMisfit_s = 1.0;              // averaging time of the misfit
 constexpr double kMostMisfit = 0.15 * 0.15;    // (m/s^2)^2
 constexpr double kMostVariance = 0.05 * 0.05;  // (m/s^2)^2
 constexpr double kMemory_s = 60.0;             // of motion like the present one
@@ -51,8 +51,8 @@ Motions motions_in(const UnitCalibration::Signals& all) noexcept {
   return motions;
 }
 
-// Old and new lose alike once there is more than kMemory_s of what a second brings now; at most as
-// much as that second brings.
+// Scales old and new data down alike once there is more than kMemory_s of what a second brings now;
+// at most by as much as that second brings.
 template <typename Information, typename Sum>
 void forget(double dt, double per_second, Information& information, Sum& sum) noexcept {
   const double trace = information.trace();
@@ -90,7 +90,7 @@ void learn(double dt, const LinkMotion& motion, const UnitReading& reading,
   const Eigen::Vector3d missing = shown - unit.accelerometer.transpose() * motions;
   unit.misfit += dt / kMisfit_s * (missing.squaredNorm() / 3.0 - unit.misfit);
   unit.a_mean += dt / kMean_s * (a - unit.a_mean);
-  // at rest there is nothing new: motion must not be forgotten over it
+  // at rest there is nothing new: earlier motion must not be forgotten
   if ((a - unit.a_mean).norm() <= kMoves) return;
   unit.moved_s += dt;
   accumulate(dt, kGyroscopeError, turns_of(omega), unit.slower.tail<3>(), unit.turn_information,

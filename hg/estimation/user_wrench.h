@@ -15,23 +15,23 @@ namespace hg::estimation {
 
 /// Set-up data. Low-passes are of first order; 0 = off.
 struct WrenchConfig {
-  Payload payload;      ///< beyond the sensor
+  Payload payload;      ///< Payload beyond the sensor
   bool has_imu = true;  ///< accelerometer and gyroscope in S; false: weight by the pose, no inertia
-  double alpha_low_pass_Hz = 60.0;  ///< of the differences of the gyroscope; [C] 2
-  double low_pass_Hz = 0.0;         ///< of the whole wrench; 50 for a noisy sensor, [C] 2
+  double alpha_low_pass_Hz = 60.0;  ///< Low-pass of the gyroscope's differences; [C] 2
+  double low_pass_Hz = 0.0;         ///< Low-pass of the whole wrench; 50 for a noisy sensor, [C] 2
   TareConfig tare;
 };
 
 struct WrenchState {
   bool is_started = false;
-  Eigen::Vector3d omega_S = Eigen::Vector3d::Zero();  ///< of the last sample
-  Eigen::Vector3d alpha_S = Eigen::Vector3d::Zero();  ///< filtered
-  Vector6 w_S = Vector6::Zero();                      ///< of the user, filtered
+  Eigen::Vector3d omega_S = Eigen::Vector3d::Zero();  ///< Angular velocity in the last sample
+  Eigen::Vector3d alpha_S = Eigen::Vector3d::Zero();  ///< Angular acceleration, filtered
+  Vector6 w_S = Vector6::Zero();                      ///< Wrench of the user, filtered
   TareState tare;
 };
 
-/// By how much the user's wrench is later than the sensor's sample, for slow changes, s. The
-/// sensor's own delay adds to it.
+/// Delay of the user's wrench after the sensor's sample, for slow changes, s. The sensor's own
+/// delay adds to it.
 double wrench_delay(const WrenchConfig& config, double dt) noexcept;
 
 /// Wrench without the payload's share of a sensor at rest, resolved in S. `R_B_S` serves devices
@@ -39,7 +39,7 @@ double wrench_delay(const WrenchConfig& config, double dt) noexcept;
 Vector6 without_weight(const WrenchConfig& config, const SensorFrame& sensors,
                        const Eigen::Matrix3d& R_B_S) noexcept;
 
-/// One period on: the user's wrench, state.w_S. The tare under way is told by advance().
+/// Advances by one period: the user's wrench, state.w_S. A running tare is advanced by advance().
 void estimate(const WrenchConfig& config, double dt, const SensorFrame& sensors,
               const Eigen::Matrix3d& R_B_S, WrenchState& state) noexcept;
 

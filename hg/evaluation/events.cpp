@@ -52,7 +52,7 @@ Situation situation_of(const LimitInfo& info, const LimitReport& report) noexcep
   return Situation::kFree;
 }
 
-// empty: not worth telling
+// empty = not reported
 const char* event_text(Situation before, Situation now) noexcept {
   if (before == Situation::kLocked) return "unlocked";
   switch (now) {

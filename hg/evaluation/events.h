@@ -1,5 +1,5 @@
-/// Recognises what happened in a run: an ordered list of events, each a conjunction of conditions
-/// on one CycleRecord. Works on records only, outside the control loop.
+/// Recognises the events of a run: an ordered list of events, each a conjunction of conditions on
+/// one CycleRecord. Works on records only, outside the control loop.
 #pragma once
 
 #include <optional>
@@ -28,15 +28,15 @@ enum class ConditionKind {
 struct Condition {
   ConditionKind kind = ConditionKind::kElapsed;
   int index = 0;
-  LimitState side = LimitState::kInactive;  ///< kInactive = either side
+  LimitState side = LimitState::kInactive;  ///< side of the limit; kInactive = either side
   double value = 0.0;
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< x, y, azimuth of the handle in B
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< place of the handle in B: x, y, azimuth
 };
 
 struct EventRule {
-  std::string name;               ///< "t_a", "locked"
-  std::string what;               ///< one sentence for humans
-  std::vector<Condition> all_of;  ///< true together
+  std::string name;               ///< name, e.g. "t_a", "locked"
+  std::string what;               ///< description in one sentence
+  std::vector<Condition> all_of;  ///< conditions that must hold together
 };
 
 struct Event {
@@ -45,10 +45,11 @@ struct Event {
   std::string what;
 };
 
-/// Looks for the rules in their order: each is looked for once the one before it has happened.
+/// Detects events in the order of their rules: each is looked for once the one before it has
+/// happened.
 class EventDetector {
  public:
-  /// What a limit does to its quantity, for the events of a run without rules.
+  /// State of a limited quantity, for the events of a run without rules.
   enum class Situation { kFree, kAtLower, kAtUpper, kLocked };
 
   /// With no rules, every limit that begins to act and every lock that opens or closes is an event.
@@ -67,9 +68,9 @@ class EventDetector {
   std::vector<EventRule> rules_;
   LimitCatalogue catalogue_;
   std::size_t next_ = 0;
-  VectorM q_m_start_;  ///< in the first running cycle
+  VectorM q_m_start_;  ///< joint positions in the first running cycle
   double start_s_ = 0.0;
-  std::vector<Situation> situations_;  ///< of every limit in the last record
+  std::vector<Situation> situations_;  ///< situation of every limit in the last record
 };
 
 }  // namespace hg::evaluation

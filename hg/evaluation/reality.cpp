@@ -62,7 +62,7 @@ void Reality::add(const Sample& sample) {
     max_joint_error_ = error;
     worst_joint_ = joint;
   }
-  // what follows is about what the user feels
+  // the rest concerns quantities felt by the user
   if (record.mode != Mode::kRunning) return;
   ++cycles_;
   max_hand_distance_ = std::max(max_hand_distance_, (record.T_B_E.p - truth.T_B_H.p).norm());

@@ -212,7 +212,7 @@ nlohmann::ordered_json Summary::reality_json() const {
   return json;
 }
 
-// What the simulation knows and no controller does.
+// True values of the simulation, unknown to a controller.
 std::string Summary::reality_text() const {
   std::string text;
   const auto line = [&](const char* label, const std::string& value) {

@@ -1,5 +1,4 @@
-/// What a run was like: events, worst violations, forces, solver and timing, for people and
-/// scripts.
+/// Summary of a run: events, worst violations, forces, solver and timing, for people and scripts.
 ///
 /// Fed with samples outside the control loop.
 #pragma once
@@ -19,34 +18,34 @@
 
 namespace hg::evaluation {
 
-/// What the runtime alone knows.
+/// Facts of a run that only the runtime knows.
 struct RunFacts {
   std::string scenario;
   std::string version;
-  std::string law;      ///< of the rendering
-  std::string bounds;   ///< of its limits
-  std::string gantry;   ///< what leads it, "rule" or "law"
-  std::string braking;  ///< before limits, "alone" or "together"
+  std::string law;      ///< law of the rendering
+  std::string bounds;   ///< bounds of the limits
+  std::string gantry;   ///< guidance of the gantry, "rule" or "law"
+  std::string braking;  ///< braking before limits, "alone" or "together"
   double rate_Hz = 0.0;
   Timing timing;
-  std::uint64_t dropped = 0;     ///< samples that were neither judged nor recorded
-  std::uint64_t unrecorded = 0;  ///< and that were judged only
+  std::uint64_t dropped = 0;     ///< number of samples neither evaluated nor recorded
+  std::uint64_t unrecorded = 0;  ///< number of samples evaluated but not recorded
   std::uint64_t allocations_in_loop = 0;
-  std::string fault_figures;    ///< part, value and limit of the fault; empty = it has none
+  std::string fault_figures;    ///< part, value and limit of the fault; empty = none
   bool stop_timed_out = false;  ///< drives were disabled while the device was moving
-  LinkCounts link;              ///< to a remote device; nothing was sent: there is none
-  std::string recording;        ///< file, empty when off
-  std::string recording_error;  ///< why it ended before the run; empty = it did not
+  LinkCounts link;  ///< counters of the link to a remote device; nothing sent = no remote device
+  std::string recording;  ///< recording file; empty = off
+  /// Reason why the recording ended before the run; empty = it did not
+  std::string recording_error;
   double wall_time_s = 0.0;
 };
 
-/// "12 sent, 11 received; 1 lost".
+/// Link counters as text: "12 sent, 11 received; 1 lost".
 std::string link_text(const LinkCounts& counts);
 
 class Summary {
  public:
-  /// `positions` judges devices whose truth is known.
-  /// As Reality.
+  /// `positions` evaluates devices whose truth is known, as in Reality.
   Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz,
           const VectorM& torque_rated = {});
 
@@ -56,7 +55,8 @@ class Summary {
   /// No limit may be exceeded by the reference by more than 2 mm / 5 mrad ([HANDBOOK] 10.1), or in
   /// truth by more than 1 mm / 2 mrad.
   bool limits_held() const noexcept;
-  /// Hand and device shook each other while it ran: FaultCode::kOscillation was warned of.
+  /// Whether hand and device oscillated against each other during the run: FaultCode::kOscillation
+  /// was warned of.
   bool has_shaken() const noexcept { return shaking_cycles_ > 0; }
   const std::vector<Event>& events() const noexcept { return events_; }
   const Fault& fault() const noexcept { return fault_; }
@@ -65,7 +65,7 @@ class Summary {
 
   /// The JSON text of --summary. `missing` are expected events that did not happen.
   std::string to_json(const RunFacts& facts, const std::vector<std::string>& missing) const;
-  /// The closing lines of a run.
+  /// The final lines of a run.
   std::string to_text(const RunFacts& facts, const std::vector<std::string>& missing) const;
 
  private:
@@ -85,9 +85,9 @@ class Summary {
   double rate_Hz_;
   std::uint64_t shaking_cycles_ = 0;
   double shaking_from_s_ = 0.0;
-  bool feels_touch_ = false;  ///< what touches the arm is felt for
+  bool feels_touch_ = false;  ///< contacts of the arm are monitored
   double max_touch_share_ = 0.0, touched_s_ = 0.0, max_touch_force_ = 0.0;
-  Shaking shaking_ = Shaking::kNone;  ///< at its begin
+  Shaking shaking_ = Shaking::kNone;  ///< kind of oscillation at its begin
   std::array<std::uint64_t, 4> solver_status_{};
   std::uint64_t active_set_changes_ = 0;
   Histogram cycle_time_us_;

@@ -1,4 +1,4 @@
-/// What experiments change about a scenario.
+/// Changes that experiments make to a scenario.
 #pragma once
 
 #include "hg/config/scenario.h"
@@ -6,22 +6,21 @@
 
 namespace hg::experiments {
 
-/// Puts a body of that mass and damping in the place of the scenario's free body; its moments of
-/// inertia and angular damping stay. Throws SetupError when the twin is not a free body.
+/// Replaces mass and damping of the scenario's free body; its moments of inertia and angular
+/// damping stay. Throws SetupError when the twin is not a free body.
 void set_free_twin(config::Scenario& scenario, const FreeTwin& twin);
 
 /// Gives the scenario's free body the same moment of inertia about all axes, kg m^2; its mass
 /// stays. Throws SetupError when the twin is not a free body.
 void set_free_inertia(config::Scenario& scenario, double inertia);
 
-/// Of the scenario's free body. Throws SetupError when the twin is not one.
+/// Mass and damping of the scenario's free body. Throws SetupError when the twin is not one.
 FreeTwin free_twin_of(const config::Scenario& scenario);
 
-/// The person plays `script` and nothing else, from the scenario's own grasp on; with it the run
-/// ends.
+/// Makes the person play only `script`, from the scenario's own grasp on; the run ends with it.
 void play_script(config::Scenario& scenario, const user::Script& script);
 
-/// Takes the friction of the joints away, in truth and in what the controller believes.
+/// Removes the joint friction, from the true device and from the controller's model.
 void take_friction(control::Config& control);
 
 }  // namespace hg::experiments

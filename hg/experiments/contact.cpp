@@ -21,10 +21,10 @@ constexpr double kFrom = -1.0;   // m, of the hand's way along y
 constexpr double kPause = 0.5;   // s, from the grasp on
 constexpr double kPeak = 1.875;  // largest speed of a minimum-jerk ramp over its mean
 
-// as long a way as the speed needs
+// length of the walk needed for the speed
 double way_of(double speed) { return std::min(2.0, 0.8 + 1.2 * speed); }
 
-// A straight walk along y; the person does not notice that the arm has hit somebody.
+// A straight walk along y; the person does not notice that the arm has hit a bystander.
 user::Script walk_past(const ContactConfig& config, double speed) {
   user::Script script;
   const double way = way_of(speed), duration = kPeak * way / (kFaster * speed);
@@ -47,7 +47,7 @@ config::Scenario walking(const config::Scenario& scenario, const ContactConfig& 
   return walk;
 }
 
-// Where a point of the true arm is, and how fast.
+// Tracks position and velocity of a point of the true arm.
 class Tracker {
  public:
   Tracker(const config::Scenario& scenario, const std::string& frame)
@@ -93,7 +93,7 @@ config::Scenario with(config::Scenario walk, const simulation::BystanderConfig& 
   return walk;
 }
 
-// Also a device that a fault has stopped goes on pressing: it is watched to the end.
+// A device stopped by a fault may still press, so the run continues to the end.
 ContactRun play(const config::Scenario& walk, const ContactConfig& config) {
   Player player(walk);
   Tracker tracker(walk, walk.bystander->hit_by);
@@ -129,7 +129,7 @@ ContactRun play(const config::Scenario& walk, const ContactConfig& config) {
   return run;
 }
 
-// The worse of each figure; what one run does not have, the other one has.
+// Takes the worse of each figure; a figure missing in one run comes from the other.
 void take_worse(const ContactRun& run, ContactRun& worst) {
   worst.hit_speed = std::max(worst.hit_speed, run.hit_speed);
   worst.force = std::max(worst.force, run.force);

@@ -1,5 +1,5 @@
-/// Somebody stands in the way: a hand walks a free body past, and the arm hits a part of a body,
-/// with and without giving way. Force and pressure beside the permissible ones of ISO/TS 15066.
+/// Contact with a bystander: a hand walks a free body past, and the arm hits a body part, with and
+/// without compliance. Force and pressure are compared with the permissible ones of ISO/TS 15066.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -21,11 +21,12 @@ struct HittingPoint {
 struct ContactConfig {
   std::vector<std::string> parts{"chest", "upper_arm", "hand", "face"};
   std::vector<HittingPoint> points{{"elbow", "elbow"}, {"wrist", "m5"}};
-  std::vector<double> speed{0.25, 0.5, 1.0};  ///< of the point when it hits, m/s
-  int seeds = 4;                              ///< 1 .. seeds
-  double watched = 1.5;                       ///< after the hit, s
-  double settled = 0.5;   ///< after the hit, from which a contact is quasi-static, s; ISO/TS 15066
-  double height = -0.75;  ///< of the handle, m in B
+  std::vector<double> speed{0.25, 0.5, 1.0};  ///< speed of the point when it hits, m/s
+  int seeds = 4;                              ///< number of seeds, 1 .. seeds
+  double watched = 1.5;                       ///< time observed after the hit, s
+  /// Time after the hit from which a contact is quasi-static, s; ISO/TS 15066
+  double settled = 0.5;
+  double height = -0.75;  ///< height of the handle, m in B
 };
 
 /// One hit.
@@ -36,25 +37,25 @@ struct ContactCase {
   bool is_clamped = false;  ///< the body stands against a wall
 };
 
-/// What became of it.
+/// Result of one hit.
 struct ContactRun {
-  double hit_speed = 0.0;              ///< of the point when it hit, m/s; 0: it did not
-  double force = 0.0;                  ///< largest, N
-  double pressure = 0.0;               ///< largest, N/cm^2
-  double settled_force = 0.0;          ///< largest from ContactConfig::settled on, N
-  double impulse = 0.0;                ///< of the force, until then, Ns
-  double contact = 0.0;                ///< how long the arm touched in all, s
-  double compression = 0.0;            ///< largest, m
-  double told = -1.0;                  ///< from the hit until it was told, s; < 0: it was not
-  double stopped = -1.0;               ///< from the hit until the device began to stop, s; likewise
-  FaultCode fault = FaultCode::kNone;  ///< that stopped it
+  double hit_speed = 0.0;      ///< speed of the point when it hit, m/s; 0 = no hit
+  double force = 0.0;          ///< largest force, N
+  double pressure = 0.0;       ///< largest pressure, N/cm^2
+  double settled_force = 0.0;  ///< largest force from ContactConfig::settled on, N
+  double impulse = 0.0;        ///< impulse of the force until ContactConfig::settled, Ns
+  double contact = 0.0;        ///< total contact time of the arm, s
+  double compression = 0.0;    ///< largest compression, m
+  double told = -1.0;          ///< time from the hit until it was reported, s; < 0 = not reported
+  double stopped = -1.0;  ///< time from the hit until the device began to stop, s; < 0 = it did not
+  FaultCode fault = FaultCode::kNone;  ///< fault that stopped the device
 };
 
 /// All seeds of a case, the worst of each figure.
 struct ContactResult {
   ContactCase what;
   ContactRun stiff;     ///< without compliance
-  ContactRun yielding;  ///< with it
+  ContactRun yielding;  ///< with compliance
 };
 
 struct ContactMeasures {
@@ -66,7 +67,7 @@ struct ContactMeasures {
 ContactRun hit(const config::Scenario& scenario, const ContactConfig& config,
                const ContactCase& what, bool gives_way, std::uint64_t seed);
 
-/// All cases, on all cores.
+/// Plays all cases, on all cores.
 ContactMeasures measure_contact(const config::Scenario& scenario, const ContactConfig& config,
                                 const Progress& progress);
 

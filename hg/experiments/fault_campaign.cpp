@@ -16,7 +16,7 @@ namespace hg::experiments {
 namespace {
 
 constexpr double kSettling = 1.0;  // s after the grasp: no fault before
-constexpr double kLatest = 8.0;    // s: later faults would tell nothing new
+constexpr double kLatest = 8.0;    // s: later faults add no information
 constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 
 // Worst of all limits of the device, from the truth.
@@ -42,13 +42,13 @@ class TrueLimits {
   std::vector<double> positions_;
 };
 
-// Whether the machine no longer does what was asked for.
+// Whether the machine has reacted and no longer follows its request.
 bool has_reacted(const CycleRecord& record, bool was_on) {
   return record.fault.code != FaultCode::kNone || record.mode == Mode::kStopping ||
          (was_on && record.mode == Mode::kReady) || record.mode == Mode::kFault;
 }
 
-// Ways of axes that nobody asked for, see FaultCase::travel_share.
+// Unplanned travel of axes, see FaultCase::travel_share.
 class Travel {
  public:
   Travel(const config::Scenario& scenario) : device_(scenario.device) {}
@@ -93,7 +93,7 @@ class Travel {
   double energy() const { return most_energy_; }
 
  private:
-  // A plan that moves where the axis stands still, because its encoder drifts, is no way.
+  // A plan that moves while the axis stands still, because its encoder drifts, is no travel.
   void look(double off, double moved, double stated) {
     share_ = std::max(share_, std::min(std::abs(off), std::abs(moved)) / stated);
   }

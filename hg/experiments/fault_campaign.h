@@ -1,5 +1,5 @@
-/// Faults on purpose in many runs: is each one noticed, how soon, what does the machine do, and
-/// what does the person at the handle get to feel. Source: [HANDBOOK] 6.2.
+/// Injected faults in many runs: detection and its delay, reaction of the machine, and what the
+/// person at the handle feels. Source: [HANDBOOK] 6.2.
 #pragma once
 
 #include <cstdint>
@@ -19,53 +19,55 @@ namespace hg::experiments {
 struct CampaignConfig {
   int cases = 560;
   std::uint64_t seed = 1;
-  double watched_s = 2.0;  ///< after a fault begins
-  /// A run without a reaction is harmless while the truth stays within these.
-  double harmless_excess = 0.01;  ///< outside any limit of the device, rad or m
-  double harmless_force = 50.0;  ///< more than without the fault, N: what the device gives for long
-  double harmless_distance = 0.02;  ///< of true handle and twin, m
-  /// No run, with or without a reaction, may go beyond these, nor any axis beyond its stopping
-  /// distance.
+  double watched_s = 2.0;  ///< time observed after a fault begins, s
+  /// Bounds on the true state within which a run without a reaction is harmless.
+  double harmless_excess = 0.01;  ///< excess over any limit of the device, rad or m
+  /// Force above that without the fault, N: the device's continuous force
+  double harmless_force = 50.0;
+  double harmless_distance = 0.02;  ///< distance of true handle and twin, m
+  /// Bounds for every run, with or without a reaction; no axis may exceed its stopping distance
+  /// either.
   double excess_bound = 0.10;  ///< outside any limit of the device, rad or m
-  double force_bound = 280.0;  ///< on the person; twice what a hand bears at rest, N
-  double energy_bound = 30.0;  ///< given to the person during the stop, J
+  double force_bound = 280.0;  ///< force on the person, N: twice what a hand bears at rest
+  double energy_bound = 30.0;  ///< energy given to the person during the stop, J
 };
 
 enum class Outcome : std::uint8_t {
   kNoticed = 0,    ///< the device stopped
-  kHarmless = 1,   ///< it went on, and nothing became worse
-  kUnnoticed = 2,  ///< it went on, and something became worse
+  kHarmless = 1,   ///< the device continued, and nothing became worse
+  kUnnoticed = 2,  ///< the device continued, and something became worse
 };
 
-/// When the faults of a case begin.
+/// Time at which the faults of a case begin.
 enum class Phase : std::uint8_t {
-  kRunning = 0,   ///< one, while the device runs
-  kPair = 1,      ///< two, of which the second begins up to half a second after the first
-  kStopping = 2,  ///< one, during a stop that somebody has asked for by an emergency stop
-  kStarting = 3,  ///< one, from before the device is tared and armed
+  kRunning = 0,   ///< one fault, while the device runs
+  kPair = 1,      ///< two faults, the second up to half a second after the first
+  kStopping = 2,  ///< one fault, during a requested emergency stop
+  kStarting = 3,  ///< one fault, from before the device is tared and armed
 };
 
-/// What became of one fault, or of a pair of them.
+/// Result of one fault, or of a pair.
 struct FaultCase {
-  std::size_t scenario = 0;  ///< index
+  std::size_t scenario = 0;  ///< index of the scenario
   Phase phase = Phase::kRunning;
   injection::Injection injection;
-  std::optional<injection::Injection> other;  ///< that was played besides
+  std::optional<injection::Injection> other;  ///< second fault of a pair, or the stop
   Outcome outcome = Outcome::kHarmless;
-  FaultCode fault = FaultCode::kNone;  ///< that was noticed; a released switch is none
+  FaultCode fault = FaultCode::kNone;  ///< detected fault; a released switch is none
   Stop stop = Stop::kNone;
-  double noticed_s = 0.0;  ///< after it began
+  double noticed_s = 0.0;  ///< time from the begin of the fault to its detection, s
   double stopped_s =
-      0.0;  ///< after it was noticed, until its drives stood still; NaN: they did not
-  double peak_force = 0.0;      ///< of the person, true, from the begin of the fault on, N
-  double worst_excess = 0.0;    ///< true, outside any limit of the device, rad or m
-  double worst_distance = 0.0;  ///< of true handle and twin while running or stopping, m
-  /// Largest way of an axis that nobody asked for, true: off its plan until the device stopped, and
-  /// all of it from there on; as a share of its stopping distance.
+      0.0;  ///< time from detection until the drives stood still, s; NaN = they did not
+  double peak_force = 0.0;  ///< largest true force of the person from the begin of the fault on, N
+  double worst_excess = 0.0;  ///< largest true excess over any limit of the device, rad or m
+  /// Largest distance of true handle and twin while running or stopping, m
+  double worst_distance = 0.0;
+  /// Largest true unplanned travel of an axis: deviation from its plan until the device stopped,
+  /// all travel from there on; as a share of its stopping distance.
   double travel_share = 0.0;
-  double energy = 0.0;           ///< given to the person from the stop on, J
-  bool is_told_to_fall = false;  ///< rule 323 has said that a brake does not hold
-  bool is_complete = true;       ///< its recording has every cycle, in order, once
+  double energy = 0.0;           ///< energy given to the person from the stop on, J
+  bool is_told_to_fall = false;  ///< rule 323 has reported that a brake does not hold
+  bool is_complete = true;       ///< the recording has every cycle exactly once, in order
 };
 
 struct Campaign {
@@ -74,33 +76,33 @@ struct Campaign {
   std::vector<FaultCase> cases;
 };
 
-/// Whether the drives stand still: a person who pulls goes on to bend the springs behind them.
+/// Whether the drives stand still; a person who pulls may still bend the springs behind them.
 bool stands_still(const Truth& truth);
 
-/// When faults begin: the hand has settled, and the script goes on for a while. Empty (lb > ub) for
-/// a script that is too short, or that there is none.
+/// Range of times at which faults begin: the hand has settled, and the script continues for a
+/// while. Empty (lb > ub) if the script is too short or missing.
 Interval fault_times(const config::Scenario& scenario);
 
-/// One run with the faults of `drawn`, whose other fields say what became of it. `scenario` has a
-/// script; `clean_force` is the person's peak without the fault. The run is recorded as `recording`
-/// says, read back and deleted; null: it is not.
+/// Plays one run with the faults of `drawn` and returns it with its result filled in. `scenario`
+/// has a script; `clean_force` is the person's peak without the fault. The run is recorded as
+/// `recording` says, read back and deleted; null = not recorded.
 FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
                      const CampaignConfig& config, double clean_force,
                      const recording::RecordingInfo* recording = nullptr);
 
-/// All kinds in turn, each in all phases in turn, in random scenarios, at random times, of random
-/// sizes; on all cores. The
-/// scenarios are played on their own simulated machines. `recordings` are what the recording of
-/// each scenario is told, with a folder that is deleted afterwards; empty: nothing is recorded.
+/// Plays all kinds in turn, each in all phases in turn, in random scenarios, at random times, of
+/// random sizes; on all cores. The scenarios are played on their own simulated machines.
+/// `recordings` holds the recording information of each scenario, with a folder that is deleted
+/// afterwards; empty = no recording.
 Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const CampaignConfig& config,
                       const std::vector<recording::RecordingInfo>& recordings,
                       const Progress& progress);
 
-/// Whether no fault was unnoticed and no bound exceeded.
+/// Whether every harmful fault was noticed and no bound exceeded.
 bool is_passed(const Campaign& campaign);
-/// A row per kind of fault, and what went wrong.
+/// Table with a row per kind of fault, and the failures.
 std::string to_text(const Campaign& campaign);
-/// The same table and its last line, as a page.
+/// The table of to_text() and its last line, as a Markdown page.
 std::string to_markdown(const Campaign& campaign);
 nlohmann::ordered_json to_json(const Campaign& campaign);
 

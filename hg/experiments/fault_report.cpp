@@ -1,4 +1,4 @@
-// What became of a campaign, for people and programs.
+// Report of a campaign, as text and JSON.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,7 +14,7 @@
 namespace hg::experiments {
 namespace {
 
-// No software holds an axis whose brake does not once the power is off: it has to be told.
+// Once the power is off, no software holds an axis whose brake fails: this has to be reported.
 bool has_fallen(const FaultCase& result) {
   const auto is_weak = [](const injection::Injection& injection) {
     return injection.kind->part == injection::Part::kBrake &&
@@ -78,7 +78,7 @@ std::string case_text(const Campaign& campaign, std::size_t index) {
       result.is_complete ? "" : ", its recording has lost cycles");
 }
 
-// What became of all cases of one kind.
+// Results of all cases of one kind.
 struct Row {
   int cases = 0, noticed = 0, harmless = 0, unnoticed = 0;
   std::vector<double> noticed_ms, stopped_ms;

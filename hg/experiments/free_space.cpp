@@ -58,7 +58,7 @@ bool is_known(const FeelElsewhere& feel) {
   return !std::isnan(feel.force) || !std::isnan(feel.extra) || !std::isnan(feel.vibration_5);
 }
 
-// What becomes better by most when it is taken away.
+// The imperfection whose removal improves the value most.
 std::string dominant(const std::vector<FreeSpaceRun>& runs, double Feel::*value,
                      const std::string& what, const std::string& unit) {
   const FreeSpaceRun* best = nullptr;

@@ -1,5 +1,5 @@
-/// How free free space feels: force and vibration at the handle on a slow walk, with parts of the
-/// machine changed or switched off to see what they contribute. Source: [C] 4.
+/// Force and vibration at the handle on a slow walk in free space, with parts of the machine
+/// changed or switched off to show their contribution. Source: [C] 4.
 #pragma once
 
 #include <functional>
@@ -14,17 +14,18 @@
 
 namespace hg::experiments {
 
-/// A vibration of the gantry that its observer knows nothing of: put onto the commands of its
-/// drives, so that their accelerations turn with this magnitude.
+/// Gantry vibration unknown to the observer: added to the drive commands, so that the acceleration
+/// rotates with this magnitude.
 struct GantryVibration {
   double acceleration = 0.0;  ///< m/s^2; 0 = none
   double frequency_Hz = 12.0;
 };
 
-/// Adds to the commands of drives with this lag what they turn into the wanted acceleration.
+/// Adds the vibration to the commands of drives with this lag, so that the wanted acceleration
+/// results.
 void shake(const GantryVibration& vibration, double lag, double time_s, VectorP& dq_p) noexcept;
 
-/// What somebody else found; NaN = not said.
+/// Published figures of another source; NaN = not given.
 struct FeelElsewhere {
   double force = kUnknown, own_share = kUnknown, extra = kUnknown;
   double vibration_5 = kUnknown, vibration_20 = kUnknown, centroid_Hz = kUnknown;
@@ -38,12 +39,12 @@ inline constexpr FeelElsewhere kPaperFeel = {
 struct FreeSpaceVariant {
   std::string name;
   std::function<void(config::Scenario&)> change;
-  FeelElsewhere notes;             ///< of [C] 4
-  bool takes_away = false;         ///< an imperfection: what becomes better is its contribution
-  GantryVibration vibration = {};  ///< of the gantry
+  FeelElsewhere notes;      ///< figures of [C] 4
+  bool takes_away = false;  ///< an imperfection is removed: the improvement is its contribution
+  GantryVibration vibration = {};  ///< added vibration of the gantry
 };
 
-/// The variants that are played; the first one is the scenario as it is.
+/// Variants to play; the first one is the unchanged scenario.
 std::vector<FreeSpaceVariant> free_space_variants();
 
 struct FreeSpaceRun {
@@ -51,23 +52,23 @@ struct FreeSpaceRun {
   Feel feel;
   FeelElsewhere notes;
   bool takes_away = false;
-  double judged_s = 0.0;       ///< of the walk; 0: it did not come to a walk
+  double judged_s = 0.0;       ///< evaluated time of the walk, s; 0 = no walk took place
   double joint_error = 0.0;    ///< largest difference of reference and true link, rad
-  double hand_distance = 0.0;  ///< largest of true handle and twin, m
-  double torque_share = 0.0;   ///< largest of a motor over its peak
+  double hand_distance = 0.0;  ///< largest distance of true handle and twin, m
+  double torque_share = 0.0;   ///< largest motor torque over its peak
   FaultCode fault = FaultCode::kNone;
 };
 
-/// `scenario`: a slow walk with a free twin. The first `settling` seconds after the grasp, in which
-/// the person starts to walk, do not count.
+/// Plays one variant of `scenario`, a slow walk with a free twin. The first `settling` seconds
+/// after the grasp, in which the person starts to walk, do not count.
 FreeSpaceRun walk(const config::Scenario& scenario, const FreeSpaceVariant& variant,
                   double settling = 2.0);
 
-/// All variants, on all cores.
+/// Plays all variants, on all cores.
 std::vector<FreeSpaceRun> measure_free_space(const config::Scenario& scenario,
                                              const Progress& progress);
 
-/// A table beside the paper's and the notes' figures, and what dominates.
+/// Table with the paper's and the notes' figures, and the dominating contribution.
 std::string to_text(const std::vector<FreeSpaceRun>& runs);
 nlohmann::ordered_json to_json(const std::vector<FreeSpaceRun>& runs);
 

@@ -74,12 +74,13 @@ config::Scenario prepared(const config::Scenario& scenario, const ImpedanceConfi
   config::Device& device = pushed.device;
   device.control.method = what.is_modal ? control::Method::kModal : control::Method::kMotorPd;
   if (!what.has_friction) take_friction(device.control);
-  device.control.error_max = kInfinity;  // how far it gives way, and not when tracking is lost
-  device.monitor.unexplained_tolerance = kInfinity;  // nor when what is blind contradicts torques
+  device.control.error_max = kInfinity;  // measures the deflection, not the loss of tracking
+  // Nor the contradiction of a blind sensor and torques
+  device.monitor.unexplained_tolerance = kInfinity;
   if (what.is_blind) {
-    device.monitor.frozen_samples = 0.0;            // that it shows nothing is meant
+    device.monitor.frozen_samples = 0.0;            // a zero reading is intended
     device.simulation.sensors.wrench.range = 1e-9;  // of full scale
-    device.estimation.wrench.has_imu = false;       // which would show a wrench of its own
+    device.estimation.wrench.has_imu = false;       // would add a wrench of its own
   }
   play_script(pushed, plan.script);
   pushed.script.hand.tremor_rms = 0.0;

@@ -53,7 +53,7 @@ struct Squares {
   }
 };
 
-// All joints as somebody believes them to move, and what he knows of the bending root.
+// Believed motion of all joints, and known motion of the bending root.
 struct Belief {
   VectorPM dq, ddq;
   Vector6 bend_rate = Vector6::Zero(), bend_acceleration = Vector6::Zero();

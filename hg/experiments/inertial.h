@@ -1,7 +1,7 @@
-/// What inertial units on the links know that encoders do not: errors of speeds and accelerations
-/// against the truth of the simulation, with all of them, with some, and when one dies.
+/// Benefit of inertial units on the links over encoders alone: errors of speeds and accelerations
+/// against the truth of the simulation, with all units, with some, and when one fails.
 ///
-/// The control does not use what the units say here: encoders and units see the same motion.
+/// The control does not use the units here: encoders and units see the same motion.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,18 @@
 
 namespace hg::experiments {
 
-/// Which links carry a unit, by name.
+/// Links that carry a unit, by name.
 struct UnitSet {
   std::string name;
-  std::vector<std::string> links;  ///< root to tip
-  bool loses_one = false;          ///< halfway the middle one shows NaN for ever
+  std::vector<std::string> links;  ///< links, root to tip
+  bool loses_one = false;          ///< the middle unit reads NaN from halfway on
 };
 
-/// One unit on each link that another joint moves; and subsets. Without gantry those of the arm.
+/// Sets of units: one on each link that a different joint moves, and subsets. Without a gantry,
+/// those of the arm.
 std::vector<UnitSet> unit_sets(const config::Device& device);
 
-/// Their frames in the device's chain.
+/// Frames of the links in the device's chain.
 std::vector<int> frames_of(const config::Device& device, const std::vector<std::string>& links);
 
 /// rms of an estimate minus the truth. Joints of the manipulator are taken together.
@@ -40,25 +41,28 @@ struct EstimateErrors {
 struct InertialRun {
   std::string scenario, units;
   std::uint64_t seed = 0;
-  double judged_s = 0.0;     ///< from the middle of the run on; 0 after a fault before it
-  EstimateErrors reference;  ///< what the joints should do; its speeds are those of the encoders
-  EstimateErrors encoders;   ///< accelerations from differences of the speeds
-  EstimateErrors inertial;   ///< encoders and units
-  double lateness = 0.0;     ///< of what the units say beyond the reference, s
-  double trust = 0.0;        ///< least of a unit, at the end
-  double bump = 0.0;         ///< largest change of a joint's acceleration in a period, rad/s^2
+  /// Evaluated time, from the middle of the run on, s; 0 after a fault before it
+  double judged_s = 0.0;
+  /// Errors of the joint reference; its speeds are those of the encoders
+  EstimateErrors reference;
+  /// Errors of encoders alone; accelerations from differences of the speeds
+  EstimateErrors encoders;
+  EstimateErrors inertial;  ///< errors of encoders and units together
+  double lateness = 0.0;    ///< delay of the units' contribution beyond the reference, s
+  double trust = 0.0;       ///< lowest trust of a unit, at the end
+  double bump = 0.0;        ///< largest change of a joint's acceleration in a period, rad/s^2
   FaultCode fault = FaultCode::kNone;
 };
 
-/// Plays a scenario with inertial units: what they have learnt of how they sit is known from then
-/// on.
+/// Plays a scenario with inertial units and stores the mounting they have learnt.
 void learn_mounting(config::Scenario& scenario);
 
-/// A scenario with a planned end, played twice: units learn how they sit, then they are judged.
+/// A scenario with a planned end, played twice: units learn their mounting, then they are
+/// evaluated.
 InertialRun play_with_units(const config::Scenario& scenario, const std::string& name,
                             const UnitSet& units, std::uint64_t seed);
 
-/// All sets with all scenarios and seeds 1..`seeds`, on all cores.
+/// Plays all sets with all scenarios and seeds 1..`seeds`, on all cores.
 std::vector<InertialRun> measure_inertial(const std::vector<config::Scenario>& scenarios,
                                           const std::vector<std::string>& names, int seeds,
                                           const Progress& progress);

@@ -14,7 +14,7 @@
 
 namespace hg::experiments {
 
-/// Of sensor errors, noise and tremor.
+/// Sets the seed of sensor errors, noise and tremor.
 void set_seed(config::Scenario& scenario, std::uint64_t seed);
 
 class Player {
@@ -22,27 +22,28 @@ class Player {
   /// `scenario` needs a planned end (assembly::planned_duration_s) and must outlive the player.
   explicit Player(const config::Scenario& scenario);
 
-  /// One period is begin(), run(), end(); run() is Cycle::step and nothing else.
+  /// One period is begin(), run(), end(); run() is only Cycle::step.
   void begin();
   void run() noexcept {
     cycle_.step(sample_->sensors, sample_->operator_input, sample_->command, sample_->record);
   }
-  /// False when this was the last period: the plan is over, or a fault stopped the device.
+  /// Ends the period; false when it was the last one: the plan is over, or a fault stopped the
+  /// device.
   bool end();
 
   const CycleRecord& record() const noexcept { return sample_->record; }
-  /// Between run() and end(): all of this period but the truth.
+  /// Sample of this period, without the truth; valid between run() and end().
   const Sample& sample() const noexcept { return *sample_; }
-  /// The same with the truth.
+  /// Sample of this period, with the truth; valid between run() and end().
   const Sample& judged_sample() noexcept {
     sample_->truth = truth();
     return *sample_;
   }
-  /// Between begin() and end(): at the time of the sensors.
+  /// True state at the time of the sensors; valid between begin() and end().
   const Truth& truth() const noexcept { return *device_.truth(); }
-  /// For faults: what is changed between begin() and run() is what the cycle gets.
+  /// Sensor values of the cycle, to inject faults: may be changed between begin() and run().
   SensorFrame& sensors() noexcept { return sample_->sensors; }
-  /// For disturbances: what is changed between run() and end() is what the device gets.
+  /// Command to the device, to inject disturbances: may be changed between run() and end().
   CommandFrame& command() noexcept { return sample_->command; }
   bool is_running() const noexcept { return record().mode == Mode::kRunning; }
   cycle::Cycle& cycle() noexcept { return cycle_; }

@@ -11,7 +11,7 @@ namespace {
 // px
 constexpr double kLeft = 110.0, kTop = 92.0, kCell = 34.0, kGap = 110.0, kLegend = 96.0;
 
-// told apart by those who do not see all colours as well (Okabe, Ito)
+// distinguishable with colour vision deficiency (Okabe, Ito)
 const char* colour(Verdict verdict) {
   switch (verdict) {
     case Verdict::kStable:

@@ -1,4 +1,4 @@
-/// Independent pieces of work on all cores.
+/// Parallel execution of independent tasks on all cores.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace hg::experiments {
 
-/// Told from time to time how many pieces are done; by one thread at a time.
+/// Callback that reports from time to time how many tasks are done; called by one thread at a time.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Calls work(i) once for every i < count, from as many threads as there are cores, and returns

@@ -11,8 +11,8 @@
 namespace hg::explanation {
 namespace {
 
-constexpr double kGap_s = 0.5;          // interruptions of a span up to this are not told
-constexpr double kShortest_s = 0.02;    // limits that act for less are not told
+constexpr double kGap_s = 0.5;          // interruptions of a span up to this are not reported
+constexpr double kShortest_s = 0.02;    // limits that act for less are not reported
 constexpr double kMoving = 2e-2;        // rad/s or m/s, measured
 constexpr double kForceWindow_s = 0.5;  // the largest force is known of this one and the last
 
@@ -23,7 +23,7 @@ double speed_of(const Sample& sample) {
   return speed;
 }
 
-// of the user: the true one, where the device is simulated
+// force of the user; the true one if the device is simulated
 double force_of(const Sample& sample) {
   const Vector6& w = sample.truth.is_known ? sample.truth.w_H : sample.record.robot.w_H;
   return w.head<3>().norm();
@@ -109,7 +109,7 @@ void Explainer::add(const Sample& sample) {
   remember(sample);
 }
 
-// A recording that does not begin with the run tells nothing of how its first state came.
+// A recording that does not begin with the run does not show how its first state arose.
 void Explainer::begin(const Sample& sample) {
   first_s_ = last_.time_s = sample.record.time_s;
   if (sample.record.cycle != 0) remember(sample);
@@ -141,7 +141,7 @@ void Explainer::add_modes(const Sample& sample) {
                                  : ": the user holds the handle (dead-man closed)";
   }
   if (record.mode == Mode::kStopping) text += why_it_stops(sample, last_.is_autonomous);
-  // what stands is stopped at once
+  // a device at standstill stops at once
   const bool was_on = last_.mode == Mode::kArmed || last_.mode == Mode::kRunning;
   if (record.mode == Mode::kReady && was_on && !sample.sensors.safety.operator_enable) {
     text += ": the operator let go of the enabling switch";
@@ -268,7 +268,7 @@ void Explainer::add_fault(const Sample& sample) {
   const Fault& fault = record.fault;
   if (fault.code == last_.fault) return;
   end_aftermath();
-  // the stop is told with the mode, and that the operator arms again as well
+  // the stop is reported with the mode, as is re-arming by the operator
   if (fault.code == FaultCode::kOperatorReleased) return;
   if (fault.code == FaultCode::kNone) {
     if (!safety::is_fault(last_.fault)) return;

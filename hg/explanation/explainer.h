@@ -1,7 +1,7 @@
-/// Tells in words what happened in a run: from its samples and events, in their order.
+/// Explains a run in words, from its samples and events in their order.
 ///
-/// For people who were not there: each line says what, how much and, of a fault, what it means,
-/// what the machine did and what releases it. Works on recordings, outside any loop.
+/// Each line states what happened and how much; for a fault also its meaning, the reaction of the
+/// machine and what releases it. Works on recordings, outside any loop.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@
 
 namespace hg::explanation {
 
-/// Something that happened.
+/// An entry of the explanation.
 struct Entry {
   double time_s = 0.0;
-  std::string kind;                  ///< "mode", "limit", "warning", "FAULT", ...
-  std::string text;                  ///< one line
+  std::string kind;                  ///< kind, e.g. "mode", "limit", "warning", "FAULT"
+  std::string text;                  ///< text, one line
   std::vector<std::string> details;  ///< further lines, "meaning      ..."
 };
 
@@ -28,25 +28,25 @@ class Explainer {
  public:
   explicit Explainer(Names names);
 
-  /// In their order.
+  /// Adds the next sample; samples must be in order.
   void add(const Sample& sample);
-  /// What the recording itself says; `text` as in the recording.
+  /// Adds an event of the recording; `text` as in the recording.
   void add_event(double time_s, const std::string& name, const std::string& text);
-  /// After the last sample: all entries by time.
+  /// Returns all entries by time; call it after the last sample.
   std::vector<Entry> finish();
 
   double first_s() const noexcept { return first_s_; }
   double last_s() const noexcept { return last_.time_s; }
 
  private:
-  /// Something that goes on for a while, with interruptions too short to tell.
+  /// A lasting condition, with interruptions too short to report.
   struct Span {
     double begin_s = 0.0, end_s = 0.0;
     double active_s = 0.0;
     double peak = 0.0;
-    const char* unit = "";  ///< of peak
+    const char* unit = "";  ///< unit of `peak`
   };
-  /// What of the last sample is compared with the next.
+  /// Values of the last sample that are compared with the next.
   struct Last {
     std::uint64_t cycle = 0;
     double time_s = 0.0;
@@ -55,17 +55,17 @@ class Explainer {
     TareStatus tare = TareStatus::kNone;
     bool is_autonomous = false;
   };
-  /// Samples that are not there.
+  /// Missing samples.
   struct Lost {
     std::uint64_t samples = 0, gaps = 0;
     double first_s = 0.0, longest_s = 0.0;
   };
-  /// From a fault to the rest of the device.
+  /// Time from a fault to standstill of the device.
   struct Aftermath {
     std::size_t entry = 0;
     double fault_s = 0.0;
-    double off_s = -1.0;    ///< drives were off; < 0 = not seen
-    double moved_s = -1.0;  ///< last motion seen
+    double off_s = -1.0;    ///< time when the drives were off; < 0 = not seen
+    double moved_s = -1.0;  ///< time of the last motion seen
     double force = 0.0, speed = 0.0;
     Stop stop = Stop::kNone;
   };
@@ -87,14 +87,15 @@ class Explainer {
   Names names_;
   std::vector<Entry> entries_;
   Lost lost_;
-  std::map<std::pair<std::string, std::string>, Span> spans_;  ///< by kind and text
+  std::map<std::pair<std::string, std::string>, Span> spans_;  ///< spans by kind and text
   Last last_;
   bool has_aftermath_ = false;
   Aftermath aftermath_;
   double first_s_ = -1.0;
   double period_s_ = 0.0;
-  double force_before_ = 0.0, force_now_ = 0.0;  ///< largest of the last window and of this one
-  double force_until_s_ = 0.0;                   ///< end of this one
+  /// Largest force of the last window and of this one
+  double force_before_ = 0.0, force_now_ = 0.0;
+  double force_until_s_ = 0.0;  ///< end of this window
 };
 
 }  // namespace hg::explanation

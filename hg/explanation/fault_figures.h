@@ -1,5 +1,4 @@
-/// What a fault or a warning says beyond its rule: which part of the machine, how much, what was
-/// allowed.
+/// Details of a fault or warning beyond its rule: part of the machine, value, allowed value.
 #pragma once
 
 #include <string>
@@ -12,19 +11,20 @@
 namespace hg::explanation {
 
 struct Names {
-  std::vector<std::string> joints;  ///< of the manipulator
+  std::vector<std::string> joints;  ///< joint names of the manipulator
   std::vector<std::string> gantry;
-  std::vector<std::string> pairs;  ///< that may collide
+  std::vector<std::string> pairs;  ///< names of the pairs that may collide
   LimitCatalogue limits;
 };
 
-/// The name, or "OTHERWISE INDEX" where the list has none.
+/// Name with this index, or "OTHERWISE INDEX" where the list has none.
 std::string name_in(const std::vector<std::string>& list, int index, const char* otherwise);
 
-/// "m4", "torque sensor m2"; empty = no part. `sensors` tells which values the device has.
+/// Part of the machine: "m4", "torque sensor m2"; empty = no part. `sensors` shows which values the
+/// device has.
 std::string part_of(const Fault& fault, const Names& names, const SensorFrame& sensors);
 
-/// "m4: 0.083, limit 0.08"; empty = the rule says it all.
+/// Part, value and limit: "m4: 0.083, limit 0.08"; empty = nothing beyond the rule.
 std::string figures_of(const Fault& fault, const Names& names, const SensorFrame& sensors);
 
 }  // namespace hg::explanation

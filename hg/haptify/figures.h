@@ -1,4 +1,5 @@
-/// What a benchmark says: figures with repetitions beside those of other devices, tables, failures.
+/// Results of a benchmark: figures with repetitions beside those of other devices, tables,
+/// failures.
 #pragma once
 
 #include <cstdint>
@@ -19,44 +20,44 @@ struct Published {
 };
 
 struct Figure {
-  std::string id;    ///< for scripts: "free_space_force"
-  std::string name;  ///< for people
+  std::string id;    ///< identifier for scripts: "free_space_force"
+  std::string name;  ///< name for display
   std::string unit;
-  int digits = 2;  ///< after the point
+  int digits = 2;  ///< digits after the decimal point
   Published published;
-  Interval goal;               ///< where the mean should be; unbounded = no goal
-  std::vector<double> values;  ///< one per repetition, in the order of their seeds
-  std::string note;            ///< under which conditions
-  std::string why;             ///< what makes it what it is, with figures; for a missed goal
+  Interval goal;               ///< goal range of the mean; unbounded = no goal
+  std::vector<double> values;  ///< values per repetition, in the order of their seeds
+  std::string note;            ///< conditions of the measurement
+  std::string why;             ///< cause of the value, with figures; for a missed goal
 
   Mean mean() const { return mean_of(values); }
   bool is_measured() const { return !values.empty(); }
   bool meets_goal() const { return is_measured() && goal.contains(mean().value); }
 };
 
-/// ">= 3", "<= 3", "3 .. 4" or "-".
+/// Goal as text: ">= 3", "<= 3", "3 .. 4" or "-".
 std::string to_text(const Interval& goal);
 
-/// Numbers in rows, one file each.
+/// Table of numbers, written to one file.
 struct Table {
-  std::string id;     ///< of the file
-  std::string title;  ///< one line
+  std::string id;     ///< identifier for the file name
+  std::string title;  ///< title, one line
   std::string note;
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
 };
 
 struct Options {
-  std::uint64_t seed = 1;  ///< of the first repetition; the others follow
+  std::uint64_t seed = 1;  ///< seed of the first repetition; the others follow
   int repetitions = 5;
-  bool is_quick = false;  ///< a look: few samples, short runs
+  bool is_quick = false;  ///< quick run: few samples, short runs
 };
 
 struct Benchmark {
   Options options;
   std::string device;
-  std::vector<Figure> table;   ///< Table III
-  std::vector<Figure> beyond;  ///< what it does not have
+  std::vector<Figure> table;   ///< figures of Table III
+  std::vector<Figure> beyond;  ///< figures beyond Table III
   std::vector<Table> tables;
   std::vector<std::string> failures;  ///< measurements that failed, in words; empty = none
 

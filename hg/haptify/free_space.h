@@ -1,7 +1,7 @@
 /// Global free-space forces and vibrations: a hand leads a free body slowly through the workspace.
 ///
-/// Source: [HANDBOOK] 7. What is measured is the true force of the person and the true acceleration
-/// of the handle.
+/// Source: [HANDBOOK] 7. Measures the true force of the person and the true acceleration of the
+/// handle.
 #pragma once
 
 #include <array>
@@ -16,35 +16,37 @@ namespace hg::haptify {
 
 struct FreeSpaceConfig {
   double duration_s = 60.0;
-  double settling_s = 2.0;  ///< after the grasp, does not count
+  double settling_s = 2.0;  ///< time after the grasp that does not count, s
   /// Mean speeds of strokes from place to place, m/s: with minimum-jerk ramps about 0.2 rms.
   double slowest = 0.12, fastest = 0.24;
-  /// Where the strokes end, m in B: as far as no limit is felt.
+  /// Box of the stroke ends, m in B: as large as no limit is felt.
   Eigen::Vector3d lower{-1.2, -1.5, -1.05}, upper{1.2, 1.5, -0.55};
-  double turn = 0.6;  ///< of the hand's azimuth per stroke at most, rad
+  double turn = 0.6;  ///< largest change of the hand's azimuth per stroke, rad
 };
 
-/// Random strokes from `start`: other places, speeds and azimuths with every seed.
+/// Script of random strokes from `start`: other places, speeds and azimuths with every seed.
 user::Script exploration(const FreeSpaceConfig& config, const config::HandPose& start,
                          std::uint64_t seed);
 
 struct FreeSpace {
   double force = 0.0;          ///< mean |f|, N
-  double own_share = 0.0;      ///< mean |m a + b v|: what the rendered body itself asks for, N
-  double extra = 0.0;          ///< mean |f - (m a + b v)|: what the device adds, N
+  double own_share = 0.0;      ///< mean |m a + b v|: share of the rendered body itself, N
+  double extra = 0.0;          ///< mean |f - (m a + b v)|: share added by the device, N
   double speed_rms = 0.0;      ///< m/s
   double vibration_rms = 0.0;  ///< m/s^2
   double centroid_Hz = 0.0;
   std::array<double, kBandEdges.size() - 1> band_rms{};  ///< m/s^2
-  double seen_rms = 0.0;  ///< vibration as an accelerometer like the device's own shows it, m/s^2
+  /// Rms vibration as measured by an accelerometer like the device's own, m/s^2
+  double seen_rms = 0.0;
   double seen_centroid_Hz = 0.0;
-  double limited_share = 0.0;  ///< of the time, on which a limit was felt
-  double path = 0.0;           ///< m
-  double distance_rms = 0.0;   ///< of the true handle from the twin, m
+  double limited_share = 0.0;  ///< share of the time in which a limit was felt
+  double path = 0.0;           ///< length of the path, m
+  double distance_rms = 0.0;   ///< rms distance of the true handle from the twin, m
   std::string failure;
 };
 
-/// `scenario`: with a free body as the twin; throws SetupError otherwise.
+/// Measures free-space forces and vibrations. Throws SetupError unless the twin of `scenario` is a
+/// free body.
 FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceConfig& config,
                              std::uint64_t seed);
 

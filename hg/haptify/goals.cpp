@@ -22,10 +22,10 @@ namespace {
 
 constexpr int kAxes = 3;
 
-// What a run is played with.
+// Conditions of a run.
 struct Condition {
   std::uint64_t seed = 0;
-  double height = 0.0;  // of the handle, m in B
+  double height = 0.0;  // height of the handle, m in B
   user::HandPreset hand = user::HandPreset::kNormal;
 };
 
@@ -52,7 +52,7 @@ std::vector<Condition> in_all_hands(const Group& group) {
   return conditions(group, group.options.is_quick ? std::span(kHands).subspan(1, 1) : kHands);
 }
 
-// Where the hand is said by the measurement, or there is none.
+// Conditions for measurements that fix the hand or have none.
 std::vector<Condition> in_one_hand(const Group& group, user::HandPreset hand) {
   return conditions(group, std::span(&hand, 1));
 }
@@ -154,7 +154,7 @@ void add_latencies(const Group& group) {
   group.out.beyond.push_back(figure);
 }
 
-// What a figure of strokes is called and shall be, and its value.
+// Name, goal and value of a figure of strokes.
 struct StrokeFigure {
   Figure figure;
   double (*of)(const FreeSpace&);

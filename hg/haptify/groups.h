@@ -21,7 +21,7 @@ struct Group {
   const Told& told;
   Benchmark& out;
 
-  /// measure(i) for every i < count, on all cores.
+  /// Calls measure(i) for every i < count, on all cores.
   template <typename Measure>
   auto measure_all(const std::string& what, std::size_t count, const Measure& measure) const {
     std::vector<decltype(measure(std::size_t{}))> results(count);
@@ -34,7 +34,7 @@ struct Group {
   }
   std::size_t repetitions() const { return static_cast<std::size_t>(options.repetitions); }
   std::uint64_t seed(std::size_t repetition) const { return options.seed + repetition; }
-  /// False when a measurement has failed, which is told: its numbers are none.
+  /// False when a measurement has failed; the failure is reported and its numbers are invalid.
   bool has_worked(const std::string& what, const std::string& failure) const {
     if (failure.empty()) return true;
     out.failures.push_back(what + ": " + failure);
@@ -44,7 +44,7 @@ struct Group {
 
 void add_workspace(const Group& group);
 void add_free_space(const Group& group);
-/// After add_free_space(): which imperfection its vibration comes from.
+/// Adds the imperfections that cause the vibration; call it after add_free_space().
 void add_sources(const Group& group);
 void add_dynamics(const Group& group);
 void add_sliding(const Group& group);

@@ -19,7 +19,7 @@ namespace {
 constexpr int kAhead = 1;             // y of B: straight ahead of the person, who looks along it
 constexpr double kRest = 1.0;         // s, before everything
 constexpr double kFastest = 0.01;     // s, of the way of a goal
-constexpr double kFastEnough = 0.95;  // of the speed that was asked for
+constexpr double kFastEnough = 0.95;  // share of the requested speed that is fast enough
 
 config::Scenario prepared(const config::Scenario& scenario, const ImpactConfig& config,
                           double stiffness, double speed, double way_s, double watched_s,
@@ -66,7 +66,7 @@ double braking_of(const rendering::DeviceModel& device, std::span<const Instant>
 }  // namespace
 
 double find_way(const config::Scenario& scenario, const ImpactConfig& config, double speed) {
-  constexpr int kTries = 9;  // of halving
+  constexpr int kTries = 9;  // number of bisection steps
   double fast = 0.0, slow = config.longest_way_s;
   for (int i = 0; i < kTries; ++i) {
     const double way_s = 0.5 * (fast + slow);

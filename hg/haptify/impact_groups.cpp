@@ -51,7 +51,7 @@ std::vector<Thrown> thrown(const config::Scenario& scenario, bool is_quick) {
   return all;
 }
 
-// which bounds it misses
+// bounds missed by an impact
 std::string missed(const Impact& impact) {
   std::string text;
   const auto add = [&](bool is_met, const char* what) {

@@ -132,7 +132,7 @@ void add_rotation(const Group& group) {
           config.torque, 1e3 * config.duration, config.calm.calm_speed, 3.5 * config.calm.window),
       .columns = {"hand"}};
   for (const double value : inertia) table.columns.push_back(fmt::format("{:g}", value));
-  double smallest = 0.0;  // from which on every hand is calm
+  double smallest = 0.0;  // value from which every hand comes to rest
   bool has_all = true;
   for (std::size_t hand = 0; hand < hands.size(); ++hand) {
     table.rows.push_back({hands[hand].first});

@@ -66,7 +66,7 @@ Signal with_noise(std::span<const Eigen::Vector3d> signal, double density, doubl
   const double sigma = density * std::sqrt(rate_Hz);
   Signal noisy(signal.begin(), signal.end());
   for (int axis = 0; axis < 3; ++axis) {
-    // not that of the device's own sensor, which has moved the handle
+    // noise differs from that of the device's own sensor, which has moved the handle
     const int channel = 3 + axis;
     simulation::RandomStream random(seed, simulation::RandomEffect::kAccelerometerNoise, channel);
     for (Eigen::Vector3d& value : noisy) value[axis] += sigma * random.gaussian();

@@ -27,18 +27,18 @@ inline constexpr std::array<double, 5> kBandEdges = {kVibrationBand, 50.0, 100.0
 
 struct Vibration {
   double rms = 0.0;          ///< m/s^2
-  double centroid_Hz = 0.0;  ///< weighted with the magnitude, up to 500 Hz
-  std::array<double, kBandEdges.size() - 1> band_rms{};  ///< m/s^2, of each band
+  double centroid_Hz = 0.0;  ///< mean frequency weighted with the magnitude, up to 500 Hz
+  std::array<double, kBandEdges.size() - 1> band_rms{};  ///< rms of each band, m/s^2
 };
 
-/// White noise of a sensor on top of a signal: sigma = density sqrt(rate) along each axis
+/// Adds the white noise of a sensor to a signal: sigma = density sqrt(rate) along each axis
 /// ([HANDBOOK] 4.5). The same seed gives the same noise.
 std::vector<Eigen::Vector3d> with_noise(std::span<const Eigen::Vector3d> signal, double density,
                                         double rate_Hz, std::uint64_t seed);
 
-/// Of the acceleration of a handle: above kVibrationBand (Butterworth of fourth order without
-/// phase), reduced by dft321(); its first and last quarter of a second, and up to a few hundredths
-/// of it more, serve the filter only. Zero for less than 1.5 s.
+/// Vibration of a handle from its acceleration: above kVibrationBand (Butterworth of fourth order
+/// without phase), reduced by dft321(); its first and last quarter of a second, and up to a few
+/// hundredths of it more, serve the filter only. Zero for less than 1.5 s.
 Vibration vibration(std::span<const Eigen::Vector3d> acceleration, double rate_Hz);
 
 /// f = inertia a + damping v + friction sign(v), for forces or torques.
@@ -49,7 +49,8 @@ struct DynamicFit {
   double r2 = 0.0;        ///< share of the variance of f that the fit explains
 };
 
-/// Least squares; all three of the same length, which must be at least 10 and move.
+/// Fits the dynamics by least squares; the three signals have the same length of at least 10 and
+/// must move.
 DynamicFit fit_dynamics(std::span<const double> f, std::span<const double> v,
                         std::span<const double> a);
 
@@ -57,10 +58,10 @@ struct Line {
   double slope = 0.0, offset = 0.0;
 };
 
-/// Least squares of y over x.
+/// Fits y over x by least squares.
 Line fit_line(std::span<const double> x, std::span<const double> y);
 
-/// Complex amplitude of x(t) at a frequency, weighted with a Hann window: what is left of slow
+/// Complex amplitude of x(t) at a frequency, weighted with a Hann window: the rest of slow
 /// transients does not leak into it. `x` should last a whole number of its periods, at least three.
 std::complex<double> amplitude(std::span<const double> x, double frequency_Hz, double rate_Hz);
 
@@ -69,8 +70,8 @@ std::complex<double> amplitude(std::span<const double> x, double frequency_Hz, d
 double bandwidth(std::span<const double> frequency_Hz, std::span<const double> ratio,
                  double factor);
 
-/// By how many seconds `signal` is behind `reference`: the shift with the least squared difference,
-/// up to `most`; both of the same length.
+/// Delay of `signal` behind `reference` in s: the shift with the least squared difference, up to
+/// `most`; both of the same length.
 double delay(std::span<const double> reference, std::span<const double> signal, double rate_Hz,
              double most);
 

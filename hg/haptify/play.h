@@ -1,4 +1,5 @@
-/// Plays a scenario on the simulated device and keeps what an instrument at the handle would see.
+/// Plays a scenario on the simulated device and records what an instrument at the handle would
+/// measure.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +12,20 @@
 
 namespace hg::haptify {
 
-/// One sample from when the hand takes the handle; true values, in B.
+/// One sample after the hand has taken the handle; true values, in B.
 struct Instant {
-  double time_s = 0.0;  ///< since the grasp
-  Pose T_B_H;           ///< handle
+  double time_s = 0.0;  ///< time since the grasp
+  Pose T_B_H;           ///< pose of the handle
   Vector6 twist = Vector6::Zero(), acceleration = Vector6::Zero();
   Vector6 w_H = Vector6::Zero();                      ///< wrench of the person
-  Eigen::Vector3d p_B_E = Eigen::Vector3d::Zero();    ///< twin, as it is rendered
-  Eigen::Vector3d p_ref = Eigen::Vector3d::Zero();    ///< handle at the reference
+  Eigen::Vector3d p_B_E = Eigen::Vector3d::Zero();    ///< position of the twin, as rendered
+  Eigen::Vector3d p_ref = Eigen::Vector3d::Zero();    ///< position of the handle at the reference
   Eigen::Vector3d surface = Eigen::Vector3d::Zero();  ///< force of virtual surfaces on the twin, N
-  double contact_power = 0.0;  ///< on the twin, of that force without what limits take of it, W
-  VectorP q_p, dq_p;           ///< gantry
-  VectorM q_m, dq_m;           ///< links of the manipulator
-  bool is_limited = false;     ///< a limit of the device is felt
+  /// Power of that force on the twin, without the share taken by limits, W
+  double contact_power = 0.0;
+  VectorP q_p, dq_p;        ///< position and velocity of the gantry
+  VectorM q_m, dq_m;        ///< position and velocity of the manipulator's links
+  bool is_limited = false;  ///< a limit of the device is felt
 };
 
 struct Played {
@@ -31,10 +33,10 @@ struct Played {
   std::string failure;  ///< fault or exceeded limit in words; empty = none
 };
 
-/// What a script does to a free body besides holding it.
+/// The scenario with another script for the person, who holds the handle; its events are cleared.
 config::Scenario with_script(config::Scenario scenario, const user::Script& script);
 
-/// Once from start to end, as fast as it can.
+/// Plays the scenario once from start to end, as fast as possible.
 Played play(const config::Scenario& scenario);
 
 }  // namespace hg::haptify

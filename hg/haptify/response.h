@@ -1,7 +1,7 @@
-/// How the handle answers a hand, by frequency and in time: transparency, bandwidths, latency.
+/// Response of the handle to a hand, by frequency and in time: transparency, bandwidths, latency.
 ///
-/// A person pushes along one axis of H to and fro, as in experiments/impedance.h; here beside what
-/// the twin itself would do. Amplitudes are those at the frequency itself. SI units.
+/// A person pushes along one axis of H to and fro, as in experiments/impedance.h; here compared
+/// with the motion of the twin itself. Amplitudes are those at the frequency itself. SI units.
 #pragma once
 
 #include <complex>
@@ -16,19 +16,19 @@ namespace hg::haptify {
 struct ResponseConfig {
   std::vector<double> frequency_Hz{0.1, 0.2, 0.5, 1, 2, 3, 5, 8, 12, 20, 30, 50};
   double force = 10.0;  ///< amplitude of the push, N: beyond the friction of the joints, [A]
-  int periods = 5;      ///< of each frequency that count; at least `least_s` long
+  int periods = 5;      ///< evaluated periods per frequency, at least `least_s` long
   double least_s = 2.0;
   Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
-  double step_force = 10.0;                    ///< of the step for the latency, N
-  double watched_s = 0.15;                     ///< after the step
+  double step_force = 10.0;                    ///< height of the force step for the latency, N
+  double watched_s = 0.15;                     ///< time observed after the step, s
 };
 
-/// At one frequency, along one axis of H.
+/// Response at one frequency, along one axis of H.
 struct Answer {
   double frequency_Hz = 0.0;
   std::complex<double> impedance;  ///< true force over true velocity of the handle, Ns/m
-  std::complex<double> twin;       ///< of the free body: j w m + b
-  std::complex<double> following;  ///< true handle over twin, positions
+  std::complex<double> twin;       ///< impedance of the free body, Ns/m: j w m + b
+  std::complex<double> following;  ///< position of the true handle over that of the twin
 };
 
 struct Response {
@@ -36,19 +36,21 @@ struct Response {
   std::string failure;
 };
 
-/// Up to which frequency the felt impedance is within 3 dB of the body's, Hz; needs answers.
+/// Frequency up to which the felt impedance is within 3 dB of the body's, Hz; needs answers.
 double transparency_Hz(const Response& response);
 
-/// `axis` 0..2 of H. Throws SetupError when the twin is not a free body.
+/// Measures the response along `axis` 0..2 of H. Throws SetupError when the twin is not a free
+/// body.
 Response measure_response(const config::Scenario& scenario, const ResponseConfig& config, int axis,
                           std::uint64_t seed);
 
-/// At one frequency: force of a hand that holds still over the reference wrench of the twin, which
-/// is what the person should exert ([HG] (9)).
+/// Force response at one frequency: force of a hand that holds still over the reference wrench of
+/// the twin, which the person should exert ([HG] (9)).
 struct ForceAnswer {
   double frequency_Hz = 0.0;
   std::complex<double> rendered;  ///< true force of the person over the commanded one
-  std::complex<double> ideal;     ///< the same twin in the same hand without a device between
+  /// Response of the same twin in the same hand without a device between
+  std::complex<double> ideal;
 };
 
 struct ForceResponse {
@@ -56,17 +58,18 @@ struct ForceResponse {
   std::string failure;
 };
 
-/// Reference wrench w_ref to and fro, the stiff hand of [HANDBOOK] 5.1 held still.
+/// Measures the force response: reference wrench w_ref to and fro, the stiff hand of [HANDBOOK] 5.1
+/// held still.
 ForceResponse measure_force_response(const config::Scenario& scenario, const ResponseConfig& config,
                                      int axis, std::uint64_t seed);
 
 struct Latency {
-  double motion_s = 0.0;  ///< true velocity of the handle behind that of an ideal twin
-  double sensed_s = 0.0;  ///< of which the twin's own velocity is behind
+  double motion_s = 0.0;  ///< delay of the handle's true velocity behind that of an ideal twin
+  double sensed_s = 0.0;  ///< part of this by which the twin's own velocity is behind
   std::string failure;
 };
 
-/// From a step of the person's push.
+/// Measures the latency from a step of the person's push.
 Latency measure_latency(const config::Scenario& scenario, const ResponseConfig& config, int axis,
                         std::uint64_t seed);
 

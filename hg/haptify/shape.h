@@ -10,16 +10,18 @@
 namespace hg::haptify {
 
 struct ShapeConfig {
-  int postures = 60'000;  ///< of the arm, each with eight positions of the gantry
+  /// Number of postures of the arm, each with eight positions of the gantry
+  int postures = 60'000;
 };
 
-/// Joint limits, the distance to the singularity (virtual joints), travel of the gantry and walls
-/// (Cartesian limits of handle and elbow) all hold; the control loop does not run.
+/// Measures the workspace. Joint limits, the distance to the singularity (virtual joints), travel
+/// of the gantry and walls (Cartesian limits of handle and elbow) all hold; the control loop does
+/// not run.
 inspection::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
                                     std::uint64_t seed);
 
-/// The sides of the handle's box that it does not reach by more than 2 mm, and the joints that
-/// stand at a limit where it comes nearest; empty when there is none.
+/// Sides of the handle's box that the handle misses by more than 2 mm, with the joints at a limit
+/// where it comes nearest; empty = none.
 std::string unreached_sides(const config::Device& device, const inspection::Workspace& shape,
                             const ShapeConfig& config, std::uint64_t seed);
 

@@ -28,7 +28,7 @@ void stiffen_softest(double factor, control::Config& control) {
   }
 }
 
-// What shapes the spectrum between a source and the handle.
+// Variants of the transmission between a source and the handle.
 std::vector<experiments::FreeSpaceVariant> changed_ways() {
   using config::Scenario;
   return {{.name = "measured wrench not low-passed",
@@ -110,7 +110,7 @@ void add_sources(const Group& group) {
     }
   }
   const auto figure = std::ranges::find(group.out.table, "free_space_centroid", &Figure::id);
-  const bool is_telling = has_all && !group.options.is_quick;  // which measures too few
+  const bool is_telling = has_all && !group.options.is_quick;  // a quick run measures too few
   if (figure != group.out.table.end() && is_telling) {
     figure->why = why_centroid(sources, ways.size(), config.duration_s);
   }

@@ -26,7 +26,7 @@ user::Segment move(double start_s, double duration_s, int channel, double by) {
           .value = by};
 }
 
-// By how much lower the hand aims to press so hard: arm, grip and surface give way.
+// Depth of the hand's goal below the surface for a pressing force: arm, grip and surface deflect.
 double aim(const user::HandImpedance& hand, double stiffness, double clearance, double force) {
   return clearance +
          force * (1.0 / hand.stiffness.z() + 1.0 / hand.grip_stiffness + 1.0 / stiffness);

@@ -7,7 +7,8 @@
 namespace hg::hqp {
 namespace {
 
-constexpr double kRoundOff = 1e-14;  // residual below this share of the gradient's terms is none
+// Residual below this share of the gradient's terms counts as zero
+constexpr double kRoundOff = 1e-14;
 constexpr double kParallel = 1e-10;  // cosine below which a row does not oppose a direction
 constexpr int kChangesPerRow = 4;    // bound on the loop; convergence mostly needs one per row
 
@@ -53,7 +54,7 @@ void Cone::solve_passive(const Problem& problem, const double* g, int base,
   }
 }
 
-// Goes from mu_ towards mu_new_ until the first multiplier vanishes and drops those that did.
+// Moves from mu_ towards mu_new_ until the first multiplier vanishes, and drops the vanished ones.
 void Cone::remove_non_positive(const Problem& problem, int base, double rank_tolerance,
                                Elimination& elimination) noexcept {
   double fraction = 1.0;

@@ -1,8 +1,8 @@
-/// Which of the touched rows push: non-negative least squares on multipliers.
+/// Selects the touched rows that push, by non-negative least squares on multipliers.
 ///
 /// At a point x with gradient g, minimises |g + F^T lambda + sum mu_i s_i c_i| over mu >= 0, where
-/// F are the pivot rows already eliminated and s_i = +1 at an upper, -1 at a lower bound. What is
-/// left over, negated, is the steepest feasible descent; nothing left proves x optimal. The
+/// F are the pivot rows already eliminated and s_i = +1 at an upper, -1 at a lower bound. The
+/// negated residual is the steepest feasible descent; a zero residual proves x optimal. The
 /// residual falls with every change, so degenerate corners cannot make it cycle. [LH74] C. Lawson,
 /// R. Hanson, Solving Least Squares Problems, 1974, ch. 23.
 #pragma once
@@ -51,8 +51,8 @@ class Cone {
   std::vector<TouchedRow> rows_;
   Eigen::VectorXd mu_;
   Eigen::VectorXd mu_new_;
-  std::vector<std::uint8_t> is_barred_;  ///< by candidate: in rows_ already, or dependent on them
-  std::vector<int> candidate_;           ///< by entry of rows_: its index among the candidates
+  std::vector<std::uint8_t> is_barred_;  ///< per candidate: in rows_ already, or dependent on them
+  std::vector<int> candidate_;           ///< candidate index per entry of rows_
   Eigen::VectorXd descent_;
   Eigen::VectorXd rest_;
 };

@@ -9,16 +9,16 @@
 namespace hg::hqp {
 namespace {
 
-// What is left of a row, relative to its norm, beside the tolerance: a decision is clear when it
-// is that many times larger or smaller, else it takes a closer look.
+// Ratio of a row's remainder, relative to its norm, to the tolerance: the decision is clear when
+// the remainder is that many times larger or smaller, else the row is judged closely.
 constexpr double kClear = 1e3;
-// Where y is made of terms so much larger than its row, rounding shows.
+// Growth of the terms of y over its row from which rounding shows.
 constexpr double kLargestGrowth = 1e6;
-// Rows of a level of which less than this share is left give way to the others of the level.
+// Rows of a level with a smaller remaining share yield to the others of the level.
 constexpr double kWeak = 1e-2;
-// Weight of the numbers of a row in the choice of its variable, for variables that are taken last.
+// Weight of a row's coefficients in the choice of its variable, for variables eliminated last.
 constexpr double kTakenLast = 1e-2;
-constexpr double kRoundOff = 1e-14;  // a value below this share of its terms is none
+constexpr double kRoundOff = 1e-14;  // a value below this share of its terms counts as zero
 // Largest number of [E -I] in the residual form of least squares: its condition is not much larger.
 constexpr double kLargestResidualFactor = 1e3;
 
@@ -156,7 +156,7 @@ void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
   choose_variable();
 }
 
-// The variable that y would take, and the size of y.
+// Chooses the variable that y would eliminate, and computes the size of y.
 void DirectElimination::choose_variable() noexcept {
   const double* y = reduced_row(rank_);
   largest_ = largest(stride_, y);
@@ -253,7 +253,7 @@ bool DirectElimination::add_least_squares(const Problem& problem, std::span<cons
   return true;
 }
 
-// The row under work, until more is known.
+// Stores the row under work in weak_, to be decided later.
 void DirectElimination::put_aside(int row, double norm) noexcept {
   const int slot = static_cast<int>(weak_.size());
   std::copy_n(reduced_row(rank_), stride_, weak_rows_.data() + slot * stride_);
@@ -261,7 +261,7 @@ void DirectElimination::put_aside(int row, double norm) noexcept {
   weak_.push_back({.row = row, .norm = norm, .slot = slot, .depth = rank_, .rest = rest_});
 }
 
-// Takes up the rows put aside: always the one of which most is left.
+// Adds the rows put aside, always the one with the largest remainder.
 bool DirectElimination::add_weak_rows(const Problem& problem, int first,
                                       double tolerance) noexcept {
   while (!weak_.empty()) {
@@ -326,9 +326,9 @@ void DirectElimination::solve_level(const Problem& problem, int first) noexcept 
   for (int t = first; t < rank_; ++t) pivots_[index(t)].value += change_[t - first];
 }
 
-// Few dependent rows: the residuals z = (W L u, V (D u - rest)) are the smallest with
-// [E -I] z = V rest, E = V D L^-1 W^-1. The rows of [E -I], made orthogonal one after the other,
-// span z. False when it is not the way to go.
+// Few dependent rows: the residuals z = (W L u, V (D u - rest)) are the smallest with [E -I] z = V
+// rest, E = V D L^-1 W^-1. The rows of [E -I], made orthogonal one after the other, span z. False
+// when this method is not suitable.
 bool DirectElimination::solve_for_residuals(const Problem& problem, int first) noexcept {
   const int r = rank_ - first;
   const int d = dependents_;

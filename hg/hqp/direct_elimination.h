@@ -1,11 +1,11 @@
-/// Elimination of one variable per row (Gauss): what Elimination does by reflections, for an eighth
-/// of its time, where rounding leaves no doubt about ranks.
+/// Elimination of one variable per row (Gauss): the task of Elimination without reflections, in an
+/// eighth of the time, where rounding leaves no doubt about ranks.
 ///
 /// Row c_t becomes pivot t: R_t = c_t - sum over s < t of L_ts R_s meets only variables that the
-/// pivots before it have not taken. Rows of single variables stay what they are; to keep it so,
-/// variables that some equality fixes alone are taken last. Least squares: G. Peters,
-/// J. Wilkinson, The least squares problem and pseudo-inverses, Computer Journal 13(3), 1970.
-/// Contract: no allocation after construction. Whatever is in doubt is said to be (false, kUnsure).
+/// pivots before it have not taken. Rows of single variables stay unchanged; to keep it so,
+/// variables that some equality fixes alone are taken last. Least squares: G. Peters, J. Wilkinson,
+/// The least squares problem and pseudo-inverses, Computer Journal 13(3), 1970. Contract: no
+/// allocation after construction. Doubtful cases are reported (false, kUnsure).
 #pragma once
 
 #include <Eigen/Core>
@@ -35,37 +35,37 @@ class DirectElimination {
   /// Row id of pivot t; -1: a variable that add_smallest_norm() took.
   int pivot_row(int t) const noexcept { return pivots_[index(t)].row; }
 
-  /// Takes the row as next pivot, with c x = target, unless it depends on the others.
+  /// Adds the row as next pivot, with c x = target, unless it depends on the others.
   Outcome add_row(const Problem& problem, TargetRow row, double tolerance) noexcept;
 
-  /// Takes the rows as pivots as far as they are independent. They get the values that minimise
-  /// sum weight^2 (c x - target)^2. False: in doubt; the pivots are then to be truncated.
+  /// Adds the rows as pivots as far as they are independent. Their values minimise
+  /// sum weight^2 (c x - target)^2. False if in doubt; the pivots must then be truncated.
   [[nodiscard]] bool add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
                                        double tolerance) noexcept;
 
   /// Whether the last add_least_squares() gives every row its target.
   bool is_met() const noexcept { return is_met_; }
 
-  /// Takes all free variables, with the values that minimise |x|.
+  /// Eliminates all free variables, with the values that minimise |x|.
   void add_smallest_norm(const Problem& problem) noexcept;
 
-  /// The point where every pivot row has its value, n numbers; needs freedom() == 0. False: in
-  /// doubt, because it is so much larger than what the rows ask for that a rank may be wrong.
+  /// The point where every pivot row has its value, n numbers; needs freedom() == 0. False if in
+  /// doubt: the point is so much larger than the targets that a rank may be wrong.
   [[nodiscard]] bool find_point(double* x) const noexcept;
 
   bool is_free(int variable) const noexcept { return pivot_of_variable_[index(variable)] < 0; }
 
-  /// What is left of a row where the pivots have their values: c x = y x + the result. y has
-  /// n numbers and zeros up to a multiple of 4, and meets only free variables.
+  /// Reduces a row to the free variables: c x = y x + the result, with the pivots at their values.
+  /// y has n numbers and zeros up to a multiple of 4, and meets only free variables.
   double reduce_to_free(const Problem& problem, int row, double* y) noexcept;
-  /// The same of a single variable.
+  /// Reduces a single variable, as reduce_to_free() of a row.
   double reduce_to_free(int variable, double* y) noexcept;
 
-  /// The taken variables of x from the free ones, whatever they were.
+  /// Computes the eliminated variables of x from the free ones; their old values do not matter.
   void complete(double* x) const noexcept;
 
-  /// mu with g + sum over t < rank of mu_t c_t = 0, of which only those from `first` on are
-  /// written. Returns the largest component of the sum.
+  /// Finds mu with g + sum over t < rank of mu_t c_t = 0; writes only those from `first` on.
+  /// Returns the largest component of the sum.
   double find_multipliers(const double* g, int rank, int first, double* mu) noexcept;
 
  private:
@@ -75,16 +75,16 @@ class DirectElimination {
     bool is_unit;    ///< c_t = R_t is a single variable
     double inverse;  ///< 1 / R_t[variable]
     double size;     ///< largest |R_t|
-    double value;    ///< of R_t x
+    double value;    ///< value of R_t x
   };
 
-  /// What is left of a row besides y.
+  /// Scalars that accompany the reduced row y.
   struct Rest {
-    double value = 0.0;        ///< of its target, for y x
-    double value_scale = 0.0;  ///< size of the terms of that
-    double growth = 0.0;       ///< same of y
+    double value = 0.0;        ///< remaining target value for y x
+    double value_scale = 0.0;  ///< size of the terms of `value`
+    double growth = 0.0;       ///< size of the terms of y
 
-    /// Follows y -= factor R_t, with the pivot t.
+    /// Updates the scalars for y -= factor R_t, with the pivot t.
     void subtract(double factor, const Pivot& pivot) noexcept {
       const double term = factor * pivot.value;
       value -= term;
@@ -96,7 +96,7 @@ class DirectElimination {
   struct WeakRow {
     int row;
     double norm;
-    int slot;  ///< of y and its factors, stride_ apart
+    int slot;  ///< index of y and its factors, stride_ apart
     int depth;
     Rest rest;
   };
@@ -123,31 +123,32 @@ class DirectElimination {
   void solve_by_reflections(const Problem& problem, int first) noexcept;
 
   int n_ = 0;
-  int stride_ = 0;  ///< from row to row: n, and zeros up to the next multiple of 4
+  /// Distance from row to row: n rounded up to a multiple of 4, padded with zeros
+  int stride_ = 0;
   int rank_ = 0;
   std::vector<Pivot> pivots_;
   std::vector<int> pivot_of_variable_;  ///< -1: free
   bool has_preference_ = false;
-  Eigen::VectorXd preference_;  ///< by variable, 1: may be taken at once
+  Eigen::VectorXd preference_;  ///< per variable, 1: may be eliminated at once
 
   // Row t of R and of L (L_ts for s < t), stride_ apart. Row rank_ is the row under work: y and its
   // factors, y = c - factors R.
   Eigen::VectorXd R_;
   Eigen::VectorXd L_;
-  int variable_ = -1;     ///< the one that y would take
-  bool is_unit_ = false;  ///< y is a single free variable, as it came
-  double largest_ = 0.0;  ///< of |y|
+  int variable_ = -1;     ///< variable that y would eliminate
+  bool is_unit_ = false;  ///< y is a single free variable, unreduced
+  double largest_ = 0.0;  ///< largest |y_i|
   Rest rest_;
 
   std::vector<WeakRow> weak_;
   Eigen::VectorXd weak_rows_;
   Eigen::VectorXd weak_factors_;
 
-  // least squares of a level: its dependent rows D, as combinations of its pivots, what these leave
-  // of their targets, and the change of the pivots' values
+  // least squares of a level: its dependent rows D, as combinations of its pivots, the residuals of
+  // their targets, and the change of the pivots' values
   int dependents_ = 0;
-  bool is_met_ = true;              ///< D leaves nothing
-  Eigen::VectorXd dependent_rows_;  ///< n apart
+  bool is_met_ = true;              ///< residual of D is zero
+  Eigen::VectorXd dependent_rows_;  ///< rows of D, n apart
   Eigen::VectorXd dependent_rest_;
   Eigen::VectorXd dependent_weight_;
   Eigen::VectorXd matrix_;

@@ -8,16 +8,16 @@
 namespace hg::hqp {
 namespace {
 
-constexpr double kViolated = 1e-9;    // a row is, beyond this share of |bound| + norm |x|
-constexpr double kDependent = 1e-11;  // what is left of a row that depends on the active ones
-constexpr double kLittleLost = 1e-3;  // share of a row (squared) from which digits are left
+constexpr double kViolated = 1e-9;    // share of |bound| + norm |x| beyond which a row is violated
+constexpr double kDependent = 1e-11;  // remainder up to which a row depends on the active ones
+constexpr double kLittleLost = 1e-3;  // share of a row (squared) from which enough digits remain
 constexpr double kTakesPart = 1e-8;   // share of a contradiction from which a row belongs to it
 constexpr double kTurns = 1e-12;      // ratio from which a multiplier falls
 constexpr double kPushes = 1e-10;     // share of the gradient from which a row surely pushes
-constexpr double kMet = 1e-9;         // share of its terms up to which a gradient is none
-// The smallest |x| beside a level that leaves freedom, squared in the objective.
+constexpr double kMet = 1e-9;         // share of its terms up to which a gradient counts as zero
+// Weight of |x|, squared in the objective, beside a level that leaves freedom.
 constexpr double kRegularisation = 1e-6;
-constexpr double kSingular = 1e-7;  // pivots below this share of the largest need it
+constexpr double kSingular = 1e-7;  // pivots below this share of the largest need regularisation
 
 constexpr int kMoreActive = 32;  // rows that can be active at once, beyond 2 n
 
@@ -72,7 +72,7 @@ bool DualMethod::choose_level(DirectElimination& direct) noexcept {
   return true;
 }
 
-// Inequalities of the levels down to s.
+// Collects the inequalities of the levels down to s.
 void DualMethod::collect_candidates() noexcept {
   candidates_.clear();
   reduced_rows_ = 0;
@@ -91,7 +91,7 @@ void DualMethod::collect_candidates() noexcept {
   }
 }
 
-// What the equalities leave of a candidate, in the metric of the program.
+// Reduces a candidate by the equalities, in the metric of the program.
 void DualMethod::reduce(int i, DirectElimination& direct) noexcept {
   Candidate& candidate = candidates_[at(i)];
   candidate.slot = reduced_rows_++;
@@ -128,8 +128,9 @@ void DualMethod::collect_targets() noexcept {
   }
 }
 
-// What level s wants, targets_ or the smallest |x|, as rows of objective_, a column per free
-// variable, with room for as many rows more as there are columns. Returns the number of rows.
+// Writes the objective of level s, targets_ or the smallest |x|, as rows of objective_, a column
+// per free variable, with room for as many rows more as there are columns. Returns the number of
+// rows.
 int DualMethod::collect_objective(DirectElimination& direct, bool is_regular) noexcept {
   const bool is_norm = level_ == levels_;
   const int wanted = is_norm ? problem_->variables() : static_cast<int>(targets_.size());
@@ -313,7 +314,7 @@ void DualMethod::append(const Active& entering, double z_squared) noexcept {
   candidates_[at(entering.candidate)].is_barred = true;
 }
 
-// Lets go of the active row j: its column of R goes, rotations make the others a triangle again.
+// Releases the active row j: removes its column of R; rotations restore the triangle.
 void DualMethod::remove(int j) noexcept {
   const int size = stride_ + used_slots_;
   const Active row = active_[at(j)];
@@ -350,7 +351,7 @@ void DualMethod::remove(int j) noexcept {
   u_[stride_ + row.slot] = 0.0;
 }
 
-// The minimum of the program.
+// Finds the minimum of the program.
 DualMethod::Outcome DualMethod::run(DirectElimination& direct) noexcept {
   while (true) {
     const int best = most_violated();
@@ -435,7 +436,7 @@ int DualMethod::level_of_contradiction(DirectElimination& direct) noexcept {
   return lowest;
 }
 
-// x of the place u_.
+// Computes x from u_.
 void DualMethod::find_point(DirectElimination& direct) noexcept {
   Eigen::VectorXd& y = z_;
   for (int j = 0; j < freedom_; ++j) y[j] = objective_rhs_[at(j)] + u_[j];
@@ -448,7 +449,7 @@ void DualMethod::find_point(DirectElimination& direct) noexcept {
   direct.complete(x_.data());
 }
 
-// What level s has got becomes equalities, with the rows that push against it.
+// Turns the result of level s into equalities, with the rows that push against it.
 void DualMethod::freeze(DirectElimination& direct) noexcept {
   const bool is_norm = level_ == levels_;
   double scale = 0.0;

@@ -1,15 +1,15 @@
 /// A guess of the active set by a dual method: cheap changes instead of eliminations.
 ///
 /// Equalities are eliminated (DirectElimination) as far as they leave freedom and do not contradict
-/// each other. The first level s that wants more than it can get is a strictly convex quadratic
-/// program in what is left: least squares of its rows, inequalities of the levels above as
-/// constraints, its own ones with a slack. D. Goldfarb, A. Idnani, A numerically stable dual method
-/// for solving strictly convex quadratic programs, Mathematical Programming 27, 1983: from the
-/// minimum without inequalities, the most violated row becomes active, and rows whose multiplier
-/// turns are let go; the orthogonal factors of the active rows are updated. Rows above that
-/// contradict each other make the lowest level among them the new s. When level s is settled, what
-/// it has got becomes equalities, and so do the rows that push against it.
-/// Nothing here is proof: rounding and thresholds decide what is active. The result is a guess.
+/// each other. The first level s whose targets cannot all be met is a strictly convex quadratic
+/// program in the remaining variables: least squares of its rows, inequalities of the levels above
+/// as constraints, its own ones with a slack. D. Goldfarb, A. Idnani, A numerically stable dual
+/// method for solving strictly convex quadratic programs, Mathematical Programming 27, 1983: from
+/// the minimum without inequalities, the most violated row becomes active, and rows whose
+/// multiplier changes sign are released; the orthogonal factors of the active rows are updated.
+/// Rows above that contradict each other make the lowest level among them the new s. When level s
+/// is settled, its result becomes equalities, and so do the rows that push against it. Nothing here
+/// is proof: rounding and thresholds decide what is active. The result is a guess.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,14 +27,14 @@ class DualMethod {
  public:
   explicit DualMethod(const Capacity& capacity);
 
-  /// Active rows of the first `levels` levels into `guess`. `direct` holds the equalities of the
-  /// first `top` levels, which have no other rows; it is left with other pivots behind these.
-  /// `hint`, by level: whether violated inequalities are expected there; such levels are settled
-  /// one by one at once. False: given up, `guess` is not written.
+  /// Writes the active rows of the first `levels` levels into `guess`. `direct` holds the
+  /// equalities of the first `top` levels, which have no other rows; on return it has other pivots
+  /// behind these. `hint`, per level: whether violated inequalities are expected there; such levels
+  /// are settled one by one at once. False if given up: `guess` is not written.
   bool find_guess(const Problem& problem, const Options& options, int levels, int top,
                   std::span<const std::uint8_t> hint, DirectElimination& direct,
                   std::vector<RowState>& guess) noexcept;
-  /// The point of the guess, all variables.
+  /// Point of the guess, all variables.
   const Eigen::VectorXd& point() const noexcept { return x_; }
   /// Whether the row is held because a level surely pushes against it, by however little.
   bool is_pushing(int row) const noexcept { return is_pushing_[index(row)]; }
@@ -46,17 +46,17 @@ class DualMethod {
   /// An inequality of the program.
   struct Candidate {
     int row;
-    bool is_soft;    ///< of level s: has a slack
-    bool is_barred;  ///< active, or not to be taken
-    int slot;        ///< of its row in candidate_rows_, kNoSlot: not there yet
-    double length;   ///< of that row, with its slack
+    bool is_soft;    ///< row of level s: has a slack
+    bool is_barred;  ///< active, or excluded
+    int slot;        ///< index of its row in candidate_rows_, kNoSlot: not there yet
+    double length;   ///< norm of that row, with its slack
   };
   /// An active row, in the direction in which it is violated.
   struct Active {
     int candidate;
     double sign;  ///< +1: at the upper bound, -1: at the lower
     double multiplier;
-    int slot;  ///< of its slack, kNoSlot: none
+    int slot;  ///< index of its slack, kNoSlot: none
   };
 
   static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -83,7 +83,7 @@ class DualMethod {
   void freeze(DirectElimination& direct) noexcept;
   void write(std::vector<RowState>& guess) const noexcept;
 
-  // of the solve
+  // data of the solve
   const Problem* problem_ = nullptr;
   const Options* options_ = nullptr;
   int levels_ = 0;
@@ -94,10 +94,11 @@ class DualMethod {
   int changes_ = 0;
   int max_changes_ = 0;
   std::vector<int> rank_at_level_;
-  std::vector<std::uint8_t> is_pushing_;  ///< by row
-  std::vector<std::int8_t> side_;  ///< by row: +1, -1: active at its upper, lower bound for good
+  std::vector<std::uint8_t> is_pushing_;  ///< per row
+  /// Per row: +1, -1: permanently active at its upper, lower bound
+  std::vector<std::int8_t> side_;
 
-  // of the program: free variables, its objective |M x - y0|, M being an upper triangle,
+  // data of the program: free variables, its objective |M x - y0|, M being an upper triangle,
   // candidates and their rows c M^-1
   int max_active_;
   int freedom_ = 0;
@@ -105,21 +106,21 @@ class DualMethod {
   std::vector<int> free_;
   std::vector<double> objective_;      ///< M, its columns freedom_ apart
   std::vector<double> objective_rhs_;  ///< y0
-  bool has_objective_ = false;         ///< level s can change what it wants
+  bool has_objective_ = false;         ///< level s can change its objective
   double regularisation_ = 0.0;  ///< weight of the smallest |x| beside a level that leaves freedom
   double x_norm_ = 0.0;
   std::vector<Candidate> candidates_;
-  std::vector<double> candidate_rows_;  ///< of those that were active or tried to be
+  std::vector<double> candidate_rows_;  ///< rows that were active or candidates to enter
   int reduced_rows_ = 0;
   Eigen::VectorXd x_;
   Eigen::VectorXd reduced_;
 
-  // of the active rows N = Q R, N with a column per row
+  // data of the active rows N = Q R, N with a column per row
   int q_stride_ = 0;
   int slots_ = 0;
   int used_slots_ = 0;
   Active entering_ = {};
-  int contradiction_ = 0;  ///< lowest level in it
+  int contradiction_ = 0;  ///< lowest level in the contradiction
   std::vector<Active> active_;
   std::vector<std::uint8_t> is_slot_used_;
   std::vector<double> Q_;

@@ -13,7 +13,7 @@
 
 namespace hg::hqp {
 
-/// A row that shall take the value `target`.
+/// A row with its target value.
 struct TargetRow {
   int row;
   double target;
@@ -39,9 +39,9 @@ class Elimination {
   /// longer than `tolerance` times its norm.
   bool add_row(const Problem& problem, int row, double tolerance) noexcept;
 
-  /// The smallest free step d from x that minimises sum weight^2 (c (x + d) - target)^2, into
-  /// step(). The rows become pivots, as far as they are independent: of the candidates always the
-  /// one with the longest free part relative to its norm.
+  /// Writes into step() the smallest free step d from x that minimises sum weight^2 (c (x + d) -
+  /// target)^2. The rows become pivots, as far as they are independent: of the candidates always
+  /// the one with the longest free part relative to its norm.
   void add_least_squares(const Problem& problem, std::span<const TargetRow> rows, const double* x,
                          double tolerance) noexcept;
   const Eigen::VectorXd& step() const noexcept { return step_; }

@@ -10,7 +10,7 @@
 namespace hg::hqp {
 namespace {
 
-constexpr int kMostTerms = 6;  // of a row that is shown
+constexpr int kMostTerms = 6;  // most terms shown of a row
 
 std::string number(double value) {
   char text[32];

@@ -1,4 +1,4 @@
-/// Problems and solutions in words, for people.
+/// Problems and solutions as readable text.
 ///
 /// Numbers are rounded to six digits; rows and levels are counted from 0, as everywhere.
 /// Set-up code: allocates.
@@ -21,14 +21,14 @@ std::string to_string(const Problem& problem, int row);
 /// Tolerances and limits, one line.
 std::string to_string(const Options& options);
 
-/// What became of `problem`, some lines: how the solve ended; a line per level with the number of
-/// its rows, equalities that are met, rows held at a bound and violated ones, its freedom, its
-/// slack (square root of slack_squared) and the row that blocks it; a line per row that is held or
-/// violated. `solution` must be one of `problem`.
+/// Report on the solve of `problem`, several lines: how the solve ended; a line per level with the
+/// number of its rows, equalities that are met, rows held at a bound and violated ones, its
+/// freedom, its slack (square root of slack_squared) and the row that blocks it; a line per row
+/// that is held or violated. `solution` must be one of `problem`.
 std::string to_string(const Problem& problem, const Solution& solution);
 
-/// What Solver::multipliers() returned for `level`: a line per row that pushes, and `remainder`,
-/// its return value.
+/// Report on the result of Solver::multipliers() for `level`: a line per row that pushes, and
+/// `remainder`, its return value.
 std::string to_string(const Problem& problem, int level, std::span<const double> multipliers,
                       double remainder);
 

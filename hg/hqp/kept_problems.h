@@ -1,8 +1,8 @@
-/// Problems of a control loop that failed or were slow, for a thread that writes them.
+/// Keeps problems of a control loop that failed or were slow, for a thread that writes them.
 ///
-/// Keeps the first ones and counts the rest; slow ones leave room for those that failed. One thread
-/// puts, one reads. put() copies into memory that the constructor allocates: no allocation, lock or
-/// system call.
+/// The first ones are kept, the rest counted; slow ones leave room for those that failed. One
+/// thread puts, one reads. put() copies into memory that the constructor allocates: no allocation,
+/// lock or system call.
 #pragma once
 
 #include <atomic>
@@ -16,41 +16,41 @@
 
 namespace hg::hqp {
 
-/// A problem with everything that its solve depends on, and how that ended.
+/// A problem with all inputs of its solve, and the result.
 struct KeptProblem {
   Problem problem;
   Options options = {};
-  ActiveSet guess = {};  ///< that the solve began with
+  ActiveSet guess = {};  ///< initial guess of the solve
   Status status = Status::kSolved;
   int iterations = 0;
-  std::uint64_t cycle = 0;     ///< of the loop
-  double cycle_time_us = 0.0;  ///< 0: it is not the time of the cycle that it is kept for
+  std::uint64_t cycle = 0;     ///< cycle number of the loop
+  double cycle_time_us = 0.0;  ///< cycle time; 0 = not the reason for keeping the problem
 };
 
 class KeptProblems {
  public:
   static constexpr std::size_t kMost = 10;
-  static constexpr std::size_t kMostSolved = 5;  ///< of these, slow ones that were solved
+  static constexpr std::size_t kMostSolved = 5;  ///< most slow but solved problems that are kept
 
-  /// For problems of this very capacity. Throws SetupError, see check(Capacity).
+  /// Accepts problems of exactly this capacity. Throws SetupError, see check(Capacity).
   explicit KeptProblems(const Capacity& capacity);
 
-  /// Loop only. Copies while there is room; of each cycle only one problem.
+  /// Copies the problem while there is room, one per cycle. To be called by the loop only.
   void put(const Problem& problem, const Options& options, const ActiveSet& guess,
            const Solution& solution, std::uint64_t cycle, double cycle_time_us = 0.0) noexcept;
 
-  /// How many are kept. They never change again.
+  /// Number of kept problems; these never change again.
   std::size_t size() const noexcept { return size_.load(std::memory_order_acquire); }
-  /// In the order of the cycles; i < size().
+  /// Kept problem i < size(), in the order of the cycles.
   const KeptProblem& operator[](std::size_t i) const noexcept { return problems_[i]; }
 
-  /// Cycles that put() was called for. From any thread.
+  /// Number of cycles for which put() was called. Callable from any thread.
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_relaxed); }
 
  private:
   std::vector<KeptProblem> problems_;
-  std::optional<std::uint64_t> last_cycle_;  ///< of put()
-  std::size_t solved_ = 0;                   ///< of those that are kept
+  std::optional<std::uint64_t> last_cycle_;  ///< last cycle passed to put()
+  std::size_t solved_ = 0;                   ///< number of kept problems that were solved
   std::atomic<std::size_t> size_{0};
   std::atomic<std::uint64_t> count_{0};
 };

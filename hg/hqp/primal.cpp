@@ -9,10 +9,11 @@ namespace {
 
 constexpr double kParallel = 1e-12;    // cosine below which a direction does not change a row
 constexpr double kResolution = 1e-16;  // share of |x| below which a step does not change x
-constexpr double kCorrection = 1e-3;   // share of the tolerance that is a gain, near the optimum
-constexpr int kExchangesPerRow = 3;    // rows released in a corner, per row that meets there
-// Steps of a level before each of which the held rows are chosen anew. After these a row is held
-// until x is the minimum over the held rows: slower mostly, but no set of rows comes back.
+// Share of the tolerance that counts as a gain, near the optimum
+constexpr double kCorrection = 1e-3;
+constexpr int kExchangesPerRow = 3;  // rows released in a corner, per row that meets there
+// Steps of a level for which the held rows are chosen anew each time. After these a row is held
+// until x is the minimum over the held rows: mostly slower, but no set of rows recurs.
 constexpr int kFreeStepsPerVariable = 1;
 
 // Sides of a row that do not stop a step, as bits.
@@ -115,8 +116,8 @@ void LevelByLevel::collect_pulling(int level) noexcept {
   }
 }
 
-// Direction to the minimum of the level's quadratic piece within the free columns; false when it
-// gains nothing that counts.
+// Direction to the minimum of the level's quadratic piece within the free columns; false when its
+// gain is negligible.
 bool LevelByLevel::aim(int level) noexcept {
   Elimination& elimination = work_.elimination;
   if (elimination.freedom() == 0) return false;
@@ -135,8 +136,8 @@ bool LevelByLevel::aim(int level) noexcept {
   return gains(level, 1.0);
 }
 
-// Whether a step of `length` along the direction changes a slack that the level wants changed by
-// more than the tolerance.
+// Whether a step of `length` along the direction changes a slack of the level's objective by more
+// than the tolerance.
 bool LevelByLevel::gains(int level, double length) const noexcept {
   const double share = work_.has_dual_point ? kCorrection : 1.0;
   if (is_norm_level(level)) {
@@ -149,7 +150,7 @@ bool LevelByLevel::gains(int level, double length) const noexcept {
   });
 }
 
-// c d of all rows that matter to the level, into work_.slope; 0 where it is but rounding or, for
+// c d of all rows that matter to the level, into work_.slope; 0 where it is only rounding or, for
 // rows of the level, the free part of a dependent row.
 void LevelByLevel::find_slopes(int level) noexcept {
   const int end = is_norm_level(level) ? problem_.rows() : problem_.end_row(level);
@@ -162,7 +163,7 @@ void LevelByLevel::find_slopes(int level) noexcept {
   }
 }
 
-// How far the direction can be followed before a row of a higher level is in the way.
+// Length along the direction until a row of a higher level blocks it.
 double LevelByLevel::way_to_obstacle(int level, int& obstacle) const noexcept {
   double way = kInfinity;
   obstacle = -1;
@@ -182,7 +183,7 @@ double LevelByLevel::way_to_obstacle(int level, int& obstacle) const noexcept {
 }
 
 // Minimum of the level's objective along the direction, a convex piecewise quadratic, up to
-// `longest`: goes from kink to kink until its derivative is positive.
+// `longest`: proceeds from kink to kink until its derivative is positive.
 double LevelByLevel::best_length(int level, double longest) const noexcept {
   if (is_norm_level(level)) {
     const double d_d = work_.direction.head(n_).squaredNorm();
@@ -257,7 +258,7 @@ int LevelByLevel::find_pulling_row(bool take_first) noexcept {
   return released;
 }
 
-// Index in work_.touched of the row that bars the direction here and now, -1: none.
+// Index in work_.touched of the row that blocks the direction at x; -1 = none.
 int LevelByLevel::touched_obstacle(int level) const noexcept {
   int obstacle = -1;
   way_to_obstacle(level, obstacle);
@@ -321,7 +322,7 @@ PrimalOutcome LevelByLevel::optimise(int level) noexcept {
     elimination.truncate(base_);
 
     size_ = level_gradient(problem_, options_, level, work_);
-    // what the dual method has met up to the tolerance is met up to rounding here
+    // levels met by the dual method within the tolerance are met up to rounding here
     const bool is_zero = work_.has_dual_point ? size_.scale <= size_.rounding : size_.is_zero;
     is_held_back_ = !is_zero && elimination.freedom() > 0;
     if (!is_held_back_) return PrimalOutcome::kOptimal;

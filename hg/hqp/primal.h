@@ -1,4 +1,4 @@
-/// The method that always arrives: level after level, from one feasible point to a better one.
+/// Primal method that always terminates: level by level, from one feasible point to a better one.
 #pragma once
 
 #include "hg/hqp/workspace.h"
@@ -11,7 +11,7 @@ enum class PrimalOutcome { kOptimal, kIterationLimit, kNotFinite };
 /// Each step minimises the level's objective on the rows that push (Cone), searches along it
 /// exactly and never leaves the optimal set of the levels above. Adds to `iterations`, stops at
 /// options.max_iterations; `completed` receives the number of optimal levels. work.point.x and
-/// work.point.state are the last point, in any case.
+/// work.point.state always hold the last point.
 PrimalOutcome solve_level_by_level(const Problem& problem, const Options& options, int levels,
                                    int& iterations, int& completed, Workspace& work) noexcept;
 

@@ -88,7 +88,7 @@ class Problem {
 
   Capacity capacity_;
   int variables_;
-  std::vector<int> first_row_;  ///< of each level, and the total at the end
+  std::vector<int> first_row_;  ///< first row of each level, and the total at the end
   std::vector<Row> rows_;
   std::vector<double> coefficients_;  ///< row after row, capacity.variables apart
 };
@@ -96,7 +96,7 @@ class Problem {
 /// Euclidean norm; not finite when one of the numbers is not.
 double norm_of(std::span<const double> v) noexcept;
 
-/// The rule that a row with this content breaks, nullptr: none.
+/// Rule broken by a row with this content; nullptr = none.
 inline const char* broken_rule(Interval bounds, double weight, double norm) noexcept {
   if (!(norm < kInfinity)) return "coefficients and their norm must be finite";
   if (!(bounds.lb <= bounds.ub)) return "lb must not be above ub";

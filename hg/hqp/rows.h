@@ -1,4 +1,4 @@
-/// Arithmetic with rows of a problem that treats single variables as what they are.
+/// Arithmetic with rows of a problem, with a fast path for rows of a single variable.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ inline std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
 using VectorView = Eigen::Map<const Eigen::VectorXd>;
 
-/// a b, of n numbers each: what Eigen does, without what it takes to get there.
+/// Dot product a b of n numbers; avoids Eigen's dispatch for small n.
 inline double dot(int n, const double* a, const double* b) noexcept {
   using Pair = Eigen::Array2d;
   using PairView = Eigen::Map<const Pair>;
@@ -52,14 +52,14 @@ inline void add_multiple(const Problem& problem, int row, double factor, double*
 
 inline bool is_equality(Interval bounds) noexcept { return bounds.lb == bounds.ub; }
 
-/// How far `value` is outside: > 0 above the upper bound, < 0 below the lower one, 0 inside.
+/// Signed distance of `value` from the interval: > 0 above, < 0 below, 0 inside.
 inline double excess(Interval bounds, double value) noexcept {
   if (value > bounds.ub) return value - bounds.ub;
   if (value < bounds.lb) return value - bounds.lb;
   return 0.0;
 }
 
-/// Size of the numbers that meet in c x - bound; rounding errors are a fraction of it.
+/// Size of the terms of c x - bound; rounding errors are a fraction of it.
 inline double magnitude(double norm, double bound, double x_norm) noexcept {
   return norm * x_norm + (std::isfinite(bound) ? std::abs(bound) : 0.0);
 }

@@ -1,4 +1,4 @@
-/// What goes in and comes out of a solve besides the problem: options, active set, solution.
+/// Inputs and results of a solve besides the problem: options, active set, solution.
 #pragma once
 
 #include <array>
@@ -39,8 +39,8 @@ constexpr bool is_violated(RowState s) noexcept {
 /// is a cold start; a wrong or outdated guess costs time, never correctness.
 struct ActiveSet {
   std::array<RowState, kMaxRows> state{};
-  /// The last states that differ from `state`, tried when that is wrong: limits that come and go
-  /// every other cycle cost one try.
+  /// Last states that differ from `state`, tried when `state` is wrong: limits that toggle every
+  /// other cycle cost one try.
   std::array<RowState, kMaxRows> before{};
 };
 
@@ -51,10 +51,10 @@ struct Options {
   double feasibility_tolerance = 1e-10;
   /// Active sets tried before the solver stops, > 0; a warm start mostly needs 1 or 2.
   int max_iterations = 1000;
-  /// Active sets tried before the solve is brought to an end with what is known by then; 0: no such
-  /// limit. The end costs the dual method and one active set more.
+  /// Active sets tried before the solve ends with the best known result; 0 = no such limit. Ending
+  /// costs the dual method and one more active set.
   int budget = 0;
-  /// Freedom left by the last level goes to the smallest |x|; otherwise x is any optimal point.
+  /// Uses freedom left by the last level to minimise |x|; otherwise x is any optimal point.
   bool minimum_norm = true;
 };
 
@@ -64,8 +64,8 @@ void check(const Options& options);
 
 struct LevelResult {
   double slack_squared;  ///< sum of (weight * slack)^2 over the level's rows
-  int freedom;           ///< dimensions that this level found left to it; 0: the level is frozen
-  int blocking_row;      ///< row above that costs this level most slack, -1: none
+  int freedom;           ///< dimensions left to this level; 0 = the level is frozen
+  int blocking_row;      ///< row of a higher level that costs this level most slack; -1 = none
 };
 
 /// Result of one solve. Vectors have the size of the problem; they never grow beyond `capacity`.
@@ -76,12 +76,12 @@ struct Solution {
   Status status = Status::kSolved;
   int iterations = 0;        ///< active sets tried
   int completed_levels = 0;  ///< levels known to be optimal, counted from the top
-  int bad_level = -1;        ///< level and id of the row that caused kBadRow, else -1
+  int bad_level = -1;        ///< level of the row that caused kBadRow, else -1; its id is bad_row
   int bad_row = -1;
-  std::vector<double> x;            ///< always finite
-  std::vector<RowState> state;      ///< by row id
-  std::vector<double> slack;        ///< by row id: nearest bound - c x, 0 inside; not weighted
-  std::vector<LevelResult> levels;  ///< by level
+  std::vector<double> x;        ///< solution point, always finite
+  std::vector<RowState> state;  ///< state per row id
+  std::vector<double> slack;    ///< slack per row id: nearest bound - c x, 0 inside; not weighted
+  std::vector<LevelResult> levels;  ///< result per level
 };
 
 }  // namespace hg::hqp

@@ -14,18 +14,20 @@ namespace hg::hqp {
 namespace {
 
 // Efforts are counted in direct eliminations.
-constexpr int kEffortOfGuess = 2;        // itself, and one row more or less,
-constexpr int kEffortFromZero = 4;       // when there is none,
-constexpr int kEffortOfSecondGuess = 1;  // what differs more is found faster by the dual method,
-constexpr int kEffortOfDual = 2;       // which is almost always right. Where it gives up: from zero
-constexpr int kEffort = 32;            // with this and so much per variable. More is
-constexpr int kEffortPerVariable = 2;  // taken for a cycle
+constexpr int kEffortOfGuess = 2;   // for a guess: the guess itself, and one row more or less
+constexpr int kEffortFromZero = 4;  // from x = 0, without a guess
+// For a second guess; when it differs more, the dual method is faster
+constexpr int kEffortOfSecondGuess = 1;
+constexpr int kEffortOfDual = 2;       // almost always right; where it gives up: from zero
+constexpr int kEffort = 32;            // total limit, plus kEffortPerVariable per variable
+constexpr int kEffortPerVariable = 2;  // beyond the total limit a cycle is assumed
 constexpr double kFar = 10.0;          // |x| of the dual method's point beside that of the result
-constexpr int kClosing = 4;            // active sets per level after the budget, where that gave up
-constexpr int kOrthogonalEffort = 4;   // of one orthogonal elimination
-constexpr int kProofEffort = 12;       // on the result of that method, which is almost always right
+constexpr int kClosing = 4;  // active sets per level after the budget, if the dual method gave up
+constexpr int kOrthogonalEffort = 4;  // effort of one orthogonal elimination
+// Effort to prove the result of that method, which is almost always right
+constexpr int kProofEffort = 12;
 
-// A mistake of the program around the solver, which would overwrite memory.
+// Aborts on misuse by the caller, which would overwrite memory.
 void require(bool is_right, const char* what) noexcept {
   if (is_right) return;
   std::fprintf(stderr, "hqp: %s\n", what);
@@ -53,7 +55,7 @@ bool misses_rows(const Problem& problem, const Options& options, int levels,
   return false;
 }
 
-// Whether `other` has rows as `guess` has them that the tries since have corrected.
+// Whether `other` repeats rows of `guess` that later tries have corrected.
 bool repeats_mistake(const Problem& problem, int levels, const std::vector<RowState>& guess,
                      const std::vector<RowState>& other, const Workspace& work) noexcept {
   const int rows = rows_of(problem, levels);
@@ -93,7 +95,7 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
   std::vector<RowState>& first = work.saved.state;
   std::vector<RowState>& second = work.second_guess;
   const int rows = rows_of(problem, levels);
-  // of a solution, all rows are inactive only where x = 0, and that is where a cold start begins
+  // a solution has only inactive rows only if x = 0, which is where a cold start begins
   const bool has_first = std::any_of(active.state.begin(), active.state.begin() + rows,
                                      [](RowState state) { return state != RowState::kInactive; });
   load_guess(problem, levels, active.state, guess);
@@ -113,7 +115,8 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
   expect_violated(problem, options, levels, active.state, work);
   bool has_guess = start_from_dual(problem, options, levels, work);
   if (has_guess && try_for(kEffortOfDual)) return true;
-  // where the levels that give way were not the expected ones: again with those of the last point
+  // if the levels with violated inequalities were not the expected ones: again with those of the
+  // last point
   const bool has_time = options.budget == 0 || iterations < options.budget;
   if (has_time && expect_violated_now(problem, options, levels, work)) {
     has_guess = start_from_dual(problem, options, levels, work);

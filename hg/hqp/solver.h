@@ -1,13 +1,12 @@
 /// Strictly lexicographic least squares with bounds, by elimination and active sets.
 ///
 /// Source: [HG] (1)-(6): for p = 1..P minimise 1/2 |w_p|^2 + 1/2 |v_p|^2, keeping all earlier
-/// optimal slacks; then, as an option, |x|.
-/// Differs from [HG]: no cascade of QPs. One elimination, level after level in the null space
-/// (3)-(4) of those above, solves a guessed active set and proves or mends it; what cannot be
-/// settled that way goes through a primal method level by level. No normal equations, no
-/// regularisation. Contract: solve() keeps nothing between calls except its workspace and a count,
-/// is a pure function of its arguments, does not allocate, and tries at most options.max_iterations
-/// active sets.
+/// optimal slacks; then, as an option, |x|. Differs from [HG]: no cascade of QPs. One elimination,
+/// level after level in the null space (3)-(4) of those above, solves a guessed active set and
+/// proves or corrects it; the remaining cases are solved by a primal method level by level. No
+/// normal equations, no regularisation. Contract: solve() keeps nothing between calls except its
+/// workspace and a count, is a pure function of its arguments, does not allocate, and tries at most
+/// options.max_iterations active sets.
 #pragma once
 
 #include <cstdint>
@@ -23,19 +22,19 @@ struct Workspace;
 
 class Solver {
  public:
-  /// For problems within `capacity`. Throws SetupError, see check(Capacity).
+  /// Solves problems within `capacity`. Throws SetupError, see check(Capacity).
   explicit Solver(const Capacity& capacity);
   ~Solver();
   Solver(Solver&&) noexcept;
   Solver& operator=(Solver&&) noexcept;
 
   /// Solves `problem`, starting from the guess `active`, which receives the final active set.
-  /// `solution` is filled and usable whatever is returned; aborts when solver or solution have
-  /// less capacity than the problem needs.
+  /// `solution` is always filled and usable, whatever the status; aborts when solver or solution
+  /// have less capacity than the problem needs.
   Status solve(const Problem& problem, const Options& options, ActiveSet& active,
                Solution& solution) noexcept;
 
-  /// Solves since construction that their budget has ended before they were proven.
+  /// Number of solves since construction that the budget ended before proof of optimality.
   std::uint64_t budgets_spent() const noexcept;
 
   /// Lagrange multipliers of level `level` at `solution`, one per row of the problem, into `mu`
@@ -45,7 +44,7 @@ class Solver {
   /// equalities and violated rows, 0 elsewhere: the constraint pushes x along -mu_i c_i. Rows of
   /// the level itself receive their share of the gradient, weight^2 * (c x - nearest bound), so
   /// that the sum over all rows is zero. Duplicates: the one of highest priority takes all. Returns
-  /// the norm of what is left of the sum: near 0 exactly if the level is optimal.
+  /// the norm of the remaining sum: near 0 exactly if the level is optimal.
   double multipliers(const Problem& problem, const Options& options, const Solution& solution,
                      int level, std::span<double> mu) noexcept;
 

@@ -12,8 +12,8 @@ constexpr double kSmallRest = 1e-10;
 constexpr int kVariablesPerEarlyStep = 6;
 // Rest of a gradient, relative to its terms, of a level that counts as optimal by values alone.
 constexpr double kOptimalRest = 1e-7;
-constexpr double kSameSlack = 1e-9;  // share of 1 + slack up to which two points are as good
-constexpr double kNoWay = 1e-9;      // share of the way to a point that is none
+constexpr double kSameSlack = 1e-9;  // share of 1 + slack up to which two points are equally good
+constexpr double kNoWay = 1e-9;      // share of the step below which it counts as zero
 
 // The smallest |x| is a level below all others.
 bool wants_smallest_norm(const Problem& problem, const Options& options, int levels) noexcept {
@@ -35,7 +35,7 @@ void collect_active(const Problem& problem, int level, Workspace& work) noexcept
 }
 
 // The point of the guess by direct elimination, from the first level on whose guess has changed;
-// false when in doubt, or when rows leave freedom that is nobody's.
+// false when in doubt, or when rows leave freedom that no level uses.
 bool eliminate_directly(const Problem& problem, const Options& options, int levels,
                         Workspace& work) noexcept {
   DirectElimination& direct = work.direct;
@@ -117,7 +117,8 @@ bool find_multipliers(const Problem& problem, const Options& options, const Leve
       add_multiple(problem, pivot_row(work, t), work.mu[t], work.gradient.data());
     }
     rest = work.gradient.head(n).cwiseAbs().maxCoeff();
-    small_rest = std::max(kSmallRest, options.rank_tolerance);  // which dependent rows may leave
+    // Remainder that dependent rows may leave
+    small_rest = std::max(kSmallRest, options.rank_tolerance);
   }
   return rest <= small_rest * size.scale + size.rounding;
 }
@@ -172,8 +173,8 @@ void set_guess(const Problem& problem, int row, RowState state, Workspace& work)
   work.direct_levels = std::min(work.direct_levels, problem.level_of(row));
 }
 
-// Holds the inactive row that is first in the way from the last point to the new one; false when
-// there is none. `way` receives the share of it that can be gone.
+// Holds the first inactive row that blocks the step from the last point to the new one; false when
+// there is none. `way` receives the feasible share of the step.
 bool hold_obstacle(const Problem& problem, const Options& options, int rows, double& way,
                    Workspace& work) noexcept {
   int obstacle = -1;
@@ -197,7 +198,7 @@ bool hold_obstacle(const Problem& problem, const Options& options, int rows, dou
   return true;
 }
 
-// State of an active row as its value tells; kInactive: it is inside.
+// State of an active row by its value; kInactive: it is inside.
 RowState found_state(const Problem& problem, const Options& options, int row,
                      const Workspace& work) noexcept {
   const double distance = violation(problem, options, work, row);
@@ -211,8 +212,8 @@ RowState found_state(const Problem& problem, const Options& options, int row,
   return bound == bounds.lb ? RowState::kLower : RowState::kUpper;
 }
 
-// Reads the states of active rows from their values, and lets go of those that x is inside of.
-// True when the guess has changed.
+// Reads the states of active rows from their values, and releases those that x is inside of. True
+// when the guess has changed.
 bool drop_rows(const Problem& problem, const Options& options, int levels,
                Workspace& work) noexcept {
   bool is_changed = false;
@@ -238,7 +239,7 @@ bool drop_rows(const Problem& problem, const Options& options, int levels,
   return is_changed;
 }
 
-// Level after level: whether held rows push against it. Lets go of the one that pulls most.
+// Level after level: whether held rows push against it. Releases the one that pulls most.
 Judgement judge_levels(const Problem& problem, const Options& options, int levels,
                        Workspace& work) noexcept {
   const int rank = work.point.rank_at_level[at(levels)];
@@ -274,7 +275,7 @@ Judgement judge_levels(const Problem& problem, const Options& options, int level
 Judgement judge_last(const Problem& problem, const Options& options, int levels,
                      Workspace& work) noexcept;
 
-// One step of an active-set method. The first ones all start at the same point, and let go of rows
+// One step of an active-set method. The first steps all start at the same point, and release rows
 // before they hold others: where few rows act, that is one step for each. It could cycle, so after
 // that the last point moves, and the slacks fall.
 Judgement judge_guess(const Problem& problem, const Options& options, int levels,
@@ -299,7 +300,7 @@ Judgement judge_guess(const Problem& problem, const Options& options, int levels
   return is_blocked ? Judgement::kCorrected : judgement;
 }
 
-// States of all rows as their values tell: what is at its bound is held where the guess says so.
+// States of all rows by their values: a row at its bound is held where the guess says so.
 void read_states(const Problem& problem, const Options& options, int levels,
                  Workspace& work) noexcept {
   const int rows = rows_of(problem, levels);
@@ -517,7 +518,7 @@ bool expect_violated_now(const Problem& problem, const Options& options, int lev
 
 bool start_from_dual(const Problem& problem, const Options& options, int levels,
                      Workspace& work) noexcept {
-  int top = 0;  // levels that the guesses so far have in common
+  int top = 0;  // number of levels that the guesses so far have in common
   while (top < work.direct_levels && !has_inequality(problem, top)) ++top;
   if (top == 0) {
     work.direct.reset(problem);
@@ -543,7 +544,7 @@ bool start_from_dual(const Problem& problem, const Options& options, int levels,
   return true;
 }
 
-// When the last step has let go of a row and lost all digits by it, the row comes back for good.
+// If the last step released a row and lost all digits thereby, the row is held again permanently.
 bool take_back(const Problem& problem, Workspace& work) noexcept {
   const int row = work.released_row;
   if (row < 0 || work.is_needed[at(row)]) return false;

@@ -48,7 +48,7 @@ class Reader {
  public:
   Reader(std::string_view text, const std::string& name) : text_(text), name_(name) {}
 
-  /// Goes to the next line that is not blank; false at the end of the text.
+  /// Moves to the next line that is not blank; false at the end of the text.
   bool next_line() {
     while (!text_.empty()) {
       const std::size_t end = text_.find('\n');
@@ -61,7 +61,7 @@ class Reader {
     return false;
   }
 
-  /// As next_line(), where a line must come.
+  /// Moves to the next line, as next_line(), where a line must follow.
   void need_line(const std::string& expected) {
     if (!next_line()) fail(expected, "the end of the file");
   }
@@ -100,7 +100,7 @@ class Reader {
     return value;
   }
 
-  /// May be infinite, or not a number.
+  /// Reads a number, which may be infinite or NaN.
   double need_number(const std::string& meaning) {
     const std::string_view word = next_word();
     double value = 0.0;
@@ -162,8 +162,8 @@ struct ParsedRow {
   std::vector<double> coefficients;
   Interval bounds;
   double weight = 1.0;
-  bool is_dense = false;  ///< even where it has only one coefficient, of value 1
-  bool is_bad = false;    ///< on purpose
+  bool is_dense = false;  ///< a dense row even with a single coefficient of value 1
+  bool is_bad = false;    ///< deliberately invalid
 };
 
 ParsedRow parse_row(Reader& reader, int level, int n, bool is_equality) {

@@ -1,4 +1,4 @@
-/// Problems as text: what the solver is given can be dumped, mailed, and solved again.
+/// Problems as text: solver inputs can be dumped, mailed, and solved again.
 ///
 /// One problem after another, in a plain or gzipped file; numbers in full precision, `inf` allowed:
 ///   hqp <n> <levels>
@@ -14,7 +14,7 @@
 /// its numbers there may be
 ///   weight <w>   of its slack, 1 where nothing is said
 ///   dense        a row of add_row() all the same, although it has only one coefficient, of value 1
-///   bad          content that the solver refuses, on purpose: such rows are errors otherwise
+///   bad          deliberately invalid content that the solver refuses; an error without this word
 /// Guesses have a letter per row: .lu=<> in the order of RowState; `before` may be left out.
 /// Set-up code: allocates, and throws SetupError with "file:line: what was expected".
 #pragma once
@@ -31,26 +31,26 @@
 
 namespace hg::hqp {
 
-/// A problem and how it is to be solved: gives the same bits again.
+/// A problem with all inputs of its solve: gives the same bits again.
 struct RecordedProblem {
   Problem problem;
   Options options = {};
-  std::optional<ActiveSet> guess = {};  ///< that the solve begins with; none: nothing is known
-  std::string name = {};                ///< where it comes from, one line
+  std::optional<ActiveSet> guess = {};  ///< initial guess of the solve; none = nothing is known
+  std::string name = {};                ///< origin of the problem, one line
 };
 
-/// All problems in `text`; `name` stands for the file in messages. Ids are given in the order of
-/// the text.
+/// All problems in `text`; `name` stands for the file in messages. Row ids follow the order of the
+/// text.
 std::vector<RecordedProblem> parse_recorded_problems(std::string_view text,
                                                      const std::string& name);
-/// The same without options, guesses and names.
+/// Parses all problems in `text`, without options, guesses and names.
 std::vector<Problem> parse_problems(std::string_view text, const std::string& name);
 
-/// All problems of a file, which may be gzipped.
+/// Reads all problems of a plain or gzipped file.
 std::vector<RecordedProblem> read_recorded_problems(const std::string& file);
 std::vector<Problem> read_problems(const std::string& file);
 
-/// The smallest capacity that takes each of the problems; 1 of each for none.
+/// Smallest capacity that holds each of the problems; all sizes 1 without problems.
 Capacity capacity_for(std::span<const Problem> problems);
 Capacity capacity_for(std::span<const RecordedProblem> problems);
 
@@ -61,7 +61,7 @@ Capacity capacity_for(std::span<const RecordedProblem> problems);
 void write_problem(std::ostream& out, const RecordedProblem& recorded);
 void write_problem(std::ostream& out, const Problem& problem);
 
-/// Content of a plain or gzipped file. Throws SetupError when it cannot be read.
+/// Reads the content of a plain or gzipped file. Throws SetupError when it cannot be read.
 std::string read_text(const std::string& file);
 
 }  // namespace hg::hqp

@@ -1,4 +1,4 @@
-/// Memory of the solver and the few notions that its parts share.
+/// Memory of the solver and the terms shared by its parts.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,21 +16,22 @@
 
 namespace hg::hqp {
 
-/// A point and what is known of it. Vectors have their largest size.
+/// A point with its row states and pivots. Vectors have their largest size.
 struct Point {
   explicit Point(const Capacity& capacity);
 
   Eigen::VectorXd x;
-  std::vector<RowState> state;     ///< by row
-  std::vector<int> rank_at_level;  ///< pivots of the levels above; last: of all levels
-  std::vector<int> blocking_row;   ///< by level, -1: none
+  std::vector<RowState> state;  ///< state per row
+  /// Number of pivots of the levels above; last entry: of all levels
+  std::vector<int> rank_at_level;
+  std::vector<int> blocking_row;  ///< blocking row per level, -1 = none
 };
 
-/// What a level's active rows get from direct elimination.
+/// Result of direct elimination for a level's active rows.
 enum class Fit : std::uint8_t {
-  kFrozen,        ///< nothing: levels above fix x
-  kMet,           ///< their targets
-  kLeastSquares,  ///< targets contradict
+  kFrozen,        ///< no freedom: levels above fix x
+  kMet,           ///< targets met
+  kLeastSquares,  ///< targets contradict, least squares
 };
 
 /// The point under test and everything needed to judge it. Vectors have their largest size from the
@@ -46,35 +47,35 @@ struct Workspace {
   std::uint64_t budgets_spent = 0;
 
   Point point;
-  Point saved;  ///< the same, put aside
+  Point saved;  ///< saved copy of a point
   std::vector<RowState> second_guess;
-  double x_norm = 0.0;        ///< size of x that tolerances are relative to: of the point, or the
-                              ///< largest on the way to it
-  std::vector<double> value;  ///< c x by row
-  std::vector<double> last_value;       ///< same, of the point that the next step starts from
-  int steps = 0;                        ///< since that point was x = 0
-  std::vector<std::uint8_t> is_frozen;  ///< by pivot: a held row that a level pushed against
-  int released_row = -1;  ///< by the last step that let go of a row that pulled, and its state
+  /// Size of x that tolerances are relative to: at the point, or the largest on the way to it
+  double x_norm = 0.0;
+  std::vector<double> value;       ///< c x by row
+  std::vector<double> last_value;  ///< c x per row at the point from which the next step starts
+  int steps = 0;                   ///< number of steps since that point was x = 0
+  std::vector<std::uint8_t> is_frozen;  ///< per pivot: a held row that a level pushed against
+  int released_row = -1;  ///< row released by the last step because it pulled; its state follows
   RowState released_state = RowState::kInactive;
-  std::vector<std::uint8_t> is_needed;  ///< by row: pushes by however little, as the dual method or
-                                        ///< letting go of it has shown
-  bool is_last = false;                 ///< no step follows the guess
-  int proven_levels = 0;                ///< levels that the point of that guess is optimal for
-  bool has_dual_point = false;          ///< dual.point() is of this solve
-  bool is_direct = false;               ///< the pivots of `point` are those of `direct`
-  int direct_levels = 0;  ///< so many levels have pivots in `direct` that fit point.state
+  /// Per row: pushes, however little, as the dual method or its release has shown
+  std::vector<std::uint8_t> is_needed;
+  bool is_last = false;         ///< no step follows the guess
+  int proven_levels = 0;        ///< number of levels for which the last guess's point is optimal
+  bool has_dual_point = false;  ///< dual.point() belongs to this solve
+  bool is_direct = false;       ///< the pivots of `point` are those of `direct`
+  int direct_levels = 0;        ///< number of levels whose pivots in `direct` fit point.state
   std::vector<int> direct_rank_at_level;
-  std::vector<std::uint8_t> has_violated;  ///< by level, as found at the point
-  std::vector<std::uint8_t> gives_way;     ///< by level: expected to have violated inequalities
-  std::vector<Fit> fit;                    ///< of the levels in `direct`, and of the smallest norm
+  std::vector<std::uint8_t> has_violated;  ///< per level, as found at the point
+  std::vector<std::uint8_t> gives_way;     ///< per level: expected to have violated inequalities
+  std::vector<Fit> fit;  ///< fit of the levels in `direct`, and of the smallest norm
 
   std::vector<TargetRow> targets;
   std::vector<TouchedRow> touched;
   std::vector<TouchedRow> held;  ///< pivots of the level-by-level method, after the fixed ones
-  Eigen::VectorXd mu;            ///< multipliers, by pivot
+  Eigen::VectorXd mu;            ///< multipliers, per pivot
   std::vector<double> slope;     ///< c d by row, d the search direction
-  std::vector<std::uint8_t> is_fixed;       ///< by row: eliminated for good
-  std::vector<std::uint8_t> skipped_sides;  ///< by row: sides that are no obstacle to a step
+  std::vector<std::uint8_t> is_fixed;       ///< per row: permanently eliminated
+  std::vector<std::uint8_t> skipped_sides;  ///< per row: sides that do not block a step
   Eigen::VectorXd gradient;
   Eigen::VectorXd direction;
 };
@@ -92,12 +93,12 @@ struct LevelGradient {
   double surely_pulling() const noexcept { return 1e-12 * scale + rounding; }
 };
 
-/// Rows of the first `levels` levels.
+/// Number of rows of the first `levels` levels.
 inline int rows_of(const Problem& problem, int levels) noexcept {
   return levels > 0 ? problem.end_row(levels - 1) : 0;
 }
 
-/// A violated row is one that is held at a bound but does not get there.
+/// Guess for a row state: a violated row becomes held at the bound it does not reach.
 inline RowState as_guess(RowState state) noexcept {
   if (state == RowState::kBelow) return RowState::kLower;
   return state == RowState::kAbove ? RowState::kUpper : state;
@@ -107,7 +108,7 @@ inline RowState as_guess(RowState state) noexcept {
 double tolerance(const Problem& problem, const Options& options, const Workspace& work, int row,
                  double bound) noexcept;
 
-/// How far c x = work.value[row] is outside its bounds, as excess(); 0 within the tolerance.
+/// Signed distance of c x = work.value[row] from its bounds, as excess(); 0 within the tolerance.
 inline double violation(const Problem& problem, const Options& options, const Workspace& work,
                         int row) noexcept {
   const Interval bounds = problem.bounds(row);
@@ -124,11 +125,11 @@ bool touches(const Problem& problem, const Options& options, const Workspace& wo
 /// Sets work.value of the rows of the first `levels` levels.
 void update_values(const Problem& problem, int levels, Workspace& work) noexcept;
 
-/// x += length * step; false, and x is left alone, when it would not be finite.
+/// Computes x += length * step; false, leaving x unchanged, if the result would not be finite.
 [[nodiscard]] bool move(const Problem& problem, const Eigen::VectorXd& step, double length,
                         Workspace& work) noexcept;
 
-/// Rows of the level that are equalities or violated, into work.targets: the quadratic piece of the
+/// Collects the level's equality and violated rows into work.targets: the quadratic piece of the
 /// level's objective that x is on. Needs work.value.
 void collect_targets(const Problem& problem, const Options& options, int level,
                      Workspace& work) noexcept;

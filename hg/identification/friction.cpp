@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-// What the rows say about how the joint moved.
+// Describes the motion of the joint from the rows.
 void describe_motion(const Rows& rows, FrictionEstimate& found) {
   std::vector<double> speeds;
   for (const double v : rows.speed()) {
@@ -32,7 +32,7 @@ void describe_motion(const Rows& rows, FrictionEstimate& found) {
   found.reversals = rows.reversals();
 }
 
-// Where nothing can be found at all: why.
+// Reason why nothing can be identified.
 std::string lack_of(const Rows& rows, const FrictionEstimate& found) {
   const auto slid = [](const char* direction, double seconds) {
     return fmt::format(
@@ -62,7 +62,7 @@ Model believed_model(const ActuatorModel& believed) {
 }
 
 constexpr double kWidest = 1e-2;     // rad, of the scan over presliding
-constexpr double kNarrowest = 1e-5;  // rad: less is not told from none
+constexpr double kNarrowest = 1e-5;  // rad: smaller values are not distinguishable from none
 
 // The best of a grid of presliding, damping, stiction and number of elements. For a rigid joint
 // one of all numbers of elements is as good as another.
@@ -102,7 +102,8 @@ Model scan(const Fit& fit, const Model& start, bool with_presliding, const Free&
   return *best;
 }
 
-// What is found, step by step: what the motion does not show is set back to what is believed.
+// Decides step by step which parameters are identified; unobservable ones are reset to the believed
+// values.
 class Decision {
  public:
   Decision(const Rows& rows, const ActuatorModel& believed)
@@ -119,7 +120,7 @@ class Decision {
     }
     if (may_preslide) decide_presliding(found);
     if (found.presliding_elements == 0) {
-      // what it does while it sticks is not known then
+      // the behaviour during sticking is then unknown
       free_[kPresliding] = free_[kDamping] = false;
       fit_.count(rows_.slides());
       deviation_ = 0.0;
@@ -127,7 +128,7 @@ class Decision {
       improve();
     }
     decide_stiction(found);
-    decide_viscous(found);  // first: what cannot be told from it is no matter of the load
+    decide_viscous(found);  // first: effects indistinguishable from it do not depend on the load
     decide_load(found);
     report(found);
   }
@@ -202,7 +203,7 @@ class Decision {
   void decide_load(FrictionEstimate& found) {
     constexpr double kSure = 0.02;
     if (deviations_[kLoad] <= kSure) return;
-    coulomb_least_ = deviations_[kCoulomb];  // what is believed of the load says nothing about F
+    coulomb_least_ = deviations_[kCoulomb];  // the belief about the load does not affect F
     keep(kLoad);
     improve();
     const VectorXd loads = rows_.spring().cwiseAbs();
@@ -260,7 +261,7 @@ class Decision {
   Model start_, model_;
   Free free_{};
   double deviation_ = 0.0, loss_ = 0.0;
-  double coulomb_least_ = 0.0;  // deviation of F, whatever the others say
+  double coulomb_least_ = 0.0;  // deviation of F regardless of the others
   Parameters deviations_ = Parameters::Zero();
 };
 

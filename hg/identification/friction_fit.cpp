@@ -12,8 +12,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kHuber = 1.5;          // deviations from which on a residual counts less
-constexpr double kMostInflation = 1e3;  // of a variance, before two things cannot be told apart
+constexpr double kHuber = 1.5;  // deviations from which on a residual counts less
+// Largest inflation of a variance before two effects are indistinguishable
+constexpr double kMostInflation = 1e3;
 constexpr double kGainPrior = 0.02, kInertiaPrior = 0.2;  // deviations of sensors and rotor
 
 VectorXd weights_of(const VectorXd& residuals, double deviation) {

@@ -8,36 +8,36 @@
 
 namespace hg::identification::friction {
 
-/// Standard deviation of the residuals that are not 0, robustly, Nm.
+/// Robust standard deviation of the non-zero residuals, Nm.
 double deviation_of(const Eigen::VectorXd& residuals);
 
-/// Fits models to rows, which must outlive it.
+/// Fits models to rows; the rows must outlive it.
 class Fit {
  public:
   explicit Fit(const Rows& rows)
       : rows_(rows), linear_(rows.linear()), counts_(Eigen::VectorXd::Ones(rows.size())) {}
 
-  /// From now on rows count by this factor, 0 or 1.
+  /// Sets the factor, 0 or 1, by which each row counts.
   void count(const Eigen::VectorXd& rows) { counts_ = rows; }
 
-  /// Of all rows, Nm; 0 where a row does not count.
+  /// Residuals of all rows, Nm; 0 where a row does not count.
   Eigen::VectorXd residuals(const Model& model) const;
   double rms(const Model& model) const;
 
-  /// The linear parameters and F for given others; mu / F stays. Returns the loss.
+  /// Solves for the linear parameters and F with the others given; mu / F stays. Returns the loss.
   double solve_linear(Model& model, const Free& free, double& deviation) const;
 
-  /// Levenberg and Marquardt from `model` on. Returns the loss.
+  /// Improves `model` by Levenberg and Marquardt. Returns the loss.
   double improve(Model& model, const Free& free, double deviation) const;
 
-  /// Deviations by leaving out one block after the other, one step each; 0 where not free.
+  /// Standard deviations by leaving out one block after the other, one step each; 0 where not free.
   Parameters deviations(const Model& model, const Free& free, double deviation) const;
 
  private:
   struct Normal {
     Eigen::MatrixXd J, H;
     Eigen::VectorXd r, w, g;
-    std::vector<int> of;  // parameters of the columns
+    std::vector<int> of;  // parameter per column
   };
 
   // rows of one block are no independent evidence against a prior

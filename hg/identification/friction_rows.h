@@ -1,5 +1,5 @@
-/// A trace of one joint made ready for the fit of its friction, and the model that is fitted; see
-/// friction.h for both.
+/// Rows for the friction fit from a trace of one joint, and the fitted model; see friction.h for
+/// both.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,27 +15,27 @@ enum Parameter {
   kCoulomb,
   kLoad,
   kStiction,
-  kStribeck,    // logarithm
-  kPresliding,  // logarithm
-  kDamping,     // ratio, of a rotor on its bristles
+  kStribeck,    // logarithm of the Stribeck speed
+  kPresliding,  // logarithm of the presliding
+  kDamping,     // damping ratio of a rotor on its bristles
   kViscous,
   kOffset,
   kGain,
-  kInertia,  // error, over that of the rotor
+  kInertia,  // inertia error over the rotor inertia
   kParameters
 };
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
-/// Which parameters are fitted; the others stay.
+/// Flags of the fitted parameters; the others stay.
 using Free = std::array<bool, kParameters>;
 
-/// What is fitted: values of all parameters.
+/// Fitted model: values of all parameters.
 struct Model {
   Parameters p = Parameters::Zero();
   int elements = 1;
 };
 
-inline constexpr double kRigid = 2e-6;  ///< rad: presliding of friction that has none
-inline constexpr int kSmoothing = 10;   ///< samples on either side
+inline constexpr double kRigid = 2e-6;  ///< presliding used for friction without presliding, rad
+inline constexpr int kSmoothing = 10;   ///< half width of the smoothing, samples
 inline constexpr int kSamplesPerRow = 5;
 
 /// One row per kSamplesPerRow samples of a joint that moves.
@@ -47,7 +47,7 @@ class Rows {
   const Eigen::VectorXd& y() const { return y_; }
   const Eigen::VectorXd& speed() const { return v_; }
   const Eigen::VectorXd& spring() const { return tau_; }
-  /// 1 where the joint moves one way all the time that the smoothing sees, else 0.
+  /// Per row: 1 where the joint moves one way during the whole smoothing window, else 0.
   const Eigen::VectorXd& slides() const { return slides_; }
   /// First row of each block, and the number of rows.
   const std::vector<Eigen::Index>& block_begins() const { return block_begins_; }
@@ -56,7 +56,7 @@ class Rows {
   /// Dry friction of all rows, Nm.
   Eigen::VectorXd dry(const Model& model) const;
 
-  /// What the linear parameters are multiplied with, a column each.
+  /// Regressors of the linear parameters, a column each.
   Eigen::MatrixXd linear() const;
 
   int reversals() const;

@@ -1,5 +1,5 @@
-/// From the samples of a recording to what each joint did: the motor's torque is that of the
-/// command at work (answered_sequence) after the lag of the current.
+/// Traces of each joint from the samples of a recording: the motor torque is that of the active
+/// command (answered_sequence) after the current lag.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ class FrictionTraces {
   /// Throws SetupError for a device whose drives follow positions.
   explicit FrictionTraces(const control::Config& control);
 
-  /// The next sample. Those with drives off, shortly after they came on, without motor encoders or
-  /// without a known command at work are left out.
+  /// Adds the next sample. Samples with drives off, shortly after they came on, without motor
+  /// encoders or without a known active command are left out.
   void add(const Sample& sample);
 
-  /// One per joint of the manipulator.
+  /// Trace per joint of the manipulator.
   const std::vector<FrictionTrace>& joints() const { return joints_; }
-  std::uint64_t samples() const { return samples_; }  ///< that were added
-  std::uint64_t used() const { return used_; }        ///< of them
+  std::uint64_t samples() const { return samples_; }  ///< number of added samples
+  std::uint64_t used() const { return used_; }        ///< number of used samples
 
  private:
   struct Given {
@@ -35,14 +35,14 @@ class FrictionTraces {
   const Given* at_work(const SensorFrame& sensors) const;
   void take(const SensorFrame& sensors, const VectorM& tau);
 
-  double current_share_;  // of one period
-  double settling_;       // samples
+  double current_share_;  // share of the current reached in one period
+  double settling_;       // settling time, samples
   std::vector<FrictionTrace> joints_;
-  std::vector<Given> given_;  // a ring
-  VectorM current_, theta_;   // of the motors, Nm; the last sample, unwrapped
-  VectorM working_;           // command since the last sample
+  std::vector<Given> given_;  // ring buffer of commands
+  VectorM current_, theta_;   // motor torques, Nm; motor positions of the last sample, unwrapped
+  VectorM working_;           // active command since the last sample
   std::uint64_t last_ = 0, samples_ = 0, used_ = 0;
-  int on_ = 0;  // samples with drives on, one after the other
+  int on_ = 0;  // number of consecutive samples with drives on
   bool is_cut_ = true;
 };
 

@@ -13,7 +13,8 @@ namespace hg::identification {
 namespace {
 
 constexpr double kGravity = 9.81;
-// least variance of gravity's direction, about 6 degrees: less cannot be told from an offset
+// least variance of gravity's direction, about 6 degrees: less is not distinguishable from an
+// offset
 constexpr double kLeastSpread = 0.01;
 
 // How gravity's direction varies in S: variances along three axes, the largest last.
@@ -36,7 +37,7 @@ struct Spread {
     axes = eigen.vectors;
   }
 
-  // by how much the poses show the mass, and the best and worst direction of its centre
+  // information of the poses on the mass, and on the best and worst direction of its centre
   double of_mass() const { return variance.sum(); }
   double best() const { return variance[2] + variance[1]; }
   double worst() const { return variance[0] + variance[1]; }

@@ -1,4 +1,4 @@
-/// Faults on purpose: what of a machine, its link and its computer may go wrong, as data.
+/// Fault injection: possible faults of a machine, its link and its computer, as data.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hg::injection {
 
-/// What is spoilt.
+/// Part of the system that a fault affects.
 enum class Part : std::uint8_t {
   kLinkEncoder,
   kLinkSpeed,
@@ -38,56 +38,57 @@ enum class Part : std::uint8_t {
   kSolver,
   kBrake,
   kSafetyChannel,
-  kJointEncoders,   ///< link side and motor side alike
-  kGantryCoupling,  ///< an axis moves while its encoder says that it does as told
+  kJointEncoders,   ///< link-side and motor-side encoders together
+  kGantryCoupling,  ///< an axis moves while its encoder reports the commanded motion
 };
 
-/// What becomes of it.
+/// Effect of a fault on the part's value or behaviour.
 enum class Effect : std::uint8_t {
   kNotFinite,  ///< NaN
-  kFrozen,     ///< as it was when the fault began
+  kFrozen,     ///< value held from when the fault began
   kZero,
-  kOffset,   ///< plus the magnitude
-  kDrift,    ///< plus the magnitude for each second
-  kFactor,   ///< times the magnitude
-  kSet,      ///< is the magnitude
+  kOffset,   ///< value plus the magnitude
+  kDrift,    ///< value plus the magnitude for each second
+  kFactor,   ///< value times the magnitude
+  kSet,      ///< value replaced by the magnitude
   kRaised,   ///< a truth value: true; a brake closes
   kDropped,  ///< a truth value: false; a brake does not hold
-  kLost,     ///< so many do not arrive
-  kLate,     ///< arrives so many periods later
+  kLost,     ///< the magnitude is the number lost
+  kLate,     ///< the magnitude is the delay in periods
 };
 
-/// One thing that can go wrong.
+/// Kind of fault that can be injected.
 struct Kind {
-  std::string_view name;  ///< as in scenario.yaml
-  std::string_view what;  ///< one line for people
+  std::string_view name;  ///< name in scenario.yaml
+  std::string_view what;  ///< one-line description
   Part part;
   Effect effect;
-  /// From the least that is worth trying to the largest; of a torque of the force sensor a tenth.
+  /// Range of useful magnitudes; one tenth of it for a torque of the force sensor.
   Interval magnitude{};
-  std::string_view unit;  ///< of the magnitude; of a torque of the force sensor Nm instead of N
+  /// Unit of the magnitude; Nm instead of N for a torque of the force sensor
+  std::string_view unit;
   bool has_sign = false;  ///< the magnitude may be negative, too
 };
 
-/// All of them.
+/// All kinds of faults.
 std::span<const Kind> kinds() noexcept;
-/// Null: there is no such kind.
+/// Finds a kind by name; null: no such kind.
 const Kind* find_kind(std::string_view name) noexcept;
-/// Its magnitude is a whole number from 1 on.
+/// Whether the magnitude of a kind is a whole number, at least 1.
 bool is_count(const Kind& kind) noexcept;
-/// Joint, axis or component that is spoilt; 0 = it has no parts.
+/// Number of joints, axes or components of a part; 0 = not divided.
 int parts_of(Part part, int n_m, int n_p) noexcept;
 
-inline constexpr int kMostLate = 16;         ///< periods that a command may be late
-inline constexpr double kMostCounted = 1e6;  ///< of all other counts
+inline constexpr int kMostLate = 16;         ///< largest delay of a command, periods
+inline constexpr double kMostCounted = 1e6;  ///< largest value of all other counts
 
-/// One fault of a run.
+/// Fault injected into a run.
 struct Injection {
   const Kind* kind = nullptr;
   int index = 0;           ///< joint, axis or component, from 0
-  double magnitude = 0.0;  ///< in the unit of its kind
-  double from_s = 0.0;     ///< on the device's clock since its first sample
-  double for_s = 0.0;      ///< 0 = until the end
+  double magnitude = 0.0;  ///< magnitude in the unit of its kind
+  double from_s = 0.0;     ///< start on the device's clock since its first sample, s
+  double for_s = 0.0;      ///< duration, s; 0 = until the end
 };
 
 }  // namespace hg::injection

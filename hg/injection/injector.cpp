@@ -164,7 +164,7 @@ void Injector::spoil_samples(const Fault& fault, SensorFrame& sensors) const noe
   }
 }
 
-// So many late cycles in a row; so few active sets for as long as it lasts.
+// Cycles: a number of late cycles in a row; solver: a cap on active sets while the fault lasts.
 void Injector::spoil_computer(const Fault& fault) noexcept {
   const auto count = static_cast<std::uint32_t>(fault.injection.magnitude);
   const Part part = fault.injection.kind->part;
@@ -211,8 +211,8 @@ void Injector::spoil_command(Fault& fault, CommandFrame& command) const noexcept
   }
 }
 
-// An axis that comes away from its drive does so with an acceleration: as fast as its drive follows
-// nobody could tell its encoder from a jump.
+// An axis that separates from its drive accelerates gradually: at the speed of its drive a
+// controller could not distinguish it from an encoder jump.
 Injector::Slip Injector::slip_of(const Injection& injection) const noexcept {
   constexpr double kAcceleration = 1.0;  // m/s^2 or rad/s^2
   const double since_s = now_s_ - injection.from_s;

@@ -1,4 +1,4 @@
-/// Puts faults between a device and whoever controls it. No allocation after construction.
+/// Injects faults between a device and its controller. No allocation after construction.
 #pragma once
 
 #include <array>
@@ -14,30 +14,30 @@ namespace hg::injection {
 class Injector {
  public:
   Injector() = default;
-  /// Throws SetupError for a command that is later than kMostLate.
+  /// Throws SetupError for a command delay above kMostLate.
   explicit Injector(const std::vector<Injection>& injections);
 
-  /// Makes of this sample what arrives. Once a period, before spoil() of the command.
+  /// Applies the faults to a sample. Once per period, before the spoil() for the command.
   void spoil(SensorFrame& sensors) noexcept;
-  /// Makes of this command what arrives.
+  /// Applies the faults to a command.
   void spoil(CommandFrame& command) noexcept;
-  /// What becomes of the computer in the cycle of the sample that was spoilt last.
+  /// Applies faults of the computer in the cycle of the last sample passed to spoil().
   void spoil(OperatorFrame& input) const noexcept;
-  /// What becomes of the hardware in the period of the command that was spoilt last.
+  /// Faults of the hardware in the period of the last command passed to spoil().
   const simulation::HardwareFaults& hardware() const noexcept { return hardware_; }
 
  private:
-  /// One fault, and what it holds on to.
+  /// Fault with its state.
   struct Fault {
     Injection injection;
     bool has_begun = false;
-    std::uint32_t periods = 0;  ///< that it has lasted
-    double held = 0.0;          ///< value of its component when it began
-    SensorFrame sensors;        ///< when it began
-    CommandFrame command;       ///< when it began
+    std::uint32_t periods = 0;  ///< periods it has lasted
+    double held = 0.0;          ///< value of its component at its begin
+    SensorFrame sensors;        ///< sample at its begin
+    CommandFrame command;       ///< command at its begin
   };
 
-  /// Of an axis beyond what its drive does, now: m/s and m, or rad/s and rad.
+  /// Present motion of an axis beyond that of its drive: m/s and m, or rad/s and rad.
   struct Slip {
     double speed, way;
   };
@@ -55,7 +55,7 @@ class Injector {
   void spoil_hardware(const Injection& injection) noexcept;
 
   std::vector<Fault> faults_;
-  std::array<CommandFrame, kMostLate + 1> past_;  ///< a ring of commands, the newest at newest_
+  std::array<CommandFrame, kMostLate + 1> past_;  ///< ring of commands, the newest at newest_
   std::size_t newest_ = 0;
   double start_s_ = 0.0, now_s_ = 0.0;
   bool has_started_ = false, has_commanded_ = false;

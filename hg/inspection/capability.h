@@ -1,8 +1,8 @@
-/// What a device can do at its handle in one posture, in closed form.
+/// Guaranteed force, torque and acceleration at the handle in one posture, in closed form.
 ///
 /// Source: [HANDBOOK] 8.4. With column i of the Jacobian (linear part Jt_i, angular part Jr_i), the
-/// torque t_i that the joint has left besides gravity bears a force F in every direction as long as
-/// F |Jt_i| <= t_i, and a torque N as long as N |Jr_i| <= t_i. SI units, frame B.
+/// joint torque t_i available beside gravity holds a force F in every direction if F |Jt_i| <= t_i,
+/// and a torque N if N |Jr_i| <= t_i. SI units, frame B.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,27 +14,27 @@ namespace hg::inspection {
 
 using MatrixJ = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxTwin>;
 
-/// The smallest over all directions of the largest force (N), torque (Nm) or acceleration (m/s^2).
+/// Smallest over all directions of the largest force (N), torque (Nm) or acceleration (m/s^2).
 struct Guarantee {
   double value = kInfinity;
-  int joint = -1;  ///< that limits it: column of the Jacobian; -1 = none
+  int joint = -1;  ///< limiting joint: column of the Jacobian; -1 = none
 };
 
-/// min_i available_i / |column i|; columns without length limit nothing. `columns` are three rows
-/// of a Jacobian; `available` may be infinite, below zero counts as zero.
+/// Computes min_i available_i / |column i|; columns of length 0 do not limit. `columns` are three
+/// rows of a Jacobian; `available` may be infinite, below zero counts as zero.
 Guarantee worst_direction(const Eigen::Ref<const Eigen::Matrix3Xd>& columns,
                           const Eigen::Ref<const Eigen::VectorXd>& available);
 
-/// Acceleration of the handle's origin, without angular acceleration, that every direction gets
-/// from joints that may accelerate with ddq_max each; zero where J has not full rank.
+/// Acceleration of the handle's origin, without angular acceleration, available in every direction
+/// with joint accelerations up to ddq_max; zero where J has not full rank.
 Guarantee worst_acceleration(const MatrixJ& J, const Eigen::Ref<const Eigen::VectorXd>& ddq_max);
 
 struct Conditioning {
-  double smallest = 0.0;   ///< singular value of the scaled Jacobian
+  double smallest = 0.0;   ///< smallest singular value of the scaled Jacobian
   double condition = 0.0;  ///< largest / smallest singular value
 };
 
-/// Of J with its linear rows divided by `length` in m, so that all rows are rad.
+/// Conditioning of J with its linear rows divided by `length` in m, so that all rows are rad.
 Conditioning conditioning(const MatrixJ& J, double length);
 
 }  // namespace hg::inspection

@@ -13,20 +13,21 @@ namespace hg::inspection {
 
 /// A plane of B through the middle of the workspace, cut into square cells.
 struct Section {
-  int right = 0, up = 1;  ///< axes of B that the picture shows
+  int right = 0, up = 1;  ///< axes of B shown in the picture
   int normal = 2;
-  double height = 0.0;    ///< m, along the normal
-  Interval x, y;          ///< m, what the picture shows
-  Interval box_x, box_y;  ///< m, Cartesian limit of the handle; infinite = none
-  double cell = 0.1;      ///< m
+  double height = 0.0;    ///< height along the normal, m
+  Interval x, y;          ///< range of the picture, m
+  Interval box_x, box_y;  ///< Cartesian limit of the handle, m; infinite = none
+  double cell = 0.1;      ///< edge of a cell, m
   int columns = 0, rows = 0;
-  std::vector<double> force;  ///< N, median per cell, row by row from below; NaN = not reached
+  /// Median force per cell, N, row by row from below; NaN = not reached
+  std::vector<double> force;
 };
 
 struct CapabilityMap {
   std::string title;
-  std::vector<Section> sections;  ///< horizontal, then vertical
-  double force_max = 0.0;         ///< N, upper end of the scale
+  std::vector<Section> sections;  ///< sections: horizontal, then vertical
+  double force_max = 0.0;         ///< upper end of the force scale, N
 };
 
 CapabilityMap capability_map(const config::Device& device);

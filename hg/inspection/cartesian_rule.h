@@ -1,4 +1,5 @@
-/// Whether the joints can give what the Cartesian limits promise, over the workspace.
+/// Checks over the workspace whether the joints can provide the accelerations of the Cartesian
+/// limits.
 ///
 /// A Cartesian row brakes with A_c; that takes A_c <= 1/2 sum |J_xi| A_i of the manipulator joints
 /// i along axis x (docs/check.md). The half is left to the other rows. A speed limit needs no such
@@ -16,9 +17,9 @@ namespace hg::inspection {
 /// One axis of one Cartesian limit.
 struct CartesianRule {
   int limit = 0, axis = 0;
-  int postures = 0;               ///< of the survey, within the braking distance of a face
-  double share_too_weak = 0.0;    ///< of these, cannot brake with A_c
-  double low_acceleration = 0.0;  ///< 5 % of these have less than this for braking
+  int postures = 0;  ///< number of surveyed postures within the braking distance of a face
+  double share_too_weak = 0.0;    ///< share of these that cannot brake with A_c
+  double low_acceleration = 0.0;  ///< 5 % of these have less acceleration for braking
 };
 
 std::vector<CartesianRule> cartesian_rules(const config::Device& device, const Survey& survey);

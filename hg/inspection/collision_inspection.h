@@ -1,4 +1,4 @@
-/// Which pairs of a device are watched for collisions, and which are not, in one line.
+/// Pairs of a device that are watched for collisions, and pairs that are not, in one line.
 #pragma once
 
 #include "hg/config/device.h"
@@ -7,10 +7,11 @@
 
 namespace hg::inspection {
 
-/// One finding: a note, or a warning where parts of the device move unwatched.
+/// Adds one finding: a note, or a warning where parts of the device move unwatched.
 void inspect_collisions(const config::Device& device, Collector& out);
 
-/// A floor above all places of the handle, or that holds a part of the device wherever it moves.
+/// Adds findings on a floor above all places of the handle, or one that contains a part of the
+/// device in all postures.
 void inspect_floor(const config::Device& device, const Survey& survey, Collector& out);
 
 }  // namespace hg::inspection

@@ -1,4 +1,4 @@
-/// What is wrong with a device, or will surprise: gains, limits, box, singularities, ratings.
+/// Faults and notable properties of a device: gains, limits, box, singularities, ratings.
 #pragma once
 
 #include "hg/config/device.h"
@@ -7,11 +7,11 @@
 
 namespace hg::inspection {
 
-/// All findings, in no particular order.
+/// Inspects a device; all findings, in no particular order.
 Findings inspect(const config::Device& device, const Survey& survey);
 
 /// Largest eigenvalue, in magnitude, of (11) in discrete time: e'' = -kD e' - kP e with the
-/// acceleration held over dt. Below 1 the handle comes to the twin.
+/// acceleration held over dt. Below 1 the handle converges to the twin.
 double synchronisation_pole(double kP, double kD, double dt);
 
 }  // namespace hg::inspection

@@ -23,7 +23,7 @@ constexpr int kPostures = 150;  // of the twin; a generic device needs milliseco
 constexpr std::uint64_t kSeed = 1;
 constexpr double kHigh = 0.95;
 
-// One posture of the twin as the device meets it.
+// One posture of the twin and the device in it.
 struct Meeting {
   MatrixJ J_a;
   std::optional<Eigen::MatrixXd> manipulator_of_twin;  // J_m^+ J_a, where the device gets there

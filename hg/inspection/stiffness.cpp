@@ -22,13 +22,13 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kPhase = 16.5 / 360.0;  // of a period, see frequency_Hz()
 constexpr double kLeastWay = 0.01;       // m at the handle, over which a spring should be followed
 
-// Mean delay between a wrench and what the motors do about it.
+// Mean delay between a wrench and the reaction of the motors.
 double delay_of(const config::Device& device) {
   double delay = device.control.loop.latency;
   if (device.estimation.wrench.low_pass_Hz > 0.0) {
     delay += 1.0 / (kTurn * device.estimation.wrench.low_pass_Hz);
   }
-  // what a file of the simulation says about the sensor is all that is known about it
+  // the simulation file is the only source on the sensor
   const simulation::SensorFilterConfig& filter = device.simulation.sensors.wrench.filter;
   if (device.simulation.is_from_file) delay += 0.5 * filter.average + filter.delay;
   return delay;
@@ -77,7 +77,7 @@ std::string acceleration_text(const StiffnessLimits& limits) {
 
 struct Spring {
   const rendering::TwinDof* dof = nullptr;
-  double inertia = 0.0;    // that moves, kg m^2 or kg
+  double inertia = 0.0;    // moving inertia, kg m^2 or kg
   double stiffness = 0.0;  // Nm/rad or N/m
 };
 

@@ -32,7 +32,8 @@ std::vector<Stopping> stopping_of(const config::Device& device) {
 }
 
 void inspect_stopping(const config::Device& device, Collector& out) {
-  constexpr double kTooFar = 4.0;  // times what the slowest axis needs: that is no bound any more
+  // Factor over the need of the slowest axis from which the distance is no useful bound
+  constexpr double kTooFar = 4.0;
   std::map<std::string, Stopping> slowest;  // by the key that states their distance
   for (const Stopping& s : stopping_of(device)) {
     Stopping& worst = slowest.try_emplace(s.key, s).first->second;

@@ -1,4 +1,4 @@
-/// Whether the stopping time and distances of device.yaml leave room for a stop from full speed.
+/// Checks whether the stopping time and distances of device.yaml allow a stop from full speed.
 #pragma once
 
 #include <string>
@@ -13,17 +13,17 @@ namespace hg::inspection {
 /// One joint or axis of the gantry.
 struct Stopping {
   std::string name;
-  bool is_angle = true;       ///< rad, otherwise m
-  safety::StoppingNeed need;  ///< from full speed with the ratings
-  double distance = 0.0;      ///< stated: before it the brakes close
-  std::string key;            ///< that states it
+  bool is_angle = true;       ///< unit is rad, otherwise m
+  safety::StoppingNeed need;  ///< need for a stop from full speed with the ratings
+  double distance = 0.0;      ///< stated distance; the brakes close before it is used up
+  std::string key;            ///< key that states the distance
 };
 
-/// Gantry first.
+/// Stopping needs of all axes, gantry first.
 std::vector<Stopping> stopping_of(const config::Device& device);
 
 /// Adds a fault for every distance, and a warning for a time, that an ordinary stop would exceed,
-/// and a warning for a distance that no stop comes near to.
+/// and a warning for a distance far above any stop.
 void inspect_stopping(const config::Device& device, Collector& out);
 
 }  // namespace hg::inspection

@@ -10,7 +10,7 @@
 namespace hg::inspection {
 namespace {
 
-// How far the link reaches from its origin, as far as its joints tell.
+// Extent of the link from its origin, estimated from its joints.
 double extent(const model::Urdf& urdf, int link) {
   double longest = 0.0;
   for (const model::UrdfJoint& joint : urdf.joints) {

@@ -1,5 +1,5 @@
-/// Mass distributions of a URDF that a body could have, but hardly the one that is meant: values in
-/// mm, g or with a point lost.
+/// Implausible mass distributions of a URDF: physically possible, but probably values in mm, g or
+/// with a lost decimal point.
 #pragma once
 
 #include <vector>

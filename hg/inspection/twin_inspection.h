@@ -1,4 +1,4 @@
-/// What is wrong with a twin, or will surprise: mass matrix, inertia, limits, springs, dampers.
+/// Faults and notable properties of a twin: mass matrix, inertia, limits, springs, dampers.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ std::vector<ConfigurationA> twin_postures(const config::Twin& twin, int count, s
 /// Extremes over postures of a twin.
 struct TwinFigures {
   double condition = 1.0;      ///< largest condition number of the mass matrix
-  double mass = kInfinity;     ///< kg, smallest that the hand feels in any direction
-  double inertia = kInfinity;  ///< kg m^2, smallest that the hand feels about any axis
-  VectorA smallest_inertia;    ///< 1 / (M^-1)_ii per degree of freedom, kg m^2 or kg
+  double mass = kInfinity;     ///< smallest mass felt by the hand in any direction, kg
+  double inertia = kInfinity;  ///< smallest inertia felt by the hand about any axis, kg m^2
+  VectorA smallest_inertia;    ///< smallest 1 / (M^-1)_ii per degree of freedom, kg m^2 or kg
 };
 TwinFigures twin_figures(const config::Twin& twin, const std::vector<ConfigurationA>& postures);
 
-/// All findings; `dt` in s is the period of the device that will show the twin.
+/// Inspects a twin; `dt` in s is the period of the device that will render it.
 Findings inspect(const config::Twin& twin, double dt);
 
 }  // namespace hg::inspection

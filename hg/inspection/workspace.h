@@ -1,4 +1,4 @@
-/// Volume of a cloud of points, in voxels, and the points that one orientation reaches.
+/// Volume of a cloud of points, in voxels, and the points reached in one orientation.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,7 +20,8 @@ class VoxelGrid {
   double volume() const;
 
  private:
-  bool are_neighbours_touched(const Eigen::Vector3i& cell) const;  ///< all 26
+  /// Whether all 26 neighbours are touched
+  bool are_neighbours_touched(const Eigen::Vector3i& cell) const;
   bool is_touched(const Eigen::Vector3i& cell) const;
   std::size_t index(const Eigen::Vector3i& cell) const;
 
@@ -34,13 +35,13 @@ class VoxelGrid {
 Eigen::AlignedBox3d handle_box(const rendering::DeviceModel& model);
 
 struct Workspace {
-  Eigen::AlignedBox3d bounds;    ///< of the handle, m
+  Eigen::AlignedBox3d bounds;    ///< bounds of the handle, m
   double volume = 0.0;           ///< m^3
   bool has_box = false;          ///< the handle is limited on all axes
   double box_volume = 0.0;       ///< m^3
-  double share_any = 0.0;        ///< of the box, reached in some orientation
-  double share_nominal = 0.0;    ///< of the box, reached in the orientation below
-  Eigen::Vector3d nominal_axis;  ///< z of the handle in B in the nominal posture
+  double share_any = 0.0;        ///< share of the box reached in some orientation
+  double share_nominal = 0.0;    ///< share of the box reached in the orientation below
+  Eigen::Vector3d nominal_axis;  ///< z axis of the handle in B in the nominal posture
 };
 
 Workspace workspace(const config::Device& device, const Survey& survey);

@@ -55,7 +55,7 @@ double approach_speed(double d, double ddq_max, double tau) noexcept {
 
 double recoverable_max(double d, double v, const JointLimits& limits,
                        const RecoverableOptions& options, double dt) noexcept {
-  // the share of what the speed lacks that is left at the end of the sample
+  // remaining share of the speed margin at the end of the sample
   const double kept = std::max(0.0, 1.0 - dt / options.tau_onset);
   const auto left = [&](double fastest) {
     return std::isfinite(fastest) ? kept * std::max(0.0, fastest - v) : 0.0;
@@ -89,7 +89,7 @@ double max_from_viability(double d, double v, double ddq_max, double dt) noexcep
   return (speed_on_root(d, v, ddq_max, dt) - v) / dt;
 }
 
-// A state as bounds A and B see it: inside the limits and viable.
+// State projected into the limits and to viability, for bounds A and B.
 struct ViableState {
   double d_lower;
   double d_upper;

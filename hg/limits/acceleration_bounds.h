@@ -34,8 +34,8 @@ struct RecoverableOptions {
   double tau = 2e-3;            ///< time constant of the approach, s; two periods of 1 kHz
   double tau_rec = 20e-3;       ///< time constant of the return, s; slow enough to be no jerk
   double v_rec = 0.5;           ///< speed of the return, rad/s or m/s; a slow hand movement
-  double ddq_rec_factor = 1.5;  ///< braking beyond the limits may use so many times ddq_max, >= 1
-  double tau_onset = 0.0;       ///< time constant with which braking comes in, s; 0: all at once
+  double ddq_rec_factor = 1.5;  ///< Braking beyond the limits, times ddq_max, >= 1
+  double tau_onset = 0.0;       ///< Time constant of the onset of braking, s; 0: immediate
   bool is_capped = true;        ///< ddq_max limits accelerations everywhere, not only braking
 };
 

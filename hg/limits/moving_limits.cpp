@@ -6,7 +6,7 @@
 namespace hg::limits {
 namespace {
 
-// The present limits stand in for a target that cannot be read.
+// Valid target: the midpoint of a crossed one, or the present limits if that is not finite.
 Interval readable(Interval target, Interval now) noexcept {
   if (!target.empty()) return target;
   const double middle = 0.5 * (target.lb + target.ub);
@@ -26,7 +26,7 @@ MovingLimits advanced(const MovingLimits& now, Interval target, double q, double
   const double step = v_rec * dt;
   Interval next = {stepped(now.q.lb, goal.lb, step), stepped(now.q.ub, goal.ub, step)};
 
-  // an end that appears must not appear beyond the joint, nor beyond the other end
+  // a new limit must not start beyond the joint, nor beyond the other limit
   if (now.q.lb == -kInfinity && goal.lb > -kInfinity) next.lb = std::min(goal.lb, q);
   if (now.q.ub == kInfinity && goal.ub < kInfinity) next.ub = std::max({goal.ub, q, next.lb});
   next.lb = std::min(next.lb, next.ub);

@@ -2,8 +2,8 @@
 /// limits.
 ///
 /// Sources: [HG] sec. VI-D, eqs. (28)-(29), a constant-velocity model.
-/// Differs from [HG]: braking_velocity_bounds() knows that the drive follows its command late; with
-/// (28)-(29) a drive with a lag of 50 ms overshoots by 9 mm at 1.5 m/s.
+/// Differs from [HG]: braking_velocity_bounds() accounts for the delay of the drive; with (28)-(29)
+/// a drive with a lag of 50 ms overshoots by 9 mm at 1.5 m/s.
 ///
 /// Prismatic joints: m, m/s, m/s^2 (rad, rad/s, rad/s^2 for revolute joints); time in s. Infinite
 /// limits give infinite bounds. Pure functions: no state, no allocation, noexcept.
@@ -15,10 +15,10 @@
 
 namespace hg::limits {
 
-/// How a drive follows its velocity command. Set-up data: check() once, trust afterwards.
+/// Response of a drive to its velocity command. Set-up data: check() once, trust afterwards.
 struct DriveResponse {
-  double tau = 45e-3;    ///< delay of the velocity, > 0, s: dead time + lag + one period
-  double ddq_max = 2.0;  ///< deceleration that can be relied on, > 0, m/s^2
+  double tau = 45e-3;    ///< Delay of the velocity, > 0, s: dead time + lag + one period
+  double ddq_max = 2.0;  ///< Guaranteed deceleration, > 0, m/s^2
 };
 
 /// Throws SetupError unless both values are finite and positive; the message begins with `item`.
@@ -29,9 +29,9 @@ Interval constant_velocity_bounds(Interval q_limits, double q, double dt) noexce
 
 /// Bounds from the braking distance. Towards a limit at distance d
 ///   dq <= min(-a tau + sqrt((a tau)^2 + 2 a d), d / (4 tau)),   a = drive.ddq_max:
-/// the first term is v tau + v^2 / (2 a) = d, the second makes the approach critically damped.
-/// Outside (d < 0) dq <= d / (4 tau), which returns, but never so fast that the opposite limit is
-/// endangered. Never empty as long as q_limits is not.
+/// the first term solves v tau + v^2 / (2 a) = d, the second makes the approach critically damped.
+/// Outside (d < 0) dq <= d / (4 tau): the joint returns, slowly enough to stop before the opposite
+/// limit. Never empty as long as q_limits is not.
 Interval braking_velocity_bounds(Interval q_limits, const DriveResponse& drive, double q) noexcept;
 
 }  // namespace hg::limits

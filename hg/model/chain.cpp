@@ -32,7 +32,7 @@ pinocchio::SE3 to_SE3(const Pose& pose) { return {pose.R, pose.p}; }
 
 pinocchio::Inertia to_inertia(const Inertial& i) { return {i.mass, i.p_com, i.inertia}; }
 
-// axes along x, y, z have cheaper joints of their own
+// axes along x, y, z: cheaper specialised joints
 pinocchio::JointModel scalar_joint(bool turns, const Eigen::Vector3d& axis) {
   if (axis == Eigen::Vector3d::UnitX()) {
     return turns ? pinocchio::JointModel(pinocchio::JointModelRX())
@@ -50,11 +50,11 @@ pinocchio::JointModel scalar_joint(bool turns, const Eigen::Vector3d& axis) {
                : pinocchio::JointModel(pinocchio::JointModelPrismaticUnaligned(axis));
 }
 
-// Of a joint with one coordinate.
+// Axis of a joint with one coordinate.
 struct Axis {
   bool turns = false;
   Eigen::Vector3d e;  // in the joint's own frame
-  // which of x, y, z it is and, in the order x, y, z, x, ..., the next two; -1 = none of them
+  // index of the coordinate axis and of the next two in cyclic order x, y, z; -1 = not aligned
   Eigen::Index k = -1, i = -1, j = -1;
 };
 
@@ -96,11 +96,11 @@ Eigen::Matrix<double, 7, 1> integrate_floating(const Eigen::Matrix<double, 7, 1>
   return q_next;
 }
 
-// What a chain is made of: joints and frames, and the rigid-body model that moves them.
+// Parts of a chain: joints, frames and the rigid-body model.
 struct Assembly {
   std::string name;
   std::vector<Joint> joints;
-  std::vector<Axis> axes;  // of the joints; unless they float
+  std::vector<Axis> axes;  // axis per joint; meaningless for floating ones
   bool has_floating = false;
   std::vector<std::string> joint_names;
   std::vector<std::string> frame_names;
@@ -134,7 +134,7 @@ struct Assembly {
   }
 };
 
-// Walks a URDF from its root to its tip and adds what it meets to a chain.
+// Walks a URDF from root to tip and adds its joints and links to a chain.
 class Builder {
  public:
   Builder(const Urdf& urdf, const ChainOptions& options) : urdf_(urdf), options_(options) {}
@@ -213,7 +213,7 @@ class Builder {
       const Merged at = merged_[i];
       chain.add_frame(link(at.link).name, joint, at.T_joint_link);
       if (const auto& inertial = link(at.link).inertial; inertial && joint > 0) {
-        // a point mass needs a body with inertia to which it is fixed
+        // a point mass must be fixed to a body with inertia
         const bool is_point = i > 0 && inertial->mass > 0.0 && inertial->inertia.isZero(0.0);
         const std::string& fault = link(at.link).inertial_fault;
         if (!fault.empty() && !is_point) throw SetupError(fault);
@@ -319,8 +319,8 @@ Assembly build(const FreeBody& body, const ChainOptions& options) {
   return chain;
 }
 
-// The library's passes from root to tip and back, to the last bit, for joints with one coordinate
-// each: what a joint is need not be asked at every step, and poses and twists serve M and c.
+// The library's forward and backward passes, bitwise equal, for chains of one-coordinate joints:
+// no dispatch on the joint type, and M and c share poses and twists.
 class Passes {
  public:
   Passes(const Assembly& parts, pinocchio::Data& data) noexcept
@@ -446,8 +446,7 @@ struct Chain::Impl {
     return parts.frames[static_cast<std::size_t>(index)];
   }
 
-  // What is asked of a frame several times after an update is computed once. The numbers of the
-  // updates that the results are of.
+  // Cached results of a frame, each with the number of the update that it belongs to.
   struct Results {
     std::uint64_t pose_of = 0, twist_of = 0, jacobian_of = 0, bias_of = 0;
     Pose pose;
@@ -460,7 +459,7 @@ struct Chain::Impl {
   std::uint64_t updates = 1;
   std::vector<Results> results;  // by frame
   pinocchio::Data data;          // results of update()
-  pinocchio::Data scratch;       // of inverse_dynamics()
+  pinocchio::Data scratch;       // workspace of inverse_dynamics()
   Eigen::VectorXd zero;          // (nv)
 };
 

@@ -4,11 +4,11 @@
 /// ones become three scalar joints. A continuous joint has one unwrapped coordinate. A floating
 /// joint has seven coordinates (x y z qx qy qz qw: pose of the child in its parent) and six
 /// velocities (twist of the child, resolved in the child). All results are resolved in frame B,
-/// wrenches and twists linear part first. Units SI.
+/// wrenches and twists linear part first. SI units.
 ///
-/// Set-up throws SetupError, `file:line: item: rule, got value`. After it nothing allocates or
-/// throws. Accessors return the results of the last update; what they refer to changes with the
-/// next one. One chain serves one thread.
+/// Set-up throws SetupError, `file:line: item: rule, got value`. After set-up nothing allocates or
+/// throws. Accessors return results of the last update; the next update overwrites them. Not
+/// thread-safe: one chain per thread.
 #pragma once
 
 #include <filesystem>
@@ -31,58 +31,60 @@ std::string_view to_string(JointType type) noexcept;
 struct Joint {
   std::string name;
   JointType type = JointType::kRevolute;
-  int q_index = 0;                  ///< of its first coordinate in q
-  int v_index = 0;                  ///< of its first velocity in dq
-  int nq = 1;                       ///< 7 for a floating joint
-  int nv = 1;                       ///< 6 for a floating joint
-  Interval position;                ///< rad or m; unbounded where the URDF gives no limit
-  double velocity_max = kInfinity;  ///< rad/s or m/s
-  double effort_max = kInfinity;    ///< Nm or N
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< of a scalar joint, in its own frame
-  std::string planar;  ///< planar joint of the URDF that this one is a part of; see urdf_parts.h
+  int q_index = 0;                  ///< Index of its first coordinate in q
+  int v_index = 0;                  ///< Index of its first velocity in dq
+  int nq = 1;                       ///< Number of coordinates; 7 for a floating joint
+  int nv = 1;                       ///< Number of velocities; 6 for a floating joint
+  Interval position;                ///< Range, rad or m; unbounded without limit in the URDF
+  double velocity_max = kInfinity;  ///< Largest speed, rad/s or m/s
+  double effort_max = kInfinity;    ///< Largest effort, Nm or N
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< Axis of a scalar joint in its own frame
+  std::string planar;  ///< Planar joint of the URDF containing this one, see urdf_parts.h
 };
 
-/// What is screwed onto a link of a chain: a handle with its force/torque sensor, for example.
+/// Tool fixed to a link of a chain, for example a handle with its force/torque sensor.
 struct Tool {
-  std::string link;                                   ///< of the URDF, to which it is fixed
-  std::string handle = "handle";                      ///< name of the frame that it adds
-  Pose T_link_handle;                                 ///< that frame in the link
-  double mass = 0.0;                                  ///< kg, >= 0
-  Eigen::Vector3d p_com = Eigen::Vector3d::Zero();    ///< m, in the link
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about the COM, axes of the link
+  std::string link;                                   ///< Link of the URDF that carries the tool
+  std::string handle = "handle";                      ///< Name of the added frame
+  Pose T_link_handle;                                 ///< Pose of the added frame in the link
+  double mass = 0.0;                                  ///< Mass, kg, >= 0
+  Eigen::Vector3d p_com = Eigen::Vector3d::Zero();    ///< Centre of mass in the link, m
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< About the COM, axes of the link, kg m^2
 };
 
-/// A passive joint of the same kind that carries what a joint of the URDF carried.
+/// Passive joint inserted between a joint of the URDF and its child link, of the same kind.
 struct PassiveJoint {
-  std::string behind;                   ///< revolute, continuous or prismatic joint of the URDF
-  std::string name;                     ///< of the new joint; no joint or link has it
-  std::optional<Eigen::Vector3d> axis;  ///< unit vector in the child of `behind`; none = its axis
+  std::string behind;                   ///< Revolute, continuous or prismatic joint of the URDF
+  std::string name;                     ///< Name of the new joint, unused by joints and links
+  std::optional<Eigen::Vector3d> axis;  ///< Unit vector in the child of `behind`; none = its axis
 };
 
+/// Options for building a chain.
 struct ChainOptions {
-  Pose T_B_root;        ///< placement of the root link in frame B
+  Pose T_B_root;        ///< Pose of the root link in frame B
   bool gravity = true;  ///< false: c() and inverse_dynamics() are without gravity
   std::optional<Tool> tool;
-  std::vector<PassiveJoint> passive;  ///< that the URDF does not have: a structure that yields
-  bool floating_root = false;  ///< true: the root link moves freely in B by a floating joint "root"
-  /// The serial part of a branched URDF, see serial_part() in urdf_parts.h; empty = all of it.
+  std::vector<PassiveJoint> passive;  ///< Passive joints added to the URDF: a compliant structure
+  bool floating_root = false;         ///< true: the root link floats in B by a joint "root"
+  /// First and last link of the serial part of a branched URDF, see serial_part() in urdf_parts.h;
+  /// empty = all of it.
   std::string root_link, tip_link;
 };
 
-/// Heavier or lighter than built: factors of the masses and of the earth's gravity.
+/// Factors on the masses and on the earth's gravity.
 struct Loads {
-  double mass = 1.0;     ///< > 0
-  double gravity = 1.0;  ///< 0 = weightless
+  double mass = 1.0;     ///< Factor on all masses, > 0
+  double gravity = 1.0;  ///< Factor on the earth's gravity; 0 = weightless
 };
 
-/// A single rigid body that moves freely: a twin without a URDF.
+/// Single free-floating rigid body: a twin without a URDF.
 struct FreeBody {
-  double mass = 6.0;  ///< kg, > 0; light, still stable with a stiff hand
-  Eigen::Matrix3d inertia = 0.08 * Eigen::Matrix3d::Identity();  ///< kg m^2, about the COM
-  Eigen::Vector3d p_handle_com = Eigen::Vector3d::Zero();        ///< m, in frame "handle"
+  double mass = 6.0;  ///< Mass, kg, > 0; light, still stable with a stiff hand
+  Eigen::Matrix3d inertia = 0.08 * Eigen::Matrix3d::Identity();  ///< Inertia about the COM, kg m^2
+  Eigen::Vector3d p_handle_com = Eigen::Vector3d::Zero();        ///< Centre of mass, m, in "handle"
 };
 
-/// Vectors enter as references: pass stored vectors or blocks of them; an expression is copied to
+/// Vector argument by reference: pass stored vectors or blocks of them; an expression is copied to
 /// the heap.
 using VectorIn = Eigen::Ref<const Eigen::VectorXd>;
 /// Jacobian of a frame (6 x nv), linear rows first.
@@ -90,13 +92,14 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kM
 
 class Chain {
  public:
-  /// Reads a URDF. Refuses branches, more than kMaxTwin degrees of freedom, and inertias no body
-  /// has.
+  /// Builds a chain from a URDF file. Refuses branches, more than kMaxTwin degrees of freedom, and
+  /// physically impossible inertias.
   static Chain from_urdf_file(const std::filesystem::path& file, const ChainOptions& options = {});
-  /// The same from text; `source` stands for the file name in messages.
+  /// Builds a chain from URDF text; `source` replaces the file name in messages.
   static Chain from_urdf_text(std::string_view text, std::string_view source,
                               const ChainOptions& options = {});
-  /// One floating joint "root" and one frame "handle"; `floating_root` is implied.
+  /// Builds a free body with one floating joint "root" and one frame "handle"; `floating_root` is
+  /// implied.
   static Chain free_body(const FreeBody& body, const ChainOptions& options = {});
 
   Chain(const Chain& other);
@@ -105,51 +108,54 @@ class Chain {
   Chain& operator=(Chain&& other) noexcept;
   ~Chain();
 
-  const std::string& name() const noexcept;  ///< of the robot, from the URDF
-  int nq() const noexcept;                   ///< number of coordinates
-  int nv() const noexcept;                   ///< number of velocities, <= nq
+  const std::string& name() const noexcept;  ///< Name of the robot, from the URDF
+  int nq() const noexcept;                   ///< Number of coordinates
+  int nv() const noexcept;                   ///< Number of velocities, <= nq
   const std::vector<Joint>& joints() const noexcept;
-  const std::vector<std::string>& frame_names() const noexcept;  ///< every link of the part
+  const std::vector<std::string>& frame_names() const noexcept;  ///< Frames: links of the part
 
-  /// Index for the accessors below; throws SetupError with the nearest valid name.
+  /// Index of a frame for the accessors below; throws SetupError with the nearest valid name.
   int frame(std::string_view name) const;
-  /// Index in joints(); throws SetupError with the nearest valid name.
+  /// Index of a joint in joints(); throws SetupError with the nearest valid name.
   int joint(std::string_view name) const;
 
-  /// Coordinates 0 for scalar joints, identity for floating ones.
+  /// Neutral configuration: 0 for scalar joints, identity for floating ones.
   ConfigurationA neutral() const noexcept;
-  /// q moved by `step` (nv, = dq * dt) for one unit of time; quaternions stay normalised.
+  /// Configuration q moved by `step` (nv, = dq * dt) for one unit of time; quaternions stay
+  /// normalised.
   ConfigurationA integrate(const VectorIn& q, const VectorIn& step) const noexcept;
 
-  void update_poses(const VectorIn& q) noexcept;  ///< poses only, for half the cost
-  /// Poses, twists, Jacobians, bias accelerations.
+  void update_poses(const VectorIn& q) noexcept;  ///< Updates poses only, at half the cost
+  /// Updates poses, twists, Jacobians, bias accelerations.
   void update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept;
-  /// The same and M, c, gravity.
+  /// Updates poses, twists, Jacobians, bias accelerations, M, c, gravity.
   void update(const VectorIn& q, const VectorIn& dq) noexcept { update(q, dq, default_loads()); }
+  /// The same update with other masses and gravity.
   void update(const VectorIn& q, const VectorIn& dq, const Loads& loads) noexcept;
-  /// As built: mass 1, gravity as ChainOptions says.
+  /// Loads as built: mass 1, gravity as set in ChainOptions.
   Loads default_loads() const noexcept;
 
   /// Pose of a frame relative to B.
   const Pose& pose(int frame) const noexcept;
-  /// Velocity of the frame's origin and angular velocity (v; omega).
+  /// Twist of a frame: velocity of its origin and angular velocity (v; omega).
   const Vector6& twist(int frame) const noexcept;
-  /// twist = jacobian * dq.
+  /// Jacobian of a frame: twist = jacobian * dq.
   const Jacobian& jacobian(int frame) const noexcept;
-  /// dJ * dq: classical acceleration of the frame's origin and angular acceleration at ddq = 0.
+  /// Bias acceleration dJ * dq (ddq = 0): classical acceleration of the frame's origin, angular
+  /// acceleration.
   const Vector6& bias_acceleration(int frame) const noexcept;
 
   /// Mass matrix (nv x nv), symmetric, both triangles.
   const Eigen::MatrixXd& M() const noexcept;
   /// Coriolis, centrifugal and gravity torques (nv): M ddq + c = tau + J^T w.
   const Eigen::VectorXd& c() const noexcept;
-  /// Part of c() that gravity makes (nv); zero without gravity.
+  /// Gravity part of c() (nv); zero without gravity.
   const Eigen::VectorXd& gravity() const noexcept;
-  /// Energy in gravity after update(), J, with default_loads(): zero without gravity, else zero
-  /// where all masses are at the height of B.
+  /// Potential energy after update(), J, with default_loads(): zero without gravity, or with all
+  /// masses at the height of B.
   double potential_energy() const noexcept;
 
-  /// tau = M ddq + c without external wrenches; leaves the results of update() as they are.
+  /// Inverse dynamics tau = M ddq + c without external wrenches; keeps the results of update().
   VectorA inverse_dynamics(const VectorIn& q, const VectorIn& dq, const VectorIn& ddq) noexcept;
 
  private:

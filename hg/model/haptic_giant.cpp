@@ -9,9 +9,9 @@ namespace {
 
 using std::numbers::pi;
 
-// hand axis closer to the vertical than this: its heading is rounding noise
+// sine of the hand axis' angle to the vertical below which its heading is rounding noise
 constexpr double kVertical = 1e-12;
-// a cosine may leave [-1, 1] by rounding where the arm is stretched
+// tolerance for rounding of a cosine at the stretched arm
 constexpr double kLargestCosine = 1.0 + 1e-12;
 
 Eigen::Vector2d e(double angle) noexcept { return {std::cos(angle), std::sin(angle)}; }
@@ -26,7 +26,7 @@ Eigen::Matrix3d Ry(double angle) noexcept {
   return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
 }
 
-// Everything below the drop tube: it depends on the pose of the handle alone.
+// Joints beyond the drop tube: depend on the pose of the handle alone.
 struct Wrist {
   double psi, s, q4, q6;
   Eigen::Vector2d elbow;

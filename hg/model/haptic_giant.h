@@ -24,16 +24,17 @@ inline constexpr double kD6 = 0.12;  ///< m, joint 5 to the handle
 
 /// Signs that select one of the eight solutions; the device works in (+, +, +).
 struct Branch {
-  int f = 1;  ///< of sin(q4+q5), flip of the wrist
-  int w = 1;  ///< of sin q4, forearm towards u or away from it
-  int k = 1;  ///< of sin q2, side of the upper elbow
+  int f = 1;  ///< Sign of sin(q4+q5), flip of the wrist
+  int w = 1;  ///< Sign of sin q4, forearm towards u or away from it
+  int k = 1;  ///< Sign of sin q2, side of the upper elbow
 };
 
+/// Outcome of the inverse kinematics.
 enum class InverseStatus {
   kSolved,
   kSingular,           ///< hand axis vertical: exact, but only q1+q2+q3 -+ q6 is determined; q6 = 0
-  kHeightOutOfReach,   ///< no q4 gives this height; the nearest is returned
-  kDistanceOutOfReach  ///< no q2 gives this distance from q_p; the nearest is returned
+  kHeightOutOfReach,   ///< no q4 reaches this height; returns the nearest solution
+  kDistanceOutOfReach  ///< no q2 reaches this distance from q_p; returns the nearest
 };
 
 std::string_view to_string(InverseStatus status) noexcept;
@@ -41,6 +42,7 @@ std::string_view to_string(InverseStatus status) noexcept;
 /// R_B_H for heading psi, tilt s = q4+q5 and roll q6: Rz(psi) Ry(pi - s) Rz(q6 + pi).
 Eigen::Matrix3d hand_orientation(double psi, double s, double q6) noexcept;
 
+/// Pose T_B_H of the handle.
 Pose hand_pose(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept;
 
 /// Origin of joint 4 in B.
@@ -50,18 +52,18 @@ Eigen::Vector3d elbow(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept;
 [[nodiscard]] InverseStatus inverse(const Pose& T_B_H, const Eigen::Vector2d& q_p, Branch branch,
                                     Vector6& q_m) noexcept;
 
-/// Determinant of the Jacobian (6 x 6) of m1..m6 at the handle: zero where sin q2, sin q4 or
-/// sin(q4+q5) is.
+/// Determinant of the Jacobian (6 x 6) of m1..m6 at the handle; zero if sin q2, sin q4 or
+/// sin(q4+q5) is zero.
 double jacobian_determinant(const Vector6& q_m) noexcept;
 
 /// Gantry position that brings q2 to pi/2 and q3 to -atan(L1/L2) at the same handle pose, (30).
 Eigen::Vector2d gantry_target(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept;
 
-/// Gantry and joints that hold T_B_H in the posture of (30), branch (+, +, +).
+/// Gantry and joint positions that reach T_B_H in the posture of (30), branch (+, +, +).
 [[nodiscard]] InverseStatus inverse_at_target(const Pose& T_B_H, Eigen::Vector2d& q_p,
                                               Vector6& q_m) noexcept;
 
-/// angle + n * 2 pi that is nearest to `previous`: keeps m1, which turns without end, unwrapped.
+/// angle + n * 2 pi nearest to `previous`; keeps the unlimited joint m1 unwrapped.
 double nearest_turn(double angle, double previous) noexcept;
 
 }  // namespace hg::model::haptic_giant

@@ -19,7 +19,7 @@ constexpr int kReachSteps = 150;   // damped steps towards the pose
 constexpr int kSettleSteps = 100;  // steps towards the goals at the pose
 constexpr double kSolved = 1e-9;   // m and rad
 constexpr double kSettled = 1e-10;
-constexpr double kLargestStep = 0.5;  // m and rad, what is still near the linear model
+constexpr double kLargestStep = 0.5;  // m and rad, within the range of the linear model
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 class Search {
@@ -31,8 +31,8 @@ class Search {
     }
   }
 
-  // From `q` to the pose, then along it towards the goals. What the goals lead to counts, unless it
-  // has lost the pose or is not permitted and what was reached before is.
+  // Moves from `q` to the pose, then in the null space towards the goals. Returns the second
+  // result, unless it has lost the pose or is not permitted and the first one is.
   InverseResult from(Eigen::VectorXd q) {
     reach(q);
     const InverseResult reached = result_at(q);
@@ -56,7 +56,7 @@ class Search {
   }
 
  private:
-  // How far the goals are missed; what is not wished for does not count.
+  // Distance to the goals; coordinates without a goal do not count.
   double miss(const Eigen::VectorXd& q) const {
     double sum = 0.0;
     for (int i = 0; i < q.size(); ++i) {
@@ -71,7 +71,7 @@ class Search {
     return error.head<3>().norm() < kSolved && error.tail<3>().norm() < kSolved;
   }
 
-  // what is missing to the pose (position, rotation vector)
+  // error to the pose (position, rotation vector)
   Vector6 error_at(const Eigen::VectorXd& q) {
     chain_.update_kinematics(q, at_rest_);
     const Pose pose = chain_.pose(problem_.frame);
@@ -90,7 +90,7 @@ class Search {
     return q.cwiseMax(problem_.q_min).cwiseMin(problem_.q_max);
   }
 
-  // Joints that stand at a limit and would leave it by `step` give up their columns; true if any.
+  // Zeroes the Jacobian columns of joints that `step` would move beyond their limit; true if any.
   bool hold_at_limits(const Eigen::VectorXd& q, const Eigen::VectorXd& step, Eigen::MatrixXd& J,
                       std::vector<bool>& is_held) const {
     bool any = false;
@@ -164,7 +164,7 @@ class Search {
     reach(q);
   }
 
-  // Whole turns are taken off where that brings a joint nearer to its goal, or to 0.
+  // Removes whole turns where that brings a joint nearer to its goal, or to 0.
   Eigen::VectorXd unwound(Eigen::VectorXd q) const {
     for (std::size_t i = 0; i < chain_.joints().size(); ++i) {
       if (chain_.joints()[i].type == JointType::kPrismatic) continue;
@@ -181,7 +181,7 @@ class Search {
   Eigen::VectorXd at_rest_;
 };
 
-// Numbers in [0, 1) that look random and are the same everywhere.
+// Pseudo-random numbers in [0, 1), identical on all platforms.
 class Sequence {
  public:
   double next() {

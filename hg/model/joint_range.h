@@ -1,4 +1,4 @@
-/// Positions of a joint to draw from or to begin in, where some of its limits are missing.
+/// Finite position ranges for sampling and for start values of joints without limits.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace hg::model {
 
-/// `range` (rad, or m for a slide) with both ends finite: one turn, or 2 m, from the limit that
-/// there is; around 0 where there is none.
+/// `range` (rad, or m for a prismatic joint) with both ends finite: one turn, or 2 m, from the
+/// existing limit; around 0 without any limit.
 inline Interval finite_range(Interval range, bool is_angle) noexcept {
   const double half = is_angle ? std::numbers::pi : 1.0;
   if (!std::isfinite(range.lb)) range.lb = std::isfinite(range.ub) ? range.ub - 2.0 * half : -half;

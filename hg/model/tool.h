@@ -1,4 +1,4 @@
-/// Screws a tool onto a link of a URDF that has been read.
+/// Attaches a tool to a link of a URDF that has been read.
 #pragma once
 
 #include "hg/model/chain.h"
@@ -6,9 +6,9 @@
 
 namespace hg::model {
 
-/// Adds a link `tool.handle`, fixed to `tool.link`, that has the tool's mass. Throws SetupError
-/// when the URDF has no such link (nearest name), when it has the handle already, or when no body
-/// has that mass distribution.
+/// Adds a link `tool.handle`, fixed to `tool.link`, with the tool's mass. Throws SetupError if the
+/// URDF has no such link (nearest name), already has the handle, or the mass distribution is
+/// physically impossible.
 void attach(const Tool& tool, Urdf& urdf);
 
 }  // namespace hg::model

@@ -28,18 +28,18 @@ constexpr std::array<std::pair<std::string_view, UrdfJointType>, 6> kJointTypes 
     {"planar", UrdfJointType::kPlanar},
 }};
 
-// What a machine that makes sense has at most; m, rad, kg, kg m^2, and a joint's own units.
+// Plausible ranges of values: m, rad, kg, kg m^2, and a joint's own units.
 constexpr Interval kPosition = {-1e3, 1e3};
 constexpr Interval kAngle = {-1e3, 1e3};
 constexpr Interval kLength = {0.0, 1e3};
-constexpr Interval kMass = {-1e6, 1e6};  // below 0 only of links that do not move
+constexpr Interval kMass = {-1e6, 1e6};  // negative for fixed links only
 constexpr Interval kInertia = {-1e9, 1e9};
 constexpr Interval kDirection = {-1e6, 1e6};  // of any length
 constexpr Interval kVelocity = {0.0, 1e6};
 constexpr Interval kEffort = {0.0, 1e9};
 constexpr std::uintmax_t kMostBytes = 64'000'000;
 constexpr int kMostParts = 1000;         // links or joints; a chain has at most 30 that move
-constexpr double kLeastMass = 1e-9;      // of a link that has one
+constexpr double kLeastMass = 1e-9;      // least nonzero mass of a link
 constexpr double kLeastInertia = 1e-15;  // principal moment
 
 std::string in_quotes(std::string_view text) {
@@ -77,7 +77,7 @@ class Reader {
   }
 
  private:
-  // each is looked for among all others
+  // bounds the quadratic search for duplicates
   void refuse_too_many(const XMLElement& robot, const char* kind) const {
     int count = 0;
     for (auto* e = robot.FirstChildElement(kind); e; e = e->NextSiblingElement(kind)) {
@@ -165,7 +165,7 @@ class Reader {
                                    std::string& fault) const {
     const Pose pose = origin(e, item);
     const XMLElement& i = child(e, "inertia", item);
-    // all before the matrix: Eigen does not bear an exception between its commas
+    // read before the comma initialiser: it must not be interrupted by an exception
     const double ixy = number(i, "ixy", kInertia, item);
     const double ixz = number(i, "ixz", kInertia, item);
     const double iyz = number(i, "iyz", kInertia, item);

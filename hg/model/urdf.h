@@ -1,7 +1,7 @@
-/// Reads a URDF into plain structs and checks what can be checked link by link and joint by joint.
+/// Reads a URDF into plain structs and checks each link and joint on its own.
 ///
-/// Visual elements, transmissions and other extensions are skipped. Every fault throws SetupError
-/// that starts with `file:line:`. The shape of the chain is checked where it is built.
+/// Visual elements, transmissions and other extensions are skipped. Every error throws SetupError
+/// that starts with `file:line:`. The chain builder checks the topology.
 #pragma once
 
 #include <filesystem>
@@ -17,19 +17,19 @@ namespace hg::model {
 
 /// Mass distribution of a link, resolved in the axes of the link.
 struct Inertial {
-  double mass = 0.0;                                  ///< kg
-  Eigen::Vector3d p_com = Eigen::Vector3d::Zero();    ///< m
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about the COM
+  double mass = 0.0;                                  ///< Mass, kg
+  Eigen::Vector3d p_com = Eigen::Vector3d::Zero();    ///< Centre of mass, m
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< Inertia about the COM, kg m^2
 };
 
 enum class UrdfShape { kSphere, kCylinder, kBox, kOther };
 
-/// What of a link may touch something.
+/// Collision shape of a link.
 struct UrdfCollision {
-  std::string name;  ///< may be empty
+  std::string name;  ///< Name; may be empty
   Pose T_link_shape;
-  UrdfShape shape = UrdfShape::kOther;  ///< kOther: a mesh, or what URDF does not know
-  /// m; sphere: (radius, -, -), cylinder along z: (radius, length, -), box: its edges
+  UrdfShape shape = UrdfShape::kOther;  ///< kOther: a mesh, or unknown to URDF
+  /// Size, m; sphere: (radius, -, -), cylinder along z: (radius, length, -), box: its edges
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
 };
 
@@ -37,7 +37,7 @@ struct UrdfLink {
   std::string name;
   int line = 0;
   std::optional<Inertial> inertial;
-  std::string inertial_fault;  ///< what no body has; only matters for links that move
+  std::string inertial_fault;  ///< Error of an impossible inertia; matters for moving links only
   std::vector<UrdfCollision> collisions;
 };
 
@@ -47,20 +47,20 @@ struct UrdfJoint {
   std::string name;
   int line = 0;
   UrdfJointType type = UrdfJointType::kFixed;
-  int parent = 0;       ///< index of a link
-  int child = 0;        ///< index of a link
-  Pose T_parent_joint;  ///< at position 0
+  int parent = 0;       ///< Index of the parent link
+  int child = 0;        ///< Index of the child link
+  Pose T_parent_joint;  ///< Pose of the joint in the parent at position 0
   Eigen::Vector3d axis =
-      Eigen::Vector3d::UnitX();     ///< unit vector in the joint frame; of a planar joint: normal
-  Interval position;                ///< rad or m
-  double velocity_max = kInfinity;  ///< rad/s or m/s
-  double effort_max = kInfinity;    ///< Nm or N
-  int mimic_line = 0;               ///< where it says <mimic>; 0 = nowhere
+      Eigen::Vector3d::UnitX();     ///< Unit vector in the joint frame; planar joint: normal
+  Interval position;                ///< Position range, rad or m
+  double velocity_max = kInfinity;  ///< Largest speed, rad/s or m/s
+  double effort_max = kInfinity;    ///< Largest effort, Nm or N
+  int mimic_line = 0;               ///< Line of <mimic>; 0 = none
 };
 
 struct Urdf {
   std::string name;
-  std::string source;  ///< file name, for messages
+  std::string source;  ///< File name, for messages
   std::vector<UrdfLink> links;
   std::vector<UrdfJoint> joints;
 };
@@ -68,7 +68,7 @@ struct Urdf {
 Urdf read_urdf_file(const std::filesystem::path& file);
 Urdf read_urdf_text(std::string_view text, std::string_view source);
 
-/// Throws SetupError, beginning with `item`, unless a rigid body can have this mass distribution.
+/// Throws SetupError, beginning with `item`, unless the mass distribution is physically possible.
 void check(const Inertial& inertial, std::string_view item);
 
 /// `value` with the fewest digits that read back as the same number.

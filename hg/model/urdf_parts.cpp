@@ -46,7 +46,7 @@ std::vector<int> path_between(const Urdf& urdf, int root, int tip) {
   return path;
 }
 
-// `urdf` without the links that do not hang on `root`
+// subtree of `urdf` below the link `root`
 Urdf hanging_on(const Urdf& urdf, int root) {
   std::vector<bool> hangs(urdf.links.size(), false);
   hangs[static_cast<std::size_t>(root)] = true;

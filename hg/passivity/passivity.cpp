@@ -10,13 +10,13 @@ namespace {
 constexpr double kHigh_Hz = 30.0, kLow_Hz = 3.0;
 constexpr double kMean = 0.2;        // s
 constexpr double kLeast = 1.0;       // N: less is noise
-constexpr double kRatio = 0.5;       // of the forces of oscillation and intention
-constexpr double kIntention = 0.5;   // N, added to what is intended
+constexpr double kRatio = 0.5;       // oscillation force over intended force
+constexpr double kIntention = 0.5;   // N, added to the intended force
 constexpr double kViolent = 15.0;    // N
 constexpr double kAfterPush = 0.4;   // s: twice the mean
 constexpr double kPause = 0.2;       // s: longer than half a period of 3 Hz
 constexpr int kTurns = 2;            // a whole period
-constexpr int kTurnsPushed = 6;      // three: an impact rings
+constexpr int kTurnsPushed = 6;      // three periods: an impact rings
 constexpr double kTremor_Hz = 10.0;  // with half its width: 8 to 12 Hz pass
 constexpr double kTremor = 5.0;      // N: 2 N along each axis ([HANDBOOK] 5.1 has 0.05 N), and the
                                      // arm that swings along
@@ -32,7 +32,7 @@ double share_of_Hz(double dt, double frequency) noexcept {
   return share_of(dt, 1.0 / (2.0 * std::numbers::pi * frequency));
 }
 
-// What of the force a person's tremor may be, squared.
+// Mean square of the force that may be a person's tremor.
 double tremor_part(double dt, const Eigen::Vector3d& f, State& s) noexcept {
   const double k = std::numbers::pi * kTremor_Hz * dt;
   const double scale = 1.0 / (1.0 + k + k * k);
@@ -46,7 +46,7 @@ double tremor_part(double dt, const Eigen::Vector3d& f, State& s) noexcept {
   return std::min(s.tremor, kTremor * kTremor);
 }
 
-// 1 = detected
+// Index of oscillation; 1 = detected.
 double look_for_oscillation(const Config& config, const Input& input, State& s) noexcept {
   const double dt = config.dt;
   if (!s.is_started) {

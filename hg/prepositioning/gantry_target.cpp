@@ -18,7 +18,7 @@ constexpr double kPoseWeight = 1e6;    // square; 1 m or rad of the pose against
 constexpr double kDamping = 1e-3;      // square, 1 rad of posture is 1: halves no step
 constexpr double kLargestStep = 0.05;  // m and rad
 constexpr double kRounding = 1e-12;    // m and rad
-constexpr double kLost = 0.05;         // m and rad beside the hand: begin again
+constexpr double kLost = 0.05;         // m and rad beside the hand: restart
 
 }  // namespace
 
@@ -57,7 +57,7 @@ VectorP GantryTarget::step(const RobotState& robot, const VectorM& q_m,
   double error = 0.0;
   for (int i = 0; i < kSteps; ++i) error = improve(T_B_H, state.q);
   if (!(error < kLost)) {
-    // the posture has lost the hand, behind a singularity or a limit: stay and begin anew
+    // the posture misses the hand, behind a singularity or a limit: stay and restart
     state.q = q_now;
   }
   return state.q.head(config_.n_p);

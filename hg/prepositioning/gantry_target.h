@@ -1,5 +1,5 @@
-/// Where the gantry should be: the position that brings the posture joints of the manipulator to
-/// their goals at the same pose of the handle.
+/// Target of the gantry: the position that brings the posture joints of the manipulator to their
+/// goals at the same pose of the handle.
 ///
 /// In closed form for the HapticGiant, [HG] (30); otherwise a few damped Gauss-Newton steps per
 /// cycle on the model, warm started with the posture that the last cycle ended with. m or rad, as
@@ -21,15 +21,15 @@ using MatrixPM = MatrixUpTo<kMaxGantry + kMaxManipulator, kMaxGantry + kMaxManip
 struct TargetConfig {
   bool has_closed_form = false;  ///< the device is a HapticGiant
   int n_p = 0, n_m = 0;
-  int handle = -1;              ///< frame H of the chain
-  VectorM goal;                 ///< of the manipulator joints; NaN or missing = no goal
-  std::vector<Interval> range;  ///< of gantry and manipulator joints
+  int handle = -1;              ///< Index of frame H of the chain
+  VectorM goal;                 ///< Goals of the manipulator joints; NaN or missing = no goal
+  std::vector<Interval> range;  ///< Ranges of gantry and manipulator joints
 };
 
 /// Part of the copyable state of a cycle.
 struct TargetState {
   bool is_started = false;
-  VectorPM q;  ///< posture of the target
+  VectorPM q;  ///< Posture of the target
 };
 
 class GantryTarget {
@@ -37,7 +37,7 @@ class GantryTarget {
   /// `chain` holds the gantry joints first. Throws SetupError when config and chain do not fit.
   GantryTarget(const TargetConfig& config, const model::Chain& chain);
 
-  /// `robot` gives the gantry, `q_m` the manipulator reference.
+  /// Returns the target of the gantry; `robot` gives the gantry, `q_m` the manipulator reference.
   VectorP step(const RobotState& robot, const VectorM& q_m, TargetState& state) noexcept;
 
  private:
@@ -46,8 +46,8 @@ class GantryTarget {
 
   TargetConfig config_;
   model::Chain chain_;
-  VectorPM goal_;              ///< NaN = no goal
-  std::vector<bool> is_free_;  ///< joints that turn without end
+  VectorPM goal_;              ///< Goals of all joints; NaN = no goal
+  std::vector<bool> is_free_;  ///< Joints that turn without end
   VectorPM at_rest_;
 };
 

@@ -8,12 +8,13 @@
 namespace hg::prepositioning {
 namespace {
 
-constexpr double kTakenBack = 0.25;  // m/s or rad/s, of the gantry by the arm in front of a limit
-constexpr double kLead = 0.1;        // m/s or rad/s, of the law beside the rule
-// s in which the law may come to ask for all that the drives have: it sees what comes of it late
+// m/s or rad/s, gantry speed that the arm compensates in front of a limit
+constexpr double kTakenBack = 0.25;
+constexpr double kLead = 0.1;  // m/s or rad/s, of the law beside the rule
+// s until the law may demand the full acceleration of the drives: it sees the effect late
 double onset(const DriveModel& drive) noexcept { return std::max(60e-3, 15.0 * drive.dead_time); }
 
-// when a command of now arrives
+// gantry speed when a command sent now arrives
 VectorP speed_then(const DriveModel& drive, const RobotState& robot) noexcept {
   return robot.dq_p + drive.dead_time * robot.ddq_p;
 }

@@ -21,7 +21,7 @@ void measure(double seconds, const runtime::ThreadOptions& options, Jitter& jitt
     runtime::sleep_until(due_ns);
     const std::int64_t late_ns = now_ns() - due_ns;
     jitter.wake_up_us.add(1e-3 * static_cast<double>(late_ns));
-    // periods that were slept through show as one, with their whole length
+    // missed periods appear as one, with their whole length
     if (late_ns > period_ns) due_ns += late_ns / period_ns * period_ns;
   }
 }

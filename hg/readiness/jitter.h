@@ -1,4 +1,4 @@
-/// How late a thread wakes up that sleeps from one whole period to the next, as the control loop
+/// Wake-up latency of a thread that sleeps from one whole period to the next, as the control loop
 /// does.
 #pragma once
 
@@ -12,11 +12,11 @@ namespace hg::readiness {
 struct Jitter {
   double rate_Hz = 0.0;
   runtime::ThreadReport thread;
-  Histogram wake_up_us;  ///< after the time that was slept for
+  Histogram wake_up_us;  ///< latency after the end of the sleep, us
 };
 
-/// Measures on a thread of its own, for `seconds`. Locks the memory of the program where
-/// options.priority > 0 and the system allows it.
+/// Measures the latency on a thread of its own, for `seconds`. Locks the memory of the program
+/// where options.priority > 0 and the system allows it.
 Jitter measure_jitter(double rate_Hz, double seconds, const runtime::ThreadOptions& options);
 
 }  // namespace hg::readiness

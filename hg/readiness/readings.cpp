@@ -24,7 +24,7 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-// whole, without spaces at the end; empty where it cannot be read
+// whole content, without trailing spaces; empty where it cannot be read
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file);
   std::ostringstream text;
@@ -68,7 +68,7 @@ std::string user_name() {
   return entry != nullptr ? entry->pw_name : std::to_string(geteuid());
 }
 
-// "0-3,6" and "0" are five processors
+// counts processors: "0-3,6" and "0" are five
 int count_of(const std::string& list) {
   int count = 0;
   std::istringstream parts(list);
@@ -97,7 +97,7 @@ void read_processors(const fs::path& root, Readings& readings) {
   }
 }
 
-// of the deepest idle state of the first processor that is not switched off
+// latency of the deepest idle state of the first processor that is not disabled
 std::optional<double> idle_latency_us(const fs::path& root) {
   std::optional<double> longest;
   for (int i = 0; i < 16; ++i) {

@@ -9,9 +9,10 @@
 namespace hg::readiness {
 namespace {
 
-constexpr long kPriorityNeeded = 80;     // of the control thread, hapticgiant run --priority
-constexpr double kMemoryNeeded = 512e6;  // of the program with its rings and libraries, bytes
-constexpr double kTooLate_us = 2000.0;   // nothing that is scheduled at all is as late
+constexpr long kPriorityNeeded = 80;  // priority of the control thread, hapticgiant run --priority
+// Memory of the program with its rings and libraries, bytes
+constexpr double kMemoryNeeded = 512e6;
+constexpr double kTooLate_us = 2000.0;  // no thread that is scheduled at all is as late
 
 std::string grant(const std::string& user) {
   return fmt::format(

@@ -1,6 +1,6 @@
 /// Whether a computer is ready for a control loop, line by line, with what to change.
 ///
-/// Judged for the rate and with the limits below; docs/runtime.md gives the reasons.
+/// Judged at the rate of the loop with the limits below; reasons: docs/runtime.md.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace hg::readiness {
 
 enum class Level {
   kOk,
-  kWarn,  ///< it runs, with less certainty
+  kWarn,  ///< usable, with less certainty
   kBad,   ///< a device must not be driven from here
 };
 
@@ -23,20 +23,20 @@ std::string_view to_string(Level level) noexcept;
 struct Line {
   Level level = Level::kOk;
   std::string item;   ///< "kernel"
-  std::string found;  ///< what it is
-  std::string mend;   ///< commands that change it, or why nothing can; empty = nothing to change
+  std::string found;  ///< value found
+  std::string mend;   ///< commands that fix it, or why it cannot be fixed; empty = no change needed
 };
 
-/// Of the largest lateness at the rate of the loop: a device gets its command within the period.
-inline constexpr double kGoodShare = 0.1;  ///< of the period: up to here ok
-inline constexpr double kBadShare = 0.5;   ///< from here on bad
-/// An idle processor that takes longer to wake up is told, us.
+/// Limits of the largest lateness, as a share of the period: a device gets its command within it.
+inline constexpr double kGoodShare = 0.1;  ///< share of the period up to which it is ok
+inline constexpr double kBadShare = 0.5;   ///< share of the period from which on it is bad
+/// Idle wake-up latency above which a warning is given, us.
 inline constexpr double kIdleLatency_us = 50.0;
 
 std::vector<Line> judge(const Readings& readings);
 
-/// `ordinary` and `real_time` are of the same rate. `must_hold`: a lateness beyond kBadShare is
-/// bad, not only a warning.
+/// Judges two measurements at the same rate, `ordinary` and `real_time`. `must_hold`: a lateness
+/// beyond kBadShare is bad, not only a warning.
 Line judge(const Jitter& ordinary, const Jitter& real_time, bool must_hold);
 
 /// 0 = nothing is bad, else 1.

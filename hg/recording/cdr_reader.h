@@ -1,4 +1,4 @@
-/// CDR bytes back into messages; see cdr_writer.h for the format.
+/// Decodes messages from CDR bytes; see cdr_writer.h for the format.
 #pragma once
 
 #include <array>

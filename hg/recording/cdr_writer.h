@@ -26,10 +26,10 @@ static_assert(std::endian::native == std::endian::little);
 inline constexpr std::array<std::byte, 4> kCdrHeader = {std::byte{0}, std::byte{1}, std::byte{0},
                                                         std::byte{0}};
 
-/// Encodes one message at a time into a buffer that it keeps.
+/// Encodes one message at a time into a reused buffer.
 class CdrWriter {
  public:
-  /// The bytes are valid until the next call.
+  /// Encodes a message; the bytes are valid until the next call.
   template <IsMessage Message>
   std::span<const std::byte> encode(const Message& message) {
     size_ = 0;

@@ -15,7 +15,7 @@
 namespace hg::recording {
 namespace {
 
-// the budget of the folder is kept by the recordings of runs: what tells a fault deletes nothing
+// only recordings of runs enforce the folder's budget: recording a fault deletes no file
 constexpr double kNoBudget = 1e18;
 constexpr std::size_t kMostEvents = 1000;
 
@@ -27,7 +27,7 @@ std::size_t slot_count(const RecordingInfo& info, double seconds) {
   return static_cast<std::size_t>(std::ceil(seconds * info.rate_Hz));
 }
 
-// a new one of our own; throws std::exception
+// creates a new folder of our own; throws std::exception
 std::filesystem::path temporary_folder() {
   std::string name = (std::filesystem::temp_directory_path() / "hapticgiant_XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr)
@@ -40,13 +40,13 @@ std::filesystem::path temporary_folder() {
 FlightRecorder::FlightRecorder(RecordingInfo info, double seconds)
     : info_(std::move(info)), slots_(slot_count(info_, seconds)) {
   info_.disk_budget_bytes = kNoBudget;
-  // as long as one of these joints and limits
+  // large enough for these joints and limits
   Sample sample;
   const auto n_m = static_cast<Eigen::Index>(info_.manipulator_joints.size());
   sample.record.robot.q_m = VectorM::Zero(n_m);
   sample.record.limit_count = static_cast<int>(info_.limits.size());
   const std::size_t bytes = 2 * cdr_.encode(sample).size();
-  // touched, not only reserved: the memory of a run does not grow later
+  // touched, not only reserved, so that the memory of a run does not grow later
   for (std::vector<std::byte>& slot : slots_) slot.resize(bytes);
   events_.reserve(kMostEvents);
 }
@@ -85,7 +85,7 @@ void FlightRecorder::write(const std::string& cause) {
   });
 }
 
-// Returns why it could not, empty if it could.
+// Returns the error, empty if successful.
 std::string FlightRecorder::write_file(const std::string& cause) {
   if (pushed_ == 0) return {};
   const RecordingSummary first = write_to(info_.folder, cause);
@@ -102,7 +102,7 @@ std::string FlightRecorder::write_file(const std::string& cause) {
   return second.error.empty() ? "" : first.error;
 }
 
-// Also what a file that cannot be made says is an error of the summary.
+// Reports also the error of a file that cannot be created, in the summary.
 RecordingSummary FlightRecorder::write_to(const std::filesystem::path& folder,
                                           const std::string& cause) try {
   RecordingInfo info = info_;

@@ -1,8 +1,8 @@
-/// Keeps the last seconds of a run in memory, at full rate, and writes them when something has gone
-/// wrong: a recording like any other, in the same folder, also when the run itself is not recorded.
+/// Keeps the last seconds of a run in memory, at full rate, and writes them after a fault: an
+/// ordinary recording, in the same folder, even when the run itself is not recorded.
 ///
-/// For the observer thread. Memory is taken at the start; writing happens on a thread of its own,
-/// until whose end no sample is kept.
+/// For the observer thread. Memory is allocated at the start; writing happens on a thread of its
+/// own, and no sample is kept until it ends.
 #pragma once
 
 #include <atomic>
@@ -31,20 +31,21 @@ class FlightRecorder {
   FlightRecorder(const FlightRecorder&) = delete;
   FlightRecorder& operator=(const FlightRecorder&) = delete;
 
-  /// Every sample, in their order. The oldest one goes.
+  /// Adds a sample, in order; the oldest one is dropped.
   void push(const Sample& sample);
   void event(double time_s, std::string_view name, std::string_view text);
 
-  /// Writes what is kept, `cause` (letters, digits, dashes) in its name: to the folder of `info`
-  /// or, where that is full or gone, to a new folder hapticgiant_XXXXXX among the temporary files.
-  /// What fits nowhere is still kept. The next call waits until it is done.
+  /// Writes all kept samples, with `cause` (letters, digits, dashes) in the file name: to the
+  /// folder of `info` or, where that is full or missing, to a new folder hapticgiant_XXXXXX among
+  /// the temporary files. Samples that fit nowhere are still kept. The next call waits until it is
+  /// done.
   void write(const std::string& cause);
 
   struct Result {
-    std::vector<std::filesystem::path> files;  ///< written, in their order
-    std::string error;  ///< of the last one that could not be written as a whole; empty = none
+    std::vector<std::filesystem::path> files;  ///< files written, in order
+    std::string error;  ///< error of the last file that is incomplete; empty = none
   };
-  /// Waits until all is written.
+  /// Waits until everything is written.
   Result close();
 
  private:
@@ -54,8 +55,8 @@ class FlightRecorder {
   RecordingInfo info_;
   CdrWriter cdr_;
   std::vector<std::vector<std::byte>> slots_;  ///< encoded samples, a ring
-  std::uint64_t pushed_ = 0;                   ///< samples in the ring, or once in it
-  std::vector<Event> events_;                  ///< of the samples that are kept, and some older
+  std::uint64_t pushed_ = 0;                   ///< samples pushed so far
+  std::vector<Event> events_;                  ///< events of the kept samples, and some older
   std::atomic<bool> is_writing_{false};
   Result result_;
   std::thread thread_;

@@ -1,6 +1,7 @@
-/// One MCAP file under way: owns the handle of mcap_sink.h and speaks in C++ types.
+/// An open MCAP file: owns the handle of mcap_sink.h and offers C++ types.
 ///
-/// Errors stick: after the first one nothing more is written and error() says why. One thread.
+/// Errors persist: after the first one no more data are written and error() gives the reason. One
+/// thread.
 #pragma once
 
 #include <cstddef>
@@ -31,14 +32,14 @@ class McapFile {
   void write(std::uint16_t channel, std::uint64_t sequence, std::uint64_t time_ns,
              std::span<const std::byte> message);
 
-  /// Ends a chunk: a crash of the program loses nothing written before.
+  /// Ends a chunk: data written before survive a crash of the program.
   void flush();
   /// Writes the index and waits for the disk. The file is then complete.
   void finish();
 
-  std::string error() const;  ///< empty while everything went well
+  std::string error() const;  ///< empty while there is no error
   bool has_failed() const;
-  std::uint64_t bytes() const;  ///< on the way to the disk
+  std::uint64_t bytes() const;  ///< bytes handed to the operating system so far
   mcap_file_state state() const;
 
  private:

@@ -1,5 +1,5 @@
-/// What a recorded message is: a name and a function fields(archive, message) that shows its fields
-/// to an archive in the order of the schema.
+/// Concept of a recorded message: a name and a function fields(archive, message) that passes its
+/// fields to an archive in the order of the schema.
 ///
 /// For each field the function calls archive(name, value, note), or archive.sequence(name, items,
 /// count, note) where only the first `count` items of an array are in use. Values are numbers,
@@ -14,14 +14,15 @@
 
 namespace hg::recording {
 
-/// Name of a message type as ROS spells it inside a definition, for example "std_msgs/Header".
+/// Name of a message type in ROS notation inside a definition, for example "std_msgs/Header".
 template <typename Message>
 constexpr std::string_view kMessageName = "";
 
 template <typename T>
 concept IsMessage = !kMessageName<std::remove_cvref_t<T>>.empty();
 
-/// T is Message or const Message: archives that read need the former, those that write the latter.
+/// Matches Message and const Message: reading archives need the former, writing archives the
+/// latter.
 template <typename T, typename Message>
 concept Is = std::same_as<std::remove_const_t<T>, Message>;
 

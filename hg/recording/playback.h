@@ -1,4 +1,4 @@
-/// Where a recording is being looked at, and how fast that moves on. Times are arguments.
+/// Position and speed of the playback of a recording. Times are arguments.
 #pragma once
 
 #include <algorithm>
@@ -12,29 +12,29 @@ class Playback {
 
   explicit Playback(double duration_s) : duration_s_(duration_s) {}
 
-  /// False for speeds outside kSlowest..kFastest: nothing changes.
+  /// Sets the speed; false and no effect outside kSlowest..kFastest.
   [[nodiscard]] bool set_speed(double speed) noexcept {
     if (!(speed >= kSlowest && speed <= kFastest)) return false;
     speed_ = speed;
     return true;
   }
   void pause() noexcept { is_paused_ = true; }
-  /// At the end it begins anew.
+  /// Continues the playback; at the end it restarts.
   void resume() noexcept {
     if (is_over()) position_s_ = 0.0;
     is_paused_ = false;
   }
-  /// False for times outside the recording.
+  /// Jumps to a time; false and no effect outside the recording.
   [[nodiscard]] bool seek(double time_s) noexcept {
     if (!(time_s >= 0.0 && time_s <= duration_s_)) return false;
     position_s_ = time_s;
     return true;
   }
-  /// `elapsed_s` of the wall clock have passed.
+  /// Advances by `elapsed_s` of the wall clock, unless paused.
   void advance(double elapsed_s) noexcept {
     if (!is_paused_) move(speed_ * elapsed_s);
   }
-  /// On or back by `time_s`, at most to an end.
+  /// Moves forward or back by `time_s`, at most to an end.
   void move(double time_s) noexcept {
     position_s_ = std::clamp(position_s_ + time_s, 0.0, duration_s_);
   }

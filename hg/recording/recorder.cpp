@@ -25,16 +25,19 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kRingSeconds = 0.7;    // outlasts the pauses of a busy disk
-constexpr double kFlushSeconds = 0.25;  // of nominal time; with the ring: what a crash may cost
+constexpr double kRingSeconds = 0.7;  // outlasts the pauses of a busy disk
+// Of nominal time; with the ring: the maximum loss in a crash
+constexpr double kFlushSeconds = 0.25;
 static_assert(kRingSeconds + kFlushSeconds < 1.0, "the promise of docs/recording.md");
-constexpr double kToolRate_Hz = 100.0;  // of the messages for other tools
-constexpr auto kPollPeriod = 5ms;       // the loop may not wake the thread: that is a system call
-constexpr int kIdlePolls = 50;          // then a loop that stands still is flushed, too
-constexpr int kLookPolls = 200;         // 1 s: is the file still there?
-constexpr int kTouchPolls = 2000;  // 10 s: no other run takes the file of a paused one for broken
+constexpr double kToolRate_Hz = 100.0;  // rate of the messages for other tools
+constexpr auto kPollPeriod = 5ms;  // polled: waking the thread from the loop would be a system call
+constexpr int kIdlePolls = 50;     // after that, a paused loop is flushed, too
+constexpr int kLookPolls = 200;    // 1 s: is the file still there?
+// 10 s: other runs must not take the file of a paused run for broken
+constexpr int kTouchPolls = 2000;
 constexpr auto kWaitForPlace = 100us;
-constexpr double kBudgetStep = 0.01;  // of the budget: how far a file grows between two looks at it
+// Share of the budget by which a file grows between two checks
+constexpr double kBudgetStep = 0.01;
 
 std::string to_text(double value) {
   char text[32];
@@ -141,7 +144,7 @@ class Recorder::Writer {
   std::vector<Event> events_;
   std::string error_;
 
-  // used by the thread alone while it runs
+  // used only by the thread while it runs
   RecordingFolder folder_;
   std::filesystem::path path_;
   const std::string stem_;
@@ -173,7 +176,8 @@ Recorder::Writer::Writer(const RecordingInfo& info)
       stem_(path_.stem().stem().string()),
       file_(path_),
       tool_messages_(info) {
-  const bool is_mine = !file_.has_failed();  // where it cannot be made it may be another run's
+  // a file that could not be created may belong to another run
+  const bool is_mine = !file_.has_failed();
   write_head(info);
   file_.flush();
   if (file_.has_failed()) {
@@ -187,7 +191,7 @@ Recorder::Writer::Writer(const RecordingInfo& info)
   thread_ = std::thread([this] { run(); });
 }
 
-/// What a reader needs besides messages goes first, so that a crash cannot lose it.
+/// Data that a reader needs besides messages is written first, so that a crash cannot lose it.
 void Recorder::Writer::write_head(const RecordingInfo& info) {
   file_.add_metadata("run", run_metadata(info));
   file_.add_metadata("limits", limit_metadata(info.limits));
@@ -256,7 +260,7 @@ void Recorder::Writer::run() {
     write_events();
     end("");
   } catch (const std::exception& exception) {
-    // whatever it is, the run goes on without a recording
+    // on any exception the run continues without a recording
     end(exception.what());
     is_closing_ = true;
   }
@@ -334,7 +338,7 @@ void Recorder::Writer::end(const std::string& why) {
   keep_budget();
   const mcap_file_state state = file_.state();
   if (file_.has_failed()) {
-    // nobody knows what is left of a file that somebody else has changed
+    // the content of a file that was changed by others is unknown
     const std::uint64_t kept = state == mcap_file_whole ? flushed_samples_ : 0;
     summary_.dropped += summary_.samples - kept;
     summary_.samples = kept;

@@ -18,17 +18,18 @@
 
 namespace hg::recording {
 
-/// False when the program was built without Rust: then no Recorder can be made.
+/// Whether a Recorder can be made; false when the program was built without Rust.
 bool recording_available() noexcept;
 
 struct NamedText {
   std::string name, text;
 };
 
-/// A joint of the twin, in the order of its coordinates.
+/// Joint of the twin, in the order of its coordinates.
 struct TwinJoint {
   std::string name;
-  bool is_floating = false;  ///< has 7 coordinates and 6 velocities, and no place in a JointState
+  /// Has 7 coordinates and 6 velocities, and is not part of a JointState
+  bool is_floating = false;
 };
 
 struct RecordingInfo {
@@ -38,21 +39,22 @@ struct RecordingInfo {
   std::vector<TwinJoint> twin_joints;
   LimitCatalogue limits;
   std::vector<NamedText> configuration;  ///< files that describe the run, kept as attachments
-  std::string version;                   ///< of the program
+  std::string version;                   ///< version of the program
   double rate_Hz = 1000.0;               ///< samples per second, > 0
-  double disk_budget_bytes = 5e9;        ///< for all recordings in the folder, > 0
+  double disk_budget_bytes = 5e9;        ///< budget for all recordings in the folder, > 0
   std::chrono::system_clock::time_point start = std::chrono::system_clock::now();
-  /// The same samples and events give the same bytes: events come after the samples, and how fast
-  /// samples come decides nothing.
+  /// Whether the same samples and events give the same bytes: events come after the samples, and
+  /// the timing of samples has no influence.
   bool is_reproducible = false;
 };
 
 struct RecordingSummary {
-  std::filesystem::path file;        ///< ends in .partial.mcap after a write error; empty = gone
-  std::uint64_t samples = 0;         ///< written
-  std::uint64_t dropped = 0;         ///< not written: the ring was full, or recording had ended
-  std::uint64_t bytes = 0;           ///< size of the file
-  std::vector<std::string> deleted;  ///< old recordings that went for the disk budget
+  /// Recorded file; ends in .partial.mcap after a write error; empty = lost
+  std::filesystem::path file;
+  std::uint64_t samples = 0;  ///< samples written
+  std::uint64_t dropped = 0;  ///< samples not written: the ring was full, or recording had ended
+  std::uint64_t bytes = 0;    ///< size of the file
+  std::vector<std::string> deleted;  ///< old recordings deleted for the disk budget
   std::string error;                 ///< why recording ended early; empty = it did not
   std::string not_renamed;  ///< why a complete file still ends in .partial.mcap; empty = no
   std::string not_linked;   ///< why latest.mcap is not this file; empty = it is
@@ -68,23 +70,24 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// File name without extensions: that of everything that belongs to this recording.
+  /// File name without extensions, common to all files of this recording.
   const std::string& stem() const;
 
-  /// From the control loop: no allocation, lock or system call. False when the sample is dropped
-  /// because the ring, which holds 0.7 s, is full.
+  /// Takes a sample from the control loop: no allocation, lock or system call. False when the
+  /// sample is dropped because the ring, which holds 0.7 s, is full.
   bool push(const Sample& sample) noexcept;
 
-  /// The same for a loop that runs as fast as it can: waits for a place instead of dropping.
+  /// The same for a loop that runs as fast as possible: waits for a place instead of dropping.
   void push_waiting(const Sample& sample);
 
-  /// Notes an event. From any thread but the control loop.
+  /// Records an event. From any thread but the control loop.
   void event(double time_s, std::string_view name, std::string_view text);
 
-  /// Writes everything that was pushed and completes the file. After it, samples are dropped.
+  /// Writes all pushed samples and completes the file. Later samples are dropped.
   RecordingSummary close();
 
-  /// Why recording ended early; empty while all is well. From any thread but the control loop.
+  /// Why recording ended early; empty while there is no error. From any thread but the control
+  /// loop.
   std::string error() const;
 
  private:

@@ -26,13 +26,15 @@ constexpr std::chrono::minutes kAbandoned(1);
 
 /// A finished or broken recording.
 struct Recording {
-  std::string stamp;  ///< age: date and time, then the number that tells files of one second apart
+  /// Age: date and time, then the number that separates files of the same second
+  std::string stamp;
   int number;
   fs::path path;
   double bytes;
 };
 
-// by another run; one that is paused is written now and then as well, and a broken one no more
+// whether another run is writing it; a paused run still writes now and then, a broken file is no
+// longer written
 bool is_being_written(const fs::path& path) {
   if (path.stem().extension() != kPartial) return false;
   std::error_code error;
@@ -61,11 +63,11 @@ std::vector<Recording> oldest_first(const fs::path& folder) {
   return recordings;
 }
 
-// Returns errno, 0: it is renamed.
+// Returns errno; 0: renamed.
 int rename_to_free_name(const fs::path& from, const fs::path& to) {
   if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
   if (errno != EINVAL && errno != ENOSYS) return errno;
-  // a file system without that
+  // file system without that operation
   std::error_code error;
   if (fs::symlink_status(to, error).type() != fs::file_type::not_found) return EEXIST;
   fs::rename(from, to, error);

@@ -12,25 +12,25 @@
 
 namespace hg::recording {
 
-/// NAME_yyyymmdd_hhmmss, the time in UTC.
+/// File stem NAME_yyyymmdd_hhmmss, the time in UTC.
 std::string stamped(const std::string& name, std::chrono::system_clock::time_point time);
 
 class RecordingFolder {
  public:
-  /// Creates the folder where it is missing. Throws SetupError when that fails.
+  /// Creates the folder if it is missing. Throws SetupError when that fails.
   explicit RecordingFolder(std::filesystem::path folder);
 
-  /// A free path ending in .partial.mcap. Throws SetupError unless `name` consists of letters,
-  /// digits, dots, dashes and underscores.
+  /// Returns a free path ending in .partial.mcap. Throws SetupError unless `name` consists of
+  /// letters, digits, dots, dashes and underscores.
   std::filesystem::path new_path(const std::string& name,
                                  std::chrono::system_clock::time_point start) const;
 
-  /// Takes .partial out of the name and points `latest.mcap` at the file. Returns the new path, or
-  /// the old one where something has the name already or renaming fails; then `why` is filled.
+  /// Removes .partial from the name and points `latest.mcap` at the file. Returns the new path, or
+  /// the old one where the name is taken or renaming fails; then `why` gives the reason.
   std::filesystem::path complete(const std::filesystem::path& partial, std::string& why) const;
 
-  /// Points `latest.mcap` at a file of this folder; does nothing where links are not supported.
-  /// Returns why it did not, where `latest.mcap` is no link: that is somebody else's; else empty.
+  /// Points `latest.mcap` at a file of this folder; no effect where links are not supported.
+  /// Returns an error when `latest.mcap` exists and is no link: that is a foreign file; else empty.
   std::string link_latest(const std::filesystem::path& file) const;
 
   /// Deletes the oldest recordings until all together, `current` with `current_bytes`, take at most

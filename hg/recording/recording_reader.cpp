@@ -26,7 +26,7 @@ constexpr std::string_view kEvents = "/hapticgiant/events";
   throw SetupError(file.string() + ": must be a recording of this program: " + std::string(what));
 }
 
-// Fields and their order; notes behind # may differ.
+// Fields and their order, without the notes behind #, which may differ.
 bool is_same_schema(std::string_view recorded) {
   const auto without_notes = [](std::string_view text) {
     std::string fields;
@@ -49,8 +49,8 @@ std::string_view text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// Hands all items of the file to `receiver`. Stands between it and the C interface: nothing that is
-// thrown may leave that. Throws it afterwards, and SetupError.
+// Passes all items of the file to `receiver`. Shields the C interface from exceptions: they are
+// caught and rethrown afterwards. Also throws SetupError.
 template <typename Receiver>
 void hand_out(const std::filesystem::path& file, Receiver& receiver) {
   struct Call {
@@ -74,7 +74,7 @@ void hand_out(const std::filesystem::path& file, Receiver& receiver) {
   if (!is_read) refuse(file, error.data());
 }
 
-// Parts that cannot be read, and which messages they held.
+// Unreadable parts, and the messages lost with them.
 class Losses {
  public:
   void take(int kind, std::string_view name, std::uint64_t time_ns) {
@@ -93,7 +93,7 @@ class Losses {
   }
   bool empty() const { return parts_.empty(); }
 
-  // `start_ns`: log time at the time 0 of the run
+  // `start_ns`: log time at run time 0
   std::vector<Loss> since(std::uint64_t start_ns) const {
     const auto seconds = [&](std::uint64_t time_ns) {
       return 1e-9 * static_cast<double>(static_cast<std::int64_t>(time_ns - start_ns));
@@ -117,15 +117,15 @@ class Losses {
     std::uint64_t first_ns = 0, last_ns = 0;
   };
   static bool is_known(const Loss& loss) {
-    if (loss.part.starts_with("bytes 0 ")) return false;  // with the first sample
+    if (loss.part.starts_with("bytes 0 ")) return false;  // the first sample is lost with it
     return loss.samples > 0 || !(loss.part.starts_with("chunk") || loss.part.starts_with("bytes"));
   }
 
-  // What was lost between two samples tells their distance, also where the index of the chunk is
-  // lost with it.
+  // The loss between two samples follows from their distance, even where the index of the chunk is
+  // lost, too.
   void take_whole(std::uint64_t time_ns) {
     const std::uint64_t distance = time_ns - std::exchange(last_ns_, time_ns);
-    if (distance == time_ns) {  // the first one
+    if (distance == time_ns) {  // first intact sample
       for (Part& part : parts_) part.loss.is_counted = is_known(part.loss);
       is_open_ = false;
       open_samples_ = 0;
@@ -143,9 +143,9 @@ class Losses {
   }
 
   std::vector<Part> parts_;
-  std::uint64_t last_ns_ = 0, period_ns_ = 0;  // of samples that are whole
-  std::uint64_t open_samples_ = 0;             // lost since the last of them
-  bool is_open_ = false;                       // a part has been lost since then
+  std::uint64_t last_ns_ = 0, period_ns_ = 0;  // of intact samples
+  std::uint64_t open_samples_ = 0;             // lost since the last intact one
+  bool is_open_ = false;                       // a part was lost since then
 };
 
 std::uint64_t start_ns(std::uint64_t time_ns, double time_s) {
@@ -157,11 +157,11 @@ std::uint64_t start_ns(std::uint64_t time_ns, double time_s) {
                               : "what describes its samples is damaged");
 }
 
-// Tells a listener.
+// Notifies a listener.
 struct Teller {
   RecordingListener& listener;
   Losses losses = {};
-  std::uint64_t start = 0;  ///< log time of the run's time 0, ns
+  std::uint64_t start = 0;  ///< log time at run time 0, ns
   bool has_samples = false, is_complete = false;
   std::uint64_t samples = 0;
   std::string error;
@@ -224,12 +224,12 @@ ReadResult read_recording(const std::filesystem::path& file, RecordingListener& 
   return {teller->is_complete, teller->losses.since(teller->start)};
 }
 
-// Remembers the first thing that is wrong.
+// Collects the kept samples of a run, and an error.
 struct RecordedRun::Taker {
   RecordedRun& run;
   std::uint64_t period_ns;
   std::uint64_t due_ns = 0;
-  Moment last = {};  ///< that was not kept
+  Moment last = {};  ///< last sample that was not kept
   Losses losses = {};
   bool has_samples = false;
   const char* error = "";

@@ -1,4 +1,4 @@
-/// A recording back in memory, thinned to what people see. docs/recording.md lists its topics.
+/// Reads a recording back into memory, downsampled for display. docs/recording.md lists its topics.
 #pragma once
 
 #include <cstddef>
@@ -12,37 +12,37 @@
 
 namespace hg::recording {
 
-/// Who is told what a recording holds. All are called in the order of the file.
+/// Receiver of the contents of a recording. All functions are called in the order of the file.
 class RecordingListener {
  public:
   virtual ~RecordingListener() = default;
-  /// A file that describes the run; before the first sample.
+  /// Receives a file that describes the run; called before the first sample.
   virtual void configuration(const NamedText& text) = 0;
   virtual void event(const Event& event) = 0;
   virtual void sample(const Sample& sample) = 0;
 };
 
-/// A part of a file that is not as it was written.
+/// Damaged part of a file.
 struct Loss {
-  std::string part;  ///< "chunk at byte 81234", "attachment door.yaml"
+  std::string part;  ///< for example "chunk at byte 81234", "attachment door.yaml"
   std::uint64_t samples = 0, events = 0;
   bool is_counted = true;           ///< false: there may be more, at an end of the recording
-  double from_s = 0.0, to_s = 0.0;  ///< time of the run of the first and the last of them
+  double from_s = 0.0, to_s = 0.0;  ///< run time of the first and the last lost item
 };
 
-/// One line for each: what cannot be read, and which samples went with it. Empty for none.
+/// One line per loss: what cannot be read, and which samples were lost with it. Empty for none.
 std::string to_text(const std::vector<Loss>& losses);
 
 struct ReadResult {
-  bool is_complete = false;  ///< false: a crash has cut it off
-  std::vector<Loss> losses;  ///< all else was handed out
+  bool is_complete = false;  ///< false: cut off by a crash
+  std::vector<Loss> losses;  ///< everything else was passed on
 
   bool is_whole() const noexcept { return is_complete && losses.empty(); }
 };
 
-/// Hands out all of a recording that is as it was written, and keeps nothing. Throws SetupError as
-/// RecordedRun, and for a damaged sample; passes on what `listener` throws, a SetupError behind the
-/// losses so far.
+/// Passes all intact contents of a recording to `listener` and keeps no copy. Throws SetupError as
+/// RecordedRun, and for a damaged sample; passes on exceptions of `listener`, a SetupError after
+/// the losses so far.
 ReadResult read_recording(const std::filesystem::path& file, RecordingListener& listener);
 
 class RecordedRun {
@@ -55,16 +55,16 @@ class RecordedRun {
   const std::vector<Event>& events() const noexcept { return events_; }
   const std::vector<Loss>& losses() const noexcept { return losses_; }
 
-  /// Kept samples, at least one, in their order.
+  /// Number of kept samples, at least one, in order.
   std::size_t size() const noexcept { return moments_.size(); }
-  /// Of a kept sample, in s since the first.
+  /// Time of a kept sample since the first, s.
   double time_s(std::size_t index) const;
   double duration_s() const { return time_s(size() - 1); }
-  /// Time of the run at the first kept sample: a flight recording does not begin with its run.
+  /// Run time at the first kept sample: a flight recording does not begin with its run.
   double begin_s() const noexcept { return begin_s_; }
-  /// The last kept sample up to `time_s`; the first before it.
+  /// Index of the last kept sample up to `time_s`; of the first one for earlier times.
   std::size_t at(double time_s) const;
-  /// Throws SetupError when its bytes are damaged.
+  /// Decodes a kept sample. Throws SetupError when its bytes are damaged.
   void read(std::size_t index, Sample& sample) const;
 
  private:

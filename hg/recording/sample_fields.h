@@ -11,7 +11,7 @@
 
 namespace hg::recording {
 
-/// Something worth finding again in a recording.
+/// Noteworthy event in a recording.
 struct Event {
   double time_s = 0.0;
   std::string name, text;

@@ -34,14 +34,15 @@ class SchemaWriter {
     line(type_name(static_cast<const T*>(nullptr)) + "[]", name, note);
   }
 
-  std::string text;  ///< of the message under way
+  std::string text;  ///< text of the current message
   struct Definition {
     std::string name, text;
   };
-  std::vector<Definition> inner;  ///< messages inside it
+  std::vector<Definition> inner;  ///< definitions of the messages inside it
 
  private:
-  // what the numbers of an enum mean; codes of faults have a table of their own, docs/safety.md
+  // appends the meanings of an enum's numbers; fault codes have a table of their own,
+  // docs/safety.md
   template <typename T>
   static std::string with_numbers(const std::string& note) {
     if constexpr (std::is_enum_v<T> && sizeof(T) == 1) {
@@ -112,7 +113,7 @@ std::string schema_text() {
   return text;
 }
 
-/// Name of a message type as a schema is called: package/msg/Type.
+/// Name of a message type in schema notation: package/msg/Type.
 template <IsMessage Message>
 std::string schema_name() {
   std::string name(kMessageName<Message>);

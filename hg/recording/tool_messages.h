@@ -1,4 +1,4 @@
-/// The part of a sample that other tools understand, as standard ROS messages.
+/// Part of a sample that other tools understand, as standard ROS messages.
 ///
 /// Frames: "base" = B, "handle" = H at the reference, "elbow" (orientation of B). ROS gives a
 /// wrench in the frame where it acts, so the user's wrench is turned from B into H.
@@ -18,7 +18,7 @@ class ToolMessages {
  public:
   explicit ToolMessages(const RecordingInfo& info);
 
-  /// Fills all messages. Values that the sample does not have are NaN.
+  /// Fills all messages. Values missing in the sample are NaN.
   void update(const Sample& sample, std::uint64_t time_ns);
 
   const JointState& device() const noexcept { return device_; }  ///< gantry, then manipulator
@@ -27,7 +27,7 @@ class ToolMessages {
   const TransformMessage& transforms() const noexcept { return transforms_; }
 
  private:
-  /// Where a joint of the twin is found in q_a, and in dq_a and tau_a.
+  /// Index of a twin's joint in q_a, and in dq_a and tau_a.
   struct Place {
     int coordinate, velocity;
   };

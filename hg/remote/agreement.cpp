@@ -44,7 +44,7 @@ std::string difference(const Description& actual, const Description& expected) {
 
 bool fits(const Description& agreed, const SensorFrame& sensors) noexcept {
   const auto n_m = static_cast<Eigen::Index>(agreed.n_m);
-  // whoever commands torques needs to know both sides of the springs
+  // commanding torques requires both sides of the springs
   const bool may_lack = agreed.interface == Interface::kPosition;
   const auto fits_joints = [&](const VectorM& v) {
     return v.size() == n_m || (may_lack && v.size() == 0);

@@ -1,4 +1,4 @@
-/// Whether what one side sends is what the other expects.
+/// Checks that the data sent by one side are what the other expects.
 #pragma once
 
 #include <string>
@@ -7,16 +7,17 @@
 
 namespace hg::remote {
 
-/// The first thing in which the two differ, as "rate: 1000 Hz, expected 2000 Hz"; empty: nothing.
+/// First difference of two descriptions, as "rate: 1000 Hz, expected 2000 Hz"; empty: no
+/// difference.
 std::string difference(const Description& actual, const Description& expected);
 
-/// Whether all vectors have the sizes that were agreed upon and all values are finite. noexcept, no
+/// Whether all vectors of a frame have the agreed sizes and all values are finite. noexcept, no
 /// allocation.
 bool fits(const Description& agreed, const SensorFrame& sensors) noexcept;
-/// The same, and the hand presses by 0..1: such a command may go to drives.
+/// The same for a command, and its hand press lies in 0..1: such a command may go to drives.
 bool fits(const Description& agreed, const CommandFrame& command) noexcept;
 
-/// Drives off, brakes closed, for a device like this.
+/// Command with drives off and brakes closed, for a device of this description.
 CommandFrame off_command(const Description& agreed);
 
 }  // namespace hg::remote

@@ -16,19 +16,21 @@ class Capture {
  public:
   /// Throws SetupError when the file cannot be opened.
   explicit Capture(const std::string& file);
-  /// Nothing after a write has failed: what is in the file is a beginning of the capture.
+  /// Appends a datagram; no effect after a failed write: the file then holds the beginning of the
+  /// capture.
   void add(std::int64_t time_ns, std::span<const std::byte> datagram);
-  /// Hands everything to the system. Returns why the file does not hold all of it; empty: it does.
+  /// Hands all buffered data to the system. Returns why the file is incomplete; empty: it is
+  /// complete.
   std::string flush();
 
  private:
   void write(const void* data, std::size_t size);
 
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
-  int error_ = 0;  ///< of the first write that has failed; 0 = none
+  int error_ = 0;  ///< error of the first failed write; 0 = none
 };
 
-/// The datagrams of such a file. Throws SetupError.
+/// Reads the datagrams of a capture file. Throws SetupError.
 std::vector<std::vector<std::byte>> read_capture(const std::string& file);
 
 }  // namespace hg::remote

@@ -8,7 +8,7 @@ namespace {
 const std::size_t kHeaderSize = size_of<Header>();
 constexpr std::size_t kChecksumSize = 4;
 
-// of the whole datagram; 0: there is no such type
+// size of the whole datagram; 0: no such type
 std::size_t length_of(std::uint16_t type) noexcept {
   const auto with = [](std::size_t fields) { return kHeaderSize + fields + kChecksumSize; };
   switch (static_cast<MessageType>(type)) {

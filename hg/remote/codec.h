@@ -1,7 +1,7 @@
 /// Messages to datagrams and back: header, fields, the tag of a shared key if there is one, CRC-32
 /// (as zlib has it) over all of them.
 ///
-/// No allocation, noexcept. Bytes from anywhere may be decoded: nothing is read beyond them.
+/// No allocation, noexcept. Untrusted bytes may be decoded: no read goes beyond them.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct Datagram {
   std::span<const std::byte> view() const noexcept { return {bytes.data(), size}; }
 };
 
-/// Appends fields; the caller sees to it that there is room.
+/// Appends fields to a buffer; the caller provides enough room.
 class Encoder {
  public:
   explicit Encoder(std::byte* to) : begin_(to), at_(to) {}
@@ -67,12 +67,12 @@ class Encoder {
   std::byte* at_;
 };
 
-/// Takes fields in their order; the caller sees to it that the bytes are there.
+/// Reads fields in their order; the caller provides enough bytes.
 class Decoder {
  public:
   explicit Decoder(const std::byte* from) : begin_(from), at_(from) {}
   std::size_t size() const noexcept { return static_cast<std::size_t>(at_ - begin_); }
-  /// Whether every count, truth value and room for nothing was what it may be.
+  /// Whether every count, truth value and unused field had an allowed value.
   bool is_good() const noexcept { return is_good_; }
 
   template <typename T>
@@ -129,7 +129,7 @@ class Decoder {
   bool is_good_ = true;
 };
 
-/// Bytes of the fields of a message.
+/// Size of the fields of a message, bytes.
 template <typename Message>
 std::size_t size_of() noexcept {
   std::array<std::byte, kLargestDatagram> room;
@@ -139,24 +139,24 @@ std::size_t size_of() noexcept {
   return encoder.size();
 }
 
-/// What is wrong with a datagram, in the order in which it is looked at.
+/// Result of checking a datagram, in the order of the checks.
 enum class Verdict {
   kGood,
-  kTruncated,     ///< shorter than any message, or not as long as it says or as its type is
+  kTruncated,     ///< shorter than any message, or its length differs from its header or its type
   kForeign,       ///< another magic, or a type that does not exist
-  kCorrupted,     ///< the checksum does not fit
-  kWrongVersion,  ///< of the protocol; only header and checksum are understood
-  kForged,  ///< a tag that the key does not give, none though there is a key, or a needless one
+  kCorrupted,     ///< checksum mismatch
+  kWrongVersion,  ///< other protocol version; only header and checksum are understood
+  kForged,  ///< tag that does not match the key, missing despite a key, or present without one
 };
 
 /// CRC-32 of ISO-HDLC, the one of zlib, zip and PNG.
 std::uint32_t checksum(std::span<const std::byte> bytes) noexcept;
 
-/// Looks at everything but the fields of the message; `header` is filled in unless kTruncated.
+/// Checks everything but the fields of the message; `header` is filled in unless kTruncated.
 Verdict read_header(std::span<const std::byte> datagram, Header& header,
                     const Key& key = {}) noexcept;
 
-/// Fills in type and length of `header`, the tag and the checksum.
+/// Encodes a message; fills in type and length of `header`, the tag and the checksum.
 template <typename Message>
 void encode(Header header, const Message& message, Datagram& datagram,
             const Key& key = {}) noexcept {
@@ -178,8 +178,8 @@ void encode(Header header, const Message& message, Datagram& datagram,
   datagram.size = size + sizeof crc;
 }
 
-/// The fields of a datagram that read_header() found good and of this type. False: impossible
-/// content, `message` is then not to be used.
+/// Decodes the fields of a datagram of this type that read_header() found good. False: impossible
+/// content, `message` must not be used.
 template <typename Message>
 [[nodiscard]] bool decode(std::span<const std::byte> datagram, Message& message) noexcept {
   Decoder decoder(datagram.data() + size_of<Header>());

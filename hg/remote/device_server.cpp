@@ -13,9 +13,9 @@
 namespace hg::remote {
 namespace {
 
-constexpr std::int64_t kLook = 100'000'000;  // ns, between two looks whether to stop
-constexpr int kGoodbyes = 3;                 // nobody answers them: one may be lost
-constexpr std::size_t kMostCandidates = 16;  // that are remembered
+constexpr std::int64_t kLook = 100'000'000;  // ns, between two checks whether to stop
+constexpr int kGoodbyes = 3;                 // not acknowledged: one may be lost
+constexpr std::size_t kMostCandidates = 16;  // remembered candidates
 
 std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
@@ -37,7 +37,7 @@ void DeviceServer::send(const Message& message, Outbox& outbox, const Peer& to) 
   send_bytes(outbox.encode(message), to);
 }
 
-// one datagram, if any waits
+// receives one datagram, if any waits
 DeviceServer::Event DeviceServer::receive() {
   Peer from;
   if (!socket_.receive(datagram_, from)) return Event::kNone;
@@ -53,7 +53,7 @@ DeviceServer::Event DeviceServer::receive() {
   return hear(verdict, header, from);
 }
 
-// a session begins with a hello, and what is left of an old one is not for the next
+// a session begins with a hello; leftovers of an old one do not count for the next
 DeviceServer::Event DeviceServer::hear(Verdict verdict, const Header& header, const Peer& from) {
   if (!has_client_) return hear_candidate(verdict, header, from);
   if (!(from == client_)) {
@@ -81,7 +81,7 @@ DeviceServer::Event DeviceServer::hear_candidate(Verdict verdict, const Header& 
   const bool is_ready =
       verdict == Verdict::kGood && header.type == static_cast<std::uint16_t>(MessageType::kReady);
   if (!is_ready || !was_welcomed(from, header.session)) return Event::kNone;
-  // its hello is forgotten: many have come since
+  // its hello was forgotten: many have arrived since
   Candidate candidate{.peer = from,
                       .hello = {.client = "a client"},
                       .outbox = Outbox(header.session, config_.key),
@@ -91,8 +91,8 @@ DeviceServer::Event DeviceServer::hear_candidate(Verdict verdict, const Header& 
   return Event::kReady;
 }
 
-// Number of the next session, should it be that of `peer`, who is welcomed at that time. Whoever
-// knows it got the welcome: nothing has to be remembered of the others, however many there are.
+// Number of the next session if it is the one of `peer`, welcomed at that time. A client that knows
+// it got the welcome: no record of other clients is needed, however many there are.
 std::uint32_t DeviceServer::session_for(const Peer& peer, std::int64_t time_ns) const noexcept {
   const std::int64_t slot = time_ns / std::max<std::int64_t>(1, ns(config_.ready_timeout_s));
   std::array<unsigned char, sizeof sessions_ + sizeof slot + sizeof peer.address> facts{};
@@ -106,14 +106,14 @@ std::uint32_t DeviceServer::session_for(const Peer& peer, std::int64_t time_ns) 
   return session | 1U;  // never 0
 }
 
-// not longer ago than twice the time to get ready
+// welcomed at most twice the ready time-out ago
 bool DeviceServer::was_welcomed(const Peer& peer, std::uint32_t session) const noexcept {
   const std::int64_t now = now_ns();
   return session == session_for(peer, now) ||
          session == session_for(peer, now - ns(config_.ready_timeout_s));
 }
 
-// the others are told that they came too late
+// the other candidates are notified that they are too late
 void DeviceServer::begin_session(const Candidate& chosen) {
   has_client_ = true;
   ++sessions_;
@@ -131,7 +131,7 @@ void DeviceServer::begin_session(const Candidate& chosen) {
   candidates_.clear();
 }
 
-// a hello that comes again is of the same candidate
+// a repeated hello belongs to the same candidate
 DeviceServer::Candidate& DeviceServer::candidate_of(const Hello& hello, const Peer& from) {
   const std::uint32_t session = session_for(from, now_ns());
   for (Candidate& candidate : candidates_) {
@@ -152,7 +152,7 @@ DeviceServer::Event DeviceServer::take(const Header& header) {
       return Event::kReady;
     case MessageType::kCommand:
       if (!decode(datagram_.view(), arrived_) || !fits(config_.actual, arrived_) ||
-          arrived_.sequence > frame_.sequence) {  // answers what was never asked
+          arrived_.sequence > frame_.sequence) {  // answers a frame that was never sent
         ++malformed_;
         return Event::kNone;
       }
@@ -301,7 +301,7 @@ void DeviceServer::measure_answer() {
 void DeviceServer::live_in_real_time(device::Device& device, const std::atomic<bool>& stop) {
   runtime::Schedule schedule(now_ns(), std::llround(1e9 / config_.actual.rate_Hz));
   const std::int64_t timeout = ns(config_.command_timeout_s);
-  // the age of the frame that a command answers: a client that falls behind is not to be followed
+  // age of the frame that a command answers: a client that falls behind must not be followed
   const auto most_periods =
       static_cast<std::uint64_t>(config_.command_timeout_s * config_.actual.rate_Hz);
   while (!stop.load() && now_ns() - heard_ns_ <= timeout) {

@@ -1,7 +1,7 @@
 /// Serves a device to one client at a time: the other side of docs/device_protocol.md.
 ///
-/// From one thread. Real time: the device lives by this server's clock, with the newest command.
-/// Lock-step: it lives a period when the command that answers its last frame has come.
+/// Single-threaded. Real time: the device advances by this server's clock, with the newest command.
+/// Lock-step: it advances by a period when the command that answers its last frame has arrived.
 #pragma once
 
 #include <sodium/crypto_shorthash.h>
@@ -23,34 +23,37 @@
 
 namespace hg::remote {
 
-/// Set-up data.
+/// Set-up data of a device server.
 struct ServerConfig {
   Description actual;
-  std::string server;         ///< program and version, for the client
-  bool is_simulated = false;  ///< no machine moves: nobody has to test its brakes
-  /// Real time: without a good command, drives off; one that answers an older frame is none.
+  std::string server;         ///< program and version, reported to the client
+  bool is_simulated = false;  ///< simulated device: its brakes need no test
+  /// Real time: drives off after this time without a good command; a command that answers an older
+  /// frame does not count.
   double command_timeout_s = 0.05;
   double lock_step_timeout_s = 5.0;
-  double ready_timeout_s = 30.0;  ///< between welcome and ready: the client sets itself up
-  std::string capture;            ///< every datagram into this file, see Capture; empty = none
-  Key key;                        ///< that clients must have, too
+  /// Time between welcome and ready, in which the client sets itself up
+  double ready_timeout_s = 30.0;
+  std::string capture;  ///< file that receives every datagram, see Capture; empty = none
+  Key key;              ///< shared key, which clients must have, too
 };
 
 enum class SessionEnd {
   kClientLeft,
-  kClientSilent,  ///< no good command for the time-out
-  kStopped,       ///< by the caller
+  kClientSilent,  ///< no good command within the time-out
+  kStopped,       ///< stopped by the caller
 };
 
-/// What a session was like.
+/// Summary of a session.
 struct SessionReport {
   SessionEnd end = SessionEnd::kStopped;
   std::string client;         ///< name and address, printable
-  std::string farewell;       ///< the client's, printable
-  std::string other;          ///< address of the first that sent into this session; empty = none
-  std::uint64_t periods = 0;  ///< that the device has lived
+  std::string farewell;       ///< farewell text of the client, printable
+  std::string other;          ///< address of the first other sender into this session; empty = none
+  std::uint64_t periods = 0;  ///< periods for which the device advanced
   std::uint64_t overruns = 0;
-  double mean_answer_s = 0.0, max_answer_s = 0.0;  ///< from a frame to the command that answers it
+  /// Time from a frame to the command that answers it
+  double mean_answer_s = 0.0, max_answer_s = 0.0;
   LinkCounts link;
 };
 
@@ -59,21 +62,21 @@ class DeviceServer {
   /// Throws SetupError.
   DeviceServer(const Address& address, const ServerConfig& config);
 
-  /// HOST:PORT, with the port that the system chose for 0.
+  /// Listening address HOST:PORT, with the port that the system chose for 0.
   std::string address() const { return to_string(socket_.own_address()); }
 
-  /// Why the capture does not hold every datagram so far; empty: it does, or there is none.
+  /// Why the capture misses datagrams; empty: it is complete, or there is none.
   std::string capture_error() { return capture_ ? capture_->flush() : ""; }
 
-  /// Until a client has been welcomed and is ready. False: `stop` has come.
+  /// Blocks until a client has been welcomed and is ready. False: stopped by `stop`.
   bool wait_for_client(const std::atomic<bool>& stop);
-  /// The session of this client. Whatever ends it, the last command disables the drives.
+  /// Runs the session of this client. However it ends, the last command disables the drives.
   SessionReport serve(device::Device& device, const std::atomic<bool>& stop);
 
  private:
   enum class Event { kNone, kReady, kCommand, kGoodbye };
-  /// Welcomed and not ready yet. Several may be: the first that is ready has the device, also when
-  /// it is not among those that are remembered.
+  /// Client that is welcomed and not ready yet. There may be several: the first that is ready gets
+  /// the device, even when it is not among those remembered.
   struct Candidate {
     Peer peer;
     Hello hello;
@@ -107,10 +110,10 @@ class DeviceServer {
   ServerConfig config_;
   UdpSocket socket_;
   std::unique_ptr<Capture> capture_;
-  /// Of the sessions' numbers: whoever answers with his has been welcomed at his address.
+  /// Secret for session numbers: a client that answers with its number was welcomed at its address.
   std::array<unsigned char, crypto_shorthash_KEYBYTES> secret_{};
-  std::uint64_t sessions_ = 0;         ///< that have begun: a number is for one only
-  std::vector<Candidate> candidates_;  ///< the oldest first, one per address
+  std::uint64_t sessions_ = 0;         ///< sessions begun: a number is valid for one only
+  std::vector<Candidate> candidates_;  ///< oldest first, one per address
   bool has_client_ = false;
   Peer client_;
   Hello hello_;
@@ -118,8 +121,8 @@ class DeviceServer {
   Inbox inbox_{0};
   Datagram datagram_;
   SensorFrame frame_;
-  CommandFrame arrived_, command_;  ///< the latter is at work
-  bool has_command_ = false;        ///< in this session
+  CommandFrame arrived_, command_;  ///< `command_` is in effect
+  bool has_command_ = false;        ///< a command has arrived in this session
   bool has_left_ = false;           ///< the client has said goodbye
   std::int64_t frame_ns_ = 0, heard_ns_ = 0;
   std::int64_t answers_ = 0, answers_ns_ = 0, longest_answer_ns_ = 0;

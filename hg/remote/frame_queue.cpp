@@ -6,7 +6,7 @@
 namespace hg::remote {
 namespace {
 
-// one period further at the same speed; encoders of joints that turn without end may jump by a turn
+// extrapolated by one period at the same speed; encoders of endless joints may jump by a turn
 template <typename Vector>
 void go_on(const Vector& before, Vector& last) noexcept {
   if (before.size() != last.size()) return;

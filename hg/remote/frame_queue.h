@@ -1,9 +1,9 @@
-/// Brings the frames of a remote device into their order, one after the other without a gap.
+/// Puts the frames of a remote device into order, without gaps.
 ///
-/// A frame that is missing when a later one has come is filled in: what moved goes on moving, the
-/// rest keeps its value. More than kMostHeld in a row are not filled in: the frame behind the gap
-/// comes out with its own number, and the sensor check stops the device ([HANDBOOK] 6.6: three in a
-/// row).
+/// A frame that is missing when a later one has arrived is filled in: moving quantities are
+/// extrapolated, the rest keeps its value. More than kMostHeld in a row are not filled in: the
+/// frame after the gap is returned with its own number, and the sensor check stops the device
+/// ([HANDBOOK] 6.6: three in a row).
 ///
 /// Pure: no socket, no clock. No allocation, noexcept.
 #pragma once
@@ -21,11 +21,11 @@ class FrameQueue {
   static constexpr std::size_t kRoom = 8;
 
   bool is_full() const noexcept { return count_ == kRoom; }
-  /// Not when it is_full(). False: the frame has been here, or its turn is over.
+  /// Adds a frame; not when it is_full(). False: a duplicate, or too late.
   bool push(const SensorFrame& frame) noexcept;
-  /// The next frame, false if it cannot be told yet.
+  /// Returns the next frame; false if it is not determined yet.
   bool pop(SensorFrame& frame) noexcept;
-  /// Frames that were filled in.
+  /// Number of frames that were filled in.
   std::uint64_t held() const noexcept { return held_; }
 
  private:
@@ -35,9 +35,9 @@ class FrameQueue {
   std::array<SensorFrame, kRoom> waiting_;
   std::size_t count_ = 0;
   bool is_started_ = false;
-  std::uint64_t next_ = 0;  ///< number of the frame that comes out next
+  std::uint64_t next_ = 0;  ///< number of the next frame to return
   std::uint64_t held_ = 0;
-  SensorFrame last_, before_;  ///< the last two that came out
+  SensorFrame last_, before_;  ///< last two frames returned
 };
 
 }  // namespace hg::remote

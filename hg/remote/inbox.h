@@ -1,4 +1,4 @@
-/// Which datagrams of one session count: each good one once, in whatever order they come.
+/// Filters the datagrams of one session: each good one is accepted once, in any order.
 ///
 /// Pure: no socket, no clock. No allocation, noexcept.
 #pragma once
@@ -10,32 +10,32 @@
 
 namespace hg::remote {
 
-/// Numbers that have been seen, like the replay window of IPsec (RFC 4303, 3.4.3).
+/// Window of seen numbers, like the replay window of IPsec (RFC 4303, 3.4.3).
 class NumberWindow {
  public:
-  static constexpr std::uint64_t kSize = 64;  ///< numbers that may be overtaken by so many
+  static constexpr std::uint64_t kSize = 64;  ///< window size: a number may be overtaken by so many
   enum class Place { kNewest, kOvertaken, kSeen };
 
-  /// A number older than the window counts as seen.
+  /// Classifies a number; one older than the window counts as seen.
   Place accept(std::uint64_t number) noexcept;
-  /// Numbers since the first that have not been seen.
+  /// Count of numbers since the first that have not been seen.
   std::uint64_t missing() const noexcept { return count_ == 0 ? 0 : newest_ - first_ + 1 - count_; }
 
  private:
   std::uint64_t first_ = 0, newest_ = 0, count_ = 0;
-  std::uint64_t seen_ = 0;  ///< bit i: newest_ - i
+  std::uint64_t seen_ = 0;  ///< bit i set: newest_ - i was seen
 };
 
 class Inbox {
  public:
   explicit Inbox(std::uint32_t session) : session_(session) {}
 
-  /// Counts a datagram by what read_header() said of it; true: look at its fields.
+  /// Counts a datagram by the verdict of read_header(); true: its fields are to be decoded.
   bool accept(Verdict verdict, const Header& header) noexcept;
   /// Whether the datagram accepted last was overtaken by a later one.
   bool was_overtaken() const noexcept { return was_overtaken_; }
 
-  /// What is known here; users add what they know.
+  /// Link counts known to the inbox; users add their own.
   LinkCounts counts() const noexcept;
 
  private:

@@ -1,8 +1,8 @@
-/// The secret that controller and device share, and the tag that it gives a datagram: HMAC-SHA256
-/// ([RFC 2104], [FIPS 180-4]), of which the first 16 bytes are sent.
+/// Shared secret of controller and device, and the tag of a datagram: HMAC-SHA256 ([RFC 2104],
+/// [FIPS 180-4]), of which the first 16 bytes are sent.
 ///
-/// Uses libsodium (ISC licence). Tags are made and compared without allocation, noexcept; the time
-/// that a comparison takes does not tell where the tags differ.
+/// Uses libsodium (ISC licence). Tags are made and compared without allocation, noexcept; a
+/// comparison takes constant time.
 #pragma once
 
 #include <sodium/crypto_auth_hmacsha256.h>
@@ -21,25 +21,25 @@ class Key {
   static constexpr std::size_t kMostSize = 4096;  ///< bytes of a key
   using Tag = std::array<std::byte, kTagSize>;
 
-  /// None: datagrams carry no tag.
+  /// No key: datagrams carry no tag.
   Key() = default;
   explicit Key(std::span<const std::byte> secret);
 
-  /// All bytes of the file. Throws SetupError: it cannot be read, is no file, may be read by others
-  /// than its owner, who must be this user or root, has less than kLeastSize or more than kMostSize
-  /// bytes, or only zeros.
+  /// Key from all bytes of the file. Throws SetupError: it cannot be read, is no file, may be read
+  /// by others than its owner, who must be this user or root, has less than kLeastSize or more than
+  /// kMostSize bytes, or only zeros.
   static Key from_file(const std::string& file);
 
   bool is_set() const noexcept { return is_set_; }
-  /// Of these bytes. Only of a key that is set.
+  /// Tag of these bytes; requires a key that is set.
   Tag tag(std::span<const std::byte> bytes) const noexcept;
-  /// Whether these are the tag of these bytes.
+  /// Whether `tag` is the tag of `bytes`.
   bool fits(std::span<const std::byte> bytes,
             std::span<const std::byte, kTagSize> tag) const noexcept;
 
  private:
   bool is_set_ = false;
-  crypto_auth_hmacsha256_state begun_{};  ///< with the key in it: copied for each datagram
+  crypto_auth_hmacsha256_state begun_{};  ///< initial state with the key: copied for each datagram
 };
 
 }  // namespace hg::remote

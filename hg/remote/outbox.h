@@ -10,7 +10,7 @@ class Outbox {
  public:
   explicit Outbox(std::uint32_t session, const Key& key = {}) : session_(session), key_(key) {}
 
-  /// The bytes are valid until the next call.
+  /// Encodes a message with the next number; the bytes are valid until the next call.
   template <typename Message>
   std::span<const std::byte> encode(const Message& message) noexcept {
     const Header header{
@@ -18,9 +18,9 @@ class Outbox {
     remote::encode(header, message, datagram_, key_);
     return datagram_.view();
   }
-  /// Datagrams encoded so far.
+  /// Number of datagrams encoded so far.
   std::uint64_t number() const noexcept { return number_; }
-  /// From here on in a session; the numbers go on.
+  /// Sets the session of all further datagrams; numbering continues.
   void join(std::uint32_t session) noexcept { session_ = session; }
 
  private:

@@ -1,5 +1,5 @@
-/// The messages between a controller and a remote device, one per datagram. Described to the byte
-/// in docs/device_protocol.md; the fields stand in message_fields.h and nowhere else.
+/// The messages between a controller and a remote device, one per datagram. Byte layout:
+/// docs/device_protocol.md; the fields are defined only in message_fields.h.
 ///
 /// Little endian, fixed layout. No allocation, noexcept.
 #pragma once
@@ -19,23 +19,23 @@ namespace hg::remote {
 
 inline constexpr std::uint32_t kMagic = 0x50444748;  ///< "HGDP"
 inline constexpr std::uint16_t kVersion = 2;
-/// A datagram that no network divides.
+/// Largest datagram, bytes: not fragmented by any network.
 inline constexpr std::size_t kLargestDatagram = 1400;
 
 enum class MessageType : std::uint16_t {
-  kHello = 1,    ///< client: who I am and what I expect
-  kWelcome = 2,  ///< device: who I am, or why not
-  kReady = 3,    ///< client: begin with the first frame
-  kSensors = 4,  ///< device
-  kCommand = 5,  ///< client
-  kGoodbye = 6,  ///< either: the session is over
+  kHello = 1,    ///< client: its identity and expectations
+  kWelcome = 2,  ///< device: its identity, or a refusal
+  kReady = 3,    ///< client: start with the first frame
+  kSensors = 4,  ///< device: sensor frame
+  kCommand = 5,  ///< client: command frame
+  kGoodbye = 6,  ///< either side: the session is over
 };
 
-/// Text from elsewhere for a terminal, in one line: a '?' for each byte of what is not shown
+/// Foreign text made safe for a terminal, in one line: a '?' for each byte that is not shown
 /// (hg/core/visible.h).
 std::string printable(std::string_view text);
 
-/// Fixed room for text; what does not fit is cut.
+/// Text of fixed capacity; longer text is cut.
 template <std::size_t kSize>
 struct Text {
   std::array<char, kSize> bytes{};
@@ -46,7 +46,7 @@ struct Text {
     const std::string_view text = value;
     std::memcpy(bytes.data(), text.data(), std::min(text.size(), kSize));
   }
-  /// As it came; people get printable().
+  /// Text as received; use printable() for display.
   std::string_view view() const noexcept {
     return {bytes.data(),
             static_cast<std::size_t>(std::find(bytes.begin(), bytes.end(), '\0') - bytes.begin())};
@@ -54,10 +54,10 @@ struct Text {
   std::string printable() const { return remote::printable(view()); }
 };
 
-/// What drives are told: where to be (they follow CommandFrame::q_m), or torques (tau_m).
+/// Command interface of the drives: positions (they follow CommandFrame::q_m), or torques (tau_m).
 enum class Interface : std::uint32_t { kPosition = 1, kTorque = 2 };
 
-/// What both sides must agree on.
+/// Properties of a device on which both sides must agree.
 struct Description {
   Text<64> device;  ///< name of the device in its device.yaml
   std::uint32_t n_p = 0;
@@ -70,18 +70,18 @@ struct Description {
 enum class Refusal : std::uint32_t {
   kNone = 0,
   kBusy = 1,      ///< another client has the device
-  kProtocol = 2,  ///< of another version
-  kMismatch = 3,  ///< of the descriptions
+  kProtocol = 2,  ///< other protocol version
+  kMismatch = 3,  ///< descriptions differ
   kKey = 4,       ///< the tag of the shared key is wrong, missing or not expected
 };
 
 enum class Farewell : std::uint32_t {
   kDone = 1,    ///< as planned
   kFault = 2,   ///< the client stopped because of a fault
-  kSilent = 3,  ///< the other side was not heard any more
+  kSilent = 3,  ///< the other side fell silent
 };
 
-/// In front of every message.
+/// Header of every message.
 struct Header {
   std::uint32_t magic = kMagic;
   std::uint16_t version = kVersion;
@@ -101,7 +101,7 @@ struct Hello {
 struct Welcome {
   std::uint64_t nonce = 0;
   Refusal refusal = Refusal::kNone;
-  bool is_simulated = false;  ///< no machine moves there, whatever is commanded
+  bool is_simulated = false;  ///< no machine moves, whatever is commanded
   Description actual;
   double command_timeout_s = 0.0;
   Text<64> server;
@@ -115,7 +115,7 @@ struct Goodbye {
   Text<64> reason;
 };
 
-/// Each type of C++ and its number on the wire.
+/// Message type number of each C++ type.
 template <typename Message>
 inline constexpr MessageType kTypeOf = MessageType{};
 template <>

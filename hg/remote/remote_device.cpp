@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kHelloPeriod = 100'000'000;  // ns
 constexpr std::int64_t kRepeatPeriod = 20'000'000;  // ns, in lock-step and for the first frame
 constexpr int kMostAtOnce = 64;                     // datagrams
-constexpr int kGoodbyes = 3;                        // nobody answers them: one may be lost
+constexpr int kGoodbyes = 3;                        // not acknowledged: one may be lost
 
 std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
@@ -24,7 +24,7 @@ std::uint64_t random_number() {
   return std::uint64_t{random()} << 32U | random();
 }
 
-// a device that heard nothing has not left by itself
+// a device that left because of silence has lost our commands
 FaultCode reason_of(const Goodbye& goodbye) noexcept {
   return goodbye.farewell == Farewell::kSilent ? FaultCode::kCommandsLost : FaultCode::kDeviceGone;
 }
@@ -48,7 +48,7 @@ void RemoteDevice::connect(const std::string& at) {
     while (now_ns() < again) {
       socket_.wait(again);
       if (answers(at, nonce, now_ns() < busy_until)) return;
-      if (socket_.was_refused()) break;  // come back later
+      if (socket_.was_refused()) break;  // port closed: try again later
     }
     while (now_ns() < again) socket_.wait(again);
   }
@@ -69,7 +69,7 @@ bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce, bool is_p
         fmt::format("{}: the device speaks version {} of the protocol, this program {}", at,
                     header.version, kVersion));
   }
-  // a server with another key or none can say so, and no more
+  // a server with another key or none can report just that
   const bool is_forged = verdict == Verdict::kForged;
   if (!(verdict == Verdict::kGood || is_forged) ||
       header.type != static_cast<std::uint16_t>(MessageType::kWelcome)) {
@@ -79,7 +79,7 @@ bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce, bool is_p
   if (is_forged && welcome_.refusal == Refusal::kNone) {
     throw SetupError(at + ": the device's answer is not of the key that was given (--key-file)");
   }
-  if (welcome_.refusal == Refusal::kBusy && is_patient) return false;  // asked again
+  if (welcome_.refusal == Refusal::kBusy && is_patient) return false;  // busy: ask again
   if (welcome_.refusal != Refusal::kNone) {
     throw SetupError(fmt::format("{}: the device refuses: {}", at, welcome_.reason.printable()));
   }
@@ -143,7 +143,7 @@ void RemoteDevice::take(const Header& header) noexcept {
       if (!decode(datagram_.view(), goodbye_)) ++own_.malformed;
       has_left_ = true;
       return;
-    case MessageType::kWelcome:  // answers a hello that was sent twice
+    case MessageType::kWelcome:  // answer to a hello that was sent twice
       return;
     case MessageType::kHello:
     case MessageType::kReady:
@@ -153,7 +153,7 @@ void RemoteDevice::take(const Header& header) noexcept {
   }
 }
 
-// the server waits for what has been lost
+// repeats what was lost: the server waits for it
 void RemoteDevice::say_again() noexcept {
   if (has_command_) {
     send(last_command_);
@@ -179,7 +179,7 @@ void RemoteDevice::write(const CommandFrame& command) noexcept {
   const bool is_answered = has_command_ && command.sequence == last_command_.sequence;
   if (config_.expected.is_lock_step && is_answered) return;
   last_command_ = command;
-  // behind a fault the frames are made here: the server takes no answer to what it has not sent
+  // after a fault, frames are generated locally: the server accepts no answer to an unsent frame
   last_command_.sequence = std::min(command.sequence, newest_);
   has_command_ = true;
   send(last_command_);

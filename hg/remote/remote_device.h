@@ -17,37 +17,37 @@
 
 namespace hg::remote {
 
-/// Set-up data.
+/// Set-up data of a remote device.
 struct ClientConfig {
-  Description expected;           ///< anything else is refused
+  Description expected;           ///< expected description; any other is refused
   std::string client;             ///< program and version, for the server's log
-  double answer_timeout_s = 3.0;  ///< for the welcome
-  double busy_patience_s = 0.0;   ///< with a device that has another client
-  double first_timeout_s = 1.0;   ///< for the first frame
-  /// Between frames. In real time what a gantry at 1.5 m/s may do in it (75 mm) counts, in
-  /// lock-step the patience with a slow simulator.
+  double answer_timeout_s = 3.0;  ///< time-out for the welcome
+  double busy_patience_s = 0.0;   ///< time to keep asking a device that has another client
+  double first_timeout_s = 1.0;   ///< time-out for the first frame
+  /// Time-out between frames. In real time it is limited by the possible travel of a gantry at 1.5
+  /// m/s (75 mm), in lock-step by the patience with a slow simulator.
   double frame_timeout_s = 0.05;
   double lock_step_timeout_s = 5.0;
-  Key key;  ///< that the server must have, too
+  Key key;  ///< shared key, which the server must have, too
 };
 
 class RemoteDevice final : public device::Device {
  public:
-  /// Connects. Throws SetupError: nobody answers, refused and why, another device or version.
+  /// Connects. Throws SetupError: no answer, refused and why, other device or version.
   RemoteDevice(const Address& address, const ClientConfig& config);
   ~RemoteDevice() override;
 
-  /// Waits for the next frame, at most one of the time-outs. Then, and when the server has said
-  /// goodbye, the last frame comes again with its driver_fault set, from now on at once.
+  /// Waits for the next frame, at most one of the time-outs. After a time-out or a goodbye of the
+  /// server, the last frame is repeated with its driver_fault set, from now on without waiting.
   void read(SensorFrame& sensors) noexcept override;
   void write(const CommandFrame& command) noexcept override;
   bool is_clock() const noexcept override { return true; }
 
-  /// Tells the server that the session is over, and why: kNone = as planned. Once.
+  /// Notifies the server that the session is over, and why: kNone = as planned. Only once.
   void close(FaultCode reason) noexcept;
 
   const Welcome& welcome() const noexcept { return welcome_; }
-  /// Why the server ended the session, printable; empty: it did not.
+  /// Reason why the server ended the session, printable; empty: it did not.
   std::string farewell() const { return goodbye_.reason.printable(); }
   LinkCounts counts() const noexcept;
 
@@ -72,14 +72,14 @@ class RemoteDevice final : public device::Device {
   Goodbye goodbye_;
   SensorFrame arrived_;
   CommandFrame last_command_;
-  std::uint64_t newest_ = 0;  ///< frame that has come
+  std::uint64_t newest_ = 0;  ///< number of the newest frame received
   Datagram datagram_;
-  bool is_started_ = false;  ///< the first frame has come
+  bool is_started_ = false;  ///< the first frame has arrived
   bool has_command_ = false;
-  bool has_left_ = false;  ///< the server
+  bool has_left_ = false;  ///< the server has left
   bool is_closed_ = false;
   FaultCode fault_ = FaultCode::kNone;
-  LinkCounts own_;  ///< what neither inbox nor queue can count
+  LinkCounts own_;  ///< counts beyond those of inbox and queue
 };
 
 }  // namespace hg::remote

@@ -1,4 +1,4 @@
-/// Datagrams in and out.
+/// UDP socket for sending and receiving datagrams.
 #pragma once
 
 #include <netinet/in.h>
@@ -13,43 +13,43 @@
 
 namespace hg::remote {
 
-/// HOST:PORT as a user types it; a host with colons in brackets.
+/// HOST:PORT as typed by a user; a host with colons in brackets.
 struct Address {
   std::string host, port;
 };
 
-/// Throws SetupError that begins with `option`.
+/// Parses an address; throws SetupError that begins with `option`.
 Address parse_address(const std::string& option, const std::string& text);
 
-/// The other end of a datagram.
+/// Address of the other end of a datagram.
 struct Peer {
   sockaddr_storage address{};
   socklen_t length = 0;
 };
 bool operator==(const Peer& a, const Peer& b) noexcept;
-/// HOST:PORT in numbers.
+/// Numeric HOST:PORT.
 std::string to_string(const Peer& peer);
 
 using runtime::now_ns;
 
 class UdpSocket {
  public:
-  /// Throw SetupError that names the address and what the system says.
+  /// These throw SetupError that names the address and the system's error message.
   static UdpSocket listening_at(const Address& address);
   static UdpSocket talking_to(const Address& address);
   UdpSocket(UdpSocket&& other) noexcept;
   UdpSocket& operator=(UdpSocket&&) = delete;
   ~UdpSocket();
 
-  /// The following neither allocate nor block nor throw. What cannot be sent is lost.
+  /// Functions below neither allocate nor block nor throw. A datagram that cannot be sent is lost.
   void send(std::span<const std::byte> datagram) noexcept;
   void send(std::span<const std::byte> datagram, const Peer& to) noexcept;
-  /// The oldest datagram that waits; false: none. Longer ones are cut behind kLargestDatagram.
+  /// Receives the oldest waiting datagram; false: none. Longer ones are cut at kLargestDatagram.
   bool receive(Datagram& datagram, Peer& from) noexcept;
-  /// Until a datagram waits, or the time has come.
+  /// Waits until a datagram arrives, or until the given time.
   void wait(std::int64_t until_ns) noexcept;
 
-  /// Whether the other end's machine said that nobody listens there, since the last call.
+  /// Whether the other machine has reported a closed port since the last call.
   bool was_refused() noexcept;
   Peer own_address() const;
 

@@ -4,7 +4,7 @@
 
 namespace hg::rendering {
 
-// Gram and Schmidt, always with the longest of the columns that are left; w is one more column.
+// Gram-Schmidt, always with the longest of the remaining columns; w is one more column.
 Vector6 bearing_wrench(const model::Jacobian& J, const Vector6& w) noexcept {
   constexpr double kDependent = 1e-12;
   model::Jacobian left = J;

@@ -15,12 +15,12 @@ namespace hg::rendering {
 /// their range is unbounded.
 LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin);
 
-/// Names that an earlier limit of the catalogue has already: two limits of one name could not be
-/// told apart in events, figures and on the page.
+/// Names used more than once in the catalogue: such limits could not be distinguished in events,
+/// figures and on the page.
 std::vector<std::string> repeated_names(const LimitCatalogue& catalogue);
 
-/// Positions of the device's limits, first in the catalogue, with the gantry at `q_p` and the
-/// manipulator at `q_m`. Moves `device.chain`.
+/// Computes positions of the device's limits, first in the catalogue, with the gantry at `q_p` and
+/// the manipulator at `q_m`. Updates `device.chain`.
 void limit_positions(DeviceModel& device, const VectorP& q_p, const VectorM& q_m,
                      std::vector<double>& positions);
 

@@ -1,4 +1,4 @@
-/// How a unit constraint force of a device limit reaches the handle and the twin.
+/// Effect of a unit constraint force of a device limit on the handle and the twin.
 ///
 /// Source: [HG] (21)-(24), which are one formula: a row C ddq_m pushes the handle with the wrench
 /// y, J_m^T y = C^T, and the twin with J_a^T y. For a Cartesian limit of the handle y is a unit
@@ -21,18 +21,19 @@ class ConstraintDirections {
  public:
   ConstraintDirections(const DeviceModel& device, const TwinModel& twin);
 
-  /// Takes the Jacobians of the handle (gantry first) and of the twin's end effector of this cycle;
-  /// before any find(), of which the first one factors J_m.
+  /// Sets the Jacobians of this cycle: handle (gantry first) and end effector of the twin. Call
+  /// before find(), whose first call factors J_m.
   void update(const model::Jacobian& J_H, const model::Jacobian& J_a) noexcept;
 
-  /// Fills the columns of device limit `limit`, whose row of `problem` is `row`.
+  /// Computes the columns of device limit `limit`, whose row of `problem` is `row`.
   void find(const hqp::Problem& problem, int row, int limit) noexcept;
 
-  /// y: wrench on the handle, in B.
+  /// Wrench y on the handle, in B.
   Vector6 wrench(int limit) const noexcept { return wrench_.col(limit); }
-  /// J_a^T y: torques on the twin (n_a).
+  /// Torques J_a^T y on the twin (n_a).
   auto torque(int limit) const noexcept { return torque_.col(limit); }
-  /// C N, with N the motion of seven joints that leaves the handle at rest; 0 with six joints.
+  /// Product C N, with N the motion of seven joints that leaves the handle at rest; 0 with six
+  /// joints.
   double idle(int limit) const noexcept { return idle_[limit]; }
 
  private:

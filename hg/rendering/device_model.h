@@ -18,35 +18,35 @@ namespace hg::rendering {
 /// singular; [HG] sec. VI-C3.
 struct VirtualJoint {
   std::string name;
-  VectorM weights;  ///< one per manipulator joint
+  VectorM weights;  ///< Weight of each manipulator joint
   limits::JointLimits limits;
 };
 
 /// A frame whose origin stays inside a box of B; [HG] sec. VI-C4.
 struct CartesianLimit {
   std::string name;
-  int frame = -1;                           ///< index in the chain
-  std::array<limits::JointLimits, 3> axes;  ///< x, y, z of B in m; infinite = no row
-  double margin = 5e-3;  ///< the box is rendered smaller by this much on every side, m
+  int frame = -1;                           ///< Index of the frame in the chain
+  std::array<limits::JointLimits, 3> axes;  ///< Limits along x, y, z of B, m; infinite = no row
+  double margin = 5e-3;  ///< Margin by which the rendered box is smaller on every side, m
 };
 
 struct DeviceModel {
-  model::Chain chain;                             ///< gantry joints first, then the manipulator
-  int n_p = 0;                                    ///< gantry joints
-  int n_m = 0;                                    ///< manipulator joints
-  int handle = -1;                                ///< frame H
-  int elbow = -1;                                 ///< frame shown as the elbow; -1 = none
-  std::vector<limits::JointLimits> joint_limits;  ///< of the manipulator joints
-  /// One per manipulator joint: their torques are limits of the law. Empty: the law does not know
-  /// them, and no limit is accelerated beyond its rating.
+  model::Chain chain;  ///< Chain: gantry joints first, then the manipulator
+  int n_p = 0;         ///< Number of gantry joints
+  int n_m = 0;         ///< Number of manipulator joints
+  int handle = -1;     ///< Index of frame H
+  int elbow = -1;      ///< Index of the frame shown as the elbow; -1 = none
+  std::vector<limits::JointLimits> joint_limits;  ///< Limits of the manipulator joints
+  /// Motors, one per manipulator joint: their torques are limits of the law. Empty: the law does
+  /// not know them, and no limit is accelerated beyond its rating.
   std::vector<ActuatorModel> motors;
   std::vector<VirtualJoint> virtual_joints;
-  std::vector<CartesianLimit> cartesian_limits;  ///< highest priority first
-  /// Goals of the manipulator joints (n_m, or empty: none), NaN = no goal. The gantry moves so that
-  /// they are reached; a manipulator with more joints than the task needs moves there by itself.
+  std::vector<CartesianLimit> cartesian_limits;  ///< Cartesian limits, highest priority first
+  /// Goals of the manipulator joints (n_m; empty: none), NaN = no goal. The gantry moves so that
+  /// they are reached; a manipulator with more joints than the task needs moves there autonomously.
   VectorM posture;
 
-  /// Entries of the catalogue that belong to the device.
+  /// Number of catalogue entries that belong to the device.
   int limit_count() const {
     return n_m +
            static_cast<int>(virtual_joints.size() + motors.size() + 3 * cartesian_limits.size());

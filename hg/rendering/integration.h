@@ -6,10 +6,10 @@
 
 namespace hg::rendering {
 
-/// q += dt dq + dt^2/2 ddq, dq += dt ddq.
+/// Integrates the reference: q += dt dq + dt^2/2 ddq, dq += dt ddq.
 void integrate(ReferenceState& reference, double dt) noexcept;
 
-/// The same on the twin's configuration space: orientations stay orientations.
+/// Integrates the twin on its configuration space: orientations stay orientations.
 void integrate(const model::Chain& chain, TwinState& twin, double dt) noexcept;
 
 }  // namespace hg::rendering

@@ -6,11 +6,11 @@
 namespace hg::rendering {
 namespace {
 
-constexpr double kReserve = 1.6;        // of which changes of posture and delays take their part
-constexpr double kReactionTime = 0.02;  // s, until motors that were asked do brake
-constexpr double kShortest = 0.01;      // s, of the way that is left; nearer ends count as so far
-constexpr double kNear = 0.3;           // of ddq_max: who needs less has room to accelerate
-constexpr double kFar = 0.1;            // of ddq_max: where all need less nobody has to brake
+constexpr double kReserve = 1.6;        // reserve kept for changes of posture and delays
+constexpr double kReactionTime = 0.02;  // s, from the demand until the motors brake
+constexpr double kShortest = 0.01;      // s of remaining way; nearer ends count as this far
+constexpr double kNear = 0.3;  // share of ddq_max; a smaller need leaves room to accelerate
+constexpr double kFar = 0.1;   // share of ddq_max; no braking while all needs are smaller
 
 }  // namespace
 
@@ -35,7 +35,7 @@ bool is_near(const Approach& approach, const limits::JointLimits& limits) noexce
 Interval braking_bounds(const Approach& approach, double reserve, Interval bounds,
                         const limits::JointLimits& limits,
                         const limits::RecoverableOptions& options, double dq) noexcept {
-  // The speed may still grow to that at which the reserve is used up. No jump where it begins to.
+  // The speed may still grow until the reserve is used up. Continuous where braking begins.
   const double growth = std::max(std::sqrt(reserve / kReserve) - 1.0, 0.0);
   const double grows = growth * std::abs(dq) / options.tau_onset;
   const double hardest = options.ddq_rec_factor * limits.ddq_max;

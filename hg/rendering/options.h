@@ -18,16 +18,16 @@ enum class Bounds : std::uint8_t {
   kPaper,        ///< [HG]: A for joints, C for virtual joints and frames, B as levels of their own
 };
 
-/// What moves the gantry.
+/// Source of the gantry's motion.
 enum class Gantry : std::uint8_t {
-  kLaw,   ///< law gauss: its accelerations are unknowns with the rule as their aim; else the rule
+  kLaw,   ///< Law gauss: gantry accelerations are unknowns, the rule is their aim; else the rule
   kRule,  ///< [HG] (27)
 };
 
-/// Before which limits of the device its motors brake.
+/// Braking of the motors before limits of the device.
 enum class Braking : std::uint8_t {
-  kAlone,     ///< before each by itself, with its rating
-  kTogether,  ///< before all at once; where motors are known and bounds are recoverable, else alone
+  kAlone,     ///< before each limit separately, with its rating
+  kTogether,  ///< before all at once, where motors are known and bounds recoverable; else alone
 };
 
 constexpr std::string_view to_string(Law law) noexcept {
@@ -50,16 +50,17 @@ struct Options {
   Bounds bounds = Bounds::kRecoverable;
   Gantry gantry = Gantry::kRule;
   Braking braking = Braking::kAlone;
-  double T_C = 20e-3;      ///< horizon of bounds C, s; the period, as printed in (8), bounces
-  double dt = 1e-3;        ///< nominal period, s; integration uses it
-  double kP_tran = 400;    ///< synchronisation (11), 1/s^2; double pole at 20 rad/s with kD
-  double kD_tran = 40;     ///< 1/s
-  double kP_rot = 400;     ///< 1/s^2
-  double kD_rot = 40;      ///< 1/s
-  double kP_posture = 25;  ///< of joints that the task leaves free, 1/s^2; double pole at 5 rad/s
-  double kD_posture = 10;  ///< 1/s
+  double T_C = 20e-3;    ///< horizon of bounds C, s; the period, as printed in (8), bounces
+  double dt = 1e-3;      ///< Nominal period, s, used by the integration
+  double kP_tran = 400;  ///< synchronisation (11), 1/s^2; double pole at 20 rad/s with kD
+  double kD_tran = 40;   ///< Synchronisation, translational damping, 1/s
+  double kP_rot = 400;   ///< Synchronisation, rotational stiffness, 1/s^2
+  double kD_rot = 40;    ///< Synchronisation, rotational damping, 1/s
+  /// Stiffness of joints that the task leaves free, 1/s^2; double pole at 5 rad/s.
+  double kP_posture = 25;
+  double kD_posture = 10;  ///< Damping of joints that the task leaves free, 1/s
   int slow_solve = 100;    ///< active sets from which on a solve is kept; a warm start needs 1 or 2
-  /// Active sets after which a solve is ended, with the limits of the device kept; 0: none.
+  /// Active sets after which a solve is ended, with the device's limits kept; 0 = no budget.
   double solver_budget = 0;
 };
 

@@ -20,7 +20,7 @@
 
 namespace hg::rendering {
 
-/// The ends of the limits that the last result touched or left, by catalogue index: "active" in
+/// Ends of the limits that the last result touched or exceeded, by catalogue index: "active" in
 /// (26). Part of the copyable state of a cycle.
 struct TouchedEnds {
   std::array<bool, kMaxLimits> lower{};
@@ -40,7 +40,7 @@ class PaperLaw {
   void fill(const MatrixA& L, const VectorA& tau, int first_limit_row,
             ConstraintDirections& directions, hqp::Problem& problem) noexcept;
 
-  /// (26) and (31): the torques that limit `limit` may have.
+  /// Sets the range of the torques of limit `limit`, (26) and (31).
   void set_range(int limit, bool lower_touched, bool upper_touched, bool is_locked,
                  hqp::Problem& problem) const noexcept;
 
@@ -55,7 +55,7 @@ class PaperLaw {
   std::vector<double> coefficients_;  ///< scratch, one row
 };
 
-/// Is x at or beyond an end of row `row`; [HG] VI-C8. A missing end is never touched.
+/// Whether x is at or beyond an end of row `row`; [HG] VI-C8. A missing end is never touched.
 bool touches_lower(const hqp::Problem& problem, int row, std::span<const double> x) noexcept;
 bool touches_upper(const hqp::Problem& problem, int row, std::span<const double> x) noexcept;
 

@@ -50,7 +50,7 @@ bool is_upper_side(hqp::RowState state, double reaction) noexcept {
   return false;
 }
 
-// which rating of the limited quantity gives the bound that acts
+// rating of the limited quantity that gives the acting bound
 LimitCause cause_of(const LimitRow& row, Interval ddq, hqp::RowState state, double reaction,
                     double dt) noexcept {
   if (state == hqp::RowState::kInactive) return LimitCause::kNone;
@@ -208,7 +208,7 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
       row[j] = columns_(i, static_cast<Eigen::Index>(j));
       largest_in_row = std::max(largest_in_row, std::abs(row[j]));
     }
-    // near singular postures, what is left of a joint that no limit reaches must not decide
+    // near singular postures, the residual of a joint that no limit reaches must not decide
     if (largest_in_row < kReach * largest) row.fill(0.0);
     problem_.add_row(coefficients, {tau_constraint[i], tau_constraint[i]});
   }
@@ -239,8 +239,8 @@ void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const 
   record.budget.structure = bearing_wrench(J_a, record.robot.w_H);
 }
 
-// what is felt most: the limit that takes most of the acceleration, in the metric of M_a, which
-// the user's wrench asks for; a stop that only carries a spring is not felt
+// The limit felt most takes most of the acceleration, in the metric of M_a, that the user's wrench
+// demands; a stop that only carries a spring is not felt.
 void Reactions::report_felt(const MatrixA& L, CycleRecord& record) const noexcept {
   Budget& budget = record.budget;
   budget.limits = VectorA::Zero(n_a_);

@@ -1,4 +1,4 @@
-/// "Why do I feel this": which limits act, how hard, and where the user's wrench goes.
+/// Explains what the user feels: which limits act, how hard, and where the user's wrench goes.
 ///
 /// Law gauss: the total constraint torque M_a ddq_a - tau is unique; its split among the active
 /// rows is not when rows depend on each other. Rule: reactions have the sign of their bound, except
@@ -22,10 +22,10 @@ namespace hg::rendering {
 
 class Reactions {
  public:
-  /// Of `stops` rows of virtual surfaces besides the limits of the catalogue.
+  /// `stops`: number of rows of virtual surfaces besides the limits of the catalogue.
   Reactions(const DeviceModel& device, const TwinModel& twin, int stops = 0);
 
-  /// Takes the Jacobians of this cycle, see ConstraintDirections; before split() and report().
+  /// Sets the Jacobians of this cycle, see ConstraintDirections; call before split() and report().
   void update(const model::Jacobian& J_H, const model::Jacobian& J_a) noexcept {
     directions_.update(J_H, J_a);
   }
@@ -36,8 +36,8 @@ class Reactions {
   void split(const Tasks& tasks, const hqp::Solution& solution,
              const VectorA& tau_constraint) noexcept;
 
-  /// Constraint force or torque of a limit in its own coordinate, of stop i that of limit
-  /// catalogue size + i.
+  /// Constraint force or torque of a limit in its own coordinate; stop i has the index catalogue
+  /// size + i.
   double of(int limit) const noexcept { return value_[static_cast<std::size_t>(limit)]; }
 
   /// Torque of all limits of the device on the twin (n_a).
@@ -60,14 +60,16 @@ class Reactions {
   static constexpr int kMaxReactions = kMaxLimits + environment::kMostFacing;
 
   int n_m_, n_a_, device_limits_;
-  int count_;  ///< of all limits and stops
+  int count_;  ///< Number of limits and stops
   std::array<double, kMaxReactions> value_{};
   std::array<int, kMaxReactions> active_{};  ///< limits that may have a reaction
   int active_count_ = 0;
-  std::array<double, kMaxReactions> scale_{};    ///< of active limit j, in the split
-  MatrixUpTo<kMaxTwin, kMaxReactions> columns_;  ///< its torque on the twin per unit of the split
-  MatrixUpTo<kMaxTwin, environment::kMostFacing> stop_torque_;  ///< of a unit reaction of each
-  VectorA rest_;  ///< part of the constraint torque that nothing explains
+  std::array<double, kMaxReactions> scale_{};  ///< Scale of active limit j in the split
+  /// Torque of active limit j on the twin per unit of the split.
+  MatrixUpTo<kMaxTwin, kMaxReactions> columns_;
+  /// Torque on the twin of a unit reaction of each stop.
+  MatrixUpTo<kMaxTwin, environment::kMostFacing> stop_torque_;
+  VectorA rest_;  ///< Unexplained part of the constraint torque
   ConstraintDirections directions_;
   hqp::Problem problem_;
   hqp::Solver solver_;

@@ -17,19 +17,20 @@ namespace {
 // slower than this a joint with Coulomb friction stands still, rad/s or m/s
 constexpr double kStandstill = 1e-9;
 
-// the active sets that one solve may try: the larger of the two. A warm start mostly needs one; a
-// new contact needed at worst 17, a twin of 30 joints that meets many limits at once 38
+// Largest number of active sets of one solve: the larger of the two. A warm start mostly needs one;
+// a new contact needed at worst 17, a twin of 30 joints that meets many limits at once 38
 constexpr int kActiveSets = 200;
 constexpr int kActiveSetsPerRow = 4;
 
-constexpr double kStuck = 1e-6;  // of its mobility: a direction in which the twin cannot move
+// share of the twin's mobility below which it cannot move in a direction
+constexpr double kStuck = 1e-6;
 
 constexpr int kAlignIterations = 10;
 constexpr double kAligned = 1e-12;  // m and rad
 
-// What has run out of active sets must keep all limits of the device. What has been through all
-// levels and only lacks its proof is as good as rounding lets it be: motors and walls that stand
-// against each other have no better, joints must be kept.
+// A solve that ran out of active sets must keep all limits of the device. One that completed all
+// levels but lacks the proof of optimality is exact to rounding: joints must be kept, conflicting
+// motors and walls cannot be met better.
 SolverStatus solver_status(const Tasks& tasks, const hqp::Options& options,
                            const hqp::Solution& solution) noexcept {
   if (solution.status == hqp::Status::kSolved) return SolverStatus::kSolved;
@@ -257,7 +258,7 @@ Eigen::Vector3d Rendering::push_of_twin(const Budget& budget) const noexcept {
   return mobility.ldlt().solve(Eigen::Vector3d(root.transpose() * torque));
 }
 
-// The proxy goes along while nothing is felt, too.
+// Updates the proxy even while no surface is felt.
 void Rendering::feel_surfaces(State& state, double share, CycleRecord& record) noexcept {
   const Eigen::Vector3d p_E = twin_.chain.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
@@ -287,7 +288,7 @@ void Rendering::report_stops(CycleRecord& record) const noexcept {
   }
 }
 
-// What the limits of the device take of the force of a surface, the surface does not push with.
+// A surface does not push with the part of its force that limits of the device take.
 void Rendering::give_way(State& state, const CycleRecord& record) const noexcept {
   const double force = record.contact.force.norm();
   if (record.contact.surface < 0 || force == 0.0) return;
@@ -349,7 +350,7 @@ void Rendering::solve(State& state, double handle_speed, const GantryTask& gantr
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
   const int first_twin_limit = device_.limit_count();
   record.solver_iterations = 0;
-  bool was_spent = false;  // by a solve of this cycle
+  bool was_spent = false;  // a solve of this cycle has spent its budget
   for (int attempt = 0; attempt <= n_a; ++attempt) {
     Budget& budget = record.budget;
     const VectorA tau =

@@ -24,10 +24,10 @@
 
 namespace hg::rendering {
 
-/// What makes the twin calmer than it was set up: see hg/passivity.
+/// Additional damping and inertia of the twin; see hg/passivity.
 struct Calming {
-  double damping = 0.0;  ///< of its end effector in all directions, Ns/m
-  double inertia = 1.0;  ///< factor of its inertia, without more weight
+  double damping = 0.0;  ///< Damping of the end effector in all directions, Ns/m
+  double inertia = 1.0;  ///< Factor of the twin's inertia, without more weight
 };
 
 /// Part of the copyable state of a cycle.
@@ -35,16 +35,18 @@ struct State {
   ReferenceState reference;
   TwinState twin;
   TwinInnerState inner;
-  Calming calming;                  ///< for the next step
-  Vector6 touch = Vector6::Zero();  ///< on the handle, of what touches the arm: likewise
+  Calming calming;  ///< Additional damping and inertia in the next step
+  /// Wrench on the handle that stands for a contact of the arm, in the next step.
+  Vector6 touch = Vector6::Zero();
   hqp::ActiveSet active_set;
-  TouchedEnds touched;   ///< by the last result; law paper only
-  VectorP ddq_p;         ///< that the last result asks the gantry for; empty: nothing
-  VectorM motor_torque;  ///< that the last result asks for, Nm or N; empty: none, or not known
+  TouchedEnds touched;  ///< Limit ends touched by the last result; law paper only
+  VectorP ddq_p;        ///< Gantry acceleration demanded by the last result; empty: none
+  /// Motor torques demanded by the last result, Nm or N; empty: none, or not known.
+  VectorM motor_torque;
   environment::State contact;
 };
 
-/// Throws SetupError naming the first thing in the models that the law cannot use.
+/// Throws SetupError naming the first property of the models that the law cannot use.
 void check(const DeviceModel& device, const TwinModel& twin, const Options& options);
 
 class Rendering {
@@ -55,38 +57,40 @@ class Rendering {
   const DeviceModel& device() const noexcept { return device_; }
   const TwinModel& twin() const noexcept { return twin_; }
 
-  /// At rest: the manipulator at `q_m`, the twin at its start.
+  /// State at rest: manipulator at `q_m`, twin at its start.
   State start(const VectorM& q_m) const;
 
-  /// Lets a parameter of the twin change, from the next step() on.
+  /// Changes a parameter of the twin, from the next step() on.
   ChangeStatus change(const ParameterChange& change, State& state) const noexcept;
 
-  /// Solves for the accelerations of this sample and reports why they are what they are. Needs
-  /// record.robot; fills the rest that concerns device, twin, limits and solver. Does not move the
-  /// state: integrate() does. `share` (0..1) of the user's wrench, the twin's springs, its weight,
-  /// its reference wrench and the surfaces around it counts, so that a run against a leaning hand
-  /// begins and ends without a bump. `braking_rate` > 0 (1/s) brings the twin to rest, under the
-  /// same limits; with `share` 0 it is then a body without friction that nobody touches. The handle
-  /// moves no faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian
-  /// limits for it. `gantry` says where the law may lead the gantry; state.ddq_p is then where to.
+  /// Solves for the accelerations of this sample and reports their causes. Needs record.robot;
+  /// fills the rest that concerns device, twin, limits and solver. Does not advance the state:
+  /// integrate() does. `share` (0..1) scales the user's wrench, the twin's springs, its weight, its
+  /// reference wrench and the surfaces around it, so that a run against a leaning hand begins and
+  /// ends without a jump. `braking_rate` > 0 (1/s) brings the twin to rest, under the same limits;
+  /// with `share` 0 it is then a body without friction and without the user. The handle moves no
+  /// faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian limits
+  /// for it. `gantry` bounds where the law may lead the gantry; state.ddq_p is then the demanded
+  /// acceleration.
   SolverStatus step(State& state, double braking_rate, CycleRecord& record, double share = 1.0,
                     double handle_speed = kInfinity, const GantryTask& gantry = {}) noexcept;
 
   /// Whether the law can lead the gantry.
   bool leads_gantry() const noexcept { return tasks_.leads_gantry(); }
 
-  /// Moves the twin at rest to where its end effector meets the handle, as far as its joints allow.
+  /// Moves the twin, at rest, so that its end effector meets the handle, as far as its joints
+  /// allow.
   void align(const RobotState& robot, State& state) noexcept;
 
-  /// Keeps the reference within `largest` (rad or m) of the measured joints: where the device was
-  /// left behind, reference and twin come back to it, so that nothing runs away and then snaps;
-  /// [C] 6. True when it had to.
+  /// Keeps the reference within `largest` (rad or m) of the measured joints; [C] 6. Where the
+  /// device lags behind, reference and twin are moved back to it, so that the error cannot build up
+  /// and release suddenly. True when they were moved.
   bool stay_near(const RobotState& robot, double largest, State& state) noexcept;
 
-  /// In the last step a joint or virtual joint of the device could not be kept within its limits:
-  /// what the gantry does to a held twin stands above them.
+  /// Whether in the last step a joint or virtual joint of the device could not be kept within its
+  /// limits: the motion of the gantry at a held twin has priority over them.
   bool is_blocked() const noexcept;
-  /// How far each axis of the gantry may go down and up, the arm held stiff, until a frame other
+  /// Distance that each gantry axis may move down and up, the arm held stiff, until a frame other
   /// than the handle, which the law leads, is at a Cartesian limit: by the positions of the last
   /// step, to first order, m or rad.
   void gantry_room(VectorP& down, VectorP& up) const noexcept;
@@ -98,26 +102,28 @@ class Rendering {
   const model::Jacobian& handle_jacobian() const noexcept { return J_H_; }
   /// Twist of the end effector of the twin, resolved in B.
   Vector6 end_effector_twist(const State& state) const noexcept;
-  /// Of the twin as set up, at its end effector in the direction of B's axes where it is least, kg.
+  /// Mass of the twin as set up, at its end effector along the axis of B where it is least, kg.
   double apparent_mass(const State& state) const noexcept;
 
-  /// The budget of a solve from now on, where it is smaller than that of the options; 0: that.
+  /// Caps the budget of a solve from now on, where smaller than in the options; 0 = as in the
+  /// options.
   void limit_solver(std::uint32_t most_active_sets) noexcept;
 
-  /// Who is told about kRenderingSetUp, kSolver and kReactions from now on.
+  /// Installs a callback for the stages kRenderingSetUp, kSolver and kReactions.
   void watch(const StageProbe& probe) noexcept { ended_ = probe; }
 
   /// The problem of the last step: rows, bounds and weights.
   const hqp::Problem& problem() const noexcept { return tasks_.problem(); }
-  /// Solves that failed, that took options.slow_solve active sets or more, or that keep_problem()
-  /// was called for. One other thread may read them.
+  /// Kept solves: failed, with options.slow_solve active sets or more, or requested by
+  /// keep_problem(). One other thread may read them.
   const hqp::KeptProblems& kept_problems() const noexcept { return *kept_problems_; }
-  /// Keeps the last solve if it belonged to cycle `cycle`; 0 us: not for the time that this took.
+  /// Keeps the last solve if it belonged to cycle `cycle`; `cycle_time_us` = 0: not kept because of
+  /// the time that the cycle took.
   void keep_problem(std::uint64_t cycle, double cycle_time_us = 0.0) noexcept;
-  /// s of the last step (11): how H had to accelerate relative to E.
+  /// Right-hand side s of the last step (11): required acceleration of H relative to E.
   const Vector6& synchronisation() const noexcept { return tasks_.synchronisation(); }
 
-  /// Moves reference and twin by one period.
+  /// Advances reference and twin by one period.
   void integrate(State& state) const noexcept;
 
  private:
@@ -136,7 +142,7 @@ class Rendering {
   environment::Environment environment_;
   double stop_rating_;
   Tasks tasks_;
-  std::array<environment::Facing, environment::kMostFacing> stops_;  ///< of this cycle
+  std::array<environment::Facing, environment::kMostFacing> stops_;  ///< Stops in this cycle
   Reactions reactions_;
   // of this cycle: M_a = L L^T, the Jacobians of handle (gantry first) and end effector
   MatrixA L_;
@@ -144,8 +150,8 @@ class Rendering {
   hqp::Options solver_options_;
   hqp::Solver solver_;
   hqp::Solution solution_;
-  hqp::ActiveSet guess_;                       ///< that the last solve began with
-  std::optional<std::uint64_t> solved_cycle_;  ///< of the last solve
+  hqp::ActiveSet guess_;                       ///< Active set from which the last solve started
+  std::optional<std::uint64_t> solved_cycle_;  ///< Cycle of the last solve
   std::unique_ptr<hqp::KeptProblems> kept_problems_;
   StageProbe ended_;
 };

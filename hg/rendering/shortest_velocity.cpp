@@ -5,8 +5,7 @@
 
 namespace hg::rendering {
 
-// What solve() of the decomposition does, but that takes memory from the heap where the rank is
-// less than n_a.
+// Like solve() of the decomposition, which allocates where the rank is less than n_a.
 VectorA shortest_velocity(const model::Jacobian& jacobian, const Vector6& twist) noexcept {
   const Eigen::CompleteOrthogonalDecomposition<model::Jacobian> decomposition(jacobian);
   const Eigen::Index rank = decomposition.rank(), rest = jacobian.cols() - rank;

@@ -1,4 +1,4 @@
-/// Joint velocities for a wanted twist.
+/// Joint velocities for a given twist.
 #pragma once
 
 #include "hg/core/types.h"
@@ -6,8 +6,8 @@
 
 namespace hg::rendering {
 
-/// The shortest joint velocity (n_a) of those that come nearest to a twist, by the Jacobian (6 x
-/// n_a) of the frame that is to move with it. Does not allocate.
+/// Shortest joint velocity (n_a) among those nearest to a twist, for the Jacobian (6 x n_a) of the
+/// frame to be moved. Does not allocate.
 VectorA shortest_velocity(const model::Jacobian& jacobian, const Vector6& twist) noexcept;
 
 }  // namespace hg::rendering

@@ -309,7 +309,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
   known.noalias() += M.leftCols(device.n_p) * ddq_p_;
   known.noalias() -= input.J_H.middleCols(device.n_p, n_m_).transpose() * input.robot.w_H;
 
-  // what turns faster than any motor has jumped: nothing is known of its torques
+  // a joint faster than any motor has jumped: its torques are unknown
   are_torques_known_ = known.allFinite();
   for (int i = 0; i < n_m_; ++i) {
     const double fastest = kJumped * device.motors[static_cast<std::size_t>(i)].speed_no_load;
@@ -346,7 +346,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
   }
 }
 
-// Limits that need it brake together, early enough.
+// Makes the limits that need it brake together, early enough.
 void Tasks::brake_together() noexcept {
   braking_reserve_ = kMostReserve;
   bool has_near = false;
@@ -410,8 +410,8 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
   }
 }
 
-// The law takes the gantry to do at once what it asks for. It does so after the dead time of its
-// drives; what it does until then, or otherwise, is seen in the next samples.
+// The law assumes that the gantry follows at once. It follows after the dead time of its drives;
+// deviations until then show in the next samples.
 void Tasks::fill_gantry(const TaskInput& input) noexcept {
   const GantryTask& task = input.gantry;
   const bool is_led = task.ddq.size() == n_g_;

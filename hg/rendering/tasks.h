@@ -2,7 +2,7 @@
 ///
 /// Source: [HG] (9)-(19) and Table II, tasks 1-8; law and bounds are options, see docs/law.md.
 ///
-///   law gauss       what the drives of the gantry can follow, where the law leads it
+///   law gauss       bounds of the gantry's drives, where the law leads it
 ///   then            coupling of H and E (12), 6 equalities
 ///   then            manipulator joints
 ///   then            virtual joints (singularity)
@@ -40,44 +40,44 @@ namespace hg::rendering {
 /// One limit, in catalogue order: limit i is row first_limit_row() + i. With bounds paper a joint
 /// has a second row, for its acceleration rating.
 struct LimitRow {
-  Interval range;              ///< configured positions; of the twin as changed, this cycle
-  limits::JointLimits limits;  ///< as rendered: with margins, and this cycle's locks
+  Interval range;              ///< Configured positions; of the twin as changed, this cycle
+  limits::JointLimits limits;  ///< Limits as rendered: with margins, and this cycle's locks
   limits::RecoverableOptions options;
-  double rating = 1.0;  ///< largest acceleration, 1 where there is none
-  int rating_row = -1;  ///< row of bounds B, -1: none
-  /// The torque of a motor, as an acceleration of its joint; `q` is then what the motor gives.
+  double rating = 1.0;  ///< Largest acceleration; 1 = none
+  int rating_row = -1;  ///< Row of bounds B; -1 = none
+  /// Row of a motor torque, as an acceleration of its joint; `q` is then the motor's torque.
   bool is_motor = false;
-  double inertia = 0.0;  ///< that this motor moves, kg m^2 or kg
-  /// Bounds R, this cycle. With bounds paper only of a twin joint that may be found beyond limits
-  /// which were not there before: seen from outside, A lets it coast away.
+  double inertia = 0.0;  ///< Inertia that this motor moves, kg m^2 or kg
+  /// Bounds R are used in this cycle. With bounds paper only for a twin joint that may be beyond
+  /// limits which were not there before: from outside, bounds A let it coast away.
   bool is_recoverable = true;
-  Holds held_by;             ///< locks, latches and friction, this cycle
-  double q = 0.0, dq = 0.0;  ///< this cycle
-  double known = 0.0;        ///< acceleration without the unknowns, this cycle
-  Interval ddq;              ///< bounds of the first row, this cycle, without known accelerations
+  Holds held_by;             ///< Locks, latches and friction, this cycle
+  double q = 0.0, dq = 0.0;  ///< Position and speed in this cycle
+  double known = 0.0;        ///< Acceleration without the unknowns, this cycle
+  Interval ddq;              ///< Bounds of the first row in this cycle, without known accelerations
 };
 
-/// What the law knows of one cycle besides the chains, which must have been updated.
+/// Inputs of one cycle besides the chains, which must have been updated.
 struct TaskInput {
   const RobotState& robot;
   const ReferenceState& reference;
   const TwinState& twin;
   const TwinInnerState& inner;
-  const VectorM& motor_torque;       ///< of the last cycle, Nm or N; empty: there was none
-  const GantryTask& gantry;          ///< empty: it does what was measured
-  const TouchedEnds& touched;        ///< by the last result; law paper only
-  const MatrixA& L;                  ///< M_a = L L^T
-  const model::Jacobian& J_H;        ///< of the handle, gantry first
-  const model::Jacobian& J_a;        ///< of the twin's end effector
-  ConstraintDirections& directions;  ///< of J_H and J_a; found by law paper
+  const VectorM& motor_torque;       ///< Motor torques of the last cycle, Nm or N; empty: none
+  const GantryTask& gantry;          ///< Task of the gantry; empty: it moves as measured
+  const TouchedEnds& touched;        ///< Limit ends touched by the last result; law paper only
+  const MatrixA& L;                  ///< Cholesky factor of M_a = L L^T
+  const model::Jacobian& J_H;        ///< Jacobian of the handle, gantry first
+  const model::Jacobian& J_a;        ///< Jacobian of the twin's end effector
+  ConstraintDirections& directions;  ///< Directions for J_H and J_a; found by law paper
   const std::array<environment::Facing, environment::kMostFacing>& stops;
-  VectorA tau;  ///< all torques on the twin that are not constraints, without c_a
+  VectorA tau;  ///< Sum of all torques on the twin that are not constraints, without c_a
   /// Largest speed of H along each axis of B, where the device limits H, m/s.
   double handle_speed = kInfinity;
 };
 
-/// With which the handle brakes before a virtual surface that is a stop: the least of its ratings,
-/// m/s^2.
+/// Acceleration with which the handle brakes before a virtual surface that is a stop: the least of
+/// its ratings, m/s^2.
 double stop_rating(const DeviceModel& device);
 
 /// Whether accelerations of the gantry are unknowns of the law. Where the law cannot have them, or
@@ -85,7 +85,7 @@ double stop_rating(const DeviceModel& device);
 bool leads_gantry(const DeviceModel& device, const Options& options) noexcept;
 
 /// Whether limits of the device brake together. Where the law does not know the motors, or bounds
-/// do not brake in time, each brakes by itself, whatever `options` ask for.
+/// do not brake in time, each brakes separately, whatever `options` ask for.
 bool brakes_together(const DeviceModel& device, const Options& options) noexcept;
 
 class Tasks {
@@ -101,9 +101,10 @@ class Tasks {
   const hqp::Problem& problem() const noexcept { return problem_; }
   const std::vector<LimitRow>& limit_rows() const noexcept { return limit_rows_; }
   int first_limit_row() const noexcept { return coupling_row_ + 6; }
-  /// Rows of virtual surfaces that are stops, after the limits of the catalogue, and like them.
+  /// Number of rows of virtual surfaces that are stops; they follow the limits of the catalogue and
+  /// are treated alike.
   int stop_count() const noexcept { return stop_count_; }
-  /// Rows of limits follow each other from first_limit_row() on: bounds, then acceleration ratings.
+  /// Number of limit rows from first_limit_row() on: bounds, then acceleration ratings.
   int limit_row_count() const noexcept { return limit_row_count_; }
   /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
   int acting_row(int limit, const hqp::Solution& solution) const noexcept {
@@ -112,29 +113,31 @@ class Tasks {
     const bool acts = solution.state[static_cast<std::size_t>(row)] != hqp::RowState::kInactive;
     return acts || rating_row < 0 ? row : rating_row;
   }
-  /// Finds what the motors give with `solution`, which solves problem().
+  /// Computes the motor torques of `solution`, which solves problem().
   void find_motor_torques(const hqp::Solution& solution) noexcept;
-  /// The result, Nm or N: n_m, or empty where the law does not know the motors.
+  /// Motor torques found by find_motor_torques(), Nm or N: n_m, or empty where the law does not
+  /// know the motors.
   const VectorM& motor_torque() const noexcept { return motor_torque_; }
   /// Whether the gantry's accelerations are unknowns.
   bool leads_gantry() const noexcept { return n_g_ > 0; }
-  /// What a solution asks of the gantry, n_p; where leads_gantry().
+  /// Gantry accelerations demanded by a solution, n_p; only where leads_gantry().
   VectorP gantry_acceleration(const hqp::Solution& solution) const noexcept {
     return Eigen::Map<const Eigen::VectorXd>(solution.x.data() + n_m_ + n_a_, n_g_);
   }
   /// Whether all rows of device limits are in levels that `solution` has completed, or are met to
   /// 1e-6.
   bool keeps_limits_of_device(const hqp::Solution& solution) const noexcept;
-  /// The same of joints and virtual joints alone, met to 1e-3 rad/s^2.
+  /// Whether all rows of joints and virtual joints are in completed levels or are met to 1e-3
+  /// rad/s^2.
   bool keeps_joints(const hqp::Solution& solution) const noexcept;
-  /// The ends that `solution` touches or leaves, of both rows of a joint.
+  /// Limit ends that `solution` touches or exceeds, of both rows of a joint.
   TouchedEnds touched_ends(const hqp::Solution& solution) const noexcept;
   /// Law paper: index of the constraint force or torque of a limit in x; law gauss: -1.
   int alpha(int limit) const noexcept { return paper_ ? paper_->alpha(limit) : -1; }
-  /// How many times harder than needed the device can brake before all its limits together, in this
-  /// cycle; kMostReserve: at least, or nothing is near, or limits brake alone.
+  /// Factor by which the device can brake harder than needed before all its limits together, in
+  /// this cycle; kMostReserve: at least, or nothing is near, or limits brake alone.
   double braking_reserve() const noexcept { return braking_reserve_; }
-  /// Right-hand side (11) of the coupling: how H has to accelerate relative to E.
+  /// Right-hand side (11) of the coupling: required acceleration of H relative to E.
   const Vector6& synchronisation() const noexcept { return s_; }
 
  private:
@@ -161,11 +164,11 @@ class Tasks {
 
   Options options_;
   int n_m_, n_a_;
-  int n_g_;  ///< axes of the gantry that the law leads
+  int n_g_;  ///< Gantry axes that the law leads
   int stop_count_;
   bool knows_torques_;
-  bool are_torques_known_ = false;  ///< in this cycle
-  int first_motor_;                 ///< limit
+  bool are_torques_known_ = false;  ///< Motor torques are known in this cycle
+  int first_motor_;                 ///< Index of the first motor limit
   int limit_row_count_ = 0;
   int coupling_row_ = 0;  ///< first row of (12)
   int dynamics_row_ = 0;  ///< first row of Gauss' principle
@@ -174,13 +177,13 @@ class Tasks {
   std::vector<LimitRow> limit_rows_;
   std::vector<double> coefficients_;  ///< scratch, one row
   Vector6 s_ = Vector6::Zero();
-  VectorP ddq_p_;         ///< of the gantry, in this cycle, without what is unknown
-  VectorM known_torque_;  ///< of the motors, without what accelerates the joints; this cycle
+  VectorP ddq_p_;         ///< Gantry acceleration in this cycle, without the unknowns
+  VectorM known_torque_;  ///< Motor torques in this cycle, without those that accelerate the joints
   VectorM motor_torque_;
   std::optional<JointBraking> joint_braking_;  ///< only where limits brake together
-  std::vector<Approach> approaches_;           ///< of limits of the device, this cycle
-  std::vector<double> known_;                  ///< their accelerations without the unknowns
-  std::vector<Interval> lasting_;              ///< bounds of rows of motors once they are reached
+  std::vector<Approach> approaches_;           ///< Approaches of the device's limits, this cycle
+  std::vector<double> known_;      ///< Accelerations of these limits without the unknowns
+  std::vector<Interval> lasting_;  ///< Bounds of motor rows once they are reached
   double braking_reserve_ = kMostReserve;
   std::optional<PaperLaw> paper_;  ///< law paper only
 };

@@ -52,7 +52,7 @@ void advance_locks(const TwinModel& twin, Bounds bounds, const ConfigurationA& q
     const double q = position_of(twin, lock.dof, q_a);
     if (!state.is_engaged) state = {.is_engaged = true, .is_locked = false, .edge = q};
 
-    // the latch follows the joint towards the lock and never back
+    // the latch follows the joint towards the lock only
     const double side = q >= lock.position ? 1.0 : -1.0;
     if (side * (q - state.edge) < 0.0) state.edge = q;
     const bool is_reached = std::abs(q - lock.position) <= kLockReached;

@@ -1,7 +1,7 @@
 /// The digital twin: a serial chain with limits, springs, dampers, friction, closers and locks.
 ///
 /// Set-up data: filled by config, checked once, constant afterwards. What may change while the twin
-/// runs starts with the values here and lives in TwinParameters. SI units.
+/// runs starts with the values here and is kept in TwinParameters. SI units.
 #pragma once
 
 #include <string>
@@ -13,20 +13,20 @@
 
 namespace hg::rendering {
 
-/// Pulls a joint towards its lower limit q_min, where that is now, with torque + stiffness (q -
-/// q_min), and lets it close no faster than `speed`.
+/// Pulls a joint towards its present lower limit q_min with torque + stiffness (q - q_min), and
+/// lets it close no faster than `speed`.
 struct Closer {
   double torque = 0.0;       ///< Nm or N
   double stiffness = 0.0;    ///< Nm/rad or N/m; > 0 needs a lower limit
   double speed = kInfinity;  ///< largest speed towards the lower limit, > 0, rad/s or m/s
 };
 
-/// What acts along one degree of freedom. The degrees of freedom of a floating joint (three linear,
+/// Properties of one degree of freedom. The degrees of freedom of a floating joint (three linear,
 /// three angular, in the body's frame) have damping and friction only.
 struct TwinDof {
-  std::string name;      ///< of the joint; floating joints append " x" ... " rz"
-  int q_index = -1;      ///< coordinate in q_a; -1 for floating joints
-  bool is_angle = true;  ///< rad and Nm, otherwise m and N
+  std::string name;      ///< Name of the joint; floating joints append " x" ... " rz"
+  int q_index = -1;      ///< Coordinate in q_a; -1 for floating joints
+  bool is_angle = true;  ///< true: rad and Nm, false: m and N
   limits::JointLimits limits;
   double stiffness = 0.0;          ///< spring, Nm/rad or N/m
   double rest = 0.0;               ///< position where the spring part is zero
@@ -37,17 +37,17 @@ struct TwinDof {
   Closer closer;
 };
 
-/// Of chain a (n_a x n_a), for example its mass matrix or the factor of it.
+/// Matrix of chain a (n_a x n_a), for example its mass matrix or the factor of it.
 using MatrixA = MatrixUpTo<kMaxTwin, kMaxTwin>;
 
 struct JointCondition {
   int dof = 0;
-  Interval range;  ///< true while the position is inside
+  Interval range;  ///< Condition is true while the position is inside
 };
 
 inline constexpr int kMaxLocks = 4;
 inline constexpr int kMaxConditionalLimits = 4;
-inline constexpr Interval kMassScale = {0.1, 10.0};  ///< of TwinModel::mass_scale
+inline constexpr Interval kMassScale = {0.1, 10.0};  ///< Range of TwinModel::mass_scale
 
 /// Holds one joint at `position` while all conditions are true. A joint that is not there yet when
 /// the conditions become true is latched: it may move towards `position` but not away from it.
@@ -66,30 +66,30 @@ struct ConditionalLimit {
   std::string name;
   int dof = 0;
   limits::JointLimits limits;
-  Moving moving = Moving::kEitherWay;  ///< towards which end the speed limit holds
+  Moving moving = Moving::kEitherWay;  ///< Direction in which the speed limit holds
   std::vector<JointCondition> conditions;
 };
 
 struct TwinModel {
   model::Chain chain;
-  int end_effector = -1;                             ///< frame E
-  ConfigurationA q_start;                            ///< coordinates at the start
-  std::vector<TwinDof> dofs;                         ///< one per velocity of the chain
-  std::vector<Lock> locks;                           ///< at most kMaxLocks
+  int end_effector = -1;      ///< Index of frame E
+  ConfigurationA q_start;     ///< Coordinates at the start
+  std::vector<TwinDof> dofs;  ///< Degrees of freedom, one per velocity of the chain
+  std::vector<Lock> locks;    ///< at most kMaxLocks
   std::vector<ConditionalLimit> conditional_limits;  ///< at most kMaxConditionalLimits
   Vector6 w_ref = Vector6::Zero();  ///< reference wrench of [HG] (9), at E, resolved in B
-  double mass_scale = 1.0;          ///< all masses times this, 0.1..10
+  double mass_scale = 1.0;          ///< Factor of all masses, 0.1..10
 };
 
-/// Throws SetupError naming the first thing that does not fit together.
+/// Throws SetupError naming the first inconsistency.
 void check(const TwinModel& twin);
 
-/// What a force at the end effector has to move, at the start of the twin.
+/// Mass that a force at the end effector has to move, at the start of the twin.
 struct FeltMass {
-  /// In the directions in which it is lightest and heaviest, kg; directions in which it cannot move
-  /// do not count. Infinite where there is no other.
+  /// Masses in the lightest and the heaviest direction, kg; directions in which the twin cannot
+  /// move do not count. Infinite where there is no other.
   Interval mass = {kInfinity, kInfinity};
-  VectorA dq;  ///< motion of the joints that moves it with 1 m/s where it is lightest
+  VectorA dq;  ///< Joint velocity that moves the end effector with 1 m/s in the lightest direction
 };
 FeltMass felt_mass(const TwinModel& twin);
 

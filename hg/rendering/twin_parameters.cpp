@@ -32,7 +32,7 @@ DofValues values_of(const TwinDof& dof) noexcept {
           .dq_max = dof.limits.dq_max};
 }
 
-// where the value of `parameter` is kept; nullptr for limits of position, and for what is unknown
+// location of the value of `parameter`; nullptr for limits of position and unknown parameters
 double* place_of(Parameter parameter, std::size_t index, TwinValues& values) noexcept {
   DofValues& dof = values.dofs[std::min(index, values.dofs.size() - 1)];
   switch (parameter) {

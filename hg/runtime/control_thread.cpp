@@ -32,14 +32,14 @@ int stay_on(int cpu) noexcept {
   return pthread_setaffinity_np(pthread_self(), sizeof(only), &only);
 }
 
-// each page once, so that no later call meets one for the first time
+// touches each page once, so that later calls cause no page fault
 void touch_stack() noexcept {
   std::array<volatile char, kStackBytes> stack;
   for (std::size_t i = 0; i < kStackBytes; i += kPageBytes) stack[i] = static_cast<char>(i);
 }
 
-// Memory that is there stays there, and what others allocate from now on is fetched by them at
-// once; the heap is not given back and fetched again.
+// Locks all memory: present pages stay resident, later allocations are resident at once, and the
+// heap is never returned to the system.
 int lock_memory() noexcept {
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
@@ -70,7 +70,7 @@ ThreadReport become_real_time(const ThreadOptions& options) noexcept {
     report.priority_error = set_priority(options.priority);
     if (report.priority_error == 0) report.priority = options.priority;
   }
-  // an ordinary thread gains nothing, and a program that may not lock all of it would lose
+  // no use for an ordinary thread, and harmful where the limit on locked memory is too small
   if (report.priority > 0) {
     report.memory_error = lock_memory();
     report.is_memory_locked = report.memory_error == 0;

@@ -1,35 +1,35 @@
-/// What makes a thread real time on Linux: priority, processor, and memory that is there already.
+/// Makes a thread real time on Linux: priority, processor affinity, and resident memory.
 ///
-/// Each part is tried on its own: what the system refuses is reported, the thread works without.
+/// Each part is tried on its own: a refusal by the system is reported, and the thread runs without.
 #pragma once
 
 namespace hg::runtime {
 
-/// Set-up data.
+/// Real-time options of a thread; set-up data.
 struct ThreadOptions {
-  int priority = 80;  ///< of SCHED_FIFO, 1..99; 0 = an ordinary thread
-  int cpu = -1;       ///< the only processor it may run on; -1 = any
+  int priority = 80;  ///< SCHED_FIFO priority, 1..99; 0 = ordinary thread
+  int cpu = -1;       ///< Only processor to run on; -1 = any
 };
 
 /// Throws SetupError naming the option that is out of range.
 void check(const ThreadOptions& options);
 
-/// What the system granted. Errors are those of errno, 0 = granted or not asked for.
+/// Real-time properties granted by the system. Errors are those of errno, 0 = granted or not
+/// requested.
 struct ThreadReport {
-  int priority = 0;  ///< of SCHED_FIFO; 0 = it is an ordinary thread
+  int priority = 0;  ///< SCHED_FIFO priority; 0 = ordinary thread
   int priority_error = 0;
-  int cpu = -1;  ///< the only one it runs on; -1 = any
+  int cpu = -1;  ///< Only processor of the thread; -1 = any
   int cpu_error = 0;
-  bool is_memory_locked = false;  ///< nothing of the program can be paged out
+  bool is_memory_locked = false;  ///< No memory of the program can be paged out
   int memory_error = 0;
 };
 
-/// Makes the calling thread real time and touches the stack that it will use. Takes milliseconds
-/// where all memory of the program is fetched and locked. No allocation.
+/// Makes the calling thread real time and pre-faults its stack. Takes milliseconds if all memory of
+/// the program is fetched and locked. No allocation.
 ThreadReport become_real_time(const ThreadOptions& options) noexcept;
 
-/// Page faults of the calling thread so far: each is a pause of microseconds or, from a disk, of
-/// milliseconds.
+/// Page faults of the calling thread so far; each costs microseconds, or milliseconds from disk.
 long page_faults() noexcept;
 
 }  // namespace hg::runtime

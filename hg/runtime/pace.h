@@ -1,7 +1,7 @@
-/// How fast simulated time passes: slow motion, pause and single cycles. The period that a cycle
-/// computes with stays the same.
+/// Pace of simulated time: slow motion, pause and single cycles. The period used in a cycle stays
+/// the same.
 ///
-/// One thread sets it, the control thread follows: atomics only, no allocation, noexcept.
+/// One thread sets it, the control thread reads it: atomics only, no allocation, noexcept.
 #pragma once
 
 #include <atomic>
@@ -10,12 +10,13 @@
 
 namespace hg::runtime {
 
+/// Pace shared by an operator thread and the control thread.
 class Pace {
  public:
   static constexpr double kSlowest = 0.1;
   static constexpr int kMostSteps = 1000;
 
-  /// False for speeds outside kSlowest..1: nothing changes.
+  /// Sets the speed, 1 = real time. Returns false, without effect, outside kSlowest..1.
   [[nodiscard]] bool set_speed(double speed) noexcept {
     if (!(speed >= kSlowest && speed <= 1.0)) return false;
     speed_.store(speed);
@@ -26,8 +27,8 @@ class Pace {
     steps_.store(0);
     is_paused_.store(false);
   }
-  /// Runs so many more cycles of a paused run. False when it is not paused, for what is no whole
-  /// number from 1 on, and where more than kMostSteps would wait.
+  /// Runs this many more cycles of a paused run. Returns false if not paused, if `cycles` is not a
+  /// positive integer, or if more than kMostSteps would be pending.
   [[nodiscard]] bool step(double cycles) noexcept {
     const bool is_number = cycles >= 1.0 && cycles == std::floor(cycles);
     if (!is_number || !is_paused_.load() || cycles + steps_.load() > kMostSteps) return false;
@@ -38,11 +39,11 @@ class Pace {
   double speed() const noexcept { return speed_.load(); }
   bool is_paused() const noexcept { return is_paused_.load(); }
 
-  /// The control thread's side, before each cycle: whether it may run now. Takes a step.
+  /// Whether the next cycle may run now; consumes a step. Control thread only, before each cycle.
   bool may_run() noexcept {
     if (!is_paused_.load()) return true;
     int steps = steps_.load();
-    return steps > 0 && steps_.compare_exchange_strong(steps, steps - 1);  // if not, next time
+    return steps > 0 && steps_.compare_exchange_strong(steps, steps - 1);  // retried next time
   }
 
  private:

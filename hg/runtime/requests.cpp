@@ -5,8 +5,8 @@ namespace {
 
 constexpr std::uint64_t kPatience = 1000;  // cycles
 
-// While the latency is unknown arming is asked for now and then only, for a cycle: the refusal
-// tells why nothing happens.
+// While the latency is unknown, arming is requested for one cycle in kPatience: its refusal reports
+// the cause.
 ModeRequest arm_request(const CycleRecord& record) noexcept {
   const bool asks = record.is_latency_known || (record.cycle + 1) % kPatience == 0;
   return asks ? ModeRequest::kArm : ModeRequest::kNone;

@@ -1,4 +1,5 @@
-/// The operator of a simulation, who wants nothing but to run: for loops other than Runtime's, too.
+/// Automatic operator of a simulation that brings the device to running; also for loops other than
+/// Runtime's.
 #pragma once
 
 #include "hg/signals/frames.h"
@@ -6,10 +7,10 @@
 
 namespace hg::runtime {
 
-/// What to ask for after the cycle of `record`: tares where the device needs it, arms once the
-/// latency is known, runs, and stops when `is_stopping`. Requests act on their edge, so that
-/// running is asked for only while the handle is held, and a tare that was refused because it is
-/// held only once that ends.
+/// Next request after the cycle of `record`: tares where the device needs it, arms once the latency
+/// is known, runs, and stops when `is_stopping`. Requests act on their edge: running is requested
+/// only while the handle is held; a tare refused because the handle was held is repeated only after
+/// its release.
 ModeRequest next_request(const CycleRecord& record, bool is_held, bool is_stopping) noexcept;
 
 }  // namespace hg::runtime

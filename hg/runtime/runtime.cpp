@@ -19,12 +19,12 @@ constexpr std::int64_t kPausePoll = 2'000'000;  // ns
 constexpr double kStandstill = 2e-2;  // rad/s and m/s; measured, so above the noise of encoders
 constexpr double kRest = 0.1;         // s at rest; an arm whose brakes close late sags within it
 
-// A device after a fault: the way to its rest belongs into the recording.
+// Detects standstill after a fault: the motion until then belongs into the recording.
 class WayToRest {
  public:
   explicit WayToRest(double longest_s) : longest_s_(longest_s) {}
 
-  /// After each cycle in mode fault: whether nothing is left to be seen.
+  /// Whether the recording may end; call after each cycle in mode fault.
   bool is_over(const Sample& sample) noexcept {
     const double now_s = sample.record.time_s;
     if (since_s_ < 0.0) since_s_ = moved_s_ = now_s;
@@ -143,7 +143,7 @@ Schedule Runtime::new_schedule() const noexcept {
                   report_.told_late_cycles ? 0 : Schedule::kMostToMakeUp);
 }
 
-// Until the next cycle is due. Cycles that were not run while paused are not late.
+// Waits until the next cycle is due. Cycles skipped by a pause are not late.
 void Runtime::wait_for_turn(Schedule& schedule) noexcept {
   sleep_until(schedule.due_ns());
   report_.wake_up_us.add(1e-3 * static_cast<double>(now_ns() - schedule.due_ns()));
@@ -158,7 +158,7 @@ void Runtime::wait_for_turn(Schedule& schedule) noexcept {
   schedule = new_schedule();
 }
 
-// Cycles that a device which is the clock had to do without, because this one took so long.
+// Cycles missed by a device that is the clock, because this cycle took too long.
 std::uint32_t Runtime::late_for_device() const noexcept {
   const double periods = 1e-9 * static_cast<double>(now_ns() - read_ns_) * options_.rate_Hz;
   return periods > 1.0 ? static_cast<std::uint32_t>(std::min(periods, 1e9)) : 0;
@@ -173,13 +173,13 @@ void Runtime::count_late(std::uint32_t cycles, OperatorFrame& input) noexcept {
 
 void Runtime::hand_out(const Sample& sample) noexcept {
   if (options_.is_fast && samples_.is_full()) {
-    const AllowedToWait whoever_takes_them;  // for nothing else keeps time
+    const AllowedToWait whoever_takes_them;  // no real time to keep
     while (samples_.is_full()) std::this_thread::yield();
   }
   samples_.push(sample);
 }
 
-// drives off, brakes closed, nothing moves
+// sends the last command: drives off, brakes closed, all speeds zero
 void Runtime::release(CommandFrame& command) noexcept {
   command.enable = false;
   command.dq_m.setZero();
@@ -196,7 +196,7 @@ void Runtime::prepare_thread() noexcept {
   cycle_.watch({.ended = &Runtime::stage_ended, .listener = this});
 }
 
-// An emergency stop that somebody has pulled out stays so until the script presses it again.
+// An emergency stop released by an operator stays released until the script presses it again.
 void Runtime::play_script(const TimedPanel& due) noexcept {
   const bool stays_pressed = timed_panel_.emergency_stop && due.panel.emergency_stop;
   const bool was_pressed = script_panel_.emergency_stop;
@@ -204,7 +204,7 @@ void Runtime::play_script(const TimedPanel& due) noexcept {
   if (stays_pressed) script_panel_.emergency_stop = was_pressed;
 }
 
-// What the operator does before the next cycle: by a script, by somebody, or by itself.
+// Operator input of the next cycle: by script, by an operator, or automatic.
 void Runtime::operate(const Sample& sample, bool is_stopping, OperatorFrame& input) noexcept {
   const CycleRecord& record = sample.record;
   script_panel_.reset = false;
@@ -230,8 +230,7 @@ void Runtime::operate(const Sample& sample, bool is_stopping, OperatorFrame& inp
                       : next_request(record, cycle_.is_held(sample.sensors), is_stopping);
 }
 
-// The panel of this cycle, and stops of pages: nothing that was asked for before one of them
-// starts anything after it.
+// Panel of this cycle, and stops of pages: requests made before a stop are dropped.
 void Runtime::look_at_desk(OperatorFrame& input) noexcept {
   input.panel = script_panel_;
   if (is_reset_pressed_.load(std::memory_order_relaxed)) {

@@ -1,7 +1,7 @@
-/// Runs a cycle on a device: clock, thread, priority, and the rings to everybody else.
+/// Runs a cycle on a device: clock, thread, priority, and rings to observers and operator.
 ///
-/// The control thread never waits for an observer: what the ring cannot take is dropped and
-/// counted. Only in fast mode, where there is no real time to keep, does it wait.
+/// The control thread never waits for an observer: samples that do not fit the ring are dropped and
+/// counted. It waits only in fast mode, which is not real time.
 #pragma once
 
 #include <array>
@@ -28,94 +28,96 @@
 
 namespace hg::runtime {
 
-/// Set-up data.
+/// Options of a run; set-up data.
 struct Options {
-  double rate_Hz = 1000.0;
-  bool is_fast = false;     ///< as fast as it can instead of in real time
-  double duration_s = 0.0;  ///< then the device is stopped; 0 = until request_stop()
-  /// After which a device that still moves is left to its brakes, s: a little longer than a
+  double rate_Hz = 1000.0;  ///< Cycles per second, Hz
+  bool is_fast = false;     ///< As fast as possible instead of in real time
+  double duration_s = 0.0;  ///< Duration until the stop, s; 0 = until request_stop()
+  /// Longest wait for standstill before only the brakes stop the device, s: slightly longer than a
   /// controlled stop may take.
   double longest_stop_s = 1.1;
-  std::size_t ring = 4096;           ///< samples that an observer may fall behind
-  std::vector<TimedChange> changes;  ///< of the twin, in the order of their times
-  std::vector<TimedPanel> panel;     ///< of the operator, likewise
-  /// A fault does not end the run: somebody is there who can reset it. From then on nothing is
-  /// asked for by itself any more.
+  std::size_t ring = 4096;           ///< Capacity of the ring to the observer, samples
+  std::vector<TimedChange> changes;  ///< Changes of the twin, in the order of their times
+  std::vector<TimedPanel> panel;     ///< Panels of the operator, in the order of their times
+  /// true: a fault does not end the run, because an operator can reset it. After a fault no request
+  /// is made automatically.
   bool stays_in_fault = false;
-  /// A cycle that takes longer is slow: its problem is kept. In real time only with a priority for
-  /// it; otherwise the time says more about other programs.
+  /// Duration above which a cycle is slow and its problem kept, us. In real time only with a
+  /// real-time priority; otherwise the duration depends on other programs.
   double slow_cycle_us = kInfinity;
-  ThreadOptions thread;  ///< of the control thread, in real time
-  /// Once true, the same as request_stop(), without anybody in between; for a signal handler.
-  /// nullptr: there is none.
+  ThreadOptions thread;  ///< Options of the control thread, in real time
+  /// Flag with the effect of request_stop() once true, for a signal handler; nullptr: none.
   const std::atomic<bool>* stop = nullptr;
-  /// What pages do: looked at in every cycle, and open while there are any. nullptr: no page.
+  /// Inputs of operator pages, read in every cycle and open during the run; nullptr: no pages.
   OperatorDesk* desk = nullptr;
-  /// For a machine that does not wait for its controller: the cycle is told how many cycles were
-  /// late, so that too many of them stop the device, and none is made up for. Only where the
-  /// thread is real time; of an ordinary one, and with a device that waits, they are counted.
+  /// true: late cycles are reported to the cycle, so that too many stop the device, and none is
+  /// made up for; for a device that does not wait for its controller. Only with a real-time thread;
+  /// otherwise late cycles are only counted.
   bool tells_late_cycles = false;
 };
 
 /// Throws SetupError naming the option that is out of range.
 void check(const Options& options);
 
-/// Known after join().
+/// Statistics of a run, available after join().
 struct Report {
   std::uint64_t cycles = 0;
-  std::uint64_t overruns = 0;  ///< cycles that ended after the next one was due, or were left out
+  std::uint64_t overruns = 0;  ///< Cycles that ended after the next one was due, or were left out
   std::uint64_t most_overruns_in_a_row = 0;
-  std::uint64_t dropped = 0;      ///< samples that no observer saw
-  std::uint64_t allocations = 0;  ///< heap allocations inside the loop
-  long page_faults = 0;           ///< inside the loop
-  ThreadReport thread;            ///< in real time
-  bool told_late_cycles = false;  ///< the cycle was told about them: too many were a fault
-  bool stop_timed_out = false;    ///< the device was still moving when it was left to its brakes
-  Histogram wake_up_us;           ///< after a cycle was due, in real time
-  std::array<Histogram, kStageCount> stage_us;  ///< of the cycle, in real time
+  std::uint64_t dropped = 0;      ///< Samples dropped because the ring was full
+  std::uint64_t allocations = 0;  ///< Heap allocations inside the loop
+  long page_faults = 0;           ///< Page faults inside the loop
+  ThreadReport thread;            ///< Real-time properties of the thread, in real time
+  bool told_late_cycles = false;  ///< Late cycles were reported to the cycle
+  bool stop_timed_out = false;    ///< Still moving when only the brakes were left to stop it
+  Histogram wake_up_us;           ///< Wake-up delay after a cycle was due, in real time
+  std::array<Histogram, kStageCount> stage_us;  ///< Durations of the cycle's stages, in real time
 };
 
+/// Control loop in its own thread.
 class Runtime {
  public:
   /// `cycle` and `device` must outlive the runtime and belong to it from start() to join().
   Runtime(const Options& options, cycle::Cycle& cycle, device::Device& device);
   ~Runtime();
 
-  /// Starts the control thread: arms the device, runs while the dead-man is closed, and stops it at
-  /// the end. Whatever ends the loop, the last command disables the drives.
+  /// Starts the control thread: arms the device, runs while the dead-man switch is closed, stops it
+  /// at the end. The last command always disables the drives.
   void start();
-  /// Asks for a controlled stop; the device comes to rest first. May be called from any thread.
+  /// Requests a controlled stop and the end of the run after standstill. Callable from any thread.
   void request_stop() noexcept { stop_requested_.store(true); }
   bool is_finished() const noexcept { return finished_.load(); }
+  /// Waits for the end of the run and returns its statistics.
   Report join();
 
-  /// One observer thread: the next sample, false if there is none yet.
+  /// Takes the next sample; false if there is none yet. One observer thread only.
   bool pop(Sample& sample) noexcept { return samples_.pop(sample); }
-  /// One observer thread: problems of the solver that failed or were slow.
+  /// Problems of failed or slow solves. One observer thread only.
   const hqp::KeptProblems& kept_problems() const noexcept { return cycle_.kept_problems(); }
-  /// One operator thread: where a simulated hand should go; from the next cycle on.
+  /// Sets the target of a simulated hand from the next cycle on. One operator thread only.
   void set_hand_target(const HandTarget& target) noexcept { hand_targets_.push(target); }
-  /// The same thread: a value of the twin, taken by one of the next cycles; those of Options come
-  /// first. False when too many are waiting.
+  /// Queues a parameter change of the twin for one of the next cycles, after due changes of
+  /// Options. False if the queue is full. Operator thread only.
   [[nodiscard]] bool change(const ParameterChange& change) noexcept {
     return parameter_changes_.push(change);
   }
-  /// The same thread: presses the reset button of a simulated safety controller, for one cycle.
+  /// Presses the reset button of a simulated safety controller for one cycle. Operator thread only.
   void press_reset() noexcept { is_reset_pressed_.store(true); }
-  /// The same thread: asks for a mode, in one of the next cycles. From the first one on nothing is
-  /// asked for by itself, except to stop at the end. `stops` is what the desk counted when it was
-  /// wanted: one that has been stopped since is left out. False when too many are waiting.
+  /// Queues a mode request for one of the next cycles. From the first one on no request is made
+  /// automatically, except the stop at the end. `stops` is the desk's stop count at the time of the
+  /// request: a request older than the last stop is dropped. False if the queue is full. Operator
+  /// thread only.
   [[nodiscard]] bool request(ModeRequest request, std::uint32_t stops = 0) noexcept {
     return requests_.push({request, stops});
   }
-  /// The same thread: slow motion and pause. Not for a device that is a clock of its own, nor for
-  /// a real one: it does not wait.
+  /// Slow motion and pause. Not for a device that is the clock, nor for a real one, which does not
+  /// wait. Operator thread only.
   Pace& pace() noexcept { return pace_; }
 
  private:
   struct Request {
     ModeRequest request = ModeRequest::kNone;
-    std::uint32_t stops = 0;  ///< that the desk had counted
+    std::uint32_t stops = 0;  ///< Stop count of the desk at the time of the request
   };
 
   void loop() noexcept;
@@ -145,15 +147,15 @@ class Runtime {
   std::atomic<bool> is_reset_pressed_{false};
   TimedChanges changes_;
   TimedPanels timed_panels_;
-  SafetyPanel timed_panel_;   ///< the last one that was due
-  SafetyPanel script_panel_;  ///< what the script holds, without what pages do
-  std::uint32_t stops_ = 0, holds_ = 0, script_releases_ = 0;  ///< of the desk, that were seen
-  std::optional<std::uint32_t> request_stops_;  ///< of the page's request for the next cycle
-  bool is_operated_ = false;                    ///< somebody else asks for modes
+  SafetyPanel timed_panel_;   ///< Last due panel of the script
+  SafetyPanel script_panel_;  ///< Panel by the script alone, without pages
+  std::uint32_t stops_ = 0, holds_ = 0, script_releases_ = 0;  ///< Last counts read from the desk
+  std::optional<std::uint32_t> request_stops_;  ///< Stop count of the next page request
+  bool is_operated_ = false;                    ///< Modes are requested by operator or script
   Pace pace_;
-  double speed_ = 1.0;                       ///< that the schedule was made for
-  std::int64_t read_ns_ = 0, stage_ns_ = 0;  ///< end of the last read() and of the last stage
-  std::array<std::int64_t, kStageCount> stage_time_ns_{};  ///< in this cycle
+  double speed_ = 1.0;                       ///< Speed of the present schedule
+  std::int64_t read_ns_ = 0, stage_ns_ = 0;  ///< End of the last read() and of the last stage
+  std::array<std::int64_t, kStageCount> stage_time_ns_{};  ///< Durations of stages in this cycle
   std::uint64_t overruns_in_a_row_ = 0;
   std::atomic<bool> stop_requested_{false};
   std::atomic<bool> finished_{false};

@@ -9,7 +9,7 @@ namespace {
 
 // One of BrakedAxes.
 struct Axis {
-  int index = 0;  ///< in faults
+  int index = 0;  ///< Index used in faults
   bool is_slide = false;
   double speed_max = 0.0;
   double stop_distance = 0.0;
@@ -35,7 +35,7 @@ BrakedAxes positions_of(const SensorFrame& sensors) noexcept {
   return q;
 }
 
-// of encoders that may be wrapped
+// distance between two encoder readings that may be wrapped, rad or m
 double moved(const Axis& axis, double from, double to) noexcept {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   return std::abs(axis.is_slide ? to - from : std::remainder(to - from, kTurn));
@@ -73,7 +73,7 @@ Fault watch_brakes(const MonitorConfig& config, const SensorFrame& sensors, bool
   }
   const auto n_p = static_cast<int>(sensors.q_p.size()), n_m = static_cast<int>(sensors.q_m.size());
   Fault worst;
-  double largest = 1.0;  // share of what is allowed
+  double largest = 1.0;  // largest share of the allowed motion
   for (int i = 0; i < q.size(); ++i) {
     const Axis axis = axis_of(config, i, n_p, n_m);
     if (!std::isfinite(q[i])) continue;

@@ -1,7 +1,8 @@
-/// Watches axes whose drives are off: closed brakes hold each where they have found it at rest.
+/// Monitors axes whose drives are off: a closed brake must hold its axis where it came to rest.
 ///
-/// By the bare encoders of motors and links, so that no other sensor that is wrong hides a fall.
-/// Before there was power for the first time others may move the device. No allocation, noexcept.
+/// Uses motor and link encoders only, so that a wrong value of another sensor cannot hide a falling
+/// axis. Inactive until the drives had power for the first time: before that the device may be
+/// moved from outside. No allocation, noexcept.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +13,25 @@
 
 namespace hg::safety {
 
-/// Axes of the gantry, links, motors.
+/// Positions of gantry axes, links and motors, in this order; rad or m.
 using BrakedAxes = VectorUpTo<kMaxGantry + 2 * kMaxManipulator>;
 
 /// Part of the copyable state of a cycle.
 struct BrakeState {
   bool was_powered = false;
-  std::uint32_t samples_off = 0;  ///< since the power went, up to those of a stop; 0: it is on
-  std::uint16_t broken = 0;       ///< samples in a row with an axis that has moved too far
-  BrakedAxes last;                ///< positions of the last sample
-  BrakedAxes from;                ///< where the axes stood, rad or m
-  BrakedAxes may_move;            ///< how far they may get from there
-  Fault slip;                     ///< kBrakesSlip, kept for the whole run
+  /// Samples since power-off, counted up to those of a stop; 0 = power is on.
+  std::uint32_t samples_off = 0;
+  std::uint16_t broken = 0;  ///< Consecutive samples with an axis beyond its allowed motion
+  BrakedAxes last;           ///< Positions of the last sample, rad or m
+  BrakedAxes from;           ///< Positions from which motion is measured, rad or m
+  BrakedAxes may_move;       ///< Allowed distance of each axis from `from`, rad or m
+  Fault slip;                ///< Detected slip, kBrakesSlip; latched for the whole run
 };
 
-/// Once per cycle, whatever else the sample is worth. An axis may move by its slip; one that still
-/// moved when the power went, for the time of a stop, also by that share of its stopping distance
-/// which its speed is of its rating. Returns the slip: index of the joint, those of the gantry
-/// behind them.
+/// Checks the brakes; call once per cycle, even where the sample is otherwise unusable. An axis may
+/// move by its slip tolerance. For the duration of a stop after power-off, an axis that was still
+/// moving may also move by (speed / rated speed) of its stopping distance. Returns the slip, or
+/// kNone; its index is the joint, gantry axes follow after the joints.
 Fault watch_brakes(const MonitorConfig& config, const SensorFrame& sensors, bool is_powered,
                    BrakeState& state) noexcept;
 

@@ -13,12 +13,12 @@ namespace hg::safety {
 namespace {
 
 constexpr double kClockMemory = 0.02;       // share of the newest sample in the clock's mean error
-constexpr double kPullMemory_s = 0.2;       // after which a reference that came back is forgotten
-constexpr double kGapMemory_s = 2.0;        // after which an error of the drive model is forgotten
-constexpr double kDriftMemory_s = 60.0;     // the same where it adds up
-constexpr double kDriveError = 0.005;       // of its way, that a drive may add up to
-constexpr double kMotorMemory_s = 0.02;     // over which the torque of a motor is observed
-constexpr double kShakingPatience_s = 3.0;  // as that of hg/passivity
+constexpr double kPullMemory_s = 0.2;       // time constant of forgetting shifts of the reference
+constexpr double kGapMemory_s = 2.0;        // time constant of forgetting errors of the drive model
+constexpr double kDriftMemory_s = 60.0;     // the same for slow drift
+constexpr double kDriveError = 0.005;       // allowed drift of a drive, share of its way
+constexpr double kMotorMemory_s = 0.02;     // time constant of the motor torque observer
+constexpr double kShakingPatience_s = 3.0;  // as in hg/passivity
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -27,8 +27,8 @@ Fault make_fault(FaultCode code, int index, double value, double limit) noexcept
   return {code, static_cast<std::int16_t>(index), value, limit};
 }
 
-// joints, joint speeds, gantry, wrench, motors, joint torques, accelerometer, gyroscope, motor
-// temperatures, clock
+// Index of the first value that is not finite, < 0: none. Order: joints, joint speeds, gantry,
+// wrench, motors, joint torques, accelerometer, gyroscope, motor temperatures, clock.
 int first_bad_value(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
   const Eigen::Vector3d kNone = Eigen::Vector3d::Zero();
   return first_not_finite(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
@@ -37,10 +37,11 @@ int first_bad_value(const MonitorConfig& config, const SensorFrame& sensors) noe
                           Eigen::Matrix<double, 1, 1>(sensors.time_s));
 }
 
-// the nearest of all turns: joints without limits are wrapped
+// angle wrapped to one turn about 0: encoders of joints without limits wrap
 double turned(double angle) noexcept { return angle - kTurn * std::nearbyint(angle / kTurn); }
 
-// A range that holds `q` as well, and shrinks back to `range` with it.
+// Without power the range is `range` extended to `q`; with power it shrinks back to `range` with
+// `q`.
 void follow(const Interval& range, double q, bool is_powered, double& lowest,
             double& highest) noexcept {
   lowest = std::min(range.lb, is_powered ? std::max(lowest, q) : q);
@@ -195,8 +196,8 @@ void Monitor::look_at_joint(int joint, const CycleRecord& record, const Watched&
   look<FaultCode::kTrackingLost>(joint, std::abs(q_r - q + pulled), apart);
 }
 
-// What its command, spring and inertia do not explain of a motor's motion is friction, or a motor
-// that does not do as told: observed from its momentum, without accelerations.
+// Motor torque that command, spring and inertia do not explain, observed from the momentum without
+// accelerations. Beyond friction, the motor does not follow its command.
 void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
                              MonitorState& state) noexcept {
   const bool is_told = watched.tau_m.size() == n_m_ && robot.dtheta_m.size() == n_m_ &&
@@ -223,8 +224,8 @@ void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
   }
 }
 
-// What neither motion nor the user's wrench explains: somebody or something touches the arm, or the
-// sensors of force and torque contradict each other. Braking at a stop has to be exact for nobody.
+// Joint torque that neither motion nor the user's wrench explains: contact with the arm, or force
+// sensor and joint torques contradict each other. Running only: a stop need not brake exactly.
 void Monitor::look_at_torques(const Watched& watched) noexcept {
   if (mode_of(watched.state) != Mode::kRunning || watched.unexplained.size() != n_m_) return;
   for (int i = 0; i < n_m_ && !config_.actuators.empty(); ++i) {
@@ -234,7 +235,7 @@ void Monitor::look_at_torques(const Watched& watched) noexcept {
   }
 }
 
-// The inertial unit at the handle against the encoders.
+// Compares the inertial unit at the handle with the encoders.
 void Monitor::look_at_inertial_unit(const Watched& watched) noexcept {
   if (!is_powered(watched.state)) return;
   look<FaultCode::kTurnUnexplained>(-1, watched.turn,
@@ -284,9 +285,9 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& reco
   }
 }
 
-// Every axis of a controlled stop against its ramp: an axis of the gantry against its drive model,
-// a joint against the accelerations that are asked of it; its reference itself comes back to a
-// joint that does not follow. Whatever does not brake as it is asked to needs its brakes.
+// Checks every axis of a controlled stop against its ramp: a gantry axis against its drive model, a
+// joint against the integrated accelerations of its reference (the reference itself is shifted back
+// to a joint that does not follow). An axis that does not brake as commanded needs its brakes.
 void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
                               MonitorState& state) noexcept {
   const bool is_new = !state.is_stopping;
@@ -342,7 +343,8 @@ void Monitor::look_at_frames(const CycleRecord& record, const Watched& watched) 
   look<FaultCode::kSafeSpeedExceeded>(1, record.robot.dq_p.norm(), config_.safe_speed);
 }
 
-// A warning. What calming could end, hg/passivity stops itself.
+// Returns a warning. Oscillations of force, which added damping may end, are stopped by
+// hg/passivity.
 Fault Monitor::look_for_shaking(const SensorFrame& sensors, const CycleRecord& record,
                                 const Watched& watched, MonitorState& state) noexcept {
   if (!config_.looks_for_shaking || mode_of(watched.state) != Mode::kRunning) {
@@ -440,7 +442,7 @@ Verdict Monitor::judge(MonitorState& state) const noexcept {
   double nearest = 0.0;
   for (std::size_t i = 0; i < kRuleCount; ++i) {
     const Worst& worst = worst_[i];
-    if (!(worst.value > 0.0)) {  // nobody was even near
+    if (!(worst.value > 0.0)) {  // far from the threshold
       state.broken[i] = 0;
       continue;
     }

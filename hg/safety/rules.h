@@ -1,5 +1,5 @@
-/// Everything that stops the device, as data: the table of docs/safety.md, the explanations of
-/// program and page, and what supervisor and monitor do all come from here.
+/// Rules that stop the device, as data: source of the table in docs/safety.md, of the explanations
+/// of program and page, and of the reactions of supervisor and monitor.
 ///
 /// Source: [HANDBOOK] 6.2, 6.5; where a number differs, docs/safety.md says why. Not a certified
 /// safety function.
@@ -13,7 +13,7 @@
 
 namespace hg::safety {
 
-/// How long a rule must be broken without a break before it acts: until both have passed.
+/// Time a rule must be broken without interruption before it acts: until both have passed.
 struct Debounce {
   int samples = 1;
   double seconds = 0.0;
@@ -22,14 +22,14 @@ struct Debounce {
 /// One reason to stop.
 struct Rule {
   FaultCode code = FaultCode::kNone;
-  std::string_view name;       ///< two or three words
-  std::string_view meaning;    ///< what is the case, one sentence
-  std::string_view threshold;  ///< key of device.yaml, or what it is compared with in words
-  /// Share of the threshold from which it is a warning; 1 = there is none.
+  std::string_view name;       ///< Name in two or three words
+  std::string_view meaning;    ///< Meaning in one sentence
+  std::string_view threshold;  ///< Key of device.yaml, or the threshold in words
+  /// Share of the threshold from which a warning is given; 1 = no warning.
   double warn_from = 1.0;
   Debounce debounce;
   Stop reaction = Stop::kSto;
-  std::string_view release;  ///< what has to happen before a reset is taken
+  std::string_view release;  ///< Condition for accepting a reset
 };
 
 inline constexpr Rule kRules[] = {
@@ -366,10 +366,10 @@ constexpr std::size_t rule_index(FaultCode code) noexcept {
   return kRuleCount;
 }
 
-/// The rule of `code`; of an unknown code one that switches the drives off.
+/// Rule of `code`; for an unknown code one that switches the drives off.
 const Rule& rule_of(FaultCode code) noexcept;
 
-/// Whether a cause is told as a fault: an operator who lets go is none, and needs no reset.
+/// Whether a cause counts as a fault. Releasing the enabling switch does not and needs no reset.
 constexpr bool is_fault(FaultCode code) noexcept {
   return code != FaultCode::kNone && code != FaultCode::kOperatorReleased;
 }

@@ -22,7 +22,7 @@ void disable(CommandFrame& command) noexcept {
   for (double& q : command.q_m) q = std::isfinite(q) ? q : 0.0;
 }
 
-// within `reach` of `before`, or anywhere from there to `rest`
+// `value` limited to `reach` around `before`, extended to `rest`
 double within_reach(double value, double before, double reach, double rest) noexcept {
   return std::clamp(value, std::min(before - reach, rest), std::max(before + reach, rest));
 }
@@ -111,7 +111,7 @@ double Sanitiser::torque(const Joint& joint, double q, double dq, double hold, d
   return within_reach(limited, before, reach, hold);
 }
 
-// Where the joint is may always be asked for, and everything between there and its range.
+// The measured position is always allowed, and everything between it and the range.
 bool Sanitiser::limit_position(const Joint& joint, double q, double before, bool was_on,
                                double& q_cmd, double& dq_cmd) const noexcept {
   double position = std::clamp(q_cmd, std::min(joint.lowest, q), std::max(joint.highest, q));

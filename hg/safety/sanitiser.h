@@ -1,16 +1,16 @@
-/// Last hand on the command: takes out of it what would bring the device beyond its limits, and
-/// leaves what is fine untouched, bit for bit.
+/// Last check of the command: removes what would drive the device beyond its limits and leaves
+/// everything else unchanged, bit for bit.
 ///
-/// Source: [HANDBOOK] 6.3, with the torque of the joint's spring as the one that holds its motor:
-/// it is measured, so that no model of the arm can be wrong here. A motor that gets it keeps its
-/// speed. With joint torque t_h (0 in strict mode), margin m and deceleration A that can be relied
-/// on, upper side, lower side is the mirror:
+/// Source: [HANDBOOK] 6.3, where the torque holding a motor is the measured torque of its spring,
+/// so that no model of the arm is needed; with it the motor keeps its speed. With joint torque t_h
+/// (0 in strict mode), margin m and reliable deceleration A, at the upper end (lower end mirrored):
 ///   q >= hi + m                 tau <= t_h                the part that pushes on is cut
 ///   v^2 > 2 A (hi + m - q)      tau <= t_h - Jm A         the joint is made to brake
 ///   v >= 1.05 V                 tau <= t_h                the part that accelerates is cut
 ///   always                      |tau| <= peak, and |tau - t_h| grows no faster than the rise time
-/// Outside the braking zone |tau - t_h| never grows and never changes its sign, and doing it twice
-/// changes nothing. Drives that take positions: the same for q and q'. Gantry: speed and range.
+/// Outside the braking zone |tau - t_h| never grows and never changes its sign. Applying step()
+/// twice changes nothing. Drives that take positions: the same for q and q'. Gantry: speed and
+/// range.
 ///
 /// No allocation, noexcept after set-up. Not a certified safety function.
 #pragma once
@@ -25,28 +25,30 @@ namespace hg::safety {
 
 /// Set-up data.
 struct SanitiserConfig {
-  bool is_strict = false;      ///< cut to 0 instead of to the torque that holds
-  double margin = 5e-3;        ///< beyond the limit of a revolute joint, rad
-  double slide_margin = 5e-3;  ///< beyond the limit of a prismatic joint, m
-  double torque_rise = 3e-4;   ///< from none to peak torque, s; slower would touch what is fine
+  bool is_strict = false;      ///< Cuts to 0 instead of to the holding torque
+  double margin = 5e-3;        ///< Margin beyond the limit of a revolute joint, rad
+  double slide_margin = 5e-3;  ///< Margin beyond the limit of a prismatic joint, m
+  /// Rise time from zero to peak torque, s; slower would alter valid commands.
+  double torque_rise = 3e-4;
 };
 
-/// What the sanitiser compares a command with.
+/// Measured state and previous command with which a command is compared.
 struct SanitiserInput {
   const RobotState& robot;
-  bool was_on = false;        ///< the command before had the drives on; the rest belongs to it
-  const VectorM& q_before;    ///< its positions
-  const VectorM& tau_before;  ///< its torques; empty without torque control
+  bool was_on = false;  ///< The previous command had the drives on; the fields below belong to it
+  const VectorM& q_before;    ///< Positions of the previous command, rad or m
+  const VectorM& tau_before;  ///< Torques of the previous command; empty without torque control
 };
 
 struct Sanitised {
-  Fault fault;                ///< kCommandNotFinite with the index of the component; drives are off
-  std::uint32_t changed = 0;  ///< bit i: joint i; from bit 16 on: axes of the gantry
+  Fault fault;  ///< kCommandNotFinite with the index of the component, drives off; or kNone
+  /// Changed entries: bit i: joint i; from bit 16 on: axes of the gantry.
+  std::uint32_t changed = 0;
 };
 
 class Sanitiser {
  public:
-  /// Limits and ratings are those of `monitor`, with one entry per joint.
+  /// Takes limits and ratings from `monitor`, which has one entry per joint.
   Sanitiser(const SanitiserConfig& config, const MonitorConfig& monitor);
 
   Sanitised step(const SanitiserInput& input, CommandFrame& command) const noexcept;

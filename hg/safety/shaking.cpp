@@ -11,8 +11,8 @@ namespace {
 constexpr double kHigh_Hz = 30.0, kLow_Hz = 3.0;
 constexpr double kMean = 0.2;         // s
 constexpr double kLeastTorque = 0.1;  // Nm
-constexpr double kRatio = 0.5;        // of the torques of oscillation and intention
-constexpr double kIntention = 0.05;   // Nm, added to what is intended
+constexpr double kRatio = 0.5;        // oscillation torque over intended torque
+constexpr double kIntention = 0.05;   // Nm, added to the intended torque
 constexpr double kTrip = 0.2;         // s
 constexpr double kPause = 0.2;        // s: longer than half a period of 3 Hz
 constexpr int kTurns = 3;             // one and a half periods
@@ -29,7 +29,7 @@ constexpr double kEnergy = 0.5;     // J
 
 double share_of(double dt, double time) noexcept { return -std::expm1(-dt / time); }
 
-// up while it is so, down twice as fast
+// counts up while the condition holds, down twice as fast
 void count(bool is_so, double dt, double trip, double& counter) noexcept {
   counter = std::clamp(counter + (is_so ? dt : -2.0 * dt), 0.0, trip);
 }
@@ -37,7 +37,7 @@ void count(bool is_so, double dt, double trip, double& counter) noexcept {
 }  // namespace
 
 ShakingWatch::ShakingWatch(double dt, double mass) noexcept : dt_(dt), mass_(mass) {
-  // below a quarter of the rate: there the tangent is still tame
+  // at most a quarter of the rate, where the tangent is well behaved
   const double cutoff = std::min(kHigh_Hz, 0.25 / dt);
   const double k = std::tan(std::numbers::pi * cutoff * dt);
   const double norm = 1.0 / (1.0 + std::numbers::sqrt2 * k + k * k);
@@ -87,7 +87,7 @@ double ShakingWatch::look_for_bouncing(const CycleRecord& record, ShakingState& 
   }
   if (touches && !s.touches) {
     const double speed = -push.normalized().dot(record.v_H);
-    // what has calmed down to half may go on as it is now
+    // a contact at less than half the first speed starts a new series
     if (s.contacts == 0 || speed < kSpeedKept * s.first_speed) {
       s.contacts = 0;
       s.first_speed = speed;

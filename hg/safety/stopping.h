@@ -1,4 +1,4 @@
-/// How a controlled stop brakes, and how long and far that takes from full speed.
+/// Braking of a controlled stop, and the time and distance it takes from full speed.
 #pragma once
 
 #include <algorithm>
@@ -8,19 +8,21 @@
 
 namespace hg::safety {
 
-inline constexpr double kBrakingRate = 20.0;  ///< 1/s, of the law: a slow motion halves in 35 ms
-inline constexpr double kRampOut = 0.1;       ///< s in which forces make room for braking
-inline constexpr double kStandstill = 1e-3;   ///< rad/s and m/s: below it a stop is over
+/// Braking rate of the law, 1/s: a slow motion halves in 35 ms.
+inline constexpr double kBrakingRate = 20.0;
+inline constexpr double kRampOut = 0.1;      ///< Time to ramp out forces in favour of braking, s
+inline constexpr double kStandstill = 1e-3;  ///< Speed below which a stop is over, rad/s and m/s
 
-/// What a stop takes: s, and rad or m.
+/// Time and distance of a stop: s, and rad or m.
 struct StoppingNeed {
   double time = 0.0, distance = 0.0;
 };
 
-/// What of a stopping distance is left to the axis; then the monitor closes the brakes.
+/// Share of a stopping distance at which the monitor closes the brakes.
 inline constexpr double kUntilBrakes = 0.9;
 
-/// Of a joint at speed `v` with the acceleration `ddq` of its rating; both finite.
+/// Stopping time and distance of a joint at speed `v` with its rated acceleration `ddq`; both
+/// finite.
 inline StoppingNeed stopping_need(double v, double ddq) noexcept {
   const double slow = std::min(v, ddq / kBrakingRate);  // from here on it decays with the rate
   return {.time = kRampOut + (v - slow) / ddq +
@@ -28,7 +30,7 @@ inline StoppingNeed stopping_need(double v, double ddq) noexcept {
           .distance = kRampOut * v + 0.5 * (v * v - slow * slow) / ddq + slow / kBrakingRate};
 }
 
-/// Of an axis of the gantry at full speed, commanded to stand still.
+/// Stopping time and distance of a gantry axis at full speed, commanded to stand still.
 inline StoppingNeed stopping_need(const DriveModel& drive) noexcept {
   const double v = drive.dq_max;
   const double slow = std::min(v, drive.ddq_max * drive.lag);

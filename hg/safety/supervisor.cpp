@@ -54,7 +54,7 @@ std::optional<Event> event_of(ModeRequest request) noexcept {
   return std::nullopt;
 }
 
-// why a request that the state would follow is refused nevertheless
+// reason to refuse a request that the state allows
 Refusal guard(Event event, const SupervisorInput& input) noexcept {
   switch (event) {
     case Event::kArm:
@@ -111,7 +111,7 @@ void break_rule(const Fault& fault, SupervisorState& state, Stop at_least) noexc
   const Event event = reaction == Stop::kSto ? Event::kHardRule : Event::kRule;
   const State before = state.state, next = transition(before, event).next;
   if (next == before) {
-    // what the brakes did not hold counts more than why they had to
+    // a brake that slips outranks the reason for which it was closed
     const bool is_worse =
         fault.code == FaultCode::kBrakesSlip && state.fault.code != FaultCode::kBrakesSlip;
     if (is_worse) {

@@ -1,4 +1,4 @@
-/// Which part of a URDF becomes a chain.
+/// Part of a URDF that becomes a chain.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +10,24 @@ namespace hg::scaffold {
 
 struct ChainPart {
   std::filesystem::path urdf;
-  std::string root_link, tip_link;  ///< of a URDF with branches; empty: the whole URDF
+  /// End links of the part in a URDF with branches; empty = the whole URDF
+  std::string root_link, tip_link;
 };
 
-/// Throws SetupError as Chain::from_urdf_file.
+/// Reads the part as a chain. Throws SetupError as Chain::from_urdf_file.
 model::Chain read_part(const ChainPart& part);
 
-/// The last frame whose name says that it is held (handle, tcp, tool, ...), else the last frame.
+/// Index of the last frame with a name of a held frame (handle, tcp, tool, ...), else of the last
+/// frame.
 int held_frame(const model::Chain& chain);
 
-/// Two significant digits, the way people write them: 0.0023, 1.2, 120.
+/// Number with two significant digits in usual notation: 0.0023, 1.2, 120.
 std::string rounded(double value);
 
-/// A name as YAML reads it back: in quotes where it needs them.
+/// A name for YAML, in quotes where needed.
 std::string quoted(const std::string& name);
 
-/// `urdf:` and, where given, the ends of the part, as lines of a YAML file that stands in `folder`.
+/// Lines of a YAML file in `folder`: `urdf:` and, where given, the ends of the part.
 std::string part_lines(const ChainPart& part, const std::filesystem::path& folder);
 
 }  // namespace hg::scaffold

@@ -108,7 +108,7 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
   return best;
 }
 
-// what is left of `range` around `value` when it must stay away from `singular`
+// part of `range` around `value` that stays away from `singular`
 Interval without(Interval range, double singular, double value) {
   if (singular < value) {
     range.lb = std::max(range.lb, singular + kSingularMargin);
@@ -141,7 +141,7 @@ std::vector<std::pair<SingularValue, Interval>> sums(const DeviceDraft& d) {
   return found;
 }
 
-// what the manipulator can give the handle in every direction of B at once, see `check`
+// capability of the manipulator at the handle in every direction of B at once, see `check`
 struct Reach {
   Eigen::Vector3d lower = Eigen::Vector3d::Constant(kInfinity);
   Eigen::Vector3d upper = Eigen::Vector3d::Constant(-kInfinity);

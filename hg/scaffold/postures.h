@@ -1,4 +1,4 @@
-/// Random postures of a chain and what its Jacobian says there.
+/// Random postures of a chain and properties of its Jacobian there.
 #pragma once
 
 #include <cstdint>
@@ -27,17 +27,19 @@ class PostureSampler {
 std::vector<Interval> joint_ranges(const model::Chain& chain);
 
 /// Smallest singular value of the Jacobian (columns from `first`) at `frame`, rotations scaled by
-/// 0.3 m, about the size of a wrist; m/rad. 0 where a direction is lost.
+/// 0.3 m, about the size of a wrist; m/rad. 0 where a direction of motion is lost.
 double dexterity(model::Chain& chain, int frame, int first, const Eigen::VectorXd& q);
 
-/// A joint, or the sum of two neighbours, that is singular at `value` whatever the others do.
+/// A joint, or the sum of two neighbours, that is singular at `value` for all positions of the
+/// others.
 struct SingularValue {
   int joint = 0;
-  int other = -1;  ///< second joint of the sum; -1: `joint` alone
+  int other = -1;  ///< second joint of the sum; -1 = `joint` alone
   double value = 0.0;
 };
 
-/// Looks at multiples of a quarter turn of the joints from `first` on; those before do not count.
+/// Finds singular values among multiples of a quarter turn of the joints from `first` on; earlier
+/// joints are ignored.
 std::vector<SingularValue> singular_values(const model::Chain& chain, int frame, int first,
                                            const std::vector<Interval>& ranges);
 

@@ -15,10 +15,10 @@ namespace {
 
 constexpr int kPostures = 24;       // in which a placement is tried
 constexpr double kNear = 0.02;      // m, from here on a joint mostly turns the end effector
-constexpr int kPlacements = 40;     // that are tried in all postures
-constexpr double kShare = 0.8;      // of the speed and acceleration of the device's handle
-constexpr double kTurnShare = 0.5;  // of what the slowest of the last three joints can do
-constexpr double kCoasting = 1.5;   // s, time constant of a joint that is let go
+constexpr int kPlacements = 40;     // number of placements tried in all postures
+constexpr double kShare = 0.8;      // share of the speed and acceleration of the device's handle
+constexpr double kTurnShare = 0.5;  // share of the rating of the slowest of the last three joints
+constexpr double kCoasting = 1.5;   // s, time constant of a released joint
 
 struct TwinDraft {
   model::Chain chain;

@@ -1,4 +1,4 @@
-/// Limits as the rest of the program sees them: a catalogue made at set-up, a report per cycle.
+/// Interface of the limits: a catalogue made at set-up and a report per cycle.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace hg {
 
-/// Order of the catalogue: device first, then twin; within, the priorities of [HG] Table II, motors
-/// between virtual joints and frames.
+/// Kind of a limit, in the order of the catalogue: device first, then twin; within these by the
+/// priorities of [HG] Table II, motors between virtual joints and frames.
 enum class LimitKind : std::uint8_t {
   kManipulatorJoint = 0,
   kVirtualJoint = 1,
-  kMotor = 2,  ///< torque of a motor of the manipulator; has no distance to its ends
+  kMotor = 2,  ///< motor torque of the manipulator; without distances to its ends
   kCartesian = 3,
   kTwinJoint = 4,
 };
@@ -24,44 +24,45 @@ enum class LimitKind : std::uint8_t {
 inline constexpr int kMaxLimits =
     2 * kMaxManipulator + kMaxVirtualJoints + 3 * kMaxCartesianFrames + kMaxTwin;
 
-/// One limited quantity. Its index in the catalogue is the index of its LimitReport.
+/// One limited quantity. Its LimitReport has the same index as its entry in the catalogue.
 struct LimitInfo {
   LimitKind kind;
-  std::string name;  ///< "m4", "q4+q5", "elbow x", "hinge"
-  bool is_angle;     ///< position in rad and reaction in Nm; otherwise m and N
-  Interval range;    ///< configured positions
+  std::string name;  ///< For example "m4", "q4+q5", "elbow x", "hinge"
+  bool is_angle;     ///< true: position in rad, reaction in Nm; false: m and N
+  Interval range;    ///< Configured position range
 };
 
 using LimitCatalogue = std::vector<LimitInfo>;
 
 enum class LimitState : std::uint8_t { kInactive = 0, kLower = 1, kUpper = 2, kViolated = 3 };
 
-/// Which rating of the limited quantity acts while its state is not kInactive.
+/// Rating of the limited quantity that is active while its state is not kInactive.
 enum class LimitCause : std::uint8_t {
   kNone = 0,
   kPosition = 1,
   kVelocity = 2,
   kAcceleration = 3,
-  kLock = 4,           ///< a lock holds the joint
+  kLock = 4,           ///< a lock fixes the joint
   kLatch = 5,          ///< a latch lets the joint close but not open
   kFriction = 6,       ///< Coulomb friction holds the joint
-  kContradiction = 7,  ///< no position meets all limits of the joint: held between or at the lock
-  kTorque = 8,         ///< the motor gives all the torque that the law may ask it for
+  kContradiction = 7,  ///< limits of the joint contradict: held between them or at the lock
+  kTorque = 8,         ///< the motor is at the largest torque available to the law
 };
 
 std::string_view to_string(LimitKind kind) noexcept;
 std::string_view to_string(LimitState state) noexcept;
 std::string_view to_string(LimitCause cause) noexcept;
 
+/// State of one limit in one cycle.
 struct LimitReport {
   LimitState state = LimitState::kInactive;
   LimitCause cause = LimitCause::kNone;
-  double position = 0.0;        ///< of the limited quantity
-  double to_lower = kInfinity;  ///< distance left to the limit as rendered: with margin and locks
+  double position = 0.0;        ///< Position of the limited quantity
+  double to_lower = kInfinity;  ///< Distance to the rendered limit, with margin and locks
   double to_upper = kInfinity;
-  double excess = 0.0;    ///< how far it is outside its configured range, >= 0
-  double slack = 0.0;     ///< acceleration by which a violated row misses its bound
-  double reaction = 0.0;  ///< constraint force or torque in the quantity's own coordinate
+  double excess = 0.0;    ///< Distance outside the configured range, >= 0
+  double slack = 0.0;     ///< Acceleration by which a violated row misses its bound
+  double reaction = 0.0;  ///< Constraint force or torque in the quantity's own coordinate
 };
 
 }  // namespace hg

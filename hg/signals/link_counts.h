@@ -1,4 +1,4 @@
-/// What became of the datagrams between a controller and a remote device, as one side saw it.
+/// Counters of the datagrams between a controller and a remote device, as seen by one side.
 #pragma once
 
 #include <array>
@@ -6,33 +6,34 @@
 
 namespace hg {
 
-/// docs/device_protocol.md says what is done in each case.
+/// Datagrams by outcome; docs/device_protocol.md describes the reaction to each.
 struct LinkCounts {
   std::uint64_t sent = 0;
-  std::uint64_t received = 0;       ///< good ones of this session, each once
-  std::uint64_t lost = 0;           ///< numbers that never arrived
-  std::uint64_t reordered = 0;      ///< overtaken on the way
-  std::uint64_t duplicate = 0;      ///< arrived a second time
-  std::uint64_t late = 0;           ///< arrived when their turn was over
-  std::uint64_t held = 0;           ///< turns for which the last values had to do
-  std::uint64_t repeated = 0;       ///< sent again for want of an answer, lock-step only
-  std::uint64_t corrupted = 0;      ///< checksum wrong
-  std::uint64_t truncated = 0;      ///< size is not what it says or what its type has
-  std::uint64_t malformed = 0;      ///< impossible content
-  std::uint64_t foreign = 0;        ///< not of this protocol, or not of this kind of peer
-  std::uint64_t wrong_version = 0;  ///< of another version of the protocol
-  std::uint64_t wrong_session = 0;  ///< of another session
-  std::uint64_t refused = 0;        ///< attempts of other clients to connect
-  std::uint64_t forged = 0;         ///< the tag of the shared key is wrong or missing
-  std::uint64_t from_others = 0;    ///< not from the address of the client
+  std::uint64_t received = 0;       ///< Valid datagrams of this session, each counted once
+  std::uint64_t lost = 0;           ///< Datagrams that never arrived, by gaps in their numbers
+  std::uint64_t reordered = 0;      ///< Datagrams overtaken by a newer one
+  std::uint64_t duplicate = 0;      ///< Datagrams received a second time
+  std::uint64_t late = 0;           ///< Datagrams received after their period had ended
+  std::uint64_t held = 0;           ///< Periods bridged with the last values
+  std::uint64_t repeated = 0;       ///< Datagrams sent again for lack of an answer; lock-step only
+  std::uint64_t corrupted = 0;      ///< Datagrams with a wrong checksum
+  std::uint64_t truncated = 0;      ///< Datagrams whose size does not match header or type
+  std::uint64_t malformed = 0;      ///< Datagrams with invalid content
+  std::uint64_t foreign = 0;        ///< Datagrams of another protocol or of the wrong kind of peer
+  std::uint64_t wrong_version = 0;  ///< Datagrams of another protocol version
+  std::uint64_t wrong_session = 0;  ///< Datagrams of another session
+  std::uint64_t refused = 0;        ///< Connection attempts of other clients
+  std::uint64_t forged = 0;         ///< Datagrams with a wrong or missing tag of the shared key
+  std::uint64_t from_others = 0;    ///< Datagrams not from the client's address
 };
 
+/// Name of one counter and its member.
 struct LinkCount {
   const char* name;
   std::uint64_t LinkCounts::*value;
 };
 
-/// Everything in LinkCounts that is not as it should be, for texts and files.
+/// All counters of LinkCounts that indicate trouble, with their names in texts and files.
 inline constexpr std::array<LinkCount, 15> kLinkTroubles = {{
     {"lost", &LinkCounts::lost},
     {"reordered", &LinkCounts::reordered},

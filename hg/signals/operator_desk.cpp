@@ -29,7 +29,7 @@ std::uint64_t OperatorDesk::set(Input input, std::uint64_t page, bool is_on,
                                 std::int64_t now_ns) noexcept {
   const auto i = static_cast<std::size_t>(input);
   if (!is_on) {
-    // not held before it is taken: nobody sees the one without the other
+    // switch off before marking as taken: the control thread never sees it taken and still on
     bits_.fetch_and(~on(input));
     bits_.fetch_or(taken(input));
     if (i < kHeldInputs) stops_.fetch_add(1);
@@ -89,7 +89,7 @@ void OperatorDesk::look(std::int64_t now_ns, SafetyPanel& panel) noexcept {
   if (is_taken(Input::kPersonInField)) panel.person_in_field = is(on(Input::kPersonInField));
 }
 
-// Once: what is off already is no stop.
+// Counts a stop only if the input was on.
 void OperatorDesk::let_go(std::size_t input) noexcept {
   const std::uint32_t is_on = on(static_cast<Input>(input));
   if ((bits_.load() & is_on) == 0 || (bits_.fetch_and(~is_on) & is_on) == 0) return;

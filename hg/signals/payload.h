@@ -1,5 +1,5 @@
-/// What hangs beyond the force/torque sensor: handle, brackets, the sensor's own free side. Shared
-/// by the simulation of the sensor and by the estimation of the user's wrench.
+/// Payload beyond the force/torque sensor: handle, brackets, the sensor's own free side. Shared by
+/// the simulation of the sensor and the estimation of the user's wrench.
 ///
 /// Frame S is the sensor. [HANDBOOK] 1.4, 1.6: 1.18 kg (handle and sensor 1.4 kg minus the sensor's
 /// 0.22 kg).
@@ -11,11 +11,11 @@
 
 namespace hg {
 
-/// Set-up data. Default: nothing hangs there.
+/// Mass distribution of the payload; set-up data. Default: no payload.
 struct Payload {
   double mass = 0.0;                                  ///< kg, >= 0
-  Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< centre of mass in S, m
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the COM, axes of S, kg m^2
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();      ///< Centre of mass in S, m
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< Inertia about the COM, axes of S, kg m^2
 };
 
 /// Wrench that the payload exerts on the sensor, at S, resolved in S, force first: its weight minus

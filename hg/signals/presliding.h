@@ -1,9 +1,9 @@
-/// Dry friction that gives way before it slips: elements in parallel, each a bristle that slips at
-/// its share of the torque (Maxwell slip). The same law as that of hg/simulation, without damping.
+/// Presliding friction (Maxwell slip): parallel elements, each an elastic bristle that slips at its
+/// share of the torque. Same law as in hg/simulation, without damping.
 ///
 /// Element k = 1..N of friction F with presliding x: stiffness F / (x k), slips at 1/N of the
-/// torque. Under F alone it slips after x k / N, so that the last one does after x; load and
-/// stiction make all slip later.
+/// torque. Under F alone it slips after x k / N, the last one after x; load and stiction delay all
+/// slips.
 #pragma once
 
 #include <algorithm>
@@ -13,21 +13,22 @@
 
 namespace hg {
 
-inline constexpr int kSlipElements = 3;  ///< at most, of one joint
+inline constexpr int kSlipElements = 3;  ///< Largest number of slip elements of a joint
 
-/// Where the bristles of each joint stand, rad (joints x elements).
+/// Positions of the bristle feet, rad (joints x elements).
 using BristleFeet = MatrixUpTo<kMaxManipulator, kSlipElements>;
 
+/// Whether the friction of this actuator has presliding.
 inline bool has_presliding(const ActuatorModel& actuator) noexcept {
   return actuator.presliding > 0.0 && actuator.coulomb_friction > 0.0;
 }
 
-/// Of element `k` (from 0), Nm/rad; needs has_presliding().
+/// Stiffness of bristle `k` (from 0), Nm/rad; needs has_presliding().
 inline double bristle_stiffness(const ActuatorModel& actuator, int k) noexcept {
   return actuator.coulomb_friction / (actuator.presliding * (k + 1));
 }
 
-/// Of all elements of friction that has not slipped, Nm/rad; 0 without presliding.
+/// Stiffness of all bristles together before any slips, Nm/rad; 0 without presliding.
 inline double presliding_stiffness(const ActuatorModel& actuator) noexcept {
   if (!has_presliding(actuator)) return 0.0;
   double sum = 0.0;
@@ -37,8 +38,8 @@ inline double presliding_stiffness(const ActuatorModel& actuator) noexcept {
   return sum;
 }
 
-/// Torque against friction of at most `bound` (Nm, > 0) that holds the motor at `theta`; the feet
-/// of `joint` follow where its elements slip. Needs has_presliding().
+/// Torque, Nm, that holds the motor at `theta` against friction of at most `bound` (Nm, > 0);
+/// updates the feet of `joint` where elements slip. Needs has_presliding().
 inline double slip(const ActuatorModel& actuator, double theta, double bound, int joint,
                    BristleFeet& feet) noexcept {
   const int elements = static_cast<int>(actuator.presliding_elements);

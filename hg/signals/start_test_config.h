@@ -1,4 +1,4 @@
-/// What the test at each start looks at, and how long its result counts.
+/// Options of the test at each start: tested inputs, tolerances, validity of the result.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace hg {
 
-/// Inputs of a safety controller that the program is told about, in the order of their test.
+/// Inputs of a safety controller that are reported to the program, in the order of their test.
 enum class SafetyInput : std::uint8_t {
   kOverrideKey = 0,
   kScanner = 1,
@@ -25,14 +25,14 @@ constexpr std::string_view to_string(SafetyInput input) noexcept {
   return kSafetyInputNames[static_cast<std::size_t>(input)];
 }
 
-/// Set-up data; SI units.
+/// Options of the start test; set-up data, SI units.
 struct StartTestConfig {
   std::array<bool, kSafetyInputCount> has_input = {true, true, true, true, true};
-  double valid_for_s = 86400.0;       ///< after which a result is too old
-  double brake_motion = 0.01;         ///< of a braked revolute joint or axis at most, rad
-  double slide_brake_motion = 0.002;  ///< of a braked prismatic one at most, m
-  double posture = 0.035;             ///< from one run to the next, revolute, rad: 2 degrees
-  double slide_posture = 0.02;        ///< the same of a prismatic one, m
+  double valid_for_s = 86400.0;       ///< Validity of a result, s
+  double brake_motion = 0.01;         ///< Largest motion of a braked revolute joint or axis, rad
+  double slide_brake_motion = 0.002;  ///< Largest motion of a braked prismatic joint or axis, m
+  double posture = 0.035;             ///< Revolute: largest change between two runs, rad; 2 degrees
+  double slide_posture = 0.02;        ///< Prismatic: largest change between two runs, m
 };
 
 }  // namespace hg

@@ -1,4 +1,4 @@
-/// Changes of a twin's parameters at given times: what a scenario brings along.
+/// Changes of a twin's parameters at given times, as part of a scenario.
 #pragma once
 
 #include <cstddef>
@@ -9,18 +9,19 @@
 
 namespace hg {
 
+/// One parameter change with its time.
 struct TimedChange {
-  double at_s = 0.0;  ///< nominal time of the run; the first cycle from then on takes it
+  double at_s = 0.0;  ///< Nominal time of the run, s; applied in the first cycle at or after it
   ParameterChange change;
 };
 
-/// Hands out one change per cycle, each once. No allocation after construction.
+/// Returns due changes, one per cycle and each once. No allocation after construction.
 class TimedChanges {
  public:
-  /// In the order of their times.
+  /// Takes changes in the order of their times.
   explicit TimedChanges(std::vector<TimedChange> changes) : changes_(std::move(changes)) {}
 
-  /// For the operator frame of the cycle that begins at `time_s`: what is due, or nothing.
+  /// Change due in the cycle that begins at `time_s`; Parameter::kNone if none is due.
   ParameterChange due(double time_s) noexcept {
     if (next_ == changes_.size() || changes_[next_].at_s > time_s) return {};
     return changes_[next_++].change;

@@ -1,4 +1,4 @@
-/// What a simulated operator does at given times: what a scenario brings along.
+/// Actions of a simulated operator at given times, as part of a scenario.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +9,20 @@
 
 namespace hg {
 
+/// State of the panel from a given time on, with one request.
 struct TimedPanel {
-  double at_s = 0.0;  ///< nominal time of the run; from the first cycle from then on
-  SafetyPanel panel;  ///< as it is then
-  ModeRequest request = ModeRequest::kNone;  ///< made once; kNone: nothing is asked for
+  double at_s = 0.0;  ///< Nominal time of the run, s; acts from the first cycle at or after it
+  SafetyPanel panel;  ///< Panel from that time on
+  ModeRequest request = ModeRequest::kNone;  ///< Request made once; kNone: no request
 };
 
-/// Hands out each once. No allocation after construction.
+/// Returns due panels, each once. No allocation after construction.
 class TimedPanels {
  public:
-  /// In the order of their times.
+  /// Takes panels in the order of their times.
   explicit TimedPanels(std::vector<TimedPanel> panels) : panels_(std::move(panels)) {}
 
-  /// For the cycle that begins at `time_s`: what is due, one at a time, or nullptr.
+  /// Panel due in the cycle that begins at `time_s`, one per call; nullptr = none.
   const TimedPanel* due(double time_s) noexcept {
     if (next_ == panels_.size() || panels_[next_].at_s > time_s) return nullptr;
     return &panels_[next_++];

@@ -1,25 +1,25 @@
-/// What touches the arm anywhere but at the handle: as the cycle feels it, and what it really does
-/// to a simulated bystander.
+/// Contact of the arm anywhere but at the handle: as detected by the cycle, and its true effect on
+/// a simulated bystander.
 #pragma once
 
 #include "hg/core/types.h"
 
 namespace hg {
 
-/// What the cycle feels of something that touches the arm; hg/compliance.
+/// Detected contact with the arm; hg/compliance.
 struct TouchReport {
-  VectorM torque;        ///< on the joints by what touches the arm, Nm; empty: it is not felt for
-  double share = 0.0;    ///< of the joint's threshold that its torque has reached, the largest
-  bool is_told = false;  ///< beyond its threshold: the arm gives way
-  int joint = -1;        ///< the last one that feels it, whose link is touched; -1 = none
-  Vector6 wrench = Vector6::Zero();  ///< on the handle, that does the same to the joints
+  VectorM torque;        ///< Joint torques of the contact, Nm; empty: detection is inactive
+  double share = 0.0;    ///< Largest ratio of joint torque to its threshold
+  bool is_told = false;  ///< Contact detected: the arm yields
+  int joint = -1;        ///< Most distal joint beyond its threshold: its link is touched; -1 = none
+  Vector6 wrench = Vector6::Zero();  ///< Equivalent wrench on the handle
 };
 
-/// What a simulated bystander bears, whom the arm hits.
+/// Load on a simulated bystander hit by the arm.
 struct BystanderReport {
-  double force = 0.0;        ///< N
-  double pressure = 0.0;     ///< N/cm^2
-  double compression = 0.0;  ///< m
+  double force = 0.0;        ///< Contact force, N
+  double pressure = 0.0;     ///< Contact pressure, N/cm^2
+  double compression = 0.0;  ///< Compression of the body, m
 };
 
 }  // namespace hg

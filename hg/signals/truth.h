@@ -1,4 +1,4 @@
-/// What is really the case, as only a simulation knows it: for judging a run, never for control.
+/// Ground truth of a simulation: for evaluating a run, never for control.
 #pragma once
 
 #include "hg/core/types.h"
@@ -6,18 +6,19 @@
 
 namespace hg {
 
-/// At the time of a SensorFrame. Wrenches act on the handle, at H, resolved in B, force first.
+/// True state at the time of a SensorFrame. Wrenches act on the handle, at H, resolved in B, force
+/// first.
 struct Truth {
-  bool is_known = false;            ///< false: the device is real, nothing below means anything
-  VectorM q_m, dq_m;                ///< link side, not wrapped
-  VectorM theta_m, dtheta_m;        ///< motor side at the output of the gear
-  VectorM tau_J;                    ///< transmitted by the springs, Nm
-  VectorM tau_motor;                ///< of the motors, Nm
-  VectorP q_p, dq_p, ddq_p;         ///< gantry, where its drives and encoders are
-  Pose T_B_H;                       ///< handle
-  Vector6 twist = Vector6::Zero();  ///< (v; omega) of H
-  Vector6 acceleration = Vector6::Zero();  ///< (classical acceleration of H; d omega/dt)
-  Vector6 w_H = Vector6::Zero();           ///< wrench of the user
+  bool is_known = false;            ///< false: the device is real, all other members are invalid
+  VectorM q_m, dq_m;                ///< Link side, not wrapped
+  VectorM theta_m, dtheta_m;        ///< Motor side at the output of the gear
+  VectorM tau_J;                    ///< Torques transmitted by the springs, Nm
+  VectorM tau_motor;                ///< Motor torques, Nm
+  VectorP q_p, dq_p, ddq_p;         ///< Gantry, at its drives and encoders
+  Pose T_B_H;                       ///< Pose of the handle
+  Vector6 twist = Vector6::Zero();  ///< Twist (v; omega) of H
+  Vector6 acceleration = Vector6::Zero();  ///< (Classical acceleration of H; d omega/dt)
+  Vector6 w_H = Vector6::Zero();           ///< Wrench of the user
   BystanderReport bystander;
 };
 

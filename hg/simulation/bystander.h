@@ -1,4 +1,4 @@
-/// Somebody who stands in the way of the arm: a part of a body that a point of the arm hits.
+/// Bystander in the way of the arm: a body part that a point of the arm hits.
 ///
 /// Source: ISO/TS 15066:2016 Annex A, the body model of A.3.5: a mass behind a spring. The spring
 /// pushes along the normal of the skin and never pulls; there is no friction and no damping. A body
@@ -18,17 +18,18 @@
 
 namespace hg::simulation {
 
-/// A row of Tables A.2 and A.3.
+/// One body part: a row of Tables A.2 and A.3.
 struct BodyPart {
   std::string_view name;
   double stiffness;  ///< N/m
   double mass;       ///< kg
-  double force;      ///< permissible, quasi-static, N
-  double pressure;   ///< permissible, quasi-static, of the most sensitive place of the part, N/cm^2
-  double transient;  ///< factor of both for a transient contact; 1 where the source allows none
+  double force;      ///< permissible quasi-static force, N
+  /// Permissible quasi-static pressure at the most sensitive spot of the part, N/cm^2
+  double pressure;
+  double transient;  ///< factor on both for a transient contact; 1 where the source allows none
 };
 
-/// ISO/TS 15066:2016, Tables A.2 and A.3; docs/compliance.md says what of it could be verified.
+/// Body parts of ISO/TS 15066:2016, Tables A.2 and A.3; docs/compliance.md says what was verified.
 inline constexpr std::array kBodyParts = {
     BodyPart{"skull", 150e3, 4.4, 130.0, 110.0, 1.0},
     BodyPart{"face", 75e3, 4.4, 65.0, 110.0, 1.0},
@@ -44,38 +45,38 @@ inline constexpr std::array kBodyParts = {
     BodyPart{"lower_leg", 60e3, 75.0, 130.0, 210.0, 2.0},
 };
 
-/// Null: there is no such part.
+/// Finds a body part by name; null: no such part.
 const BodyPart* find_body_part(std::string_view name) noexcept;
 
-/// Set-up data.
+/// Set-up data of a bystander.
 struct BystanderConfig {
   const BodyPart* part = nullptr;
-  int frame = -1;                                      ///< of the arm, whose origin hits
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the skin, m in B
-  Eigen::Vector3d facing = Eigen::Vector3d::UnitX();   ///< normal of the skin, outwards, in B
-  double reach = 0.15;  ///< sideways from `position` that the body reaches, m, [A]
-  double area = 10e-4;  ///< of contact, m^2, [A]: a tube of 10 cm on flesh
+  int frame = -1;  ///< frame of the arm whose origin hits the body
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< point on the skin, m in B
+  Eigen::Vector3d facing = Eigen::Vector3d::UnitX();   ///< outward normal of the skin, in B
+  double reach = 0.15;  ///< lateral extent of the body around `position`, m, [A]
+  double area = 10e-4;  ///< contact area, m^2, [A]: a tube of 10 cm on flesh
   bool is_clamped = false;
 };
 
 class Bystander {
  public:
   Bystander() = default;
-  /// `facing` becomes a unit vector.
+  /// `facing` is normalised.
   explicit Bystander(const BystanderConfig& config);
 
-  /// One step of `h` seconds with the arm's point at `p`; the force on the arm, N in B. Only what
-  /// comes from the front is met.
+  /// Advances by one step of `h` seconds with the arm's point at `p`. Returns the force on the arm,
+  /// N in B. Contact is made from the front only.
   Eigen::Vector3d step(double h, const Eigen::Vector3d& p) noexcept;
 
   const BystanderReport& report() const noexcept { return report_; }
-  /// Of the body's motion and of its spring, J.
+  /// Kinetic and spring energy of the body, J.
   double energy() const noexcept;
 
  private:
   BystanderConfig config_;
   bool is_in_front_ = false;           ///< the arm was in front of the skin in the last step
-  double pushed_ = 0.0, speed_ = 0.0;  ///< how far the body has been pushed away, and how fast
+  double pushed_ = 0.0, speed_ = 0.0;  ///< displacement and speed of the pushed body
   BystanderReport report_;
 };
 

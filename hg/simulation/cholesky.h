@@ -1,5 +1,5 @@
 /// Cholesky factors of the small matrices of one simulation step: plain loops, faster at this size
-/// than the general ones, and the same bits everywhere.
+/// than general ones, with bitwise identical results on all machines.
 ///
 /// Only lower triangles are read and written. No allocation, noexcept.
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace hg::simulation {
 
-/// The lower triangle of a positive definite matrix becomes its factor L, L L^T = A.
+/// Replaces the lower triangle of a positive definite matrix A by its factor L, L L^T = A.
 template <typename Matrix>
 void factorise(Matrix& A) noexcept {
   const Eigen::Index n = A.rows();
@@ -23,7 +23,7 @@ void factorise(Matrix& A) noexcept {
   }
 }
 
-/// L x = b in place; `first`: entries of b before it are zero.
+/// Solves L x = b in place; `first`: entries of b before it are zero.
 template <typename Matrix, typename Vector>
 void solve_lower(const Matrix& L, Vector&& x, Eigen::Index first = 0) noexcept {
   for (Eigen::Index j = first; j < L.rows(); ++j) {
@@ -32,7 +32,7 @@ void solve_lower(const Matrix& L, Vector&& x, Eigen::Index first = 0) noexcept {
   }
 }
 
-/// L^T x = b in place.
+/// Solves L^T x = b in place.
 template <typename Matrix, typename Vector>
 void solve_upper(const Matrix& L, Vector&& x) noexcept {
   for (Eigen::Index j = L.rows() - 1; j >= 0; --j) {

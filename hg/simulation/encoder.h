@@ -10,19 +10,21 @@
 
 namespace hg::simulation {
 
-/// Set-up data, all seen at the axis itself, behind a gear if there is one. 0 switches a part off.
+/// Set-up data of an encoder, all seen at the axis itself, behind a gear if there is one. 0
+/// disables an effect.
 struct EncoderConfig {
-  double resolution = 0.0;                 ///< LSB on the encoder's own shaft, >= 0
-  double offset = 0.0;                     ///< standard deviation of the mounting offset, >= 0
-  double error_1 = 0.0;                    ///< amplitude of the error once per period, >= 0
-  double error_2 = 0.0;                    ///< amplitude of the error twice per period, >= 0
-  double period = 2.0 * std::numbers::pi;  ///< of these errors, on the encoder's own shaft, > 0
+  double resolution = 0.0;  ///< LSB on the encoder's own shaft, >= 0
+  double offset = 0.0;      ///< standard deviation of the mounting offset, >= 0
+  double error_1 = 0.0;     ///< amplitude of the error once per period, >= 0
+  double error_2 = 0.0;     ///< amplitude of the error twice per period, >= 0
+  /// Period of these errors, on the encoder's own shaft, > 0
+  double period = 2.0 * std::numbers::pi;
 };
 
 class Encoder {
  public:
   Encoder() = default;
-  /// `ratio`: turns of the encoder per turn of the axis, > 0. Draws its errors from `random`.
+  /// `ratio`: turns of the encoder per turn of the axis, > 0. Its errors are drawn from `random`.
   Encoder(const EncoderConfig& config, double ratio, RandomStream random) noexcept
       : config_(config),
         lsb_(config.resolution / ratio),
@@ -32,7 +34,7 @@ class Encoder {
     phase_2_ = 2.0 * std::numbers::pi * random.uniform();
   }
 
-  /// Position that it reports for `q`; counts on, is not wrapped.
+  /// Reported position for the true position `q`; continuous, not wrapped.
   double reading(double q) const noexcept {
     double y = q + offset_;
     const double s = wave_number_ * q;

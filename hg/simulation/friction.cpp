@@ -7,7 +7,7 @@
 namespace hg::simulation {
 namespace {
 
-// Rounding of a rate, relative to the terms that it is the sum of; less is no motion.
+// Rounding error of a rate, relative to its summands; smaller rates count as zero.
 constexpr double kRounding = 1e-12;
 
 struct Rows {
@@ -20,7 +20,7 @@ struct Rows {
 
 BoxState& state_of(BoxSolution& s, int i) noexcept { return s.state[static_cast<std::size_t>(i)]; }
 
-// Forces and rates of the active set that `s.state` says.
+// Forces and rates of the active set given by `s.state`.
 void solve_for_states(const BoxProblem& problem, BoxSolution& s) noexcept {
   const int n = static_cast<int>(problem.w_free.size());
   Rows held;
@@ -52,7 +52,7 @@ void solve_for_states(const BoxProblem& problem, BoxSolution& s) noexcept {
   for (int k = 0; k < held.count; ++k) s.w[held[k]] = 0.0;
 }
 
-// The state that row i wants instead of its own.
+// State that row i should have; its present one if consistent.
 BoxState wanted_state(const BoxProblem& problem, const BoxSolution& s, int i) noexcept {
   const BoxState state = s.state[static_cast<std::size_t>(i)];
   if (problem.lb[i] == problem.ub[i]) return BoxState::kLower;
@@ -68,7 +68,7 @@ BoxState wanted_state(const BoxProblem& problem, const BoxSolution& s, int i) no
   return against > kRounding * terms ? BoxState::kHeld : state;
 }
 
-// The box and the complementarity hold exactly, whatever rounding left.
+// Enforces the box and the complementarity exactly, whatever rounding left.
 void tidy(const BoxProblem& problem, BoxSolution& s) noexcept {
   for (int i = 0; i < s.f.size(); ++i) {
     if (problem.lb[i] == problem.ub[i]) continue;

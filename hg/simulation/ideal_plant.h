@@ -1,7 +1,7 @@
 /// A machine whose drives follow their reference perfectly; only its gantry has dead time and lag.
 ///
-/// For devices that take positions, and for looking at the law alone. SI units. Copyable; no
-/// allocation, noexcept after set-up.
+/// For devices that take positions, and for studying the control law in isolation. SI units.
+/// Copyable; no allocation, noexcept after set-up.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@
 
 namespace hg::simulation {
 
-/// Set-up data.
+/// Set-up data of an ideal plant.
 struct IdealPlantConfig {
-  double period = 1e-3;  ///< s
-  DriveModel drive;      ///< of every gantry axis
+  double period = 1e-3;  ///< control period, s
+  DriveModel drive;      ///< dynamics of every gantry axis
   VectorP q_p_start;
   VectorM q_m_start;
 };
@@ -29,10 +29,10 @@ class IdealPlant {
   /// `chain` holds the gantry joints first; `handle` is its frame H.
   IdealPlant(const IdealPlantConfig& config, const model::Chain& chain, int handle);
 
-  /// Lives one period with drives that are on, or off and held by their brakes.
+  /// Advances by one period with drives that are on, or off and held by their brakes.
   void step(const CommandFrame& command, bool is_on) noexcept;
   const Truth& truth() const noexcept { return truth_; }
-  /// Of a link of the chain.
+  /// Motion of a link of the chain.
   BodyMotion motion(int frame) const noexcept { return motion_of(chain_, frame, ddq_); }
 
  private:

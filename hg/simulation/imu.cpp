@@ -6,7 +6,7 @@
 namespace hg::simulation {
 namespace {
 
-// of the flicker processes: this factor apart, the shortest time constant in s
+// flicker processes: ratio of successive time constants, the shortest time constant in s
 constexpr double kSpread = 10.0;
 constexpr double kShortest = 1.0;
 

@@ -26,7 +26,7 @@ LinkUnit::LinkUnit(const LinkUnitConfig& config, double step, double period, std
                          RandomEffect::kLinkGyroscopeDrift, unit)) {
   RandomStream mounting(seed, RandomEffect::kLinkMounting, unit);
   for (double& coordinate : T_L_U_.p) coordinate = config.place * mounting.gaussian();
-  Eigen::Vector4d turn;  // in any direction with the same probability
+  Eigen::Vector4d turn;  // uniformly distributed random rotation
   for (double& part : turn) part = mounting.gaussian();
   if (config.is_turned)
     T_L_U_.R = Eigen::Quaterniond(turn.normalized()).conjugate().toRotationMatrix();

@@ -1,4 +1,4 @@
-/// An inertial unit on a link of a simulated machine: glued on somewhere and turned anyhow.
+/// Inertial unit on a link of a simulated machine, mounted at a random place and orientation.
 #pragma once
 
 #include "hg/core/types.h"
@@ -7,30 +7,30 @@
 
 namespace hg::simulation {
 
-/// Set-up data of all units.
+/// Set-up data of all inertial units.
 struct LinkUnitConfig {
   double place = 0.1;     ///< standard deviation of each coordinate of a unit in its link, m, >= 0
-  bool is_turned = true;  ///< anyhow; false: the axes of unit and link are parallel
+  bool is_turned = true;  ///< random orientation; false: the axes of unit and link are parallel
   InertialSensorConfig accelerometer = mems_accelerometer();
   InertialSensorConfig gyroscope = mems_gyroscope();
-  /// [A] faster than what sits in the force/torque sensor, 1 ms in all: a chip with a bandwidth of
-  /// 1 kHz on a bus of its own.
+  /// [A] faster than the sensor inside the force/torque sensor, 1 ms in all: a chip with a
+  /// bandwidth of 1 kHz on a bus of its own.
   SensorFilterConfig filter = {.average = 0.5e-3, .delay = 0.75e-3};
 };
 
 class LinkUnit {
  public:
-  /// `unit` counts from 0: each has errors of its own. Throws SetupError for a filter that is too
-  /// long.
+  /// `unit` counts from 0: each has errors of its own. Throws SetupError when a filter is too long.
   LinkUnit(const LinkUnitConfig& config, double step, double period, std::uint64_t seed, int unit);
 
-  /// Once per step of the plant.
+  /// Takes the motion of the link, once per step of the plant.
   void observe(const BodyMotion& link) noexcept;
-  /// Once per period: accelerometer (m/s^2), then gyroscope (rad/s), in the axes of the unit.
+  /// Reading, once per period: accelerometer (m/s^2), then gyroscope (rad/s), in the axes of the
+  /// unit.
   Vector6 sample(double warmer) noexcept;
 
  private:
-  Pose T_L_U_;  ///< of the unit in its link
+  Pose T_L_U_;  ///< pose of the unit in its link
   InertialSensor accelerometer_, gyroscope_;
 };
 

@@ -1,5 +1,5 @@
-/// How warm the winding of a motor is, and what its sensor says. Copper losses heat it, the frame
-/// cools it: first order, so that the rated torque for ever ends at the rated temperature.
+/// Winding temperature of a motor and the reading of its sensor. Copper losses heat the winding,
+/// the frame cools it: first order, so that continuous rated torque ends at the rated temperature.
 ///   T' = (T_room + rise (tau / tau_rated)^2 - T) / time_constant
 #pragma once
 
@@ -7,19 +7,20 @@
 
 namespace hg::simulation {
 
-/// Set-up data. [A]: typical of frameless motors on a robot's joint, datasheets give no more.
+/// Set-up data of a motor's heating. [A]: typical of frameless motors on a robot's joint,
+/// datasheets give no more.
 struct MotorHeatConfig {
-  double room = 22.0;            ///< degrees Celsius
-  double rise = 50.0;            ///< at rated torque for ever, K
+  double room = 22.0;            ///< room temperature, degrees Celsius
+  double rise = 50.0;            ///< temperature rise at continuous rated torque, K
   double time_constant = 900.0;  ///< s, > 0
-  double start = 40.0;           ///< degrees Celsius: it has been in use
-  double resolution = 1.0;       ///< of the sensor, K; 0: none
+  double start = 40.0;           ///< initial temperature of a motor in use, degrees Celsius
+  double resolution = 1.0;       ///< sensor resolution, K; 0: not rounded
 };
 
 class MotorHeat {
  public:
   MotorHeat() = default;
-  /// `torque_rated` in Nm, > 0; 0: the motor stays as warm as it is.
+  /// `torque_rated` in Nm, > 0; 0: the temperature stays constant.
   MotorHeat(const MotorHeatConfig& config, double torque_rated, double period) noexcept
       : room_(config.room),
         resolution_(config.resolution),
@@ -27,7 +28,7 @@ class MotorHeat {
         gain_(torque_rated > 0.0 ? config.rise / (torque_rated * torque_rated) : 0.0),
         share_(torque_rated > 0.0 ? -std::expm1(-period / config.time_constant) : 0.0) {}
 
-  /// A period with the torque `tau` of the motor, Nm, later: degrees Celsius.
+  /// Sensor reading after one more period with the motor torque `tau` (Nm), degrees Celsius.
   double next(double tau) noexcept {
     value_ += share_ * (room_ + gain_ * tau * tau - value_);
     return resolution_ > 0.0 ? resolution_ * std::round(value_ / resolution_) : value_;

@@ -64,7 +64,7 @@ void Plant::draw_phases() noexcept {
   for (int i = 0; i < n_p_; ++i) waviness_phase_[i] = phase(RandomEffect::kWaviness, i);
 }
 
-// Where an axis of the gantry really is and how fast, its drive being at travel_ and speed_.
+// True position and speed of a gantry axis, its drive being at travel_ and speed_.
 Plant::Motion Plant::strayed(int axis) const noexcept {
   const Waviness& wave = config_.waviness[at(axis)];
   if (wave.amplitude == 0.0) return {travel_[axis], speed_[axis]};
@@ -80,7 +80,7 @@ model::Loads Plant::loads() const noexcept {
   return loads;
 }
 
-// The springs carry the weight.
+// Starts at rest with the springs carrying the weight.
 void Plant::start_in_balance() noexcept {
   constexpr int kRounds = 50;  // the sag of a flexible joint changes its load but little
   for (int round = 0; round < kRounds; ++round) {
@@ -134,8 +134,8 @@ void Plant::meet_bystander() noexcept {
   tau_bystander_.noalias() = J.topRows<3>().transpose().lazyProduct(force);
 }
 
-// Currents with their lag; a motor in motion has no more torque than its speed leaves. Ripple and
-// cogging come on top.
+// Currents with their lag; a moving motor is limited to the torque available at its speed. Ripple
+// and cogging are added on top.
 void Plant::move_motors(const VectorM& tau_command) noexcept {
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& a = config_.actuators[at(i)];
@@ -159,7 +159,7 @@ void Plant::move_motors(const VectorM& tau_command) noexcept {
   }
 }
 
-// One step of the drives; the accelerations with which the axes themselves move in it.
+// One step of the drives; returns the accelerations of the axes themselves.
 VectorP Plant::move_gantry(const VectorP& dq_p_command) noexcept {
   const double h = config_.step;
   VectorP ddq_p(n_p_);
@@ -239,7 +239,7 @@ double Plant::friction_bound(int joint) const noexcept {
                         forces_.tau_links[joint]);
 }
 
-// Friction of the motors first, so that row i is the only or first one of motor i.
+// Friction of the motors comes first, so that row i is the only or first one of motor i.
 Plant::Rows Plant::rows(const PlantInput& input) const noexcept {
   Rows rows;
   for (int i = 0; i < n_m_; ++i) add_friction(i, 0, input, rows);
@@ -253,8 +253,8 @@ Plant::Rows Plant::rows(const PlantInput& input) const noexcept {
   return rows;
 }
 
-// An element of the dry friction: it slips at its bound, and before that its bristle gives way. A
-// closed brake holds the motor itself.
+// An element of the dry friction: it slips at its bound; below that its bristle deflects. A closed
+// brake holds the motor itself.
 void Plant::add_friction(int joint, int element, const PlantInput& input,
                          Rows& rows) const noexcept {
   const JointEffects& e = config_.effects[at(joint)];
@@ -271,7 +271,7 @@ void Plant::add_friction(int joint, int element, const PlantInput& input,
 }
 
 // Between motor and link: hysteresis, and with backlash the flanks of the teeth that may touch when
-// the step ends. Of a flank's damper only the way inside counts, so that it never pulls.
+// the step ends. A flank's damper acts only over its penetration, so that it never pulls.
 void Plant::add_gear(int joint, Rows& rows) const noexcept {
   constexpr int kHysteresisSlot = kMaxBristles, kFlankSlot = kMaxBristles + 1;
   const JointEffects& e = config_.effects[at(joint)];
@@ -300,8 +300,8 @@ void Plant::add_gear(int joint, Rows& rows) const noexcept {
   }
 }
 
-// A stop that the link can be at when the step ends. Of the damper only the way inside counts, so
-// that a link pays for all that a stop stores.
+// A stop that the link may reach when the step ends. Its damper acts only over the penetration, so
+// that all energy stored by a stop comes from the link.
 void Plant::add_stop(int joint, Rows& rows) const noexcept {
   const EndStopModel& stop = config_.end_stop;
   const int link = links_[at(joint)];
@@ -315,11 +315,11 @@ void Plant::add_stop(int joint, Rows& rows) const noexcept {
             std::max(below, above), dq_[link], stop.stiffness, damping, rows);
 }
 
-// `row` pushes from a spring that it is `depth` inside of and that gives way with `speed`; nothing
-// where they cannot touch before the step ends.
+// `row` pushes by a spring compressed by `depth` that yields with `speed`; no force where the two
+// cannot touch before the step ends.
 void Plant::add_touch(Row row, double depth, double speed, double stiffness, double damping,
                       Rows& rows) const noexcept {
-  constexpr double kSpeedGained = 1.0;  // rad/s, at most in one step
+  constexpr double kSpeedGained = 1.0;  // rad/s, maximum gain in one step
   const double h = config_.step;
   if (depth < -h * (std::abs(speed) + kSpeedGained)) return;
   const double stiff = h * stiffness + damping;
@@ -363,7 +363,8 @@ void Plant::resist(const Equations& eq, const Rows& rows) noexcept {
   solve(box_, box_solution_);
 }
 
-// A bristle in series with a row of this force and rate moves on; what the row loses is noted.
+// Advances the bristle in series with a row of this force and rate; adds the dissipation of the row
+// to the losses.
 void Plant::stretch(const Row& row, double force, double rate) noexcept {
   double& way = bristles_[at(row.slot)];
   const double speed = row.stiffness > 0.0 ? -row.give * (force + row.stiffness * way) : 0.0;
@@ -372,7 +373,7 @@ void Plant::stretch(const Row& row, double force, double rate) noexcept {
   (row.link == 0.0 ? friction_lost_ : hysteresis_lost_)[row.joint] += lost;
 }
 
-// Accelerations under all forces; motors that friction holds stand still exactly.
+// Accelerations under all forces; motors held by friction stay exactly at rest.
 void Plant::accelerate(Equations& eq, const Rows& rows) noexcept {
   const double h = config_.step;
   VectorM motor = VectorM::Zero(n_m_), link = VectorM::Zero(n_m_);

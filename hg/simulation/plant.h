@@ -9,7 +9,7 @@
 /// box problem, see friction.h.
 ///
 /// SI units; for a prismatic joint read N for Nm and m for rad. Set-up throws SetupError. After it
-/// nothing allocates or throws. Copyable: a copy goes on by itself.
+/// nothing allocates or throws. Copyable: a copy is independent of its original.
 #pragma once
 
 #include <array>
@@ -26,13 +26,13 @@
 
 namespace hg::simulation {
 
-/// What drives the plant during one step.
+/// Inputs of the plant during one step.
 struct PlantInput {
-  VectorM tau_command;            ///< for the motors, Nm
-  bool brakes_closed = true;      ///< of all manipulator joints
-  HardwareFaults faults;          ///< of single brakes
-  VectorP dq_p_command;           ///< for the gantry's drives, before their dead time
-  Vector6 w_H = Vector6::Zero();  ///< of the user on the handle, at H, in B, force first
+  VectorM tau_command;            ///< motor torques, Nm
+  bool brakes_closed = true;      ///< state of all brakes of manipulator joints
+  HardwareFaults faults;          ///< faults of single brakes
+  VectorP dq_p_command;           ///< commands to the gantry's drives, before their dead time
+  Vector6 w_H = Vector6::Zero();  ///< user's wrench on the handle, at H, in B, force first
 };
 
 class Plant {
@@ -40,14 +40,14 @@ class Plant {
   /// Starts at rest, the springs carrying the weight. `handle` is the chain's frame H.
   Plant(const PlantConfig& config, const model::Chain& chain, int handle);
 
-  /// Lives one step.
+  /// Advances by one step.
   void step(const PlantInput& input) noexcept;
 
-  /// What is the case now; accelerations are those of the last step.
+  /// True state now; accelerations are those of the last step.
   const Truth& truth() const noexcept { return truth_; }
-  /// Of a link of the chain, likewise.
+  /// Motion of a link of the chain; accelerations are those of the last step.
   BodyMotion motion(int frame) const noexcept { return motion_of(chain_, frame, ddq_); }
-  /// Of the last step; zero before the first.
+  /// Forces of the last step; zero before the first.
   const PlantForces& forces() const noexcept { return forces_; }
   PlantEnergy energy() const noexcept;
   PlantPower power() const noexcept;
@@ -60,21 +60,21 @@ class Plant {
   const PlantConfig& config() const noexcept { return config_; }
 
  private:
-  // The equations of one step before friction and stops have had their say.
+  // The equations of one step before friction and stops are applied.
   struct Equations {
-    MatrixL L;                  // Cholesky factor of the links' inertia with all that is implicit
+    MatrixL L;                  // Cholesky factor of the links' inertia with all implicit terms
     VectorL tau;                // torques on the links
-    VectorL spring;             // transmitted on the links, were there no acceleration
+    VectorL spring;             // spring torques on the links at zero acceleration
     VectorM motor;              // torques on the motors
-    VectorM inertia, coupling;  // of the motors with all that is implicit; to their links
+    VectorM inertia, coupling;  // of the motors with all implicit terms; coupling to their links
   };
   struct WavePhases {
     double cogging = 0.0, ripple = 0.0;
   };
-  // A force f of the box problem: motor f on the motor and link f on the link of a joint. Its rate
-  // is theirs, motor theta' + link q', plus give f + offset.
+  // A force f of the box problem: motor f acts on the motor and link f on the link of a joint. Its
+  // rate is motor theta' + link q' + give f + offset.
   struct Row {
-    int joint = 0, slot = 0;  // slot: of its state and its bristle
+    int joint = 0, slot = 0;  // slot: index of its state and its bristle
     double motor = 0.0, link = 0.0;
     double stiffness = 0.0, give = 0.0, offset = 0.0;  // of a bristle, rad/s per Nm, rad/s
     double lb = 0.0, ub = 0.0;
@@ -116,22 +116,23 @@ class Plant {
   model::Chain chain_;
   int handle_, n_p_, n_m_, n_l_;
   int dead_steps_;
-  double current_share_;                // of the way to its command that a current goes in one step
-  std::array<int, kMaxLinks> links_{};  // their joints
+  double current_share_;  // fraction of the way to its command that a current covers in one step
+  std::array<int, kMaxLinks> links_{};  // joint index of each link
   std::array<CommandDelay, kMaxGantry> delays_;
   std::array<BoxState, kMaxBoxRows> row_states_{};
-  std::array<double, kMaxBoxRows> bristles_{};  // way of those in series with a row, rad
+  // Deflections of the bristles in series with rows, rad
+  std::array<double, kMaxBoxRows> bristles_{};
   std::array<WavePhases, kMaxManipulator> wave_phases_{};
   VectorM flanks_;                           // torques of the flanks on the links, Nm
   VectorM friction_lost_, hysteresis_lost_;  // powers of the last step, W
-  VectorP travel_, speed_;  // of the gantry as its drives know it, without waviness
+  VectorP travel_, speed_;  // gantry position and speed as seen by its drives, without waviness
   VectorP waviness_phase_;
-  VectorM current_;  // as torques of the motors without the limit of their speed
+  VectorM current_;  // currents as motor torques, before the speed limit
   model::Jacobian J_H_;
   VectorQ q_, dq_, ddq_;
   VectorQ q_before_, dq_before_;  // at the start of the last step
-  VectorQ tau_user_;              // of the user in it, on all joints
-  VectorQ tau_bystander_;         // of the bystander in it, likewise
+  VectorQ tau_user_;              // user's torques in the last step, on all joints
+  VectorQ tau_bystander_;         // bystander's torques in the last step, on all joints
   Bystander bystander_;
   BoxProblem box_;
   BoxSolution box_solution_;

@@ -66,7 +66,7 @@ void check_waviness(const PlantConfig& config) {
   }
 }
 
-// Every joint of the chain has one part to play.
+// Throws unless every joint of the chain has exactly one role.
 void check_joints(const PlantConfig& config, const model::Chain& chain) {
   std::vector<int> uses(chain.joints().size(), 0);
   const auto use = [&](int joint) {

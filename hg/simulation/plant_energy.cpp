@@ -2,7 +2,7 @@
 
 #include "hg/simulation/plant.h"
 
-// What a plant says about itself when asked: energy, power and the check of its equations.
+// Diagnostics of a plant: energy, power and the residual of its equations.
 
 namespace hg::simulation {
 namespace {
@@ -11,7 +11,7 @@ double square(double x) noexcept { return x * x; }
 
 }  // namespace
 
-// How far the spring of a joint is twisted, rad; 0 between the flanks of its gear.
+// Twist of the spring of a joint, rad; 0 between the flanks of its gear.
 double Plant::twist_beyond_play(int joint) const noexcept {
   const double twist = truth_.theta_m[joint] - truth_.q_m[joint];
   const double play = 0.5 * config_.effects[static_cast<std::size_t>(joint)].backlash;

@@ -8,35 +8,35 @@
 
 namespace hg::simulation {
 
-/// Forces and accelerations of one step; its equations of motion hold with the M and c of its
-/// start. Links: manipulator joints, then flexible ones.
+/// Forces and accelerations of one step; they satisfy the equations of motion with the M and c of
+/// its start. Links: manipulator joints, then flexible ones.
 struct PlantForces {
-  VectorL ddq;           ///< of the links
-  VectorM ddtheta;       ///< of the motors
-  VectorL tau_links;     ///< of springs and dampers on the links; a manipulator's are tau_J
+  VectorL ddq;           ///< accelerations of the links
+  VectorM ddtheta;       ///< accelerations of the motors
+  VectorL tau_links;     ///< torques of springs and dampers on the links; a manipulator's are tau_J
   VectorM tau_friction;  ///< Coulomb friction with its bristles, and brakes, on the motors
-  VectorM tau_stop;      ///< of the end stops, on the links
-  VectorP f_p;           ///< of the drives on the gantry
+  VectorM tau_stop;      ///< torques of the end stops, on the links
+  VectorP f_p;           ///< drive forces on the gantry
   int tries = 0;         ///< active sets tried for the friction
   bool is_exact = true;  ///< false: no active set was found in kMaxTries
 };
 
 struct PlantEnergy {
   double kinetic = 0.0;    ///< links, gantry and rotors, J
-  double potential = 0.0;  ///< in gravity
-  double spring = 0.0;     ///< joints and flexible joints
-  double bristle = 0.0;    ///< of friction and hysteresis
+  double potential = 0.0;  ///< potential energy in gravity, J
+  double spring = 0.0;     ///< energy in the springs of joints and flexible joints, J
+  double bristle = 0.0;    ///< energy in the bristles of friction and hysteresis, J
 
   double sum() const noexcept { return kinetic + potential + spring + bristle; }
 };
 
-/// Powers of the last step with the speeds at its end, W.
+/// Powers of the last step, computed with the speeds at its end, W.
 struct PlantPower {
-  double motors = 0.0, user = 0.0, gantry = 0.0;                               ///< put in
-  double joint_damping = 0.0, viscous_friction = 0.0, coulomb_friction = 0.0;  ///< lost, >= 0
-  double flexible_damping = 0.0, hysteresis = 0.0;                             ///< lost, >= 0
-  double end_stops = 0.0;  ///< taken by the stops; a little of it comes back
-  double bystander = 0.0;  ///< taken by the bystander; what the body stores comes back
+  double motors = 0.0, user = 0.0, gantry = 0.0;                               ///< supplied
+  double joint_damping = 0.0, viscous_friction = 0.0, coulomb_friction = 0.0;  ///< dissipated, >= 0
+  double flexible_damping = 0.0, hysteresis = 0.0;                             ///< dissipated, >= 0
+  double end_stops = 0.0;  ///< absorbed by the stops; a small part of it is returned
+  double bystander = 0.0;  ///< absorbed by the bystander; energy stored in the body is returned
 
   double put_in() const noexcept { return motors + user + gantry; }
   double taken() const noexcept {

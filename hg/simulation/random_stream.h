@@ -1,4 +1,4 @@
-/// Random numbers of a simulation: one independent stream per effect and channel.
+/// Random numbers for a simulation: one independent stream per effect and channel.
 ///
 /// The k-th number depends on the seed, the stream and k only, so switching one effect off or on
 /// leaves all others as they were. Uniform: SplitMix64 [Steele 2014] as a counter; Gaussian:
@@ -11,7 +11,7 @@
 
 namespace hg::simulation {
 
-/// Effects that draw numbers of their own. Recorded runs depend on them: never renumber.
+/// Effects with random numbers of their own. Recorded runs depend on them: never renumber.
 enum class RandomEffect : std::uint64_t {
   kLinkEncoder = 1,
   kMotorEncoder = 2,
@@ -48,10 +48,10 @@ class RandomStream {
       : state_(mixed(mixed(seed) + mixed(static_cast<std::uint64_t>(effect) * 256 +
                                          static_cast<std::uint64_t>(channel)))) {}
 
-  /// In [0, 1), equally distributed.
+  /// Uniformly distributed number in [0, 1).
   double uniform() noexcept { return static_cast<double>(next() >> 11) * 0x1p-53; }
 
-  /// Mean 0, variance 1.
+  /// Gaussian number with mean 0, variance 1.
   double gaussian() noexcept {
     if (has_spare_) {
       has_spare_ = false;

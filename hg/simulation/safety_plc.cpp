@@ -6,7 +6,8 @@
 namespace hg::simulation {
 namespace {
 
-constexpr std::uint8_t kFree = 3;  // both channels of a delay that starts with a switch that is on
+// Both channels on: initial value of an input that starts switched on
+constexpr std::uint8_t kFree = 3;
 
 int periods_of(double time, double period) noexcept {
   return static_cast<int>(std::lround(time / period));
@@ -28,7 +29,7 @@ SafetyPlc::SafetyPlc(const SafetyPlcConfig& config)
     return static_cast<std::size_t>(periods_of(time, config.period)) + 1;
   };
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    const bool is_on = i < 2;  // stop buttons and operator: a machine that nobody has stopped
+    const bool is_on = i < 2;  // stop buttons and operator: initially not stopped
     inputs_[i].values.assign(values(config.response), is_on ? kFree : std::uint8_t{0});
   }
   field_.values.assign(values(config.scanner_response), 0);
@@ -41,8 +42,8 @@ void SafetyPlc::step(const SafetyPlcInput& input) noexcept {
   watch_motion(input);
   reset(input);
 
-  // what is latched takes the power after the time of a controlled stop, as a switch does; back it
-  // comes to drives that the program has switched off
+  // a latched trip removes the power after the time of a controlled stop, as a switch does; power
+  // returns only to drives that the program has switched off
   const bool may_have_power = permit_.has_power() && trip_ == PlcTrip::kNone && !has_disagreement_;
   no_power_ = may_have_power ? 0 : no_power_ + 1;
   if (may_have_power && !input.drives_on) has_power_ = true;
@@ -55,7 +56,7 @@ void SafetyPlc::step(const SafetyPlcInput& input) noexcept {
               .has_disagreement = has_disagreement_};
 }
 
-// On when both channels are; channels that differ count as off at once and as a fault in time.
+// On when both channels are; differing channels count as off at once and as a fault after a time.
 bool SafetyPlc::evaluate(int input, TwoChannels channels, const HardwareFaults& faults) noexcept {
   if (has_bit(faults.open_channels, input)) channels.is_on[0] = false;
   if (has_bit(faults.stuck_channels, input)) channels.is_on[0] = true;
@@ -83,8 +84,8 @@ void SafetyPlc::evaluate_all(const SafetyPlcInput& input) noexcept {
       field == ScannerField::kNone || (field == ScannerField::kLarge && permit_.is_slow);
 }
 
-// Motion without a hand that ends by speed or scanner is a trip. Any other end of the permission
-// leaves the device the time to stop; then it has to stand still.
+// When autonomous motion ends because of speed or scanner, that is a trip. Any other end of the
+// permission leaves the device the time to stop; then standstill is required.
 void SafetyPlc::watch_motion(const SafetyPlcInput& input) noexcept {
   const double speed = std::max(input.hand_speed, input.gantry_speed);
   const bool moves = has_power_ && input.drives_on && speed > config_.standstill;

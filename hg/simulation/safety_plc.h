@@ -1,16 +1,16 @@
-/// The safety controller of the simulated device: it watches switches, scanner and speeds by itself
-/// and takes the power away, whatever the program does.
+/// The safety controller of the simulated device: it monitors switches, scanner and speeds
+/// autonomously and removes the power, whatever the program does.
 ///
 /// Source: [HG] III-D layers 1 and 4, [HANDBOOK] 6.5, 6.8:
 ///   motion = stop buttons free and operator holds and
 ///            (user holds or (override key and scanner field clear and speed <= SLS))
-/// Every input has two channels, which must agree within the discrepancy time. The field of the
-/// scanner that counts follows from the speed. What the controller trips on is latched until its
-/// reset button is pressed (an edge) with the cause gone. Where motion is not permitted the device
-/// has the time of a controlled stop before its power goes; after it, standstill is watched.
+/// Every input has two channels, which must agree within the discrepancy time. The active field of
+/// the scanner follows from the speed. A trip of the controller is latched until its reset button
+/// is pressed (an edge) with the cause gone. Where motion is not permitted the device has the time
+/// of a controlled stop before its power is removed; after it, standstill is monitored.
 ///
-/// A model of a Pilz PNOZmulti with motion monitoring as far as the program meets it; nothing about
-/// it is certified. No allocation, noexcept. Copyable.
+/// Models a Pilz PNOZmulti with motion monitoring as far as it interacts with the program; nothing
+/// about it is certified. No allocation, noexcept. Copyable.
 #pragma once
 
 #include <array>
@@ -22,28 +22,28 @@
 
 namespace hg::simulation {
 
-/// Set-up data.
+/// Set-up data of the safety controller.
 struct SafetyPlcConfig {
-  double period = 1e-3;           ///< of step(), s
-  double discrepancy = 0.5;       ///< that channels of an input may differ, s
-  double response = 0.01;         ///< of the controller to its switches, s
+  double period = 1e-3;           ///< period of step(), s
+  double discrepancy = 0.5;       ///< tolerated discrepancy between the channels of an input, s
+  double response = 0.01;         ///< response time of the controller to its switches, s
   double scanner_response = 0.1;  ///< [HANDBOOK] 6.8: 67 to 134 ms at 15 Hz, s
-  double stop_time = 1.0;         ///< SS1: until the power goes, s
-  double safe_speed = 0.25;       ///< SLS, m/s; from here on the large field counts
-  double standstill = 0.1;        ///< SOS: of handle and gantry without permitted motion, m/s
+  double stop_time = 1.0;         ///< SS1: time until the power is removed, s
+  double safe_speed = 0.25;       ///< SLS, m/s; above it the large field is active
+  double standstill = 0.1;  ///< SOS: limit for handle and gantry without permitted motion, m/s
 };
 
-/// Which of the scanner's two fields somebody stands in: the small one is part of the large one.
+/// Occupied field of the scanner: the small one is part of the large one.
 enum class ScannerField : std::uint8_t { kNone = 0, kLarge = 1, kSmall = 2 };
 
-/// One input, two wires.
+/// State of one input with two wires.
 struct TwoChannels {
   std::array<bool, 2> is_on{};
 
   static TwoChannels both(bool on) noexcept { return {{on, on}}; }
 };
 
-/// What the controller sees in one period.
+/// Inputs of the controller in one period.
 struct SafetyPlcInput {
   TwoChannels stop_free = TwoChannels::both(true);  ///< all stop buttons are out
   TwoChannels operator_enable = TwoChannels::both(true);
@@ -54,10 +54,10 @@ struct SafetyPlcInput {
   double gantry_speed = 0.0;  ///< m/s
   bool drives_on = false;     ///< the program has switched them on
   bool reset = false;
-  HardwareFaults faults;  ///< of single channels
+  HardwareFaults faults;  ///< faults of single channels
 };
 
-/// The inputs of the formula, after filtering.
+/// Inputs of the formula, after filtering.
 struct MotionPermit {
   bool stop_free = true, operator_enable = true, user_hold = false;
   bool override_key = false, is_field_clear = true, is_slow = true;
@@ -68,7 +68,7 @@ struct MotionPermit {
   }
 };
 
-/// What made the controller trip, for people who look at the simulation.
+/// Cause of a trip, for displaying the simulation.
 enum class PlcTrip : std::uint8_t {
   kNone = 0,
   kStopButton = 1,
@@ -82,20 +82,20 @@ class SafetyPlc {
   SafetyPlc() : SafetyPlc(SafetyPlcConfig{}) {}
   explicit SafetyPlc(const SafetyPlcConfig& config);
 
-  /// Lives one period.
+  /// Advances by one period.
   void step(const SafetyPlcInput& input) noexcept;
 
-  /// What the program is told.
+  /// Signals reported to the program.
   const SafetyInputs& outputs() const noexcept { return outputs_; }
-  /// False: safe torque off, the brakes are closed.
+  /// Whether the drives have power; false: safe torque off, the brakes are closed.
   bool has_power() const noexcept { return has_power_; }
   const MotionPermit& permit() const noexcept { return permit_; }
   PlcTrip trip() const noexcept { return trip_; }
 
  private:
-  // An input as it was some periods ago.
+  // An input delayed by some periods.
   struct Delay {
-    std::vector<std::uint8_t> values;  // one more than periods
+    std::vector<std::uint8_t> values;  // one more than the delay in periods
     std::size_t next = 0;
 
     std::uint8_t shift(std::uint8_t value) noexcept;

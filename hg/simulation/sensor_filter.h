@@ -1,7 +1,7 @@
-/// The filter of a digital sensor: mean of the newest samples, reported late.
+/// The filter of a digital sensor: mean of the newest samples, reported after a delay.
 ///
-/// Window and delay are whole numbers of plant steps. The first value counts as having been there
-/// for ever. Copyable, no allocation after set-up.
+/// Window and delay are whole numbers of plant steps. The first value is taken as the entire past.
+/// Copyable, no allocation after set-up.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +13,17 @@
 
 namespace hg::simulation {
 
-/// Window and delay together, in steps of the plant.
+/// Maximum of window and delay together, in steps of the plant.
 inline constexpr int kMaxFilterSteps = 128;
 
-/// Set-up data. [C] 2: mass compensation wants the same filter for wrench and acceleration.
+/// Set-up data of a sensor filter. [C] 2: mass compensation needs the same filter for wrench and
+/// acceleration.
 struct SensorFilterConfig {
-  double average = 1e-3;  ///< window of the mean, s, >= 0; less than a step: none; [A] 1.6
+  double average = 1e-3;  ///< window of the mean, s, >= 0; less than a step: no averaging; [A] 1.6
   double delay = 1.5e-3;  ///< further delay, s, >= 0; [A] 1.6
 };
 
-/// `Value` is a vector of fixed size.
+/// Filter of vectors; `Value` is a vector of fixed size.
 template <class Value>
 class SensorFilter {
  public:

@@ -1,4 +1,4 @@
-/// All sensors of the device: from the true state of the plant to what the controller is told.
+/// All sensors of the device: from the true state of the plant to the readings of the controller.
 ///
 /// observe() after every step of the plant, sample() at the end of a period. Each effect is a
 /// parameter and can be switched off; ideal_sensors() has all off. The same seed and inputs give
@@ -23,14 +23,14 @@
 
 namespace hg::simulation {
 
-/// Set-up data.
+/// Set-up data of all sensors.
 struct SensorsConfig {
   std::uint64_t seed = 1;
-  /// [A] 1.2: 20 bit absolute; offset and errors: what calibration leaves.
+  /// [A] 1.2: 20 bit absolute; offset and errors are those left by calibration.
   EncoderConfig link_encoder{
       .resolution = 5.992e-6, .offset = 1e-4, .error_1 = 5e-5, .error_2 = 2e-5};
-  /// [A] 1.2: 17 bit on the motor; error_2 is the kinematic error of the gear as well ([C] 0),
-  /// which the encoder sees and the output does not.
+  /// [A] 1.2: 17 bit on the motor; error_2 also stands for the kinematic error of the gear ([C] 0),
+  /// which appears in the encoder and not at the output.
   EncoderConfig motor_encoder{
       .resolution = 4.794e-5, .offset = 1e-4, .error_1 = 4e-6, .error_2 = 3e-5};
   /// [K] 1.5: 10 um, accuracy 0.15 mm + 0.02 mm/m, here for 5 m, as a smooth error.
@@ -43,24 +43,24 @@ struct SensorsConfig {
   InertialSensorConfig accelerometer = mems_accelerometer();
   InertialSensorConfig gyroscope = mems_gyroscope();
   SensorFilterConfig imu_filter;
-  LinkUnitConfig link_unit;       ///< of every inertial unit on a link
-  TemperatureConfig temperature;  ///< of the force/torque sensor with the IMU inside
+  LinkUnitConfig link_unit;       ///< configuration of every inertial unit on a link
+  TemperatureConfig temperature;  ///< temperature of the force/torque sensor with the IMU inside
   MotorHeatConfig motor_heat;
 };
 
-/// No errors, no noise, no delays: what is true.
+/// Sensors without errors, noise or delays: they report true values.
 SensorsConfig ideal_sensors();
 
-/// What the sensors sit on.
+/// Properties of the device that carries the sensors.
 struct SensedDevice {
-  double step = 0.25e-3;                           ///< of the plant, s
-  double period = 1e-3;                            ///< of the loop, s; a whole number of steps
+  double step = 0.25e-3;  ///< step of the plant, s
+  double period = 1e-3;   ///< period of the loop, s; a whole number of steps
   std::array<bool, kMaxManipulator> is_endless{};  ///< manipulator joints without limits
   VectorM gear_ratio;                              ///< motor turns per turn of the joint
-  VectorM torque_full_scale;                       ///< of the joint torque sensors, Nm
-  VectorM torque_rated;  ///< of the motors, Nm; empty: their heat is unknown
+  VectorM torque_full_scale;                       ///< full scale of the joint torque sensors, Nm
+  VectorM torque_rated;  ///< rated torque of the motors, Nm; empty: their heating is unknown
   Pose T_H_S;            ///< force/torque sensor in the handle frame
-  Payload payload;       ///< beyond the force/torque sensor
+  Payload payload;       ///< load beyond the force/torque sensor
   int link_units = 0;    ///< inertial units on links, at most kMaxInertialUnits
 };
 
@@ -69,9 +69,9 @@ class Sensors {
   /// Throws SetupError when a filter is too long.
   Sensors(const SensorsConfig& config, const SensedDevice& device);
 
-  /// After every step of the plant; the first call counts as a device at rest there for ever.
+  /// Call after every step of the plant; before the first call the device counts as at rest there.
   void observe(const Truth& truth) noexcept;
-  /// The same of the link that a unit sits on.
+  /// The same for the link that carries an inertial unit.
   void observe(std::size_t unit, const BodyMotion& link) noexcept { units_[unit].observe(link); }
   /// At the end of a period, after observe() of the same `truth`: fills q_m, dq_m, theta_m, tau_m,
   /// q_p, w_S, a_S, omega_S, inertial, temperature_m and time_s of `frame`. theta_m, tau_m and

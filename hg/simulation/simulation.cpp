@@ -65,7 +65,7 @@ void Simulation::step(const CommandFrame& command, const HardwareFaults& faults)
   sample();
 }
 
-// The safety controller sees its own switches and speeds, not those that the program is told.
+// The safety controller sees its own switches and speeds, not those reported to the program.
 void Simulation::watch_over(const SafetyPanel& panel) noexcept {
   const double time_s = static_cast<double>(steps_) * config_.sensed.step;
   safety_plc_.step(
@@ -109,8 +109,8 @@ void Simulation::move(const CommandFrame& command) noexcept {
   std::get<Plant>(plant_).step(input);
 }
 
-// The person feels where the handle is now and pulls accordingly until the next step; on an ideal
-// plant, which nobody can move, at once.
+// The person's wrench follows from the present motion of the handle and holds until the next step;
+// on an ideal plant, which no force can move, it acts at once.
 void Simulation::look(const HandTarget& target) noexcept {
   truth_ = std::visit([](const auto& plant) noexcept { return plant.truth(); }, plant_);
   const double time_s = static_cast<double>(steps_) * config_.sensed.step;
@@ -125,7 +125,7 @@ void Simulation::look(const HandTarget& target) noexcept {
 }
 
 void Simulation::sample() noexcept {
-  take_due_command();  // what arrives at the moment of the sample is at work
+  take_due_command();  // a command that arrives at the moment of the sample is in effect
   sensors_.sample(truth_, frame_);
   frame_.answered_sequence = at_work_.sequence;
   frame_.dead_man =

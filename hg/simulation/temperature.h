@@ -1,4 +1,4 @@
-/// How a sensor warms up. Source: [HANDBOOK] 4.5.
+/// Warm-up of a sensor. Source: [HANDBOOK] 4.5.
 ///   T' = (T_env + dT_self - T) / tau + sigma xi
 #pragma once
 
@@ -8,13 +8,13 @@
 
 namespace hg::simulation {
 
-/// Set-up data.
+/// Set-up data of a sensor's temperature.
 struct TemperatureConfig {
   double environment = 0.0;      ///< room minus calibration temperature, K; [A]
-  double self_heating = 8.0;     ///< K; [A] 4.5
+  double self_heating = 8.0;     ///< temperature rise by self-heating, K; [A] 4.5
   double time_constant = 600.0;  ///< s, > 0; [A] 4.5
   double fluctuation = 2e-3;     ///< sigma, K/sqrt(s), >= 0; [A] 4.5
-  double time_on = 1800.0;       ///< for which it has been on at the start, s, >= 0; [A]
+  double time_on = 1800.0;       ///< time since power-on at the start, s, >= 0; [A]
 };
 
 class Temperature {
@@ -27,7 +27,7 @@ class Temperature {
                config.self_heating * -std::expm1(-config.time_on / config.time_constant)),
         random_(random) {}
 
-  /// One period later: kelvin above the temperature of the calibration.
+  /// Advances by one period; returns the temperature above that of calibration, K.
   double next() noexcept {
     value_ = end_ + decay_ * (value_ - end_);
     if (sigma_ > 0.0) value_ += sigma_ * random_.gaussian();

@@ -12,21 +12,23 @@
 
 namespace hg::simulation {
 
-/// Set-up data, as shares of the full scale. 0 switches a part off; an infinite range does too.
+/// Set-up data of a torque sensor, as shares of the full scale. 0 disables an effect, as does an
+/// infinite range.
 struct TorqueSensorConfig {
   double noise = 3e-4;  ///< standard deviation of each sample, >= 0; [A] 1.2
   double gain_error =
       3e-3;              ///< standard deviation, >= 0; [A] with the offset 0.5 % accuracy of 1.2
   double offset = 2e-3;  ///< standard deviation, >= 0; [A]
   double ripple = 2e-3;  ///< amplitude of the gear's ripple, twice per motor turn; [A] 1.2
-  double range = 1.5;    ///< where the reading ends, > 0; [A] strain gauges have a reserve
+  double range = 1.5;    ///< saturation of the reading, > 0; [A] strain gauges have a reserve
   double resolution = 3.05e-5;  ///< LSB, >= 0; [A] 16 bit from -1 to 1
 };
 
 class TorqueSensor {
  public:
   TorqueSensor() = default;
-  /// `full_scale` in Nm, > 0; `errors` draws what stays, `noise` each sample's share.
+  /// `full_scale` in Nm, > 0; constant errors are drawn from `errors`, the noise of each sample
+  /// from `noise`.
   TorqueSensor(const TorqueSensorConfig& config, double full_scale, double gear_ratio,
                RandomStream errors, RandomStream noise) noexcept
       : noise_(noise),
@@ -40,7 +42,7 @@ class TorqueSensor {
     phase_ = 2.0 * std::numbers::pi * errors.uniform();
   }
 
-  /// Sample at the transmitted torque `tau_J` and the motor angle `theta` (at the output).
+  /// Reading at the transmitted torque `tau_J` and the motor angle `theta` (at the output).
   double sample(double tau_J, double theta) noexcept {
     double y = gain_ * tau_J + offset_;
     if (ripple_ > 0.0) y += ripple_ * std::sin(wave_number_ * theta + phase_);

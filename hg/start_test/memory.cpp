@@ -26,12 +26,12 @@ std::string date_of(std::time_t time) {
   return fmt::format("{:%Y-%m-%d %H:%M} UTC", parts);
 }
 
-// Names of files may be no UTF-8; what is none of it is replaced.
+// File names may be invalid UTF-8; invalid parts are replaced.
 std::string text_of(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-// whether `kept` is what a file says where `name` was written
+// whether `kept` is the form in which `name` was written to a file
 bool is_same(const Json& kept, const std::string& name) {
   return kept.is_string() && text_of(kept) == text_of(Json(name));
 }

@@ -12,14 +12,14 @@
 namespace hg::start_test {
 namespace {
 
-constexpr double kPatience = 30.0;  // s for one act of a person
+constexpr double kPatience = 30.0;  // s for one action of a person
 constexpr double kHold = 1.0;       // s; longer than channels may usually differ (0.5 s)
-constexpr double kRest = 1.5;       // s at the start; a tare takes 0.5 s of it
-constexpr double kWarning = 3.0;    // s before the drives come on
+constexpr double kRest = 1.5;       // s at the start, 0.5 s of it for a tare
+constexpr double kWarning = 3.0;    // s before the drives switch on
 constexpr double kArming = 20.0;    // s
 constexpr double kReaction = 0.05;  // s from a stop to drives that are commanded off
 constexpr double kLeaning = 90.0;   // s for all brakes
-constexpr double kReminder = 5.0;   // s between two lists of what is still to be loaded
+constexpr double kReminder = 5.0;   // s between two lists of brakes still to be loaded
 constexpr const char* kReleaseStop =
     "pull the emergency stop out, and press the reset button of the safety controller";
 constexpr const char* kSlips = "a brake slips, so that nothing more is asked for";
@@ -47,7 +47,7 @@ constexpr Operation kOperations[] = {
      "let go of the enabling switch until it is asked for again", "hold the enabling switch again"},
 };
 
-// whether the input is as it is after Operation::act
+// whether the input is in the state after Operation::act
 bool is_operated(SafetyInput input, const Observation& seen) noexcept {
   switch (input) {
     case SafetyInput::kOverrideKey:
@@ -114,7 +114,7 @@ class Procedure {
     }
   }
 
-  // false: not in time
+  // waits for a condition; false: time-out
   bool wait(Wish wish, double at_most_s, const Seen& until) {
     const double begin_s = seen_.time_s;
     while (!until()) {
@@ -127,8 +127,8 @@ class Procedure {
     wait(wish, seconds, [] { return false; });
   }
 
-  // Until the input that was asked for is operated; others that answer instead are told by name.
-  // Why it was not; empty: it was.
+  // Waits until the requested input is operated; other inputs that respond instead are reported by
+  // name. Returns why it failed; empty: it succeeded.
   std::string wait_for(SafetyInput wanted) {
     const Observation before = seen_;
     const bool is_armed = stops_drives(wanted);
@@ -180,10 +180,10 @@ class Procedure {
     station_.tell(fmt::format("{:<18} not tested: {}", item.name, item.found));
   }
 
-  // of the first input that is not as it is when nobody touches anything; empty: none
+  // undo instruction for the first input that is not in its rest state; empty: none
   std::string not_at_rest() const {
     for (const Operation& operation : kOperations) {
-      // before arming is soon enough for the enabling switch
+      // the enabling switch is checked before arming
       if (!has(operation.input) || operation.input == SafetyInput::kEnablingSwitch) continue;
       if (operation.input == SafetyInput::kDeadMan && setup_.is_simulated) continue;
       if (is_operated(operation.input, seen_)) return operation.undo_words;
@@ -241,7 +241,7 @@ class Procedure {
     watches_ = false;
   }
 
-  // A disagreement of channels on the way fails it for good, also one that goes again.
+  // A disagreement of channels at any time fails it permanently, even if it disappears.
   void operate(const Operation& operation, Item& item) {
     if (seen_.safety.has_disagreement) {
       fail(item, "two channels of an input disagree before it was asked for");
@@ -296,8 +296,8 @@ class Procedure {
                        : "seen, and back");
   }
 
-  // The stop itself: the supervisor takes the power, which nobody requests meanwhile, and the
-  // brakes catch what the drives held.
+  // The stop itself: the supervisor removes the power, which is not requested during that time, and
+  // the brakes take over the load of the drives.
   bool look_at_stop(Item& item) {
     const double seen_s = seen_.time_s;
     brakes_.begin(powered_, seen_s);
@@ -332,7 +332,7 @@ class Procedure {
     station_.tell(fmt::format(
         "in {:g} s the drives come on and hold the arm where it stands: keep clear", kWarning));
     stay(Wish::kOff, kWarning);
-    // the only reset of this item: what happens to a standing arm from here on ends it
+    // the only reset of this item: any later fault of the standing arm ends it
     wait(Wish::kTare, kArming, [&] { return seen_.mode != Mode::kFault; });
     Refusal refusal = Refusal::kNone;
     if (seen_.mode != Mode::kFault) {
@@ -352,7 +352,7 @@ class Procedure {
     return fail(item, fmt::format("the device could not be armed for it: {}", why));
   }
 
-  // A device without stop inputs: its power is taken by the program.
+  // A device without stop inputs: the program removes its power.
   void stop_by_itself() {
     Item power = {.name = "power", .found = ""};
     if (arm(power)) {
@@ -386,12 +386,12 @@ class Procedure {
   const Setup& setup_;
   Station& station_;
   BrakeWatch brakes_;
-  Observation seen_, powered_;  // the last; the last with the drives on
+  Observation seen_, powered_;  // the last observation; the last with the drives on
   std::vector<Item> items_;
-  bool watches_ = false;        // the brakes
-  bool was_stopped_ = false;    // with power, by an input
-  bool has_slipped_ = false;    // a brake
-  bool has_disagreed_ = false;  // channels of an input, since one was asked for
+  bool watches_ = false;        // brakes are monitored
+  bool was_stopped_ = false;    // by an input, with power on
+  bool has_slipped_ = false;    // a brake has slipped
+  bool has_disagreed_ = false;  // channels of an input have disagreed since it was requested
 };
 
 }  // namespace

@@ -1,8 +1,8 @@
 /// The test before the first run of a day: every input of the safety controller is operated once,
 /// the power goes from a standing arm, and a person leans on the handle while the brakes hold.
 ///
-/// Plain code from top to bottom that lives through a Station, which is a device with a control
-/// cycle, and who operates it. Nothing here keeps real time.
+/// Sequential code that advances through a Station: a device with a control cycle, and its
+/// operator. Independent of real time.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace hg::start_test {
 
-/// What whoever operates the device is asked to do.
+/// Action requested from the operator of the device.
 enum class Act : std::uint8_t {
   kNone,
   kTurnKeyOn,
@@ -31,35 +31,35 @@ enum class Act : std::uint8_t {
   kReleaseStop,  ///< and press the reset button of the safety controller
   kLetGoOfSwitch,
   kHoldSwitch,
-  kLean,  ///< on the handle: push, pull and twist it in all directions
+  kLean,  ///< push, pull and twist the handle in all directions
 };
 
-/// What the control cycle is wanted to do.
+/// State requested from the control cycle.
 enum class Wish : std::uint8_t {
-  kTare,  ///< drives off; faults are reset, and the handle is tared once nobody holds it
+  kTare,  ///< drives off; faults are reset, and the handle is tared once it is released
   kOff,   ///< drives off
   kArm,   ///< drives on, the arm held where it stands; not after a fault
-  kStay,  ///< as it is: whatever happens now, nobody has requested it
+  kStay,  ///< unchanged: no request, whatever happens
 };
 
-/// One period.
+/// Observed state in one period.
 struct Observation {
-  double time_s = 0.0;  ///< on the device's clock
+  double time_s = 0.0;  ///< time on the device's clock
   SafetyInputs safety;
   bool dead_man = false;
-  /// Where the brakes sit: motor side, link side without motor encoders; unwrapped. Empty where the
-  /// sample was no good.
+  /// Position at the brakes: motor side, link side without motor encoders; unwrapped. Empty where
+  /// the sample was invalid.
   VectorM q_m;
-  VectorP q_p;              ///< gantry
-  VectorM load_m;           ///< that the brakes of the joints carry, Nm or N
-  VectorP load_p;           ///< likewise of the gantry
+  VectorP q_p;              ///< gantry position
+  VectorM load_m;           ///< load on the brakes of the joints, Nm or N
+  VectorP load_p;           ///< load on the brakes of the gantry, Nm or N
   bool is_powered = false;  ///< the command that answered this sample has the drives on
   Mode mode = Mode::kOff;
   FaultCode fault = FaultCode::kNone;
   Refusal refusal = Refusal::kNone;
 };
 
-/// Why no period follows; thrown by Station::live().
+/// Exception that ends the periods, with the reason; thrown by Station::live().
 struct Ended {
   std::string why;
 };
@@ -67,25 +67,25 @@ struct Ended {
 class Station {
  public:
   virtual ~Station() = default;
-  /// The next period. Throws Ended.
+  /// Advances by one period. Throws Ended.
   virtual Observation live(Wish wish) = 0;
-  /// Something to do for whoever operates the device.
+  /// Asks the operator of the device to act.
   virtual void ask(Act act, const std::string& words) = 0;
-  /// What came of it.
+  /// Reports a result.
   virtual void tell(const std::string& words) = 0;
 };
 
-/// One brake.
+/// Joint with a brake.
 struct Joint {
   std::string name;
   bool is_slide = false;
-  double least_load = 1.0;  ///< from which on it says something to hold it, Nm or N
+  double least_load = 1.0;  ///< least load that tests a brake, Nm or N
 };
 
 struct Setup {
   StartTestConfig config;
   std::vector<Joint> gantry, manipulator;
-  bool is_simulated = false;  ///< its person never lets go of the handle
+  bool is_simulated = false;  ///< the simulated person never releases the handle
 };
 
 enum class Outcome : std::uint8_t { kPassed, kFailed, kUntested };
@@ -95,17 +95,18 @@ std::string_view to_string(Outcome outcome) noexcept;
 struct Item {
   std::string name;
   Outcome outcome = Outcome::kUntested;
-  std::string found;                       ///< for people
-  std::optional<double> answered_s = {};   ///< of an input: after it was asked for
-  std::optional<double> power_off_s = {};  ///< of a stop: commanded off after it was seen
-  std::optional<double> motion = {};       ///< of a brake, rad or m
-  std::optional<double> load = {};         ///< of a brake, the largest, Nm or N
+  std::string found;                      ///< result as text
+  std::optional<double> answered_s = {};  ///< input only: time from request to operation, s
+  /// Stop only: time from detection to drives commanded off, s
+  std::optional<double> power_off_s = {};
+  std::optional<double> motion = {};  ///< brake only: motion, rad or m
+  std::optional<double> load = {};    ///< brake only: largest load, Nm or N
 };
 
-/// All items in the order of the test, those that were not reached as kUntested.
+/// Runs the test; returns all items in its order, those not reached as kUntested.
 std::vector<Item> run(const Setup& setup, Station& station);
 
-/// Nothing has failed, and something was tested.
+/// Whether some item was tested and none has failed.
 bool has_passed(const std::vector<Item>& items) noexcept;
 
 }  // namespace hg::start_test

@@ -6,8 +6,8 @@
 namespace hg::start_test {
 namespace {
 
-constexpr double kDelay = 0.3;  // s until somebody does what was asked for
-constexpr double kReset = 0.2;  // s after an input is back, for as long again
+constexpr double kDelay = 0.3;  // s from a request to the action
+constexpr double kReset = 0.2;  // s from the release of an input to the reset, which lasts as long
 constexpr double kPush = 1.5;   // s in each direction
 constexpr double kWay = 0.25;   // m beyond the handle
 constexpr double kTwist = 2.0;  // rad

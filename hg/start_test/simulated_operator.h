@@ -1,5 +1,5 @@
-/// Who operates a simulated device in its test: does what a person is asked to do, by the panel and
-/// the hand target of a command, which machines do not look at.
+/// Operator of a simulated device in its test: performs requested actions by the panel and the hand
+/// target of a command, which real machines ignore.
 #pragma once
 
 #include "hg/core/types.h"
@@ -10,9 +10,9 @@ namespace hg::start_test {
 
 class SimulatedOperator {
  public:
-  /// Does so a little later.
+  /// Requests an action, performed a little later.
   void ask(Act act) noexcept;
-  /// Puts what is done into the command of this period; `T_B_H` is the handle.
+  /// Writes the present action into the command of this period; `T_B_H` is the handle.
   void operate(double time_s, const Pose& T_B_H, CommandFrame& command) noexcept;
 
  private:
@@ -23,7 +23,7 @@ class SimulatedOperator {
   Act act_ = Act::kNone, next_ = Act::kNone;
   double next_s_ = 0.0, since_s_ = 0.0;
   bool is_asked_ = false, has_seen_ = false;
-  Pose start_;  ///< of the handle: the hand rests there
+  Pose start_;  ///< initial handle pose: the hand rests there
 };
 
 }  // namespace hg::start_test

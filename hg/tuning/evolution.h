@@ -1,4 +1,4 @@
-/// Minimises a function of a few variables that has edges and cannot be differentiated.
+/// Minimises a non-smooth function of a few variables without derivatives.
 ///
 /// CMA-ES with its usual constants: N. Hansen, The CMA Evolution Strategy: A Tutorial,
 /// arXiv 1604.00772, without restarts and negative weights.
@@ -13,18 +13,18 @@
 namespace hg::tuning {
 
 struct EvolutionConfig {
-  double step = 0.1;     ///< first standard deviation of every variable
-  int generations = 60;  ///< at most
-  int children = 12;     ///< per generation, >= 4
+  double step = 0.1;     ///< initial standard deviation of every variable
+  int generations = 60;  ///< largest number of generations
+  int children = 12;     ///< children per generation, >= 4
   std::uint32_t seed = 1;
 };
 
-/// Values of the function for all of `x`, which may be found side by side.
+/// Values of the function for all of `x`, which may be computed in parallel.
 using Costs = std::function<std::vector<double>(const std::vector<Eigen::VectorXd>& x)>;
-/// After every generation: how many there were, and the lowest cost so far.
+/// Callback after every generation: number of generations, and the lowest cost so far.
 using Watched = std::function<void(int generation, double best)>;
 
-/// The best of all x that were tried, `start` among them. The same arguments give the same result.
+/// Returns the best of all tried x, including `start`. The same arguments give the same result.
 Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
                          const EvolutionConfig& config, const Watched& watched);
 

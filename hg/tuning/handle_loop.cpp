@@ -25,7 +25,7 @@ constexpr int kNoises = 6 * kGroups;  // the wrench of each mean of a period; jo
 constexpr int kMostStates = 600;
 constexpr double kSlowestIntegral = 1.0;  // 1/s; a slower one would be the slowest motion of all
 
-// Where the parts of the loop stand in its state.
+// Offsets of the parts of the loop in its state.
 class Layout {
  public:
   Layout(int joints, int latencies, int halves) : n(joints), slots(latencies), groups(halves) {
@@ -95,7 +95,7 @@ HandMatrices matrices_of(const user::HandImpedance& hand, const Eigen::Matrix3d&
           .grip_damping = hand.grip_damping};
 }
 
-// What damps a free body, as the law has it: the Cholesky factor of its mass, and its dampers.
+// Damping of a free body, as in the law: the Cholesky factor of its mass, and its dampers.
 struct Dampers {
   rendering::MatrixA L = rendering::MatrixA::Zero(6, 6);
   rendering::TwinValues values;
@@ -158,7 +158,7 @@ class Period {
   // force of the hand on the handle of a state of the plant (6 x plant)
   const MatrixXd& grip() const { return grip_; }
 
-  // What disturbs one sample, in B.
+  // Disturbances of one sample, in B.
   struct Disturbance {
     Eigen::Vector3d push = Eigen::Vector3d::Zero();  // on the hand
     VectorXd motor;                                  // torques on the motors; empty = none
@@ -263,7 +263,7 @@ class Period {
   }
 
  private:
-  // nor does what gives way slip, its stiffness being the same
+  // friction is removed, and presliding friction does not slip, its stiffness being the same
   static control::Config without_friction(control::Config config) {
     constexpr double kFar = 1e3;
     for (ActuatorModel& actuator : config.actuators) {

@@ -42,7 +42,7 @@ constexpr std::array<Knob, 11> kKnobs = {{
      [](Device& d, double x) { d.loop.config.poles.w_motor = x; }},
 }};
 
-// more than this, latency or rate take back
+// the largest useful value; latency or rate reduce higher ones
 double most_of(const Knob& knob, const Device& device) {
   const control::Config& config = device.loop.config;
   if (knob.key == "rotor_pole_rad_per_s") {

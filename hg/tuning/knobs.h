@@ -1,4 +1,4 @@
-/// What tune changes of a device, as its file calls it.
+/// Parameters of a device that `tune` changes, named as in its file.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 namespace hg::tuning {
 
 struct Knob {
-  std::string_view section, key;   ///< of device.yaml
-  double least = 0.0, most = 0.0;  ///< of the search
+  std::string_view section, key;   ///< section and key in device.yaml
+  double least = 0.0, most = 0.0;  ///< range of the search
   double (*get)(const Device&);
   void (*set)(Device&, double);
 };
@@ -21,11 +21,11 @@ std::span<const Knob> knobs();
 using Values = Eigen::VectorXd;
 
 Values values_of(const Device& device);
-/// Values out of the search's range come to its end.
+/// The device with these values; values outside the search range are clamped.
 Device with_values(Device device, const Values& values);
 
-/// Places of values within the range of each knob, 0 to 1 and on a logarithmic axis where the range
-/// has one, and back.
+/// Normalised values within the range of each knob, 0 to 1, logarithmic where the range is, and
+/// back.
 Eigen::VectorXd place_of(const Values& values);
 Values values_at(const Eigen::VectorXd& place);
 

@@ -1,4 +1,4 @@
-/// Whether a torque loop tolerates what nobody knows of an arm and of who holds it.
+/// Robust stability of a torque loop against unknown properties of the arm and of the hand.
 #pragma once
 
 #include <string>
@@ -8,69 +8,71 @@
 
 namespace hg::tuning {
 
-/// Something that the controller does not know.
+/// A deviation from the controller's model.
 struct Doubt {
-  std::string what;  ///< "springs x 0.75"
+  std::string what;  ///< description, e.g. "springs x 0.75"
   control::Reality reality;
   double follower = 1.0;  ///< factor of flatness_Hz
   double mass = 1.0;      ///< factor of the lightest bodies
-  double fed = -1.0;      ///< factor of friction that gives way and is fed forward; < 0: none does
+  double fed = -1.0;      ///< factor of presliding friction that is fed forward; < 0 = none
 };
 
-/// As believed; rotors, springs and links of 0.75 and 1.25 times what is believed; each by itself,
-/// like those that doubts_in_hand() adds.
+/// Deviations without a hand: none; rotors, springs and links of 0.75 and 1.25 times the believed
+/// value; each separately, as in doubts_in_hand().
 std::vector<Doubt> doubts(const control::Config& believed);
 
-/// What counts in a hand: as believed; 1.5 times the latency; torques that follow half as fast.
-/// They do that where motors are at their peak (follow_torque() in control/joint_control.cpp), and
-/// a hand that is stable without may swing for ever with it.
+/// Deviations in a hand: none; 1.5 times the latency; torques that follow half as fast. The last
+/// occurs when motors are at their peak (follow_torque() in control/joint_control.cpp) and can make
+/// a stable hand oscillate for ever.
 std::vector<Doubt> doubts_in_hand(const control::Config& believed);
 
-/// Where joints have presliding: their friction has not slipped, and is as stiff as half of what is
-/// believed, as that, and as 1.25 times that; what is fed forward is 0.5 to 1.25 times as stiff as
-/// it is. In hands, with the body itself. Empty for a device without presliding.
+/// Deviations in joints with presliding: the friction has not slipped, with a stiffness of 0.5, 1
+/// and 1.25 times the believed one; the feedforward is 0.5 to 1.25 times as stiff as the friction.
+/// In hands, with the body itself. Empty for a device without presliding.
 std::vector<Doubt> doubts_in_friction(const control::Config& believed);
 
 /// A hand that holds the handle of a body.
 struct Grasp {
-  std::string what;  ///< "stiff hand"
+  std::string what;  ///< description, e.g. "stiff hand"
   user::HandImpedance hand;
   Body body;
 };
 
 /// The hands of [HANDBOOK] 5.1 and arms on lightly damped springs of 300 to 2000 N/m, with bodies
-/// so light (no heavier than `body`) that little is left where nothing is known for sure.
+/// so light (no heavier than `body`) that little stability margin remains.
 std::vector<Grasp> grasps(const Body& body);
 
-/// What a loop must tolerate in one posture: one of doubts() without a hand, with one of
-/// doubts_in_hand() and, behind them, of doubts_in_friction().
+/// A case that a loop must tolerate in one posture: one of doubts() without a hand; with a hand,
+/// one of doubts_in_hand() or, after them, of doubts_in_friction().
 struct Case {
   std::size_t posture = 0, doubt = 0;
-  int grasp = -1;  ///< -1 = without a hand
+  int grasp = -1;  ///< index of the grasp; -1 = without a hand
 
   bool operator==(const Case&) const = default;
 };
 
-inline constexpr double kArmRadius = 0.995;    ///< per millisecond: errors fall to 37 % in 0.2 s
-inline constexpr double kHandRadius = 0.9996;  ///< in 2.5 s: a hand's own slow motions count
-/// Friction that holds lets go of nothing fast: small motions must die out at all.
+/// Radius per millisecond: errors fall to 37 % in 0.2 s
+inline constexpr double kArmRadius = 0.995;
+/// Radius per millisecond: to 37 % in 2.5 s, as a hand's own slow motions count
+inline constexpr double kHandRadius = 0.9996;
+/// Radius with sticking friction, where decay is slow: small motions only have to decay.
 inline constexpr double kFrictionRadius = 1.0;
 
-/// Everything that a torque loop must tolerate.
+/// All cases that a torque loop must tolerate.
 class Demands {
  public:
   Demands(const control::Config& believed, const Body& body, std::vector<Eigen::VectorXd> postures);
 
   const std::vector<Eigen::VectorXd>& postures() const { return postures_; }
-  /// Whether it is one of doubts_in_friction().
+  /// Whether the case is one of doubts_in_friction().
   bool is_friction(const Case& one) const { return doubt(one).fed >= 0.0; }
   /// All cases of a posture.
   std::vector<Case> cases(std::size_t posture) const;
   /// Largest modulus of the eigenvalues of `device`, per millisecond.
   double radius(const Device& device, const Case& one) const;
-  /// > 0 where that does not die out in time: by how much.
+  /// Excess of the radius over its limit; > 0 where motions do not decay in time.
   double excess(const Device& device, const Case& one) const;
-  /// "stiff hand, 0.4 kg, latency x 1.5".
+  /// Name of a case, e.g. "stiff hand, 0.4 kg, latency x 1.5".
   std::string name(const Case& one) const;
 
  private:
@@ -82,10 +84,10 @@ class Demands {
   std::vector<Eigen::VectorXd> postures_;
 };
 
-/// Where a loop comes nearest to its limits.
+/// Cases in which a loop comes nearest to its limits.
 struct Proof {
   double arm = 0.0, hand = 0.0;  ///< largest radius without and with a hand
-  double friction = 0.0;         ///< in a hand while friction gives way; 0 without presliding
+  double friction = 0.0;  ///< largest radius in a hand during presliding; 0 without presliding
   Case worst_arm, worst_hand, worst_friction;
 
   bool holds() const {

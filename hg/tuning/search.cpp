@@ -55,7 +55,7 @@ class Search {
     return {found, figures_of(problem_, with_values(problem_.device, found))};
   }
 
-  // Of what is there already what costs least under a new limit.
+  // The cheapest known candidate under a new limit.
   Values nearest(const Result& result, double limit) const {
     Values least = result.before.values;
     double lowest = cost(least, limit);
@@ -68,7 +68,7 @@ class Search {
     return least;
   }
 
-  // Where a loop came nearest to its limits counts from now on.
+  // Adds the cases in which a loop came nearest to its limits.
   void mind(const Proof& proof) {
     for (const Case& one : {proof.worst_arm, proof.worst_hand, proof.worst_friction}) {
       if (std::ranges::find(hard_, one) == hard_.end()) hard_.push_back(one);
@@ -111,7 +111,7 @@ class Search {
     (is_friction ? proof.worst_friction : one.grasp < 0 ? proof.worst_arm : proof.worst_hand) = one;
   }
 
-  // What shall be small: distortion, with what is forbidden made dear.
+  // Cost to minimise: distortion, plus penalties for violated limits.
   double cost(const Values& values, double limit) const {
     const Device device = with_values(problem_.device, values);
     const Figures figures = figures_of(problem_, device);
@@ -149,7 +149,7 @@ class Search {
   const Problem& problem_;
   const Told& told_;
   Demands demands_;
-  std::vector<Case> hard_;  // what counts during the search
+  std::vector<Case> hard_;  // cases checked during the search
 };
 
 }  // namespace

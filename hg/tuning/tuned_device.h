@@ -1,4 +1,4 @@
-/// From a device file to what tuning needs of it.
+/// Inputs of tuning from a device file.
 #pragma once
 
 #include "hg/config/device.h"
@@ -11,13 +11,13 @@ namespace hg::tuning {
 /// fewer than six joints, without an accelerometer, or whose sensors have no noise.
 Device device_of(const config::Device& device);
 
-/// What the simulation adds to what is measured.
+/// Sensor noise of the simulation.
 Noise noise_of(const config::Device& device);
 
-/// Friction that nobody expects: that share of what the device file says, Nm.
+/// Unmodelled friction: assumed share of the friction in the device file, Nm.
 Eigen::VectorXd unexpected_friction(const config::Device& device);
 
-/// As the simulation has it, which differs from what the controller believes.
+/// Reality of the simulation, which differs from the controller's model.
 control::Reality simulated(const config::Device& device);
 
 }  // namespace hg::tuning

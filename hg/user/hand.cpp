@@ -10,18 +10,18 @@
 namespace hg::user {
 namespace {
 
-constexpr double kStep = 0.25e-3;  // s, the plant's
-constexpr double kMaxSteps = 400;  // 0.1 s: a hand that was left alone for longer has no past
-constexpr double kReach = 0.65;    // m from the shoulder, [HANDBOOK] 5.2
+constexpr double kStep = 0.25e-3;          // s, the plant's
+constexpr double kMaxSteps = 400;          // 0.1 s: a hand left alone for longer has no memory
+constexpr double kReach = 0.65;            // m from the shoulder, [HANDBOOK] 5.2
 constexpr double kReachStiffness = 500.0;  // N/m beyond it, [A]: soft
 
-// share of `v` that is left when it is shortened to `longest`
+// share of `v` that remains when it is shortened to `longest`
 double share_below(const Eigen::Vector3d& v, double longest) noexcept {
   const double norm = v.norm();
   return norm > longest ? longest / norm : 1.0;
 }
 
-// what an arm stretched too far adds
+// additional force of an overstretched arm
 Eigen::Vector3d reach_force(const Eigen::Vector3d& p, const Goal& goal) noexcept {
   if (!goal.has_shoulder) return Eigen::Vector3d::Zero();
   const Eigen::Vector2d arm = (p - goal.shoulder).head<2>();
@@ -91,7 +91,7 @@ void Arm::step(double dt, const HandleMotion& handle, const Goal& goal,
   const int steps = static_cast<int>(std::clamp(std::ceil(dt / kStep - 1e-3), 1.0, kMaxSteps));
   const double h = std::min(dt / steps, kStep);
   for (int k = 1; k <= steps; ++k) {
-    // handle and goal on their way to where they are at the end
+    // handle and goal interpolated towards their values at the end
     const double ahead = h * (steps - k);
     HandleMotion handle_then = handle;
     handle_then.T_B_H.p -= ahead * handle.twist.head<3>();
@@ -114,7 +114,7 @@ void Arm::move(double dt, const HandleMotion& handle, const Goal& goal,
   const Eigen::Array3d v_goal = R.transpose() * goal.twist.head<3>();
   const Eigen::Array3d v = R.transpose() * v_;
 
-  // nobody pulls harder than they can: arm and damper weaken together
+  // the total force is limited: arm and damper weaken together
   const Eigen::Array3d reach = (R.transpose() * reach_force(p_, goal)).array();
   const double share =
       share_below((K * stretch + D * (v_goal - v) + reach).matrix(), hand_.force_max);

@@ -114,13 +114,13 @@ Vector6 Person::wrench(double t, const HandleMotion& handle, const HandTarget& t
   }
   if (dt > 0.0) arm_.step(dt, handle, goal, tremor_.force(t));
 
-  // a hand that grips less has less of everything: mass, grip and arm
+  // a weaker grip scales everything: mass, grip and arm
   const Eigen::Matrix3d& R = handle.T_B_H.R;
   Vector6 wrench = grip * arm_.wrench();
   wrench.head<3>() += R * push_in_H.head<3>();
   wrench.tail<3>() += R * push_in_H.tail<3>();
   if (target.active) {
-    // with what it pulls on top: a lever turned by up to 45 degrees is not lifted by the pull
+    // plus the sideways pull: a lever turned by up to 45 degrees is not lifted by the pull
     wrench[2] -= target.press * (config_.hand.press_force + wrench.head<2>().norm());
   }
   keep_score(dt, handle);

@@ -1,5 +1,5 @@
-/// A simulated person: takes the handle and pulls it towards where the hand wants it, as a script,
-/// a walk or a mouse says. Source: [HANDBOOK] 5.
+/// A simulated person: takes the handle and pulls it towards the desired pose of the hand, given by
+/// a script, a walk or a mouse. Source: [HANDBOOK] 5.
 ///
 /// SI units; wrenches act on the handle, at H, resolved in B. Copyable, no allocation, noexcept
 /// after set-up; the same calls give the same bits.
@@ -19,7 +19,7 @@
 namespace hg::user {
 
 enum class PersonKind {
-  kNone,    ///< nobody pulls; the dead-man switch is tied down
+  kNone,    ///< no person pulls; the dead-man switch is tied down
   kScript,  ///< plays a script
   kMouse,   ///< follows HandTarget only
 };
@@ -28,7 +28,7 @@ struct Config {
   PersonKind kind = PersonKind::kScript;
   HandImpedance hand;
   Script script;
-  std::uint64_t seed = 1;  ///< of the tremor
+  std::uint64_t seed = 1;  ///< seed of the tremor
 };
 
 class Person {
@@ -36,17 +36,17 @@ class Person {
   /// `twin` and its frame `end_effector` give the pose of kTwinJoints and kCylindrical channels.
   Person(const Config& config, const model::Chain& twin, int end_effector, const Pose& T_B_twin);
 
-  /// Wrench on the handle at time `t`, in s since the start of the run; the arm lives from call to
-  /// call. An active hand target overrules the script. Zero before Script::grasp_s.
+  /// Wrench on the handle at time `t`, in s since the start of the run; the arm advances from call
+  /// to call. An active hand target overrides the script. Zero before Script::grasp_s.
   Vector6 wrench(double t, const HandleMotion& handle, const HandTarget& target) noexcept;
 
-  /// The hand closes the dead-man switch at time `t`: from the grasp on, and for good.
+  /// Whether the hand closes the dead-man switch at time `t`: permanently from the grasp on.
   bool is_holding(double t) const noexcept { return t >= config_.script.grasp_s; }
 
-  /// Seconds until the script has played, with the time before the grasp; 0 without a script.
+  /// Duration of the script including the time before the grasp, s; 0 without a script.
   double duration_s() const noexcept;
 
-  /// Of a walk along checkpoints.
+  /// Score of a walk along checkpoints.
   const Score& score() const noexcept { return score_; }
 
  private:
@@ -65,15 +65,16 @@ class Person {
   Walker walker_;
 
   bool has_grasped_ = false;
-  bool follows_target_ = false;               ///< instead of the script
-  double time_s_ = 0.0;                       ///< of the last call
-  Pose goal_;                                 ///< of the last call
-  std::array<double, kChannels> channels_{};  ///< of the script now
+  bool follows_target_ = false;  ///< whether an active hand target overrides the script
+  double time_s_ = 0.0;          ///< time of the last call
+  Pose goal_;                    ///< goal of the last call
+  std::array<double, kChannels> channels_{};  ///< present values of the script's channels
 
   Score score_;
-  Eigen::Vector2d last_point_ = Eigen::Vector2d::Zero();  ///< start or checkpoint
+  /// Position of the start or the last checkpoint
+  Eigen::Vector2d last_point_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d last_p_H_ = Eigen::Vector2d::Zero();
-  double way_ = 0.0, impulse_ = 0.0, walked_s_ = 0.0, since_point_s_ = 0.0;  ///< so far
+  double way_ = 0.0, impulse_ = 0.0, walked_s_ = 0.0, since_point_s_ = 0.0;  ///< accumulated so far
 };
 
 }  // namespace hg::user

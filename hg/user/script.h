@@ -1,9 +1,9 @@
-/// A scripted hand: what the person wants to do, as ramps of named channels over time. Time counts
-/// from the grasp.
+/// A scripted hand: the intended motion as ramps of named channels over time. Time counts from the
+/// grasp.
 ///
-/// Pose channels say where the hand wants the handle to be, wrench channels what it pushes with.
-/// Every segment moves its channels along a minimum-jerk ramp from what they were to a target;
-/// segments may overlap. Set-up data and pure functions of time.
+/// Pose channels give the desired pose of the handle, wrench channels the wrench exerted by the
+/// hand. Every segment moves its channels along a minimum-jerk ramp from their present value to a
+/// target; segments may overlap. Set-up data and pure functions of time.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace hg::user {
 
-/// What the pose channels mean.
+/// Meaning of the pose channels.
 enum class ScriptFrame {
   kBase,         ///< x y z azimuth pitch roll of the handle in B
   kCylindrical,  ///< swing r z about the twin's base axis
@@ -43,18 +43,18 @@ struct Segment {
 };
 
 struct Script {
-  double grasp_s = 0.7;  ///< the hand takes the handle; until then its sensors can be tared
+  double grasp_s = 0.7;  ///< time of the grasp; until then the handle's sensors can be tared
   ScriptFrame frame = ScriptFrame::kBase;
   std::array<double, kChannels> start{};  ///< values before the first segment
-  std::vector<Segment> segments;          ///< in the order of their start
-  double duration_s = 0.0;                ///< after it the script has played
-  Walk walk;  ///< kBase only: moves x, y and azimuth; the segments of these channels do nothing
+  std::vector<Segment> segments;          ///< segments ordered by start time
+  double duration_s = 0.0;                ///< time at which the script ends
+  Walk walk;  ///< kBase only: moves x, y and azimuth; segments of these channels have no effect
 };
 
 /// Minimum-jerk ramp from 0 to 1 over [start, start + duration]; [HANDBOOK] 5.2.
 double minimum_jerk(double t, double start, double duration) noexcept;
 
-/// All channels at time t.
+/// Values of all channels at time t.
 std::array<double, kChannels> evaluate(const Script& script, double t) noexcept;
 
 }  // namespace hg::user

@@ -8,18 +8,18 @@
 
 namespace hg::user {
 
-/// A sum of sines whose frequencies and phases come from the seed: nothing lies outside the band,
-/// and the force is a pure function of time. No allocation, noexcept.
+/// Sum of sines with frequencies and phases drawn from the seed: nothing lies outside the band, and
+/// the force is a pure function of time. No allocation, noexcept.
 class Tremor {
  public:
-  /// `rms` along each axis, N.
+  /// `rms`: RMS force along each axis, N.
   Tremor(double rms, std::uint64_t seed) noexcept;
 
   /// Force at time `t`, N.
   Eigen::Vector3d force(double t) const noexcept;
 
  private:
-  static constexpr int kSines = 8;  ///< per axis: 2 per Hz of the band
+  static constexpr int kSines = 8;  ///< sines per axis: 2 per Hz of the band
   struct Sine {
     double omega = 0.0, phase = 0.0;  ///< rad/s, rad
   };

@@ -24,7 +24,7 @@ constexpr double kFullGait = 0.6;                        // m/s, slowest speed o
 
 constexpr double kTurnSpeed = 0.5 * pi;   // rad/s, [A]: of the body, half of what 5.4 gives a hand
 constexpr double kBraking = 0.7;          // m/s^2, [A]: gentler than a person can
-constexpr double kArrival_s = 0.3;        // s, [A]: of the last centimetres
+constexpr double kArrival_s = 0.3;        // s, [A]: time constant of the last centimetres
 constexpr double kArrivalDistance = 1.0;  // m, [A]: from here on the body turns to its goal
 constexpr double kNear = 0.10;            // m, [HANDBOOK] 5.3
 constexpr double kNearAngle = 15.0 * pi / 180.0;  // rad, [HANDBOOK] 5.3
@@ -32,13 +32,13 @@ constexpr double kNearAngle = 15.0 * pi / 180.0;  // rad, [HANDBOOK] 5.3
 Vector2d forward(double heading) { return {std::cos(heading), std::sin(heading)}; }
 Vector2d left(double heading) { return {-std::sin(heading), std::cos(heading)}; }
 
-// where the hand is from the body
+// position of the hand relative to the body
 Vector2d hand_offset(double heading) { return kForward * forward(heading) + kLeft * left(heading); }
 
 double turned(double from, double to) { return std::remainder(to - from, 2.0 * pi); }
 
-// Radius on which the body walks when its hand goes round `walk.circle_radius`: the heading lags
-// behind the tangent, which moves the hand outwards. Not positive: the circle is too small.
+// Radius of the body's path when its hand follows `walk.circle_radius`: the heading lags behind the
+// tangent, which moves the hand outwards. Not positive: the circle is too small.
 double body_radius(const Walk& walk) {
   const double lag = walk.speed / walk.circle_radius * kHeadingLag_s;
   const double along = kForward * std::cos(lag) + kLeft * std::sin(lag);
@@ -47,7 +47,7 @@ double body_radius(const Walk& walk) {
   return squared > 0.0 ? std::sqrt(squared) - outwards : 0.0;
 }
 
-// speed from which the distance `d` is enough to stop
+// speed from which the distance `d` suffices to stop
 double arrival_speed(double d) {
   const double near = kBraking * kArrival_s * kArrival_s;
   return d < near ? d / kArrival_s : std::sqrt(kBraking * (2.0 * d - near));
@@ -113,7 +113,7 @@ void Walker::walk_to_checkpoint(double dt, const Pose& T_B_H) noexcept {
   const Checkpoint* goal =
       &walk_.checkpoints[static_cast<std::size_t>(std::min(reached_, count - 1))];
 
-  // what the person sees: how the handle stands, and how that makes them face
+  // heading of the person implied by the orientation of the handle
   const double facing = std::atan2(T_B_H.R(1, 2), T_B_H.R(0, 2)) - walk_.azimuth_from_heading;
   if (reached_ < count && (T_B_H.p.head<2>() - goal->p).norm() < kNear &&
       std::abs(turned(facing, goal->heading)) < kNearAngle) {
@@ -134,7 +134,7 @@ void Walker::walk_to_checkpoint(double dt, const Pose& T_B_H) noexcept {
   turn(dt, distance > kArrivalDistance ? std::atan2(way.y(), way.x()) : goal->heading);
 }
 
-// a heading follows with a lag, no faster than a person turns
+// the heading follows with a lag, limited by the turning speed of a person
 void Walker::turn(double dt, double heading) noexcept {
   heading_ += dt * std::clamp(turned(heading_, heading) / kHeadingLag_s, -kTurnSpeed, kTurnSpeed);
 }

@@ -1,5 +1,5 @@
-/// Everything small that goes either way: the hand, commands and their answers, values, events.
-/// See message.h for the rules.
+/// Small messages in both directions: the hand, commands and their answers, values, events. See
+/// message.h for the rules.
 #pragma once
 
 #include <cstdint>

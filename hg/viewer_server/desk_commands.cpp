@@ -22,7 +22,7 @@ std::string obey_panel(const Command& command, std::int64_t now_ns, OperatorDesk
                                   [&](const auto& i) { return i.name == command.argument; });
   if (named == std::end(kInputs)) return "there is no such switch: " + command.argument;
   if (command.value != 0.0 && command.value != 1.0) return "a switch is 0 (off) or 1 (on)";
-  // what lets go counts between runs as well: it overtakes a run that is being prepared
+  // switching off counts between runs as well: it overtakes a run that is being prepared
   if (!desk.is_open() && command.value != 0.0) return std::string(kOver);
   const std::uint64_t holder = desk.set(named->input, command.page, command.value != 0.0, now_ns);
   return holder == 0 ? "" : "page " + std::to_string(holder) + " holds it";

@@ -1,5 +1,5 @@
-/// Commands that nobody has to be asked for: the server's thread takes them to the operator's desk
-/// itself, so that they never wait for the program.
+/// Commands that need no answer of the program: the server's thread passes them directly to the
+/// operator's desk, so that they never wait for the program.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace hg::viewer_server {
 
-/// Nothing when the program has to answer `command`: it is of another kind, or not among those that
-/// are `followed`. Else it has been followed (empty) or was refused, with the reason. A stop of the
-/// run is done at once, and the program answers.
+/// Returns no value when the program has to answer `command`: it is of another kind, or not among
+/// those `followed`. Else it was executed (empty text) or refused, with the reason. A stop of the
+/// run is executed at once, and the program answers.
 std::optional<std::string> obey_at_desk(const Command& command,
                                         const std::vector<CommandName>& followed,
                                         std::int64_t now_ns, OperatorDesk& desk);

@@ -1,4 +1,4 @@
-/// Frame: what happens now, 60 times a second. See message.h for the rules.
+/// Frame: present state, sent 60 times a second. See message.h for the rules.
 #pragma once
 
 #include <cstdint>

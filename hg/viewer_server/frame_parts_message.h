@@ -1,4 +1,4 @@
-/// What a Frame is made of. See message.h for the rules.
+/// Parts of a Frame. See message.h for the rules.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// What all connections of the server share, and the names that they take from Beast.
+/// State shared by all connections of the server, and the names used from Beast.
 ///
 /// hub.h, page.h and visitor.h include Boost.Beast and are included by viewer_server.cpp only.
 #pragma once
@@ -35,21 +35,21 @@ using Text = std::shared_ptr<const std::string>;
 using Request = http::request<http::empty_body>;
 
 constexpr auto kRequestTimeout = std::chrono::seconds(15);
-constexpr auto kStrangerTimeout = std::chrono::seconds(5);  // to say a whole request
+constexpr auto kStrangerTimeout = std::chrono::seconds(5);  // time limit for a complete request
 constexpr std::size_t kMostStrangers = 32;  // connections that have not shown the token
-constexpr long kMostKnown = 64;             // those that have
+constexpr long kMostKnown = 64;             // connections that have shown the token
 constexpr std::size_t kMaxEvents = 200;     // kept for pages that connect later, and per page
-constexpr std::size_t kMaxCommands = 64;    // that wait for the program
-constexpr std::size_t kMaxDone = 256;       // with those that are only to be told
+constexpr std::size_t kMaxCommands = 64;    // waiting for the program
+constexpr std::size_t kMaxDone = 256;       // including those for information only
 
 inline std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Of the clock of OperatorDesk.
+/// Clock of OperatorDesk, ns.
 inline std::int64_t now_ns() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Of the clock that all times of the server are measured with.
+/// Clock of all times of the server, s.
 inline double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -57,20 +57,21 @@ inline double now_s() {
 class Page;
 class Visitor;
 
-/// Everything but the counters, the hand target and the commands belongs to the server's thread.
+/// Shared state. All but the counters, the hand target and the commands belongs to the server's
+/// thread.
 struct Hub {
   explicit Hub(const Eigen::AlignedBox3d& limits) : hand(limits) {}
 
   bool has_token(const Request& request) const;
-  /// One that has not shown the token; the oldest of too many goes. Not by address: behind a
-  /// router, or on this machine, all have the same.
+  /// Adds a connection that has not shown the token; the oldest is dropped when there are too many.
+  /// Not by address: behind a router, or on this machine, all have the same.
   void admit_stranger(const std::shared_ptr<Visitor>& visitor);
-  /// It has shown the token. What it is to keep; null: there are too many.
+  /// Marks a visitor as having shown the token. Returns its connection share; null: too many.
   std::shared_ptr<int> make_known(const Visitor* visitor);
   void join(const std::shared_ptr<Page>& page);
   void leave(const std::shared_ptr<Page>& page);
   void put_hand(std::uint64_t page, const HandTarget& target);
-  /// False when too many are waiting.
+  /// Queues a command for the program; false when too many are waiting.
   bool put_command(Command command);
   void show(Text frame);
   void announce(Text event);
@@ -79,14 +80,14 @@ struct Hub {
   Listener listener;
   std::string token;
   AssetTable assets;
-  OperatorDesk* desk = nullptr;       ///< nullptr: there is no operator
-  std::vector<CommandName> followed;  ///< of the scene
+  OperatorDesk* desk = nullptr;       ///< nullptr: no operator
+  std::vector<CommandName> followed;  ///< commands accepted by the scene
   std::set<std::shared_ptr<Page>> pages;
   std::deque<Text> events;
   Text newest_frame;
-  Text values;  ///< of the settings
+  Text values;  ///< encoded values of the settings
   std::uint64_t next_page = 1;
-  std::deque<std::weak_ptr<Visitor>> strangers;          ///< the oldest first
+  std::deque<std::weak_ptr<Visitor>> strangers;          ///< oldest first
   std::shared_ptr<int> known = std::make_shared<int>();  ///< one more owner per connection
 
   std::atomic<std::uint64_t> clients{0};
@@ -95,7 +96,7 @@ struct Hub {
   std::atomic<std::uint64_t> refused{0};
   std::mutex input_mutex;
   HandTargetBox hand;
-  std::vector<Command> commands;  ///< that no one has taken yet
+  std::vector<Command> commands;  ///< not yet taken by the program
 };
 
 }  // namespace hg::viewer_server

@@ -1,4 +1,4 @@
-/// The archive that reads a message from JSON and takes nothing but exactly its fields.
+/// The archive that reads a message from JSON; accepts exactly the fields of the message.
 ///
 /// A field that may be null may be missing. Numbers must be finite.
 #pragma once
@@ -20,7 +20,8 @@ class JsonReader {
  public:
   explicit JsonReader(const nlohmann::json& object) : object_(object) {}
 
-  /// False unless `object` is exactly such a message; `message` may have changed all the same.
+  /// Reads a message. False unless `object` is exactly such a message; `message` may be changed
+  /// even then.
   template <IsMessage Message>
   bool read(Message& message) {
     if (!object_.is_object()) return false;
@@ -91,7 +92,7 @@ class JsonReader {
   }
 
   const nlohmann::json& object_;
-  std::size_t known_ = 0;  ///< fields of the object that were asked for
+  std::size_t known_ = 0;  ///< fields of the object that were read
   bool is_right_ = true;
 };
 

@@ -1,7 +1,7 @@
 /// The archive that writes a message as JSON. Use to_json().
 ///
-/// Numbers are rounded to 1e-5 of their unit; what is not finite becomes null; texts are made
-/// visible() (hg/core/visible.h).
+/// Numbers are rounded to 1e-5 of their unit; numbers that are not finite become null; texts are
+/// made visible() (hg/core/visible.h).
 #pragma once
 
 #include <array>
@@ -78,7 +78,7 @@ class JsonWriter {
     close(']');
   }
 
-  // in place of the comma after the last item, if there is one
+  // replaces the comma after the last item, if there is one
   void close(char bracket) {
     if (text.back() == ',') {
       text.back() = bracket;

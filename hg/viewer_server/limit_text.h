@@ -1,4 +1,4 @@
-/// Limits and modes in words for people.
+/// Limits and modes as readable text.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace hg::viewer_server {
 
-/// For example "elbow x: upper limit, 23 N" or "hinge: locked, 4.1 Nm".
+/// Text of a limit's state, for example "elbow x: upper limit, 23 N" or "hinge: locked, 4.1 Nm".
 std::string limit_text(const LimitInfo& info, const LimitReport& report);
 
-/// The mode and why, for example "ready: the force/torque sensor is being tared".
+/// Text of the mode and its cause, for example "ready: the force/torque sensor is being tared".
 std::string mode_text(const CycleRecord& record);
 
 }  // namespace hg::viewer_server

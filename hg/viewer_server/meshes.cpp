@@ -18,7 +18,7 @@ constexpr std::string_view kFile = "file://";
 constexpr std::string_view kMesh = "<mesh";
 constexpr std::string_view kAttribute = "filename=";
 
-// folders in which a package may lie
+// folders that may contain a package
 std::vector<fs::path> package_folders(const fs::path& urdf) {
   std::vector<fs::path> folders;
   std::error_code error;
@@ -32,7 +32,7 @@ std::vector<fs::path> package_folders(const fs::path& urdf) {
   return folders;
 }
 
-// the file that a URDF means by `name`; empty when there is none that a page can draw
+// file that a URDF refers to by `name`; empty when there is none that a page can draw
 fs::path find_mesh(const fs::path& urdf, std::string_view name) {
   std::vector<fs::path> candidates;
   if (name.starts_with(kPackage)) {

@@ -1,4 +1,4 @@
-/// The mesh files that a URDF draws, put into the table of what a page may fetch.
+/// Mesh files referenced by a URDF, added to the assets that a page can fetch.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 namespace hg::viewer_server {
 
-/// `text`, the URDF that is or was the file `urdf`, in which every mesh that was found has the
-/// address `folder`N.stl or .dae, and those meshes in `assets`. Looked for: relative names beside
-/// the URDF; package://NAME/PATH in the folders above it, and in those of ROS_PACKAGE_PATH. What is
-/// not found keeps its name: the page draws bars in its place.
+/// Returns `text`, the URDF that is or was the file `urdf`, with the name of every mesh that was
+/// found replaced by the address `folder`N.stl or .dae, and adds those meshes to `assets`. Search
+/// path: relative names beside the URDF; package://NAME/PATH in the folders above it, and in those
+/// of ROS_PACKAGE_PATH. A mesh that is not found keeps its name: the page draws bars instead.
 std::string with_meshes(const std::filesystem::path& urdf, const std::string& text,
                         std::string_view folder, AssetTable& assets);
 

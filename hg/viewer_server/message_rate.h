@@ -1,4 +1,4 @@
-/// Limits how many messages per second are listened to. Times are arguments.
+/// Limits the rate of accepted messages. Times are arguments.
 #pragma once
 
 #include <algorithm>
@@ -7,10 +7,10 @@ namespace hg::viewer_server {
 
 class MessageRate {
  public:
-  /// `rate_Hz` messages per second, and as many at once after a pause of one.
+  /// Allows `rate_Hz` messages per second, and as many at once after a pause of 1 s.
   explicit MessageRate(double rate_Hz) : rate_Hz_(rate_Hz) {}
 
-  /// False when this message is one too many.
+  /// Whether to accept this message; false when it exceeds the rate.
   bool admit(double now_s) noexcept {
     credit_ = std::min(rate_Hz_, credit_ + rate_Hz_ * (now_s - last_s_));
     last_s_ = now_s;

@@ -114,7 +114,7 @@ void add_limits(const CycleRecord& record, const LimitCatalogue& limits, FrameMe
   }
 }
 
-// what the page draws the device at
+// coordinates at which the page draws the device
 std::vector<double> q_device(const CycleRecord& record) {
   return joined(record.robot.q_p, record.reference.q_m);
 }
@@ -188,11 +188,11 @@ bool is_in_range(const CommandMessage& command) {
   return is_id(command.id) && command.name.size() <= kLongestName;
 }
 
-// Discarded where the text is no JSON, or an object has a key twice: which of the two counts is
-// read differently by others.
+// Discarded where the text is no JSON, or an object has a key twice: other readers may disagree on
+// which of the two counts.
 nlohmann::json parsed(std::string_view text) {
   using Json = nlohmann::json;
-  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  std::vector<std::set<std::string>> keys;  // keys of the objects that are open
   bool is_unique = true;
   const auto look = [&](int, Json::parse_event_t event, const Json& value) {
     if (event == Json::parse_event_t::object_start) keys.emplace_back();

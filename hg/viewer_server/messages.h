@@ -1,6 +1,7 @@
-/// The JSON messages between program and page, from and to the program's own types.
+/// Conversion between the JSON messages of program and page and the program's own types.
 ///
-/// Their fields are described once, in *_message.h; viewer/src/messages.ts is made from the same.
+/// Their fields are described once, in *_message.h; viewer/src/messages.ts is generated from the
+/// same.
 #pragma once
 
 #include <cstdint>
@@ -15,43 +16,43 @@
 
 namespace hg::viewer_server {
 
-/// Addresses under which the server hands out the URDF files.
+/// Addresses of the URDF files on the server.
 inline constexpr std::string_view kDeviceAddress = "/models/device.urdf";
 inline constexpr std::string_view kTwinAddress = "/models/twin.urdf";
 
 std::string encode_scene(const Scene& scene, double update_rate_hz);
 
-/// `clients` is the number of pages connected.
+/// Encodes a view; `clients` is the number of pages connected.
 std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients);
 
 std::string encode_event(std::uint64_t run, double time_s, std::string_view name,
                          std::string_view text);
 
-/// Of Scene::settings; infinite values stand for "unlimited".
+/// Encodes the values of Scene::settings; infinite values stand for "unlimited".
 std::string encode_values(const std::vector<double>& values);
 
-/// `reason` is empty when the command was accepted.
+/// Encodes the answer to a command; `reason` is empty when the command was accepted.
 std::string encode_answer(double id, std::string_view reason);
 
-/// The first message of a connection: the number of its page.
+/// Encodes the first message of a connection: the number of its page.
 std::string encode_welcome(std::uint64_t page);
 
 enum class DecodeStatus { kHand, kHold, kCommand, kMalformed, kOutOfRange };
 
-/// What a page has sent; which of them counts says the status.
+/// Message received from a page; the status says which member is valid.
 struct PageMessage {
   HandTarget hand;
-  double hold = 0.0;  ///< its sequence number
+  double hold = 0.0;  ///< sequence number of a Hold
   Command command;
 };
 
-/// Refuses anything but exactly the fields of Hand, Hold or Command and numbers that are not finite
-/// (kMalformed); positions beyond 100 m, press outside 0..1, quaternions that are not of length 1,
-/// names of more than 200 bytes, and ids or sequence numbers that are not whole numbers of 0..2^53
-/// (kOutOfRange).
+/// Decodes a message. Refuses anything but exactly the fields of Hand, Hold or Command and numbers
+/// that are not finite (kMalformed); positions beyond 100 m, press outside 0..1, quaternions that
+/// are not of length 1, names of more than 200 bytes, and ids or sequence numbers that are not
+/// whole numbers of 0..2^53 (kOutOfRange).
 [[nodiscard]] DecodeStatus decode(std::string_view text, PageMessage& message);
 
-/// For the page, of a message that was refused.
+/// Reason sent to the page for a refused message.
 std::string_view refusal_text(DecodeStatus status) noexcept;
 
 }  // namespace hg::viewer_server

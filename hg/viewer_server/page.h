@@ -1,4 +1,4 @@
-/// One open page: sends it all events and the newest frame, reads its hand targets and commands.
+/// One open page: sends all events and the newest frame to it, reads its hand targets and commands.
 #pragma once
 
 #include <boost/asio/buffer.hpp>
@@ -16,9 +16,9 @@ namespace hg::viewer_server {
 
 constexpr std::size_t kLargestMessage = 4096;  // bytes; a hand target has about 80
 constexpr double kMessageRate_Hz = 200.0;      // a page sends 60 hand targets per second
-constexpr double kCommandRate_Hz = 30.0;       // a slider that is dragged
+constexpr double kCommandRate_Hz = 30.0;       // rate of a dragged slider
 
-/// Lives as long as its connection.
+/// Connection of one page; destroyed when it closes.
 class Page : public std::enable_shared_from_this<Page> {
  public:
   Page(Hub& hub, beast::tcp_stream&& stream, std::shared_ptr<int> connection)
@@ -39,7 +39,7 @@ class Page : public std::enable_shared_from_this<Page> {
     });
   }
 
-  /// Replaces a frame that is still waiting.
+  /// Queues a frame; replaces one that is still waiting.
   void show(Text frame) {
     if (frame_) ++hub_.dropped;
     frame_ = std::move(frame);
@@ -77,9 +77,9 @@ class Page : public std::enable_shared_from_this<Page> {
     const DecodeStatus status =
         socket_.got_text() ? decode(text, message) : DecodeStatus::kMalformed;
     if (status == DecodeStatus::kCommand) {
-      listen(message.command);  // whatever has piled up before it: it may be a stop
+      listen(message.command);  // never limited by earlier messages: it may be a stop
     } else if (!rate_.admit(now_s())) {
-      ++hub_.refused;  // without an answer: a flood would only grow by it
+      ++hub_.refused;  // without an answer, which would only amplify a flood
     } else if (status == DecodeStatus::kHand) {
       hub_.put_hand(number, message.hand);
     } else if (status == DecodeStatus::kHold) {
@@ -104,7 +104,7 @@ class Page : public std::enable_shared_from_this<Page> {
     }
   }
 
-  // what has been followed already is told where there is room for it
+  // an executed command is reported to the program if there is room
   void tell_done(Command& command, const std::string& refusal) {
     if (!refusal.empty()) return refuse(command.id, refusal);
     command.is_done = true;
@@ -126,7 +126,7 @@ class Page : public std::enable_shared_from_this<Page> {
   }
 
   void write() {
-    if (current_) return;  // one at a time; the end of it calls again
+    if (current_) return;  // one at a time; its completion calls again
     if (!events_.empty()) {
       current_ = std::move(events_.front());
       events_.pop_front();
@@ -152,7 +152,7 @@ class Page : public std::enable_shared_from_this<Page> {
   double last_hold_ = -1.0;  // sequence number
   std::deque<Text> events_;  // waiting
   Text frame_;               // waiting
-  Text current_;             // on its way
+  Text current_;             // being sent
 };
 
 }  // namespace hg::viewer_server

@@ -1,4 +1,5 @@
-/// What a page draws: two chains, their limits and the box of the handle. Fixed during a run.
+/// Scene drawn by a page: two chains, their limits and the box of the handle. Constant during a
+/// run.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,17 +15,18 @@
 
 namespace hg::viewer_server {
 
-/// Revolute and prismatic joints have one coordinate, a floating joint seven (x y z qx qy qz qw).
+/// Joint type. Revolute and prismatic joints have one coordinate, a floating joint seven (x y z qx
+/// qy qz qw).
 enum class JointType : std::uint8_t { kRevolute, kPrismatic, kFloating };
 
 struct SceneJoint {
-  std::string name;  ///< as in the URDF; a floating joint not in it moves the root link
+  std::string name;  ///< name in the URDF; a floating joint not in it moves the root link
   JointType type = JointType::kRevolute;
-  /// Planar joint of the URDF that this one is a part of: two prismatic joints and a revolute one
-  /// that follow each other; empty for other joints.
+  /// Planar joint of the URDF to which this one belongs: two prismatic joints and a revolute one in
+  /// sequence; empty for other joints.
   std::string planar;
   Eigen::Vector3d axis =
-      Eigen::Vector3d::UnitX();  ///< of such a part, in the frame of the planar joint
+      Eigen::Vector3d::UnitX();  ///< axis of such a part, in the frame of the planar joint
   Interval range;                ///< rad or m
   double dq_max = kInfinity;     ///< rad/s or m/s
   double tau_max = kInfinity;    ///< peak, Nm or N; infinite: unknown
@@ -32,12 +34,12 @@ struct SceneJoint {
 
 struct SceneChain {
   std::filesystem::path urdf;      ///< empty: the page draws a plain body at the handle
-  std::string urdf_text;           ///< of a recording; empty: the file is read
+  std::string urdf_text;           ///< text of a recorded URDF; empty: the file is read
   Pose T_B_root;                   ///< root link in B
   std::vector<SceneJoint> joints;  ///< in the order of the coordinates
 };
 
-/// What stands around the twin.
+/// Surroundings of the twin.
 enum class Environment : std::uint8_t { kRoom, kDoor, kExcavator };
 
 enum class SurfaceShape : std::uint8_t { kPlane, kBox, kSphere, kCylinder, kMesh };
@@ -46,9 +48,10 @@ enum class SurfaceShape : std::uint8_t { kPlane, kBox, kSphere, kCylinder, kMesh
 struct SceneSurface {
   std::string name;
   SurfaceShape shape = SurfaceShape::kPlane;
-  Pose pose;                                       ///< in B
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< m, of the box around it; zero for a plane
-  std::vector<double> triangles;                   ///< of a mesh: 9 coordinates each, m
+  Pose pose;  ///< pose in B
+  /// Size of the bounding box, m; zero for a plane
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  std::vector<double> triangles;  ///< mesh only: 9 coordinates each, m
 };
 
 enum class Source : std::uint8_t { kRun, kRecording };
@@ -57,46 +60,46 @@ struct Choice {
   std::string name, title;
 };
 
-/// What a page may choose, and the names of what is chosen.
+/// Options offered to a page, and the names of the chosen ones.
 struct Choices {
   std::string scenario, twin, law, person;
   std::vector<Choice> scenarios, twins, laws, people;
 };
 
-/// A value of the twin that a page may change: a field of its form.
+/// Value of the twin that a page may change: a field of its form.
 struct Setting {
   std::string name;   ///< for example "hinge.damping_Nms_per_rad"
   std::string group;  ///< joint of the twin, or empty
   std::string label, unit;
-  double min = 0.0, max = 0.0;  ///< of what is accepted
-  double value = 0.0;           ///< at the start; may be infinite
+  double min = 0.0, max = 0.0;  ///< accepted range
+  double value = 0.0;           ///< initial value; may be infinite
   double step = 0.0;
   std::string help;
 };
 
 struct Scene {
-  std::uint64_t run = 1;  ///< counts up when another run begins
+  std::uint64_t run = 1;  ///< number of the run, counts up
   Source source = Source::kRun;
   std::string title, description;
-  double begin_s = 0.0;     ///< of a recording, in the time of its run
-  double duration_s = 0.0;  ///< of a recording, or planned; 0 = open
+  double begin_s = 0.0;     ///< begin of a recording, in the time of its run, s
+  double duration_s = 0.0;  ///< duration of a recording, or planned, s; 0 = open
   SceneChain device;        ///< gantry joints first, then manipulator: coordinates q_p, then q_m
   SceneChain twin;          ///< coordinates q_a
   LimitCatalogue limits;
   Eigen::AlignedBox3d box;  ///< Cartesian limits of the handle in B; dragging ends 0.5 m outside
   double floor_z = 0.0;     ///< height of the floor in B, m
-  double rate_hz = 1000.0;  ///< of the cycle
-  int gantry_joints = 0;    ///< of the device, its first ones
+  double rate_hz = 1000.0;  ///< rate of the control cycle, Hz
+  int gantry_joints = 0;    ///< number of gantry joints, the first ones of the device
   Environment environment = Environment::kRoom;
   std::vector<SceneSurface> surfaces;
   Choices choices;
   std::vector<Setting> settings;
-  std::vector<CommandName> commands;  ///< that are followed
-  std::string refusal;                ///< why others are not; empty: all are
-  std::string stopping;               ///< how long and far a stop takes; empty: not known
+  std::vector<CommandName> commands;  ///< accepted commands
+  std::string refusal;                ///< why other commands are refused; empty: all are accepted
+  std::string stopping;               ///< duration and distance of a stop; empty: unknown
 };
 
-/// Number of coordinates of all joints.
+/// Number of coordinates of all joints of a chain.
 int coordinate_count(const SceneChain& chain);
 
 /// Throws SetupError unless the files exist, names are given and the box and rate are finite.

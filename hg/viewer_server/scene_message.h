@@ -1,4 +1,4 @@
-/// Scene: what stays the same during a run. GET /scene.json. See message.h for the rules.
+/// Scene: data that stay constant during a run. GET /scene.json. See message.h for the rules.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// What a Scene is made of. See message.h for the rules.
+/// Parts of a Scene. See message.h for the rules.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-/// What a page is shown of one moment: the record of a cycle and what the program adds to it.
+/// View of one moment for a page: the record of a cycle and additions of the program.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace hg::viewer_server {
 
-/// Where the user's wrench goes, each part as a wrench on the hand, at H, resolved in B. The sum of
-/// all but `user` is `user`.
+/// Decomposition of the user's wrench, each part as a wrench on the hand, at H, resolved in B. The
+/// sum of all but `user` is `user`.
 struct HandBudget {
   Vector6 user = Vector6::Zero();
   Vector6 inertia = Vector6::Zero(), damping = Vector6::Zero(), spring = Vector6::Zero();
@@ -21,11 +21,11 @@ struct HandBudget {
 };
 
 struct Singularity {
-  double measure = 0.0;  ///< 0 = singular, 1 = as far from it as this device gets
-  int limit = -1;        ///< in the catalogue, what keeps it away; -1 = none
+  double measure = 0.0;  ///< 0 = singular, 1 = the largest distance from it for this device
+  int limit = -1;        ///< catalogue index of the limit that keeps it away; -1 = none
 };
 
-/// What commands have made of the run.
+/// State of the run as set by commands.
 struct RunState {
   bool is_paused = false;
   double speed = 1.0;       ///< simulated or recorded seconds per second
@@ -34,27 +34,28 @@ struct RunState {
   std::string recording;    ///< name of the file that is written or played; empty = none
 };
 
-/// A second run, shown through the first.
+/// Second run, overlaid on the first.
 struct Ghost {
-  double time_s = 0.0;  ///< of its run
+  double time_s = 0.0;  ///< time of its run, s
   CycleRecord record;
 };
 
-/// What stops the device, in words, and the panel of its simulated operator.
+/// Cause of a stop as text, and the panel of the simulated operator.
 struct SafetyView {
-  std::string cause;    ///< of the stop or fault, one sentence; empty = there is none
-  std::string release;  ///< what has to happen before a reset
-  std::string warning;  ///< the rule nearest to its threshold; empty = all is far from it
+  std::string cause;    ///< cause of the stop or fault, one sentence; empty = none
+  std::string release;  ///< conditions for a reset
+  std::string warning;  ///< rule nearest to its threshold; empty = all are far from it
   SafetyPanel panel;
-  std::vector<std::uint64_t> stop_pressed_by;  ///< of OperatorDesk; filled by the server
+  std::vector<std::uint64_t> stop_pressed_by;  ///< pages as in OperatorDesk; filled by the server
 };
 
 struct View {
   std::uint64_t run = 1;  ///< Scene::run
   CycleRecord record;
   HandTarget hand;
-  double cycle_time_us = 0.0, cycle_time_max_us = 0.0;  ///< of the cycle, and since the last view
-  std::string status_text;                              ///< one line for people
+  /// Cycle time, and its maximum since the last view
+  double cycle_time_us = 0.0, cycle_time_max_us = 0.0;
+  std::string status_text;  ///< one line of status text
   HandBudget budget;
   std::optional<Singularity> singularity;
   RunState run_state;

@@ -138,7 +138,7 @@ void add_urdf(const SceneChain& chain, std::string_view address, std::string_vie
   assets[std::string(address)] = {"application/xml", with_meshes(chain.urdf, text, folder, assets)};
 }
 
-// What a scene puts into the table.
+// Assets of a scene.
 AssetTable assets_of(const Scene& scene, double update_rate_hz) {
   AssetTable assets;
   assets["/scene.json"] = {"application/json", encode_scene(scene, update_rate_hz)};
@@ -201,7 +201,7 @@ struct ViewerServer::Impl {
     std::string text;
   };
 
-  // What waits for the server's thread, in the order in which it is looked at.
+  // Items waiting for the server's thread, in the order of processing.
   struct Outbox {
     std::unique_ptr<NewScene> scene;
     std::vector<std::string> events;
@@ -223,7 +223,7 @@ struct ViewerServer::Impl {
     hub.hand = HandTargetBox(scene.scene.box);
   }
 
-  // On the server's thread: takes what the other functions left and sends it.
+  // On the server's thread: takes and sends what the other functions have queued.
   void send_newest() {
     Outbox outbox;
     {
@@ -254,12 +254,12 @@ struct ViewerServer::Impl {
 
   const double update_rate_hz;
   const Clock::duration period;
-  Clock::time_point due;  // of the next frame; only the caller of publish() uses it
+  Clock::time_point due;  // time of the next frame; only the caller of publish() uses it
   std::mutex mutex;       // guards pending and is_posted
   Outbox pending;
   bool is_posted = false;
-  std::uint64_t run = 0;  // of the newest scene; only the caller of set_scene() uses it
-  LimitCatalogue limits;  // of the scene that is shown
+  std::uint64_t run = 0;  // number of the newest scene; only the caller of set_scene() uses it
+  LimitCatalogue limits;  // limits of the current scene
 
   Hub hub;
   asio::io_context context{1};

@@ -1,13 +1,13 @@
-/// Serves the browser page and streams what a running cycle does to it; takes the dragged handle
-/// and commands back.
+/// Serves the browser page and streams the state of a running cycle to it; receives the dragged
+/// handle and commands.
 ///
-/// HTTP and WebSocket, on 127.0.0.1 unless told otherwise. Every request but those for the files of
-/// the page needs the token of url(), and all a Host of this server; the WebSocket also an Origin
+/// HTTP and WebSocket, on 127.0.0.1 by default. Every request but those for the files of the page
+/// needs the token of url(), and every request a Host of this server; the WebSocket also an Origin
 /// of this server (against DNS rebinding). Protocol: docs/viewer.md, fields:
 /// viewer/src/messages.ts.
 ///
-/// One thread of its own does all the work. The functions below may be called from one other thread
-/// that is not the control thread (they allocate and lock for the time of a copy).
+/// One thread of its own does all the work. The functions below may be called from one other
+/// thread, but not from the control thread (calls allocate and lock for the time of a copy).
 #pragma once
 
 #include <cstdint>
@@ -26,62 +26,63 @@
 namespace hg::viewer_server {
 
 struct Options {
-  std::string address = "127.0.0.1";  ///< to listen at; 0.0.0.0 or :: = all of this machine
-  std::uint16_t port = 0;             ///< 0 = any free port
-  std::filesystem::path page;         ///< folder of the built page, with index.html
-  double update_rate_hz = 60.0;       ///< frames per second sent to each client, > 0
-  std::string token;                  ///< hexadecimal digits; empty = 128 random bits
-  /// What pages do to the run at once, without take_commands(). Outlives the server; nullptr:
-  /// nothing does.
+  /// Listening address; 0.0.0.0 or :: = all addresses of this machine
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;        ///< 0 = any free port
+  std::filesystem::path page;    ///< folder of the built page, with index.html
+  double update_rate_hz = 60.0;  ///< frames per second sent to each client, > 0
+  std::string token;             ///< hexadecimal digits; empty = 128 random bits
+  /// Operator's desk that pages affect directly, without take_commands(). Must outlive the server;
+  /// nullptr: no direct effect.
   OperatorDesk* desk = nullptr;
 };
 
-/// What happened so far; `clients` is the present number.
+/// Counts since the start; `clients` is the present number.
 struct Counters {
   std::uint64_t clients = 0;  ///< connected pages
   std::uint64_t sent = 0;     ///< frames handed to the network
-  std::uint64_t dropped = 0;  ///< frames and events that a slow client did not get
+  std::uint64_t dropped = 0;  ///< frames and events not sent to a slow client
   std::uint64_t refused = 0;  ///< requests and messages that were refused
 };
 
 class ViewerServer {
  public:
-  /// Listens when it returns. Throws SetupError: port taken, page or URDF file missing, scene
-  /// inconsistent.
+  /// Starts listening before it returns. Throws SetupError: port taken, page or URDF file missing,
+  /// scene inconsistent.
   ViewerServer(const Options& options, const Scene& scene);
   ~ViewerServer();
   ViewerServer(const ViewerServer&) = delete;
   ViewerServer& operator=(const ViewerServer&) = delete;
 
-  /// The link to open: "http://127.0.0.1:PORT/#token=TOKEN", with the address that is listened at.
+  /// Link to open: "http://127.0.0.1:PORT/#token=TOKEN", with the listening address.
   std::string url() const;
 
-  /// Another run begins: pages fetch its scene. Events of the one before are forgotten. Throws
-  /// SetupError as the constructor does; then nothing has changed.
+  /// Starts another run: pages fetch its scene. Events of the previous run are dropped. Throws
+  /// SetupError as the constructor does; then the previous scene stays.
   void set_scene(const Scene& scene);
 
-  /// False while the next view would be dropped because it comes too soon: no need to make it.
+  /// Whether a view is due; false while publish() would drop it for coming too soon.
   bool is_due() const;
 
   /// Shows `view`. Call it at the update rate or faster; calls in between are dropped. Each client
-  /// gets the newest frame when it is ready for it; slow clients are never waited for.
+  /// gets the newest frame when it is ready for it; slow clients cause no delay.
   void publish(View view);
 
   /// Adds a line to the list of events of all pages, also of those that connect later.
   void announce_event(double time_s, std::string_view name, std::string_view text);
 
-  /// Of Scene::settings, whenever one has changed; sent to all pages, also those that connect
-  /// later.
+  /// Sets the values of Scene::settings, whenever one has changed; sent to all pages, also those
+  /// that connect later.
   void set_values(const std::vector<double>& values);
 
-  /// The newest hand target since the last call; false and `target` untouched if there is none.
-  /// A page that closes or is silent for 0.5 s gives one last, inactive target.
+  /// Gets the newest hand target since the last call; false and `target` untouched if there is
+  /// none. A page that closes or is silent for 0.5 s causes one last, inactive target.
   bool take_hand_target(HandTarget& target);
 
-  /// The commands since the last call, in their order. Each that is not done wants one answer().
+  /// Commands since the last call, in order. Each that is not done needs one answer().
   std::vector<Command> take_commands();
 
-  /// `refusal` says why the command was not followed; empty: it was. Later where the cycle decides.
+  /// Answers a command; `refusal` gives the reason, empty: accepted. Later where the cycle decides.
   void answer(const Command& command, std::string_view refusal);
 
   Counters counters() const;

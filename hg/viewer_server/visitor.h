@@ -1,4 +1,4 @@
-/// One HTTP connection: checks each request, hands out what is in the table, or becomes a page.
+/// One HTTP connection: checks each request, serves entries of the table, or becomes a page.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ constexpr std::string_view kContentPolicy =
     "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'";
 
-/// Lives as long as its connection, or until that becomes a page.
+/// HTTP connection; destroyed when it closes or becomes a page.
 class Visitor : public std::enable_shared_from_this<Visitor> {
  public:
   Visitor(Hub& hub, tcp::socket&& socket) : hub_(hub), stream_(std::move(socket)) {}
@@ -43,7 +43,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
                      });
   }
 
-  /// To make room for another one.
+  /// Closes the connection to make room for another one.
   void drop() { stream_.close(); }
 
  private:
@@ -75,7 +75,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     }
   }
 
-  // What the request asks for; null: there is no such thing.
+  // Requested asset; null: no such asset.
   const Asset* found() const {
     const auto asset = hub_.assets.find(path_of(view(parser_->get().target())));
     return asset == hub_.assets.end() ? nullptr : &asset->second;
@@ -119,7 +119,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
 
   Hub& hub_;
   beast::tcp_stream stream_;
-  std::shared_ptr<int> known_;  ///< it has shown the token
+  std::shared_ptr<int> known_;  ///< set once it has shown the token
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
   http::response<http::string_body> response_;

@@ -1,4 +1,5 @@
-/// Numbers between numpy and C++: in as anything that numpy makes an array of, out as copies.
+/// Conversion between numpy and C++: input is anything that numpy converts to an array, output is a
+/// copy.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -13,7 +14,7 @@ namespace hg::python {
 
 namespace nb = nanobind;
 
-/// An array of double, row after row, whatever it was before: list, number, other array.
+/// Array of double in C order, converted from any array-like: list, number, other array.
 struct ArrayIn {
   nb::ndarray<const double, nb::c_contig, nb::device::cpu> array;
 
@@ -21,7 +22,7 @@ struct ArrayIn {
   const double* data() const { return array.data(); }
 };
 
-/// A copy that Python owns and nobody can write to.
+/// Read-only copy owned by Python.
 struct ArrayOut {
   nb::ndarray<nb::numpy, const double> array;
 };
@@ -33,7 +34,7 @@ inline ArrayOut to_numpy(std::vector<double> values, const std::vector<std::size
   return {{owned->data(), shape.size(), shape.data(), owner}};
 }
 
-/// Vectors get one dimension, matrices two.
+/// Copies a vector to a 1-D array, a matrix to a 2-D array.
 template <typename Derived>
 ArrayOut to_numpy(const Eigen::MatrixBase<Derived>& matrix) {
   std::vector<double> values;
@@ -52,8 +53,7 @@ ArrayOut to_numpy(const Eigen::MatrixBase<Derived>& matrix) {
                             .c_str());
 }
 
-/// The `size` numbers of `in`. Throws ValueError, beginning with `name`, when there are not as
-/// many.
+/// The `size` numbers of `in`. Throws ValueError, beginning with `name`, for another size.
 inline Eigen::Map<const Eigen::VectorXd> vector_of(const ArrayIn& in, int size, const char* name) {
   if (in.size() != static_cast<std::size_t>(size)) {
     refuse_size(name, static_cast<std::size_t>(size), in.size());
@@ -61,7 +61,7 @@ inline Eigen::Map<const Eigen::VectorXd> vector_of(const ArrayIn& in, int size, 
   return {in.data(), size};
 }
 
-/// Writes `in` into a vector or matrix (row after row) of fixed or limited size.
+/// Writes `in` into a vector or matrix (in row-major order) of fixed or limited size.
 template <int kRows, int kCols, int kOptions, int kMaxRows, int kMaxCols>
 void assign(const ArrayIn& in, const char* name,
             Eigen::Matrix<double, kRows, kCols, kOptions, kMaxRows, kMaxCols>& out) {
@@ -104,7 +104,7 @@ struct type_caster<hg::python::ArrayIn> {
   }
 };
 
-/// Owned by itself: properties would else make their object the owner.
+/// Each array owns its data: a property would otherwise make its object the owner.
 template <>
 struct type_caster<hg::python::ArrayOut> {
   using Array = decltype(hg::python::ArrayOut::array);

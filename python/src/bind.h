@@ -1,5 +1,5 @@
-/// The parts of the extension module hapticgiant._core, one per file. Every function adds its
-/// classes and functions to `module`.
+/// Parts of the extension module hapticgiant._core, one per file. Every function adds its classes
+/// and functions to `module`.
 #pragma once
 
 #include <nanobind/nanobind.h>

@@ -1,4 +1,4 @@
-/// Binds an enum with all its enumerators, which the compiler knows.
+/// Binding of an enum with all its enumerators, taken from the compiler.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -10,7 +10,7 @@
 
 namespace hg::python {
 
-/// Numbers in Python, too. Values up to `end`; names like STILL_MOVING.
+/// Binds an enum as an arithmetic Python enum. Values up to `end`; names like STILL_MOVING.
 template <typename E, std::size_t end = 64>
 void bind_enum(nanobind::module_& module, const char* name, const char* doc) {
   static std::deque<std::string> names;  // nanobind keeps the pointers

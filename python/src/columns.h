@@ -20,7 +20,7 @@ namespace nb = nanobind;
 /// The archive (see hg/recording/message.h) that appends every number of a sample to its column.
 ///
 /// A field of a sequence becomes one column with an entry per item; record.time_s is "time_s", and
-/// likewise for all of the record. Rows shorter than others end with NaN or 0.
+/// likewise for all fields of the record. Shorter rows are padded with NaN or 0.
 class Columns {
  public:
   Columns() {
@@ -33,7 +33,7 @@ class Columns {
     visit(sample, Pass::kAppend);
   }
 
-  /// Arrays by name: (rows), or (rows, width) where a field has more than one number.
+  /// Arrays by name, of shape (rows), or (rows, width) where a field has more than one number.
   nb::dict to_dict() const {
     nb::dict arrays;
     for (const Column& column : columns_) arrays[column.name.c_str()] = array_of(column);
@@ -67,7 +67,7 @@ class Columns {
     std::string name;
     nb::dlpack::dtype type;
     bool is_wide;                     ///< two dimensions even if every row has one number
-    std::vector<std::byte> data;      ///< row after row
+    std::vector<std::byte> data;      ///< rows in sequence
     std::vector<std::size_t> counts;  ///< numbers in each row
   };
 

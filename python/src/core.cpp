@@ -6,7 +6,7 @@
 #include "hg/core/nearest_name.h"
 #include "python/src/bind.h"
 
-// Signals before model: a pose is among them, and default arguments need to know it.
+// Signals before model: poses are bound there, and default arguments need them.
 NB_MODULE(_core, module) {
   using namespace hg::python;
   module.doc() =

@@ -1,4 +1,4 @@
-/// Scenarios, and the cycle of a scenario in a loop of one's own.
+/// Bindings of scenarios, and of their cycle for user-written loops.
 #include "hg/cycle/cycle.h"
 
 #include <nanobind/nanobind.h>

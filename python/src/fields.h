@@ -1,5 +1,5 @@
-/// Binds a struct by the list of its fields that recordings are made from: attribute names,
-/// columns of run() and of a recording are the same, and nothing is written twice.
+/// Binding of a struct by its list of fields for recordings: attribute names, columns of run() and
+/// of a recording are the same, and each is defined once.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -40,7 +40,7 @@ class FieldBinder {
   }
 
  private:
-  /// Place of a member in T.
+  /// Byte offset of a member in T.
   template <typename Value>
   struct Offset {
     std::ptrdiff_t bytes;
@@ -82,7 +82,7 @@ class FieldBinder {
   const T& blank_;
 };
 
-/// Adds the class of a struct whose fields are listed in hg/recording.
+/// Binds the class of a struct whose fields are listed in hg/recording.
 template <recording::IsMessage T>
 nb::class_<T> bind_fields(nb::module_& module, const char* name, const char* text) {
   nb::class_<T> target(module, name, text);

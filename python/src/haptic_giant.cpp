@@ -1,4 +1,4 @@
-/// hapticgiant.haptic_giant: the closed forms of [HG].
+/// Bindings of hapticgiant.haptic_giant: the closed forms of [HG].
 #include "hg/model/haptic_giant.h"
 
 #include <nanobind/nanobind.h>

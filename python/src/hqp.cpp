@@ -1,4 +1,4 @@
-/// hapticgiant.hqp: problems from numpy, solutions as numpy.
+/// Bindings of hapticgiant.hqp: problems from numpy, solutions as numpy.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -28,7 +28,7 @@ using hqp::Problem;
 using hqp::RowState;
 using hqp::Solution;
 
-// a solution, what it solves, and the active set that it ended with
+// a solution, its problem, and its final active set
 struct SolutionOut {
   Problem problem;
   hqp::Options options;
@@ -53,7 +53,7 @@ ArrayOut vector_to_numpy(std::vector<double> numbers) {
   return to_numpy(std::move(numbers), {size});
 }
 
-// a member of every level's result
+// array of a member of every level's result
 template <int LevelResult::*member>
 nb::object by_level(const SolutionOut& out) {
   const auto& levels = out.solution.levels;
@@ -66,7 +66,7 @@ ArrayOut slack_squared_of(const SolutionOut& out) {
   return vector_to_numpy(std::move(values));
 }
 
-// number i of an array that has one number for all, or `size`
+// number i of an array with either one number for all, or `size`
 double number_of(const ArrayIn& in, std::size_t i, std::size_t size, const char* name) {
   if (in.size() != 1 && in.size() != size) refuse_size(name, size, in.size());
   return in.data()[in.size() == 1 ? 0 : i];
@@ -168,7 +168,7 @@ void bind_enums(nb::module_& module) {
       .value("ABOVE", RowState::kAbove, "violated: stays above its upper bound");
 }
 
-// What is said of one row.
+// Adds the functions for single rows.
 void bind_single_rows(nb::class_<Problem>& problem) {
   problem
       .def(

@@ -1,4 +1,4 @@
-/// hapticgiant.limits: bounds of one coordinate, for arrays of states.
+/// Bindings of hapticgiant.limits: bounds of one coordinate, for arrays of states.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/pair.h>
 
@@ -22,7 +22,7 @@ using Bounds = std::pair<ArrayOut, ArrayOut>;
 
 bool is_anything(PyObject*) { return true; }
 
-// what numpy makes an array of, as it came
+// any array-like, not yet converted
 struct ArrayLike : nb::object {
   NB_OBJECT(ArrayLike, nb::object, "numpy.typing.ArrayLike", is_anything)
 };
@@ -39,7 +39,7 @@ std::vector<std::size_t> shape_of(const ArrayIn& in) {
   return shape;
 }
 
-// bounds(q, dq) -> Interval of every pair of states
+// bounds(q, dq) -> Interval, evaluated for every pair of states
 template <typename Function>
 Bounds for_each_state(const ArrayLike& q, const ArrayLike& dq, const Function& bounds) {
   const nb::object both = nb::module_::import_("numpy").attr("broadcast_arrays")(q, dq);

@@ -1,4 +1,4 @@
-/// hapticgiant.model: serial chains.
+/// Bindings of hapticgiant.model: serial chains.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>

@@ -1,4 +1,4 @@
-/// The simulated person of a scenario, for simulators of one's own.
+/// Bindings of the simulated person of a scenario, for user-written simulators.
 #include "hg/user/person.h"
 
 #include <nanobind/nanobind.h>

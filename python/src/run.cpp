@@ -1,4 +1,4 @@
-/// A whole run as arrays.
+/// Binding of a whole run as arrays.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>

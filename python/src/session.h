@@ -1,4 +1,4 @@
-/// A cycle, the simulated device of its scenario, and the operator who wants it to run.
+/// A cycle, the simulated device of its scenario, and an operator who requests the run.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class Session {
         changes_(scenario.changes),
         rate_Hz_(scenario.device.rate_Hz) {}
 
-  /// One period: read, step, write. A change that the scenario plans overrules one given by hand.
+  /// Runs one period: read, step, write. A change planned by the scenario overrides a manual one.
   void step() noexcept {
     Sample& now = *sample_;
     now.operator_input = wishes_;
@@ -36,10 +36,10 @@ class Session {
     device_.write(now.command);
   }
 
-  /// From now on the operator asks for a stop.
+  /// Makes the operator request a stop from now on.
   void stop() noexcept { is_stopping_ = true; }
 
-  /// Whether there is nothing left to do: a fault, or stopped as asked.
+  /// Whether the session has ended: by a fault, or by a requested stop.
   bool is_over() const noexcept {
     const Mode mode = sample_->record.mode;
     return mode == Mode::kFault ||
@@ -48,7 +48,7 @@ class Session {
 
   cycle::Cycle& cycle() noexcept { return cycle_; }
   const Sample& sample() const noexcept { return *sample_; }
-  /// What the next step() hands to the cycle; requests are the session's own.
+  /// Operator input of the next step(); requests are set by the session itself.
   OperatorFrame& wishes() noexcept { return wishes_; }
 
  private:

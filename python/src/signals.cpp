@@ -1,4 +1,4 @@
-/// The structs that travel, and the numbers that stand for words in them.
+/// Bindings of the exchanged structs, and of the enumerations in them.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 

@@ -11,7 +11,7 @@
 
 namespace hg::apps {
 
-/// What these commands take; must outlive parsing.
+/// Arguments of these commands; must outlive parsing.
 struct ExperimentsArguments {
   PaperExperimentArguments paper;
   PlotArguments plot;

@@ -14,10 +14,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// what is told: half a cycle, what nobody feels, a fraction of what is allowed
+// smallest reported differences: half a cycle, an imperceptible force, a fraction of the allowed
+// excess
 constexpr double kTime_s = 5e-4, kForce_N = 0.05, kExcess = 5e-5, kShare = 0.02;
 
-/// Lines under a heading; empty ones say that all is the same.
+/// Lines under a heading; no lines means no difference.
 class Findings {
  public:
   void add(const std::string& text) { lines_.push_back(text); }

@@ -1,4 +1,4 @@
-/// `hapticgiant compare A B`: what is different in two recordings, in words.
+/// `hapticgiant compare A B`: differences of two recordings, in words.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ struct CompareArguments {
   std::string a, b;
 };
 
-/// Exit code: 0 nothing differs (times of computation aside), 1 something does. Throws SetupError
-/// for bad input.
+/// Exit code: 0 no difference (except computation times), 1 a difference. Throws SetupError for bad
+/// input.
 int compare(const CompareArguments& arguments);
 
 }  // namespace hg::apps

@@ -9,15 +9,16 @@
 
 namespace hg::apps {
 
-/// "elbow x within 2 mm of its upper limit, which acts"; conditions of one rule joined by "and".
+/// Conditions in words: "elbow x within 2 mm of its upper limit, which acts"; conditions of one
+/// rule joined by "and".
 std::string condition_text(const evaluation::EventRule& rule, const config::Scenario& scenario);
 
-/// [{"kind": "limit", "of": "elbow x", "side": "upper"}, {"kind": "force_above", "value": 10},
-/// ...].
+/// Conditions as data: [{"kind": "limit", "of": "elbow x", "side": "upper"}, {"kind":
+/// "force_above", "value": 10}, ...].
 nlohmann::ordered_json condition_json(const evaluation::EventRule& rule,
                                       const config::Scenario& scenario);
 
-/// What the paper calls the event: its name "t_b", or the one its sentence begins with ("t_a: the
+/// Name of the event in the paper: its name "t_b", or the one its sentence begins with ("t_a: the
 /// locked door ..."); otherwise its name.
 std::string paper_label(const evaluation::EventRule& rule);
 

@@ -13,13 +13,14 @@ namespace {
 constexpr double kPathReached_m = 0.05;  // a checkpoint counts
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// A signal over a stretch of time. All are NaN for an empty one: an event is missing.
+/// Statistics of a signal over a time interval. All are NaN for an empty interval: an event is
+/// missing.
 struct Stretch {
   double mean = std::numeric_limits<double>::quiet_NaN(), least = mean, most = mean;
   double magnitude() const { return std::max(std::abs(least), std::abs(most)); }
 };
 
-/// Looks into the table of a run.
+/// Evaluates the table of a run.
 class Look {
  public:
   explicit Look(const ExperimentResult& result) : result_(result), table_(*result.table) {}
@@ -205,7 +206,7 @@ std::vector<Statement> measure_door(const Look& look) {
   };
 }
 
-/// How near the hand came to a checkpoint between two times.
+/// Closest approach of the hand to a checkpoint between two times.
 struct Approach {
   double distance = std::numeric_limits<double>::quiet_NaN(), azimuth = distance, time_s = distance;
 };
@@ -223,7 +224,7 @@ Approach approach(const RunTable& table, const Eigen::Vector3d& place, double fr
   return nearest;
 }
 
-// of the hand in the plane
+// length of the hand's path in the plane
 double path_length(const RunTable& table, double from_s, double to_s) {
   const RowRange rows = table.between(from_s, to_s);
   const auto &x = table["hand_x_m"], &y = table["hand_y_m"];

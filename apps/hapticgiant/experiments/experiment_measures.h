@@ -1,4 +1,4 @@
-/// What an experiment shows, in figures: beside what the paper says about the same thing.
+/// Measured results of an experiment, compared with the paper.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 namespace hg::apps {
 
 struct Statement {
-  std::string what;   ///< is looked at
-  std::string paper;  ///< what the paper says; empty = nothing
-  std::string ours;   ///< measured in this run; "-" where an event is missing
+  std::string what;   ///< measured quantity
+  std::string paper;  ///< value in the paper; empty = none
+  std::string ours;   ///< value measured in this run; "-" where an event is missing
 };
 
-/// Of a run whose events may be missing. Checkpoints that were passed too far away become failures
-/// of `result`.
+/// Measures a run whose events may be missing. Checkpoints passed at too large a distance become
+/// failures of `result`.
 std::vector<Statement> measure(ExperimentResult& result);
 
 }  // namespace hg::apps

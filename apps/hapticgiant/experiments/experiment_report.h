@@ -1,4 +1,4 @@
-/// What an experiment leaves behind for people and scripts.
+/// Reports of an experiment, for people and scripts.
 #pragma once
 
 #include <filesystem>
@@ -11,28 +11,28 @@
 
 namespace hg::apps {
 
-/// One run of an experiment and what was measured in it.
+/// One run of an experiment with its measurements.
 struct ReportedRun {
   std::string law;
   ExperimentResult result;
   std::vector<Statement> statements;
 };
 
-/// Every expected event: label, condition in words and as data, when it was expected, when it was
-/// found.
+/// JSON of every expected event: label, condition in words and as data, when it was expected, when
+/// it was found.
 nlohmann::ordered_json events_json(const ReportedRun& run);
 
-/// Summary, statements and verdict.
+/// JSON of summary, statements and verdict.
 nlohmann::ordered_json results_json(const ReportedRun& run);
 
 /// One page for all runs of the same experiment, side by side; `folder` holds figure.svg.
 std::string report_html(const std::vector<ReportedRun>& runs, const std::filesystem::path& folder,
                         const std::string& command);
 
-/// The same as tables for docs/experiments/.
+/// The report as Markdown tables for docs/experiments/.
 std::string report_markdown(const std::vector<ReportedRun>& runs, const std::string& command);
 
-/// "gauss law, recoverable bounds, seed 1, simulated HapticGiant".
+/// Note on a run: "gauss law, recoverable bounds, seed 1, simulated HapticGiant".
 std::string run_note(const ExperimentResult& result);
 
 }  // namespace hg::apps

@@ -63,7 +63,7 @@ std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scena
   return std::make_unique<recording::Recorder>(info);
 }
 
-// the name that everybody expects in a folder of its own
+// renames the recording to the usual name in its own folder
 void settle(recording::Recorder& recorder, const fs::path& folder, ExperimentResult& result) {
   const recording::RecordingSummary recorded = recorder.close();
   std::error_code error, ignored;
@@ -120,7 +120,7 @@ void split(const std::string& summary, ExperimentResult& result) {
   result.timing.erase("recording");
 }
 
-/// Everything that looks at the samples of one experiment.
+/// All observers of the samples of one experiment.
 struct Watcher {
   ExperimentResult& result;
   evaluation::EventDetector detector;

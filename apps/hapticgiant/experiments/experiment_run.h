@@ -16,12 +16,12 @@
 
 namespace hg::apps {
 
-/// An expected event and what became of it.
+/// An expected event and its result.
 struct EventResult {
   const evaluation::EventRule* rule = nullptr;
   std::optional<double> found_s;
-  const EventWindow* window = nullptr;            ///< nullptr: any time will do
-  double window_from_s = 0.0, window_to_s = 0.0;  ///< of the run
+  const EventWindow* window = nullptr;            ///< expected window; nullptr = any time
+  double window_from_s = 0.0, window_to_s = 0.0;  ///< window in time of the run
 
   bool is_as_expected() const noexcept {
     return found_s && (window == nullptr || (*found_s >= window_from_s && *found_s <= window_to_s));
@@ -30,12 +30,12 @@ struct EventResult {
 
 struct ExperimentResult {
   const PaperExperiment* experiment = nullptr;
-  std::unique_ptr<config::Scenario> scenario;  ///< which `table` and `events` refer to
-  std::unique_ptr<RunTable> table;             ///< every sample
+  std::unique_ptr<config::Scenario> scenario;  ///< scenario to which `table` and `events` refer
+  std::unique_ptr<RunTable> table;             ///< table of every sample
   std::vector<EventResult> events;
-  nlohmann::ordered_json summary;     ///< of run --summary, without times of computation
-  nlohmann::ordered_json timing;      ///< what is left of it
-  std::vector<std::string> failures;  ///< in words; empty: all as expected
+  nlohmann::ordered_json summary;     ///< summary as of run --summary, without computation times
+  nlohmann::ordered_json timing;      ///< computation times of the summary
+  std::vector<std::string> failures;  ///< failures in words; empty = all as expected
   bool has_fault = false;
 
   /// Events that happened, in their order, by the names of the paper.
@@ -44,11 +44,11 @@ struct ExperimentResult {
   double time_of(std::string_view event) const;
 };
 
-/// Told now and then: seconds that have been simulated, and of how many.
+/// Progress callback: simulated and total time, s.
 using SimulatedTime = std::function<void(double done_s, double total_s)>;
 
-/// Runs it as fast as it can and records into `arguments.recordings`/recording.mcap, where
-/// recordings are available; the same arguments write the same bytes. Throws SetupError.
+/// Runs an experiment as fast as possible and records into `arguments.recordings`/recording.mcap,
+/// where recordings are available; the same arguments write the same bytes. Throws SetupError.
 ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArguments& arguments,
                                 const SimulatedTime& progress);
 

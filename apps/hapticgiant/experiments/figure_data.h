@@ -1,4 +1,4 @@
-/// What the figures of a run need to know besides its signals: the file run.json.
+/// Data for the figures of a run besides its signals: the file run.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,7 +10,7 @@
 
 namespace hg::apps {
 
-/// An event as a figure marks it.
+/// Mark of an event in a figure.
 struct Mark {
   std::string label;
   double time_s = 0.0;

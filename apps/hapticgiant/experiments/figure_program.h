@@ -1,4 +1,4 @@
-/// Draws figures with the Python of the set-up, where it is there.
+/// Draws figures with the installed Python, if available.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 namespace hg::apps {
 
 /// Draws figure.svg and figure.png into `out` (python/hapticgiant/figures.py) from folders that
-/// hold run.json and signals.csv; several are drawn over each other. Returns why there are none and
-/// how to get them, in one line; empty = they are drawn.
+/// hold run.json and signals.csv; several are overlaid. Returns one line on why there are none and
+/// how to get them; empty = drawn.
 ///
 /// The interpreter is that of the environment variable HAPTICGIANT_PYTHON, else .venv/bin/python
 /// of the installation (paths.h), else python3.

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// what repeats the run
+// command that repeats the run
 std::string command_of(const PaperExperimentArguments& arguments, std::string_view name) {
   std::string command = fmt::format("hapticgiant experiment {}", name);
   if (!arguments.law.empty()) command += " --law " + arguments.law;
@@ -29,7 +29,7 @@ std::string command_of(const PaperExperimentArguments& arguments, std::string_vi
   return command;
 }
 
-// on a terminal, where it is read
+// progress shown on a terminal
 SimulatedTime shown_progress(std::string_view name) {
   if (isatty(STDERR_FILENO) == 0) return [](double, double) {};
   return [name](double done_s, double total_s) {

@@ -11,8 +11,8 @@ struct PlotArguments {
   std::string out = "plots";
 };
 
-/// Exit code 0, also without matplotlib: then the signals are there, and a line says how to get
-/// figures. Throws SetupError for bad input.
+/// Exit code 0, also without matplotlib: then only signals are written, and a line explains how to
+/// get figures. Throws SetupError for bad input.
 int plot(const PlotArguments& arguments);
 
 }  // namespace hg::apps

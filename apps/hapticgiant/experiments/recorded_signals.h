@@ -1,4 +1,4 @@
-/// A recording read again: its scenario, events, signals and judgement.
+/// Content of a recording: its scenario, events, signals and evaluation.
 #pragma once
 
 #include <cstdint>
@@ -15,24 +15,25 @@
 
 namespace hg::apps {
 
-/// Of the state after a cycle. Cycles that the recording has lost are left out.
+/// Hash of the state after a cycle. Cycles lost in the recording are left out.
 struct CycleHash {
   std::uint64_t cycle, hash;
 };
 
 struct RecordedSignals {
-  std::unique_ptr<config::Scenario> scenario;  ///< which `table` refers to
+  std::unique_ptr<config::Scenario> scenario;  ///< scenario to which `table` refers
   std::unique_ptr<RunTable> table;
-  std::vector<Mark> marks;         ///< events as recorded, by the names of the paper
-  nlohmann::ordered_json summary;  ///< as of run --summary, of what the recording holds
+  std::vector<Mark> marks;  ///< recorded events, by the names of the paper
+  /// Summary as of run --summary, for the content of the recording
+  nlohmann::ordered_json summary;
   std::vector<CycleHash> hashes;
-  recording::ReadResult read;  ///< what of the file
+  recording::ReadResult read;  ///< result of reading the file
   std::vector<recording::NamedText> configuration;
 
   double rate_Hz() const { return scenario->device.rate_Hz; }
 };
 
-/// One row of signals per `period_s`. Throws SetupError.
+/// Reads a recording with one row of signals per `period_s`. Throws SetupError.
 RecordedSignals read_signals(const std::filesystem::path& file, double period_s);
 
 }  // namespace hg::apps

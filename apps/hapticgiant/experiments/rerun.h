@@ -10,18 +10,18 @@
 namespace hg::apps {
 
 struct Rerun {
-  std::uint64_t cycles = 0;  ///< that are the same
+  std::uint64_t cycles = 0;  ///< number of identical cycles
   bool is_same = true;
-  /// The first difference, or why nothing (more) could be compared; empty = all is the same.
+  /// First difference, or the reason why nothing (more) could be compared; empty = identical.
   std::string text;
 };
 
-/// Throws SetupError when the file is no recording of this version, or its configuration is not
-/// understood.
+/// Runs a recording again. Throws SetupError when the file is no recording of this version, or its
+/// configuration is invalid.
 Rerun rerun(const std::filesystem::path& file);
 
-/// The first field in which two cycles differ in what they gave out, in words: "record.twin.q_a[1]
-/// was 0.5 and is 0.6"; empty: none does.
+/// First output field in which two cycles differ, in words: "record.twin.q_a[1] was 0.5 and is
+/// 0.6"; empty = none.
 std::string first_difference(const Sample& recorded, const Sample& now);
 
 }  // namespace hg::apps

@@ -1,4 +1,4 @@
-/// The signals of a run as named columns: what figures draw and experiments judge.
+/// Signals of a run as named columns, for figures and experiments.
 ///
 /// Positions of the manipulator are those of the reference, as in the paper; of the gantry as
 /// estimated; the wrench is the user's as estimated.
@@ -14,16 +14,16 @@
 
 namespace hg::apps {
 
-/// In rad, otherwise m; of a joint with one coordinate.
+/// Whether a joint with one coordinate is in rad, otherwise m.
 bool is_angle(const model::Joint& joint) noexcept;
 
-/// A stretch of time in which a lock held a joint of the twin.
+/// Time interval in which a lock held a joint of the twin.
 struct LockedPhase {
   std::string joint;
   double from_s = 0.0, to_s = 0.0;
 };
 
-/// From the first row at or after `from_s` up to, without, the first at or after `to_s`.
+/// Rows from the first at or after `from_s` up to, excluding, the first at or after `to_s`.
 struct RowRange {
   std::size_t begin = 0, end = 0;
 };
@@ -39,10 +39,10 @@ class RunTable {
   /// A column by its name in the CSV file; throws SetupError with the nearest one.
   const std::vector<double>& operator[](std::string_view name) const;
   RowRange between(double from_s, double to_s) const;
-  /// Complete once the last sample has been added.
+  /// Locked phases; complete once the last sample has been added.
   const std::vector<LockedPhase>& locked() const noexcept { return locked_; }
 
-  /// One row per `period_s`, six digits; the header holds names with units.
+  /// CSV with one row per `period_s`, six digits; the header holds names with units.
   std::string to_csv(double period_s) const;
 
  private:
@@ -60,7 +60,7 @@ class RunTable {
   double period_s_, due_s_ = 0.0;
   std::vector<Column> columns_;
   std::vector<LockedPhase> locked_;
-  std::vector<int> open_;  ///< of every limit: index in locked_ while a lock holds it; -1 = none
+  std::vector<int> open_;  ///< per limit: index in locked_ while a lock holds it; -1 = none
 };
 
 }  // namespace hg::apps

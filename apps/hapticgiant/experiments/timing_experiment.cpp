@@ -1,5 +1,5 @@
-/// `hapticgiant experiment timing`: how long a cycle of the Cartesian admittance computes, beside
-/// section VII-A of the paper.
+/// `hapticgiant experiment timing`: computation time of a cycle of the Cartesian admittance,
+/// compared with section VII-A of the paper.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ constexpr int kPasses = 2;
 constexpr double kPaperMean_us = 529.0, kPaperP99_9_us = 616.0, kPaperMax_us = 707.0;
 constexpr double kPaperSolver_percent = 92.6;
 
-/// One law at one rate.
+/// Results of one law at one rate.
 struct Row {
   std::string law;
   double rate_Hz = 0.0;

@@ -1,9 +1,10 @@
-/// C interface of the official MCAP writer and reader (crate `mcap`), the only door to Rust in this
+/// C interface of the official MCAP writer and reader (crate `mcap`), the only use of Rust in this
 /// program.
 ///
-/// One handle writes one file and serves one thread. The first error sticks: every later call
-/// returns false and does nothing, mcap_sink_error() says why. Strings are UTF-8, zero-terminated,
-/// and only read during the call. Without a Rust toolchain without_rust.cpp stands in.
+/// One handle writes one file and serves one thread. The first error persists: every later call
+/// returns false and has no effect, mcap_sink_error() gives the reason. Strings are UTF-8,
+/// zero-terminated, and only read during the call. Without a Rust toolchain, without_rust.cpp is
+/// used instead.
 #pragma once
 
 #include <stdbool.h>
@@ -16,14 +17,15 @@ extern "C" {
 
 typedef struct mcap_sink mcap_sink;
 
-/// False when the program was built without Rust: then mcap_sink_open() always fails.
+/// Whether recording is available; false when the program was built without Rust: then
+/// mcap_sink_open() always fails.
 bool mcap_sink_available(void);
 
-/// Creates `path`, which must not exist, and writes the header. Never null: look at
+/// Creates `path`, which must not exist, and writes the header. Never returns null: check
 /// mcap_sink_error().
 mcap_sink* mcap_sink_open(const char* path);
 
-/// Empty while everything went well. Valid until the next call with this handle.
+/// Text of the first error; empty while there is none. Valid until the next call with this handle.
 const char* mcap_sink_error(const mcap_sink* sink);
 
 /// Adds a topic with CDR messages and a ros2msg schema. Returns its number, 0 after an error.
@@ -42,21 +44,21 @@ bool mcap_sink_attach(mcap_sink* sink, const char* name, uint64_t time_ns, const
 bool mcap_sink_add_metadata(mcap_sink* sink, const char* name, const char* const* pairs,
                             size_t count);
 
-/// Ends the chunk and hands everything to the operating system: a crash of this program loses
-/// nothing that was written before. A file that somebody has deleted, moved, replaced or cut off
-/// since is an error; so it is for all that write.
+/// Ends the chunk and hands everything to the operating system: data written before survive a crash
+/// of this program. A file that was deleted, moved, replaced or truncated by others is an error
+/// here and in all other functions that write.
 bool mcap_sink_flush(mcap_sink* sink);
 
 /// Bytes handed to the operating system so far.
 uint64_t mcap_sink_bytes(const mcap_sink* sink);
 
 typedef enum {
-  mcap_file_whole = 0,    ///< it has what was written, or was never opened
-  mcap_file_changed = 1,  ///< somebody has cut it off or written to it
-  mcap_file_gone = 2      ///< its name stands for nothing, or another file
+  mcap_file_whole = 0,    ///< the file has all data written, or was never opened
+  mcap_file_changed = 1,  ///< truncated or written to by others
+  mcap_file_gone = 2      ///< its name is missing, or is that of another file
 } mcap_file_state;
 
-/// What has become of the file, a mcap_file_state.
+/// State of the file, a mcap_file_state.
 int mcap_sink_state(const mcap_sink* sink);
 
 /// Writes the index and waits until the file is on the disk.
@@ -74,15 +76,15 @@ typedef enum {
   mcap_lost = 5
 } mcap_item_kind;
 
-/// One thing in a file: a topic with the text of its schema, a message with its topic and log time,
-/// an attachment with its name, the end of a file that was completed, a part that cannot be read
-/// with its name, or a message of that part with its topic and log time. Valid during the call;
-/// `name` has no terminating zero.
+/// Receives one item of a file: a topic with the text of its schema, a message with its topic and
+/// log time, an attachment with its name, the end of a file that was completed, a part that cannot
+/// be read with its name, or a message of that part with its topic and log time. Valid during the
+/// call; `name` has no terminating zero.
 typedef void (*mcap_take_item)(void* context, int kind, const char* name, size_t name_size,
                                uint64_t time_ns, const uint8_t* data, size_t size);
 
-/// Hands out everything in a file that is as it was written, in its order; a file that a crash has
-/// cut off ends there. `take` must not throw. False: `error` (zero-terminated) says why.
+/// Passes all intact items of a file to `take`, in order; a file cut off by a crash ends there.
+/// `take` must not throw. False: `error` (zero-terminated) gives the reason.
 bool mcap_sink_read(const char* path, void* context, mcap_take_item take, char* error,
                     size_t error_size);
 

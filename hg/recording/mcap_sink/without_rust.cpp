@@ -1,4 +1,4 @@
-/// Stands in for the Rust library when there is none: recording is off and says so.
+/// Replacement of the Rust library when it is missing: recording is off and reports so.
 #include "hg/recording/mcap_sink/mcap_sink.h"
 
 #include <cstdio>
