@@ -20,6 +20,7 @@
 #   make headers checks that every header compiles alone
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
 #                FUZZ_SECONDS=600 of random bytes each, under sanitizers. What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
+#   make docs    builds the pages of docs/ as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
 #                memory, faults and limits; begun again it goes on where it was (tools/soak.py)
 #
@@ -54,7 +55,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz soak format check headers clean
+.PHONY: demo audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -123,6 +124,16 @@ fuzz:
 
 soak: build
 	@.venv/bin/python tools/soak.py $(BUILD)/hapticgiant --hours $(SOAK_HOURS)
+
+DOCS_VENV := build/docs_venv
+$(DOCS_VENV)/bin/mkdocs: tools/requirements-docs.txt
+	@python3 -m venv $(DOCS_VENV)
+	@$(DOCS_VENV)/bin/pip install --quiet --requirement $<
+	@touch $@
+
+docs: $(DOCS_VENV)/bin/mkdocs
+	@NO_MKDOCS_2_WARNING=1 $< build --quiet
+	@echo "docs: build/site/index.html"
 
 format:
 	@git ls-files '*.h' '*.cpp' | xargs clang-format -i
