@@ -19,8 +19,8 @@ namespace hg::inspection {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kPhase = 16.5 / 360.0;  // of a period, see frequency_Hz()
-constexpr double kLeastWay = 0.01;       // m at the handle, over which a spring should be followed
+constexpr double kPhase_deg = 16.5;  // see frequency_Hz()
+constexpr double kLeastWay = 0.01;   // m at the handle, over which a spring should be followed
 
 // Mean delay between a wrench and the reaction of the motors.
 double delay_of(const config::Device& device) {
@@ -121,8 +121,9 @@ void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Co
       [&](const Spring& spring) {
         return fmt::format(
             "swing with {:.1f} Hz; this device shows up to {:.1f} Hz, where the "
-            "{:.1f} ms from wrench to motion are 16.5 degrees",
-            std::sqrt(spring.stiffness / spring.inertia) / kTurn, fastest, 1e3 * limits.delay);
+            "{:.1f} ms from wrench to motion are {:g} degrees",
+            std::sqrt(spring.stiffness / spring.inertia) / kTurn, fastest, 1e3 * limits.delay,
+            kPhase_deg);
       },
       out);
   // how far from its rest the handle may be: its lever cancels
@@ -143,7 +144,7 @@ void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Co
 
 }  // namespace
 
-double StiffnessLimits::frequency_Hz() const noexcept { return kPhase / delay; }
+double StiffnessLimits::frequency_Hz() const noexcept { return kPhase_deg / 360.0 / delay; }
 
 double StiffnessLimits::by_frequency() const noexcept {
   return mass * std::pow(kTurn * frequency_Hz(), 2);
@@ -179,9 +180,9 @@ void inspect_stiffness(const config::Device& device, const config::Twin& twin, C
   out.add(Severity::kNote, "end_effector",
           fmt::format(
               "surfaces and springs that this device can show with this twin ({}): up to "
-              "{:.1f} Hz, where T_d is 16.5 degrees, which is {} = m (2 pi f)^2; {}; passive in "
+              "{:.1f} Hz, where T_d is {:g} degrees, which is {} = m (2 pi f)^2; {}; passive in "
               "any hand up to {} = b / (T / 2 + T_d), with 20 Ns/m of a surface {}",
-              known_of(limits), limits.frequency_Hz(), kilo(limits.by_frequency()),
+              known_of(limits), limits.frequency_Hz(), kPhase_deg, kilo(limits.by_frequency()),
               acceleration_text(limits), kilo(limits.by_passivity(0.0)),
               kilo(limits.by_passivity(20.0))),
           "");

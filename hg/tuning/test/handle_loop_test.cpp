@@ -14,7 +14,6 @@
 #include "hg/experiments/changes.h"
 #include "hg/experiments/stability_map.h"
 #include "hg/haptify/free_space.h"
-#include "hg/haptify/measures.h"
 #include "hg/haptify/response.h"
 #include "hg/tuning/feel.h"
 #include "hg/tuning/tuned_device.h"
