@@ -26,7 +26,7 @@ constexpr const char* kLine = "{:<20} {:<17} {:>8} {:>8} {:>8} {:>8} {:>7}\n";
 
 std::string line(const std::string& scenario, const std::string& stage, const Times& times,
                  double whole) {
-  const evaluation::Distribution d = times.distribution();
+  const analysis::Distribution d = times.distribution();
   return fmt::format(kLine, scenario, stage, fmt::format("{:.2f}", d.median), to_text(d.p99_9, 2),
                      fmt::format("{:.2f}", d.max), fmt::format("{:.2f}", times.mean()),
                      fmt::format("{:.0f} %", 100.0 * times.mean() / whole));

@@ -177,7 +177,7 @@ std::string growth_header() {
 }
 
 std::string to_text(const GrowthRow& row) {
-  const evaluation::Distribution cold = row.cold.distribution(), warm = row.warm.distribution();
+  const analysis::Distribution cold = row.cold.distribution(), warm = row.warm.distribution();
   return fmt::format(kLine, row.variables, row.levels, row.rows, fmt::format("{:.1f}", cold.median),
                      fmt::format("{:.1f}", cold.max), fmt::format("{:.1f}", row.cold_iterations),
                      fmt::format("{:.1f}", warm.median), fmt::format("{:.1f}", warm.max),
@@ -194,7 +194,7 @@ std::string to_text(std::span<const GrowthExponent> exponents) {
 }
 
 nlohmann::ordered_json to_json(const GrowthRow& row) {
-  const evaluation::Distribution cold = row.cold.distribution(), warm = row.warm.distribution();
+  const analysis::Distribution cold = row.cold.distribution(), warm = row.warm.distribution();
   return {{"variables", row.variables},
           {"levels", row.levels},
           {"rows", row.rows},

@@ -75,7 +75,7 @@ class Observer {
   }
 
   const config::Scenario& scenario_;
-  evaluation::EventDetector detector_;
+  analysis::EventDetector detector_;
   std::array<bool, kMaxLimits> is_acting_{};
   Eigen::Vector3d last_acceleration_ = Eigen::Vector3d::Zero();
   LawRun run_;
@@ -83,12 +83,12 @@ class Observer {
 
 double per_cycle(double sum, const LawRun& run) { return sum / std::max(1, run.cycles - 1); }
 
-std::string to_text(const evaluation::Distribution& d) {
+std::string to_text(const analysis::Distribution& d) {
   return fmt::format("{:.1f} / {} / {:.0f}", d.median, bench::to_text(d.p99_9, 1), d.max);
 }
 
-evaluation::Distribution distribution(const evaluation::Histogram& times, int cycles) {
-  evaluation::Distribution d = times.distribution();
+analysis::Distribution distribution(const analysis::Histogram& times, int cycles) {
+  analysis::Distribution d = times.distribution();
   if (static_cast<std::size_t>(cycles) < kEnoughForTail) d.p99_9 = std::nan("");
   return d;
 }
@@ -102,7 +102,7 @@ std::string violation(const LawRun& m) {
 constexpr const char* kLine =
     "{:<11} {:<6} {:<12} {:>6} {:>9} {:>9} {:>8} {:>8}  {:<19} {:<20} {}\n";
 
-nlohmann::ordered_json to_json(const evaluation::Distribution& d) {
+nlohmann::ordered_json to_json(const analysis::Distribution& d) {
   return {{"median", d.median}, {"p99_9", bench::to_json(d.p99_9)}, {"max", d.max}};
 }
 

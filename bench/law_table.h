@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "hg/analysis/summary.h"
 #include "hg/config/scenario.h"
-#include "hg/evaluation/summary.h"
 
 namespace hg::bench {
 
@@ -25,7 +25,7 @@ struct LawRun {
   double worst_violation = 0.0;  ///< rad or m
   bool worst_is_angle = false;
   std::string worst_limit = "none";
-  evaluation::Histogram solver_us, cycle_us;
+  analysis::Histogram solver_us, cycle_us;
 
   /// Whether no event is missing, no fault occurred and every cycle was solved.
   bool is_well() const;

@@ -166,7 +166,7 @@ std::string to_text(const SolverSet& set) {
   for (const SolverRun& run : set.runs) {
     const bool is_first = &run == &set.runs.front();
     const bool is_ours = run.solver != "cascade";
-    const evaluation::Distribution d = run.times.distribution();
+    const analysis::Distribution d = run.times.distribution();
     const std::optional<double> factor = advantage(set, run);
     const auto once = [&](const auto& value) { return is_first ? fmt::to_string(value) : ""; };
     text += fmt::format(kLine, is_first ? set.name : "", once(set.variables), once(set.levels),

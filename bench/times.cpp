@@ -30,7 +30,7 @@ void Times::add(std::size_t index, double us) {
   }
 }
 
-evaluation::Distribution Times::distribution() const {
+analysis::Distribution Times::distribution() const {
   constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
   if (us_.empty()) return {0.0, kNotANumber, 0.0};
   std::vector<double> sorted = us_;
@@ -68,7 +68,7 @@ nlohmann::ordered_json to_json(double us) {
   return std::isnan(us) ? nlohmann::ordered_json() : nlohmann::ordered_json(us);
 }
 
-void add_to(nlohmann::ordered_json& row, const evaluation::Distribution& distribution) {
+void add_to(nlohmann::ordered_json& row, const analysis::Distribution& distribution) {
   row["median_us"] = distribution.median;
   row["p99_9_us"] = to_json(distribution.p99_9);
   row["max_us"] = distribution.max;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/evaluation/summary.h"
+#include "hg/analysis/summary.h"
 
 namespace hg::bench {
 
@@ -30,7 +30,7 @@ class Times {
   const std::vector<double>& us() const { return us_; }
   /// Exact distribution of the fastest times; zeros without times. p99_9 is NaN with fewer than
   /// kEnoughForTail times.
-  evaluation::Distribution distribution() const;
+  analysis::Distribution distribution() const;
   double mean() const;
 
  private:
@@ -52,6 +52,6 @@ std::string to_text(double us, int decimals);
 nlohmann::ordered_json to_json(double us);
 
 /// Adds the keys median_us, p99_9_us and max_us.
-void add_to(nlohmann::ordered_json& row, const evaluation::Distribution& distribution);
+void add_to(nlohmann::ordered_json& row, const analysis::Distribution& distribution);
 
 }  // namespace hg::bench

@@ -2,8 +2,8 @@
 # find_package(hapticgiant COMPONENTS ...) gives hapticgiant::MODULE; docs/packages.md.
 #
 # Everything but what only the program needs.
-set(HG_PACKAGE core signals model collision environment limits hqp estimation rendering passivity compliance prepositioning control safety
-  cycle user simulation injection device runtime evaluation config assembly)
+set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning tracking safety
+  controller device simulator runtime analysis config scenario)
 # headers that only their own module includes; Eigen or YAML show in them
 set(HG_PRIVATE_HEADERS
   "/hqp/(cone|dense_least_squares|direct_elimination|elimination|primal|rows|sweep|workspace)[.]h$"
@@ -21,11 +21,14 @@ foreach(module IN LISTS HG_PACKAGE)
       "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>;$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   install(TARGETS hg_${module} EXPORT hapticgiant COMPONENT cpp
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/hg/${module}/*.h)
-  foreach(pattern IN LISTS HG_PRIVATE_HEADERS)
-    list(FILTER headers EXCLUDE REGEX ${pattern})
+  get_property(folders GLOBAL PROPERTY HG_FOLDERS_${module})
+  foreach(folder IN LISTS folders)
+    file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.h)
+    foreach(pattern IN LISTS HG_PRIVATE_HEADERS)
+      list(FILTER headers EXCLUDE REGEX ${pattern})
+    endforeach()
+    install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT cpp)
   endforeach()
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hg/${module} COMPONENT cpp)
 endforeach()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/hapticgiant

@@ -14,8 +14,8 @@
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "bench/machine.h"
-#include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
@@ -165,7 +165,7 @@ bool play_laws(const std::vector<NamedScenario>& scenarios, BenchResults& result
 config::Scenario bench_scenario(const std::string& name) {
   config::Scenario scenario =
       make_scenario({.scenario = name, .plant = "ideal", .sensors = "ideal"});
-  if (assembly::planned_duration_s(scenario) == 0.0) {
+  if (scenario::planned_duration_s(scenario) == 0.0) {
     throw SetupError(name + ": bench needs a scenario with a script");
   }
   return scenario;

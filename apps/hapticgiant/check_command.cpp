@@ -10,6 +10,12 @@
 
 #include "apps/hapticgiant/check_report.h"
 #include "apps/hapticgiant/output_file.h"
+#include "hg/commissioning/checks/capability_map.h"
+#include "hg/commissioning/checks/datasheet.h"
+#include "hg/commissioning/checks/device_inspection.h"
+#include "hg/commissioning/checks/scenario_inspection.h"
+#include "hg/commissioning/checks/stiffness.h"
+#include "hg/commissioning/checks/twin_inspection.h"
 #include "hg/config/device.h"
 #include "hg/config/file_kind.h"
 #include "hg/config/scenario.h"
@@ -18,18 +24,12 @@
 #include "hg/config/tool.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"
-#include "hg/inspection/capability_map.h"
-#include "hg/inspection/datasheet.h"
-#include "hg/inspection/device_inspection.h"
-#include "hg/inspection/scenario_inspection.h"
-#include "hg/inspection/stiffness.h"
-#include "hg/inspection/twin_inspection.h"
 
 namespace hg::apps {
 namespace {
 
+using checks::Findings;
 using config::FileKind;
-using inspection::Findings;
 
 // Everything that could be loaded, and what was found on the way.
 struct Check {
@@ -51,7 +51,7 @@ bool try_to(const std::string& file, Check& check, const std::function<void()>& 
     load();
     return true;
   } catch (const SetupError& error) {
-    add(inspection::findings_of_message(error.what(), file), check);
+    add(checks::findings_of_message(error.what(), file), check);
     return false;
   }
 }
@@ -109,7 +109,7 @@ void check_scripts(Check& check) {
     };
     for (const config::Twin& twin : check.twins) try_twin(twin);
     for (const config::Scenario& scenario : check.scenarios) try_twin(scenario.twin);
-    for (inspection::Finding& finding : fewest) {
+    for (checks::Finding& finding : fewest) {
       if (finding.item == "frame") finding.mend = "check the script together with its twin";
     }
     add(fewest, check);
@@ -118,10 +118,10 @@ void check_scripts(Check& check) {
 
 void check_devices(Check& check) {
   const auto inspect = [&](const config::Device& device, bool has_datasheet) {
-    const inspection::Survey survey = inspection::survey(device);
-    add(inspection::inspect(device, survey), check);
+    const checks::Survey survey = checks::survey(device);
+    add(checks::inspect(device, survey), check);
     if (has_datasheet) {
-      check.report.datasheets.push_back(inspection::make_datasheet(device, survey));
+      check.report.datasheets.push_back(checks::make_datasheet(device, survey));
     }
   };
   for (const config::Device& device : check.devices) inspect(device, true);
@@ -134,22 +134,22 @@ void draw_map(const std::string& file, const Check& check) {
   }
   const config::Device& device =
       check.devices.empty() ? check.scenarios.front().device : check.devices.front();
-  write_output(file, to_svg(inspection::capability_map(device)));
+  write_output(file, to_svg(checks::capability_map(device)));
 }
 
 void check_twins(Check& check) {
   constexpr double kUsualPeriod = 1e-3;  // s, where no device is given
   const double dt = check.devices.empty() ? kUsualPeriod : check.devices.front().rendering.dt;
   for (const config::Twin& twin : check.twins) {
-    add(inspection::inspect(twin, dt), check);
+    add(checks::inspect(twin, dt), check);
     for (const config::Device& device : check.devices) {
-      add(inspection::inspect(device, twin), check);
+      add(checks::inspect(device, twin), check);
     }
   }
   for (const config::Scenario& scenario : check.scenarios) {
-    add(inspection::inspect(scenario.twin, scenario.device.rendering.dt), check);
-    add(inspection::inspect(scenario.device, scenario.twin), check);
-    add(inspection::inspect_surfaces(scenario), check);
+    add(checks::inspect(scenario.twin, scenario.device.rendering.dt), check);
+    add(checks::inspect(scenario.device, scenario.twin), check);
+    add(checks::inspect_surfaces(scenario), check);
   }
 }
 
@@ -167,7 +167,7 @@ int run_check(const CheckArguments& arguments) {
   print(check.report);
   if (!arguments.json.empty()) write_output(arguments.json, to_json(check.report));
   if (!arguments.map.empty()) draw_map(arguments.map, check);
-  return count(check.report, inspection::Severity::kFault) > 0 ? 2 : 0;
+  return count(check.report, checks::Severity::kFault) > 0 ? 2 : 0;
 }
 
 }  // namespace hg::apps

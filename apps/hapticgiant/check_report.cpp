@@ -12,8 +12,8 @@
 namespace hg::apps {
 namespace {
 
-using inspection::Finding;
-using inspection::Severity;
+using checks::Finding;
+using checks::Severity;
 
 auto key(const Finding& finding) {
   return std::tie(finding.file, finding.place.line, finding.place.column, finding.item,
@@ -40,7 +40,7 @@ int count(const CheckReport& report, Severity severity) {
 
 void print(const CheckReport& report) {
   for (const CheckedFile& file : report.files) print_out("{}: {}\n", file.name, file.kind);
-  for (const inspection::Datasheet& sheet : report.datasheets) print_datasheet(sheet);
+  for (const checks::Datasheet& sheet : report.datasheets) print_datasheet(sheet);
   if (!report.findings.empty()) print_out("\n");
   for (const Finding& finding : report.findings) {
     print_out("{}:{}:{}: {}: {}{}{}\n", finding.file, finding.place.line, finding.place.column,
@@ -75,7 +75,7 @@ std::string to_json(const CheckReport& report) {
   json["warnings"] = count(report, Severity::kWarning);
   json["notes"] = count(report, Severity::kNote);
   json["datasheets"] = nlohmann::json::array();
-  for (const inspection::Datasheet& sheet : report.datasheets) {
+  for (const checks::Datasheet& sheet : report.datasheets) {
     json["datasheets"].push_back(datasheet_json(sheet));
   }
   return json.dump(2) + "\n";

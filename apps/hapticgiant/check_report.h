@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "hg/inspection/datasheet.h"
-#include "hg/inspection/findings.h"
+#include "hg/commissioning/checks/datasheet.h"
+#include "hg/commissioning/checks/findings.h"
 
 namespace hg::apps {
 
@@ -16,13 +16,13 @@ struct CheckedFile {
 
 struct CheckReport {
   std::vector<CheckedFile> files;
-  inspection::Findings findings;
-  std::vector<inspection::Datasheet> datasheets;
+  checks::Findings findings;
+  std::vector<checks::Datasheet> datasheets;
 };
 
 /// Orders the findings by file and line; duplicates are merged.
 void sort_and_merge(CheckReport& report);
-int count(const CheckReport& report, inspection::Severity severity);
+int count(const CheckReport& report, checks::Severity severity);
 
 void print(const CheckReport& report);
 std::string to_json(const CheckReport& report);

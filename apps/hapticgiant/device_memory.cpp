@@ -17,7 +17,7 @@
 #include "apps/hapticgiant/output_file.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
-#include "hg/remote/agreement.h"
+#include "hg/device/udp/agreement.h"
 
 namespace hg::apps {
 namespace {
@@ -54,10 +54,10 @@ std::vector<start_test::Position> posture_of(const config::Device& device,
 
 // Posture with drives off and brakes closed; empty if the connection to the device is lost.
 std::optional<std::vector<start_test::Position>> braked_posture(const config::Device& device,
-                                                                remote::RemoteDevice& remote,
+                                                                udp::RemoteDevice& remote,
                                                                 double duration_s = kBraked) {
   SensorFrame sensors;
-  CommandFrame off = remote::off_command(remote.welcome().actual);
+  CommandFrame off = udp::off_command(remote.welcome().actual);
   for (double time_s = 0.0; time_s < duration_s; time_s += 1.0 / device.rate_Hz) {
     remote.read(sensors);
     if (sensors.driver_fault != FaultCode::kNone) return std::nullopt;
@@ -125,7 +125,7 @@ std::string check_start_test(const RunArguments& arguments, const config::Device
 }
 
 std::string check_posture(const RunArguments& arguments, const config::Device& device,
-                          remote::RemoteDevice& remote) {
+                          udp::RemoteDevice& remote) {
   const auto now = braked_posture(device, remote);
   const std::string farewell = remote.farewell();
   remote.close(FaultCode::kNone);
@@ -168,7 +168,7 @@ std::string check_posture(const RunArguments& arguments, const config::Device& d
 }
 
 std::vector<std::string> leave_machine(const RunArguments& arguments, const config::Device& device,
-                                       remote::RemoteDevice& remote, FaultCode fault) {
+                                       udp::RemoteDevice& remote, FaultCode fault) {
   std::vector<std::string> lines;
   const auto braked = braked_posture(device, remote);
   const auto now = braked ? braked_posture(device, remote, kWatched) : std::nullopt;

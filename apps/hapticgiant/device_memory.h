@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "apps/hapticgiant/run_command.h"
+#include "hg/commissioning/start_test/memory.h"
 #include "hg/config/device.h"
-#include "hg/remote/remote_device.h"
-#include "hg/start_test/memory.h"
+#include "hg/device/udp/remote_device.h"
 
 namespace hg::apps {
 
@@ -28,12 +28,12 @@ std::string check_start_test(const RunArguments& arguments, const config::Device
 /// closed brakes, which it ends. Returns a message; throws SetupError if joints have moved that
 /// `arguments` do not confirm.
 std::string check_posture(const RunArguments& arguments, const config::Device& device,
-                          remote::RemoteDevice& remote);
+                          udp::RemoteDevice& remote);
 
 /// Stores the machine's posture at the end of its session, after a second with closed brakes. If a
 /// brake slips meanwhile, or `fault` reports that one did, its start test becomes invalid. Returns
 /// messages, one line each; empty if all is well.
 std::vector<std::string> leave_machine(const RunArguments& arguments, const config::Device& device,
-                                       remote::RemoteDevice& remote, FaultCode fault);
+                                       udp::RemoteDevice& remote, FaultCode fault);
 
 }  // namespace hg::apps

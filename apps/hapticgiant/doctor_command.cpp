@@ -10,17 +10,17 @@
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/evaluation/timing.h"
-#include "hg/readiness/jitter.h"
-#include "hg/readiness/readings.h"
-#include "hg/readiness/verdict.h"
+#include "hg/analysis/timing.h"
+#include "hg/commissioning/doctor/jitter.h"
+#include "hg/commissioning/doctor/readings.h"
+#include "hg/commissioning/doctor/verdict.h"
 
 namespace hg::apps {
 namespace {
 
-using readiness::Jitter;
-using readiness::Level;
-using readiness::Line;
+using doctor::Jitter;
+using doctor::Level;
+using doctor::Line;
 
 constexpr double kRates_Hz[] = {1000.0, 10000.0};
 
@@ -31,7 +31,7 @@ struct Measured {
 
 void print(const Line& line) {
   print_out(
-      fmt::format("  {:<5} {:<11} {}\n", readiness::to_string(line.level), line.item, line.found));
+      fmt::format("  {:<5} {:<11} {}\n", doctor::to_string(line.level), line.item, line.found));
   if (!line.mend.empty()) print_out(fmt::format("  {:<17} -> {}\n", "", line.mend));
 }
 
@@ -39,9 +39,9 @@ nlohmann::ordered_json to_json(const std::vector<Line>& lines,
                                const std::vector<Measured>& measured) {
   nlohmann::ordered_json json;
   json["version"] = kVersion;
-  json["exit_code"] = readiness::exit_code(lines);
+  json["exit_code"] = doctor::exit_code(lines);
   for (const Line& line : lines) {
-    json["lines"].push_back({{"level", readiness::to_string(line.level)},
+    json["lines"].push_back({{"level", doctor::to_string(line.level)},
                              {"item", line.item},
                              {"found", line.found},
                              {"mend", line.mend}});
@@ -50,7 +50,7 @@ nlohmann::ordered_json to_json(const std::vector<Line>& lines,
     for (const Jitter* jitter : {&pair.ordinary, &pair.real_time}) {
       json["jitter"].push_back({{"rate_Hz", jitter->rate_Hz},
                                 {"priority", jitter->thread.priority},
-                                {"late_us", evaluation::to_json(jitter->wake_up_us)}});
+                                {"late_us", analysis::to_json(jitter->wake_up_us)}});
     }
   }
   return json;
@@ -63,14 +63,14 @@ int doctor(const DoctorArguments& arguments) {
   runtime::check({.priority = arguments.priority, .cpu = arguments.cpu});
   print_out(
       fmt::format("HapticGiant {}: is this computer ready for a control loop?\n\n", kVersion));
-  std::vector<Line> lines = readiness::judge(readiness::read());
+  std::vector<Line> lines = doctor::judge(doctor::read());
   for (const Line& line : lines) print(line);
 
   print_out(
       fmt::format("\nhow late threads wake up, measured for {:.0f} s:\n", 4.0 * arguments.seconds));
   const auto measure = [&](double rate_Hz, int priority) {
-    return readiness::measure_jitter(rate_Hz, arguments.seconds,
-                                     {.priority = priority, .cpu = arguments.cpu});
+    return doctor::measure_jitter(rate_Hz, arguments.seconds,
+                                  {.priority = priority, .cpu = arguments.cpu});
   };
   // all ordinary threads first: the others lock the memory
   std::vector<Measured> measured;
@@ -79,7 +79,7 @@ int doctor(const DoctorArguments& arguments) {
     const double rate_Hz = pair.ordinary.rate_Hz;
     pair.real_time = measure(rate_Hz, arguments.priority);
     // 1 kHz is what devices need; faster is a choice
-    lines.push_back(readiness::judge(pair.ordinary, pair.real_time, rate_Hz == kRates_Hz[0]));
+    lines.push_back(doctor::judge(pair.ordinary, pair.real_time, rate_Hz == kRates_Hz[0]));
     print(lines.back());
   }
 
@@ -95,7 +95,7 @@ int doctor(const DoctorArguments& arguments) {
   if (!arguments.json.empty()) {
     write_output(arguments.json, to_json(lines, measured).dump(2) + "\n");
   }
-  return readiness::exit_code(lines);
+  return doctor::exit_code(lines);
 }
 
 }  // namespace hg::apps

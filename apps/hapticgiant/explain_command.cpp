@@ -10,8 +10,8 @@
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/run_setup.h"
+#include "hg/analysis/explainer.h"
 #include "hg/core/error.h"
-#include "hg/explanation/explainer.h"
 #include "hg/recording/recording_reader.h"
 
 namespace hg::apps {
@@ -25,7 +25,7 @@ class Reader final : public recording::RecordingListener {
   }
   void event(const recording::Event& event) override { events_.push_back(event); }
   void sample(const Sample& sample) override {
-    if (!explainer_) explainer_ = std::make_unique<explanation::Explainer>(names());
+    if (!explainer_) explainer_ = std::make_unique<analysis::Explainer>(names());
     explainer_->add(sample);
     ++samples_;
   }
@@ -34,7 +34,7 @@ class Reader final : public recording::RecordingListener {
   std::uint64_t samples() const { return samples_; }
   double first_s() const { return explainer_->first_s(); }
   double last_s() const { return explainer_->last_s(); }
-  std::vector<explanation::Entry> entries() {
+  std::vector<analysis::Entry> entries() {
     for (const recording::Event& event : events_) {
       // the samples contain these events as well, in more detail
       if (event.name == "tare" || event.name == "request" || event.name == "fault" ||
@@ -47,7 +47,7 @@ class Reader final : public recording::RecordingListener {
   }
 
  private:
-  explanation::Names names() {
+  analysis::Names names() {
     try {
       const config::Scenario scenario = recorded_scenario(configuration_);
       title_ = scenario.title;
@@ -62,12 +62,12 @@ class Reader final : public recording::RecordingListener {
 
   std::vector<recording::NamedText> configuration_;
   std::vector<recording::Event> events_;
-  std::unique_ptr<explanation::Explainer> explainer_;
+  std::unique_ptr<analysis::Explainer> explainer_;
   std::string title_;
   std::uint64_t samples_ = 0;
 };
 
-void print(const explanation::Entry& entry) {
+void print(const analysis::Entry& entry) {
   print_out(fmt::format("{:9.3f} s  {:<8} {}\n", entry.time_s, entry.kind, entry.text));
   for (const std::string& detail : entry.details) {
     print_out(fmt::format("{:>21}{}\n", "", detail));
@@ -87,10 +87,10 @@ int explain_recording(const std::string& file) {
   print_out(fmt::format("{}\n{:.3f} .. {:.3f} s of the run, {} samples{}\n{}\n", reader.title(),
                         reader.first_s(), reader.last_s(), reader.samples(),
                         read.is_complete ? "" : cut_off, recording::to_text(read.losses)));
-  const std::vector<explanation::Entry> entries = reader.entries();
-  for (const explanation::Entry& entry : entries) print(entry);
+  const std::vector<analysis::Entry> entries = reader.entries();
+  for (const analysis::Entry& entry : entries) print(entry);
   const bool has_fault = std::ranges::any_of(
-      entries, [](const explanation::Entry& entry) { return entry.kind == "FAULT"; });
+      entries, [](const analysis::Entry& entry) { return entry.kind == "FAULT"; });
   if (!has_fault) print_out("\nno fault\n");
   return 0;
 }

@@ -13,8 +13,8 @@
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/scratch_folder.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
@@ -33,7 +33,7 @@ int faults(const FaultsArguments& arguments) {
   std::vector<config::Scenario> scenarios;
   for (const std::string& name : arguments.scenarios) {
     scenarios.push_back(config::load_scenario(find_scenario(name)));
-    const Interval times = experiments::fault_times(scenarios.back());
+    const Interval times = studies::fault_times(scenarios.back());
     if (times.lb > times.ub) {
       throw SetupError(
           name +
@@ -56,14 +56,14 @@ int faults(const FaultsArguments& arguments) {
   }
   print_out(fmt::format("HapticGiant {}  {} faults on purpose, seed {}\n\n", kVersion,
                         arguments.campaign.cases, arguments.campaign.seed));
-  const experiments::Campaign campaign =
-      experiments::run_campaign(scenarios, arguments.campaign, recordings, progress_of("faults"));
-  print_out(experiments::to_text(campaign));
+  const studies::Campaign campaign =
+      studies::run_campaign(scenarios, arguments.campaign, recordings, progress_of("faults"));
+  print_out(studies::to_text(campaign));
   if (!arguments.markdown.empty()) {
-    write_output(arguments.markdown, experiments::to_markdown(campaign));
+    write_output(arguments.markdown, studies::to_markdown(campaign));
   }
-  write_json(arguments.json, experiments::to_json(campaign));
-  return experiments::is_passed(campaign) ? 0 : 1;
+  write_json(arguments.json, studies::to_json(campaign));
+  return studies::is_passed(campaign) ? 0 : 1;
 }
 
 }  // namespace hg::apps

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "hg/experiments/fault_campaign.h"
+#include "hg/studies/fault_campaign.h"
 
 namespace hg::apps {
 
 struct FaultsArguments {
   std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
-  experiments::CampaignConfig campaign;
+  studies::CampaignConfig campaign;
   bool plays_processes = false;  ///< plays faults of the controller's process instead, in real time
   int repetitions = 1;           ///< repetitions of the process faults
   std::string json;              ///< file for all cases; empty = none

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "hg/commissioning/generator/postures.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/joint_range.h"
-#include "hg/scaffold/postures.h"
 
 namespace hg::apps {
 namespace {
@@ -12,18 +12,18 @@ namespace {
 constexpr int kPostures = 2000;
 
 double best_dexterity(rendering::DeviceModel& device) {
-  std::vector<Interval> ranges = scaffold::joint_ranges(device.chain);
+  std::vector<Interval> ranges = generator::joint_ranges(device.chain);
   for (int i = 0; i < device.n_m; ++i) {
     const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
     const auto joint = static_cast<std::size_t>(device.n_p + i);
     const bool is_angle = device.chain.joints()[joint].type != model::JointType::kPrismatic;
     ranges[joint] = model::finite_range({limits.q_min, limits.q_max}, is_angle);
   }
-  scaffold::PostureSampler sampler(ranges);
+  generator::PostureSampler sampler(ranges);
   double best = 0.0;
   for (int i = 0; i < kPostures; ++i) {
     best = std::max(best,
-                    scaffold::dexterity(device.chain, device.handle, device.n_p, sampler.draw()));
+                    generator::dexterity(device.chain, device.handle, device.n_p, sampler.draw()));
   }
   return best;
 }
@@ -68,7 +68,7 @@ std::optional<viewer_server::Singularity> HandAnalysis::singularity(const CycleR
   if (!has_posture) return {};
   Eigen::VectorXd q(device_.n_p + device_.n_m);
   q << record.robot.q_p, record.reference.q_m;
-  const double now = scaffold::dexterity(device_.chain, device_.handle, device_.n_p, q);
+  const double now = generator::dexterity(device_.chain, device_.handle, device_.n_p, q);
   viewer_server::Singularity singularity{std::clamp(now / best_, 0.0, 1.0)};
   double nearest = kInfinity;
   for (int i = 0; i < static_cast<int>(device_.virtual_joints.size()); ++i) {

@@ -12,8 +12,8 @@
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
-#include "hg/haptify/benchmark.h"
-#include "hg/haptify/goals.h"
+#include "hg/studies/haptify/benchmark.h"
+#include "hg/studies/haptify/goals.h"
 
 namespace hg::apps {
 namespace {

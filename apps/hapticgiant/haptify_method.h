@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hg/haptify/figures.h"
+#include "hg/studies/haptify/figures.h"
 
 namespace hg::apps {
 

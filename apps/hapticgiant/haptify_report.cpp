@@ -9,7 +9,7 @@
 #include "apps/hapticgiant/experiments/html.h"
 #include "apps/hapticgiant/haptify_method.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/haptify/goals.h"
+#include "hg/studies/haptify/goals.h"
 
 namespace hg::apps {
 namespace {

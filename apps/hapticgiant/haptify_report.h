@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "hg/haptify/figures.h"
+#include "hg/studies/haptify/figures.h"
 
 namespace hg::apps {
 

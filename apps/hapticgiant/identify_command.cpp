@@ -4,10 +4,10 @@
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/paths.h"
+#include "hg/commissioning/identification/payload.h"
+#include "hg/commissioning/identification/static_poses.h"
 #include "hg/config/device.h"
 #include "hg/core/open_file.h"
-#include "hg/identification/payload.h"
-#include "hg/identification/static_poses.h"
 
 namespace hg::apps {
 namespace {

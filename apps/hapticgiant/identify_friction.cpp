@@ -12,9 +12,9 @@
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/run_setup.h"
+#include "hg/commissioning/identification/friction_traces.h"
 #include "hg/config/device.h"
 #include "hg/core/error.h"
-#include "hg/identification/friction_traces.h"
 #include "hg/recording/recording_reader.h"
 
 namespace hg::apps {
@@ -151,7 +151,7 @@ int identify_friction(const IdentifyFrictionArguments& arguments) {
   const recording::ReadResult read = recording::read_recording(arguments.file, reader);
   print_out(recording::to_text(read.losses));
   const FrictionTraces& traces = reader.traces();
-  const control::Config& control = reader.device().control;
+  const tracking::Config& control = reader.device().control;
   if (traces.used() == 0) {
     throw SetupError(fmt::format(
         "{}: none of its {} samples has drives that are on, motor encoders, joint torques and the "

@@ -8,8 +8,8 @@
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/paths.h"
+#include "hg/commissioning/generator/scaffold.h"
 #include "hg/core/error.h"
-#include "hg/scaffold/scaffold.h"
 
 namespace hg::apps {
 namespace {
@@ -33,7 +33,7 @@ fs::path output_of(const NewArguments& arguments, const char* kind) {
 int new_device(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "device");
   check_writable(output.string());
-  write_output(output.string(), scaffold::device_yaml(arguments.part, output.parent_path()));
+  write_output(output.string(), generator::device_yaml(arguments.part, output.parent_path()));
   print_out(
       "{0} written. Next:\n"
       "  hapticgiant check {0}\n"
@@ -48,7 +48,7 @@ int new_twin(const NewArguments& arguments) {
   const config::Device device = config::load_device(
       is_own ? fs::path(arguments.device) : models_root() / "models/haptic_giant/device.yaml");
   check_writable(output.string());
-  write_output(output.string(), scaffold::twin_yaml(arguments.part, output.parent_path(), device));
+  write_output(output.string(), generator::twin_yaml(arguments.part, output.parent_path(), device));
   const std::string with = is_own ? " --device " + arguments.device : "";
   print_out(
       "{0} written. Next:\n"

@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "hg/scaffold/chain_part.h"
+#include "hg/commissioning/generator/chain_part.h"
 
 namespace hg::apps {
 
 struct NewArguments {
-  scaffold::ChainPart part;
+  generator::ChainPart part;
   std::string output;  ///< file to write; empty: named after the URDF, in this folder
   std::string device;  ///< device that a twin is placed for; empty: the HapticGiant
   bool may_overwrite = false;

@@ -9,10 +9,10 @@
 #include <string>
 
 #include "apps/hapticgiant/paths.h"
-#include "hg/assembly/start_posture.h"
+#include "hg/commissioning/checks/workspace.h"
 #include "hg/config/law_names.h"
-#include "hg/inspection/workspace.h"
-#include "hg/safety/rules.h"
+#include "hg/controller/safety/rules.h"
+#include "hg/scenario/start_posture.h"
 
 namespace hg::apps {
 namespace {
@@ -77,8 +77,8 @@ viewer_server::SceneChain twin_chain(const config::Twin& twin) {
 // where the handle may be; on axes without limits the page shows 4 m around its start
 Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
   constexpr double kHalf = 2.0;  // m
-  const Eigen::Vector3d p = assembly::handle_start(scenario.twin.model).p;
-  Eigen::AlignedBox3d box = inspection::handle_box(scenario.device.model);
+  const Eigen::Vector3d p = scenario::handle_start(scenario.twin.model).p;
+  Eigen::AlignedBox3d box = checks::handle_box(scenario.device.model);
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(box.min()[axis])) box.min()[axis] = p[axis] - kHalf;
     if (!std::isfinite(box.max()[axis])) box.max()[axis] = p[axis] + kHalf;
@@ -86,21 +86,21 @@ Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
   return box;
 }
 
-viewer_server::SceneSurface scene_surface(const environment::Surface& surface) {
+viewer_server::SceneSurface scene_surface(const surfaces::Surface& surface) {
   using viewer_server::SurfaceShape;
   viewer_server::SceneSurface scene{.name = surface.name, .pose = surface.pose};
-  if (const auto* box = std::get_if<environment::Box>(&surface.shape)) {
+  if (const auto* box = std::get_if<surfaces::Box>(&surface.shape)) {
     scene.shape = SurfaceShape::kBox;
     scene.size = box->size;
-  } else if (const auto* sphere = std::get_if<environment::Sphere>(&surface.shape)) {
+  } else if (const auto* sphere = std::get_if<surfaces::Sphere>(&surface.shape)) {
     scene.shape = SurfaceShape::kSphere;
     scene.size.setConstant(2.0 * sphere->radius);
-  } else if (const auto* cylinder = std::get_if<environment::Cylinder>(&surface.shape)) {
+  } else if (const auto* cylinder = std::get_if<surfaces::Cylinder>(&surface.shape)) {
     scene.shape = SurfaceShape::kCylinder;
     scene.size << 2.0 * cylinder->radius, 2.0 * cylinder->radius, cylinder->length;
-  } else if (const auto* mesh = std::get_if<environment::Mesh>(&surface.shape)) {
+  } else if (const auto* mesh = std::get_if<surfaces::Mesh>(&surface.shape)) {
     scene.shape = SurfaceShape::kMesh;
-    for (const environment::Triangle& triangle : mesh->triangles()) {
+    for (const surfaces::Triangle& triangle : mesh->triangles()) {
       for (const Eigen::Vector3d& corner : triangle.corners) {
         scene.triangles.insert(scene.triangles.end(), corner.begin(), corner.end());
       }
@@ -169,7 +169,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   scene.floor_z = scenario.device.floor_z;
   scene.stopping = stopping_text(scenario.device);
   scene.environment = environment_of(scenario.twin.surroundings);
-  for (const environment::Surface& surface : scenario.surfaces) {
+  for (const surfaces::Surface& surface : scenario.surfaces) {
     scene.surfaces.push_back(scene_surface(surface));
   }
   return scene;
@@ -223,11 +223,11 @@ std::vector<viewer_server::Setting> page_settings(const std::vector<config::Form
   return settings;
 }
 
-viewer_server::SafetyView safety_view(const Sample& sample, const explanation::Names& names) {
+viewer_server::SafetyView safety_view(const Sample& sample, const analysis::Names& names) {
   const CycleRecord& record = sample.record;
   const auto told = [&](const Fault& fault) -> std::string {
     if (fault.code == FaultCode::kNone) return {};
-    const std::string figures = explanation::figures_of(fault, names, sample.sensors);
+    const std::string figures = analysis::figures_of(fault, names, sample.sensors);
     return fmt::format("{} {}{}", static_cast<int>(fault.code), safety::rule_of(fault.code).meaning,
                        figures.empty() ? "" : " (" + figures + ")");
   };

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "apps/hapticgiant/run_command.h"
+#include "hg/analysis/fault_figures.h"
 #include "hg/config/scenario.h"
 #include "hg/config/twin_form.h"
-#include "hg/explanation/fault_figures.h"
 #include "hg/viewer_server/scene.h"
 #include "hg/viewer_server/view.h"
 
@@ -25,6 +25,6 @@ bool is_choice(const std::vector<viewer_server::Choice>& choices, const std::str
 std::vector<viewer_server::Setting> page_settings(const std::vector<config::FormField>& form);
 
 /// Text on what stops the device at `sample`.
-viewer_server::SafetyView safety_view(const Sample& sample, const explanation::Names& names);
+viewer_server::SafetyView safety_view(const Sample& sample, const analysis::Names& names);
 
 }  // namespace hg::apps

@@ -3,14 +3,15 @@
 #include "apps/hapticgiant/device_memory.h"
 #include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "hg/assembly/assembly.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 
 PreparedRun::PreparedRun(const RunArguments& a)
-    : arguments(a), scenario(make_scenario(a)), cycle(assembly::make_cycle(scenario)) {
+    : arguments(a), scenario(make_scenario(a)), cycle(scenario::make_cycle(scenario)) {
   if (arguments.device_address.empty()) {
-    device = std::make_unique<device::SimulatedDevice>(assembly::make_simulated_device(scenario));
+    device =
+        std::make_unique<simulator::SimulatedDevice>(scenario::make_simulated_device(scenario));
     return;
   }
   const auto connect = [&](double busy_patience_s) {

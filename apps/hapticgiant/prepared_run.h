@@ -6,9 +6,9 @@
 
 #include "apps/hapticgiant/run_command.h"
 #include "hg/config/scenario.h"
-#include "hg/cycle/cycle.h"
+#include "hg/controller/cycle.h"
 #include "hg/device/device.h"
-#include "hg/remote/remote_device.h"
+#include "hg/device/udp/remote_device.h"
 
 namespace hg::apps {
 
@@ -18,10 +18,10 @@ struct PreparedRun {
 
   const RunArguments arguments;
   const config::Scenario scenario;
-  cycle::Cycle cycle;
+  controller::Cycle cycle;
   std::unique_ptr<device::Device> device;
   /// `device` as a remote device; nullptr = simulated here
-  remote::RemoteDevice* remote = nullptr;
+  udp::RemoteDevice* remote = nullptr;
   bool is_machine = false;  ///< the device is a real machine
   /// Messages on a machine's start test and posture; see device_memory.h
   std::string start_test, posture;

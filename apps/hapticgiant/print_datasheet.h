@@ -3,12 +3,12 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "hg/inspection/datasheet.h"
+#include "hg/commissioning/checks/datasheet.h"
 
 namespace hg::apps {
 
-void print_datasheet(const inspection::Datasheet& sheet);
+void print_datasheet(const checks::Datasheet& sheet);
 /// SI units; the keys carry them.
-nlohmann::json datasheet_json(const inspection::Datasheet& sheet);
+nlohmann::json datasheet_json(const checks::Datasheet& sheet);
 
 }  // namespace hg::apps

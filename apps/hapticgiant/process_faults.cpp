@@ -23,11 +23,11 @@
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/scratch_folder.h"
-#include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
-#include "hg/experiments/fault_campaign.h"
+#include "hg/device/udp/device_server.h"
 #include "hg/recording/recording_reader.h"
-#include "hg/remote/device_server.h"
+#include "hg/scenario/assembly.h"
+#include "hg/studies/fault_campaign.h"
 
 extern char** environ;
 
@@ -78,7 +78,7 @@ const Description& description_of(ProcessFault fault) {
 class Witness final : public device::Device {
  public:
   Witness(const config::Scenario& scenario)
-      : device_(assembly::make_simulated_device(scenario)), scenario_(scenario) {}
+      : device_(scenario::make_simulated_device(scenario)), scenario_(scenario) {}
 
   void read(SensorFrame& sensors) noexcept override { device_.read(sensors); }
   void write(const CommandFrame& command) noexcept override {
@@ -104,7 +104,7 @@ class Witness final : public device::Device {
     energy_ -= dt * truth.w_H.dot(truth.twist);
     most_energy = std::max(most_energy, energy_);
     watched_s_ += dt;
-    if (!experiments::stands_still(truth)) {
+    if (!studies::stands_still(truth)) {
       rest_s = std::numeric_limits<double>::quiet_NaN();
     } else if (std::isnan(rest_s)) {
       rest_s = watched_s_;
@@ -120,7 +120,7 @@ class Witness final : public device::Device {
  private:
   void look(double way, double stated) noexcept { share = std::max(share, std::abs(way) / stated); }
 
-  device::SimulatedDevice device_;
+  simulator::SimulatedDevice device_;
   const config::Scenario& scenario_;
   VectorM from_m_;
   VectorP from_p_;
@@ -128,8 +128,7 @@ class Witness final : public device::Device {
 };
 
 // Serves the device to one controller, and lets it continue autonomously afterwards.
-void serve(remote::DeviceServer& server, Witness& witness, double dt,
-           const std::atomic<bool>& stop) {
+void serve(udp::DeviceServer& server, Witness& witness, double dt, const std::atomic<bool>& stop) {
   if (!server.wait_for_client(stop)) return;
   server.serve(witness, stop);
   SensorFrame sensors;
@@ -315,7 +314,7 @@ std::uint64_t samples_in(const std::filesystem::path& folder) {
 bool has_done_well(const ProcessCase& result) {
   const Description& expected = description_of(result.fault);
   return result.has_run && !std::isnan(result.rest_s) && result.travel_share <= 1.0 &&
-         result.energy <= experiments::CampaignConfig{}.energy_bound &&
+         result.energy <= studies::CampaignConfig{}.energy_bound &&
          (expected.may_die || (result.has_ended && result.exit_code >= 0)) &&
          (!expected.is_told || result.exit_code != 0) &&
          (!expected.is_recorded || result.recorded + kUnwritten >= result.periods);
@@ -336,16 +335,16 @@ class GivesUp {
 ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& random) {
   ProcessCase result = {.fault = fault, .scenario = name};
   const config::Scenario scenario = config::load_scenario(find_scenario(name));
-  const Interval times = experiments::fault_times(scenario);
+  const Interval times = studies::fault_times(scenario);
   const double at_s = std::uniform_real_distribution<double>(times.lb, times.ub)(random);
   const double dt = scenario.device.rendering.dt;
   const ScratchFolder scratch;
   const std::string folder = scratch.path() + "/recordings";
 
-  remote::DeviceServer server(remote::parse_address("--listen", "127.0.0.1:0"),
-                              {.actual = hg::apps::describe(scenario, false),
-                               .server = "hapticgiant faults",
-                               .is_simulated = true});
+  udp::DeviceServer server(udp::parse_address("--listen", "127.0.0.1:0"),
+                           {.actual = hg::apps::describe(scenario, false),
+                            .server = "hapticgiant faults",
+                            .is_simulated = true});
   Witness witness(scenario);
   std::atomic<bool> gives_up{false}, has_served{false};
   {

@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "hg/experiments/workers.h"
+#include "hg/studies/workers.h"
 
 namespace hg::apps {
 
 /// Callback that shows "WHAT: 12 of 180" in place on a terminal; elsewhere it shows nothing.
-experiments::Progress progress_of(const std::string& what);
+studies::Progress progress_of(const std::string& what);
 
 }  // namespace hg::apps

@@ -5,22 +5,20 @@
 #include <string>
 
 #include "hg/config/scenario.h"
-#include "hg/remote/remote_device.h"
+#include "hg/device/udp/remote_device.h"
 
 namespace hg::apps {
 
 /// Description of the scenario's device, required or offered.
-remote::Description describe(const config::Scenario& scenario, bool is_lock_step);
+udp::Description describe(const config::Scenario& scenario, bool is_lock_step);
 
 /// Key of --key-file; none without a file. Throws SetupError.
-remote::Key key_of(const std::string& file);
+udp::Key key_of(const std::string& file);
 
 /// The scenario's device behind `address` (HOST:PORT of --device-address). A device busy with
 /// another client is retried for `busy_patience_s`. Throws SetupError.
-std::unique_ptr<remote::RemoteDevice> connect_device(const std::string& address,
-                                                     const remote::Key& key,
-                                                     const config::Scenario& scenario,
-                                                     bool is_lock_step,
-                                                     double busy_patience_s = 0.0);
+std::unique_ptr<udp::RemoteDevice> connect_device(const std::string& address, const udp::Key& key,
+                                                  const config::Scenario& scenario,
+                                                  bool is_lock_step, double busy_patience_s = 0.0);
 
 }  // namespace hg::apps

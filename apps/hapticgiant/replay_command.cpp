@@ -149,7 +149,7 @@ class Show {
   recording::RecordedRun run_;
   std::optional<recording::RecordedRun> other_;
   config::Scenario scenario_;
-  explanation::Names names_;
+  analysis::Names names_;
   recording::Playback playback_;
   std::string name_;
   std::unique_ptr<Sample> sample_;

@@ -24,12 +24,12 @@
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/assembly/assembly.h"
+#include "hg/analysis/fault_figures.h"
+#include "hg/analysis/summary.h"
+#include "hg/controller/safety/rules.h"
 #include "hg/core/error.h"
-#include "hg/evaluation/summary.h"
-#include "hg/explanation/fault_figures.h"
 #include "hg/runtime/runtime.h"
-#include "hg/safety/rules.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
@@ -44,8 +44,8 @@ constexpr double kSlowCycle = 0.5;  // of the period
 struct Observers {
   const std::atomic<bool>& interrupted;  ///< ends the run; its recording is completed
   const config::Scenario& scenario;
-  evaluation::EventDetector detector;
-  evaluation::Summary summary;
+  analysis::EventDetector detector;
+  analysis::Summary summary;
   StatusLine status_line;
   RunPage* page;  ///< page; nullptr = none
   RunRecording recording;
@@ -57,7 +57,7 @@ struct Observers {
   TareStatus told_tare = TareStatus::kNone;
   FaultCode told_fault = FaultCode::kNone;
   bool told_touch = false;
-  explanation::Names names;
+  analysis::Names names;
   std::string fault_figures = {};  ///< figures of the summary's fault
 };
 
@@ -113,7 +113,7 @@ void observe(Observers& observers, const Sample& sample) {
   observers.summary.add(sample);
   if (const Fault& fault = observers.summary.fault();
       fault.code != before && safety::is_fault(fault.code)) {
-    observers.fault_figures = explanation::figures_of(fault, observers.names, sample.sensors);
+    observers.fault_figures = analysis::figures_of(fault, observers.names, sample.sensors);
   }
   tell_requests(observers, sample.record);
   tell_touch(observers, sample.record);
@@ -171,7 +171,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
   observers.status_line.clear();
 }
 
-void close_device(remote::RemoteDevice& device, const Fault& fault) {
+void close_device(udp::RemoteDevice& device, const Fault& fault) {
   device.close(fault.code);
   if (!device.farewell().empty()) {
     print_out(fmt::format("the remote device says: {}\n", device.farewell()));
@@ -187,13 +187,13 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   options.is_fast = arguments.is_fast;
   options.changes = scenario.changes;
   options.panel = scenario.panel;
-  options.longest_stop_s = assembly::longest_stop_s(scenario);
+  options.longest_stop_s = scenario::longest_stop_s(scenario);
   if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / options.rate_Hz;
   options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};
   // a simulated device waits for its controller: late cycles do no harm
   options.tells_late_cycles = !arguments.device_address.empty();
   options.duration_s =
-      arguments.duration_s.value_or(goes_on ? 0.0 : assembly::planned_duration_s(scenario));
+      arguments.duration_s.value_or(goes_on ? 0.0 : scenario::planned_duration_s(scenario));
   if (arguments.is_fast && options.duration_s == 0.0) {
     throw SetupError("run: --fast without a script needs --duration S");
   }
@@ -201,27 +201,27 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   return options;
 }
 
-int exit_code(const evaluation::Summary& summary, const std::vector<std::string>& missing,
+int exit_code(const analysis::Summary& summary, const std::vector<std::string>& missing,
               bool was_interrupted) {
   if (summary.fault().code != FaultCode::kNone) return 3;
   if (was_interrupted) return 0;
   return missing.empty() && summary.limits_held() && !summary.has_shaken() ? 0 : 1;
 }
 
-evaluation::Timing timing_of(const runtime::Options& options, const runtime::Report& report) {
+analysis::Timing timing_of(const runtime::Options& options, const runtime::Report& report) {
   const runtime::ThreadReport& thread = report.thread;
   const auto text_of = [](int error) { return error == 0 ? "" : std::strerror(error); };
-  evaluation::Timing timing = {.is_fast = options.is_fast,
-                               .priority = thread.priority,
-                               .priority_refusal = text_of(thread.priority_error),
-                               .cpu = thread.cpu,
-                               .cpu_refusal = text_of(thread.cpu_error),
-                               .is_memory_locked = thread.is_memory_locked,
-                               .page_faults = report.page_faults,
-                               .overruns = report.overruns,
-                               .most_overruns_in_a_row = report.most_overruns_in_a_row,
-                               .overruns_stop = report.told_late_cycles,
-                               .wake_up_us = report.wake_up_us};
+  analysis::Timing timing = {.is_fast = options.is_fast,
+                             .priority = thread.priority,
+                             .priority_refusal = text_of(thread.priority_error),
+                             .cpu = thread.cpu,
+                             .cpu_refusal = text_of(thread.cpu_error),
+                             .is_memory_locked = thread.is_memory_locked,
+                             .page_faults = report.page_faults,
+                             .overruns = report.overruns,
+                             .most_overruns_in_a_row = report.most_overruns_in_a_row,
+                             .overruns_stop = report.told_late_cycles,
+                             .wake_up_us = report.wake_up_us};
   for (int i = 0; i < kStageCount; ++i) {
     const Histogram& times = report.stage_us[static_cast<std::size_t>(i)];
     if (times.count() == 0) continue;
@@ -231,9 +231,9 @@ evaluation::Timing timing_of(const runtime::Options& options, const runtime::Rep
 }
 
 // facts of the summary besides the observed ones
-evaluation::RunFacts facts_of(const PreparedRun& run, const runtime::Options& options,
-                              const runtime::Report& report) {
-  evaluation::RunFacts facts = facts_of_scenario(run.scenario);
+analysis::RunFacts facts_of(const PreparedRun& run, const runtime::Options& options,
+                            const runtime::Report& report) {
+  analysis::RunFacts facts = facts_of_scenario(run.scenario);
   facts.version = kVersion;
   facts.rate_Hz = options.rate_Hz;
   facts.timing = timing_of(options, report);
@@ -277,16 +277,16 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
       .interrupted = interrupted,
       .scenario = scenario,
       .detector = {scenario.events, scenario.limits},
-      .summary = assembly::make_summary(scenario),
+      .summary = scenario::make_summary(scenario),
       .status_line = StatusLine(is_terminal, output),
       .page = page,
       .recording = std::move(recording),
       .dumps = std::move(dumps),
       .is_fast = arguments.is_fast,
-      .script_end_s = options.duration_s == 0.0 ? assembly::planned_duration_s(scenario) : 0.0,
+      .script_end_s = options.duration_s == 0.0 ? scenario::planned_duration_s(scenario) : 0.0,
       .names = part_names(scenario)};
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, scenario.title));
-  if (run.remote != nullptr && !assembly::notices_frozen_sensors(scenario.device)) {
+  if (run.remote != nullptr && !scenario::notices_frozen_sensors(scenario.device)) {
     print_out(
         "note        frozen sensors are not noticed (rule 105): simulation.yaml says that they "
         "have no noise, or monitor.frozen_samples is 0\n");
@@ -311,7 +311,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   }
   if (run.remote != nullptr) close_device(*run.remote, observers.summary.fault());
 
-  evaluation::RunFacts facts = facts_of(run, options, report);
+  analysis::RunFacts facts = facts_of(run, options, report);
   const RunRecording::Result recorded = observers.recording.close();
   facts.recording = recorded.file;
   facts.unrecorded = recorded.unrecorded;

@@ -8,9 +8,9 @@
 
 #include "apps/hapticgiant/page_scene.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "hg/assembly/assembly.h"
 #include "hg/core/error.h"
 #include "hg/model/urdf.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
@@ -76,7 +76,7 @@ RunPage::RunPage(const viewer_server::Options& options, const PreparedRun& first
 viewer_server::Scene RunPage::scene_of(const PreparedRun& run) const {
   viewer_server::Scene scene = page_scene(run.scenario);
   scene.run = number_;
-  scene.duration_s = assembly::planned_duration_s(run.scenario);
+  scene.duration_s = scenario::planned_duration_s(run.scenario);
   scene.choices = page_choices(run.arguments);
   scene.choices.law = rendering::to_string(run.scenario.device.rendering.law);
   scene.settings = page_settings(form_);

@@ -16,8 +16,8 @@
 
 #include "apps/hapticgiant/hand_analysis.h"
 #include "apps/hapticgiant/prepared_run.h"
+#include "hg/analysis/fault_figures.h"
 #include "hg/config/twin_form.h"
-#include "hg/explanation/fault_figures.h"
 #include "hg/runtime/runtime.h"
 #include "hg/signals/operator_desk.h"
 #include "hg/viewer_server/viewer_server.h"
@@ -97,7 +97,7 @@ class RunPage {
   std::vector<double> values_;  ///< values of the form, as targets
   std::unique_ptr<OperatorDesk> desk_ = std::make_unique<OperatorDesk>();
   viewer_server::ViewerServer server_;
-  explanation::Names names_;
+  analysis::Names names_;
   std::optional<HandAnalysis> analysis_;
   viewer_server::View view_;
   std::unique_ptr<Sample> newest_;

@@ -6,7 +6,7 @@
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "hg/safety/rules.h"
+#include "hg/controller/safety/rules.h"
 
 namespace hg::apps {
 namespace {

@@ -14,9 +14,9 @@
 #include "apps/hapticgiant/version.h"
 #include "hg/config/describe_script.h"
 #include "hg/config/law_names.h"
+#include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"
 #include "hg/recording/recording_folder.h"
-#include "hg/rendering/catalogue.h"
 
 namespace hg::apps {
 namespace {
@@ -60,16 +60,16 @@ void apply(const ScenarioArguments& arguments, config::SourceReader& reader,
   if (!arguments.user.empty()) scenario.events.clear();
 
   if (arguments.user == "mouse") {
-    scenario.person = user::PersonKind::kMouse;
+    scenario.person = person::PersonKind::kMouse;
   } else if (arguments.user == "none") {
-    scenario.person = user::PersonKind::kNone;
+    scenario.person = person::PersonKind::kNone;
   } else if (!arguments.user.empty()) {
-    scenario.person = user::PersonKind::kScript;
+    scenario.person = person::PersonKind::kScript;
     scenario.script = config::load_script(find_script(arguments.user), scenario.twin.model, reader);
     scenario.duration_s = 0.0;  // as long as this script
     add_sources(scenario.script.sources);
   } else if (!arguments.twin.empty()) {
-    scenario.person = user::PersonKind::kMouse;  // a script is made for one twin
+    scenario.person = person::PersonKind::kMouse;  // a script is made for one twin
   }
   if (arguments.rate_Hz) config::set_rate(scenario.device, *arguments.rate_Hz);
 }
@@ -90,19 +90,19 @@ void choose(const char* option, const std::string& text, config::Choices<T> choi
 // applies --plant, --sensors, --hand, --seed and --step
 void apply_to_simulation(const ScenarioArguments& arguments, config::Scenario& scenario) {
   config::Device& device = scenario.device;
-  if (arguments.plant == "ideal") device.control.method = control::Method::kDrives;
+  if (arguments.plant == "ideal") device.control.method = tracking::Method::kDrives;
   if (arguments.plant == "elastic" && device.control.actuators.empty()) {
     throw SetupError("--plant elastic: needs 'actuators' in " + device.sources.front().name);
   }
   if (arguments.seed) device.simulation.seed = *arguments.seed;
   device.simulation.sensors.seed = device.simulation.seed;
-  if (arguments.sensors == "ideal") device.simulation.sensors = simulation::ideal_sensors();
+  if (arguments.sensors == "ideal") device.simulation.sensors = simulator::ideal_sensors();
   if (arguments.step_s) device.simulation.step_s = *arguments.step_s;
   if (!arguments.hand.empty()) {
-    user::HandPreset preset = user::HandPreset::kNormal;
-    choose("--hand", arguments.hand, config::Choices<user::HandPreset>(config::kHandPresets),
+    person::HandPreset preset = person::HandPreset::kNormal;
+    choose("--hand", arguments.hand, config::Choices<person::HandPreset>(config::kHandPresets),
            preset);
-    scenario.script.hand = user::hand(preset);
+    scenario.script.hand = person::hand(preset);
   }
   config::settle_law(scenario);
 }
@@ -242,7 +242,7 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
 
 ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments& arguments,
                            const recording::Recorder* recorder) {
-  const evaluation::RunFacts facts = facts_of_scenario(scenario);
+  const analysis::RunFacts facts = facts_of_scenario(scenario);
   const auto now = std::chrono::system_clock::now();
   return ProblemDumps(
       {.folder = arguments.has_recording ? arguments.recordings : "",
@@ -254,7 +254,7 @@ ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments&
        .program = arguments.program});
 }
 
-evaluation::RunFacts facts_of_scenario(const config::Scenario& scenario) {
+analysis::RunFacts facts_of_scenario(const config::Scenario& scenario) {
   using rendering::Braking;
   using rendering::Gantry;
   const rendering::DeviceModel& device = scenario.device.model;
@@ -269,7 +269,7 @@ evaluation::RunFacts facts_of_scenario(const config::Scenario& scenario) {
           .braking = std::string(rendering::to_string(braking))};
 }
 
-explanation::Names part_names(const config::Scenario& scenario) {
+analysis::Names part_names(const config::Scenario& scenario) {
   const rendering::DeviceModel& device = scenario.device.model;
   return {.joints = joint_names(device, device.n_p, device.n_m),
           .gantry = joint_names(device, 0, device.n_p),

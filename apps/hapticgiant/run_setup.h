@@ -7,9 +7,9 @@
 
 #include "apps/hapticgiant/problem_dumps.h"
 #include "apps/hapticgiant/run_command.h"
+#include "hg/analysis/fault_figures.h"
+#include "hg/analysis/summary.h"
 #include "hg/config/scenario.h"
-#include "hg/evaluation/summary.h"
-#include "hg/explanation/fault_figures.h"
 #include "hg/recording/recorder.h"
 
 namespace hg::apps {
@@ -30,10 +30,10 @@ ProblemDumps problem_dumps(const config::Scenario& scenario, const RunArguments&
                            const recording::Recorder* recorder);
 
 /// Summary facts of a run given by its scenario: title, and the actual law, not the requested one.
-evaluation::RunFacts facts_of_scenario(const config::Scenario& scenario);
+analysis::RunFacts facts_of_scenario(const config::Scenario& scenario);
 
 /// Names of the parts of the device for messages.
-explanation::Names part_names(const config::Scenario& scenario);
+analysis::Names part_names(const config::Scenario& scenario);
 
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
                                         const RunArguments& arguments);

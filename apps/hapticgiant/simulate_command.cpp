@@ -12,20 +12,20 @@
 #include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/assembly/assembly.h"
-#include "hg/evaluation/summary.h"
-#include "hg/remote/device_server.h"
+#include "hg/analysis/summary.h"
+#include "hg/device/udp/device_server.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
 
-std::string how_it_ended(const remote::SessionReport& report) {
+std::string how_it_ended(const udp::SessionReport& report) {
   switch (report.end) {
-    case remote::SessionEnd::kClientLeft:
+    case udp::SessionEnd::kClientLeft:
       return "the client left: " + report.farewell;
-    case remote::SessionEnd::kClientSilent:
+    case udp::SessionEnd::kClientSilent:
       return "NO COMMAND came in time: drives off, brakes closed";
-    case remote::SessionEnd::kStopped:
+    case udp::SessionEnd::kStopped:
       return "stopped here";
   }
   return {};
@@ -34,7 +34,7 @@ std::string how_it_ended(const remote::SessionReport& report) {
 /// A device whose true state is observed, which no controller knows.
 class WatchedDevice final : public device::Device {
  public:
-  WatchedDevice(const device::SimulatedDevice& device, const rendering::DeviceModel& model)
+  WatchedDevice(const simulator::SimulatedDevice& device, const rendering::DeviceModel& model)
       : device_(device), model_(model) {}
 
   void read(SensorFrame& sensors) noexcept override { device_.read(sensors); }
@@ -65,13 +65,13 @@ class WatchedDevice final : public device::Device {
   }
 
  private:
-  device::SimulatedDevice device_;
+  simulator::SimulatedDevice device_;
   const rendering::DeviceModel& model_;
   double worst_excess_ = 0.0, max_force_ = 0.0;
   int worst_joint_ = -1;
 };
 
-std::string closing_lines(const remote::SessionReport& report, double rate_Hz) {
+std::string closing_lines(const udp::SessionReport& report, double rate_Hz) {
   std::string text;
   const auto line = [&](const char* label, const std::string& value) {
     text += fmt::format("  {:<12} {}\n", label, value);
@@ -82,7 +82,7 @@ std::string closing_lines(const remote::SessionReport& report, double rate_Hz) {
   line("answers",
        fmt::format("{:.3f} ms after the frame, at most {:.3f} ms; {} periods late",
                    1e3 * report.mean_answer_s, 1e3 * report.max_answer_s, report.overruns));
-  line("link", evaluation::link_text(report.link));
+  line("link", analysis::link_text(report.link));
   if (!report.other.empty()) {
     line("others", fmt::format("{} datagrams of somebody else ignored, the first from {}",
                                report.link.from_others, report.other));
@@ -95,13 +95,13 @@ std::string closing_lines(const remote::SessionReport& report, double rate_Hz) {
 int simulate(const SimulateArguments& arguments) {
   check_writable(arguments.capture, kCapture);
   const config::Scenario scenario = make_scenario(arguments.world);
-  const device::SimulatedDevice world = assembly::make_simulated_device(scenario);
-  const remote::ServerConfig config{.actual = describe(scenario, arguments.is_fast),
-                                    .server = std::string("hapticgiant simulate ") + kVersion,
-                                    .is_simulated = true,
-                                    .capture = arguments.capture,
-                                    .key = key_of(arguments.key_file)};
-  remote::DeviceServer server(remote::parse_address("--listen", arguments.listen), config);
+  const simulator::SimulatedDevice world = scenario::make_simulated_device(scenario);
+  const udp::ServerConfig config{.actual = describe(scenario, arguments.is_fast),
+                                 .server = std::string("hapticgiant simulate ") + kVersion,
+                                 .is_simulated = true,
+                                 .capture = arguments.capture,
+                                 .key = key_of(arguments.key_file)};
+  udp::DeviceServer server(udp::parse_address("--listen", arguments.listen), config);
   const std::atomic<bool>& stop = watch_interruption();
   const BackgroundOutput output(stop);
 
@@ -115,7 +115,7 @@ int simulate(const SimulateArguments& arguments) {
   };
   while (server.wait_for_client(stop)) {
     WatchedDevice device(world, scenario.device.model);
-    const remote::SessionReport report = server.serve(device, stop);
+    const udp::SessionReport report = server.serve(device, stop);
     print_out(fmt::format("\n{}  {:<12} {}\n", closing_lines(report, scenario.device.rate_Hz),
                           "truth", device.truth_text()));
     look_at_capture();

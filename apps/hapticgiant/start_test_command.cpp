@@ -16,15 +16,15 @@
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/assembly/assembly.h"
+#include "hg/commissioning/start_test/memory.h"
+#include "hg/commissioning/start_test/procedure.h"
+#include "hg/commissioning/start_test/simulated_operator.h"
+#include "hg/controller/cycle.h"
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
-#include "hg/cycle/cycle.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/runtime/requests.h"
-#include "hg/start_test/memory.h"
-#include "hg/start_test/procedure.h"
-#include "hg/start_test/simulated_operator.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
@@ -39,7 +39,7 @@ class DeviceStation final : public start_test::Station {
  public:
   DeviceStation(const config::Scenario& scenario, device::Device& device, bool is_simulated,
                 const std::atomic<bool>& interrupted)
-      : cycle_(assembly::make_cycle(scenario)),
+      : cycle_(scenario::make_cycle(scenario)),
         device_(device),
         model_(scenario.device.model),
         chain_(scenario.device.model.chain),
@@ -143,7 +143,7 @@ class DeviceStation final : public start_test::Station {
     return seen;
   }
 
-  cycle::Cycle cycle_;
+  controller::Cycle cycle_;
   device::Device& device_;
   const rendering::DeviceModel& model_;
   model::Chain chain_;
@@ -191,9 +191,10 @@ int start_test(const StartTestArguments& arguments) {
   make_folder(arguments.recordings);
 
   std::unique_ptr<device::Device> device;
-  remote::RemoteDevice* remote = nullptr;
+  udp::RemoteDevice* remote = nullptr;
   if (arguments.device_address.empty()) {
-    device = std::make_unique<device::SimulatedDevice>(assembly::make_simulated_device(scenario));
+    device =
+        std::make_unique<simulator::SimulatedDevice>(scenario::make_simulated_device(scenario));
   } else {
     auto connected = connect_device(arguments.device_address, key_of(arguments.key_file), scenario,
                                     arguments.is_fast);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/hapticgiant/output.h"
-#include "hg/rendering/twin_model.h"
+#include "hg/controller/rendering/twin_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::apps {

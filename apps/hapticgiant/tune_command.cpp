@@ -11,9 +11,9 @@
 #include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/tune_report.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/assembly/assembly.h"
 #include "hg/config/device.h"
-#include "hg/tuning/tuned_device.h"
+#include "hg/scenario/assembly.h"
+#include "hg/studies/tuning/tuned_device.h"
 
 namespace hg::apps {
 namespace {
@@ -24,7 +24,7 @@ tuning::Problem problem_of(const config::Device& device, const TuneArguments& ar
           .reality = tuning::simulated(device),
           .friction = tuning::unexpected_friction(device),
           .body = {.mass = arguments.mass, .damping = arguments.damping},
-          .postures = assembly::random_postures(device.model, arguments.postures, arguments.seed)};
+          .postures = scenario::random_postures(device.model, arguments.postures, arguments.seed)};
 }
 
 std::string command_of(const TuneArguments& arguments) {

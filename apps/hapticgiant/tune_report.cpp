@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-#include "hg/tuning/feel.h"
+#include "hg/studies/tuning/feel.h"
 
 namespace hg::apps {
 namespace {
@@ -198,7 +198,7 @@ Json felt_of(const tuning::Problem& problem, const tuning::Device& device) {
   std::vector<double> least(frequencies.size(), kInfinity), largest(frequencies.size(), 0.0);
   for (std::size_t k = 0; k < std::min(problem.felt_postures, problem.postures.size()); ++k) {
     const tuning::HandleLoop loop =
-        tuning::linearise(device, problem.reality, problem.body, user::HandImpedance{},
+        tuning::linearise(device, problem.reality, problem.body, person::HandImpedance{},
                           problem.noise, problem.postures[k]);
     tuning::Resolvent resolvent(loop.A);
     for (std::size_t i = 0; i < frequencies.size(); ++i) {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "hg/tuning/search.h"
+#include "hg/studies/tuning/search.h"
 
 namespace hg::apps {
 

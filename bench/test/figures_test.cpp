@@ -26,7 +26,7 @@ TEST(Times, TheFastestOfEachCounts) {
 TEST(Times, PercentilesAreExact) {
   std::vector<double> us(2000);
   std::iota(us.rbegin(), us.rend(), 1.0);
-  const evaluation::Distribution d = times_of(us).distribution();
+  const analysis::Distribution d = times_of(us).distribution();
   EXPECT_EQ(d.median, 1000.0);
   EXPECT_EQ(d.p99_9, 1998.0);
   EXPECT_EQ(d.max, 2000.0);
@@ -36,7 +36,7 @@ TEST(Times, PercentilesAreExact) {
 TEST(Times, OfFewerThanAThousandThereIsNoTail) {
   EXPECT_EQ(times_of(std::vector(1000, 2.0)).distribution().p99_9, 2.0);
   for (const std::size_t count : {0U, 999U}) {
-    const evaluation::Distribution d = times_of(std::vector(count, 2.0)).distribution();
+    const analysis::Distribution d = times_of(std::vector(count, 2.0)).distribution();
     EXPECT_EQ(to_text(d.p99_9, 2), "-");
     nlohmann::ordered_json row;
     add_to(row, d);

@@ -1,6 +1,6 @@
 // Our own headers that most of the files include which play or inspect scenarios.
 #pragma once
 
-#include "hg/assembly/assembly.h"
 #include "hg/config/scenario.h"
-#include "hg/cycle/cycle.h"
+#include "hg/controller/cycle.h"
+#include "hg/scenario/assembly.h"

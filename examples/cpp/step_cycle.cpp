@@ -1,14 +1,14 @@
 // A scenario without clock and threads: the door, opened by its scripted hand. Argument: its file.
 #include <cstdio>
 
-#include "hg/assembly/assembly.h"
 #include "hg/runtime/requests.h"
+#include "hg/scenario/assembly.h"
 
 int main(int count, char** arguments) {
   if (count != 2) return 2;
   const hg::config::Scenario door = hg::config::load_scenario(arguments[1]);
-  hg::cycle::Cycle cycle = hg::assembly::make_cycle(door);
-  hg::device::SimulatedDevice device = hg::assembly::make_simulated_device(door);
+  hg::controller::Cycle cycle = hg::scenario::make_cycle(door);
+  hg::simulator::SimulatedDevice device = hg::scenario::make_simulated_device(door);
   hg::Sample sample;
   while (sample.record.time_s < 10.6) {
     device.read(sample.sensors);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hg/config/range.h"
-#include "hg/simulation/bystander.h"
+#include "hg/simulator/plant/bystander.h"
 
 namespace hg::config {
 
@@ -15,18 +15,17 @@ struct BystanderDraft {
   std::vector<std::string> parts;   ///< names of body parts
   std::vector<std::string> frames;  ///< frame names of the device
   std::string hit_by;               ///< frame that hits, one of `frames`
-  std::optional<simulation::BystanderConfig> bystander;
+  std::optional<simulator::BystanderConfig> bystander;
 };
 
 inline BystanderDraft bystander_of(const std::vector<std::string>& frames) {
   BystanderDraft draft = {.frames = frames};
-  for (const simulation::BodyPart& part : simulation::kBodyParts)
-    draft.parts.emplace_back(part.name);
+  for (const simulator::BodyPart& part : simulator::kBodyParts) draft.parts.emplace_back(part.name);
   return draft;
 }
 
 template <class V>
-void describe(V& v, BystanderDraft& d, simulation::BystanderConfig& bystander) {
+void describe(V& v, BystanderDraft& d, simulator::BystanderConfig& bystander) {
   int part = 0, frame = 0;
   v.name("body_part", part, d.parts, "a part of the body",
          "what is hit: its stiffness, mass and permissible values are those of ISO/TS 15066",
@@ -44,7 +43,7 @@ void describe(V& v, BystanderDraft& d, simulation::BystanderConfig& bystander) {
   v.rule(!v.is_given("facing") || bystander.facing.norm() > 1e-3, "facing",
          "must not be a zero vector");
   if (d.frames.empty()) return;  // the reference page
-  bystander.part = &simulation::kBodyParts[static_cast<std::size_t>(part)];
+  bystander.part = &simulator::kBodyParts[static_cast<std::size_t>(part)];
   d.hit_by = d.frames[static_cast<std::size_t>(frame)];
 }
 

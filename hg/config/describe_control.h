@@ -8,8 +8,8 @@
 
 namespace hg::config {
 
-inline constexpr std::array<Choice<control::Method>, 2> kMethods = {
-    {{"modal", control::Method::kModal}, {"motor_pd", control::Method::kMotorPd}}};
+inline constexpr std::array<Choice<tracking::Method>, 2> kMethods = {
+    {{"modal", tracking::Method::kModal}, {"motor_pd", tracking::Method::kMotorPd}}};
 
 template <class V>
 void describe(V& v, ActuatorModel& actuator) {
@@ -49,7 +49,7 @@ void describe(V& v, ActuatorModel& actuator) {
 }
 
 template <class V>
-void describe(V& v, control::Config& config) {
+void describe(V& v, tracking::Config& config) {
   v.choice("method", config.method, kMethods,
            "modal: all states of the arm in its modes; motor_pd: each motor for itself");
   v.number("latency_s", config.loop.latency, {.lb = 0.0, .ub = 0.64},
@@ -98,18 +98,18 @@ void describe_control(V& v, DeviceDraft& d) {
   v.rule(v.is_given("actuators") || !v.is_given("control"), "control",
          "concerns 'actuators', and there are none");
   if (v.is_given("actuators")) {
-    d.control.method = control::Method::kModal;
+    d.control.method = tracking::Method::kModal;
     d.control.error_max = 0.007;  // [C] 6: 5 to 10 mrad
   }
   v.group(
       "control",
       [&](auto& child) {
         describe(child, d.control);
-        const double longest = control::kMostLatency / d.rate_Hz;
+        const double longest = tracking::kMostLatency / d.rate_Hz;
         child.rule(d.control.loop.latency <= longest, "latency_s",
                    "must be at most 64 periods, " + model::to_text(longest) + " s at this rate_Hz",
                    model::to_text(d.control.loop.latency));
-        const double most = control::largest_flatness_Hz(d.rate_Hz);
+        const double most = tracking::largest_flatness_Hz(d.rate_Hz);
         child.rule(d.control.flatness_Hz < most, "flatness_Hz",
                    "must be below " + model::to_text(std::floor(10.0 * most) / 10.0) +
                        ", or the torques fed forward oscillate at this rate_Hz",

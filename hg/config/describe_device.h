@@ -43,7 +43,7 @@ struct DeviceDraft {
   std::vector<rendering::CartesianLimit> cartesian_limits;
   DriveModel drive;
   std::vector<std::optional<ActuatorModel>> actuators;  ///< actuator per joint, where given
-  control::Config control;
+  tracking::Config control;
   rendering::Options rendering;
   prepositioning::Config prepositioning;
   estimation::Config estimation;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hg/config/range.h"
-#include "hg/injection/injection.h"
+#include "hg/simulator/faults/injection.h"
 
 namespace hg::config {
 
@@ -19,7 +19,7 @@ struct InjectionsDraft {
   std::vector<std::string> inputs;               ///< inputs of the safety controller
   std::vector<std::string> names;                ///< names of everything that a fault may concern
   std::vector<std::string> kinds;
-  std::vector<injection::Injection> injections;
+  std::vector<faults::Injection> injections;
 };
 
 /// Draft without faults.
@@ -33,40 +33,40 @@ inline InjectionsDraft injections_of(const std::vector<std::string>& manipulator
   for (const auto* parts : {&draft.manipulator, &draft.gantry, &draft.components, &draft.inputs}) {
     draft.names.insert(draft.names.end(), parts->begin(), parts->end());
   }
-  for (const injection::Kind& kind : injection::kinds()) draft.kinds.emplace_back(kind.name);
+  for (const faults::Kind& kind : faults::kinds()) draft.kinds.emplace_back(kind.name);
   return draft;
 }
 
 /// Index among the parts of `kind` of the entry `name` of InjectionsDraft::names; -1 = none of
 /// them.
-inline int part_index(const InjectionsDraft& d, const injection::Kind& kind, int name) {
+inline int part_index(const InjectionsDraft& d, const faults::Kind& kind, int name) {
   const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());
   const int components = static_cast<int>(d.components.size());
   int first = 0;
   switch (kind.part) {
-    case injection::Part::kGantryEncoder:
-    case injection::Part::kGantryDrive:
-    case injection::Part::kGantryCoupling:
+    case faults::Part::kGantryEncoder:
+    case faults::Part::kGantryDrive:
+    case faults::Part::kGantryCoupling:
       first = n_m;
       break;
-    case injection::Part::kForceSensor:
-    case injection::Part::kAccelerometer:
-    case injection::Part::kGyroscope:
+    case faults::Part::kForceSensor:
+    case faults::Part::kAccelerometer:
+    case faults::Part::kGyroscope:
       first = n_m + n_p;
       break;
-    case injection::Part::kSafetyChannel:
+    case faults::Part::kSafetyChannel:
       first = n_m + n_p + components;
       break;
     default:
       break;
   }
   const int index = name - first;
-  return index >= 0 && index < injection::parts_of(kind.part, n_m, n_p) ? index : -1;
+  return index >= 0 && index < faults::parts_of(kind.part, n_m, n_p) ? index : -1;
 }
 
 template <class V>
 void describe(V& v, InjectionsDraft& d) {
-  injection::Injection& fault = d.injections.emplace_back();
+  faults::Injection& fault = d.injections.emplace_back();
   int kind = 0, name = -1;
   double magnitude = kNoDefault;
   v.number("at_s", fault.from_s, kNotNegative, "when the fault begins, on the device's clock",
@@ -81,9 +81,9 @@ void describe(V& v, InjectionsDraft& d) {
   v.number("magnitude", magnitude, {.lb = -1e6, .ub = 1e6},
            "how much of it; unit and usual sizes in docs/fault_campaign.md");
 
-  fault.kind = &injection::kinds()[static_cast<std::size_t>(kind)];
+  fault.kind = &faults::kinds()[static_cast<std::size_t>(kind)];
   const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());
-  const bool has_parts = injection::parts_of(fault.kind->part, n_m, n_p) > 0;
+  const bool has_parts = faults::parts_of(fault.kind->part, n_m, n_p) > 0;
   if (has_parts) fault.index = part_index(d, *fault.kind, name);
   v.rule(!has_parts || fault.index >= 0, "of",
          "this fault needs one of its joints, components or inputs");
@@ -93,16 +93,15 @@ void describe(V& v, InjectionsDraft& d) {
          has_magnitude ? "this fault needs a magnitude" : "this fault has no magnitude");
   v.rule(!has_magnitude || fault.kind->has_sign || !(magnitude < 0.0), "magnitude",
          "must not be negative for this fault");
-  v.rule(fault.kind->effect != injection::Effect::kLate ||
-             !(magnitude > static_cast<double>(injection::kMostLate)),
-         "magnitude", "must be at most " + std::to_string(injection::kMostLate) + " periods");
-  const bool is_counted = magnitude >= 1.0 && magnitude <= injection::kMostCounted &&
-                          magnitude == std::floor(magnitude);
-  v.rule(
-      !injection::is_count(*fault.kind) || magnitude < 0.0 || std::isnan(magnitude) || is_counted,
-      "magnitude",
-      fmt::format("must be a whole number of {} from 1 to {:.0f}", fault.kind->unit,
-                  injection::kMostCounted));
+  v.rule(fault.kind->effect != faults::Effect::kLate ||
+             !(magnitude > static_cast<double>(faults::kMostLate)),
+         "magnitude", "must be at most " + std::to_string(faults::kMostLate) + " periods");
+  const bool is_counted =
+      magnitude >= 1.0 && magnitude <= faults::kMostCounted && magnitude == std::floor(magnitude);
+  v.rule(!faults::is_count(*fault.kind) || magnitude < 0.0 || std::isnan(magnitude) || is_counted,
+         "magnitude",
+         fmt::format("must be a whole number of {} from 1 to {:.0f}", fault.kind->unit,
+                     faults::kMostCounted));
   if (has_magnitude) fault.magnitude = magnitude;
 }
 

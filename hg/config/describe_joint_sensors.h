@@ -2,12 +2,12 @@
 #pragma once
 
 #include "hg/config/describe_common.h"
-#include "hg/simulation/sensors.h"
+#include "hg/simulator/sensors/sensors.h"
 
 namespace hg::config {
 
 template <class V>
-void describe_joint_encoder(V& v, simulation::EncoderConfig& encoder) {
+void describe_joint_encoder(V& v, simulator::EncoderConfig& encoder) {
   v.number("resolution_rad", encoder.resolution, kNotNegative,
            "one step on its own shaft; of a prismatic joint in m, as all that follows");
   v.number("offset_rad", encoder.offset, kNotNegative,
@@ -19,7 +19,7 @@ void describe_joint_encoder(V& v, simulation::EncoderConfig& encoder) {
 }
 
 template <class V>
-void describe_gantry_encoder(V& v, simulation::EncoderConfig& encoder) {
+void describe_gantry_encoder(V& v, simulator::EncoderConfig& encoder) {
   v.number("resolution_m", encoder.resolution, kNotNegative,
            "one step; of a revolute axis in rad, as all that follows");
   v.number("offset_m", encoder.offset, kNotNegative, "standard deviation of the offset");
@@ -29,7 +29,7 @@ void describe_gantry_encoder(V& v, simulation::EncoderConfig& encoder) {
 }
 
 template <class V>
-void describe(V& v, simulation::TorqueSensorConfig& sensor) {
+void describe(V& v, simulator::TorqueSensorConfig& sensor) {
   v.number("noise", sensor.noise, kShare,
            "standard deviation of a sample, like all here a share of the full scale, which is the "
            "peak torque of the joint");

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hg/config/range.h"
-#include "hg/evaluation/events.h"
-#include "hg/user/person.h"
+#include "hg/signals/event_rule.h"
+#include "hg/simulator/person/person.h"
 
 namespace hg::config {
 
@@ -26,14 +26,14 @@ struct EventNames {
 struct ScenarioDraft {
   std::string title, description;
   std::filesystem::path device, twin, script;
-  user::PersonKind person = user::PersonKind::kScript;
+  person::PersonKind person = person::PersonKind::kScript;
   double duration_s = 0.0;
   EventNames names;
-  std::vector<evaluation::EventRule> events;
+  std::vector<EventRule> events;
 };
 
-inline constexpr std::array<Choice<user::PersonKind>, 2> kPersons = {
-    {{"mouse", user::PersonKind::kMouse}, {"none", user::PersonKind::kNone}}};
+inline constexpr std::array<Choice<person::PersonKind>, 2> kPersons = {
+    {{"mouse", person::PersonKind::kMouse}, {"none", person::PersonKind::kNone}}};
 inline constexpr std::array<Choice<LimitState>, 2> kSides = {
     {{"lower", LimitState::kLower}, {"upper", LimitState::kUpper}}};
 
@@ -51,8 +51,7 @@ void describe_parts(V& v, ScenarioDraft& d) {
 
 /// Conditions on single limits.
 template <class V>
-void describe_limit_conditions(V& v, const EventNames& names, evaluation::EventRule& event) {
-  using evaluation::ConditionKind;
+void describe_limit_conditions(V& v, const EventNames& names, EventRule& event) {
   LimitState side = LimitState::kInactive;
   v.choice("side", side, kSides, "of limit and speed_limit; without it either side");
   int index = 0;
@@ -69,8 +68,7 @@ void describe_limit_conditions(V& v, const EventNames& names, evaluation::EventR
 }
 
 template <class V>
-void describe_conditions(V& v, const EventNames& names, evaluation::EventRule& event) {
-  using evaluation::ConditionKind;
+void describe_conditions(V& v, const EventNames& names, EventRule& event) {
   describe_limit_conditions(v, names, event);
   const auto number = [&](const char* key, ConditionKind kind, const char* text) {
     double value = kNoDefault;
@@ -106,7 +104,7 @@ void describe_conditions(V& v, const EventNames& names, evaluation::EventRule& e
   v.group(
       "handle_at",
       [&](auto& child) {
-        evaluation::Condition& at = event.all_of.emplace_back();
+        Condition& at = event.all_of.emplace_back();
         at.kind = ConditionKind::kHandleAt;
         child.number("x_m", at.place.x(), kAnyNumber, "in B", Need::kRequired);
         child.number("y_m", at.place.y(), kAnyNumber, "in B", Need::kRequired);
@@ -122,7 +120,7 @@ void describe_events(V& v, ScenarioDraft& d) {
   v.list(
       "events",
       [&](auto& child) {
-        evaluation::EventRule& event = d.events.emplace_back();
+        EventRule& event = d.events.emplace_back();
         child.words("name", event.name, "short, for example t_a", Need::kRequired);
         child.words("what", event.what, "one sentence for people", Need::kRequired);
         child.group(

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hg/config/range.h"
-#include "hg/user/person.h"
+#include "hg/simulator/person/person.h"
 
 namespace hg::config {
 
@@ -22,37 +22,37 @@ struct Channel {
 /// The channels that every script has: wrench and grip.
 std::vector<Channel> common_channels();
 /// Pose channels of `frame`; those of kTwinJoints are the joints of a twin, not listed here.
-std::vector<Channel> pose_channels(user::ScriptFrame frame);
+std::vector<Channel> pose_channels(person::ScriptFrame frame);
 
 /// Content of script.yaml, before it becomes a Script.
 struct ScriptDraft {
-  user::ScriptFrame frame = user::ScriptFrame::kBase;
-  user::HandImpedance hand;
-  double grasp_s = user::Script{}.grasp_s;
-  user::Walk walk;
+  person::ScriptFrame frame = person::ScriptFrame::kBase;
+  person::HandImpedance hand;
+  double grasp_s = person::Script{}.grasp_s;
+  person::Walk walk;
   std::vector<Channel> channels;  ///< channels of the frame, then wrench and grip
-  std::array<double, user::kChannels> start{};
-  std::array<bool, user::kChannels> start_given{};
-  std::vector<user::Segment> segments;
+  std::array<double, person::kChannels> start{};
+  std::array<bool, person::kChannels> start_given{};
+  std::vector<person::Segment> segments;
   double duration_s = kNoDefault;
 };
 
-inline constexpr std::array<Choice<user::ScriptFrame>, 3> kScriptFrames = {
-    {{"base", user::ScriptFrame::kBase},
-     {"cylindrical", user::ScriptFrame::kCylindrical},
-     {"twin_joints", user::ScriptFrame::kTwinJoints}}};
+inline constexpr std::array<Choice<person::ScriptFrame>, 3> kScriptFrames = {
+    {{"base", person::ScriptFrame::kBase},
+     {"cylindrical", person::ScriptFrame::kCylindrical},
+     {"twin_joints", person::ScriptFrame::kTwinJoints}}};
 
-inline constexpr std::array<Choice<user::HandPreset>, 3> kHandPresets = {
-    {{"relaxed", user::HandPreset::kRelaxed},
-     {"normal", user::HandPreset::kNormal},
-     {"stiff", user::HandPreset::kStiff}}};
+inline constexpr std::array<Choice<person::HandPreset>, 3> kHandPresets = {
+    {{"relaxed", person::HandPreset::kRelaxed},
+     {"normal", person::HandPreset::kNormal},
+     {"stiff", person::HandPreset::kStiff}}};
 
 template <class V>
-void describe(V& v, user::HandImpedance& hand) {
-  user::HandPreset preset = user::HandPreset::kNormal;
+void describe(V& v, person::HandImpedance& hand) {
+  person::HandPreset preset = person::HandPreset::kNormal;
   const bool is_given =
       v.choice("preset", preset, kHandPresets, "values of the keys below that are not given");
-  if (is_given) hand = user::hand(preset);
+  if (is_given) hand = person::hand(preset);
   v.vector(
       "stiffness_N_per_m", hand.stiffness, kNotNegative,
       "of the arm, along fore-aft, left-right and vertical: x, y, z of B, turned by the heading "
@@ -74,14 +74,14 @@ void describe(V& v, user::HandImpedance& hand) {
 }
 
 template <class V>
-void describe(V& v, user::Walk& walk) {
+void describe(V& v, person::Walk& walk) {
   const bool has_circle =
       v.number("circle_radius_m", walk.circle_radius, kPositive,
                "the hand goes round such a circle, counterclockwise; or checkpoints");
   const bool has_checkpoints = v.list(
       "checkpoints",
       [&](auto& child) {
-        user::Checkpoint& checkpoint = walk.checkpoints.emplace_back();
+        person::Checkpoint& checkpoint = walk.checkpoints.emplace_back();
         child.number("x_m", checkpoint.p.x(), kAnyNumber, "of the handle in B", Need::kRequired);
         child.number("y_m", checkpoint.p.y(), kAnyNumber, "of the handle in B", Need::kRequired);
         child.number("heading_rad", checkpoint.heading, kAnyNumber, "of the person",
@@ -95,11 +95,11 @@ void describe(V& v, user::Walk& walk) {
            "of the hand, 1.8 Hz; from 0.6 m/s on, less when slower");
   v.number("lateral_bob_m", walk.lateral_bob, kNotNegative, "of the hand, 0.9 Hz; likewise");
   v.rule(has_circle != has_checkpoints, "", "a walk needs either circle_radius_m or checkpoints");
-  v.rule(walk.checkpoints.size() <= user::kMaxCheckpoints, "checkpoints", "at most 16 checkpoints",
-         std::to_string(walk.checkpoints.size()));
-  if (has_circle) walk.kind = user::WalkKind::kCircle;
-  if (has_checkpoints) walk.kind = user::WalkKind::kCheckpoints;
-  v.rule(!has_circle || user::has_room(walk), "circle_radius_m",
+  v.rule(walk.checkpoints.size() <= person::kMaxCheckpoints, "checkpoints",
+         "at most 16 checkpoints", std::to_string(walk.checkpoints.size()));
+  if (has_circle) walk.kind = person::WalkKind::kCircle;
+  if (has_checkpoints) walk.kind = person::WalkKind::kCheckpoints;
+  v.rule(!has_circle || person::has_room(walk), "circle_radius_m",
          "so large that the body can walk inside the circle of its hand, at this speed");
 }
 
@@ -115,7 +115,7 @@ void describe_frame(V& v, ScriptDraft& d) {
   v.group(
       "walk", [&](auto& child) { describe(child, d.walk); },
       "a walking person: moves x_m, y_m and azimuth_rad of the hand; frame base only");
-  v.rule(d.walk.kind == user::WalkKind::kNone || d.frame == user::ScriptFrame::kBase, "walk",
+  v.rule(d.walk.kind == person::WalkKind::kNone || d.frame == person::ScriptFrame::kBase, "walk",
          "a walk needs frame base");
 }
 
@@ -130,9 +130,9 @@ void describe_channels(V& v, const ScriptDraft& d, Take take) {
 
 template <class V>
 void describe_segment(V& v, ScriptDraft& d) {
-  user::Segment segment;
+  person::Segment segment;
   int count = 0;
-  const auto add = [&](user::Blend blend) {
+  const auto add = [&](person::Blend blend) {
     return [&, blend](int channel, double value) {
       segment.channel = channel;
       segment.blend = blend;
@@ -144,15 +144,15 @@ void describe_segment(V& v, ScriptDraft& d) {
   v.number("start_s", segment.start_s, kNotNegative, "when the ramp begins", Need::kRequired);
   v.number("duration_s", segment.duration_s, kPositive, "of the minimum-jerk ramp",
            Need::kRequired);
-  describe_channels(v, d, add(user::Blend::kTo));
+  describe_channels(v, d, add(person::Blend::kTo));
   v.group(
-      "by", [&](auto& child) { describe_channels(child, d, add(user::Blend::kBy)); },
+      "by", [&](auto& child) { describe_channels(child, d, add(person::Blend::kBy)); },
       "channels and what is added to them");
-  if (v.covers(d.frame == user::ScriptFrame::kBase)) {
+  if (v.covers(d.frame == person::ScriptFrame::kBase)) {
     double turns = kNoDefault;
     const bool is_given = v.number("circle_turns", turns, {.lb = -1e3, .ub = 1e3},
                                    "turns about the origin of B, walking tangentially");
-    if (is_given) add(user::Blend::kCircle)(0, turns);
+    if (is_given) add(person::Blend::kCircle)(0, turns);
   }
   v.rule(count > 0, "", "a segment needs at least one channel");
 }
@@ -173,9 +173,9 @@ void describe_segments(V& v, ScriptDraft& d) {
       "ramps, which may overlap; later ones act on what earlier ones have made");
   v.number("duration_s", d.duration_s, kPositive,
            "length of the script; without it, until the last ramp ends");
-  if (d.walk.kind == user::WalkKind::kNone) return;
+  if (d.walk.kind == person::WalkKind::kNone) return;
   v.rule(!std::isnan(d.duration_s), "walk", "a walk needs duration_s");
-  for (const user::Segment& segment : d.segments) {
+  for (const person::Segment& segment : d.segments) {
     const bool is_walked = segment.channel == 0 || segment.channel == 1 || segment.channel == 3;
     v.rule(!is_walked, "segments",
            "with a walk, no segment moves x_m, y_m or azimuth_rad, or has circle_turns");

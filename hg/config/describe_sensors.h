@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hg/config/describe_joint_sensors.h"
-#include "hg/simulation/sensors.h"
+#include "hg/simulator/sensors/sensors.h"
 
 namespace hg::config {
 
@@ -28,13 +28,13 @@ inline constexpr InertialKeys kAccelerometerKeys = {"noise_m_per_s2_per_sqrt_Hz"
                                                     "resolution_m_per_s2"};
 
 template <class V>
-void describe(V& v, simulation::SensorFilterConfig& filter) {
+void describe(V& v, simulator::SensorFilterConfig& filter) {
   v.number("average_s", filter.average, kNotNegative, "window of the mean");
   v.number("delay_s", filter.delay, kNotNegative, "further delay, in steps of the plant");
 }
 
 template <class V>
-void describe(V& v, simulation::WrenchSensorConfig& sensor) {
+void describe(V& v, simulator::WrenchSensorConfig& sensor) {
   Eigen::Vector3d force = sensor.full_scale.head<3>(), torque = sensor.full_scale.tail<3>();
   v.vector("force_N", force, kPositive, "full scale of the axes of S");
   v.vector("torque_Nm", torque, kPositive, "full scale of the axes of S");
@@ -59,7 +59,7 @@ void describe(V& v, simulation::WrenchSensorConfig& sensor) {
 }
 
 template <class V>
-void describe(V& v, simulation::InertialSensorConfig& sensor, const InertialKeys& keys) {
+void describe(V& v, simulator::InertialSensorConfig& sensor, const InertialKeys& keys) {
   v.number(keys.noise, sensor.noise, kNotNegative,
            "random-walk coefficient: after a mean over T the deviation is noise / sqrt(T)");
   v.number(keys.bias_instability, sensor.bias_instability, kNotNegative,
@@ -76,7 +76,7 @@ void describe(V& v, simulation::InertialSensorConfig& sensor, const InertialKeys
 }
 
 template <class V>
-void describe(V& v, simulation::LinkUnitConfig& unit) {
+void describe(V& v, simulator::LinkUnitConfig& unit) {
   v.number("place_m", unit.place, kNotNegative,
            "standard deviation of each coordinate of a unit in its link");
   v.flag("turned", unit.is_turned, "true: anyhow; false: its axes are those of the link");
@@ -91,7 +91,7 @@ void describe(V& v, simulation::LinkUnitConfig& unit) {
 }
 
 template <class V>
-void describe(V& v, simulation::TemperatureConfig& temperature) {
+void describe(V& v, simulator::TemperatureConfig& temperature) {
   v.number("environment_K", temperature.environment, kAnyNumber,
            "room minus temperature of the calibration");
   v.number("self_heating_K", temperature.self_heating, kNotNegative, "in the long run");
@@ -102,10 +102,10 @@ void describe(V& v, simulation::TemperatureConfig& temperature) {
 }
 
 template <class V>
-void describe(V& v, simulation::SensorsConfig& sensors) {
+void describe(V& v, simulator::SensorsConfig& sensors) {
   bool is_ideal = false;
   v.flag("ideal", is_ideal, "true: no error, noise or delay but those given below");
-  if (is_ideal) sensors = simulation::ideal_sensors();
+  if (is_ideal) sensors = simulator::ideal_sensors();
   v.group(
       "link_encoder", [&](auto& child) { describe_joint_encoder(child, sensors.link_encoder); },
       "of each joint, behind the gear");

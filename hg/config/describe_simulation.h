@@ -68,7 +68,7 @@ void describe_end_stops(V& v, Simulation& simulation) {
 }
 
 template <class V>
-void describe(V& v, simulation::SafetyPlcConfig& safety) {
+void describe(V& v, simulator::SafetyPlcConfig& safety) {
   v.number("discrepancy_s", safety.discrepancy, kPositive,
            "that the two channels of an input may differ");
   v.number("response_s", safety.response, kNotNegative, "to switches");
@@ -100,7 +100,7 @@ void describe(V& v, GearEffects& gears) {
   v.number("presliding_damping_ratio", gears.presliding_damping_ratio, kShare,
            "of the rotor on that spring");
   v.number("presliding_elements", gears.presliding_elements,
-           {.lb = 1.0, .ub = simulation::kMaxBristles},
+           {.lb = 1.0, .ub = simulator::kMaxBristles},
            "of equal friction that slip one after the other (Maxwell slip), a whole number");
   v.rule(gears.presliding_elements == std::floor(gears.presliding_elements), "presliding_elements",
          "must be a whole number", model::to_text(gears.presliding_elements));
@@ -126,7 +126,7 @@ void describe(V& v, StructureDraft& joint) {
 }
 
 template <class V>
-void describe(V& v, simulation::Waviness& wave) {
+void describe(V& v, simulator::Waviness& wave) {
   v.number("amplitude_m", wave.amplitude, kNotNegative,
            "of the axis beside where its drive and encoder are; of a revolute axis in rad");
   v.number("period_m", wave.period, kPositive, "of travel, more than 2 pi amplitudes");

@@ -9,14 +9,14 @@
 
 #include "hg/config/describe_common.h"
 #include "hg/config/sources.h"
-#include "hg/environment/environment.h"
+#include "hg/controller/rendering/surfaces/environment.h"
 
 namespace hg::config {
 
 enum class SurfaceShape { kPlane, kBox, kSphere, kCylinder, kMesh };
 
-inline constexpr std::array<Choice<environment::Contact>, 2> kContacts = {
-    {{"spring", environment::Contact::kSpring}, {"stop", environment::Contact::kStop}}};
+inline constexpr std::array<Choice<surfaces::Contact>, 2> kContacts = {
+    {{"spring", surfaces::Contact::kSpring}, {"stop", surfaces::Contact::kStop}}};
 
 inline constexpr std::array<Choice<SurfaceShape>, 5> kSurfaceShapes = {
     {{"plane", SurfaceShape::kPlane},
@@ -27,7 +27,7 @@ inline constexpr std::array<Choice<SurfaceShape>, 5> kSurfaceShapes = {
 
 /// Content of an item of `surfaces`, before it becomes a Surface.
 struct SurfaceDraft {
-  environment::Surface surface;  ///< surface without its shape, place and damping
+  surfaces::Surface surface;  ///< surface without its shape, place and damping
   SurfaceShape shape = SurfaceShape::kPlane;
   Eigen::Vector3d size = Eigen::Vector3d::Constant(kNoDefault);
   double radius = 0.0, length = 0.0, scale = 1.0;
@@ -42,7 +42,7 @@ constexpr Range range_of(const Interval& interval) {
 
 template <class V>
 void describe_shape(V& v, SurfaceDraft& d) {
-  const Range length = range_of(environment::kSize);
+  const Range length = range_of(surfaces::kSize);
   v.choice("shape", d.shape, kSurfaceShapes,
            "a plane is hard where z < 0 in its own frame; the others are solids");
   if (v.covers(d.shape == SurfaceShape::kBox)) {
@@ -75,16 +75,16 @@ void describe(V& v, std::vector<SurfaceDraft>& surfaces) {
       "of the surface in B; without it, its frame is B");
   v.choice("contact", d.surface.contact, kContacts,
            "spring: pushes out what enters; stop: brakes the twin before it, like its own limits");
-  const bool is_stop = d.surface.contact == environment::Contact::kStop;
+  const bool is_stop = d.surface.contact == surfaces::Contact::kStop;
   for (const char* key : {"stiffness_N_per_m", "damping_Ns_per_m", "friction"}) {
     v.rule(!is_stop || !v.is_given(key), key, "a surface that is a stop has no such key");
   }
-  v.number("stiffness_N_per_m", d.surface.stiffness, range_of(environment::kStiffness),
+  v.number("stiffness_N_per_m", d.surface.stiffness, range_of(surfaces::kStiffness),
            "of the spring between handle and surface");
-  v.number("damping_Ns_per_m", d.damping, range_of(environment::kDamping),
+  v.number("damping_Ns_per_m", d.damping, range_of(surfaces::kDamping),
            "against the motion of the handle inside; without it critical for the twin, and the "
            "surface catches what meets it, docs/environment.md");
-  v.number("friction", d.surface.friction, range_of(environment::kFriction),
+  v.number("friction", d.surface.friction, range_of(surfaces::kFriction),
            "coefficient of Coulomb friction");
 }
 
@@ -93,10 +93,10 @@ void describe_surfaces(V& v, std::vector<SurfaceDraft>& surfaces) {
   v.list(
       "surfaces", [&](auto& child) { describe(child, surfaces); },
       "virtual surfaces that push the end effector of the twin, docs/environment.md");
-  v.rule(surfaces.size() <= environment::kMaxSurfaces, "surfaces", "at most 64 surfaces");
+  v.rule(surfaces.size() <= surfaces::kMaxSurfaces, "surfaces", "at most 64 surfaces");
 }
 
 /// The surface of a draft; reads the file of a mesh. Throws SetupError.
-environment::Surface surface_of(const SurfaceDraft& draft, SourceReader& reader);
+surfaces::Surface surface_of(const SurfaceDraft& draft, SourceReader& reader);
 
 }  // namespace hg::config

@@ -12,8 +12,8 @@
 #include "hg/config/loader.h"
 #include "hg/config/read_chain.h"
 #include "hg/config/tool.h"
+#include "hg/controller/safety/stopping.h"
 #include "hg/core/error.h"
-#include "hg/safety/stopping.h"
 
 namespace hg::config {
 namespace {
@@ -208,7 +208,7 @@ rendering::DeviceModel make_model(model::Chain chain, const DeviceDraft& draft) 
 
 Simulation ideal_simulation(const DeviceDraft& draft) {
   Simulation simulation;
-  simulation.sensors = simulation::ideal_sensors();
+  simulation.sensors = simulator::ideal_sensors();
   simulation.gear_ratio = per_joint(draft.manipulator.size(), 1.0);
   return simulation;
 }
@@ -235,7 +235,7 @@ void state_stopping(Device& device) {
 
 // What follows from other values: periods, the drive in all its roles, monitored ranges.
 void derive(Device& device, const DeviceDraft& draft) {
-  if (device.control.method != control::Method::kDrives) {
+  if (device.control.method != tracking::Method::kDrives) {
     for (int i : draft.manipulator) {
       device.control.actuators.push_back(*draft.actuators[static_cast<std::size_t>(i)]);
     }
@@ -275,7 +275,7 @@ void derive(Device& device, const DeviceDraft& draft) {
 }  // namespace
 
 void settle_law(Device& device) {
-  const bool knows_torques = device.control.method != control::Method::kDrives &&
+  const bool knows_torques = device.control.method != tracking::Method::kDrives &&
                              device.rendering.law == rendering::Law::kGauss &&
                              device.rendering.bounds == rendering::Bounds::kRecoverable;
   rendering::DeviceModel& model = device.model;
@@ -292,9 +292,9 @@ void set_rate(Device& device, double rate_Hz) {
                      " periods, got " + model::to_text(device.drive.dead_time) + " s at " +
                      model::to_text(rate_Hz) + " Hz");
   }
-  control::Config control = device.control;
+  tracking::Config control = device.control;
   control.dt = dt;
-  control::check(control);
+  tracking::check(control);
   device.rate_Hz = rate_Hz;
   device.rendering.dt = dt;
   device.estimation.dt = dt;

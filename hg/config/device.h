@@ -5,20 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "hg/collision/guard.h"
-#include "hg/compliance/compliance.h"
 #include "hg/config/faults.h"
 #include "hg/config/simulation.h"
 #include "hg/config/sources.h"
-#include "hg/control/joint_control.h"
+#include "hg/controller/estimation/estimation.h"
+#include "hg/controller/prepositioning/prepositioning.h"
+#include "hg/controller/rendering/device_model.h"
+#include "hg/controller/rendering/options.h"
+#include "hg/controller/safety/collision/guard.h"
+#include "hg/controller/safety/compliance/compliance.h"
+#include "hg/controller/safety/monitor.h"
+#include "hg/controller/safety/passivity/passivity.h"
+#include "hg/controller/safety/sanitiser.h"
+#include "hg/controller/tracking/joint_control.h"
 #include "hg/core/types.h"
-#include "hg/estimation/estimation.h"
-#include "hg/passivity/passivity.h"
-#include "hg/prepositioning/prepositioning.h"
-#include "hg/rendering/device_model.h"
-#include "hg/rendering/options.h"
-#include "hg/safety/monitor.h"
-#include "hg/safety/sanitiser.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/start_test_config.h"
 
@@ -38,8 +38,8 @@ struct Device {
   bool has_floor = false;  ///< collisions with the floor are watched; false = it is only drawn
   Kinematics kinematics = Kinematics::kGeneric;
   DriveModel drive;
-  control::Config control;  ///< control, with method kDrives for a device without actuators
-  Pose T_H_S;               ///< force/torque sensor S in the handle frame H
+  tracking::Config control;  ///< control, with method kDrives for a device without actuators
+  Pose T_H_S;                ///< force/torque sensor S in the handle frame H
   rendering::DeviceModel model;
   rendering::Options rendering;
   prepositioning::Config prepositioning;

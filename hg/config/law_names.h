@@ -5,8 +5,8 @@
 #include <array>
 
 #include "hg/config/range.h"
-#include "hg/passivity/passivity.h"
-#include "hg/rendering/options.h"
+#include "hg/controller/rendering/options.h"
+#include "hg/controller/safety/passivity/passivity.h"
 
 namespace hg::config {
 

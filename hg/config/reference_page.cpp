@@ -130,9 +130,9 @@ std::string reference_page() {
   section("## Simulated device: simulation.yaml", simulation_table());
   section("## Twin: twin.yaml", twin_table());
   section("## Script of a hand: script.yaml", script_table());
-  section("### Channels of frame base", channel_table(pose_channels(user::ScriptFrame::kBase)));
+  section("### Channels of frame base", channel_table(pose_channels(person::ScriptFrame::kBase)));
   section("### Channels of frame cylindrical",
-          channel_table(pose_channels(user::ScriptFrame::kCylindrical)));
+          channel_table(pose_channels(person::ScriptFrame::kCylindrical)));
   section("### Channels of frame twin_joints",
           "The names of the twin's joints; values in rad or m.\n");
   section("### Channels of every frame", channel_table(common_channels()));

@@ -11,9 +11,9 @@
 #include "hg/config/describe_scenario.h"
 #include "hg/config/describe_surfaces.h"
 #include "hg/config/loader.h"
+#include "hg/controller/rendering/catalogue.h"
+#include "hg/controller/rendering/surfaces/cast.h"
 #include "hg/core/error.h"
-#include "hg/environment/cast.h"
-#include "hg/rendering/catalogue.h"
 
 namespace hg::config {
 namespace {
@@ -50,8 +50,8 @@ EventNames names_of(const Device& device, const Twin& twin, const LimitCatalogue
   return names;
 }
 
-std::vector<environment::Surface> load_surfaces(Loader& loader, LoaderFile& file,
-                                                const rendering::TwinModel& twin) {
+std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
+                                             const rendering::TwinModel& twin) {
   std::vector<SurfaceDraft> drafts;
   const std::size_t faults = file.faults.count();
   describe_surfaces(loader, drafts);
@@ -59,7 +59,7 @@ std::vector<environment::Surface> load_surfaces(Loader& loader, LoaderFile& file
   model::Chain chain = twin.chain;
   chain.update_poses(twin.q_start);
   const Eigen::Vector3d start = chain.pose(twin.end_effector).p;
-  std::vector<environment::Surface> surfaces;
+  std::vector<surfaces::Surface> surfaces;
   for (const SurfaceDraft& draft : drafts) {
     try {
       surfaces.push_back(surface_of(draft, file.sources));
@@ -67,12 +67,12 @@ std::vector<environment::Surface> load_surfaces(Loader& loader, LoaderFile& file
       file.faults.add_complete(error.what());
       continue;
     }
-    loader.rule(!environment::is_inside(surfaces.back(), start), "surfaces",
+    loader.rule(!surfaces::is_inside(surfaces.back(), start), "surfaces",
                 "the end effector of the twin must not start inside of one",
                 "'" + draft.surface.name + "' around it");
   }
   try {
-    environment::check(surfaces);
+    surfaces::check(surfaces);
   } catch (const SetupError& error) {
     loader.rule(false, "surfaces", error.what());
   }
@@ -90,7 +90,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   ChangesDraft changes;
   InjectionsDraft injections;
   BystanderDraft bystander;
-  std::vector<environment::Surface> surfaces;
+  std::vector<surfaces::Surface> surfaces;
   std::vector<TimedPanel> panel;
   std::optional<Device> device;
   std::optional<Twin> twin;
@@ -158,9 +158,9 @@ void settle_law(Scenario& scenario) {
   settle_law(scenario.device);
   const LimitCatalogue before = std::move(scenario.limits);
   scenario.limits = rendering::make_catalogue(scenario.device.model, scenario.twin.model);
-  for (evaluation::EventRule& event : scenario.events) {
-    for (evaluation::Condition& condition : event.all_of) {
-      using enum evaluation::ConditionKind;
+  for (EventRule& event : scenario.events) {
+    for (Condition& condition : event.all_of) {
+      using enum ConditionKind;
       const bool is_of_limit =
           condition.kind == kLimit || condition.kind == kSpeedLimit || condition.kind == kLocked;
       if (!is_of_limit) continue;

@@ -11,21 +11,21 @@
 #include "hg/config/script.h"
 #include "hg/config/sources.h"
 #include "hg/config/twin.h"
-#include "hg/environment/surface.h"
-#include "hg/evaluation/events.h"
-#include "hg/injection/injection.h"
+#include "hg/controller/rendering/surfaces/surface.h"
+#include "hg/signals/event_rule.h"
 #include "hg/signals/limit.h"
 #include "hg/signals/timed_changes.h"
 #include "hg/signals/timed_panel.h"
-#include "hg/simulation/bystander.h"
-#include "hg/user/person.h"
+#include "hg/simulator/faults/injection.h"
+#include "hg/simulator/person/person.h"
+#include "hg/simulator/plant/bystander.h"
 
 namespace hg::config {
 
 /// A bystander in the way of the simulated arm.
 struct BystanderInTheWay {
-  simulation::BystanderConfig config;  ///< bystander, without its frame
-  std::string hit_by;                  ///< frame that hits: a link of the device's URDF
+  simulator::BystanderConfig config;  ///< bystander, without its frame
+  std::string hit_by;                 ///< frame that hits: a link of the device's URDF
 };
 
 struct Scenario {
@@ -35,14 +35,14 @@ struct Scenario {
   double duration_s = 0.0;
   Device device;
   Twin twin;
-  user::PersonKind person = user::PersonKind::kNone;
+  person::PersonKind person = person::PersonKind::kNone;
   Script script;  ///< script, empty unless person is kScript
   LimitCatalogue limits;
-  std::vector<evaluation::EventRule> events;  ///< expected events, in this order
-  std::vector<TimedChange> changes;           ///< changes of the twin, in the order of their times
-  std::vector<TimedPanel> panel;  ///< inputs of the operator, in the order of their times
-  std::vector<injection::Injection> faults;    ///< injected faults
-  std::vector<environment::Surface> surfaces;  ///< surfaces that the twin meets
+  std::vector<EventRule> events;            ///< expected events, in this order
+  std::vector<TimedChange> changes;         ///< changes of the twin, in the order of their times
+  std::vector<TimedPanel> panel;            ///< inputs of the operator, in the order of their times
+  std::vector<faults::Injection> faults;    ///< injected faults
+  std::vector<surfaces::Surface> surfaces;  ///< surfaces that the twin meets
   std::optional<BystanderInTheWay> bystander;
   std::vector<SourceText> sources;  ///< source texts of all files, the scenario first
   Places places;                    ///< places of the keys of the YAML file

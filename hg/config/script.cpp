@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 5> kReserved = {"start_s", "duration_s", 
 
 // Adds one channel per joint, or says why the twin has none.
 void add_twin_channels(Loader& loader, const rendering::TwinModel& twin, ScriptDraft& draft) {
-  const bool is_possible = twin.chain.nq() <= user::kPoseChannels &&
+  const bool is_possible = twin.chain.nq() <= person::kPoseChannels &&
                            std::ranges::all_of(twin.chain.joints(), [](const model::Joint& joint) {
                              return joint.type != model::JointType::kFloating;
                            });
@@ -34,7 +34,7 @@ void add_twin_channels(Loader& loader, const rendering::TwinModel& twin, ScriptD
 }  // namespace
 
 std::vector<Channel> common_channels() {
-  constexpr int k = user::kWrenchChannel;
+  constexpr int k = person::kWrenchChannel;
   return {{"fx_N", k + 0, kAnyNumber, "push along x of the handle"},
           {"fy_N", k + 1, kAnyNumber, "push along y of the handle"},
           {"fz_N", k + 2, kAnyNumber, "push along z of the handle"},
@@ -42,25 +42,25 @@ std::vector<Channel> common_channels() {
           {"ny_Nm", k + 4, kAnyNumber, "turn about y of the handle"},
           {"nz_Nm", k + 5, kAnyNumber, "turn about z of the handle"},
           {"grip",
-           user::kGripChannel,
+           person::kGripChannel,
            {.lb = 0.0, .ub = 1.0},
            "how much of its impedance the hand uses to reach the pose; 1 at the start"}};
 }
 
-std::vector<Channel> pose_channels(user::ScriptFrame frame) {
+std::vector<Channel> pose_channels(person::ScriptFrame frame) {
   switch (frame) {
-    case user::ScriptFrame::kBase:
+    case person::ScriptFrame::kBase:
       return {{"x_m", 0, kAnyNumber, "handle in B"},
               {"y_m", 1, kAnyNumber, "handle in B"},
               {"z_m", 2, kAnyNumber, "handle in B"},
               {"azimuth_rad", 3, kAnyNumber, "heading of the hand axis about z of B"},
               {"pitch_rad", 4, kAnyNumber, "0 = hand axis down, pi = up"},
               {"roll_rad", 5, kAnyNumber, "about the hand axis"}};
-    case user::ScriptFrame::kCylindrical:
+    case person::ScriptFrame::kCylindrical:
       return {{"swing_rad", 0, kAnyNumber, "about z of the twin's root link"},
               {"r_m", 1, kAnyNumber, "distance from that axis"},
               {"z_m", 2, kAnyNumber, "along that axis"}};
-    case user::ScriptFrame::kTwinJoints:
+    case person::ScriptFrame::kTwinJoints:
       return {};
   }
   return {};
@@ -76,11 +76,11 @@ Script load_script(const std::filesystem::path& path, const rendering::TwinModel
   const std::size_t first_source = reader.texts().size();
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   ScriptDraft draft;
-  draft.start[user::kGripChannel] = 1.0;
+  draft.start[person::kGripChannel] = 1.0;
   load_file(file, [&](Loader& loader) {
     describe_frame(loader, draft);
     draft.channels = pose_channels(draft.frame);
-    if (draft.frame == user::ScriptFrame::kTwinJoints) add_twin_channels(loader, twin, draft);
+    if (draft.frame == person::ScriptFrame::kTwinJoints) add_twin_channels(loader, twin, draft);
     for (const Channel& channel : common_channels()) draft.channels.push_back(channel);
     describe_segments(loader, draft);
   });
@@ -91,8 +91,8 @@ Script load_script(const std::filesystem::path& path, const rendering::TwinModel
   script.script.frame = draft.frame;
   script.script.start = draft.start;
   script.script.segments = std::move(draft.segments);
-  std::ranges::stable_sort(script.script.segments, {}, &user::Segment::start_s);
-  for (const user::Segment& segment : script.script.segments) {
+  std::ranges::stable_sort(script.script.segments, {}, &person::Segment::start_s);
+  for (const person::Segment& segment : script.script.segments) {
     script.script.duration_s =
         std::max(script.script.duration_s, segment.start_s + segment.duration_s);
   }

@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "hg/config/sources.h"
-#include "hg/rendering/twin_model.h"
-#include "hg/user/person.h"
-#include "hg/user/script.h"
+#include "hg/controller/rendering/twin_model.h"
+#include "hg/simulator/person/person.h"
+#include "hg/simulator/person/script.h"
 
 namespace hg::config {
 
 struct Script {
-  user::HandImpedance hand;
-  user::Script script;
+  person::HandImpedance hand;
+  person::Script script;
   /// Pose channels whose start value is in the file. The others start where the twin starts and are
   /// filled in when the run is built.
-  std::array<bool, user::kPoseChannels> start_given{};
+  std::array<bool, person::kPoseChannels> start_given{};
   std::vector<SourceText> sources;
 };
 

@@ -61,7 +61,7 @@ void take_plant(Loader& loader, const SimulatedDevice& device, SimulationDraft& 
     simulation.flexible.push_back(
         {index, draft.flexible[i]->stiffness, draft.flexible[i]->damping});
   }
-  loader.rule(simulation.flexible.size() <= simulation::kMaxFlexible, "flexible",
+  loader.rule(simulation.flexible.size() <= simulator::kMaxFlexible, "flexible",
               "at most 8 joints are possible");
   loader.rule(std::ranges::find(chain.frame_names(), device.handle) != chain.frame_names().end(),
               "urdf", "must have the handle of the device", "no link '" + device.handle + "'");
@@ -82,7 +82,7 @@ void yield(Loader& loader, LoaderFile& file, const SimulatedDevice& device,
     options.passive.push_back({names[i], names[i] + kSuffix, {}});
     if (joint->has_axis) options.passive.back().axis = joint->axis.normalized();
   }
-  loader.rule(options.passive.size() <= simulation::kMaxFlexible, "structure",
+  loader.rule(options.passive.size() <= simulator::kMaxFlexible, "structure",
               "at most 8 joints are possible");
   if (options.passive.empty() || device.urdf.empty() || file.faults.count() > 0) return;
   const std::optional<UrdfText> urdf = read_urdf(file, device.urdf);
@@ -106,8 +106,8 @@ void yield(Loader& loader, LoaderFile& file, const SimulatedDevice& device,
 }
 
 void check_filters(Loader& loader, const Simulation& simulation) {
-  const double longest = simulation::kMaxFilterSteps * simulation.step_s;
-  for (const simulation::SensorFilterConfig& filter :
+  const double longest = simulator::kMaxFilterSteps * simulation.step_s;
+  for (const simulator::SensorFilterConfig& filter :
        {simulation.sensors.wrench.filter, simulation.sensors.imu_filter,
         simulation.sensors.link_unit.filter}) {
     loader.rule(filter.average + filter.delay <= longest, "sensors",
@@ -146,9 +146,9 @@ Payload actual(Payload told, const RealityFactors& factors) {
   return told;
 }
 
-simulation::JointEffects effects_of(const ActuatorModel& actuator, const MotorEffects& motors,
-                                    const GearEffects& gears, double gear_ratio) {
-  simulation::JointEffects effects = {
+simulator::JointEffects effects_of(const ActuatorModel& actuator, const MotorEffects& motors,
+                                   const GearEffects& gears, double gear_ratio) {
+  simulator::JointEffects effects = {
       .cogging = motors.cogging * actuator.torque_max,
       .cogging_wave = motors.cogging_per_turn * gear_ratio,
       .ripple = motors.ripple,

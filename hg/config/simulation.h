@@ -14,9 +14,9 @@
 #include "hg/signals/actuator_model.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/payload.h"
-#include "hg/simulation/plant_config.h"
-#include "hg/simulation/safety_plc.h"
-#include "hg/simulation/sensors.h"
+#include "hg/simulator/plant/plant_config.h"
+#include "hg/simulator/safety_plc.h"
+#include "hg/simulator/sensors/sensors.h"
 
 namespace hg::config {
 
@@ -52,8 +52,8 @@ struct GearEffects {
 };
 
 /// Joint effects in the form of the plant, for a joint of this actuator.
-simulation::JointEffects effects_of(const ActuatorModel& actuator, const MotorEffects& motors,
-                                    const GearEffects& gears, double gear_ratio);
+simulator::JointEffects effects_of(const ActuatorModel& actuator, const MotorEffects& motors,
+                                   const GearEffects& gears, double gear_ratio);
 
 /// Actual model where the device file says `told`.
 ActuatorModel actual(ActuatorModel told, const RealityFactors& factors);
@@ -68,19 +68,19 @@ struct Simulation {
   RealityFactors factors;
   double stop_distance_angle = 0.05;   ///< distance of the end stops beyond the limits, rad
   double stop_distance_length = 0.02;  ///< distance of the end stops of prismatic joints, m
-  simulation::EndStopModel end_stop;
-  simulation::SensorsConfig sensors;  ///< sensors, seeded with `seed`
-  simulation::SafetyPlcConfig safety;
+  simulator::EndStopModel end_stop;
+  simulator::SensorsConfig sensors;  ///< sensors, seeded with `seed`
+  simulator::SafetyPlcConfig safety;
   VectorM gear_ratio;  ///< gear ratio per manipulator joint
   MotorEffects motors;
   GearEffects gears;
-  std::vector<simulation::Waviness> waviness;  ///< waviness per axis of the gantry; empty = none
+  std::vector<simulator::Waviness> waviness;  ///< waviness per axis of the gantry; empty = none
 
   /// A plant with more joints than the controller's model, from `urdf` or with those of
   /// `structure`; without it the chain of the device.
   std::optional<model::Chain> chain;
   std::vector<int> gantry, manipulator;  ///< indices of the chain's joints, in the device's order
-  std::vector<simulation::FlexibleJoint> flexible;  ///< all other joints of the chain
+  std::vector<simulator::FlexibleJoint> flexible;  ///< all other joints of the chain
 };
 
 /// The device that a simulation file belongs to. Without joint names, names are not checked.

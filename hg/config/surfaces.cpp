@@ -4,25 +4,25 @@
 
 namespace hg::config {
 
-environment::Surface surface_of(const SurfaceDraft& draft, SourceReader& reader) {
-  environment::Surface surface = draft.surface;
+surfaces::Surface surface_of(const SurfaceDraft& draft, SourceReader& reader) {
+  surfaces::Surface surface = draft.surface;
   surface.pose = pose_of(draft.placement);
   if (!std::isnan(draft.damping)) surface.damping = draft.damping;
   switch (draft.shape) {
     case SurfaceShape::kPlane:
       break;
     case SurfaceShape::kBox:
-      surface.shape = environment::Box{draft.size};
+      surface.shape = surfaces::Box{draft.size};
       break;
     case SurfaceShape::kSphere:
-      surface.shape = environment::Sphere{draft.radius};
+      surface.shape = surfaces::Sphere{draft.radius};
       break;
     case SurfaceShape::kCylinder:
-      surface.shape = environment::Cylinder{draft.radius, draft.length};
+      surface.shape = surfaces::Cylinder{draft.radius, draft.length};
       break;
     case SurfaceShape::kMesh:
       surface.shape =
-          environment::read_stl(reader.read(draft.mesh), draft.mesh.generic_string(), draft.scale);
+          surfaces::read_stl(reader.read(draft.mesh), draft.mesh.generic_string(), draft.scale);
       break;
   }
   return surface;

@@ -7,8 +7,8 @@
 
 #include "hg/config/faults.h"
 #include "hg/config/sources.h"
+#include "hg/controller/rendering/twin_model.h"
 #include "hg/core/types.h"
-#include "hg/rendering/twin_model.h"
 
 namespace hg::config {
 

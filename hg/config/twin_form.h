@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hg/rendering/twin_model.h"
+#include "hg/controller/rendering/twin_model.h"
 #include "hg/signals/frames.h"
 
 namespace hg::config {

@@ -9,7 +9,7 @@
 #include "hg/core/allocation_counter.h"
 #include "hg/core/allowed_to_wait.h"
 #include "hg/core/error.h"
-#include "hg/runtime/monotonic_clock.h"
+#include "hg/core/monotonic_clock.h"
 #include "hg/runtime/requests.h"
 
 namespace hg::runtime {
@@ -58,7 +58,7 @@ void check(const Options& options) {
   check(options.thread);
 }
 
-Runtime::Runtime(const Options& options, cycle::Cycle& cycle, device::Device& device)
+Runtime::Runtime(const Options& options, controller::Cycle& cycle, device::Device& device)
     : options_((check(options), options)),
       cycle_(cycle),
       device_(device),

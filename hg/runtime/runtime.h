@@ -12,15 +12,15 @@
 #include <thread>
 #include <vector>
 
+#include "hg/controller/cycle.h"
 #include "hg/core/histogram.h"
 #include "hg/core/nonblocking.h"
+#include "hg/core/schedule.h"
 #include "hg/core/spsc_ring.h"
 #include "hg/core/stage_probe.h"
-#include "hg/cycle/cycle.h"
 #include "hg/device/device.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/runtime/pace.h"
-#include "hg/runtime/schedule.h"
 #include "hg/signals/operator_desk.h"
 #include "hg/signals/state.h"
 #include "hg/signals/timed_changes.h"
@@ -78,7 +78,7 @@ struct Report {
 class Runtime {
  public:
   /// `cycle` and `device` must outlive the runtime and belong to it from start() to join().
-  Runtime(const Options& options, cycle::Cycle& cycle, device::Device& device);
+  Runtime(const Options& options, controller::Cycle& cycle, device::Device& device);
   ~Runtime();
 
   /// Starts the control thread: arms the device, runs while the dead-man switch is closed, stops it
@@ -138,7 +138,7 @@ class Runtime {
   void count_stages() noexcept;
 
   Options options_;
-  cycle::Cycle& cycle_;
+  controller::Cycle& cycle_;
   device::Device& device_;
   SpscRing<Sample> samples_;
   SpscRing<HandTarget> hand_targets_;

@@ -1,5 +1,5 @@
 /// Bindings of scenarios, and of their cycle for user-written loops.
-#include "hg/cycle/cycle.h"
+#include "hg/controller/cycle.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -10,9 +10,9 @@
 #include <tuple>
 #include <vector>
 
-#include "hg/assembly/assembly.h"
 #include "hg/config/scenario.h"
 #include "hg/runtime/requests.h"
+#include "hg/scenario/assembly.h"
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
 #include "python/src/session.h"
@@ -40,7 +40,7 @@ void bind_scenario(nb::module_& module) {
   nb::class_<Scenario>(module, "Scenario", "Device, twin and person of a run.")
       .def_ro("title", &Scenario::title)
       .def_ro("description", &Scenario::description)
-      .def_prop_ro("duration_s", &assembly::planned_duration_s,
+      .def_prop_ro("duration_s", &scenario::planned_duration_s,
                    "until everything planned has happened; 0: nothing is planned")
       .def_prop_rw(
           "rate_Hz", [](const Scenario& scenario) { return scenario.device.rate_Hz; },
@@ -99,21 +99,21 @@ struct Joints {
 
 struct OwnCycle {
   explicit OwnCycle(const Scenario& scenario)
-      : joints(scenario), cycle(assembly::make_cycle(scenario)) {}
+      : joints(scenario), cycle(scenario::make_cycle(scenario)) {}
 
   Joints joints;
-  cycle::Cycle cycle;
+  controller::Cycle cycle;
 };
 
 struct OwnDevice {
   explicit OwnDevice(const Scenario& scenario)
-      : joints(scenario), device(assembly::make_simulated_device(scenario)) {}
+      : joints(scenario), device(scenario::make_simulated_device(scenario)) {}
 
   Joints joints;
-  device::SimulatedDevice device;
+  simulator::SimulatedDevice device;
 };
 
-void restore(cycle::Cycle& cycle, const cycle::State& state) {
+void restore(controller::Cycle& cycle, const controller::State& state) {
   const rendering::State &now = cycle.state().rendering, &then = state.rendering;
   require_size("state: joints", now.reference.q_m.size(), then.reference.q_m.size());
   require_size("state: coordinates of the twin", now.twin.q_a.size(), then.twin.q_a.size());
@@ -122,7 +122,7 @@ void restore(cycle::Cycle& cycle, const cycle::State& state) {
 }
 
 void bind_parts(nb::module_& module) {
-  nb::class_<cycle::State>(module, "State", "All that a cycle remembers; a snapshot.");
+  nb::class_<controller::State>(module, "State", "All that a cycle remembers; a snapshot.");
   nb::class_<OwnCycle>(module, "Cycle",
                        "One pass of the control loop per step(); no clock, no I/O.")
       .def(nb::init<const Scenario&>(), nb::arg("scenario"))
@@ -144,7 +144,7 @@ void bind_parts(nb::module_& module) {
           nb::arg("sensors"), "Whether somebody holds the handle: without that nothing runs.")
       .def_prop_rw(
           "state", [](const OwnCycle& self) { return self.cycle.state(); },
-          [](OwnCycle& self, const cycle::State& state) { restore(self.cycle, state); },
+          [](OwnCycle& self, const controller::State& state) { restore(self.cycle, state); },
           "copy of what it remembers; assign it to go back");
   nb::class_<OwnDevice>(module, "SimulatedDevice",
                         "The device of a scenario and the person who holds it.")
@@ -191,7 +191,7 @@ void bind_session(nb::module_& module) {
           "what the next step() gets: set hand_target or change in it")
       .def_prop_rw(
           "state", [](Session& self) { return self.cycle().state(); },
-          [](Session& self, const cycle::State& state) { restore(self.cycle(), state); },
+          [](Session& self, const controller::State& state) { restore(self.cycle(), state); },
           "of the cycle, not of the simulated world");
 }
 

@@ -66,7 +66,7 @@ void run_until(Session& session, double duration_s, Columns& columns) {
 }
 
 nb::dict run(const config::Scenario& scenario, std::optional<double> duration_s) {
-  const double end_s = duration_s.value_or(assembly::planned_duration_s(scenario));
+  const double end_s = duration_s.value_or(scenario::planned_duration_s(scenario));
   if (!(std::isfinite(end_s) && end_s > 0.0)) {
     throw SetupError("run: a scenario without a script needs duration_s > 0");
   }

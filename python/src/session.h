@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "hg/assembly/assembly.h"
 #include "hg/runtime/requests.h"
+#include "hg/scenario/assembly.h"
 #include "hg/signals/timed_changes.h"
 
 namespace hg::python {
@@ -14,8 +14,8 @@ class Session {
  public:
   /// Throws SetupError.
   explicit Session(const config::Scenario& scenario)
-      : cycle_(assembly::make_cycle(scenario)),
-        device_(assembly::make_simulated_device(scenario)),
+      : cycle_(scenario::make_cycle(scenario)),
+        device_(scenario::make_simulated_device(scenario)),
         changes_(scenario.changes),
         rate_Hz_(scenario.device.rate_Hz) {}
 
@@ -46,14 +46,14 @@ class Session {
            (is_stopping_ && mode != Mode::kRunning && mode != Mode::kStopping);
   }
 
-  cycle::Cycle& cycle() noexcept { return cycle_; }
+  controller::Cycle& cycle() noexcept { return cycle_; }
   const Sample& sample() const noexcept { return *sample_; }
   /// Operator input of the next step(); requests are set by the session itself.
   OperatorFrame& wishes() noexcept { return wishes_; }
 
  private:
-  cycle::Cycle cycle_;
-  device::SimulatedDevice device_;
+  controller::Cycle cycle_;
+  simulator::SimulatedDevice device_;
   OperatorFrame wishes_;
   TimedChanges changes_;
   double rate_Hz_;

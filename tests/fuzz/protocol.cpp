@@ -5,13 +5,13 @@
 #include <memory>
 #include <vector>
 
-#include "hg/remote/codec.h"
+#include "hg/device/udp/codec.h"
 #include "tests/fuzz/targets.h"
 
 namespace hg::fuzz {
 namespace {
 
-using namespace remote;
+using namespace udp;
 
 [[noreturn]] void fail(const char* what) {
   std::fprintf(stderr, "%s\n", what);

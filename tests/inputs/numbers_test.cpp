@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "hg/assembly/assembly.h"
+#include "hg/commissioning/checks/device_inspection.h"
+#include "hg/commissioning/checks/scenario_inspection.h"
+#include "hg/commissioning/checks/survey.h"
+#include "hg/commissioning/checks/twin_inspection.h"
 #include "hg/core/error.h"
-#include "hg/inspection/device_inspection.h"
-#include "hg/inspection/scenario_inspection.h"
-#include "hg/inspection/survey.h"
-#include "hg/inspection/twin_inspection.h"
 #include "hg/runtime/requests.h"
+#include "hg/scenario/assembly.h"
 #include "tests/scenarios/scenario_run.h"
 
 namespace hg {
@@ -53,9 +53,9 @@ std::vector<Number> numbers_in(const Texts& texts) {
 }
 
 void run(const config::Scenario& scenario) {
-  cycle::Cycle cycle = assembly::make_cycle(scenario);
-  device::SimulatedDevice device = assembly::make_simulated_device(scenario);
-  assembly::make_summary(scenario);
+  controller::Cycle cycle = scenario::make_cycle(scenario);
+  simulator::SimulatedDevice device = scenario::make_simulated_device(scenario);
+  scenario::make_summary(scenario);
   const auto sample = std::make_unique<Sample>();
   for (int k = 0; k < kCycles; ++k) {
     device.read(sample->sensors);
@@ -67,10 +67,10 @@ void run(const config::Scenario& scenario) {
 }
 
 void inspect(const config::Scenario& scenario) {
-  const inspection::Survey survey = inspection::survey(scenario.device);
-  inspection::inspect(scenario.device, survey);
-  inspection::inspect(scenario.twin, scenario.device.rendering.dt);
-  inspection::inspect(scenario.device, scenario.twin);
+  const checks::Survey survey = checks::survey(scenario.device);
+  checks::inspect(scenario.device, survey);
+  checks::inspect(scenario.twin, scenario.device.rendering.dt);
+  checks::inspect(scenario.device, scenario.twin);
 }
 
 class AbsurdNumbers : public testing::TestWithParam<const char*> {};

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "hg/controller/rendering/rendering.h"
 #include "hg/hqp/problem.h"
-#include "hg/rendering/rendering.h"
 
 namespace hg {
 

@@ -70,7 +70,7 @@ class MaxwellSlip:
 
 
 def mixed(z):
-    """SplitMix64, as in hg/simulation/random_stream.h."""
+    """SplitMix64, as in hg/simulator/random_stream.h."""
     z = (z + 0x9E3779B97F4A7C15) & MASK
     z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & MASK
     z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & MASK

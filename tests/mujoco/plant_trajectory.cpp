@@ -10,8 +10,8 @@
 #include <string>
 
 #include "hg/core/error.h"
-#include "hg/simulation/plant.h"
-#include "hg/simulation/test/plant_setup.h"
+#include "hg/simulator/plant/plant.h"
+#include "hg/simulator/test/plant_setup.h"
 
 namespace {
 
@@ -36,7 +36,7 @@ constexpr double kDuration = 1.0, kInterval = 1e-3;  // s
 // Throws SetupError.
 void print(const std::string& effect, double step) {
   using namespace hg;
-  simulation::PlantConfig config;
+  simulator::PlantConfig config;
   config.step = step;
   config.gantry = {0};
   config.flexible = {{.joint = 1, .stiffness = 2e5, .damping = 100.0}};
@@ -45,10 +45,10 @@ void print(const std::string& effect, double step) {
   config.drive.dead_time = 0.0;
   config.q_p_start = VectorP::Zero(1);
   config.q_m_start = VectorM::Constant(1, 0.7);
-  ActuatorModel motor = simulation::bare_actuator(0.5, 3000.0);
+  ActuatorModel motor = simulator::bare_actuator(0.5, 3000.0);
   motor.damping = 5.0;
   motor.viscous_friction = 1.0;
-  simulation::JointEffects& e = config.effects.emplace_back();
+  simulator::JointEffects& e = config.effects.emplace_back();
   if (effect == "friction" || effect == "presliding") motor.coulomb_friction = 3.0;
   if (effect == "presliding") e.bristle_stiffness = 5e3, e.bristle_damping = 5.0;
   if (effect == "backlash") e.backlash = 4e-3;
@@ -57,8 +57,8 @@ void print(const std::string& effect, double step) {
   config.actuators = {motor};
 
   const model::Chain chain = model::Chain::from_urdf_text(kUrdf, "bench", {.gravity = false});
-  simulation::Plant plant(config, chain, chain.frame("link"));
-  simulation::PlantInput input;
+  simulator::Plant plant(config, chain, chain.frame("link"));
+  simulator::PlantInput input;
   input.brakes_closed = false;
   input.dq_p_command = VectorP::Zero(1);
   input.tau_command = VectorM::Zero(1);

@@ -21,10 +21,10 @@
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/start_test_command.h"
-#include "hg/assembly/assembly.h"
+#include "hg/commissioning/start_test/memory.h"
 #include "hg/core/error.h"
-#include "hg/remote/device_server.h"
-#include "hg/start_test/memory.h"
+#include "hg/device/udp/device_server.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg {
 namespace {
@@ -33,7 +33,7 @@ namespace {
 // may not hold
 class Homed final : public device::Device {
  public:
-  Homed(device::SimulatedDevice device, double offset, double falling)
+  Homed(simulator::SimulatedDevice device, double offset, double falling)
       : device_(std::move(device)), offset_(offset), falling_(falling) {}
   void read(SensorFrame& sensors) noexcept override {
     device_.read(sensors);
@@ -48,7 +48,7 @@ class Homed final : public device::Device {
   }
 
  private:
-  device::SimulatedDevice device_;
+  simulator::SimulatedDevice device_;
   double offset_, falling_, fallen_ = 0.0;
   bool is_on_ = false, was_on_ = false;
 };
@@ -56,7 +56,7 @@ class Homed final : public device::Device {
 class Machine {
  public:
   explicit Machine(const config::Scenario& scenario, bool is_simulated = false)
-      : world_(assembly::make_simulated_device(scenario)),
+      : world_(scenario::make_simulated_device(scenario)),
         server_({"127.0.0.1", "0"}, {.actual = apps::describe(scenario, true),
                                      .server = "test",
                                      .is_simulated = is_simulated,
@@ -78,8 +78,8 @@ class Machine {
 
  private:
   std::atomic<bool> stop_{false};
-  device::SimulatedDevice world_;
-  remote::DeviceServer server_;
+  simulator::SimulatedDevice world_;
+  udp::DeviceServer server_;
   std::thread thread_;
 };
 

@@ -46,15 +46,15 @@ class Leaning {
 
  private:
   explicit Leaning(config::Scenario scenario)
-      : scenario_((scenario.person = user::PersonKind::kMouse, std::move(scenario))),
-        cycle_(assembly::make_cycle(scenario_)),
-        device_(
-            std::make_unique<device::SimulatedDevice>(assembly::make_simulated_device(scenario_))),
+      : scenario_((scenario.person = person::PersonKind::kMouse, std::move(scenario))),
+        cycle_(scenario::make_cycle(scenario_)),
+        device_(std::make_unique<simulator::SimulatedDevice>(
+            scenario::make_simulated_device(scenario_))),
         sample_(std::make_unique<Sample>()) {}
 
   config::Scenario scenario_;
-  cycle::Cycle cycle_;
-  std::unique_ptr<device::SimulatedDevice> device_;
+  controller::Cycle cycle_;
+  std::unique_ptr<simulator::SimulatedDevice> device_;
   std::unique_ptr<Sample> sample_;
   HandTarget target_;
 };

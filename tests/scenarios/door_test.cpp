@@ -122,9 +122,9 @@ TEST(DoorAtRest, ALockHoldsInEveryCycle) {
 
 // the hand leans from 7.5 s on, with 35 N as it ships
 config::Scenario leaning(double force_N) {
-  constexpr int kPush = user::kWrenchChannel + 2;  // along z of the handle, out of the leaf
+  constexpr int kPush = person::kWrenchChannel + 2;  // along z of the handle, out of the leaf
   config::Scenario scenario = law_alone("door");
-  for (user::Segment& segment : scenario.script.script.segments) {
+  for (person::Segment& segment : scenario.script.script.segments) {
     if (segment.channel == kPush && segment.start_s == 7.5) segment.value = -force_N;
   }
   return scenario;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/user/hand.h"
+#include "hg/simulator/person/hand.h"
 #include "tests/scenarios/trace.h"
 
 namespace hg {
@@ -22,15 +22,15 @@ constexpr double kErrorMax = 2e-3;   // rad off the reference
 struct Case {
   const char* scenario;
   double rate_Hz;
-  std::optional<user::HandPreset> hand;  // none: as the script says
+  std::optional<person::HandPreset> hand;  // none: as the script says
   std::uint64_t seed;
 };
 
 std::string name_of(const Case& c) {
   const char* hand = "own";
-  if (c.hand == user::HandPreset::kRelaxed) hand = "relaxed";
-  if (c.hand == user::HandPreset::kNormal) hand = "normal";
-  if (c.hand == user::HandPreset::kStiff) hand = "stiff";
+  if (c.hand == person::HandPreset::kRelaxed) hand = "relaxed";
+  if (c.hand == person::HandPreset::kNormal) hand = "normal";
+  if (c.hand == person::HandPreset::kStiff) hand = "stiff";
   return std::string(c.scenario) + "_" + hand + "_" + std::to_string(std::lround(c.rate_Hz)) +
          "_Hz_seed_" + std::to_string(c.seed);
 }
@@ -38,9 +38,9 @@ std::string name_of(const Case& c) {
 config::Scenario scenario_of(const Case& c) {
   config::Scenario scenario = shipped(c.scenario, c.rate_Hz);
   scenario.device.simulation.seed = scenario.device.simulation.sensors.seed = c.seed;
-  if (c.hand) scenario.script.hand = user::hand(*c.hand);
+  if (c.hand) scenario.script.hand = person::hand(*c.hand);
   // the script of the excavator presses against springs: it needs a hand of 350 N/m
-  const bool is_soft = c.hand && c.hand != user::HandPreset::kStiff;
+  const bool is_soft = c.hand && c.hand != person::HandPreset::kStiff;
   if (is_soft && std::string(c.scenario) == "excavator") scenario.events.clear();
   return scenario;
 }
@@ -56,7 +56,7 @@ void expect_limits_held_in_truth(const ScenarioRun& run) {
 class ElasticDevice : public ::testing::TestWithParam<Case> {};
 
 std::vector<Case> cases() {
-  using user::HandPreset;
+  using person::HandPreset;
   std::vector<Case> all;
   for (const char* scenario : {"door", "excavator", "free_space"}) {
     for (const double rate_Hz : {1000.0, 2000.0}) {
@@ -77,7 +77,7 @@ TEST_P(ElasticDevice, RunsTheScenarioWithinItsTolerances) {
   run.play();
   expect_sound(run);
   expect_limits_held_in_truth(run);
-  const evaluation::Reality& reality = run.summary().reality();
+  const analysis::Reality& reality = run.summary().reality();
   ASSERT_TRUE(reality.is_known());
   EXPECT_LT(reality.max_joint_error(), kErrorMax) << "m" << reality.worst_joint() + 1;
   EXPECT_LT(reality.max_hand_distance(), kSyncMax);
@@ -108,7 +108,7 @@ constexpr double kSticksFrom = 0.7 + 1.3, kSticksUntil = kSticksFrom + 0.3;  // 
 // A device whose joint m4 sticks for 0.3 s: its drive holds it, whatever it is told.
 class StickingDevice final : public device::Device {
  public:
-  StickingDevice(simulation::Simulation simulation, double rate_Hz)
+  StickingDevice(simulator::Simulation simulation, double rate_Hz)
       : simulation_(std::move(simulation)), rate_Hz_(rate_Hz) {}
 
   void read(SensorFrame& sensors) noexcept override { sensors = simulation_.sensors(); }
@@ -132,7 +132,7 @@ class StickingDevice final : public device::Device {
   }
 
  private:
-  simulation::Simulation simulation_;
+  simulator::Simulation simulation_;
   double rate_Hz_;
   std::uint64_t periods_ = 0;
   bool stuck_ = false;
@@ -144,9 +144,9 @@ config::Scenario raising() {
   config::Scenario scenario = shipped("free_space");
   scenario.events.clear();
   scenario.script.script.segments = {
-      {.start_s = 1.0, .duration_s = 1.0, .channel = 2, .blend = user::Blend::kBy, .value = 0.3}};
+      {.start_s = 1.0, .duration_s = 1.0, .channel = 2, .blend = person::Blend::kBy, .value = 0.3}};
   scenario.script.script.duration_s = scenario.duration_s = 4.0;
-  scenario.script.hand = user::hand(user::HandPreset::kNormal);
+  scenario.script.hand = person::hand(person::HandPreset::kNormal);
   return scenario;
 }
 
@@ -164,7 +164,7 @@ struct StuckJoint {
 StuckJoint stuck_joint(const config::Scenario& scenario) {
   const double rate_Hz = scenario.device.rate_Hz;
   ScenarioRun run(scenario,
-                  std::make_unique<StickingDevice>(assembly::make_simulation(scenario), rate_Hz));
+                  std::make_unique<StickingDevice>(scenario::make_simulation(scenario), rate_Hz));
   StuckJoint result;
   double stuck_at = 0.0, last_dq = 0.0;
   run.play([&](const Sample& sample) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/hapticgiant/run_setup.h"
-#include "hg/experiments/player.h"
-#include "hg/identification/friction_traces.h"
+#include "hg/commissioning/identification/friction_traces.h"
+#include "hg/studies/player.h"
 
 namespace hg::apps {
 namespace {
@@ -19,7 +19,7 @@ std::vector<FrictionEstimate> identified(const std::string& simulation) {
   const config::Scenario scenario = make_scenario(
       ScenarioArguments{.scenario = "free_space", .user = "friction", .simulation = simulation});
   identification::FrictionTraces traces(scenario.device.control);
-  experiments::Player player(scenario);
+  studies::Player player(scenario);
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
     player.begin();
     player.run();

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "apps/hapticgiant/remote_setup.h"
-#include "hg/remote/device_server.h"
-#include "hg/remote/test/bad_link.h"
+#include "hg/device/udp/device_server.h"
+#include "hg/device/udp/test/bad_link.h"
 #include "tests/scenarios/scenario_run.h"
 
 namespace hg {
@@ -25,7 +25,7 @@ Played played(ScenarioRun& run, double seconds) {
   Played result;
   run.play([&](const Sample& sample) { result.hashes.push_back(sample.record.state_hash); },
            seconds);
-  for (const evaluation::Event& event : run.summary().events()) {
+  for (const analysis::Event& event : run.summary().events()) {
     result.events.push_back(event.name + " " + std::to_string(event.time_s));
   }
   return result;
@@ -54,7 +54,7 @@ class OneProcessor {
 class World {
  public:
   explicit World(const config::Scenario& scenario)
-      : device_(assembly::make_simulated_device(scenario)),
+      : device_(scenario::make_simulated_device(scenario)),
         server_({"127.0.0.1", "0"}, {.actual = apps::describe(scenario, true),
                                      .server = "test",
                                      .lock_step_timeout_s = 60.0}),
@@ -65,23 +65,23 @@ class World {
     stop_.store(true);  // the goodbye may be lost on the way
     thread_.join();
   }
-  remote::Address address() const { return remote::parse_address("test", server_.address()); }
+  udp::Address address() const { return udp::parse_address("test", server_.address()); }
 
  private:
   std::atomic<bool> stop_{false};
-  device::SimulatedDevice device_;
-  remote::DeviceServer server_;
+  simulator::SimulatedDevice device_;
+  udp::DeviceServer server_;
   std::thread thread_;
 };
 
-std::unique_ptr<remote::RemoteDevice> connect(const remote::Address& address,
-                                              const config::Scenario& scenario) {
-  return std::make_unique<remote::RemoteDevice>(
-      address, remote::ClientConfig{.expected = apps::describe(scenario, true),
-                                    .client = "test",
-                                    .answer_timeout_s = 60.0,
-                                    .first_timeout_s = 60.0,
-                                    .lock_step_timeout_s = 60.0});
+std::unique_ptr<udp::RemoteDevice> connect(const udp::Address& address,
+                                           const config::Scenario& scenario) {
+  return std::make_unique<udp::RemoteDevice>(
+      address, udp::ClientConfig{.expected = apps::describe(scenario, true),
+                                 .client = "test",
+                                 .answer_timeout_s = 60.0,
+                                 .first_timeout_s = 60.0,
+                                 .lock_step_timeout_s = 60.0});
 }
 
 void expect_same(const Played& there, const Played& here) {
@@ -125,8 +125,8 @@ TEST(RemoteScenario, ABadNetworkDoesNotChangeTheDoor) {
   ScenarioRun at_home(scenario);
   const Played here = played(at_home, kSeconds);
   World world(scenario);
-  const remote::BadLink link(world.address(),
-                             {.loses = 2e-3, .doubles = 0.02, .swaps = 2e-3, .corrupts = 2e-3}, 1);
+  const udp::BadLink link(world.address(),
+                          {.loses = 2e-3, .doubles = 0.02, .swaps = 2e-3, .corrupts = 2e-3}, 1);
   ScenarioRun run(scenario, connect(link.address(), scenario));
   expect_same(played(run, kSeconds), here);
 }

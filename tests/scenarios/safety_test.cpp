@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "hg/assembly/assembly.h"
 #include "hg/config/scenario.h"
-#include "hg/safety/rules.h"
+#include "hg/controller/safety/rules.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg {
 namespace {
@@ -21,8 +21,8 @@ config::Scenario scenario(const std::string& name) {
 // An operator who tares, arms and runs, and a panel for the test's hands.
 struct Machine {
   config::Scenario scenario;
-  cycle::Cycle cycle;
-  device::SimulatedDevice device;
+  controller::Cycle cycle;
+  simulator::SimulatedDevice device;
   SensorFrame sensors;
   OperatorFrame input;
   CommandFrame command;
@@ -34,8 +34,8 @@ struct Machine {
 
   explicit Machine(config::Scenario s)
       : scenario(std::move(s)),
-        cycle(assembly::make_cycle(scenario)),
-        device(assembly::make_simulated_device(scenario)) {}
+        cycle(scenario::make_cycle(scenario)),
+        device(scenario::make_simulated_device(scenario)) {}
   explicit Machine(const std::string& name) : Machine(hg::scenario(name)) {}
 
   void step() {
@@ -94,10 +94,10 @@ TEST(Safety, NoShippedScenarioIsStoppedOrTouchedByARuleWithAllSensorErrors) {
   struct Case {
     const char* name;
     double rate_Hz;
-    user::HandPreset hand;
+    person::HandPreset hand;
     unsigned seed;
   };
-  using enum user::HandPreset;
+  using enum person::HandPreset;
   const Case cases[] = {{"door", 1000, kNormal, 2},        {"door", 2000, kStiff, 3},
                         {"excavator", 1000, kStiff, 4},    {"excavator", 2000, kRelaxed, 5},
                         {"free_space", 1000, kRelaxed, 6}, {"free_space", 2000, kNormal, 7},
@@ -106,10 +106,10 @@ TEST(Safety, NoShippedScenarioIsStoppedOrTouchedByARuleWithAllSensorErrors) {
   for (const Case& c : cases) {
     config::Scenario s = scenario(c.name);
     config::set_rate(s.device, c.rate_Hz);
-    s.script.hand = user::hand(c.hand);
+    s.script.hand = person::hand(c.hand);
     s.device.simulation.seed = s.device.simulation.sensors.seed = c.seed;
     Machine machine(std::move(s));
-    const double seconds = assembly::planned_duration_s(machine.scenario);
+    const double seconds = scenario::planned_duration_s(machine.scenario);
     const bool has_stopped =
         machine.run_until([&] { return machine.record.fault.code != FaultCode::kNone; }, seconds);
     EXPECT_FALSE(has_stopped) << c.name << " " << c.rate_Hz << " Hz at " << machine.record.time_s
@@ -182,7 +182,7 @@ TEST(Safety, TheSafetyControllerTakesThePowerAwayWhateverTheProgramDoes) {
 // pushed by its twin's own force, with nobody there
 Machine pushed() {
   config::Scenario s = scenario("free_space");
-  s.person = user::PersonKind::kNone;
+  s.person = person::PersonKind::kNone;
   s.script.script.grasp_s = kInfinity;  // nor does anybody close the dead-man switch
   Machine machine(std::move(s));
   machine.is_alone = true;

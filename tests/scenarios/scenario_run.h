@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "apps/hapticgiant/run_setup.h"
-#include "hg/assembly/assembly.h"
+#include "hg/analysis/events.h"
+#include "hg/analysis/summary.h"
 #include "hg/core/allocation_counter.h"
-#include "hg/evaluation/events.h"
-#include "hg/evaluation/summary.h"
 #include "hg/runtime/requests.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg {
 
@@ -30,9 +30,9 @@ inline config::Scenario shipped(const std::string& name, double rate_Hz) {
 /// Leaves the law alone: drives follow perfectly, sensors have no errors. Only the gantry lags, and
 /// the estimation filters the wrench.
 inline config::Scenario with_ideal_device(config::Scenario scenario) {
-  scenario.device.control.method = control::Method::kDrives;
+  scenario.device.control.method = tracking::Method::kDrives;
   config::settle_law(scenario);
-  scenario.device.simulation.sensors = simulation::ideal_sensors();
+  scenario.device.simulation.sensors = simulator::ideal_sensors();
   return scenario;
 }
 inline config::Scenario law_alone(const std::string& name) {
@@ -73,21 +73,21 @@ class ScenarioRun {
   explicit ScenarioRun(const std::string& name) : ScenarioRun(shipped(name)) {}
 
   explicit ScenarioRun(const config::Scenario& scenario)
-      : ScenarioRun(scenario, std::make_unique<device::SimulatedDevice>(
-                                  assembly::make_simulated_device(scenario))) {}
+      : ScenarioRun(scenario, std::make_unique<simulator::SimulatedDevice>(
+                                  scenario::make_simulated_device(scenario))) {}
 
   ScenarioRun(config::Scenario scenario, std::unique_ptr<device::Device> device)
       : scenario_(std::move(scenario)),
-        cycle_(assembly::make_cycle(scenario_)),
+        cycle_(scenario::make_cycle(scenario_)),
         device_(std::move(device)),
         detector_(scenario_.events, scenario_.limits),
         changes_(scenario_.changes),
-        summary_(assembly::make_summary(scenario_)) {}
+        summary_(scenario::make_summary(scenario_)) {}
 
   /// Plays until the script has played, or `seconds` of it; `look` sees every sample.
   void play(const std::function<void(const Sample&)>& look = {}, double seconds = 1e9) {
     auto sample = std::make_unique<Sample>();
-    const double end = std::min(seconds, assembly::planned_duration_s(scenario_));
+    const double end = std::min(seconds, scenario::planned_duration_s(scenario_));
     do {
       device_->read(sample->sensors);
       if (device_->truth() != nullptr) sample->truth = *device_->truth();
@@ -109,13 +109,13 @@ class ScenarioRun {
   }
 
   const config::Scenario& scenario() const { return scenario_; }
-  const evaluation::Summary& summary() const { return summary_; }
+  const analysis::Summary& summary() const { return summary_; }
   const Quality& quality() const { return quality_; }
   std::vector<std::string> missing() const { return detector_.missing(); }
 
   /// Time of an event; -1 if it did not happen.
   double time_of(const std::string& name) const {
-    for (const evaluation::Event& event : summary_.events()) {
+    for (const analysis::Event& event : summary_.events()) {
       if (event.name == name) return event.time_s;
     }
     return -1.0;
@@ -150,12 +150,12 @@ class ScenarioRun {
   }
 
   config::Scenario scenario_;
-  cycle::Cycle cycle_;
+  controller::Cycle cycle_;
   std::unique_ptr<device::Device> device_;
-  evaluation::EventDetector detector_;
+  analysis::EventDetector detector_;
   TimedChanges changes_;
   std::uint64_t played_ = 0;  ///< cycles
-  evaluation::Summary summary_;
+  analysis::Summary summary_;
   Quality quality_;
   std::array<bool, kMaxLimits> is_acting_{};
   Eigen::Vector3d last_acceleration_ = Eigen::Vector3d::Zero();

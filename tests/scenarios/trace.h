@@ -15,7 +15,7 @@ class Trace {
  public:
   explicit Trace(config::Scenario scenario, double seconds = 1e9) : run_(std::move(scenario)) {
     records_.reserve(
-        static_cast<std::size_t>(std::min(seconds, assembly::planned_duration_s(run_.scenario())) /
+        static_cast<std::size_t>(std::min(seconds, scenario::planned_duration_s(run_.scenario())) /
                                  run_.scenario().device.rendering.dt) +
         2);
     run_.play([&](const Sample& sample) { records_.push_back(sample.record); }, seconds);

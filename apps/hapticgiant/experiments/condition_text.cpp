@@ -9,9 +9,6 @@
 namespace hg::apps {
 namespace {
 
-using evaluation::Condition;
-using evaluation::ConditionKind;
-
 const char* kind_name(ConditionKind kind) {
   switch (kind) {
     case ConditionKind::kLimit:
@@ -123,7 +120,7 @@ std::string text_of(const Condition& c, const config::Scenario& scenario) {
 
 }  // namespace
 
-std::string condition_text(const evaluation::EventRule& rule, const config::Scenario& scenario) {
+std::string condition_text(const EventRule& rule, const config::Scenario& scenario) {
   std::string text;
   for (const Condition& condition : rule.all_of) {
     text += (text.empty() ? "" : " and ") + text_of(condition, scenario);
@@ -131,8 +128,7 @@ std::string condition_text(const evaluation::EventRule& rule, const config::Scen
   return text;
 }
 
-nlohmann::ordered_json condition_json(const evaluation::EventRule& rule,
-                                      const config::Scenario& scenario) {
+nlohmann::ordered_json condition_json(const EventRule& rule, const config::Scenario& scenario) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const Condition& c : rule.all_of) {
     nlohmann::ordered_json json = {{"kind", kind_name(c.kind)}};
@@ -149,7 +145,7 @@ nlohmann::ordered_json condition_json(const evaluation::EventRule& rule,
   return all;
 }
 
-std::string paper_label(const evaluation::EventRule& rule) {
+std::string paper_label(const EventRule& rule) {
   if (rule.name.starts_with("t_")) return rule.name;
   if (rule.what.starts_with("t_")) return rule.what.substr(0, rule.what.find(':'));
   return rule.name;

@@ -14,10 +14,10 @@
 #include "apps/hapticgiant/run_recording.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/assembly/assembly.h"
-#include "hg/evaluation/summary.h"
+#include "hg/analysis/summary.h"
 #include "hg/recording/recorder.h"
 #include "hg/runtime/runtime.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
@@ -79,7 +79,7 @@ std::vector<EventResult> expected_events(const PaperExperiment& experiment,
                                          const config::Scenario& scenario) {
   std::vector<EventResult> events;
   const double start_s = scenario.script.script.grasp_s;
-  for (const evaluation::EventRule& rule : scenario.events) {
+  for (const EventRule& rule : scenario.events) {
     EventResult& event = events.emplace_back(EventResult{.rule = &rule});
     for (const EventWindow& window : experiment.windows) {
       if (window.event != rule.name) continue;
@@ -91,7 +91,7 @@ std::vector<EventResult> expected_events(const PaperExperiment& experiment,
   return events;
 }
 
-void add_failures(const evaluation::Summary& summary, ExperimentResult& result) {
+void add_failures(const analysis::Summary& summary, ExperimentResult& result) {
   for (const EventResult& event : result.events) {
     if (!event.found_s) {
       result.failures.push_back(
@@ -123,8 +123,8 @@ void split(const std::string& summary, ExperimentResult& result) {
 /// All observers of the samples of one experiment.
 struct Watcher {
   ExperimentResult& result;
-  evaluation::EventDetector detector;
-  evaluation::Summary summary;
+  analysis::EventDetector detector;
+  analysis::Summary summary;
   std::unique_ptr<recording::Recorder> recorder;
 
   void look_at(Sample& sample) {
@@ -172,16 +172,16 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
   runtime::Options options;
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = true;
-  options.duration_s = arguments.duration_s.value_or(assembly::planned_duration_s(scenario));
-  options.longest_stop_s = assembly::longest_stop_s(scenario);
+  options.duration_s = arguments.duration_s.value_or(scenario::planned_duration_s(scenario));
+  options.longest_stop_s = scenario::longest_stop_s(scenario);
   options.changes = scenario.changes;
   runtime::check(options);
-  cycle::Cycle cycle = assembly::make_cycle(scenario);
-  device::SimulatedDevice device = assembly::make_simulated_device(scenario);
+  controller::Cycle cycle = scenario::make_cycle(scenario);
+  simulator::SimulatedDevice device = scenario::make_simulated_device(scenario);
   runtime::Runtime runtime(options, cycle, device);
   Watcher watcher{result,
                   {scenario.events, scenario.limits},
-                  assembly::make_summary(scenario),
+                  scenario::make_summary(scenario),
                   make_recorder(scenario, arguments)};
 
   const auto begin = std::chrono::steady_clock::now();
@@ -196,7 +196,7 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
   const runtime::Report report = runtime.join();
   if (watcher.recorder) settle(*watcher.recorder, arguments.recordings, result);
 
-  evaluation::RunFacts facts = facts_of_scenario(scenario);
+  analysis::RunFacts facts = facts_of_scenario(scenario);
   facts.version = kVersion;
   facts.rate_Hz = options.rate_Hz;
   facts.allocations_in_loop = report.allocations;

@@ -18,7 +18,7 @@ namespace hg::apps {
 
 /// An expected event and its result.
 struct EventResult {
-  const evaluation::EventRule* rule = nullptr;
+  const EventRule* rule = nullptr;
   std::optional<double> found_s;
   const EventWindow* window = nullptr;            ///< expected window; nullptr = any time
   double window_from_s = 0.0, window_to_s = 0.0;  ///< window in time of the run

@@ -74,9 +74,9 @@ Json pose_at(const rendering::TwinModel& twin, const RunTable& table, const Mark
 }
 
 void add_checkpoints(const config::Scenario& scenario, Json& json) {
-  for (const evaluation::EventRule& rule : scenario.events) {
-    for (const evaluation::Condition& condition : rule.all_of) {
-      if (condition.kind != evaluation::ConditionKind::kHandleAt) continue;
+  for (const EventRule& rule : scenario.events) {
+    for (const Condition& condition : rule.all_of) {
+      if (condition.kind != ConditionKind::kHandleAt) continue;
       json["checkpoints"].push_back({{"name", rule.name},
                                      {"x_m", condition.place.x()},
                                      {"y_m", condition.place.y()},

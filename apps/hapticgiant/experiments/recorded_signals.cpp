@@ -6,8 +6,8 @@
 
 #include "apps/hapticgiant/experiments/condition_text.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "hg/assembly/assembly.h"
-#include "hg/evaluation/summary.h"
+#include "hg/analysis/summary.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
@@ -37,7 +37,7 @@ class Reader final : public recording::RecordingListener {
       signals_.marks.push_back(
           {is_expected ? paper_label(*rule) : event.name, event.time_s, event.text});
     }
-    evaluation::RunFacts facts = facts_of_scenario(scenario);
+    analysis::RunFacts facts = facts_of_scenario(scenario);
     facts.rate_Hz = scenario.device.rate_Hz;
     signals_.summary = nlohmann::ordered_json::parse(summary_->to_json(facts, {}));
   }
@@ -47,13 +47,13 @@ class Reader final : public recording::RecordingListener {
     signals_.scenario =
         std::make_unique<config::Scenario>(recorded_scenario(signals_.configuration));
     signals_.table = std::make_unique<RunTable>(*signals_.scenario, period_s_);
-    summary_.emplace(assembly::make_summary(*signals_.scenario));
+    summary_.emplace(scenario::make_summary(*signals_.scenario));
   }
 
   RecordedSignals& signals_;
   double period_s_;
   std::vector<recording::Event> events_;
-  std::optional<evaluation::Summary> summary_;
+  std::optional<analysis::Summary> summary_;
 };
 
 }  // namespace

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "apps/hapticgiant/run_setup.h"
-#include "hg/assembly/assembly.h"
 #include "hg/recording/cdr_writer.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/recording/sample_fields.h"
+#include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
@@ -124,7 +124,7 @@ class Runner final : public recording::RecordingListener {
                              sample.record.cycle));
     }
     if (!cycle_) {
-      cycle_.emplace(assembly::make_cycle(recorded_scenario(configuration_)));
+      cycle_.emplace(scenario::make_cycle(recorded_scenario(configuration_)));
     } else if (sample.record.cycle != result_.cycles) {
       return end(fmt::format("cycle {} is missing in the recording", result_.cycles));
     }
@@ -150,7 +150,7 @@ class Runner final : public recording::RecordingListener {
   }
 
   std::vector<recording::NamedText> configuration_;
-  std::optional<cycle::Cycle> cycle_;
+  std::optional<controller::Cycle> cycle_;
   std::unique_ptr<Sample> now_ = std::make_unique<Sample>();
   CdrWriter left_, right_;
   Rerun result_;

@@ -68,7 +68,7 @@ Rows table(const std::vector<Row>& rows) {
                   fmt::format("{:.1f} %", kPaperSolver_percent),
                   fmt::format("{:.1f} %", kPaperMean_us * 1e-6 * 1000.0 * 100.0)});
   for (const Row& row : rows) {
-    const evaluation::Distribution d = row.times.total.distribution();
+    const analysis::Distribution d = row.times.total.distribution();
     text.push_back({"ours, law " + row.law, fmt::format("{:.0f}", row.rate_Hz),
                     fmt::format("{:.1f}", row.mean_us()), bench::to_text(d.p99_9, 1),
                     fmt::format("{:.1f}", d.max), fmt::format("{:.1f} %", row.solver_percent()),
@@ -80,7 +80,7 @@ Rows table(const std::vector<Row>& rows) {
 std::string csv(const std::vector<Row>& rows) {
   std::string text = "law,rate_Hz,cycles,mean_us,median_us,p99_9_us,max_us,solver_percent\n";
   for (const Row& row : rows) {
-    const evaluation::Distribution d = row.times.total.distribution();
+    const analysis::Distribution d = row.times.total.distribution();
     text += fmt::format("{},{:g},{},{:.3f},{:.3f},{},{:.3f},{:.2f}\n", row.law, row.rate_Hz,
                         row.times.total.count(), row.mean_us(), d.median,
                         bench::to_text(d.p99_9, 3), d.max, row.solver_percent());

@@ -25,8 +25,8 @@ Scenario load_faults(const std::string& faults) {
 }
 
 TEST(ScenarioFaults, EveryKindThatHasPartsTakesTheNameOfOne) {
-  for (const injection::Kind& kind : injection::kinds()) {
-    int taken = injection::parts_of(kind.part, 6, 2) == 0 ? 1 : 0;
+  for (const faults::Kind& kind : faults::kinds()) {
+    int taken = faults::parts_of(kind.part, 6, 2) == 0 ? 1 : 0;
     for (const char* part : {"m1", "ppu1", "x", "stop buttons"}) {
       if (taken > 0) break;
       try {

@@ -8,14 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "hg/controller/rendering/catalogue.h"
 #include "hg/core/test/message_of.h"
-#include "hg/rendering/catalogue.h"
 
 namespace hg::config {
 namespace {
 
-using evaluation::ConditionKind;
-using evaluation::EventRule;
 using std::numbers::pi;
 
 constexpr double kRounding = 1e-12;
@@ -193,22 +191,22 @@ TEST(Twin, ExcavatorStartsInTheMiddleOfItsWork) {
 }
 
 TEST(Script, FreeSpaceHandWalksTheCircleOfTheHandbook) {
-  user::Script script = free_space().script.script;
+  person::Script script = free_space().script.script;
   const auto& given = free_space().script.start_given;
-  EXPECT_EQ(script.frame, user::ScriptFrame::kBase);
+  EXPECT_EQ(script.frame, person::ScriptFrame::kBase);
   EXPECT_TRUE(std::ranges::none_of(given, [](bool is_given) { return is_given; }));
-  EXPECT_EQ(script.start[user::kGripChannel], 1.0);
+  EXPECT_EQ(script.start[person::kGripChannel], 1.0);
 
   script.start[0] = 0.9;
   script.start[2] = -0.75;
   script.start[3] = 0.5 * pi;
-  const auto after_circle = user::evaluate(script, 15.2);
+  const auto after_circle = person::evaluate(script, 15.2);
   const double angle = 2.0 * pi * 1.15;
   EXPECT_NEAR(after_circle[0], 0.9 * std::cos(angle), kRounding);
   EXPECT_NEAR(after_circle[1], 0.9 * std::sin(angle), kRounding);
   EXPECT_NEAR(after_circle[3], 0.5 * pi + angle, kRounding);
-  EXPECT_NEAR(user::evaluate(script, 17.6)[3], 3.0 * pi, kWritten);
-  EXPECT_NEAR(user::evaluate(script, 21.4)[3], 2.5 * pi + 0.25, kWritten);
+  EXPECT_NEAR(person::evaluate(script, 17.6)[3], 3.0 * pi, kWritten);
+  EXPECT_NEAR(person::evaluate(script, 21.4)[3], 2.5 * pi + 0.25, kWritten);
   EXPECT_EQ(script.duration_s, 48.0);
 }
 
@@ -217,7 +215,7 @@ TEST(Script, TheHandTakesHoldAfterTheTareAndHasAnArm) {
   EXPECT_EQ(script.script.grasp_s, 0.7);
   EXPECT_EQ(script.hand.mass, Eigen::Vector3d(1.0, 1.5, 1.5));  // [HANDBOOK] 5.1
   EXPECT_EQ(script.hand.stiffness, Eigen::Vector3d(80, 80, 80));
-  EXPECT_EQ(script.script.walk.kind, user::WalkKind::kNone);
+  EXPECT_EQ(script.script.walk.kind, person::WalkKind::kNone);
 }
 
 TEST(Script, APresetFillsInWhatIsNotGiven) {
@@ -232,8 +230,8 @@ TEST(Script, APresetFillsInWhatIsNotGiven) {
 
 TEST(Script, ThePathHasTheCheckpointsOfTheHandbook) {
   const Scenario scenario = load_scenario("models/scenarios/path.yaml");
-  const user::Walk& walk = scenario.script.script.walk;
-  ASSERT_EQ(walk.kind, user::WalkKind::kCheckpoints);
+  const person::Walk& walk = scenario.script.script.walk;
+  ASSERT_EQ(walk.kind, person::WalkKind::kCheckpoints);
   const std::vector<Eigen::Vector3d> expected = {{-1.2, -1.5, 0},   {1.2, -1.5, 0.5 * pi},
                                                  {1.45, 0.3, pi},   {0, 0, 1.5 * pi},
                                                  {-1.45, 1.2, 0.0}, {1.0, 1.6, 0.5 * pi}};
@@ -245,7 +243,7 @@ TEST(Script, ThePathHasTheCheckpointsOfTheHandbook) {
     EXPECT_NEAR(walk.checkpoints[i].heading, expected[i].z(), kWritten);
     // the event is the same place, with the azimuth that the handle then has
     ASSERT_EQ(scenario.events[i].all_of.size(), 1u);
-    const evaluation::Condition& at = scenario.events[i].all_of[0];
+    const Condition& at = scenario.events[i].all_of[0];
     EXPECT_EQ(at.kind, ConditionKind::kHandleAt);
     EXPECT_EQ(at.place.head<2>(), walk.checkpoints[i].p);
     EXPECT_NEAR(
@@ -257,23 +255,23 @@ TEST(Script, ThePathHasTheCheckpointsOfTheHandbook) {
 
 TEST(Script, TheSlowWalkIsTheOneOfTheControlNotes) {
   const Script script = load_scenario("models/scenarios/walk.yaml").script;
-  EXPECT_EQ(script.script.walk.kind, user::WalkKind::kCircle);
+  EXPECT_EQ(script.script.walk.kind, person::WalkKind::kCircle);
   EXPECT_EQ(script.script.walk.circle_radius, 0.7);
   EXPECT_EQ(script.script.walk.speed, 0.25);
   EXPECT_EQ(script.script.duration_s, 16.0);
-  EXPECT_EQ(script.hand.stiffness, user::hand(user::HandPreset::kNormal).stiffness);
+  EXPECT_EQ(script.hand.stiffness, person::hand(person::HandPreset::kNormal).stiffness);
 }
 
 TEST(Script, DoorHandPushesAndPressesInTheFrameOfTheHandle) {
   const Script& script = door().script;
-  EXPECT_EQ(script.script.frame, user::ScriptFrame::kTwinJoints);
-  EXPECT_EQ(script.script.start[user::kGripChannel], 0.0);
+  EXPECT_EQ(script.script.frame, person::ScriptFrame::kTwinJoints);
+  EXPECT_EQ(script.script.start[person::kGripChannel], 0.0);
   EXPECT_EQ(script.hand.angular_stiffness.norm(), 0.0);
   EXPECT_EQ(script.hand.force_max, 35.0);
 
   const auto wrench_at = [&](double t) {
-    const auto channels = user::evaluate(script.script, t);
-    return Vector6(Eigen::Map<const Vector6>(channels.data() + user::kWrenchChannel));
+    const auto channels = person::evaluate(script.script, t);
+    return Vector6(Eigen::Map<const Vector6>(channels.data() + person::kWrenchChannel));
   };
   // torques on hinge and lever: J^T R w
   const auto torque = [&](double t, double hinge, double lever) {
@@ -293,16 +291,16 @@ TEST(Script, DoorHandPushesAndPressesInTheFrameOfTheHandle) {
   EXPECT_NEAR(torque(8.45, 0.0, 0.0)[0], 0.75 * 35.0, 1e-9) << "leans with the lever down";
   EXPECT_EQ(wrench_at(7.2).norm(), 0.0) << "has let go";
 
-  const auto following = user::evaluate(script.script, 11.0);
+  const auto following = person::evaluate(script.script, 11.0);
   EXPECT_NEAR(following[0], 2.0, kRounding);
   EXPECT_NEAR(following[1], 0.0, kRounding);
-  EXPECT_EQ(following[user::kGripChannel], 1.0);
-  EXPECT_EQ(user::evaluate(script.script, 11.3)[user::kGripChannel], 0.0);
+  EXPECT_EQ(following[person::kGripChannel], 1.0);
+  EXPECT_EQ(person::evaluate(script.script, 11.3)[person::kGripChannel], 0.0);
 }
 
 TEST(Script, ExcavatorHandTurnsTheBucketAboutItsAxis) {
   const Script& script = excavator().script;
-  EXPECT_EQ(script.script.frame, user::ScriptFrame::kCylindrical);
+  EXPECT_EQ(script.script.frame, person::ScriptFrame::kCylindrical);
   // 350 N/m in series with the grip
   const Eigen::Array3d arm = script.hand.stiffness;
   const double grip = script.hand.grip_stiffness;
@@ -310,10 +308,10 @@ TEST(Script, ExcavatorHandTurnsTheBucketAboutItsAxis) {
   model::Chain chain = excavator().twin.model.chain;
   const int frame = excavator().twin.model.end_effector;
   chain.update_kinematics(excavator().twin.model.q_start, Eigen::Vector4d::Zero());
-  const auto channels = user::evaluate(script.script, 3.5);
+  const auto channels = person::evaluate(script.script, 3.5);
   const Eigen::Vector3d torque =
       chain.pose(frame).R *
-      Eigen::Map<const Eigen::Vector3d>(channels.data() + user::kWrenchChannel + 3);
+      Eigen::Map<const Eigen::Vector3d>(channels.data() + person::kWrenchChannel + 3);
   const Eigen::VectorXd tau = chain.jacobian(frame).bottomRows<3>().transpose() * torque;
   // -9 Nm about the pitch axis: boom up is positive, stick and bucket down
   constexpr double kDigits = 5e-3;  // Nm; the file has three digits per component
@@ -330,8 +328,8 @@ TEST(Script, SegmentsActInTheOrderOfTheirStart) {
        "  - {start_s: 2, duration_s: 1, x_m: 5}\n"}};
   SourceReader reader(texts);
   const Script script = load_script("script.yaml", free_space().twin.model, reader);
-  EXPECT_EQ(user::evaluate(script.script, 3.5)[0], 5.0);
-  EXPECT_EQ(user::evaluate(script.script, 6.0)[0], 6.0);
+  EXPECT_EQ(person::evaluate(script.script, 3.5)[0], 5.0);
+  EXPECT_EQ(person::evaluate(script.script, 6.0)[0], 6.0);
   EXPECT_EQ(script.script.duration_s, 5.0);
 }
 
@@ -406,7 +404,7 @@ TEST(Scenario, ExpectsTheEventsOfTheFiguresInTheirOrder) {
       names_of(door().events),
       (std::vector<std::string>{"locked", "handle pressed", "pulled", "locked again", "unlocked",
                                 "open stop", "velocity limit", "closed and locked"}));
-  EXPECT_EQ(door().person, user::PersonKind::kScript);
+  EXPECT_EQ(door().person, person::PersonKind::kScript);
   EXPECT_EQ(door().duration_s, 14.0);
 }
 

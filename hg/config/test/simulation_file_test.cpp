@@ -76,11 +76,11 @@ TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
   EXPECT_FALSE(shipped.chain);
 
   // those of the code, from which tests and other devices start
-  const simulation::SensorsConfig& sensors = shipped.sensors;
-  const simulation::SensorsConfig standard;
+  const simulator::SensorsConfig& sensors = shipped.sensors;
+  const simulator::SensorsConfig standard;
   for (auto encoder :
-       {&simulation::SensorsConfig::link_encoder, &simulation::SensorsConfig::motor_encoder,
-        &simulation::SensorsConfig::gantry_encoder}) {
+       {&simulator::SensorsConfig::link_encoder, &simulator::SensorsConfig::motor_encoder,
+        &simulator::SensorsConfig::gantry_encoder}) {
     EXPECT_DOUBLE_EQ((sensors.*encoder).resolution, (standard.*encoder).resolution);
     EXPECT_DOUBLE_EQ((sensors.*encoder).offset, (standard.*encoder).offset);
     EXPECT_DOUBLE_EQ((sensors.*encoder).error_1, (standard.*encoder).error_1);
@@ -88,7 +88,7 @@ TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
     EXPECT_DOUBLE_EQ((sensors.*encoder).period, (standard.*encoder).period);
   }
   for (auto part :
-       {&simulation::SensorsConfig::accelerometer, &simulation::SensorsConfig::gyroscope}) {
+       {&simulator::SensorsConfig::accelerometer, &simulator::SensorsConfig::gyroscope}) {
     EXPECT_DOUBLE_EQ((sensors.*part).noise, (standard.*part).noise);
     EXPECT_DOUBLE_EQ((sensors.*part).bias_instability, (standard.*part).bias_instability);
     EXPECT_DOUBLE_EQ((sensors.*part).random_walk, (standard.*part).random_walk);
@@ -127,7 +127,7 @@ TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
 }
 
 TEST(SimulationFile, EveryKeyOfASensorReachesItsField) {
-  const simulation::SensorsConfig sensors = load(R"(
+  const simulator::SensorsConfig sensors = load(R"(
 sensors:
   link_encoder: {resolution_rad: 1, offset_rad: 2, error_1_rad: 3, error_2_rad: 4}
   motor_encoder: {resolution_rad: 5, offset_rad: 6, error_1_rad: 7, error_2_rad: 8}
@@ -153,16 +153,16 @@ sensors:
     accelerometer: {noise_m_per_s2_per_sqrt_Hz: 64}
     gyroscope: {range_rad_per_s: 65}
 )")
-                                                .sensors;
+                                               .sensors;
   std::vector<double> values;
   for (const auto& encoder : {sensors.link_encoder, sensors.motor_encoder}) {
     for (double value : {encoder.resolution, encoder.offset, encoder.error_1, encoder.error_2})
       values.push_back(value);
   }
-  const simulation::EncoderConfig& gantry = sensors.gantry_encoder;
-  const simulation::TorqueSensorConfig& torque = sensors.torque;
+  const simulator::EncoderConfig& gantry = sensors.gantry_encoder;
+  const simulator::TorqueSensorConfig& torque = sensors.torque;
   EXPECT_EQ(torque.range, kInfinity);
-  const simulation::WrenchSensorConfig& wrench = sensors.wrench;
+  const simulator::WrenchSensorConfig& wrench = sensors.wrench;
   for (double value :
        {gantry.resolution, gantry.offset, gantry.error_1, gantry.error_2, gantry.period,
         torque.noise, torque.gain_error, torque.offset, torque.ripple, torque.resolution})
@@ -179,12 +179,12 @@ sensors:
           part.scale_error, part.misalignment, part.range, part.resolution})
       values.push_back(value);
   }
-  const simulation::TemperatureConfig& temperature = sensors.temperature;
+  const simulator::TemperatureConfig& temperature = sensors.temperature;
   for (double value : {1e4 * sensors.imu_filter.average, 1e4 * sensors.imu_filter.delay,
                        temperature.environment, temperature.self_heating, temperature.time_constant,
                        temperature.fluctuation, temperature.time_on})
     values.push_back(value);
-  const simulation::LinkUnitConfig& unit = sensors.link_unit;
+  const simulator::LinkUnitConfig& unit = sensors.link_unit;
   EXPECT_FALSE(unit.is_turned);
   for (double value : {unit.place, 1e4 * unit.filter.average, 1e4 * unit.filter.delay,
                        unit.accelerometer.noise, unit.gyroscope.range})
@@ -194,7 +194,7 @@ sensors:
 }
 
 TEST(SimulationFile, IdealSensorsKeepWhatIsGiven) {
-  const simulation::SensorsConfig sensors =
+  const simulator::SensorsConfig sensors =
       load("sensors: {torque_sensor: {noise: 0.1}, ideal: true}\n").sensors;
   EXPECT_EQ(sensors.torque.noise, 0.1);
   EXPECT_EQ(sensors.torque.ripple, 0.0);
@@ -293,7 +293,7 @@ TEST(SimulationFile, EffectsReachTheJointsInTheirUnits) {
       "sensors: {wrench_sensor: {shunt: 0.08}}\n");
   const ActuatorModel actuator = {
       .rotor_inertia = 2.0, .coulomb_friction = 4.0, .torque_max = 100.0};
-  const simulation::JointEffects effects =
+  const simulator::JointEffects effects =
       effects_of(actuator, simulation.motors, simulation.gears, 50.0);
   EXPECT_DOUBLE_EQ(effects.cogging, 1.0);
   EXPECT_DOUBLE_EQ(effects.cogging_wave, 1200.0);
@@ -313,7 +313,7 @@ TEST(SimulationFile, EffectsReachTheJointsInTheirUnits) {
 
 TEST(SimulationFile, WithoutThemThereAreNoEffects) {
   const Simulation simulation = load("sensors: {}\n");
-  const simulation::JointEffects effects =
+  const simulator::JointEffects effects =
       effects_of({.rotor_inertia = 2.0, .coulomb_friction = 4.0, .torque_max = 100.0},
                  simulation.motors, simulation.gears, 50.0);
   EXPECT_EQ(effects.cogging, 0.0);

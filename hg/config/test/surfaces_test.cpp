@@ -44,20 +44,20 @@ TEST(Surfaces, HaveShapePlaceAndFeel) {
           "  - {name: e, shape: mesh, mesh: plate.stl, scale: 0.001}\n")
           .surfaces;
   ASSERT_EQ(surfaces.size(), 5U);
-  EXPECT_TRUE(std::holds_alternative<environment::Plane>(surfaces[0].shape));
+  EXPECT_TRUE(std::holds_alternative<surfaces::Plane>(surfaces[0].shape));
   EXPECT_EQ(surfaces[0].stiffness, 2000.0);
   EXPECT_EQ(surfaces[0].pose.p, Eigen::Vector3d(0, 0, -5));
-  EXPECT_EQ(std::get<environment::Box>(surfaces[1].shape).size, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(std::get<surfaces::Box>(surfaces[1].shape).size, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(surfaces[1].friction, 0.3);
-  EXPECT_EQ(std::get<environment::Sphere>(surfaces[2].shape).radius, 0.2);
+  EXPECT_EQ(std::get<surfaces::Sphere>(surfaces[2].shape).radius, 0.2);
   EXPECT_NEAR(surfaces[2].pose.R(1, 0), 1.0, 1e-6);
-  EXPECT_EQ(std::get<environment::Cylinder>(surfaces[3].shape).length, 0.4);
+  EXPECT_EQ(std::get<surfaces::Cylinder>(surfaces[3].shape).length, 0.4);
   EXPECT_EQ(surfaces[3].stiffness, 500.0);
   EXPECT_EQ(surfaces[3].damping, 7.0);
   EXPECT_FALSE(surfaces[0].damping);
-  EXPECT_EQ(surfaces[0].contact, environment::Contact::kSpring);
-  EXPECT_EQ(surfaces[2].contact, environment::Contact::kStop);
-  const auto& mesh = std::get<environment::Mesh>(surfaces[4].shape);
+  EXPECT_EQ(surfaces[0].contact, surfaces::Contact::kSpring);
+  EXPECT_EQ(surfaces[2].contact, surfaces::Contact::kStop);
+  const auto& mesh = std::get<surfaces::Mesh>(surfaces[4].shape);
   ASSERT_EQ(mesh.triangles().size(), 1U);
   EXPECT_EQ(mesh.triangles()[0].corners[1], Eigen::Vector3d(1, 0, 0));
 }

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "hg/config/twin.h"
-#include "hg/rendering/twin_parameters.h"
+#include "hg/controller/rendering/twin_parameters.h"
 
 namespace hg::config {
 namespace {

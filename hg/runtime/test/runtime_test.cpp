@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "hg/controller/rendering/test/test_models.h"
 #include "hg/core/allowed_to_wait.h"
 #include "hg/core/error.h"
-#include "hg/rendering/test/test_models.h"
-#include "hg/runtime/monotonic_clock.h"
-#include "hg/runtime/schedule.h"
+#include "hg/core/monotonic_clock.h"
+#include "hg/core/schedule.h"
 
 namespace hg::runtime {
 namespace {
@@ -70,7 +70,7 @@ class StillDevice : public device::Device {
 
 struct Parts {
   StillDevice device;
-  std::unique_ptr<cycle::Cycle> cycle;
+  std::unique_ptr<controller::Cycle> cycle;
 
   Parts() {
     const rendering::DeviceModel model = rendering::unlimited_device();
@@ -78,12 +78,12 @@ struct Parts {
         rendering::unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(model, Eigen::Vector2d::Zero(), kPosture));
-    cycle::Config config;
+    controller::Config config;
     config.estimation.wrench.has_imu = false;
     config.prepositioning.n_p = 2;
     config.monitor.joint_range.assign(6, {-10.0, 10.0});
     config.monitor.joint_speed_max.assign(6, 10.0);
-    cycle = std::make_unique<cycle::Cycle>(config, model, twin);
+    cycle = std::make_unique<controller::Cycle>(config, model, twin);
   }
 };
 

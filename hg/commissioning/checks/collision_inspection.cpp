@@ -1,0 +1,70 @@
+#include "hg/commissioning/checks/collision_inspection.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace hg::checks {
+
+void inspect_collisions(const config::Device& device, Collector& out) {
+  const collision::Config& config = device.collision;
+  const std::string unknown =
+      device.unknown_links.empty()
+          ? std::string()
+          : fmt::format("nobody watches {}", fmt::join(device.unknown_links, ", "));
+  if (config.shapes.empty()) {
+    if (unknown.empty()) return;  // switched off
+    out.add(Severity::kWarning, "collision", unknown,
+            "give the links <collision> elements that are spheres, cylinders or boxes: meshes do "
+            "not count");
+    return;
+  }
+  const auto count = [&](collision::Exclusion reason) {
+    return std::ranges::count(config.pairs.excluded, reason, &collision::Excluded::reason);
+  };
+  out.add(Severity::kNote, "collision",
+          fmt::format("{} pairs of {} shapes are watched; left out: {} of neighbours, {} that "
+                      "always touch, {} that never come within {:g} mm{}",
+                      config.pairs.watched.size(), config.shapes.size(),
+                      count(collision::Exclusion::kNeighbours),
+                      count(collision::Exclusion::kAlways), count(collision::Exclusion::kNever),
+                      1e3 * (config.safe_distance + collision::kFarEnough),
+                      unknown.empty() ? "" : "; " + unknown),
+          "");
+}
+
+void inspect_floor(const config::Device& device, const Survey& survey, Collector& out) {
+  if (!device.has_floor) return;
+  constexpr const char* kKey = "floor_z_m";
+  double highest = -kInfinity;
+  for (const Position& position : survey.cloud.positions) {
+    highest = std::max(highest, position.p.z());
+  }
+  if (std::isfinite(highest) && highest <= device.floor_z) {
+    out.add(Severity::kFault, kKey,
+            fmt::format("{:g} m is above every place that the handle reaches, at most {:.2f} m",
+                        device.floor_z, highest),
+            "z points up from the root link: check the sign");
+    return;
+  }
+  std::vector<std::string> inside;
+  for (const collision::Excluded& pair : device.collision.pairs.excluded) {
+    if (pair.reason != collision::Exclusion::kAlways) continue;
+    const auto at = [&](int shape) -> const collision::Shape& {
+      return device.collision.shapes[static_cast<std::size_t>(shape)];
+    };
+    if (at(pair.a).is_surrounding) inside.push_back(at(pair.b).name);
+    if (at(pair.b).is_surrounding) inside.push_back(at(pair.a).name);
+  }
+  if (inside.empty()) return;
+  out.add(Severity::kWarning, kKey,
+          fmt::format("{} in every posture in the floor at {:g} m: nobody watches how deep",
+                      fmt::join(inside, ", "), device.floor_z),
+          "lower the floor, or make the collision elements of these links smaller");
+}
+
+}  // namespace hg::checks

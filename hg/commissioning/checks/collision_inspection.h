@@ -1,0 +1,17 @@
+/// Pairs of a device that are watched for collisions, and pairs that are not, in one line.
+#pragma once
+
+#include "hg/commissioning/checks/findings.h"
+#include "hg/commissioning/checks/survey.h"
+#include "hg/config/device.h"
+
+namespace hg::checks {
+
+/// Adds one finding: a note, or a warning where parts of the device move unwatched.
+void inspect_collisions(const config::Device& device, Collector& out);
+
+/// Adds findings on a floor above all places of the handle, or one that contains a part of the
+/// device in all postures.
+void inspect_floor(const config::Device& device, const Survey& survey, Collector& out);
+
+}  // namespace hg::checks

@@ -1,0 +1,110 @@
+#include "hg/commissioning/checks/workspace.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hg/commissioning/checks/datasheet.h"
+#include "hg/commissioning/checks/test/cartesian_device.h"
+
+namespace hg::checks {
+namespace {
+
+constexpr SurveyOptions kFew = {.seed = 3, .postures = 2'000, .positions = 100'000};
+
+rendering::CartesianLimit box(const rendering::DeviceModel& model) {
+  rendering::CartesianLimit limit = {.name = "hand", .frame = model.handle, .axes = {}};
+  limit.axes[0] = {.q_min = 0.0, .q_max = 4.0, .dq_max = 1.0, .ddq_max = 5.0};
+  limit.axes[1] = {.q_min = 0.0, .q_max = 1.0, .dq_max = 1.0, .ddq_max = 5.0};
+  limit.axes[2] = {.q_min = 0.0, .q_max = 1.0, .dq_max = 1.0, .ddq_max = 5.0};
+  return limit;
+}
+
+TEST(Workspace, OfThreePrismaticAxesIsTheProductOfTheirRanges) {
+  const config::Device device = cartesian_device();
+  const Workspace space = workspace(device, survey(device, kFew));
+  EXPECT_NEAR(space.volume, 3.0 * 1.5 * 1.0, 1e-9);
+  EXPECT_TRUE(space.bounds.isApprox(
+      Eigen::AlignedBox3d(Eigen::Vector3d(-1, 0, 0), Eigen::Vector3d(2, 1.5, 1)), 1e-9));
+  EXPECT_FALSE(space.has_box);
+}
+
+TEST(Workspace, SharesOfABoxThatIsHalfOutOfReach) {
+  config::Device device = cartesian_device();
+  device.model.cartesian_limits.push_back(box(device.model));
+  const Workspace space = workspace(device, survey(device, kFew));
+  EXPECT_NEAR(space.box_volume, 4.0, 1e-12);
+  EXPECT_NEAR(space.share_any, 0.5, 0.02);
+  // the wrist turns about the handle: every position is reached in the nominal orientation
+  EXPECT_NEAR(space.share_nominal, 0.5, 0.05);
+  EXPECT_NEAR(space.volume, 2.0, 0.1);
+}
+
+// At a fixed tilt the height follows from q4 alone: 0.42 m (cos 0.2 - cos 2.45) of the 0.95 m, and
+// near one side of the box the forearm keeps the elbow from following the hand.
+TEST(Workspace, OfTheHapticGiantInOneOrientationIsAPartOfItsBox) {
+  const config::Device device = config::load_device("models/haptic_giant/device.yaml");
+  const Workspace space = workspace(device, survey(device));
+  const double height = 0.42 * (std::cos(0.2) - std::cos(2.45)) / 0.95;
+  EXPECT_GT(space.share_any, 0.97);
+  EXPECT_LT(space.share_nominal, height);
+  EXPECT_GT(space.share_nominal, height * (1.0 - 0.54 / 3.9) - 0.05);
+}
+
+TEST(Workspace, VoxelsAtTheEdgeOfABallCountHalf) {
+  const Eigen::AlignedBox3d cube(Eigen::Vector3d::Constant(-1.2), Eigen::Vector3d::Constant(1.2));
+  VoxelGrid grid(cube, 0.1);
+  constexpr int kSteps = 240;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      for (int k = 0; k <= kSteps; ++k) {
+        const Eigen::Vector3d p =
+            Eigen::Vector3d(i, j, k) * 2.4 / kSteps - Eigen::Vector3d::Constant(1.2);
+        if (p.norm() <= 1.0) grid.touch(p);
+      }
+    }
+  }
+  EXPECT_NEAR(grid.volume(), 4.0 / 3.0 * M_PI, 0.03 * 4.0 / 3.0 * M_PI);
+}
+
+TEST(Survey, SameSeedSameNumbersAndAnotherSeedNearlyTheSame) {
+  const config::Device device = cartesian_device();
+  SurveyOptions other = kFew;
+  other.seed = 4;
+  const Survey first = survey(device, kFew), again = survey(device, kFew);
+  ASSERT_EQ(first.postures.size(), again.postures.size());
+  EXPECT_EQ(first.postures.back().q, again.postures.back().q);
+  const Datasheet a = make_datasheet(device, first),
+                  b = make_datasheet(device, survey(device, other));
+  EXPECT_NE(a.condition_median, b.condition_median);
+  EXPECT_NEAR(a.condition_median, b.condition_median, 0.05 * a.condition_median);
+}
+
+// f <= rating / 1 along each axis; pz carries 5 kg
+TEST(Datasheet, ForcesOfACartesianDeviceAreItsRatingsLessGravity) {
+  const config::Device device = cartesian_device();
+  const Datasheet sheet = make_datasheet(device, survey(device, kFew));
+  EXPECT_NEAR(sheet.force.median, std::min(80.0, 120.0 - 5.0 * 9.81), 1e-9);
+  EXPECT_NEAR(sheet.force.smallest, sheet.force.median, 1e-9);
+  EXPECT_EQ(sheet.force_bottleneck.joint, "pz");
+  EXPECT_NEAR(sheet.torque.median, 7.0, 1e-9);
+  EXPECT_EQ(sheet.torque_bottleneck.joint, "rx");
+  EXPECT_NEAR(sheet.acceleration.median, 10.0, 1e-9);
+  EXPECT_NEAR(sheet.joints[2].gravity_max, 5.0 * 9.81, 1e-9);
+  EXPECT_EQ(sheet.joints[0].gravity_max, 0.0);
+}
+
+TEST(Datasheet, DoesNotChangeWhenTheDeviceIsTurnedAboutTheVertical) {
+  const Pose turned = {Eigen::Vector3d(0.3, -0.2, 0.5),
+                       Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()).toRotationMatrix()};
+  const config::Device plain = cartesian_device(), moved = cartesian_device(turned);
+  const Datasheet a = make_datasheet(plain, survey(plain, kFew));
+  const Datasheet b = make_datasheet(moved, survey(moved, kFew));
+  EXPECT_NEAR(a.force.median, b.force.median, 1e-9);
+  EXPECT_NEAR(a.torque.low, b.torque.low, 1e-9);
+  EXPECT_NEAR(a.acceleration.median, b.acceleration.median, 1e-9);
+  EXPECT_NEAR(a.singular_value.median, b.singular_value.median, 1e-9);
+}
+
+}  // namespace
+}  // namespace hg::checks

@@ -1,0 +1,63 @@
+#include "hg/commissioning/generator/chain_part.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+namespace hg::generator {
+
+model::Chain read_part(const ChainPart& part) {
+  model::ChainOptions options;
+  options.root_link = part.root_link;
+  options.tip_link = part.tip_link;
+  return model::Chain::from_urdf_file(part.urdf, options);
+}
+
+int held_frame(const model::Chain& chain) {
+  constexpr std::array<const char*, 6> kHints = {"handle", "tcp", "tool", "ee", "grip", "hand"};
+  const auto& names = chain.frame_names();
+  for (const char* hint : kHints) {
+    for (std::size_t i = names.size(); i-- > 0;) {
+      if (names[i].find(hint) != std::string::npos) return static_cast<int>(i);
+    }
+  }
+  return static_cast<int>(names.size()) - 1;
+}
+
+std::string rounded(double value) {
+  if (value == 0.0 || !std::isfinite(value)) return "0";
+  const int digits = 1 - static_cast<int>(std::floor(std::log10(std::abs(value))));
+  const double scale = std::pow(10.0, digits);
+  return fmt::format("{}", std::round(value * scale) / scale);
+}
+
+std::string quoted(const std::string& name) {
+  constexpr std::array<const char*, 8> kWords = {"y",  "n",   "yes",  "no",
+                                                 "on", "off", "true", "false"};
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '.' || c == '-';
+  };
+  std::string lower = name;
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const bool is_word = std::ranges::find(kWords, lower) != kWords.end() || lower == "null";
+  const bool begins_plain = !name.empty() && (std::isalpha(static_cast<unsigned char>(name[0])) ||
+                                              name[0] == '_' || name[0] == '/' || name[0] == '.');
+  if (begins_plain && !is_word && std::ranges::all_of(name, is_plain)) return name;
+  std::string text;
+  for (char c : name) text += c == '\'' ? std::string("''") : std::string(1, c);
+  return "'" + text + "'";
+}
+
+std::string part_lines(const ChainPart& part, const std::filesystem::path& folder) {
+  const std::filesystem::path base = folder.empty() ? "." : folder;
+  std::string text = fmt::format(
+      "urdf: {}\n", quoted(std::filesystem::relative(part.urdf, base).generic_string()));
+  if (!part.root_link.empty()) text += fmt::format("root_link: {}\n", quoted(part.root_link));
+  if (!part.tip_link.empty()) text += fmt::format("tip_link: {}\n", quoted(part.tip_link));
+  return text;
+}
+
+}  // namespace hg::generator

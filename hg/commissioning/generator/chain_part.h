@@ -1,0 +1,33 @@
+/// Part of a URDF that becomes a chain.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "hg/model/chain.h"
+
+namespace hg::generator {
+
+struct ChainPart {
+  std::filesystem::path urdf;
+  /// End links of the part in a URDF with branches; empty = the whole URDF
+  std::string root_link, tip_link;
+};
+
+/// Reads the part as a chain. Throws SetupError as Chain::from_urdf_file.
+model::Chain read_part(const ChainPart& part);
+
+/// Index of the last frame with a name of a held frame (handle, tcp, tool, ...), else of the last
+/// frame.
+int held_frame(const model::Chain& chain);
+
+/// Number with two significant digits in usual notation: 0.0023, 1.2, 120.
+std::string rounded(double value);
+
+/// A name for YAML, in quotes where needed.
+std::string quoted(const std::string& name);
+
+/// Lines of a YAML file in `folder`: `urdf:` and, where given, the ends of the part.
+std::string part_lines(const ChainPart& part, const std::filesystem::path& folder);
+
+}  // namespace hg::generator

@@ -1,0 +1,295 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hg/commissioning/generator/postures.h"
+#include "hg/commissioning/generator/scaffold.h"
+#include "hg/core/error.h"
+
+namespace hg::generator {
+namespace {
+
+constexpr int kPostures = 2000;
+constexpr double kTable = 0.05;          // m, handles stay above the plane of the root link by it
+constexpr double kSingularMargin = 0.2;  // rad, kept from a singular value
+constexpr double kRampTime = 0.2;        // s, from rest to full speed where no rating is known
+constexpr double kDefaultSpeed = 1.5;    // rad/s or m/s where the URDF has none
+
+struct DeviceDraft {
+  model::Chain chain;
+  int n_p = 0;
+  int handle = 0;
+  bool stands = false;
+  std::vector<Interval> ranges;  ///< sampled and written: the URDF's without singular values
+  std::vector<SingularValue> singular;
+  Eigen::VectorXd posture;
+};
+
+const model::Joint& joint(const DeviceDraft& d, int i) {
+  return d.chain.joints()[static_cast<std::size_t>(i)];
+}
+
+// leading prismatic joints that six or seven others follow
+int gantry_joints(const model::Chain& chain, const std::string& source) {
+  const int n = chain.nv();
+  int leading = 0;
+  for (const model::Joint& joint : chain.joints()) {
+    if (joint.nv != 1)
+      throw SetupError(source + ": joint " + joint.name + ": a device has no floating joints");
+    if (joint.type != model::JointType::kPrismatic) break;
+    ++leading;
+  }
+  const int n_p = std::min({leading, kMaxGantry, n - 6});
+  if (n_p < 0 || n - n_p > kMaxManipulator) {
+    throw SetupError(fmt::format(
+        "{}: a device needs six or seven manipulator joints, and at most two gantry joints before "
+        "them, got {} joints of which the first {} are prismatic; take a part of the URDF with "
+        "--root-link and --tip-link",
+        source, n, leading));
+  }
+  return n_p;
+}
+
+// speeds and accelerations as they are written down
+double speed_of(const model::Joint& joint) {
+  return std::isfinite(joint.velocity_max) ? joint.velocity_max : kDefaultSpeed;
+}
+double acceleration_of(const model::Joint& joint) {
+  return std::stod(rounded(speed_of(joint) / kRampTime));
+}
+
+std::string unit_of(const model::Joint& joint) {
+  return joint.type == model::JointType::kPrismatic ? "m" : "rad";
+}
+
+// the handle of a standing arm is above the plane that it stands on
+bool is_usable(const DeviceDraft& d) { return !d.stands || d.chain.pose(d.handle).p.z() >= kTable; }
+
+// a gantry hangs; an arm stands unless it reaches little above its root
+bool stands(DeviceDraft& d) {
+  PostureSampler sampler(d.ranges);
+  int above = 0;
+  for (int k = 0; k < kPostures; ++k) {
+    d.chain.update_kinematics(sampler.draw(), Eigen::VectorXd::Zero(d.chain.nv()));
+    if (d.chain.pose(d.handle).p.z() >= kTable) ++above;
+  }
+  return d.n_p == 0 && above > kPostures / 4;
+}
+
+// the most dexterous of many postures, not too near to the ends of the joints
+Eigen::VectorXd best_posture(DeviceDraft& d) {
+  PostureSampler sampler(d.ranges);
+  Eigen::VectorXd best = sampler.draw();
+  double most = -1.0;
+  for (int k = 0; k < kPostures; ++k) {
+    const Eigen::VectorXd q = sampler.draw();
+    double nearest = 1.0, sum = 0.0;  // 1 in the middle of a range, 0 at its ends
+    for (int i = d.n_p; i < q.size(); ++i) {
+      const Interval range = d.ranges[static_cast<std::size_t>(i)];
+      const double share = (2.0 * q[i] - range.lb - range.ub) / (range.ub - range.lb);
+      nearest = std::min(nearest, 1.0 - std::abs(share));
+      sum += 1.0 - share * share;
+    }
+    const double value = dexterity(d.chain, d.handle, d.n_p, q) * std::sqrt(nearest) * sum;
+    if (value > most && is_usable(d)) {
+      most = value;
+      best = q;
+    }
+  }
+  for (int i = 0; i < d.n_p; ++i) {
+    const Interval range = d.ranges[static_cast<std::size_t>(i)];
+    best[i] = 0.5 * (range.lb + range.ub);
+  }
+  return best;
+}
+
+// part of `range` around `value` that stays away from `singular`
+Interval without(Interval range, double singular, double value) {
+  if (singular < value) {
+    range.lb = std::max(range.lb, singular + kSingularMargin);
+  } else {
+    range.ub = std::min(range.ub, singular - kSingularMargin);
+  }
+  return range;
+}
+
+void leave_singularities(DeviceDraft& d) {
+  for (const SingularValue& s : d.singular) {
+    if (s.other >= 0) continue;
+    Interval& range = d.ranges[static_cast<std::size_t>(s.joint)];
+    range = without(range, s.value, d.posture[s.joint]);
+  }
+}
+
+// sums that are singular, with the range that is left for each
+std::vector<std::pair<SingularValue, Interval>> sums(const DeviceDraft& d) {
+  std::vector<std::pair<SingularValue, Interval>> found;
+  for (const SingularValue& s : d.singular) {
+    if (s.other < 0) continue;
+    const auto same = std::ranges::find_if(
+        found, [&](const auto& entry) { return entry.first.joint == s.joint; });
+    const Interval whole;
+    Interval& range = same != found.end() ? same->second : found.emplace_back(s, whole).second;
+    range = without(range, s.value, d.posture[s.joint] + d.posture[s.other]);
+  }
+  if (found.size() > kMaxVirtualJoints) found.resize(kMaxVirtualJoints);
+  return found;
+}
+
+// capability of the manipulator at the handle in every direction of B at once, see `check`
+struct Reach {
+  Eigen::Vector3d lower = Eigen::Vector3d::Constant(kInfinity);
+  Eigen::Vector3d upper = Eigen::Vector3d::Constant(-kInfinity);
+  double speed = 0.0, acceleration = 0.0;
+};
+
+Reach reach_of(DeviceDraft& d) {
+  PostureSampler sampler(d.ranges);
+  Reach reach;
+  std::array<std::vector<double>, 3> speeds, accelerations;
+  for (int k = 0; k < kPostures; ++k) {
+    const Eigen::VectorXd q = sampler.draw();
+    d.chain.update_kinematics(q, Eigen::VectorXd::Zero(q.size()));
+    if (!is_usable(d)) continue;
+    const Eigen::Vector3d p = d.chain.pose(d.handle).p;
+    reach.lower = reach.lower.cwiseMin(p);
+    reach.upper = reach.upper.cwiseMax(p);
+    const model::Jacobian J = d.chain.jacobian(d.handle);
+    for (int axis = 0; axis < 3; ++axis) {
+      double speed = 0.0, acceleration = 0.0;
+      for (int i = d.n_p; i < q.size(); ++i) {
+        speed += 0.5 * std::abs(J(axis, i)) * speed_of(joint(d, i));
+        acceleration += 0.5 * std::abs(J(axis, i)) * acceleration_of(joint(d, i));
+      }
+      speeds[static_cast<std::size_t>(axis)].push_back(speed);
+      accelerations[static_cast<std::size_t>(axis)].push_back(acceleration);
+    }
+  }
+  const auto fifth_percentile = [](std::vector<double>& values) {
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
+    std::ranges::nth_element(values, place);
+    return *place;
+  };
+  reach.speed = 1.5;
+  reach.acceleration = 5.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    reach.speed = std::min(reach.speed, fifth_percentile(speeds[axis]));
+    reach.acceleration = std::min(reach.acceleration, fifth_percentile(accelerations[axis]));
+  }
+  return reach;
+}
+
+std::string list_of(const DeviceDraft& d, int first, int end) {
+  std::string text;
+  for (int i = first; i < end; ++i) text += (i > first ? ", " : "") + quoted(joint(d, i).name);
+  return "[" + text + "]";
+}
+
+std::string joint_lines(const DeviceDraft& d) {
+  std::string text =
+      "\njoints:  # positions and speeds that do not stand here are those of the URDF\n";
+  for (int i = d.n_p; i < d.chain.nv(); ++i) {
+    const model::Joint& j = joint(d, i);
+    const Interval range = d.ranges[static_cast<std::size_t>(i)];
+    const std::string unit = unit_of(j);
+    std::string keys, why = "full speed within 0.2 s";
+    if (range.lb > j.position.lb && range.lb > -M_PI)
+      keys += fmt::format("q_min_{}: {}, ", unit, rounded(range.lb));
+    if (range.ub < j.position.ub && range.ub < M_PI)
+      keys += fmt::format("q_max_{}: {}, ", unit, rounded(range.ub));
+    if (!keys.empty()) why += "; [V] stays on one side of its singular position";
+    if (!std::isfinite(j.velocity_max))
+      keys += fmt::format("dq_max_{}_per_s: {}, ", unit, rounded(kDefaultSpeed));
+    text += fmt::format("  {}: {{{}ddq_max_{}_per_s2: {}}}  # [A] {}\n", quoted(j.name), keys, unit,
+                        rounded(acceleration_of(j)), why);
+  }
+  return text;
+}
+
+std::string posture_lines(const DeviceDraft& d) {
+  std::string text =
+      fmt::format("\nposture:  # [V] the most dexterous of {} postures; {}\n", kPostures,
+                  d.n_p > 0 ? "the gantry moves so that the arm stays near it"
+                            : "where runs begin, if they can");
+  for (int i = d.n_p; i < d.chain.nv(); ++i) {
+    text += fmt::format("  {}: {}\n", quoted(joint(d, i).name), rounded(d.posture[i]));
+  }
+  return text;
+}
+
+std::string virtual_joint_lines(const DeviceDraft& d) {
+  const auto found = sums(d);
+  if (found.empty()) return "";
+  std::string text =
+      "\nvirtual_joints:  # [V] sums of joints that are singular at a quarter turn\n";
+  for (const auto& [sum, range] : found) {
+    const model::Joint& a = joint(d, sum.joint);
+    const model::Joint& b = joint(d, sum.other);
+    text += fmt::format("  - name: {}\n    weights: {{{}: 1, {}: 1}}\n",
+                        quoted(a.name + "+" + b.name), quoted(a.name), quoted(b.name));
+    if (std::isfinite(range.lb)) text += fmt::format("    q_min_rad: {}\n", rounded(range.lb));
+    if (std::isfinite(range.ub)) text += fmt::format("    q_max_rad: {}\n", rounded(range.ub));
+    text += fmt::format("    dq_max_rad_per_s: {}  # [A]\n    ddq_max_rad_per_s2: {}  # [A]\n",
+                        rounded(0.8 * (speed_of(a) + speed_of(b))),
+                        rounded(0.5 * (acceleration_of(a) + acceleration_of(b))));
+  }
+  return text;
+}
+
+std::string box_lines(const DeviceDraft& d, const Reach& reach) {
+  std::string text = fmt::format("\ncartesian_limits:\n  - name: hand\n    frame: {}\n",
+                                 quoted(d.chain.frame_names()[static_cast<std::size_t>(d.handle)]));
+  for (int axis = 0; axis < 3; ++axis) {
+    text +=
+        fmt::format("    {}: {{q_min_m: {}, q_max_m: {}}}{}\n", "xyz"[axis],
+                    rounded(reach.lower[axis]), rounded(reach.upper[axis]),
+                    axis == 0 ? "  # [V] all that the arm reaches; make it smaller than your room"
+                    : axis == 2 && d.stands ? "  # [A] above the plane that the arm stands on"
+                                            : "");
+  }
+  text += fmt::format(
+      "    dq_max_m_per_s: {}  # [V] half of what the joints give in 95 % of the postures\n",
+      rounded(reach.speed));
+  text += fmt::format("    ddq_max_m_per_s2: {}  # [V] the same\n", rounded(reach.acceleration));
+  return text;
+}
+
+}  // namespace
+
+std::string device_yaml(const ChainPart& part, const std::filesystem::path& folder) {
+  DeviceDraft d{.chain = read_part(part), .ranges = {}, .singular = {}, .posture = {}};
+  d.n_p = gantry_joints(d.chain, part.urdf.generic_string());
+  d.handle = held_frame(d.chain);
+  d.ranges = joint_ranges(d.chain);
+  for (std::size_t i = 0; i < d.ranges.size(); ++i) {
+    // more than a turn says that the joint has no stops, only cables
+    if (unit_of(d.chain.joints()[i]) == "rad") d.ranges[i] = intersect(d.ranges[i], {-M_PI, M_PI});
+  }
+  d.stands = stands(d);
+  d.singular = singular_values(d.chain, d.handle, d.n_p, d.ranges);
+  d.posture = best_posture(d);
+  leave_singularities(d);
+  const Reach reach = reach_of(d);
+
+  std::string text = fmt::format(
+      "# {} as a device, from {}.\n"
+      "# [V] worked out from the URDF, [A] assumed: look at these first. All keys: "
+      "docs/configuration.md\n\n"
+      "name: {}\n{}",
+      d.chain.name(), part.urdf.filename().generic_string(), quoted(d.chain.name()),
+      part_lines(part, folder));
+  if (d.n_p > 0)
+    text += fmt::format("gantry: {}  # [V] the first prismatic joints\n", list_of(d, 0, d.n_p));
+  text += fmt::format("manipulator: {}\n", list_of(d, d.n_p, d.chain.nv()));
+  text += fmt::format("handle: {}  # [A] frame that is held, at the force/torque sensor\n",
+                      quoted(d.chain.frame_names()[static_cast<std::size_t>(d.handle)]));
+  text += "rate_Hz: 1000\n";
+  return text + joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach);
+}
+
+}  // namespace hg::generator

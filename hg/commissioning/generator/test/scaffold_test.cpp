@@ -1,0 +1,117 @@
+#include "hg/commissioning/generator/scaffold.h"
+
+#include <gtest/gtest.h>
+
+#include "hg/commissioning/generator/postures.h"
+#include "hg/config/scenario.h"
+#include "hg/core/test/message_of.h"
+#include "hg/core/test/temporary_folder.h"
+#include "hg/scenario/start_posture.h"
+
+namespace hg::generator {
+namespace {
+
+namespace fs = std::filesystem;
+
+const ChainPart kGiant = {"models/haptic_giant/haptic_giant.urdf", "", ""};
+const ChainPart kArm = {"models/examples/arm.urdf", "", ""};
+const ChainPart kGate = {"models/examples/gate.urdf", "", ""};
+
+TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("arm.yaml", device_yaml(kArm, folder.path()));
+  const config::Device device = config::load_device(file);
+  EXPECT_EQ(device.model.n_p, 0);
+  EXPECT_EQ(device.model.n_m, 6);
+  for (int i : {2, 4}) {  // elbow and wrist_bend are singular at 0
+    const limits::JointLimits& range = device.model.joint_limits[static_cast<std::size_t>(i)];
+    EXPECT_FALSE(Interval({range.q_min, range.q_max}).contains(0.0)) << i;
+    EXPECT_TRUE(Interval({range.q_min, range.q_max}).contains(device.model.posture[i])) << i;
+  }
+  model::Chain chain = device.model.chain;
+  EXPECT_GT(dexterity(chain, device.model.handle, 0, device.model.posture), 0.05);
+}
+
+TEST(Scaffold, LeadingPrismaticJointsAreTheGantry) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("giant.yaml", device_yaml(kGiant, folder.path()));
+  const config::Device device = config::load_device(file);
+  EXPECT_EQ(device.model.n_p, 2);
+  ASSERT_EQ(device.model.virtual_joints.size(), 1u);  // q4 + q5, as [HG] VI-C3
+  const VectorM& weights = device.model.virtual_joints[0].weights;
+  EXPECT_EQ(weights[3], 1.0);
+  EXPECT_EQ(weights[4], 1.0);
+  EXPECT_EQ(weights.sum(), 2.0);
+  EXPECT_GT(device.model.virtual_joints[0].limits.q_min, 0.0);
+  EXPECT_LT(device.model.virtual_joints[0].limits.q_max, M_PI);
+}
+
+TEST(Scaffold, SingularValuesOfTheGiantAreThoseOfItsDeterminant) {
+  // [HANDBOOK] 2.4: det J = -L1 L2 L4 sin q2 sin q4 sin(q4 + q5)
+  const model::Chain chain = read_part(kGiant);
+  const std::vector<Interval> turns(8, Interval{-3.0, 3.0});
+  const auto found = singular_values(chain, chain.frame("handle"), 2, turns);
+  const auto contains = [&](int joint, int other, double value) {
+    return std::ranges::any_of(found, [&](const SingularValue& s) {
+      return s.joint == joint && s.other == other && std::abs(s.value - value) < 1e-9;
+    });
+  };
+  EXPECT_TRUE(contains(3, -1, 0.0));  // q2
+  EXPECT_TRUE(contains(5, -1, 0.0));  // q4
+  EXPECT_TRUE(contains(5, 6, 0.0));   // q4 + q5
+  EXPECT_TRUE(contains(5, 6, M_PI));
+  EXPECT_TRUE(contains(5, 6, -M_PI));
+  EXPECT_FALSE(contains(7, -1, 0.0));
+  EXPECT_EQ(found.size(), 5u);
+}
+
+TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
+  const TemporaryFolder folder;
+  const auto device_file = folder.write("arm.yaml", device_yaml(kArm, folder.path()));
+  for (const fs::path& device : {device_file, fs::path("models/haptic_giant/device.yaml")}) {
+    config::Scenario scenario{
+        .title = {},
+        .description = {},
+        .device = config::load_device(device),
+        .twin = config::load_twin(folder.write(
+            "gate.yaml", twin_yaml(kGate, folder.path(), config::load_device(device)))),
+        .script = {},
+        .limits = {},
+        .events = {},
+        .changes = {},
+        .sources = {},
+        .places = {}};
+    EXPECT_NO_THROW(scenario::find_start(scenario)) << device;
+    EXPECT_EQ(scenario.twin.model.dofs[0].limits.q_max, 1.2);
+    EXPECT_GT(scenario.twin.model.dofs[0].damping, 0.0);
+
+    // the tip, 0.45 m from the hinge, stays below what the hand may do
+    EXPECT_LT(0.45 * scenario.twin.model.dofs[0].limits.ddq_max, 5.0);
+    EXPECT_LT(0.45 * scenario.twin.model.dofs[0].limits.dq_max, 1.5);
+  }
+}
+
+TEST(Scaffold, TooFewJointsAreRefusedWithAdvice) {
+  const std::string message = message_of([] { device_yaml(kGate, "."); });
+  EXPECT_NE(message.find("six or seven manipulator joints"), std::string::npos) << message;
+  EXPECT_NE(message.find("--tip-link"), std::string::npos) << message;
+}
+
+TEST(Scaffold, NamesAreQuotedWhereYamlNeedsIt) {
+  EXPECT_EQ(quoted("joint_1"), "joint_1");
+  EXPECT_EQ(quoted("../a b.urdf"), "'../a b.urdf'");
+  EXPECT_EQ(quoted("on"), "'on'");
+  EXPECT_EQ(quoted("1st"), "'1st'");
+  EXPECT_EQ(quoted("it's"), "'it''s'");
+  EXPECT_EQ(quoted(""), "''");
+}
+
+TEST(Scaffold, NumbersHaveTwoDigits) {
+  EXPECT_EQ(rounded(0.0), "0");
+  EXPECT_EQ(rounded(123.4), "120");
+  EXPECT_EQ(rounded(-0.002345), "-0.0023");
+  EXPECT_EQ(rounded(9.99), "10");
+}
+
+}  // namespace
+}  // namespace hg::generator

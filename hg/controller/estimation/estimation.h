@@ -1,0 +1,93 @@
+/// From sensors to state: joints, gantry motion, user wrench at the handle.
+///
+/// Sources: [C] 2, [HANDBOOK] 1.5, 1.6. What a device does not measure is not estimated: without
+/// motor-side encoders (ideal position-controlled devices) joints are taken as measured.
+/// No allocation, noexcept after set-up.
+#pragma once
+
+#include <array>
+
+#include "hg/controller/estimation/gantry_observer.h"
+#include "hg/controller/estimation/inertial_check.h"
+#include "hg/controller/estimation/inertial_units.h"
+#include "hg/controller/estimation/joint_observer.h"
+#include "hg/controller/estimation/user_wrench.h"
+#include "hg/core/types.h"
+#include "hg/model/chain.h"
+#include "hg/signals/drive_model.h"
+#include "hg/signals/state.h"
+
+namespace hg::estimation {
+
+/// Set-up data.
+struct Config {
+  double dt = 1e-3;                  ///< period, s
+  DriveModel drive;                  ///< Drive model of every gantry axis
+  double observer_pole_Hz = 8.0;     ///< Pole of the gantry observer, see gantry_observer.h
+  double link_pole_Hz = 100.0;       ///< Pole of the link side; [C] 2: 60-160 equal, 40 marginal
+  double motor_low_pass_Hz = 200.0;  ///< Low-pass of the motor side's speed
+  Pose T_H_S;                        ///< Pose of the force/torque sensor S in the handle frame H
+  WrenchConfig wrench;
+  InertialUnitsConfig units;  ///< Inertial units on links
+};
+
+struct State {
+  bool is_started = false;
+  std::array<GantryObserver, kMaxGantry> gantry;
+  VectorM q_m;  ///< unwrapped joints of the last sample
+  std::array<LinkObserver, kMaxManipulator> link;
+  std::array<MotorObserver, kMaxManipulator> motor;
+  WrenchState wrench;
+  InertialCheck inertial;
+  InertialUnitsState units;
+};
+
+class Estimation {
+ public:
+  /// `chain` holds the gantry joints first; `handle` is its frame H.
+  Estimation(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
+
+  /// Estimates the state of a sample. `dq_p_cmd` is the gantry command that was sent in the last
+  /// cycle (n_p), `ddq_m_reference` the acceleration of the manipulator's reference since then
+  /// (n_m).
+  RobotState step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
+                  const VectorM& ddq_m_reference, State& state) noexcept;
+
+  /// Compares inertial unit and encoders, after step(); no effect without a unit. `is_on`: the
+  /// drives have power.
+  void check_motion(const SensorFrame& sensors, bool is_on, State& state) const noexcept;
+
+  /// Starts a tare of the wrench when requested; ends a running one unless the device is at rest.
+  void tare(bool is_asked_for, bool is_at_rest, State& state) const noexcept;
+  /// Whether the wrench is tared, or the device needs no tare for running.
+  bool is_tared(const State& state) const noexcept {
+    return state.wrench.tare.is_valid || !config_.wrench.tare.is_needed;
+  }
+  bool has_units() const noexcept { return units_.has_any(); }
+  /// Report of the units on the links; empty without.
+  InertialReport inertial_report(const State& state) const noexcept {
+    return units_.report(state.units);
+  }
+  /// Acceleration of the gantry not commanded to its drives, n_p, m/s^2 or rad/s^2.
+  VectorP gantry_disturbance(const State& state) const noexcept;
+
+ private:
+  bool turns_without_end(int joint) const noexcept;
+  double unwrapped(int joint, double measured, double last) const noexcept;
+  void start(const SensorFrame& sensors, State& state) const noexcept;
+  VectorM observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference, State& state,
+                         RobotState& robot) const noexcept;
+  VectorP observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd, State& state,
+                         RobotState& robot) const noexcept;
+  void observe_wrench(const SensorFrame& sensors, State& state, RobotState& robot) noexcept;
+
+  Config config_;
+  model::Chain chain_;
+  int n_p_, n_m_, handle_;
+  int dead_periods_;
+  GantryGains gantry_gains_;
+  double link_pole_, motor_pole_;
+  InertialUnits units_;
+};
+
+}  // namespace hg::estimation

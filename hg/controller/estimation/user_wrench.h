@@ -1,0 +1,46 @@
+/// The user's share of what the force/torque sensor shows: without weight and inertia of the
+/// payload, without the sensor's offset, and filtered. Everything in S.
+///
+/// [C] 2: the acceleration comes from the accelerometer in the sensor. Without it the mass beyond
+/// the sensor closes a delayed loop, and twins lighter than about twice that mass do not stay
+/// stable ([C] 3). Accelerometer, gyroscope and wrench must have the same delay.
+#pragma once
+
+#include "hg/controller/estimation/tare.h"
+#include "hg/core/types.h"
+#include "hg/signals/frames.h"
+#include "hg/signals/payload.h"
+
+namespace hg::estimation {
+
+/// Set-up data. Low-passes are of first order; 0 = off.
+struct WrenchConfig {
+  Payload payload;      ///< Payload beyond the sensor
+  bool has_imu = true;  ///< accelerometer and gyroscope in S; false: weight by the pose, no inertia
+  double alpha_low_pass_Hz = 60.0;  ///< Low-pass of the gyroscope's differences; [C] 2
+  double low_pass_Hz = 0.0;         ///< Low-pass of the whole wrench; 50 for a noisy sensor, [C] 2
+  TareConfig tare;
+};
+
+struct WrenchState {
+  bool is_started = false;
+  Eigen::Vector3d omega_S = Eigen::Vector3d::Zero();  ///< Angular velocity in the last sample
+  Eigen::Vector3d alpha_S = Eigen::Vector3d::Zero();  ///< Angular acceleration, filtered
+  Vector6 w_S = Vector6::Zero();                      ///< Wrench of the user, filtered
+  TareState tare;
+};
+
+/// Delay of the user's wrench after the sensor's sample, for slow changes, s. The sensor's own
+/// delay adds to it.
+double wrench_delay(const WrenchConfig& config, double dt) noexcept;
+
+/// Wrench without the payload's share of a sensor at rest, resolved in S. `R_B_S` serves devices
+/// without accelerometer.
+Vector6 without_weight(const WrenchConfig& config, const SensorFrame& sensors,
+                       const Eigen::Matrix3d& R_B_S) noexcept;
+
+/// Advances by one period: the user's wrench, state.w_S. A running tare is advanced by advance().
+void estimate(const WrenchConfig& config, double dt, const SensorFrame& sensors,
+              const Eigen::Matrix3d& R_B_S, WrenchState& state) noexcept;
+
+}  // namespace hg::estimation

@@ -1,0 +1,27 @@
+/// The catalogue of all limits of a device and a twin: the order of the rows of tasks 2 to 6.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hg/controller/rendering/device_model.h"
+#include "hg/controller/rendering/twin_model.h"
+#include "hg/signals/limit.h"
+
+namespace hg::rendering {
+
+/// Manipulator joints, virtual joints, motors that the law knows, x y z of each Cartesian frame,
+/// then one entry per degree of freedom of the twin. Quantities without limits are listed, too:
+/// their range is unbounded.
+LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin);
+
+/// Names used more than once in the catalogue: such limits could not be distinguished in events,
+/// figures and on the page.
+std::vector<std::string> repeated_names(const LimitCatalogue& catalogue);
+
+/// Computes positions of the device's limits, first in the catalogue, with the gantry at `q_p` and
+/// the manipulator at `q_m`. Updates `device.chain`.
+void limit_positions(DeviceModel& device, const VectorP& q_p, const VectorM& q_m,
+                     std::vector<double>& positions);
+
+}  // namespace hg::rendering

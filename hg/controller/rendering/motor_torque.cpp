@@ -1,0 +1,24 @@
+#include "hg/controller/rendering/motor_torque.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hg::rendering {
+
+Interval allowed_torque(const ActuatorModel& motor, double dq) noexcept {
+  const double speed = std::abs(dq);
+  const double braking = kTorqueShare * motor.torque_max;
+  const double friction = motor.coulomb_friction + motor.viscous_friction * speed;
+  const double moving = kTorqueShare * torque_available(motor, dq) - friction;
+  // friction has its full size and its sign only where the joint moves
+  const double share = std::min(speed / motor.stribeck_speed, 1.0);
+  const double onward = braking + share * (moving - braking);
+  return dq > 0.0 ? Interval{-braking, onward} : Interval{-onward, braking};
+}
+
+Interval reached_torque(Interval allowed, double before, double dt) noexcept {
+  const double share = std::min(dt / kTorqueOnset, 1.0);
+  return {before + share * (allowed.lb - before), before + share * (allowed.ub - before)};
+}
+
+}  // namespace hg::rendering

@@ -1,0 +1,278 @@
+#include "hg/controller/rendering/reactions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hg/controller/rendering/bearing_wrench.h"
+
+namespace hg::rendering {
+namespace {
+
+// below this acceleration-energy norm a limit is not said to be felt, sqrt(J/s^2 kg) ~ 0.1 N on 1
+// kg
+constexpr double kFeltMin = 0.1;
+// share of the largest torque that limits have on a joint, up to which they do not reach another
+constexpr double kReach = 1e-6;
+
+hqp::Capacity capacity_for(int limits, int n_a) {
+  return {.variables = limits, .levels = 4, .rows = 2 * limits + 1 + n_a};
+}
+
+LimitState limit_state(hqp::RowState state, double reaction) noexcept {
+  switch (state) {
+    case hqp::RowState::kInactive:
+      return LimitState::kInactive;
+    case hqp::RowState::kLower:
+      return LimitState::kLower;
+    case hqp::RowState::kUpper:
+      return LimitState::kUpper;
+    case hqp::RowState::kEqual:
+      return reaction > 0.0 ? LimitState::kLower : LimitState::kUpper;
+    case hqp::RowState::kBelow:
+    case hqp::RowState::kAbove:
+      return LimitState::kViolated;
+  }
+  return LimitState::kInactive;
+}
+
+bool is_upper_side(hqp::RowState state, double reaction) noexcept {
+  switch (state) {
+    case hqp::RowState::kUpper:
+    case hqp::RowState::kAbove:
+      return true;
+    case hqp::RowState::kEqual:
+      return reaction <= 0.0;
+    case hqp::RowState::kInactive:
+    case hqp::RowState::kLower:
+    case hqp::RowState::kBelow:
+      return false;
+  }
+  return false;
+}
+
+// rating of the limited quantity that gives the acting bound
+LimitCause cause_of(const LimitRow& row, Interval ddq, hqp::RowState state, double reaction,
+                    double dt) noexcept {
+  if (state == hqp::RowState::kInactive) return LimitCause::kNone;
+  if (row.is_motor) return LimitCause::kTorque;
+  const bool is_upper = is_upper_side(state, reaction);
+  const LimitCause held_by = is_upper ? row.held_by.upper : row.held_by.lower;
+  const bool holds_always = held_by == LimitCause::kLock || held_by == LimitCause::kFriction;
+  if (holds_always) return held_by;
+  const double sign = is_upper ? 1.0 : -1.0;
+  const double bound = is_upper ? ddq.ub : -ddq.lb;
+  const auto is_bound = [&](double value) {
+    return std::abs(bound - value) <= 1e-9 * (1.0 + std::abs(bound));
+  };
+  const double onset = std::max(row.options.tau_onset, dt);
+  if (is_bound((row.limits.dq_max - sign * row.dq) / onset)) return LimitCause::kVelocity;
+  if (is_bound(row.limits.ddq_max)) return LimitCause::kAcceleration;
+  return held_by == LimitCause::kNone ? LimitCause::kPosition : held_by;
+}
+
+}  // namespace
+
+Reactions::Reactions(const DeviceModel& device, const TwinModel& twin, int stops)
+    : n_m_(device.n_m),
+      n_a_(twin.chain.nv()),
+      device_limits_(device.limit_count()),
+      count_(device_limits_ + n_a_ + stops),
+      columns_(n_a_, count_),
+      stop_torque_(n_a_, stops),
+      rest_(VectorA::Zero(n_a_)),
+      directions_(device, twin),
+      problem_(capacity_for(count_, n_a_)),
+      solver_(problem_.capacity()),
+      solution_(problem_.capacity()) {}
+
+// torque of a unit reaction on the twin
+VectorA Reactions::torque(int limit) const noexcept {
+  if (limit < device_limits_) return directions_.torque(limit);
+  const int dof = limit - device_limits_;
+  return dof < n_a_ ? VectorA(VectorA::Unit(n_a_, dof)) : VectorA(stop_torque_.col(dof - n_a_));
+}
+
+VectorA Reactions::torque_of_device() const noexcept {
+  VectorA sum = VectorA::Zero(n_a_);
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    if (limit < device_limits_) sum += torque(limit) * value_[static_cast<std::size_t>(limit)];
+  }
+  return sum;
+}
+
+void Reactions::find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept {
+  active_count_ = 0;
+  for (int i = 0; i < stop_torque_.cols(); ++i) {
+    const int row = tasks.first_limit_row() + device_limits_ + n_a_ + i;
+    stop_torque_.col(i) =
+        Eigen::Map<const Eigen::VectorXd>(tasks.problem().coefficients(row).data(), n_m_ + n_a_)
+            .tail(n_a_);
+  }
+  for (int limit = 0; limit < count_; ++limit) {
+    const auto row = static_cast<std::size_t>(tasks.acting_row(limit, solution));
+    const bool acts = solution.state[row] != hqp::RowState::kInactive;
+    if (!acts && value_[static_cast<std::size_t>(limit)] == 0.0) continue;
+    active_[static_cast<std::size_t>(active_count_++)] = limit;
+  }
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    if (limit >= device_limits_) break;
+    directions_.find(tasks.problem(), tasks.first_limit_row() + limit, limit);
+  }
+}
+
+void Reactions::split(const Tasks& tasks, const hqp::Solution& solution,
+                      const VectorA& tau_constraint) noexcept {
+  value_.fill(0.0);
+  rest_.setZero();
+  const bool is_paper = tasks.alpha(0) >= 0;
+  for (int limit = 0; is_paper && limit < device_limits_ + n_a_; ++limit) {
+    value_[static_cast<std::size_t>(limit)] =
+        solution.x[static_cast<std::size_t>(tasks.alpha(limit))];
+  }
+  find_active(tasks, solution);
+  if (!is_paper && active_count_ > 0) split_active(tasks, solution, tau_constraint);
+  if (!is_paper && solution.status == hqp::Status::kSolved) return;
+  rest_ = tau_constraint;
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    rest_ -= torque(limit) * value_[static_cast<std::size_t>(limit)];
+  }
+}
+
+void Reactions::split_active(const Tasks& tasks, const hqp::Solution& solution,
+                             const VectorA& tau_constraint) noexcept {
+  problem_.clear(active_count_);
+  add_signs(tasks, solution);
+  add_sum(tau_constraint);
+  problem_.add_level();
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    const auto row = static_cast<std::size_t>(tasks.acting_row(limit, solution));
+    if (hqp::is_violated(solution.state[row])) problem_.add_bound(j, {0.0, 0.0});
+  }
+  std::fill_n(active_set_.state.begin(), problem_.rows(), hqp::RowState::kInactive);
+  std::fill_n(active_set_.before.begin(), problem_.rows(), hqp::RowState::kInactive);
+  solver_.solve(problem_, {}, active_set_, solution_);
+  for (std::size_t j = 0; j < static_cast<std::size_t>(active_count_); ++j) {
+    value_[static_cast<std::size_t>(active_[j])] = solution_.x[j] * scale_[j];
+  }
+}
+
+void Reactions::add_signs(const Tasks& tasks, const hqp::Solution& solution) noexcept {
+  const auto state_of = [&](int limit) {
+    return solution.state[static_cast<std::size_t>(tasks.acting_row(limit, solution))];
+  };
+  // a row above one that could not be met may be held for that row's sake, against its own sign
+  int last_violated = -1;
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    if (hqp::is_violated(state_of(limit))) last_violated = limit;
+  }
+  problem_.add_level();
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    scale_[static_cast<std::size_t>(j)] =
+        1.0 / tasks.limit_rows()[static_cast<std::size_t>(limit)].rating;
+    const hqp::RowState state = state_of(limit);
+    const bool has_sign = limit > last_violated;
+    Interval sign;
+    if (has_sign && state == hqp::RowState::kLower) sign.lb = 0.0;
+    if (has_sign && state == hqp::RowState::kUpper) sign.ub = 0.0;
+    problem_.add_bound(j, sign);
+  }
+}
+
+// no push against idle motion of the manipulator, and the torques on the twin add up
+void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
+  std::array<double, kMaxReactions> row{};
+  const std::span<const double> coefficients(row.data(), static_cast<std::size_t>(active_count_));
+  problem_.add_level();
+  if (n_m_ > 6) {
+    for (std::size_t j = 0; j < coefficients.size(); ++j) {
+      row[j] = active_[j] < device_limits_ ? directions_.idle(active_[j]) * scale_[j] : 0.0;
+    }
+    problem_.add_row(coefficients, {0.0, 0.0});
+  }
+  problem_.add_level();
+  double largest = 0.0;
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    columns_.col(j) = torque(limit) * scale_[static_cast<std::size_t>(j)];
+    largest = std::max(largest, columns_.col(j).cwiseAbs().maxCoeff());
+  }
+  for (int i = 0; i < n_a_; ++i) {
+    double largest_in_row = 0.0;
+    for (std::size_t j = 0; j < coefficients.size(); ++j) {
+      row[j] = columns_(i, static_cast<Eigen::Index>(j));
+      largest_in_row = std::max(largest_in_row, std::abs(row[j]));
+    }
+    // near singular postures, the residual of a joint that no limit reaches must not decide
+    if (largest_in_row < kReach * largest) row.fill(0.0);
+    problem_.add_row(coefficients, {tau_constraint[i], tau_constraint[i]});
+  }
+}
+
+void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const MatrixA& L,
+                       const model::Jacobian& J_a, double dt, CycleRecord& record) const noexcept {
+  const auto& rows = tasks.limit_rows();
+  record.limit_count = device_limits_ + n_a_;
+  for (int limit = 0; limit < record.limit_count; ++limit) {
+    const auto i = static_cast<std::size_t>(limit);
+    const int acting_row = tasks.acting_row(limit, solution);
+    const auto row = static_cast<std::size_t>(acting_row);
+    const Interval ddq =
+        acting_row == rows[i].rating_row ? tasks.problem().bounds(acting_row) : rows[i].ddq;
+    LimitReport& report = record.limits[i];
+    report.state = limit_state(solution.state[row], value_[i]);
+    report.cause = cause_of(rows[i], ddq, solution.state[row], value_[i], dt);
+    report.position = rows[i].q;
+    report.to_lower = rows[i].q - rows[i].limits.q_min;
+    report.to_upper = rows[i].limits.q_max - rows[i].q;
+    report.excess = std::max({0.0, rows[i].q - rows[i].range.ub, rows[i].range.lb - rows[i].q});
+    report.slack = solution.slack[row];
+    report.reaction = value_[i];
+  }
+  report_felt(L, record);
+
+  record.budget.structure = bearing_wrench(J_a, record.robot.w_H);
+}
+
+// The limit felt most takes most of the acceleration, in the metric of M_a, that the user's wrench
+// demands; a stop that only carries a spring is not felt.
+void Reactions::report_felt(const MatrixA& L, CycleRecord& record) const noexcept {
+  Budget& budget = record.budget;
+  budget.limits = VectorA::Zero(n_a_);
+  budget.conflict = -rest_;
+  record.felt_limit = -1;
+  record.w_felt.setZero();
+  const auto factor = L.triangularView<Eigen::Lower>();
+  VectorA pushed = record.tau_a;
+  factor.solveInPlace(pushed);
+  double most = kFeltMin * kFeltMin;
+  for (int j = 0; j < active_count_; ++j) {
+    const int limit = active_[static_cast<std::size_t>(j)];
+    const double value = value_[static_cast<std::size_t>(limit)];
+    VectorA tau = torque(limit) * value;
+    if (limit >= record.limit_count) {
+      budget.surface -= tau;
+      continue;
+    }
+    if (record.limits[static_cast<std::size_t>(limit)].state == LimitState::kViolated) {
+      budget.conflict -= tau;
+    } else {
+      budget.limits -= tau;
+    }
+    factor.solveInPlace(tau);
+    const double opposed = -tau.dot(pushed);
+    if (opposed > most) {
+      most = opposed;
+      record.felt_limit = limit;
+      record.w_felt.setZero();
+      if (limit < device_limits_) record.w_felt = directions_.wrench(limit) * value;
+    }
+  }
+}
+
+}  // namespace hg::rendering

@@ -1,0 +1,80 @@
+/// Explains what the user feels: which limits act, how hard, and where the user's wrench goes.
+///
+/// Law gauss: the total constraint torque M_a ddq_a - tau is unique; its split among the active
+/// rows is not when rows depend on each other. Rule: reactions have the sign of their bound, except
+/// above a row that could not be met, for whose sake they may be held; with a joint to spare they
+/// do not push against its idle motion; among all splits that add up, the smallest one, rows scaled
+/// by their rating; rows that could not be met get a share only for what the others cannot explain.
+/// Law paper: the constraint torques are part of the solution; what they do not explain is
+/// conflict.
+///
+/// No allocation after construction.
+#pragma once
+
+#include <array>
+
+#include "hg/controller/rendering/constraint_directions.h"
+#include "hg/controller/rendering/tasks.h"
+#include "hg/hqp/solver.h"
+#include "hg/signals/state.h"
+
+namespace hg::rendering {
+
+class Reactions {
+ public:
+  /// `stops`: number of rows of virtual surfaces besides the limits of the catalogue.
+  Reactions(const DeviceModel& device, const TwinModel& twin, int stops = 0);
+
+  /// Sets the Jacobians of this cycle, see ConstraintDirections; call before split() and report().
+  void update(const model::Jacobian& J_H, const model::Jacobian& J_a) noexcept {
+    directions_.update(J_H, J_a);
+  }
+  ConstraintDirections& directions() noexcept { return directions_; }
+
+  /// Splits the constraint torque of `solution`, which solves tasks.problem(), or reads it from x.
+  /// `tau_constraint` (n_a) = M_a ddq_a + c_a - tau.
+  void split(const Tasks& tasks, const hqp::Solution& solution,
+             const VectorA& tau_constraint) noexcept;
+
+  /// Constraint force or torque of a limit in its own coordinate; stop i has the index catalogue
+  /// size + i.
+  double of(int limit) const noexcept { return value_[static_cast<std::size_t>(limit)]; }
+
+  /// Torque of all limits of the device on the twin (n_a).
+  VectorA torque_of_device() const noexcept;
+
+  /// Fills limits, felt_limit, w_felt and the constraint parts and structure of the budget.
+  /// `L` is the Cholesky factor of M_a, `J_a` the Jacobian of the twin's end effector.
+  void report(const Tasks& tasks, const hqp::Solution& solution, const MatrixA& L,
+              const model::Jacobian& J_a, double dt, CycleRecord& record) const noexcept;
+
+ private:
+  void find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept;
+  void split_active(const Tasks& tasks, const hqp::Solution& solution,
+                    const VectorA& tau_constraint) noexcept;
+  void add_signs(const Tasks& tasks, const hqp::Solution& solution) noexcept;
+  void add_sum(const VectorA& tau_constraint) noexcept;
+  VectorA torque(int limit) const noexcept;
+  void report_felt(const MatrixA& L, CycleRecord& record) const noexcept;
+
+  static constexpr int kMaxReactions = kMaxLimits + surfaces::kMostFacing;
+
+  int n_m_, n_a_, device_limits_;
+  int count_;  ///< Number of limits and stops
+  std::array<double, kMaxReactions> value_{};
+  std::array<int, kMaxReactions> active_{};  ///< limits that may have a reaction
+  int active_count_ = 0;
+  std::array<double, kMaxReactions> scale_{};  ///< Scale of active limit j in the split
+  /// Torque of active limit j on the twin per unit of the split.
+  MatrixUpTo<kMaxTwin, kMaxReactions> columns_;
+  /// Torque on the twin of a unit reaction of each stop.
+  MatrixUpTo<kMaxTwin, surfaces::kMostFacing> stop_torque_;
+  VectorA rest_;  ///< Unexplained part of the constraint torque
+  ConstraintDirections directions_;
+  hqp::Problem problem_;
+  hqp::Solver solver_;
+  hqp::Solution solution_;
+  hqp::ActiveSet active_set_;
+};
+
+}  // namespace hg::rendering

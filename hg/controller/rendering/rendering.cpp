@@ -1,0 +1,489 @@
+#include "hg/controller/rendering/rendering.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "hg/controller/rendering/integration.h"
+#include "hg/controller/rendering/shortest_velocity.h"
+#include "hg/core/error.h"
+#include "hg/core/rotation.h"
+#include "hg/core/stacked.h"
+
+namespace hg::rendering {
+namespace {
+
+// slower than this a joint with Coulomb friction stands still, rad/s or m/s
+constexpr double kStandstill = 1e-9;
+
+// Largest number of active sets of one solve: the larger of the two. A warm start mostly needs one;
+// a new contact needed at worst 17, a twin of 30 joints that meets many limits at once 38
+constexpr int kActiveSets = 200;
+constexpr int kActiveSetsPerRow = 4;
+
+// share of the twin's mobility below which it cannot move in a direction
+constexpr double kStuck = 1e-6;
+
+constexpr int kAlignIterations = 10;
+constexpr double kAligned = 1e-12;  // m and rad
+
+// A solve that ran out of active sets must keep all limits of the device. One that completed all
+// levels but lacks the proof of optimality is exact to rounding: joints must be kept, conflicting
+// motors and walls cannot be met better.
+SolverStatus solver_status(const Tasks& tasks, const hqp::Options& options,
+                           const hqp::Solution& solution) noexcept {
+  if (solution.status == hqp::Status::kSolved) return SolverStatus::kSolved;
+  if (solution.status != hqp::Status::kIterationLimit) return SolverStatus::kFailed;
+  const bool ran_out = options.budget > 0 || solution.iterations >= options.max_iterations;
+  const bool is_usable =
+      ran_out ? tasks.keeps_limits_of_device(solution) : tasks.keeps_joints(solution);
+  return is_usable ? SolverStatus::kBudgetSpent : SolverStatus::kFailed;
+}
+
+// torque of Coulomb friction while slipping, as part of tau_dis
+VectorA slip_torque(const VectorA& dq_a, TwinInnerState& inner) noexcept {
+  VectorA torque = VectorA::Zero(dq_a.size());
+  for (int i = 0; i < dq_a.size(); ++i) {
+    const double friction = inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction;
+    bool& sticks = inner.sticks[static_cast<std::size_t>(i)];
+    if (friction <= 0.0) continue;
+    if (std::abs(dq_a[i]) <= kStandstill) sticks = true;
+    if (!sticks) torque[i] = std::copysign(friction, dq_a[i]);
+  }
+  return torque;
+}
+
+// a slipping joint that would turn round within the sample sticks from the next one on
+void catch_reversals(const TwinState& state, double dt, TwinInnerState& inner) noexcept {
+  for (int i = 0; i < state.dq_a.size(); ++i) {
+    if (inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction <= 0.0) continue;
+    if (state.dq_a[i] * (state.dq_a[i] + dt * state.ddq_a[i]) < 0.0) {
+      inner.sticks[static_cast<std::size_t>(i)] = true;
+    }
+  }
+}
+
+using RowStates = std::array<hqp::RowState, hqp::kMaxRows>;
+
+// the first rows only: an active set has room for many more than a problem has
+void copy(const RowStates& from, int rows, RowStates& to) noexcept {
+  std::copy_n(from.begin(), rows, to.begin());
+}
+
+// rows that begin or cease to act; a lock whose reaction changes its sign does neither
+int changed_rows(const RowStates& a, const RowStates& b, int first, int count) noexcept {
+  int changes = 0;
+  for (int i = first; i < first + count; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    const bool acted = a[row] != hqp::RowState::kInactive;
+    if (acted != (b[row] != hqp::RowState::kInactive)) ++changes;
+  }
+  return changes;
+}
+
+}  // namespace
+
+void check(const DeviceModel& device, const TwinModel& twin, const Options& options) {
+  const auto require = [](bool ok, const std::string& text) {
+    if (!ok) throw SetupError(text);
+  };
+  require(options.dt > 0.0, "rendering: the period must be positive");
+  require(options.slow_solve > 0, "rendering: slow_solve must be positive");
+  require(options.solver_budget >= 0, "rendering: solver_budget must not be negative");
+  const bool is_paper = options.law == Law::kPaper;
+  require(device.motors.empty() || device.motors.size() == static_cast<std::size_t>(device.n_m),
+          "device: one motor per manipulator joint is needed, or none");
+  require(!is_paper || device.n_m == 6, "device: law paper needs six manipulator joints, got " +
+                                            std::to_string(device.n_m) +
+                                            "; law gauss takes seven as well");
+  require(device.n_m == 6 || device.n_m == 7,
+          "device: six or seven manipulator joints are needed, got " + std::to_string(device.n_m));
+  require(device.posture.size() == 0 || device.posture.size() == device.n_m,
+          "device: one posture goal per manipulator joint is needed, or none");
+  require(options.bounds != Bounds::kPaper || options.T_C >= options.dt,
+          "rendering: T_C must not be below the period");
+  require(device.n_p + device.n_m == device.chain.nv(),
+          "device: gantry and manipulator must be all joints of the chain");
+  require(device.handle >= 0, "device: a handle frame is needed");
+  require(device.joint_limits.size() == static_cast<std::size_t>(device.n_m),
+          "device: one limit per manipulator joint is needed");
+  for (int i = 0; i < device.n_m; ++i) {
+    limits::check(device.joint_limits[static_cast<std::size_t>(i)],
+                  "joint " + device.manipulator_joint(i));
+  }
+  for (const VirtualJoint& joint : device.virtual_joints) {
+    require(joint.weights.size() == device.n_m, joint.name + ": one weight per manipulator joint");
+    limits::check(joint.limits, joint.name);
+  }
+  for (const CartesianLimit& frame : device.cartesian_limits) {
+    for (const limits::JointLimits& axis : frame.axes) limits::check(axis, frame.name);
+  }
+
+  check(twin);
+}
+
+namespace {
+
+void check_stops(const DeviceModel& device, const Options& options) {
+  if (options.law != Law::kGauss || options.bounds != Bounds::kRecoverable) {
+    throw SetupError("surfaces with 'contact: stop' need law gauss with bounds recoverable");
+  }
+  if (!std::isfinite(stop_rating(device))) {
+    throw SetupError(
+        "surfaces with 'contact: stop' need a Cartesian limit of the handle with ddq_max in "
+        "device.yaml: with it the handle brakes before them");
+  }
+}
+
+}  // namespace
+
+Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
+                     surfaces::Environment environment)
+    : device_((check(device, twin, options), std::move(device))),
+      twin_(std::move(twin)),
+      options_(options),
+      environment_(std::move(environment)),
+      stop_rating_(stop_rating(device_)),
+      tasks_(device_, twin_, options_, environment_.has_stops()),
+      reactions_(device_, twin_, tasks_.stop_count()),
+      L_(twin_.chain.nv(), twin_.chain.nv()),
+      J_H_(6, device_.chain.nv()),
+      J_a_(6, twin_.chain.nv()),
+      solver_(tasks_.problem().capacity()),
+      solution_(tasks_.problem().capacity()),
+      kept_problems_(std::make_unique<hqp::KeptProblems>(tasks_.problem().capacity())) {
+  if (environment_.has_stops()) check_stops(device_, options_);
+  solver_options_.max_iterations =
+      std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
+  limit_solver(0);
+}
+
+void Rendering::limit_solver(std::uint32_t most_active_sets) noexcept {
+  const int usual = static_cast<int>(options_.solver_budget);
+  const int most = static_cast<int>(most_active_sets);
+  solver_options_.budget = usual == 0 || most == 0 ? std::max(usual, most) : std::min(usual, most);
+}
+
+State Rendering::start(const VectorM& q_m) const {
+  State state;
+  state.reference = {q_m, VectorM::Zero(q_m.size()), VectorM::Zero(q_m.size())};
+  const int n_a = twin_.chain.nv();
+  state.twin = {twin_.q_start, VectorA::Zero(n_a), VectorA::Zero(n_a)};
+  state.inner.parameters = initial_parameters(twin_);
+  return state;
+}
+
+ChangeStatus Rendering::change(const ParameterChange& change, State& state) const noexcept {
+  return apply(twin_, change, state.inner.parameters);
+}
+
+void Rendering::update_device(const RobotState& robot, const ReferenceState& reference) noexcept {
+  const VectorPM q = stacked(robot.q_p, reference.q_m), dq = stacked(robot.dq_p, reference.dq_m);
+  if (device_.motors.empty()) {
+    device_.chain.update_kinematics(q, dq);
+  } else {
+    device_.chain.update(q, dq);
+  }
+}
+
+SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record, double share,
+                             double handle_speed, const GantryTask& gantry) noexcept {
+  update_device(record.robot, state.reference);
+  advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
+  const TwinValues& values = state.inner.parameters.now;
+  const model::Loads loads = {values.loads.mass * state.calming.inertia,
+                              values.loads.gravity / state.calming.inertia};
+  twin_.chain.update(state.twin.q_a, state.twin.dq_a, loads);
+  factor_mass(twin_.chain.M(), L_);
+  J_H_ = device_.chain.jacobian(device_.handle);
+  J_a_ = twin_.chain.jacobian(twin_.end_effector);
+  reactions_.update(J_H_, J_a_);
+  advance_locks(twin_, options_.bounds, state.twin.q_a, state.inner);
+
+  const int n_a = twin_.chain.nv();
+  Budget& budget = record.budget;
+  const bool is_released = braking_rate > 0.0 && share == 0.0;
+  if (is_released) {
+    state.inner.sticks.fill(false);
+    record.tau_a = VectorA::Zero(n_a);
+    budget.spring = -twin_.chain.gravity();
+    budget.damping = VectorA::Zero(n_a);
+    budget.friction = VectorA::Zero(n_a);
+    budget.surface = VectorA::Zero(n_a);
+  } else {
+    record.tau_a = J_a_.transpose() * (share * record.robot.w_H);
+    budget.spring = share * spring_torque(twin_, state.twin.q_a, state.inner.parameters);
+    if (share < 1.0) budget.spring -= (1.0 - share) * twin_.chain.gravity();
+    budget.damping = damping_torque(L_, state.twin.dq_a, options_.dt, values);
+    if (state.calming.damping > 0.0) {
+      const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
+      budget.damping.noalias() += J_a_.topRows<3>().transpose() * (state.calming.damping * v_E);
+    }
+    budget.friction = slip_torque(state.twin.dq_a, state.inner);
+    budget.surface = J_a_.transpose() * (share * values.w_ref);
+  }
+  if (braking_rate > 0.0) {
+    const VectorA braking = braking_rate * state.twin.dq_a;
+    budget.damping.noalias() += twin_.chain.M() * braking;
+  }
+  if (!state.touch.isZero(0.0)) budget.surface.noalias() -= J_a_.transpose() * state.touch;
+  feel_surfaces(state, share, record);
+
+  RowStates previous;
+  copy(state.active_set.state, tasks_.problem().rows(), previous);
+  solve(state, handle_speed, gantry, record);
+  record.active_set_changes = changed_rows(previous, state.active_set.state,
+                                           tasks_.first_limit_row(), tasks_.limit_row_count());
+  if (!is_released) catch_reversals(state.twin, options_.dt, state.inner);
+  give_way(state, record);
+  if (environment_.has_stops()) report_stops(record);
+  report_kinematics(state, record);
+  ended_(Stage::kReactions);
+  return record.solver_status;
+}
+
+// The force on the end effector that accelerates it as springs, weight and reference wrench of the
+// twin do; none in directions in which the twin cannot move.
+Eigen::Vector3d Rendering::push_of_twin(const Budget& budget) const noexcept {
+  const auto factor = L_.triangularView<Eigen::Lower>();
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxTwin, 3> root =
+      J_a_.topRows<3>().transpose();
+  VectorA torque = -budget.spring - budget.surface - twin_.chain.gravity();
+  if (torque.isZero(0.0)) return Eigen::Vector3d::Zero();
+  factor.solveInPlace(root);
+  factor.solveInPlace(torque);
+  Eigen::Matrix3d mobility = root.transpose() * root;
+  mobility.diagonal().array() += kStuck * mobility.trace();
+  return mobility.ldlt().solve(Eigen::Vector3d(root.transpose() * torque));
+}
+
+// Updates the proxy even while no surface is felt.
+void Rendering::feel_surfaces(State& state, double share, CycleRecord& record) noexcept {
+  const Eigen::Vector3d p_E = twin_.chain.pose(twin_.end_effector).p;
+  const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
+  if (environment_.has_stops()) stops_ = environment_.stops(p_E, v_E, stop_rating_);
+  Eigen::Vector3d push = record.robot.w_H.head<3>();
+  if (!environment_.surfaces().empty()) push += push_of_twin(record.budget);
+  const double mass_scale =
+      state.inner.parameters.now.loads.mass * state.calming.inertia / twin_.mass_scale;
+  record.contact = environment_.step(p_E, v_E, push, state.contact, mass_scale);
+  if (record.contact.surface < 0) return;
+  record.contact.force *= share;
+  record.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * record.contact.force;
+}
+
+// The reactions of stops are forces of their surfaces.
+void Rendering::report_stops(CycleRecord& record) const noexcept {
+  const int first = device_.limit_count() + twin_.chain.nv();
+  double most = record.contact.force.norm();
+  for (int i = 0; i < tasks_.stop_count(); ++i) {
+    const surfaces::Facing& stop = stops_[static_cast<std::size_t>(i)];
+    const double force = reactions_.of(first + i);
+    if (stop.surface < 0 || force == 0.0) continue;
+    record.contact.force += force * stop.normal;
+    if (force <= most) continue;
+    most = force;
+    record.contact.surface = stop.surface;
+  }
+}
+
+// A surface does not push with the part of its force that limits of the device take.
+void Rendering::give_way(State& state, const CycleRecord& record) const noexcept {
+  const double force = record.contact.force.norm();
+  if (record.contact.surface < 0 || force == 0.0) return;
+  const auto factor = L_.triangularView<Eigen::Lower>();
+  VectorA along = J_a_.topRows<3>().transpose() * (record.contact.force / force);
+  VectorA limits = reactions_.torque_of_device();
+  factor.solveInPlace(along);
+  factor.solveInPlace(limits);
+  const double missing = -along.dot(limits) / along.squaredNorm();
+  const Eigen::Vector3d v_E =
+      J_a_.topRows<3>() * (state.twin.dq_a + 0.5 * options_.dt * state.twin.ddq_a);
+  environment_.give_way(record.contact, std::clamp(missing, 0.0, force), v_E, state.contact);
+}
+
+void Rendering::align(const RobotState& robot, State& state) noexcept {
+  update_device(robot, state.reference);
+  const Pose T_B_H = device_.chain.pose(device_.handle);
+  const VectorA at_rest = VectorA::Zero(twin_.chain.nv());
+  for (int iteration = 0; iteration < kAlignIterations; ++iteration) {
+    twin_.chain.update_kinematics(state.twin.q_a, at_rest);
+    const Pose T_B_E = twin_.chain.pose(twin_.end_effector);
+    Vector6 error;
+    error << T_B_H.p - T_B_E.p, rotation_between(T_B_E.R, T_B_H.R);
+    if (error.norm() < kAligned) return;
+    const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
+    const VectorA step = shortest_velocity(J_a, error);
+    state.twin.q_a = twin_.chain.integrate(state.twin.q_a, step);
+    for (std::size_t i = 0; i < twin_.dofs.size(); ++i) {
+      if (twin_.dofs[i].q_index < 0) continue;
+      const Interval& range = state.inner.parameters.moving[i].q;
+      double& q = state.twin.q_a[twin_.dofs[i].q_index];
+      q = std::clamp(q, range.lb, range.ub);
+    }
+  }
+}
+
+bool Rendering::stay_near(const RobotState& robot, double largest, State& state) noexcept {
+  bool is_far = false;
+  for (int i = 0; i < device_.n_m; ++i) {
+    double& q = state.reference.q_m[i];
+    const double nearest = std::clamp(q, robot.q_m[i] - largest, robot.q_m[i] + largest);
+    if (nearest == q) continue;
+    q = nearest;
+    state.reference.dq_m[i] = robot.dq_m[i];
+    is_far = true;
+  }
+  if (!is_far) return false;
+  align(robot, state);
+  twin_.chain.update_kinematics(state.twin.q_a, state.twin.dq_a);
+  const Vector6 twist = device_.chain.twist(device_.handle);
+  const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
+  state.twin.dq_a = shortest_velocity(J_a, twist);
+  return true;
+}
+
+// Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
+void Rendering::solve(State& state, double handle_speed, const GantryTask& gantry,
+                      CycleRecord& record) noexcept {
+  const int n_m = device_.n_m, n_a = twin_.chain.nv();
+  const int first_twin_limit = device_.limit_count();
+  record.solver_iterations = 0;
+  bool was_spent = false;  // a solve of this cycle has spent its budget
+  for (int attempt = 0; attempt <= n_a; ++attempt) {
+    Budget& budget = record.budget;
+    const VectorA tau =
+        record.tau_a - budget.damping - budget.friction - budget.spring - budget.surface;
+    tasks_.fill(device_, twin_,
+                {.robot = record.robot,
+                 .reference = state.reference,
+                 .twin = state.twin,
+                 .inner = state.inner,
+                 .motor_torque = state.motor_torque,
+                 .gantry = gantry,
+                 .touched = state.touched,
+                 .L = L_,
+                 .J_H = J_H_,
+                 .J_a = J_a_,
+                 .directions = reactions_.directions(),
+                 .stops = stops_,
+                 .tau = tau,
+                 .handle_speed = handle_speed});
+    ended_(Stage::kRenderingSetUp);
+    copy(state.active_set.state, tasks_.problem().rows(), guess_.state);
+    copy(state.active_set.before, tasks_.problem().rows(), guess_.before);
+    solved_cycle_ = record.cycle;
+    solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_);
+    record.solver_status = solver_status(tasks_, solver_options_, solution_);
+    record.solver_iterations += solution_.iterations;
+    was_spent = was_spent || record.solver_status == SolverStatus::kBudgetSpent;
+    const bool has_budget = solver_options_.budget > 0;
+    if ((solution_.status != hqp::Status::kSolved && !has_budget) ||
+        record.solver_status == SolverStatus::kFailed ||
+        solution_.iterations >= options_.slow_solve) {
+      keep_problem(record.cycle);
+    }
+    ended_(Stage::kSolver);
+
+    const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);
+    state.reference.ddq_m = x.head(n_m);
+    state.twin.ddq_a = x.tail(n_a);
+    budget.inertia = twin_.chain.c();
+    budget.inertia += twin_.chain.M().lazyProduct(state.twin.ddq_a);
+    const VectorA tau_constraint = budget.inertia - tau;
+    reactions_.split(tasks_, solution_, tau_constraint);
+    ended_(Stage::kReactions);
+
+    bool released = false;
+    for (int i = 0; i < n_a; ++i) {
+      bool& sticks = state.inner.sticks[static_cast<std::size_t>(i)];
+      const auto limit = static_cast<std::size_t>(first_twin_limit + i);
+      const double holding = reactions_.of(first_twin_limit + i);
+      const double most = state.inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction;
+      if (!sticks || std::abs(holding) <= most) continue;
+      sticks = false;
+      budget.friction[i] = -std::copysign(most, holding);
+      state.touched.lower[limit] = state.touched.upper[limit] = false;
+      released = true;
+    }
+    if (!released) break;
+  }
+  if (was_spent && record.solver_status == SolverStatus::kSolved) {
+    record.solver_status = SolverStatus::kBudgetSpent;
+  }
+  tasks_.find_motor_torques(solution_);
+  state.motor_torque = tasks_.motor_torque();
+  state.ddq_p.resize(0);
+  if (gantry.ddq.size() > 0) state.ddq_p = tasks_.gantry_acceleration(solution_);
+  if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
+  reactions_.report(tasks_, solution_, L_, J_a_, options_.dt, record);
+}
+
+void Rendering::keep_problem(std::uint64_t cycle, double cycle_time_us) noexcept {
+  if (solved_cycle_ != cycle) return;
+  kept_problems_->put(tasks_.problem(), solver_options_, guess_, solution_, cycle, cycle_time_us);
+}
+
+bool Rendering::is_blocked() const noexcept {
+  const int count = device_.n_m + static_cast<int>(device_.virtual_joints.size());
+  for (int i = 0; i < count; ++i) {
+    const auto row = static_cast<std::size_t>(tasks_.first_limit_row() + i);
+    if (hqp::is_violated(solution_.state[row])) return true;
+  }
+  return false;
+}
+
+void Rendering::gantry_room(VectorP& down, VectorP& up) const noexcept {
+  down = up = VectorP::Constant(device_.n_p, kInfinity);
+  for (const CartesianLimit& frame : device_.cartesian_limits) {
+    if (frame.frame == device_.handle) continue;
+    const model::Jacobian& J = device_.chain.jacobian(frame.frame);
+    const Eigen::Vector3d position = device_.chain.pose(frame.frame).p;
+    for (int axis = 0; axis < 3; ++axis) {
+      const limits::JointLimits& range = frame.axes[static_cast<std::size_t>(axis)];
+      const double to_lower = position[axis] - range.q_min, to_upper = range.q_max - position[axis];
+      for (int i = 0; i < device_.n_p; ++i) {
+        const double per = J(axis, i);  // of the frame, per motion of the gantry
+        if (std::abs(per) < 1e-3) continue;
+        down[i] = std::min(down[i], (per > 0.0 ? to_lower : to_upper) / std::abs(per));
+        up[i] = std::min(up[i], (per > 0.0 ? to_upper : to_lower) / std::abs(per));
+      }
+    }
+  }
+}
+
+Vector6 Rendering::handle_twist(const RobotState& robot) const noexcept {
+  return J_H_.lazyProduct(stacked(robot.dq_p, robot.dq_m));
+}
+
+Vector6 Rendering::end_effector_twist(const State& state) const noexcept {
+  return J_a_.lazyProduct(state.twin.dq_a);
+}
+
+double Rendering::apparent_mass(const State& state) const noexcept {
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxTwin, 3> root =
+      J_a_.topRows<3>().transpose();
+  L_.triangularView<Eigen::Lower>().solveInPlace(root);
+  return 1.0 / (state.calming.inertia * root.colwise().squaredNorm().maxCoeff());
+}
+
+void Rendering::report_kinematics(const State& state, CycleRecord& record) const noexcept {
+  record.reference = state.reference;
+  record.twin = state.twin;
+  record.T_B_H = device_.chain.pose(device_.handle);
+  record.v_H = device_.chain.twist(device_.handle).head<3>();
+  record.a_H =
+      (J_a_ * state.twin.ddq_a + twin_.chain.bias_acceleration(twin_.end_effector)).head<3>();
+  if (device_.elbow >= 0) record.p_B_elbow = device_.chain.pose(device_.elbow).p;
+  record.T_B_E = twin_.chain.pose(twin_.end_effector);
+  record.sync_error = (record.T_B_E.p - record.T_B_H.p).norm();
+  record.sync_error_angle = angle_between(record.T_B_H.R, record.T_B_E.R);
+}
+
+void Rendering::integrate(State& state) const noexcept {
+  rendering::integrate(state.reference, options_.dt);
+  rendering::integrate(twin_.chain, state.twin, options_.dt);
+}
+
+}  // namespace hg::rendering

@@ -1,0 +1,159 @@
+/// The rendering law: from the state of device and twin and the user's wrench to
+/// accelerations, integrated to the next reference.
+///
+/// Source: [HG] sec. VI-C; docs/law.md. One object serves one thread.
+/// No allocation, noexcept after construction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "hg/controller/rendering/device_model.h"
+#include "hg/controller/rendering/options.h"
+#include "hg/controller/rendering/reactions.h"
+#include "hg/controller/rendering/surfaces/environment.h"
+#include "hg/controller/rendering/tasks.h"
+#include "hg/controller/rendering/twin_forces.h"
+#include "hg/controller/rendering/twin_model.h"
+#include "hg/core/stage_probe.h"
+#include "hg/hqp/kept_problems.h"
+#include "hg/hqp/solver.h"
+#include "hg/signals/state.h"
+
+namespace hg::rendering {
+
+/// Additional damping and inertia of the twin; see hg/passivity.
+struct Calming {
+  double damping = 0.0;  ///< Damping of the end effector in all directions, Ns/m
+  double inertia = 1.0;  ///< Factor of the twin's inertia, without more weight
+};
+
+/// Part of the copyable state of a cycle.
+struct State {
+  ReferenceState reference;
+  TwinState twin;
+  TwinInnerState inner;
+  Calming calming;  ///< Additional damping and inertia in the next step
+  /// Wrench on the handle that stands for a contact of the arm, in the next step.
+  Vector6 touch = Vector6::Zero();
+  hqp::ActiveSet active_set;
+  TouchedEnds touched;  ///< Limit ends touched by the last result; law paper only
+  VectorP ddq_p;        ///< Gantry acceleration demanded by the last result; empty: none
+  /// Motor torques demanded by the last result, Nm or N; empty: none, or not known.
+  VectorM motor_torque;
+  surfaces::State contact;
+};
+
+/// Throws SetupError naming the first property of the models that the law cannot use.
+void check(const DeviceModel& device, const TwinModel& twin, const Options& options);
+
+class Rendering {
+ public:
+  Rendering(DeviceModel device, TwinModel twin, const Options& options,
+            surfaces::Environment environment = {});
+
+  const DeviceModel& device() const noexcept { return device_; }
+  const TwinModel& twin() const noexcept { return twin_; }
+
+  /// State at rest: manipulator at `q_m`, twin at its start.
+  State start(const VectorM& q_m) const;
+
+  /// Changes a parameter of the twin, from the next step() on.
+  ChangeStatus change(const ParameterChange& change, State& state) const noexcept;
+
+  /// Solves for the accelerations of this sample and reports their causes. Needs record.robot;
+  /// fills the rest that concerns device, twin, limits and solver. Does not advance the state:
+  /// integrate() does. `share` (0..1) scales the user's wrench, the twin's springs, its weight, its
+  /// reference wrench and the surfaces around it, so that a run against a leaning hand begins and
+  /// ends without a jump. `braking_rate` > 0 (1/s) brings the twin to rest, under the same limits;
+  /// with `share` 0 it is then a body without friction and without the user. The handle moves no
+  /// faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian limits
+  /// for it. `gantry` bounds where the law may lead the gantry; state.ddq_p is then the demanded
+  /// acceleration.
+  SolverStatus step(State& state, double braking_rate, CycleRecord& record, double share = 1.0,
+                    double handle_speed = kInfinity, const GantryTask& gantry = {}) noexcept;
+
+  /// Whether the law can lead the gantry.
+  bool leads_gantry() const noexcept { return tasks_.leads_gantry(); }
+
+  /// Moves the twin, at rest, so that its end effector meets the handle, as far as its joints
+  /// allow.
+  void align(const RobotState& robot, State& state) noexcept;
+
+  /// Keeps the reference within `largest` (rad or m) of the measured joints; [C] 6. Where the
+  /// device lags behind, reference and twin are moved back to it, so that the error cannot build up
+  /// and release suddenly. True when they were moved.
+  bool stay_near(const RobotState& robot, double largest, State& state) noexcept;
+
+  /// Whether in the last step a joint or virtual joint of the device could not be kept within its
+  /// limits: the motion of the gantry at a held twin has priority over them.
+  bool is_blocked() const noexcept;
+  /// Distance that each gantry axis may move down and up, the arm held stiff, until a frame other
+  /// than the handle, which the law leads, is at a Cartesian limit: by the positions of the last
+  /// step, to first order, m or rad.
+  void gantry_room(VectorP& down, VectorP& up) const noexcept;
+
+  // of the last step, with its posture:
+  /// Twist of the handle as measured, resolved in B.
+  Vector6 handle_twist(const RobotState& robot) const noexcept;
+  /// Jacobian of the handle, gantry joints first.
+  const model::Jacobian& handle_jacobian() const noexcept { return J_H_; }
+  /// Twist of the end effector of the twin, resolved in B.
+  Vector6 end_effector_twist(const State& state) const noexcept;
+  /// Mass of the twin as set up, at its end effector along the axis of B where it is least, kg.
+  double apparent_mass(const State& state) const noexcept;
+
+  /// Caps the budget of a solve from now on, where smaller than in the options; 0 = as in the
+  /// options.
+  void limit_solver(std::uint32_t most_active_sets) noexcept;
+
+  /// Installs a callback for the stages kRenderingSetUp, kSolver and kReactions.
+  void watch(const StageProbe& probe) noexcept { ended_ = probe; }
+
+  /// The problem of the last step: rows, bounds and weights.
+  const hqp::Problem& problem() const noexcept { return tasks_.problem(); }
+  /// Kept solves: failed, with options.slow_solve active sets or more, or requested by
+  /// keep_problem(). One other thread may read them.
+  const hqp::KeptProblems& kept_problems() const noexcept { return *kept_problems_; }
+  /// Keeps the last solve if it belonged to cycle `cycle`; `cycle_time_us` = 0: not kept because of
+  /// the time that the cycle took.
+  void keep_problem(std::uint64_t cycle, double cycle_time_us = 0.0) noexcept;
+  /// Right-hand side s of the last step (11): required acceleration of H relative to E.
+  const Vector6& synchronisation() const noexcept { return tasks_.synchronisation(); }
+
+  /// Advances reference and twin by one period.
+  void integrate(State& state) const noexcept;
+
+ private:
+  void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
+  Eigen::Vector3d push_of_twin(const Budget& budget) const noexcept;
+  void feel_surfaces(State& state, double share, CycleRecord& record) noexcept;
+  void give_way(State& state, const CycleRecord& record) const noexcept;
+  void solve(State& state, double handle_speed, const GantryTask& gantry,
+             CycleRecord& record) noexcept;
+  void report_stops(CycleRecord& record) const noexcept;
+  void report_kinematics(const State& state, CycleRecord& record) const noexcept;
+
+  DeviceModel device_;
+  TwinModel twin_;
+  Options options_;
+  surfaces::Environment environment_;
+  double stop_rating_;
+  Tasks tasks_;
+  std::array<surfaces::Facing, surfaces::kMostFacing> stops_;  ///< Stops in this cycle
+  Reactions reactions_;
+  // of this cycle: M_a = L L^T, the Jacobians of handle (gantry first) and end effector
+  MatrixA L_;
+  model::Jacobian J_H_, J_a_;
+  hqp::Options solver_options_;
+  hqp::Solver solver_;
+  hqp::Solution solution_;
+  hqp::ActiveSet guess_;                       ///< Active set from which the last solve started
+  std::optional<std::uint64_t> solved_cycle_;  ///< Cycle of the last solve
+  std::unique_ptr<hqp::KeptProblems> kept_problems_;
+  StageProbe ended_;
+};
+
+}  // namespace hg::rendering

@@ -1,0 +1,530 @@
+#include "hg/controller/rendering/tasks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hg/controller/rendering/motor_torque.h"
+#include "hg/core/rotation.h"
+
+namespace hg::rendering {
+namespace {
+
+// where the law knows the torques of the motors:
+constexpr double kTrackingMargin = 1e-3;     // rad or m, of a joint behind its reference
+constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its limits
+constexpr double kJumped = 1.5;              // times the speed of a motor without load
+constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
+
+int led_axes(const DeviceModel& device, const Options& options) noexcept {
+  return leads_gantry(device, options) ? device.n_p : 0;
+}
+
+hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin, const Options& options,
+                          int stops) {
+  const int n_m = device.n_m, n_a = twin.chain.nv();
+  const int limits = device.limit_count() + n_a + stops;
+  const int frames = static_cast<int>(device.cartesian_limits.size());
+  hqp::Capacity capacity{.variables = n_m + n_a, .levels = 5 + frames, .rows = 6 + limits + n_a};
+  if (options.bounds == Bounds::kPaper) {
+    capacity.levels += 2;
+    capacity.rows += n_m + n_a;
+  }
+  if (options.law == Law::kPaper) {
+    capacity.variables += limits;
+    capacity.levels += 3;
+    capacity.rows += 2 * limits;
+  } else {
+    capacity.levels += 2;
+    capacity.rows += n_m;
+  }
+  if (const int led = led_axes(device, options); led > 0) {
+    capacity.variables += led;
+    capacity.levels += 2;
+    capacity.rows += 2 * led;
+  }
+  return capacity;
+}
+
+LimitRow make_row(const limits::JointLimits& limits, double margin, double dt) {
+  LimitRow row;
+  row.range = {limits.q_min, limits.q_max};
+  row.limits = limits;
+  row.limits.q_min += margin;
+  row.limits.q_max -= margin;
+  row.options = limits::recoverable_options(limits, dt, dt);
+  row.rating = std::isfinite(limits.ddq_max) ? limits.ddq_max : 1.0;
+  return row;
+}
+
+}  // namespace
+
+double stop_rating(const DeviceModel& device) {
+  double rating = kInfinity;
+  for (const limits::JointLimits& axis : handle_limits(device)) {
+    rating = std::min(rating, axis.ddq_max);
+  }
+  return rating;
+}
+
+bool leads_gantry(const DeviceModel& device, const Options& options) noexcept {
+  return options.gantry == Gantry::kLaw && options.law == Law::kGauss && device.n_p > 0;
+}
+
+bool brakes_together(const DeviceModel& device, const Options& options) noexcept {
+  return options.braking == Braking::kTogether && options.law == Law::kGauss &&
+         options.bounds == Bounds::kRecoverable && !device.motors.empty();
+}
+
+Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
+             bool has_stops)
+    : options_(options),
+      n_m_(device.n_m),
+      n_a_(twin.chain.nv()),
+      n_g_(led_axes(device, options)),
+      stop_count_(has_stops ? surfaces::kMostFacing : 0),
+      knows_torques_(!device.motors.empty()),
+      first_motor_(n_m_ + static_cast<int>(device.virtual_joints.size())),
+      problem_(capacity_of(device, twin, options, stop_count_)),
+      coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0) {
+  if (options.law == Law::kPaper) paper_.emplace(device, twin);
+  problem_.clear(problem_.capacity().variables);
+  add_levels(device, twin);
+}
+
+void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
+  if (n_g_ > 0) {
+    problem_.add_level();
+    for (int i = 0; i < n_g_; ++i) problem_.add_bound(n_m_ + n_a_ + i, {});
+  }
+  problem_.add_level();
+  coupling_row_ = problem_.rows();
+  for (int i = 0; i < 6; ++i) problem_.add_row(coefficients_, {});
+  const double margin = knows_torques_ ? kTrackingMargin : 0.0;
+  problem_.add_level();
+  for (int i = 0; i < n_m_; ++i) {
+    add_limit(device.joint_limits[static_cast<std::size_t>(i)], i, margin);
+  }
+  problem_.add_level();
+  for (const VirtualJoint& joint : device.virtual_joints) {
+    add_limit(joint.limits, -1, margin * joint.weights.lpNorm<1>());
+  }
+  if (knows_torques_) {
+    problem_.add_level();
+    for (int i = 0; i < n_m_; ++i) {
+      add_limit({.ddq_max = device.joint_limits[static_cast<std::size_t>(i)].ddq_max}, -1, 0.0);
+      limit_rows_.back().is_motor = true;
+    }
+  }
+  for (const CartesianLimit& frame : device.cartesian_limits) {
+    problem_.add_level();
+    for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
+  }
+  if (knows_torques_) {
+    for (LimitRow& row : limit_rows_) {
+      row.options.is_capped = false;
+      row.options.tau_onset = kBrakingOnset;
+    }
+  }
+  problem_.add_level();
+  for (int i = 0; i < n_a_; ++i) {
+    add_limit(twin.dofs[static_cast<std::size_t>(i)].limits, n_m_ + i, 0.0);
+  }
+  for (int i = 0; i < stop_count_; ++i) {
+    add_limit({.q_min = 0.0, .ddq_max = stop_rating(device)}, -1, 0.0);
+    if (knows_torques_) limit_rows_.back().options.tau_onset = kTwinBrakingOnset;
+    limit_rows_.back().options.is_capped = false;
+  }
+  if (options_.bounds == Bounds::kPaper) {
+    problem_.add_level();
+    for (int i = 0; i < n_m_; ++i) add_rating(i, i);
+    problem_.add_level();
+    for (int i = 0; i < n_a_; ++i) add_rating(device.limit_count() + i, n_m_ + i);
+  }
+  limit_row_count_ = problem_.rows() - first_limit_row();
+  if (brakes_together(device, options_)) {
+    const int limits = device.limit_count();
+    lasting_.resize(device.motors.size());
+    joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_);
+    approaches_.resize(static_cast<std::size_t>(limits));
+    known_.resize(static_cast<std::size_t>(limits));
+  }
+
+  if (paper_) {
+    paper_->add_levels(problem_);
+    return;
+  }
+  problem_.add_level();
+  dynamics_row_ = problem_.rows();
+  for (int i = 0; i < n_a_; ++i) problem_.add_row(coefficients_, {});
+  if (n_g_ > 0) problem_.add_level();
+  for (int i = 0; i < n_g_; ++i) problem_.add_bound(n_m_ + n_a_ + i, {});
+  if (n_m_ == 6) return;
+  problem_.add_level();
+  posture_row_ = problem_.rows();
+  for (int i = 0; i < n_m_; ++i) problem_.add_bound(i, {});
+}
+
+double Tasks::weight_of(const LimitRow& row) const noexcept {
+  return options_.law == Law::kPaper ? 1.0 : 1.0 / row.rating;
+}
+
+void Tasks::add_limit(const limits::JointLimits& limits, int variable, double margin) {
+  limit_rows_.push_back(make_row(limits, margin, options_.dt));
+  limit_rows_.back().is_recoverable = options_.bounds == Bounds::kRecoverable;
+  const double weight = weight_of(limit_rows_.back());
+  if (variable >= 0) {
+    problem_.add_bound(variable, {}, weight);
+  } else {
+    problem_.add_row(coefficients_, {}, weight);
+  }
+}
+
+void Tasks::add_rating(int limit, int variable) {
+  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  row.rating_row = problem_.add_bound(variable, {}, weight_of(row));
+}
+
+void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
+                 const TaskInput& input) noexcept {
+  ddq_p_ = input.robot.ddq_p;
+  if (n_g_ > 0) fill_gantry(input);
+  fill_coupling(device, twin, input);
+  fill_device_limits(device, input);
+  if (knows_torques_) fill_motors(device, input);
+  if (joint_braking_) brake_together();
+  fill_twin_limits(twin, input);
+  if (stop_count_ > 0) fill_stops(twin, input);
+
+  const VectorA tau = input.tau - twin.chain.c();
+  if (paper_) {
+    paper_->fill(input.L, tau, first_limit_row(), input.directions, problem_);
+    fill_ranges(input);
+  } else {
+    fill_dynamics(input.L, tau);
+    if (n_m_ > 6) fill_posture(device, input.reference);
+  }
+}
+
+// [HG] (12) with (11): J_m ddq_m - J_a ddq_a = s - J_p ddq_p - dJ dq + dJ_a dq_a
+void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
+                          const TaskInput& input) noexcept {
+  const Pose& T_B_H = device.chain.pose(device.handle);
+  const Pose& T_B_E = twin.chain.pose(twin.end_effector);
+  const Vector6 velocity_error =
+      twin.chain.twist(twin.end_effector) - device.chain.twist(device.handle);
+  s_.head<3>() =
+      options_.kP_tran * (T_B_E.p - T_B_H.p) + options_.kD_tran * velocity_error.head<3>();
+  s_.tail<3>() = options_.kP_rot * rotation_between(T_B_H.R, T_B_E.R) +
+                 options_.kD_rot * velocity_error.tail<3>();
+
+  const model::Jacobian& J = input.J_H;
+  const Vector6 known = s_ - J.leftCols(device.n_p).lazyProduct(ddq_p_) -
+                        device.chain.bias_acceleration(device.handle) +
+                        twin.chain.bias_acceleration(twin.end_effector);
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  for (int i = 0; i < 6; ++i) {
+    row.head(n_m_) = J.row(i).segment(device.n_p, n_m_);
+    row.segment(n_m_, n_a_) = -input.J_a.row(i);
+    row.tail(n_g_) = J.row(i).head(n_g_);
+    problem_.set_row(coupling_row_ + i, coefficients_);
+    problem_.set_bounds(coupling_row_ + i, {known[i], known[i]});
+  }
+}
+
+void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, double dq,
+                      double known_acceleration) noexcept {
+  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  row.limits = limits;
+  row.q = q;
+  row.dq = dq;
+  row.known = known_acceleration;
+  if (row.is_recoverable) {
+    row.ddq = limits::recoverable_bounds(limits, row.options, q, dq, options_.dt);
+    if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, {});
+  } else if (row.rating_row >= 0) {
+    row.ddq = limits::bounds_A(limits, q, dq, options_.dt);
+    problem_.set_bounds(row.rating_row, limits::bounds_B(limits, q, dq, options_.dt));
+  } else {
+    row.ddq = limits::bounds_C(limits, q, dq, options_.T_C);
+  }
+  problem_.set_bounds(first_limit_row() + limit,
+                      {row.ddq.lb - known_acceleration, row.ddq.ub - known_acceleration});
+}
+
+// a joint that is held by a lock or by friction
+void Tasks::hold(int limit, double ddq) noexcept {
+  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  row.ddq = {ddq, ddq};
+  problem_.set_bounds(first_limit_row() + limit, row.ddq);
+  if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, row.ddq);
+}
+
+void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept {
+  const ReferenceState& reference = input.reference;
+  int limit = 0;
+  for (; limit < n_m_; ++limit) {
+    set_limit(limit, limit_rows_[static_cast<std::size_t>(limit)].limits, reference.q_m[limit],
+              reference.dq_m[limit], 0.0);
+  }
+
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  for (const VirtualJoint& joint : device.virtual_joints) {
+    row.head(n_m_) = joint.weights;
+    problem_.set_row(first_limit_row() + limit, coefficients_);
+    set_limit(limit, limit_rows_[static_cast<std::size_t>(limit)].limits,
+              joint.weights.dot(reference.q_m), joint.weights.dot(reference.dq_m), 0.0);
+    ++limit;
+  }
+
+  limit += static_cast<int>(device.motors.size());
+
+  // [HG] (15)-(16)
+  for (const CartesianLimit& frame : device.cartesian_limits) {
+    const model::Jacobian& J = device.chain.jacobian(frame.frame);
+    const Vector6 known =
+        J.leftCols(device.n_p).lazyProduct(ddq_p_) + device.chain.bias_acceleration(frame.frame);
+    const Eigen::Vector3d& position = device.chain.pose(frame.frame).p;
+    const Vector6& twist = device.chain.twist(frame.frame);
+    for (int axis = 0; axis < 3; ++axis) {
+      row.head(n_m_) = J.row(axis).segment(device.n_p, n_m_);
+      row.tail(n_g_) = J.row(axis).head(n_g_);
+      problem_.set_row(first_limit_row() + limit, coefficients_);
+      limits::JointLimits limits = limit_rows_[static_cast<std::size_t>(limit)].limits;
+      limits.dq_max = frame.axes[static_cast<std::size_t>(axis)].dq_max;
+      if (frame.frame == device.handle) limits.dq_max = std::min(limits.dq_max, input.handle_speed);
+      set_limit(limit, limits, position[axis], twist[axis], known[axis]);
+      ++limit;
+    }
+  }
+}
+
+// What each motor can give, as an acceleration of its joint: row and bounds are divided by the
+// inertia that the motor moves while all other joints keep their speed.
+void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexcept {
+  const auto M = device.chain.M().bottomRows(n_m_);
+  VectorM& known = known_torque_;
+  known = device.chain.c().tail(n_m_);
+  known.noalias() += M.leftCols(device.n_p) * ddq_p_;
+  known.noalias() -= input.J_H.middleCols(device.n_p, n_m_).transpose() * input.robot.w_H;
+
+  // a joint faster than any motor has jumped: its torques are unknown
+  are_torques_known_ = known.allFinite();
+  for (int i = 0; i < n_m_; ++i) {
+    const double fastest = kJumped * device.motors[static_cast<std::size_t>(i)].speed_no_load;
+    if (std::abs(input.reference.dq_m[i]) > fastest) are_torques_known_ = false;
+  }
+
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  for (int i = 0; i < n_m_; ++i) {
+    if (!are_torques_known_) {
+      problem_.set_bounds(first_limit_row() + first_motor_ + i, {});
+      continue;
+    }
+    const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
+    const double dq = input.reference.dq_m[i];
+    const double inertia = M(i, device.n_p + i) + motor.rotor_inertia;
+    row.head(n_m_) = M.row(i).segment(device.n_p, n_m_) / inertia;
+    row[i] = 1.0;
+    row.tail(n_g_) = M.row(i).head(n_g_) / inertia;
+    problem_.set_row(first_limit_row() + first_motor_ + i, coefficients_);
+    Interval torque = allowed_torque(motor, dq);
+    if (joint_braking_) {
+      lasting_[static_cast<std::size_t>(i)] = {(torque.lb - known[i]) / inertia,
+                                               (torque.ub - known[i]) / inertia};
+    }
+    if (input.motor_torque.size() > 0) {
+      torque = reached_torque(torque, input.motor_torque[i], options_.dt);
+    }
+    LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
+    limit.dq = dq;
+    limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
+    limit.inertia = inertia;
+    problem_.set_bounds(first_limit_row() + first_motor_ + i, limit.ddq);
+  }
+}
+
+// Makes the limits that need it brake together, early enough.
+void Tasks::brake_together() noexcept {
+  braking_reserve_ = kMostReserve;
+  bool has_near = false;
+  for (std::size_t i = 0; i < approaches_.size(); ++i) {
+    const LimitRow& row = limit_rows_[i];
+    if (row.is_motor) continue;
+    approaches_[i] = approach(row.limits, row.options, row.q, row.dq, options_.dt);
+    known_[i] = row.known;
+    has_near = has_near || is_near(approaches_[i], row.limits);
+  }
+  if (!has_near || !are_torques_known_) return;
+  braking_reserve_ = joint_braking_->reserve(problem_, lasting_, approaches_, known_);
+  for (std::size_t i = 0; i < approaches_.size(); ++i) {
+    LimitRow& row = limit_rows_[i];
+    if (row.is_motor) continue;
+    row.ddq =
+        braking_bounds(approaches_[i], braking_reserve_, row.ddq, row.limits, row.options, row.dq);
+    problem_.set_bounds(first_limit_row() + static_cast<int>(i),
+                        {row.ddq.lb - row.known, row.ddq.ub - row.known});
+  }
+}
+
+void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept {
+  const int first = static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_;
+  for (int i = 0; i < n_a_; ++i) {
+    const TwinDof& dof = twin.dofs[static_cast<std::size_t>(i)];
+    const double q = dof.q_index >= 0 ? input.twin.q_a[dof.q_index] : 0.0;
+    const double dq = input.twin.dq_a[i];
+    EffectiveLimits effective = effective_limits(twin, i, dq, input.inner);
+    LimitRow& row = limit_rows_[static_cast<std::size_t>(first + i)];
+    row.held_by = effective.held_by;
+    const bool is_locked = row.held_by.upper == LimitCause::kLock;
+    if (is_locked && options_.bounds == Bounds::kPaper) {
+      effective.limits.q_min = effective.limits.q_max = q;
+    }
+    row.range = input.inner.parameters.moving[static_cast<std::size_t>(i)].q;
+    row.options = limits::recoverable_options(effective.limits, options_.dt, options_.dt);
+    if (knows_torques_) row.options.tau_onset = kTwinBrakingOnset;
+    const bool is_held =
+        row.held_by.lower != LimitCause::kNone || row.held_by.upper != LimitCause::kNone;
+    row.is_recoverable = options_.bounds == Bounds::kRecoverable || is_held ||
+                         input.inner.parameters.may_be_overrun[static_cast<std::size_t>(i)];
+    set_limit(first + i, effective.limits, q, dq, 0.0);
+
+    // [HG] (31): a lock of bounds paper stops the joint, as fast as its rating allows
+    double ddq_stop = -dq / options_.dt;
+    if (options_.bounds == Bounds::kPaper) {
+      const double ddq_max = effective.limits.ddq_max;
+      ddq_stop = std::clamp(ddq_stop, -ddq_max, ddq_max);
+      if (is_locked) hold(first + i, ddq_stop);
+    } else if (is_locked) {
+      // one value: between two that differ by rounding the lock would seem to let go
+      hold(first + i, 0.5 * (row.ddq.lb + row.ddq.ub));
+    }
+
+    // stick: the joint stands still at the end of the sample, as far as its limits allow
+    if (input.inner.sticks[static_cast<std::size_t>(i)] && !is_locked) {
+      hold(first + i, std::clamp(ddq_stop, row.ddq.lb, row.ddq.ub));
+      row.held_by = {LimitCause::kFriction, LimitCause::kFriction};
+    }
+  }
+}
+
+// The law assumes that the gantry follows at once. It follows after the dead time of its drives;
+// deviations until then show in the next samples.
+void Tasks::fill_gantry(const TaskInput& input) noexcept {
+  const GantryTask& task = input.gantry;
+  const bool is_led = task.ddq.size() == n_g_;
+  for (int i = 0; i < n_g_; ++i) {
+    const double aim = is_led ? task.ddq[i] : input.robot.ddq_p[i];
+    problem_.set_bounds(i,
+                        is_led ? Interval{task.ddq_min[i], task.ddq_max[i]} : Interval{aim, aim});
+    problem_.set_bounds(dynamics_row_ + n_a_ + i, {aim, aim});
+    ddq_p_[i] = is_led ? task.unexplained[i] : 0.0;
+  }
+}
+
+// The distance d of E to a plane in front of it, d'' = n^T (J_a ddq_a + dJ_a dq_a): the solid
+// curves away from its plane, so that this is the least.
+void Tasks::fill_stops(const TwinModel& twin, const TaskInput& input) noexcept {
+  const int first = static_cast<int>(limit_rows_.size()) - stop_count_;
+  const auto J = input.J_a.topRows<3>();
+  const Eigen::Vector3d velocity = J * input.twin.dq_a;
+  const Vector6 bias = twin.chain.bias_acceleration(twin.end_effector);
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  for (int i = 0; i < stop_count_; ++i) {
+    const surfaces::Facing& stop = input.stops[static_cast<std::size_t>(i)];
+    if (stop.surface < 0) {
+      limit_rows_[static_cast<std::size_t>(first + i)].ddq = {};
+      problem_.set_bounds(first_limit_row() + first + i, {});
+      continue;
+    }
+    row.segment(n_m_, n_a_) = J.transpose() * stop.normal;
+    problem_.set_row(first_limit_row() + first + i, coefficients_);
+    set_limit(first + i, limit_rows_[static_cast<std::size_t>(first + i)].limits, stop.distance,
+              stop.normal.dot(velocity), stop.normal.dot(bias.head<3>()));
+  }
+}
+
+// Gauss: minimise |L^T ddq_a - L^-1 (tau - c)|^2 = (ddq_a - ddq_free)^T M (ddq_a - ddq_free)
+void Tasks::fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept {
+  VectorA b = tau;
+  L.triangularView<Eigen::Lower>().solveInPlace(b);
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  for (int i = 0; i < n_a_; ++i) {
+    row.segment(n_m_, i).setZero();
+    row.segment(n_m_ + i, n_a_ - i) = L.col(i).tail(n_a_ - i);
+    problem_.set_row(dynamics_row_ + i, coefficients_);
+    problem_.set_bounds(dynamics_row_ + i, {b[i], b[i]});
+  }
+}
+
+// A joint to spare moves towards its goal like a damped spring; without a goal it comes to rest.
+void Tasks::fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept {
+  for (int i = 0; i < n_m_; ++i) {
+    const bool has_goal = device.posture.size() > 0 && std::isfinite(device.posture[i]);
+    const double error = has_goal ? device.posture[i] - reference.q_m[i] : 0.0;
+    const double ddq = options_.kP_posture * error - options_.kD_posture * reference.dq_m[i];
+    problem_.set_bounds(posture_row_ + i, {ddq, ddq});
+  }
+}
+
+void Tasks::fill_ranges(const TaskInput& input) noexcept {
+  for (std::size_t i = 0; i < limit_rows_.size(); ++i) {
+    const LimitCause held_by = limit_rows_[i].held_by.upper;
+    const bool is_locked = held_by == LimitCause::kLock || held_by == LimitCause::kFriction;
+    paper_->set_range(static_cast<int>(i), input.touched.lower[i], input.touched.upper[i],
+                      is_locked, problem_);
+  }
+}
+
+void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
+  motor_torque_.resize(0);
+  if (!knows_torques_ || !are_torques_known_) return;
+  const Eigen::Map<const Eigen::VectorXd> x(solution.x.data(), problem_.variables());
+  motor_torque_.resize(n_m_);
+  for (int i = 0; i < n_m_; ++i) {
+    LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
+    const std::span<const double> row = problem_.coefficients(first_limit_row() + first_motor_ + i);
+    const double ddq = Eigen::Map<const Eigen::VectorXd>(row.data(), problem_.variables()).dot(x);
+    limit.q = motor_torque_[i] = known_torque_[i] + limit.inertia * ddq;
+  }
+}
+
+bool Tasks::keeps_limits_of_device(const hqp::Solution& solution) const noexcept {
+  constexpr double kMet = 1e-6;  // rad/s^2 or m/s^2
+  return keeps(solution, static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_, kMet);
+}
+
+bool Tasks::keeps_joints(const hqp::Solution& solution) const noexcept {
+  constexpr double kMet = 1e-3;  // rad/s^2: 1e-6 rad/s in a period of 1 ms
+  return keeps(solution, first_motor_, kMet);
+}
+
+// the first `count` limits
+bool Tasks::keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept {
+  for (int limit = 0; limit < count; ++limit) {
+    for (const int row :
+         {first_limit_row() + limit, limit_rows_[static_cast<std::size_t>(limit)].rating_row}) {
+      if (row < 0 || problem_.level_of(row) < solution.completed_levels) continue;
+      if (!(std::abs(solution.slack[static_cast<std::size_t>(row)]) <= tolerance)) return false;
+    }
+  }
+  return true;
+}
+
+TouchedEnds Tasks::touched_ends(const hqp::Solution& solution) const noexcept {
+  TouchedEnds touched;
+  for (std::size_t i = 0; i < limit_rows_.size(); ++i) {
+    for (const int row : {first_limit_row() + static_cast<int>(i), limit_rows_[i].rating_row}) {
+      if (row < 0) continue;
+      touched.lower[i] = touched.lower[i] || touches_lower(problem_, row, solution.x);
+      touched.upper[i] = touched.upper[i] || touches_upper(problem_, row, solution.x);
+    }
+  }
+  return touched;
+}
+
+}  // namespace hg::rendering

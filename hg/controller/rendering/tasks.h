@@ -1,0 +1,191 @@
+/// The tasks of the rendering law as one lexicographic problem, refilled every cycle.
+///
+/// Source: [HG] (9)-(19) and Table II, tasks 1-8; law and bounds are options, see docs/law.md.
+///
+///   law gauss       bounds of the gantry's drives, where the law leads it
+///   then            coupling of H and E (12), 6 equalities
+///   then            manipulator joints
+///   then            virtual joints (singularity)
+///   then            torques of the motors, where the law knows them; motor_torque.h
+///   then            Cartesian limits, a level per frame
+///   then            twin joints and locks, virtual surfaces that are stops
+///   bounds paper    acceleration ratings of the manipulator joints, then of the twin joints
+///   law gauss       L^T ddq_a = L^-1 tau with M_a = L L^T; x = (ddq_m, ddq_a, ddq_p)
+///                   aim of the gantry, where the law leads it
+///                   posture, where the manipulator has a joint to spare
+///   law paper       dynamics, range and norm of the constraint torques; paper_law.h
+///
+/// Rows have the weight 1 / rating in law gauss, none in law paper. No allocation after
+/// construction.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "hg/controller/rendering/device_model.h"
+#include "hg/controller/rendering/joint_braking.h"
+#include "hg/controller/rendering/options.h"
+#include "hg/controller/rendering/paper_law.h"
+#include "hg/controller/rendering/surfaces/nearest.h"
+#include "hg/controller/rendering/twin_forces.h"
+#include "hg/controller/rendering/twin_model.h"
+#include "hg/hqp/problem.h"
+#include "hg/hqp/solution.h"
+#include "hg/limits/acceleration_bounds.h"
+#include "hg/signals/gantry_task.h"
+#include "hg/signals/state.h"
+
+namespace hg::rendering {
+
+/// One limit, in catalogue order: limit i is row first_limit_row() + i. With bounds paper a joint
+/// has a second row, for its acceleration rating.
+struct LimitRow {
+  Interval range;              ///< Configured positions; of the twin as changed, this cycle
+  limits::JointLimits limits;  ///< Limits as rendered: with margins, and this cycle's locks
+  limits::RecoverableOptions options;
+  double rating = 1.0;  ///< Largest acceleration; 1 = none
+  int rating_row = -1;  ///< Row of bounds B; -1 = none
+  /// Row of a motor torque, as an acceleration of its joint; `q` is then the motor's torque.
+  bool is_motor = false;
+  double inertia = 0.0;  ///< Inertia that this motor moves, kg m^2 or kg
+  /// Bounds R are used in this cycle. With bounds paper only for a twin joint that may be beyond
+  /// limits which were not there before: from outside, bounds A let it coast away.
+  bool is_recoverable = true;
+  Holds held_by;             ///< Locks, latches and friction, this cycle
+  double q = 0.0, dq = 0.0;  ///< Position and speed in this cycle
+  double known = 0.0;        ///< Acceleration without the unknowns, this cycle
+  Interval ddq;              ///< Bounds of the first row in this cycle, without known accelerations
+};
+
+/// Inputs of one cycle besides the chains, which must have been updated.
+struct TaskInput {
+  const RobotState& robot;
+  const ReferenceState& reference;
+  const TwinState& twin;
+  const TwinInnerState& inner;
+  const VectorM& motor_torque;       ///< Motor torques of the last cycle, Nm or N; empty: none
+  const GantryTask& gantry;          ///< Task of the gantry; empty: it moves as measured
+  const TouchedEnds& touched;        ///< Limit ends touched by the last result; law paper only
+  const MatrixA& L;                  ///< Cholesky factor of M_a = L L^T
+  const model::Jacobian& J_H;        ///< Jacobian of the handle, gantry first
+  const model::Jacobian& J_a;        ///< Jacobian of the twin's end effector
+  ConstraintDirections& directions;  ///< Directions for J_H and J_a; found by law paper
+  const std::array<surfaces::Facing, surfaces::kMostFacing>& stops;
+  VectorA tau;  ///< Sum of all torques on the twin that are not constraints, without c_a
+  /// Largest speed of H along each axis of B, where the device limits H, m/s.
+  double handle_speed = kInfinity;
+};
+
+/// Acceleration with which the handle brakes before a virtual surface that is a stop: the least of
+/// its ratings, m/s^2.
+double stop_rating(const DeviceModel& device);
+
+/// Whether accelerations of the gantry are unknowns of the law. Where the law cannot have them, or
+/// there is no gantry, a rule leads it, whatever `options` ask for.
+bool leads_gantry(const DeviceModel& device, const Options& options) noexcept;
+
+/// Whether limits of the device brake together. Where the law does not know the motors, or bounds
+/// do not brake in time, each brakes separately, whatever `options` ask for.
+bool brakes_together(const DeviceModel& device, const Options& options) noexcept;
+
+class Tasks {
+ public:
+  /// `has_stops`: there are virtual surfaces that the end effector of the twin must not enter.
+  Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
+        bool has_stops = false);
+
+  /// Writes all rows. `device` and `twin` are the models given to the constructor, with updated
+  /// chains.
+  void fill(const DeviceModel& device, const TwinModel& twin, const TaskInput& input) noexcept;
+
+  const hqp::Problem& problem() const noexcept { return problem_; }
+  const std::vector<LimitRow>& limit_rows() const noexcept { return limit_rows_; }
+  int first_limit_row() const noexcept { return coupling_row_ + 6; }
+  /// Number of rows of virtual surfaces that are stops; they follow the limits of the catalogue and
+  /// are treated alike.
+  int stop_count() const noexcept { return stop_count_; }
+  /// Number of limit rows from first_limit_row() on: bounds, then acceleration ratings.
+  int limit_row_count() const noexcept { return limit_row_count_; }
+  /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
+  int acting_row(int limit, const hqp::Solution& solution) const noexcept {
+    const int row = first_limit_row() + limit;
+    const int rating_row = limit_rows_[static_cast<std::size_t>(limit)].rating_row;
+    const bool acts = solution.state[static_cast<std::size_t>(row)] != hqp::RowState::kInactive;
+    return acts || rating_row < 0 ? row : rating_row;
+  }
+  /// Computes the motor torques of `solution`, which solves problem().
+  void find_motor_torques(const hqp::Solution& solution) noexcept;
+  /// Motor torques found by find_motor_torques(), Nm or N: n_m, or empty where the law does not
+  /// know the motors.
+  const VectorM& motor_torque() const noexcept { return motor_torque_; }
+  /// Whether the gantry's accelerations are unknowns.
+  bool leads_gantry() const noexcept { return n_g_ > 0; }
+  /// Gantry accelerations demanded by a solution, n_p; only where leads_gantry().
+  VectorP gantry_acceleration(const hqp::Solution& solution) const noexcept {
+    return Eigen::Map<const Eigen::VectorXd>(solution.x.data() + n_m_ + n_a_, n_g_);
+  }
+  /// Whether all rows of device limits are in levels that `solution` has completed, or are met to
+  /// 1e-6.
+  bool keeps_limits_of_device(const hqp::Solution& solution) const noexcept;
+  /// Whether all rows of joints and virtual joints are in completed levels or are met to 1e-3
+  /// rad/s^2.
+  bool keeps_joints(const hqp::Solution& solution) const noexcept;
+  /// Limit ends that `solution` touches or exceeds, of both rows of a joint.
+  TouchedEnds touched_ends(const hqp::Solution& solution) const noexcept;
+  /// Law paper: index of the constraint force or torque of a limit in x; law gauss: -1.
+  int alpha(int limit) const noexcept { return paper_ ? paper_->alpha(limit) : -1; }
+  /// Factor by which the device can brake harder than needed before all its limits together, in
+  /// this cycle; kMostReserve: at least, or nothing is near, or limits brake alone.
+  double braking_reserve() const noexcept { return braking_reserve_; }
+  /// Right-hand side (11) of the coupling: required acceleration of H relative to E.
+  const Vector6& synchronisation() const noexcept { return s_; }
+
+ private:
+  void add_levels(const DeviceModel& device, const TwinModel& twin);
+  void add_limit(const limits::JointLimits& limits, int variable, double margin);
+  void add_rating(int limit, int variable);
+  double weight_of(const LimitRow& row) const noexcept;
+
+  void fill_coupling(const DeviceModel& device, const TwinModel& twin,
+                     const TaskInput& input) noexcept;
+  void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
+  void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
+  void brake_together() noexcept;
+  void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
+  bool keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept;
+  void fill_gantry(const TaskInput& input) noexcept;
+  void fill_stops(const TwinModel& twin, const TaskInput& input) noexcept;
+  void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;
+  void fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept;
+  void fill_ranges(const TaskInput& input) noexcept;
+  void set_limit(int limit, const limits::JointLimits& limits, double q, double dq,
+                 double known_acceleration) noexcept;
+  void hold(int limit, double ddq) noexcept;
+
+  Options options_;
+  int n_m_, n_a_;
+  int n_g_;  ///< Gantry axes that the law leads
+  int stop_count_;
+  bool knows_torques_;
+  bool are_torques_known_ = false;  ///< Motor torques are known in this cycle
+  int first_motor_;                 ///< Index of the first motor limit
+  int limit_row_count_ = 0;
+  int coupling_row_ = 0;  ///< first row of (12)
+  int dynamics_row_ = 0;  ///< first row of Gauss' principle
+  int posture_row_ = 0;   ///< first row of the posture of seven joints
+  hqp::Problem problem_;
+  std::vector<LimitRow> limit_rows_;
+  std::vector<double> coefficients_;  ///< scratch, one row
+  Vector6 s_ = Vector6::Zero();
+  VectorP ddq_p_;         ///< Gantry acceleration in this cycle, without the unknowns
+  VectorM known_torque_;  ///< Motor torques in this cycle, without those that accelerate the joints
+  VectorM motor_torque_;
+  std::optional<JointBraking> joint_braking_;  ///< only where limits brake together
+  std::vector<Approach> approaches_;           ///< Approaches of the device's limits, this cycle
+  std::vector<double> known_;      ///< Accelerations of these limits without the unknowns
+  std::vector<Interval> lasting_;  ///< Bounds of motor rows once they are reached
+  double braking_reserve_ = kMostReserve;
+  std::optional<PaperLaw> paper_;  ///< law paper only
+};
+
+}  // namespace hg::rendering

@@ -1,0 +1,157 @@
+// What motors can give as limits of the law.
+
+#include "hg/controller/rendering/motor_torque.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hg/controller/rendering/catalogue.h"
+#include "hg/controller/rendering/test/playing.h"
+#include "hg/signals/test/reference_actuators.h"
+
+namespace hg::rendering {
+namespace {
+
+const ActuatorModel kMotor = reference_actuators().front();  // 176 Nm, no load at 4 rad/s
+
+TEST(AllowedTorque, IsTheShareOfTheMotorAtRest) {
+  const Interval torque = allowed_torque(kMotor, 0.0);
+  EXPECT_DOUBLE_EQ(torque.ub, kTorqueShare * 176.0);
+  EXPECT_DOUBLE_EQ(torque.lb, -torque.ub);
+}
+
+TEST(AllowedTorque, OnwardItShrinksWithTheSpeedAndWhatFrictionTakes) {
+  const Interval torque = allowed_torque(kMotor, 3.0);  // half way to no load
+  EXPECT_DOUBLE_EQ(torque.ub, kTorqueShare * 88.0 - 4.0 - 9.0);
+  EXPECT_DOUBLE_EQ(torque.lb, -kTorqueShare * 176.0);
+  const Interval back = allowed_torque(kMotor, -3.0);
+  EXPECT_EQ(back.lb, -torque.ub);
+  EXPECT_EQ(back.ub, -torque.lb);
+}
+
+TEST(AllowedTorque, IsNeverEmptyHoweverFastTheMotorTurns) {
+  for (double dq = -20.0; dq <= 20.0; dq += 0.01) {
+    const Interval torque = allowed_torque(kMotor, dq);
+    ASSERT_LT(torque.lb, torque.ub) << dq;
+  }
+  EXPECT_LT(allowed_torque(kMotor, 4.5).ub, 0.0);  // beyond no load it has to brake
+}
+
+TEST(ReachedTorque, TakesATimeConstantToTheBound) {
+  double torque = 0.0;
+  for (int k = 0; k < 20; ++k) torque = reached_torque({-100.0, 100.0}, torque, 1e-3).ub;
+  EXPECT_NEAR(torque, 100.0 * (1.0 - std::exp(-1.0)), 2.0);
+  for (int k = 0; k < 200; ++k) torque = reached_torque({-100.0, 100.0}, torque, 1e-3).ub;
+  EXPECT_NEAR(torque, 100.0, 0.01);
+}
+
+TEST(ReachedTorque, FromBeyondABoundComesBackToIt) {
+  Interval torque = {0.0, 150.0};
+  for (int k = 0; k < 200; ++k) {
+    const double before = torque.ub;
+    torque = reached_torque({-100.0, 100.0}, before, 1e-3);
+    ASSERT_LT(torque.lb, torque.ub);
+    ASSERT_LT(torque.ub, before);
+  }
+  EXPECT_NEAR(torque.ub, 100.0, 0.01);
+}
+
+// A free body in the hand of a device with motors, of which somebody pulls.
+struct Pulled {
+  Rendering rendering;
+  State state;
+  CycleRecord record;
+
+  static DeviceModel device(bool knows_motors) {
+    DeviceModel device = unlimited_device();
+    for (limits::JointLimits& joint : device.joint_limits) {
+      joint = {.q_min = -6.0, .q_max = 6.0, .dq_max = 3.0, .ddq_max = 5.0};
+    }
+    if (knows_motors) device.motors.assign(6, kMotor);
+    return device;
+  }
+  static TwinModel body(const DeviceModel& device) {
+    TwinModel twin =
+        unlimited_twin(model::Chain::free_body({.mass = 1.0}, {.gravity = false}), "handle");
+    twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
+    return twin;
+  }
+  explicit Pulled(bool knows_motors)
+      : rendering(device(knows_motors), body(device(false)), Options{}),
+        state(rendering.start(kPosture)) {}
+
+  void pull(const Vector6& w) {
+    record = record_with(kGantryAtHome, state.reference.q_m, w);
+    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    rendering.integrate(state);
+  }
+};
+
+Vector6 force(double x, double y, double z) {
+  Vector6 w = Vector6::Zero();
+  w.head<3>() << x, y, z;
+  return w;
+}
+
+TEST(MotorRows, AMotorGivesNoMoreThanItsShareAndIsNamed) {
+  Pulled twin(true);
+  const LimitCatalogue catalogue = make_catalogue(twin.rendering.device(), twin.rendering.twin());
+  bool was_named = false;
+  double largest = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    twin.pull(force(0.0, 120.0, 0.0));
+    ASSERT_FALSE(HasFatalFailure());
+    const VectorM& dq = twin.record.reference.dq_m;
+    for (int i = 0; i < 6; ++i) {
+      const double torque = twin.state.motor_torque[i];
+      // a bound that has shrunk with the speed is followed with the time constant
+      const Interval allowed = allowed_torque(kMotor, dq[i]);
+      ASSERT_LE(torque, allowed.ub + 0.05 * kMotor.torque_max) << k << " motor " << i;
+      ASSERT_GE(torque, allowed.lb - 0.05 * kMotor.torque_max) << k << " motor " << i;
+      largest = std::max(largest, std::abs(torque) / kMotor.torque_max);
+    }
+    for (std::size_t i = 0; i < catalogue.size(); ++i) {
+      const LimitReport& limit = twin.record.limits[i];
+      if (catalogue[i].kind != LimitKind::kMotor || limit.state == LimitState::kInactive) continue;
+      was_named = true;
+      EXPECT_EQ(limit.cause, LimitCause::kTorque) << catalogue[i].name;
+      EXPECT_EQ(limit.position, twin.state.motor_torque[static_cast<int>(i) - 6]);
+    }
+  }
+  EXPECT_TRUE(was_named);
+  EXPECT_GT(largest, 0.7);
+}
+
+TEST(MotorRows, RatingsCapAccelerationsOnlyWhereTheMotorsAreNotKnown) {
+  const auto largest_acceleration = [](bool knows_motors) {
+    Pulled twin(knows_motors);
+    double largest = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      twin.pull(force(0.0, 60.0, 0.0));
+      largest = std::max(largest, twin.record.reference.ddq_m.cwiseAbs().maxCoeff());
+    }
+    return largest;
+  };
+  EXPECT_NEAR(largest_acceleration(false), 5.0, 1e-6);
+  EXPECT_GT(largest_acceleration(true), 10.0);
+}
+
+TEST(MotorRows, AReferenceThatHasJumpedIsSolvedWithoutThem) {
+  Pulled twin(true);
+  twin.pull(force(1.0, 0.0, 0.0));
+  twin.state.reference.dq_m[2] = 400.0;
+  twin.pull(force(1.0, 0.0, 0.0));
+  EXPECT_EQ(twin.state.motor_torque.size(), 0);
+}
+
+TEST(MotorRows, AreNoLimitsOfADeviceWithoutMotors) {
+  Pulled twin(false);
+  const LimitCatalogue catalogue = make_catalogue(twin.rendering.device(), twin.rendering.twin());
+  for (const LimitInfo& limit : catalogue) EXPECT_NE(limit.kind, LimitKind::kMotor);
+  twin.pull(force(1.0, 0.0, 0.0));
+  EXPECT_EQ(twin.state.motor_torque.size(), 0);
+}
+
+}  // namespace
+}  // namespace hg::rendering

@@ -1,0 +1,215 @@
+/// A manipulator with a joint to spare, and without a gantry.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <random>
+#include <sstream>
+
+#include "hg/controller/rendering/test/test_models.h"
+#include "hg/core/error.h"
+
+namespace hg::rendering {
+namespace {
+
+// seven joints as many arms have them: shoulder, elbow and wrist with offsets
+std::string seven_joint_urdf() {
+  struct Row {
+    const char *origin, *axis;
+  };
+  const Row rows[] = {{"0 0 0.333", "0 0 1"},       {"0 0 0", "0 1 0"},
+                      {"0 0 0.316", "0 0 1"},       {"0.0825 0 0", "0 -1 0"},
+                      {"-0.0825 0 0.384", "0 0 1"}, {"0 0 0", "0 -1 0"},
+                      {"0.088 0 0", "0 0 -1"}};
+  std::ostringstream urdf;
+  urdf << "<robot name='seven'><link name='l0'/>";
+  for (int i = 0; i < 7; ++i) {
+    urdf << "<link name='l" << i + 1 << "'><inertial><mass value='1'/><inertia ixx='0.01' "
+         << "iyy='0.01' izz='0.01' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='j"
+         << i + 1 << "' type='continuous'><parent link='l" << i << "'/><child link='l" << i + 1
+         << "'/><origin xyz='" << rows[i].origin << "'/><axis xyz='" << rows[i].axis
+         << "'/></joint>";
+  }
+  urdf << "<link name='handle'/><joint name='grip' type='fixed'><parent link='l7'/>"
+       << "<child link='handle'/><origin xyz='0 0 -0.2'/></joint></robot>";
+  return urdf.str();
+}
+
+DeviceModel seven_joint_device() {
+  DeviceModel device{
+      .chain = model::Chain::from_urdf_text(seven_joint_urdf(), "seven.urdf"), .n_p = 0, .n_m = 7};
+  device.handle = device.chain.frame("handle");
+  device.joint_limits.assign(7, {});
+  return device;
+}
+
+TwinModel free_body() {
+  TwinModel twin = unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
+  for (TwinDof& dof : twin.dofs) dof.damping = 5.0;
+  return twin;
+}
+
+// two degrees of freedom: more limits can act than the twin has torques, and only idle motion of
+// the manipulator tells their shares apart
+TwinModel door() {
+  return unlimited_twin(
+      model::Chain::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}), "handle");
+}
+
+const VectorM kPosture = posture({0.2, 0.5, -0.3, 1.9, 0.4, 2.2, 0.6});
+
+CycleRecord record_of(const VectorM& q_m, const Vector6& w) {
+  CycleRecord record;
+  record.robot.q_m = q_m;
+  record.robot.dq_m = VectorM::Zero(7);
+  record.robot.q_p = record.robot.dq_p = record.robot.ddq_p = VectorP::Zero(0);
+  record.robot.w_H = w;
+  return record;
+}
+
+Eigen::MatrixXd handle_jacobian(const DeviceModel& device, const VectorM& q) {
+  model::Chain chain = device.chain;
+  chain.update_kinematics(q, VectorM::Zero(7));
+  return chain.jacobian(device.handle);
+}
+
+Pose pose_of(const DeviceModel& device, const VectorM& q) {
+  model::Chain chain = device.chain;
+  chain.update_kinematics(q, VectorM::Zero(7));
+  return chain.pose(device.handle);
+}
+
+// The motion of the joints that leaves the handle at rest.
+Eigen::VectorXd idle_motion(const DeviceModel& device, const VectorM& q) {
+  return Eigen::FullPivLU<Eigen::MatrixXd>(handle_jacobian(device, q)).kernel().col(0).normalized();
+}
+
+// The conditions of Karush, Kuhn and Tucker of Gauss' principle: they are sufficient.
+TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
+  constexpr unsigned kSeed = 11;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int with_two_or_more = 0, with_idle_share = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    SCOPED_TRACE("trial " + std::to_string(trial));
+    DeviceModel device = seven_joint_device();
+    VectorM q = kPosture;
+    for (double& value : q) value += 0.3 * uniform(random);
+    for (int i = 0; i < 7; ++i) {
+      const double where = uniform(random);
+      limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      if (where > 0.3) limits.q_max = q[i];
+      if (where < -0.3) limits.q_min = q[i];
+    }
+    Rendering rendering(device, trial % 2 == 0 ? free_body() : door(), without_synchronisation());
+    State state = rendering.start(q);
+    Vector6 w;
+    for (double& value : w) value = 20 * uniform(random);
+    CycleRecord record = record_of(q, w);
+    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+
+    // the hand moves with the twin
+    const Eigen::MatrixXd J = handle_jacobian(device, q);
+    const Vector6 a_H = J * record.reference.ddq_m;
+    const auto& twin = rendering.twin();
+    const Vector6 a_E = twin.chain.jacobian(twin.end_effector) * record.twin.ddq_a;
+    ASSERT_LT((a_H - a_E).norm(), 1e-9 * (1.0 + a_E.norm()));
+
+    const Eigen::VectorXd idle = idle_motion(device, q);
+    double idle_push = 0.0, largest = 0.0;
+    int active = 0;
+    for (int i = 0; i < 7; ++i) {
+      const LimitReport& limit = record.limits[static_cast<std::size_t>(i)];
+      const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      const double ddq = record.reference.ddq_m[i];
+      if (limits.q_max == q[i]) {
+        ASSERT_LE(ddq, 1e-9);
+      }
+      if (limits.q_min == q[i]) {
+        ASSERT_GE(ddq, -1e-9);
+      }
+      if (limit.state == LimitState::kUpper) {
+        ASSERT_LE(limit.reaction, 1e-9);
+      }
+      if (limit.state == LimitState::kLower) {
+        ASSERT_GE(limit.reaction, -1e-9);
+      }
+      if (std::abs(limit.reaction) > 1e-9) {
+        ASSERT_NEAR(ddq, 0.0, 1e-9);
+      }
+      idle_push += limit.reaction * idle[i];
+      largest = std::max(largest, std::abs(limit.reaction * idle[i]));
+      active += std::abs(limit.reaction) > 1e-6;
+    }
+    ASSERT_NEAR(idle_push, 0.0, 1e-9 * (1.0 + largest));
+    with_two_or_more += active >= 2;
+    with_idle_share += largest > 1e-3;
+
+    const Budget& b = record.budget;
+    const VectorA rest = b.inertia + b.damping + b.friction + b.spring + b.surface + b.limits +
+                         b.conflict - record.tau_a;
+    ASSERT_LT(rest.norm(), 1e-9 * (1.0 + b.limits.norm()));
+    ASSERT_EQ(b.conflict.norm(), 0.0);
+  }
+  EXPECT_GT(with_two_or_more, 50);
+  EXPECT_GT(with_idle_share, 50);
+}
+
+// Plays one second without a wrench; the handle has to stay.
+void play_at_rest(Rendering& rendering, State& state, double seconds) {
+  const Pose start = pose_of(rendering.device(), state.reference.q_m);
+  state.twin.q_a = floating_at(start);
+  for (int k = 0; k < static_cast<int>(1000 * seconds); ++k) {
+    CycleRecord record = record_of(state.reference.q_m, Vector6::Zero());
+    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    rendering.integrate(state);
+  }
+  EXPECT_LT((pose_of(rendering.device(), state.reference.q_m).p - start.p).norm(), 1e-6);
+}
+
+TEST(SevenJoints, TheOneToSpareGoesToItsGoalAndTheHandStays) {
+  DeviceModel device = seven_joint_device();
+  // reachable: along idle motion from the start
+  VectorM goal = kPosture;
+  for (int k = 0; k < 400; ++k) goal += 1e-3 * idle_motion(device, goal);
+  device.posture = goal;
+  Rendering rendering(device, free_body(), {});
+  State state = rendering.start(kPosture);
+  const double before = (goal - kPosture).norm();
+  play_at_rest(rendering, state, 3.0);
+  EXPECT_GT(before, 0.1);
+  EXPECT_LT((goal - state.reference.q_m).norm(), 0.1 * before);
+  EXPECT_LT(state.reference.dq_m.norm(), 1e-3);
+}
+
+TEST(SevenJoints, WithoutAGoalIdleMotionComesToRest) {
+  for (const bool has_empty_posture : {true, false}) {
+    DeviceModel device = seven_joint_device();
+    if (!has_empty_posture) {
+      device.posture = VectorM::Constant(7, std::numeric_limits<double>::quiet_NaN());
+    }
+    Rendering rendering(device, free_body(), {});
+    State state = rendering.start(kPosture);
+    state.reference.dq_m = 0.3 * idle_motion(device, kPosture);
+    play_at_rest(rendering, state, 2.0);
+    EXPECT_LT(state.reference.dq_m.norm(), 1e-5);
+    EXPECT_GT((state.reference.q_m - kPosture).norm(), 0.01);
+  }
+}
+
+TEST(SevenJoints, LawPaperWantsSix) {
+  Options options;
+  options.law = Law::kPaper;
+  try {
+    Rendering(seven_joint_device(), free_body(), options);
+    FAIL() << "accepted";
+  } catch (const SetupError& error) {
+    EXPECT_STREQ(error.what(),
+                 "device: law paper needs six manipulator joints, got 7; law gauss takes seven as "
+                 "well");
+  }
+}
+
+}  // namespace
+}  // namespace hg::rendering

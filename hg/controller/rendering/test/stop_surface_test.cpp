@@ -1,0 +1,196 @@
+// Virtual surfaces that are met like a stop of the twin.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "hg/controller/rendering/test/playing.h"
+#include "hg/core/test/message_of.h"
+
+namespace hg::rendering {
+namespace {
+
+using Eigen::Vector3d;
+using surfaces::Contact;
+using surfaces::Surface;
+
+constexpr double kMass = 6.0;
+const Vector3d kStart(0.4, 0.1, 0.0);
+
+DeviceModel device_with(double ddq_max) {
+  DeviceModel device = unlimited_device();
+  CartesianLimit handle = {.name = "handle", .frame = device.handle};
+  for (limits::JointLimits& axis : handle.axes) axis.ddq_max = ddq_max;
+  device.cartesian_limits = {handle};
+  return device;
+}
+
+// A free body at kStart that moves or is pushed.
+struct Thrown {
+  Rendering rendering;
+  State state;
+  CycleRecord record;
+  double inside = 0.0;  // deepest so far, m
+  Surface solid;        // of the same size, which has an inside
+
+  static TwinModel body() {
+    TwinModel twin =
+        unlimited_twin(model::Chain::free_body({.mass = kMass}, {.gravity = false}), "handle");
+    twin.q_start = floating_at({kStart, Eigen::Matrix3d::Identity()});
+    return twin;
+  }
+  explicit Thrown(const Surface& met, const Options& options = without_synchronisation(),
+                  double ddq_max = 3.0)
+      : rendering(device_with(ddq_max), body(), options,
+                  surfaces::Environment({met}, kDt, {kMass, kMass})),
+        state(rendering.start(kPosture)),
+        solid(met) {
+    if (const auto* mesh = std::get_if<surfaces::Mesh>(&met.shape)) {
+      Eigen::AlignedBox3d box;
+      for (const auto& triangle : mesh->triangles()) {
+        for (const Vector3d& corner : triangle.corners) box.extend(corner);
+      }
+      solid.shape = surfaces::Box{box.sizes()};
+    }
+  }
+
+  Vector3d position() const { return state.twin.q_a.head<3>(); }
+  void step(const Vector3d& push = Vector3d::Zero()) {
+    Vector6 w = Vector6::Zero();
+    w.head<3>() = push;
+    state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+    record = record_with(kGantryAtHome, kPosture, w);
+    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    ASSERT_LT(budget_gap(record, rendering.twin().chain.M()), 1e-9);
+    rendering.integrate(state);
+    for_each_facing(solid, position(), 1.0, [&](const surfaces::Facing& facing) {
+      inside = std::max(inside, -facing.distance);
+    });
+  }
+};
+
+Surface stop(surfaces::Shape shape, const Vector3d& at) {
+  return {.name = "stop", .shape = std::move(shape), .pose = {.p = at}, .contact = Contact::kStop};
+}
+
+surfaces::Mesh mesh_of_box(const Vector3d& size) {
+  std::vector<std::array<Vector3d, 3>> triangles;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-0.5, 0.5}) {
+      const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+      const auto corner = [&](double a, double b) {
+        Vector3d p;
+        p[axis] = side * size[axis];
+        p[next] = a * size[next];
+        p[last] = b * size[last];
+        return p;
+      };
+      const Vector3d c[] = {corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5),
+                            corner(-0.5, 0.5)};
+      if (side > 0.0) {
+        triangles.push_back({c[0], c[1], c[2]});
+        triangles.push_back({c[0], c[2], c[3]});
+      } else {
+        triangles.push_back({c[0], c[2], c[1]});
+        triangles.push_back({c[0], c[3], c[2]});
+      }
+    }
+  }
+  return surfaces::Mesh(triangles);
+}
+
+// Faces, edges and corners, from every side.
+TEST(StopSurface, IsNotEnteredByWhatIsThrownAtIt) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> any;
+  std::uniform_real_distribution<double> share(-0.5, 0.5), fast(0.4, 1.5);
+  const Vector3d size(0.3, 0.2, 0.25);
+  const surfaces::Shape shapes[] = {surfaces::Box{size}, surfaces::Sphere{0.15},
+                                    surfaces::Cylinder{0.12, 0.2}, mesh_of_box(size)};
+  for (int k = 0; k < 60; ++k) {
+    SCOPED_TRACE(k);
+    const Vector3d way = Vector3d(any(random), any(random), any(random)).normalized();
+    // some point of the box, often on its edges and corners, lies ahead
+    Vector3d aim = Vector3d(share(random), share(random), share(random)) * 1.6;
+    aim = aim.cwiseMax(-0.5).cwiseMin(0.5).cwiseProduct(size);
+    Thrown body(stop(shapes[k % 4], kStart + 0.8 * way - aim));
+    body.state.twin.dq_a.head<3>() = fast(random) * way;
+    for (int i = 0; i < 1600; ++i) {
+      body.step(6.0 * way);
+      ASSERT_FALSE(HasFatalFailure());
+    }
+    ASSERT_LT(body.inside, 0.5e-3);
+  }
+}
+
+TEST(StopSurface, CarriesTheHandCalmlyAndIsNamed) {
+  Thrown body(stop(surfaces::Plane{}, kStart - 0.02 * Vector3d::UnitZ()));
+  const Vector3d push(0, 0, -50.0);
+  for (int k = 0; k < 2000; ++k) {
+    body.step(push);
+    ASSERT_FALSE(HasFatalFailure());
+    if (k < 1000) continue;
+    ASSERT_LT(std::abs(body.state.twin.dq_a[2]), 1e-4);
+    ASSERT_NEAR(body.record.contact.force.z(), 50.0, 0.5);
+    ASSERT_EQ(body.record.contact.surface, 0);
+    ASSERT_NEAR(body.record.budget.surface[2], -50.0, 0.5);
+    ASSERT_EQ(body.record.felt_limit, -1);
+  }
+  EXPECT_LT(body.inside, 1e-5);
+  EXPECT_NEAR(body.position().z(), -0.02, 1e-4);
+  // it lets go without sticking
+  for (int k = 0; k < 100; ++k) body.step(Vector3d(0, 0, 6.0));
+  EXPECT_GT(body.position().z(), -0.02 + 0.004);
+  EXPECT_EQ(body.record.contact.force.norm(), 0.0);
+}
+
+// Who moves the handle there before the device is armed is brought out slowly, without a kick.
+TEST(StopSurface, BringsOutSlowlyWhatStartsInside) {
+  const Vector3d size(0.4, 0.4, 0.2);
+  for (const surfaces::Shape& shape :
+       {surfaces::Shape(surfaces::Box{size}), surfaces::Shape(mesh_of_box(size))}) {
+    // 6 cm below its upper face
+    Thrown body(stop(shape, kStart - 0.04 * Vector3d::UnitZ()));
+    double fastest = 0.0, hardest = 0.0;
+    for (int k = 0; k < 3000; ++k) {
+      body.step();
+      ASSERT_FALSE(HasFatalFailure());
+      fastest = std::max(fastest, body.state.twin.dq_a.norm());
+      hardest = std::max(hardest, body.state.twin.ddq_a.norm());
+    }
+    EXPECT_LT(fastest, 0.5 + 1e-6);
+    EXPECT_GT(fastest, 0.1);
+    EXPECT_LT(hardest, 30.0);
+    EXPECT_GT(body.position().z(), kStart.z() + 0.06);
+    EXPECT_EQ(body.record.contact.force.norm(), 0.0);
+  }
+}
+
+TEST(StopSurface, LetsSlideAlongAMeshOverItsEdges) {
+  Thrown body(stop(mesh_of_box({2.0, 2.0, 0.2}), kStart - 0.101 * Vector3d::UnitZ()));
+  body.state.twin.dq_a.head<3>() = Vector3d(0.4, 0.3, 0.0);
+  for (int k = 0; k < 1000; ++k) {
+    body.step(Vector3d(0, 0, -2.0));
+    ASSERT_FALSE(HasFatalFailure());
+  }
+  EXPECT_NEAR(body.state.twin.dq_a[0], 0.4, 1e-6);
+  EXPECT_NEAR(body.state.twin.dq_a[1], 0.3, 1e-6);
+  EXPECT_LT(body.inside, 1e-5);
+}
+
+TEST(StopSurface, NeedsALawThatKnowsIt) {
+  const Surface surface = stop(surfaces::Plane{}, kStart - Vector3d::UnitZ());
+  Options paper = without_synchronisation();
+  paper.bounds = Bounds::kPaper;
+  EXPECT_EQ(message_of([&] { Thrown(surface, paper); }),
+            "surfaces with 'contact: stop' need law gauss with bounds recoverable");
+  EXPECT_NE(message_of([&] {
+              Thrown(surface, without_synchronisation(), kInfinity);
+            }).find("need a Cartesian limit of the handle"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace hg::rendering

@@ -1,0 +1,73 @@
+/// Internal forces of the twin: springs, closers, dampers, friction, locks.
+///
+/// Dampers enter the law with the velocity at the begin of a sample. A damper that is stiff for its
+/// inertia and the period would make that ring or diverge. damping_torque() therefore takes
+///   D' = (D^-1 + s dt M^-1)^-1,  s = max(0, 1 - 1 / trace(dt M^-1 D)),
+/// the damper D in series with one that stops the inertia M within s^-1 samples: exactly D while
+/// the trace is at most 1, and with all eigenvalues of dt M^-1 D' in [0, 1], so that damping alone
+/// never reverses a velocity. One joint: d' = min(d, M / dt).
+///
+/// No allocation, noexcept.
+#pragma once
+
+#include <array>
+
+#include "hg/controller/rendering/options.h"
+#include "hg/controller/rendering/twin_model.h"
+#include "hg/controller/rendering/twin_parameters.h"
+#include "hg/core/types.h"
+#include "hg/signals/state.h"
+
+namespace hg::rendering {
+
+struct LockState {
+  bool is_engaged = false;  ///< All conditions hold
+  /// Engaged, and the joint has reached the lock's position; with bounds paper as soon as engaged.
+  bool is_locked = false;
+  double edge = 0.0;  ///< While latched: position that the joint may not pass
+};
+
+/// Part of the copyable state of a cycle.
+struct TwinInnerState {
+  std::array<LockState, kMaxLocks> locks{};
+  std::array<bool, kMaxTwin> sticks{};  ///< Coulomb friction holds this degree of freedom
+  TwinParameters parameters;
+};
+
+/// A joint counts as being at its lock within this distance, rad or m.
+inline constexpr double kLockReached = 1e-4;
+
+/// Engages, latches, locks and releases according to the joint positions. With bounds paper a lock
+/// that engages locks at once, wherever its joint is, [HG] VII-C.
+void advance_locks(const TwinModel& twin, Bounds bounds, const ConfigurationA& q_a,
+                   TwinInnerState& inner) noexcept;
+
+/// Causes that hold the two sides of a limit besides its own ratings; kNone = no such cause.
+struct Holds {
+  LimitCause lower = LimitCause::kNone;
+  LimitCause upper = LimitCause::kNone;
+};
+
+/// The limits of a degree of freedom with its closer, conditional limits and locks. A speed limit
+/// that holds towards one end only counts while the joint moves there. Never empty: where a lock is
+/// outside the other limits the lock wins; where those contradict each other see limits::advanced.
+/// Both are reported as LimitCause::kContradiction, a joint that is locked already as kLock.
+struct EffectiveLimits {
+  limits::JointLimits limits;
+  Holds held_by;
+};
+EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
+                                 const TwinInnerState& inner) noexcept;
+
+/// Torques of springs and closers (n_a), of closers from the lower limit that holds now; sign as in
+/// the budget.
+VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
+                      const TwinParameters& parameters) noexcept;
+/// Writes the Cholesky factor of the mass matrix M into the lower triangle of `L` (n_a x n_a): M =
+/// L L^T.
+void factor_mass(const Eigen::MatrixXd& M, MatrixA& L) noexcept;
+/// Torques of linear and quadratic dampers (n_a); sign as in the budget. `L` is the factor of M.
+VectorA damping_torque(const MatrixA& L, const VectorA& dq_a, double dt,
+                       const TwinValues& values) noexcept;
+
+}  // namespace hg::rendering

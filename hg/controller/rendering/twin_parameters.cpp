@@ -1,0 +1,220 @@
+#include "hg/controller/rendering/twin_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hg::rendering {
+namespace {
+
+constexpr double kApproach = 0.1;  // s; a person feels a change, not a blow
+constexpr double kArrived = 1e-9;  // of the larger of 1 and the target
+constexpr double kLargest = 1e9;   // of any value; keeps products finite
+
+void approach(double& now, double target, double share) noexcept {
+  if (now == target) return;
+  now += share * (target - now);
+  if (std::abs(target - now) <= kArrived * std::max(1.0, std::abs(target))) now = target;
+}
+
+void approach_speed_limit(double& now, double target, double speed, double share) noexcept {
+  if (std::isinf(target)) now = target;
+  if (std::isinf(now)) now = std::max(target, speed);
+  approach(now, target, share);
+}
+
+DofValues values_of(const TwinDof& dof) noexcept {
+  return {.stiffness = dof.stiffness,
+          .rest = dof.rest,
+          .preload = dof.preload,
+          .damping = dof.damping,
+          .quadratic_damping = dof.quadratic_damping,
+          .friction = dof.friction,
+          .dq_max = dof.limits.dq_max};
+}
+
+// location of the value of `parameter`; nullptr for limits of position and unknown parameters
+double* place_of(Parameter parameter, std::size_t index, TwinValues& values) noexcept {
+  DofValues& dof = values.dofs[std::min(index, values.dofs.size() - 1)];
+  switch (parameter) {
+    case Parameter::kStiffness:
+      return &dof.stiffness;
+    case Parameter::kRest:
+      return &dof.rest;
+    case Parameter::kPreload:
+      return &dof.preload;
+    case Parameter::kDamping:
+      return &dof.damping;
+    case Parameter::kQuadraticDamping:
+      return &dof.quadratic_damping;
+    case Parameter::kFriction:
+      return &dof.friction;
+    case Parameter::kSpeedLimit:
+      return &dof.dq_max;
+    case Parameter::kReferenceWrench:
+      return &values.w_ref[static_cast<Eigen::Index>(std::min<std::size_t>(index, 5))];
+    case Parameter::kGravity:
+      return &values.loads.gravity;
+    case Parameter::kMassScale:
+      return &values.loads.mass;
+    case Parameter::kNone:
+    case Parameter::kLowerLimit:
+    case Parameter::kUpperLimit:
+      return nullptr;
+  }
+  return nullptr;
+}
+
+// whether the twin has such a parameter
+bool is_index(const TwinModel& twin, const ParameterChange& change) noexcept {
+  const int count = static_cast<int>(twin.dofs.size());
+  switch (change.parameter) {
+    case Parameter::kDamping:
+    case Parameter::kQuadraticDamping:
+    case Parameter::kFriction:
+      return change.index >= 0 && change.index < count;
+    case Parameter::kStiffness:
+    case Parameter::kRest:
+    case Parameter::kPreload:
+    case Parameter::kLowerLimit:
+    case Parameter::kUpperLimit:
+    case Parameter::kSpeedLimit:  // floating joints have neither springs nor limits
+      return change.index >= 0 && change.index < count &&
+             twin.dofs[static_cast<std::size_t>(change.index)].q_index >= 0;
+    case Parameter::kReferenceWrench:
+      return change.index >= 0 && change.index < 6;
+    case Parameter::kGravity:
+    case Parameter::kMassScale:
+      return true;
+    case Parameter::kNone:
+      return false;
+  }
+  return false;
+}
+
+bool is_value(Parameter parameter, double value) noexcept {
+  const bool is_number = std::abs(value) <= kLargest;  // false for NaN
+  switch (parameter) {
+    case Parameter::kStiffness:
+    case Parameter::kDamping:
+    case Parameter::kQuadraticDamping:
+    case Parameter::kFriction:
+      return is_number && value >= 0.0;
+    case Parameter::kRest:
+    case Parameter::kPreload:
+    case Parameter::kReferenceWrench:
+      return is_number;
+    case Parameter::kLowerLimit:
+      return is_number || value == -kInfinity;
+    case Parameter::kUpperLimit:
+      return is_number || value == kInfinity;
+    case Parameter::kSpeedLimit:
+      return value > 0.0 && (is_number || value == kInfinity);
+    case Parameter::kGravity:
+      return value >= 0.0 && value <= 1.0;
+    case Parameter::kMassScale:
+      return kMassScale.contains(value);
+    case Parameter::kNone:
+      return false;
+  }
+  return false;
+}
+
+// the range of a joint and of the conditional limits that hold
+Interval target_range(const TwinModel& twin, int dof, const TwinParameters& parameters) noexcept {
+  Interval range = parameters.range[static_cast<std::size_t>(dof)];
+  for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
+    const ConditionalLimit& limit = twin.conditional_limits[i];
+    if (limit.dof != dof || !parameters.holds[i]) continue;
+    range.lb = std::max(range.lb, limit.limits.q_min);
+    range.ub = std::min(range.ub, limit.limits.q_max);
+  }
+  return range;
+}
+
+// the smallest speed limit that holds now, in whichever direction
+double slowest(const TwinModel& twin, int dof, const TwinParameters& parameters) noexcept {
+  const auto index = static_cast<std::size_t>(dof);
+  double speed = std::min(parameters.now.dofs[index].dq_max, twin.dofs[index].closer.speed);
+  for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
+    const ConditionalLimit& limit = twin.conditional_limits[i];
+    if (limit.dof != dof || !parameters.holds[i]) continue;
+    speed = std::min(speed, limit.limits.dq_max);
+  }
+  return speed;
+}
+
+}  // namespace
+
+TwinParameters initial_parameters(const TwinModel& twin) {
+  TwinParameters parameters;
+  for (std::size_t i = 0; i < twin.dofs.size(); ++i) {
+    const TwinDof& dof = twin.dofs[i];
+    parameters.target.dofs[i] = values_of(dof);
+    parameters.range[i] = {dof.limits.q_min, dof.limits.q_max};
+    parameters.moving[i].q = parameters.range[i];
+  }
+  for (const ConditionalLimit& limit : twin.conditional_limits) {
+    parameters.may_be_overrun[static_cast<std::size_t>(limit.dof)] = true;
+  }
+  parameters.target.w_ref = twin.w_ref;
+  parameters.target.loads = {.mass = twin.mass_scale,
+                             .gravity = twin.chain.default_loads().gravity};
+  parameters.now = parameters.target;
+  return parameters;
+}
+
+ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
+                   TwinParameters& parameters) noexcept {
+  if (change.parameter == Parameter::kNone) return ChangeStatus::kNone;
+  if (!is_index(twin, change) || !is_value(change.parameter, change.value)) {
+    return ChangeStatus::kRefused;
+  }
+  const auto index = static_cast<std::size_t>(std::max<int>(change.index, 0));
+  if (double* place = place_of(change.parameter, index, parameters.target)) {
+    *place = change.value;
+    if (change.parameter == Parameter::kSpeedLimit) parameters.may_be_overrun[index] = true;
+    return ChangeStatus::kTaken;
+  }
+  Interval range = parameters.range[index];
+  (change.parameter == Parameter::kLowerLimit ? range.lb : range.ub) = change.value;
+  const bool is_rest_of_closer = twin.dofs[index].closer.stiffness > 0.0;
+  if (range.empty() || (is_rest_of_closer && std::isinf(range.lb))) return ChangeStatus::kRefused;
+  parameters.range[index] = range;
+  parameters.may_be_overrun[index] = true;
+  return ChangeStatus::kTaken;
+}
+
+void advance_parameters(const TwinModel& twin, const TwinState& state, double dt,
+                        TwinParameters& parameters) noexcept {
+  const double share = -std::expm1(-dt / kApproach);
+  TwinValues& now = parameters.now;
+  const TwinValues& target = parameters.target;
+  for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
+    parameters.holds[i] = are_true(twin, twin.conditional_limits[i].conditions, state.q_a);
+  }
+  for (std::size_t i = 0; i < twin.dofs.size(); ++i) {
+    const int dof = static_cast<int>(i);
+    DofValues& values = now.dofs[i];
+    const DofValues& goal = target.dofs[i];
+    approach(values.stiffness, goal.stiffness, share);
+    approach(values.rest, goal.rest, share);
+    approach(values.preload, goal.preload, share);
+    approach(values.damping, goal.damping, share);
+    approach(values.quadratic_damping, goal.quadratic_damping, share);
+    approach(values.friction, goal.friction, share);
+    approach_speed_limit(values.dq_max, goal.dq_max, std::abs(state.dq_a[dof]), share);
+
+    if (twin.dofs[i].q_index < 0) continue;
+    limits::JointLimits rated = twin.dofs[i].limits;
+    rated.dq_max = slowest(twin, dof, parameters);
+    const double v_rec = limits::recoverable_options(rated, dt, dt).v_rec;
+    parameters.moving[i] =
+        limits::advanced(parameters.moving[i], target_range(twin, dof, parameters),
+                         position_of(twin, dof, state.q_a), v_rec, dt);
+  }
+  for (int i = 0; i < 6; ++i) approach(now.w_ref[i], target.w_ref[i], share);
+  approach(now.loads.mass, target.loads.mass, share);
+  approach(now.loads.gravity, target.loads.gravity, share);
+}
+
+}  // namespace hg::rendering

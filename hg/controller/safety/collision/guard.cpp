@@ -1,0 +1,213 @@
+#include "hg/controller/safety/collision/guard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "hg/core/error.h"
+
+namespace hg::collision {
+namespace {
+
+constexpr double kApproach = 5e-3;  // m: how much nearer a pair may come that began too near
+constexpr double kAhead = 20.0;     // cycles: bounds that may be used up this soon are recomputed
+constexpr double kClose = 0.05;     // m: smaller bounds are recomputed in every cycle
+constexpr int kHalvings = 16;       // largest number of pending intervals of a path
+
+void check(const Config& config, const model::Chain& chain) {
+  const auto require = [](bool holds, const char* rule) {
+    if (!holds) throw SetupError(std::string("collision: ") + rule);
+  };
+  require(config.reaction.size() == chain.nv() && config.deceleration.size() == chain.nv(),
+          "reaction and deceleration need one value per joint");
+  require(config.reaction.allFinite() && config.reaction.minCoeff() >= 0.0,
+          "reaction must be finite and not negative");
+  require(config.deceleration.allFinite() && config.deceleration.minCoeff() > 0.0,
+          "deceleration must be finite and positive");
+  require(config.safe_distance > 0.0, "safe_distance must be positive");
+}
+
+}  // namespace
+
+// Braking with all joints at once from the state at time 0.
+struct Guard::Path {
+  const Config& config;
+  const VectorPM& q;
+  const VectorPM& dq;
+  VectorPM stop;
+
+  Path(const Config& c, const VectorPM& from, const VectorPM& speed) noexcept
+      : config(c), q(from), dq(speed), stop(from) {
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      stop[i] += dq[i] * (c.reaction[i] + 0.5 * std::abs(dq[i]) / c.deceleration[i]);
+    }
+  }
+
+  // time until the joints that move this pair are at rest
+  double duration(const Pair& pair) const noexcept {
+    double longest = 0.0;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      if (pair.lever[i] == 0.0 || dq[i] == 0.0) continue;
+      longest = std::max(longest, config.reaction[i] + std::abs(dq[i]) / config.deceleration[i]);
+    }
+    return longest;
+  }
+
+  double position(Eigen::Index i, double time) const noexcept {
+    const double braking = std::max(0.0, time - config.reaction[i]);
+    if (braking * config.deceleration[i] >= std::abs(dq[i])) {
+      return time >= config.reaction[i] ? stop[i] : q[i] + dq[i] * time;
+    }
+    return q[i] + dq[i] * time -
+           std::copysign(0.5 * config.deceleration[i] * braking * braking, dq[i]);
+  }
+
+  // bound on what the joints between `begin` and `end` may take from the distance
+  double travel(const Pair& pair, double begin, double end) const noexcept {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      if (pair.lever[i] == 0.0) continue;
+      sum += pair.lever[i] * std::abs(position(i, end) - position(i, begin));
+    }
+    return sum;
+  }
+};
+
+Guard::Guard(const Config& config, const model::Chain& chain) : config_(config) {
+  if (config_.pairs.watched.empty()) return;
+  check(config_, chain);
+  if (config_.pairs.watched.size() > kMaxPairs) {
+    throw SetupError("collision: " + std::to_string(config_.pairs.watched.size()) +
+                     " pairs of shapes may touch, at most " + std::to_string(kMaxPairs) +
+                     " can be watched; use fewer collision elements in the URDF");
+  }
+  for (const Pair& pair : config_.pairs.watched) {
+    distances_.emplace_back(config_.shapes[static_cast<std::size_t>(pair.a)],
+                            config_.shapes[static_cast<std::size_t>(pair.b)]);
+  }
+  chain_.push_back(chain);
+}
+
+std::vector<std::string> pair_names(const Config& config) {
+  std::vector<std::string> names;
+  for (const Pair& pair : config.pairs.watched) {
+    names.push_back(config.shapes[static_cast<std::size_t>(pair.a)].name + " - " +
+                    config.shapes[static_cast<std::size_t>(pair.b)].name);
+  }
+  return names;
+}
+
+double Guard::distance(int pair, const Path& path, double time) noexcept {
+  VectorPM q(path.q.size());
+  for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = path.position(i, time);
+  model::Chain& chain = chain_.front();
+  chain.update_poses(q);
+  const auto pose = [&](int shape) {
+    const int frame = config_.shapes[static_cast<std::size_t>(shape)].frame;
+    return frame < 0 ? Pose{} : chain.pose(frame);
+  };
+  const auto index = static_cast<std::size_t>(pair);
+  return distances_[index](pose(config_.pairs.watched[index].a),
+                           pose(config_.pairs.watched[index].b));
+}
+
+// Depth first from the start of the path; `ends` holds the ends of pending intervals.
+void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
+                     State& state) noexcept {
+  struct Place {
+    double time, distance;
+  };
+  const Pair& pair = config_.pairs.watched[static_cast<std::size_t>(index)];
+  double& allowed = state.allowed[static_cast<std::size_t>(index)];
+  Place from = {0.0, distance(index, path, 0.0)};
+  --budget;
+  const double accepted = std::min(config_.safe_distance, from.distance - kApproach);
+  allowed = is_moving ? std::max(allowed, accepted) : accepted;
+
+  double smallest = from.distance;
+  std::array<Place, kHalvings> ends;
+  int waiting = 0;
+  if (const double end = path.duration(pair); end > 0.0) {
+    ends[0] = {end, distance(index, path, end)};
+    --budget;
+    waiting = 1;
+  }
+  while (waiting > 0) {
+    const Place to = ends[static_cast<std::size_t>(waiting - 1)];
+    const double nearer = std::min(from.distance, to.distance);
+    const double bound = std::min(
+        nearer, 0.5 * (from.distance + to.distance - path.travel(pair, from.time, to.time)));
+    const bool is_good = bound - allowed >= 0.5 * (nearer - allowed);
+    if (is_good || nearer <= allowed || waiting == kHalvings || budget <= 0) {
+      smallest = std::min(smallest, bound);
+      if (smallest <= allowed) break;
+      from = to;
+      --waiting;
+      continue;
+    }
+    const double middle = 0.5 * (from.time + to.time);
+    ends[static_cast<std::size_t>(waiting++)] = {middle, distance(index, path, middle)};
+    --budget;
+  }
+  state.left[static_cast<std::size_t>(index)] = smallest - allowed;
+}
+
+// Reduces each bound by the change of the path since the last cycle.
+void Guard::fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept {
+  const VectorPM change = (q - state.q).cwiseAbs().cwiseMax((stop - state.stop).cwiseAbs());
+  for (std::size_t i = 0; i < config_.pairs.watched.size(); ++i) {
+    fading_[i] = config_.pairs.watched[i].lever.dot(change);
+    state.left[i] -= fading_[i];
+  }
+}
+
+Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
+                       State& state) noexcept {
+  Prediction prediction;
+  const auto count = static_cast<int>(config_.pairs.watched.size());
+  if (count == 0) return prediction;
+  const Path path(config_, q, dq);
+  const int had_budget = state.count == count ? kMaxDistances : 0;
+  int budget = had_budget;
+  if (state.count == count) {
+    fade(q, path.stop, state);
+  } else {
+    fading_ = {};
+    for (int i = 0; i < count; ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      state.allowed[index] = is_moving ? config_.safe_distance : 0.0;
+      int first_budget = kMaxDistances;
+      evaluate(i, path, is_moving, first_budget, state);
+      prediction.distances += kMaxDistances - first_budget;
+    }
+  }
+  state.count = count;
+  state.q = q;
+  state.stop = path.stop;
+
+  std::array<bool, kMaxPairs> is_done{};
+  while (budget > 1) {
+    int next = -1;
+    double least = 0.0;
+    for (int i = 0; i < count; ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      const double soon = state.left[index] - kAhead * fading_[index] - kClose;
+      if (is_done[index] || soon > least) continue;
+      least = soon;
+      next = i;
+    }
+    if (next < 0) break;
+    is_done[static_cast<std::size_t>(next)] = true;
+    evaluate(next, path, is_moving, budget, state);
+  }
+  prediction.distances += had_budget - budget;
+
+  const auto nearest = std::min_element(state.left.begin(), state.left.begin() + count);
+  const auto pair = static_cast<std::size_t>(nearest - state.left.begin());
+  prediction.allowed = state.allowed[pair];
+  prediction.report = {*nearest + prediction.allowed, static_cast<int>(pair)};
+  prediction.must_brake = *nearest <= 0.0;
+  return prediction;
+}
+
+}  // namespace hg::collision

@@ -1,0 +1,87 @@
+/// Predicts when a device must brake so as not to hit itself, its gantry, its frame or the floor.
+///
+/// Source: [HANDBOOK] 6.4. Braking from the state (q, dq) moves each joint along
+///   q_i(t) = q_i + dq_i t while t < r_i, then with the deceleration A_i to its stop
+///   s_i = q_i + dq_i r_i + dq_i |dq_i| / (2 A_i).
+/// For each pair of shapes the smallest distance on that path is bounded from below. Between two
+/// points of the path with distances D1 and D2 the bound is
+/// (D1 + D2 - sum_i L_i |q_i(t2) - q_i(t1)|) / 2, with the levers L_i of Pair. Intervals for which
+/// this bound is too small are halved.
+///
+/// Bounds are reused in later cycles. Braking paths from two states differ in joint i by at most
+/// e_i = max(|q_i - q'_i|, |s_i - s'_i|), so a bound shrinks by at most sum_i L_i e_i per cycle. It
+/// is recomputed only when little of it is left.
+///
+/// A cycle computes at most kMaxDistances distances, for the pairs with the smallest bounds first.
+/// The first cycle, with the drives off, may compute that many for each pair. A pair that was not
+/// recomputed and whose bound is used up counts as a collision ahead: overload brakes the device
+/// and never hides a collision. Deterministic; no allocation, noexcept after set-up.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hg/controller/safety/collision/distance.h"
+#include "hg/controller/safety/collision/pairs.h"
+#include "hg/core/stacked.h"
+#include "hg/signals/state.h"
+
+namespace hg::collision {
+
+inline constexpr int kMaxPairs = 96;      ///< Largest number of watched pairs; set-up refuses more
+inline constexpr int kMaxDistances = 24;  ///< Largest number of distances computed in a cycle
+/// Pairs that always stay farther apart than the safe distance plus this need not be watched, m.
+inline constexpr double kFarEnough = 0.02;
+
+/// Set-up data.
+struct Config {
+  std::vector<Shape> shapes;    ///< Collision shapes; empty: nothing is watched
+  Pairs pairs;                  ///< Pairs found by choose_pairs()
+  VectorPM reaction;            ///< Reaction time of each joint until it brakes, s
+  VectorPM deceleration;        ///< Deceleration of each joint, rad/s^2 or m/s^2, > 0
+  double safe_distance = 0.03;  ///< Safe distance, [HANDBOOK] 6.4, m
+};
+
+/// Names like "link1 - forearm", one per watched pair.
+std::vector<std::string> pair_names(const Config& config);
+
+struct State {
+  int count = 0;                            ///< Number of watched pairs; 0 = not started
+  VectorPM q, stop;                         ///< Joint and stopping positions of the last cycle
+  std::array<double, kMaxPairs> left{};     ///< Lower bound on the distance minus `allowed`, m
+  std::array<double, kMaxPairs> allowed{};  ///< Safe distance, less for pairs that began nearer, m
+};
+
+struct Prediction {
+  CollisionReport report;
+  bool must_brake = false;
+  double allowed = 0.0;  ///< Allowed distance of the reported pair, m
+  int distances = 0;     ///< Number of distances computed
+};
+
+class Guard {
+ public:
+  Guard() = default;
+  /// Throws SetupError when too many pairs would have to be watched.
+  Guard(const Config& config, const model::Chain& chain);
+
+  /// Predicts braking from `q` and `dq`. `is_moving` = the device may move autonomously. As long as
+  /// it may not, pairs nearer than the safe distance are accepted as they are; afterwards they must
+  /// not come 5 mm nearer.
+  Prediction step(const VectorPM& q, const VectorPM& dq, bool is_moving, State& state) noexcept;
+
+ private:
+  struct Path;  // braking path
+
+  double distance(int pair, const Path& path, double time) noexcept;
+  void evaluate(int pair, const Path& path, bool is_moving, int& budget, State& state) noexcept;
+  void fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept;
+
+  Config config_;
+  std::vector<Distance> distances_;
+  std::vector<model::Chain> chain_;         // one, or none without shapes
+  std::array<double, kMaxPairs> fading_{};  // decrease of each bound since the last cycle, m
+};
+
+}  // namespace hg::collision

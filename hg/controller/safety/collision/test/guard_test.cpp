@@ -1,0 +1,294 @@
+#include "hg/controller/safety/collision/guard.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <random>
+
+#include "hg/controller/safety/collision/levers.h"
+#include "hg/controller/safety/collision/test/devices.h"
+#include "hg/core/allocation_counter.h"
+
+namespace hg::collision {
+namespace {
+
+// Brute force: the smallest distance of a pair while all joints brake, with no bound but samples.
+class Judge {
+ public:
+  explicit Judge(const TestDevice& device)
+      : config_(device.config), chain_(device.chain), pairs_(device.config.pairs) {
+    for (const Pair& pair : pairs_.watched) distances_.push_back(distance_of(pair.a, pair.b));
+  }
+
+  Distance distance_of(int a, int b) const {
+    return {config_.shapes[static_cast<std::size_t>(a)],
+            config_.shapes[static_cast<std::size_t>(b)]};
+  }
+
+  double at(const VectorPM& q, int a, int b, const Distance& distance) {
+    chain_.update_poses(q);
+    return distance(pose(a), pose(b));
+  }
+
+  double along_braking(std::size_t pair, const VectorPM& q, const VectorPM& dq, int samples) {
+    double smallest = kInfinity;
+    VectorPM x = q;
+    for (int k = 0; k <= samples; ++k) {
+      for (Eigen::Index i = 0; i < q.size(); ++i) {
+        const double t_stop = config_.reaction[i] + std::abs(dq[i]) / config_.deceleration[i];
+        const double t = std::min(1.2 * k / samples, t_stop);
+        const double braking = std::max(0.0, t - config_.reaction[i]);
+        x[i] = q[i] + dq[i] * t -
+               std::copysign(0.5 * config_.deceleration[i] * braking * braking, dq[i]);
+      }
+      smallest = std::min(smallest,
+                          at(x, pairs_.watched[pair].a, pairs_.watched[pair].b, distances_[pair]));
+    }
+    return smallest;
+  }
+
+ private:
+  Pose pose(int shape) const {
+    const int frame = config_.shapes[static_cast<std::size_t>(shape)].frame;
+    return frame < 0 ? Pose{} : chain_.pose(frame);
+  }
+
+  Config config_;
+  model::Chain chain_;
+  Pairs pairs_;
+  std::vector<Distance> distances_;
+};
+
+// Joints that wander within their range at up to full speed.
+class Wanderer {
+ public:
+  Wanderer(const TestDevice& device, unsigned seed)
+      : random_(seed), config_(device.config), range_(device.range) {
+    for (const model::Joint& joint : device.chain.joints()) speed_.push_back(joint.velocity_max);
+    q = VectorPM::Zero(8);
+    dq = VectorPM::Zero(8);
+    goal_ = VectorPM::Zero(8);
+    jump();
+  }
+
+  void jump() {
+    for (int i = 0; i < 8; ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      q[i] = uniform(lower(joint), upper(joint));
+      dq[i] = uniform(-speed_[joint], speed_[joint]);
+    }
+  }
+
+  void move() {
+    for (int i = 0; i < 8; ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      if (uniform(0.0, 1.0) < 0.002) goal_[i] = uniform(-speed_[joint], speed_[joint]);
+      const double step = 1e-3 * config_.deceleration[i];
+      dq[i] += std::clamp(goal_[i] - dq[i], -step, step);
+      q[i] += 1e-3 * dq[i];
+      if (q[i] < lower(joint) || q[i] > upper(joint)) {
+        q[i] = std::clamp(q[i], lower(joint), upper(joint));
+        dq[i] = 0.0;
+        goal_[i] = -goal_[i];
+      }
+    }
+  }
+
+  VectorPM q, dq;
+
+ private:
+  double uniform(double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random_);
+  }
+  double lower(std::size_t i) const { return std::max(range_[i].lb, -std::numbers::pi); }
+  double upper(std::size_t i) const { return std::min(range_[i].ub, std::numbers::pi); }
+
+  std::mt19937 random_;
+  Config config_;
+  std::vector<Interval> range_;
+  std::vector<double> speed_;
+  VectorPM goal_;
+};
+
+TEST(Guard, SaysFreeOnlyWhereBrakingStaysFree) {
+  const TestDevice device = device_of(folding_urdf());
+  Guard guard(device.config, device.chain);
+  Judge judge(device);
+  const unsigned seed = 11;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  Wanderer wanderer(device, seed);
+  int free = 0;
+  int braked = 0;
+  int needless = 0;
+  for (int n = 0; n < 400; ++n) {
+    wanderer.jump();
+    State state;
+    const bool must_brake = guard.step(wanderer.q, wanderer.dq, true, state).must_brake;
+    double smallest = kInfinity;
+    for (std::size_t pair = 0; pair < device.config.pairs.watched.size(); ++pair) {
+      smallest = std::min(smallest, judge.along_braking(pair, wanderer.q, wanderer.dq, 120));
+    }
+    if (!must_brake) {
+      ++free;
+      EXPECT_GE(smallest, device.config.safe_distance - 1e-3) << "state " << n;
+    } else {
+      ++braked;
+      needless += smallest > device.config.safe_distance + 0.02 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(free, 50);
+  EXPECT_GT(braked, 15);
+  EXPECT_EQ(needless, 0) << "braked " << braked;
+}
+
+TEST(Guard, RemembersBoundsThatHold) {
+  const TestDevice device = device_of(folding_urdf());
+  Guard guard(device.config, device.chain);
+  Judge judge(device);
+  const unsigned seed = 12;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  Wanderer wanderer(device, seed);
+  State state;
+  long distances = 0;
+  int worst = 0;
+  constexpr int kCycles = 20000;
+  for (int n = 0; n < kCycles; ++n) {
+    wanderer.move();
+    const bool is_first = state.count == 0;
+    const Prediction prediction = guard.step(wanderer.q, wanderer.dq, true, state);
+    if (!is_first) {
+      distances += prediction.distances;
+      worst = std::max(worst, prediction.distances);
+    }
+    if (n % 50 != 0) continue;
+    for (std::size_t pair = 0; pair < device.config.pairs.watched.size(); ++pair) {
+      const double smallest = judge.along_braking(pair, wanderer.q, wanderer.dq, 30);
+      ASSERT_LE(state.left[pair] + state.allowed[pair], smallest + 1e-6)
+          << pair_names(device.config)[pair] << " in cycle " << n;
+    }
+  }
+  EXPECT_LE(worst, kMaxDistances + 1);
+  EXPECT_LT(static_cast<double>(distances) / kCycles, 6.0);
+  RecordProperty("distances_per_cycle", std::to_string(static_cast<double>(distances) / kCycles));
+}
+
+TEST(Guard, BrakesInTimeWhenAJointGoesForACollision) {
+  const TestDevice device = device_of(folding_urdf());
+  Guard guard(device.config, device.chain);
+  Judge judge(device);
+  for (const double speed : {0.1, 0.5, 1.0, 2.0}) {
+    State state;
+    VectorPM q = VectorPM::Zero(8);
+    q << 0.0, 0.0, 0.0, 1.2, -0.7, 1.2, 0.3, 0.0;
+    VectorPM dq = VectorPM::Zero(8);
+    dq[3] = speed;
+    bool must_brake = false;
+    for (int n = 0; n < 30000 && !must_brake; ++n) {
+      must_brake = guard.step(q, dq, true, state).must_brake;
+      if (!must_brake) q += 1e-3 * dq;
+    }
+    ASSERT_TRUE(must_brake) << speed;
+    // it stops where the safe distance begins, not much before
+    double nearest = kInfinity;
+    for (std::size_t pair = 0; pair < device.config.pairs.watched.size(); ++pair) {
+      nearest = std::min(nearest, judge.along_braking(pair, q, dq, 300));
+    }
+    EXPECT_GT(nearest, device.config.safe_distance - 5e-3) << speed;
+    EXPECT_LT(nearest, device.config.safe_distance + 5e-3) << speed;
+  }
+}
+
+TEST(Guard, LetsADeviceLeaveAPlaceThatIsTooNear) {
+  const TestDevice device = device_of(folding_urdf());
+  Guard guard(device.config, device.chain);
+  State state;
+  VectorPM q = VectorPM::Zero(8);
+  q << 0.0, 0.0, 0.0, 2.94, -0.7, 1.2, 0.3, 0.0;  // drop tube 15 mm from the first link
+  VectorPM dq = VectorPM::Zero(8);
+  EXPECT_FALSE(guard.step(q, dq, false, state).must_brake);
+  EXPECT_FALSE(guard.step(q, dq, true, state).must_brake);
+
+  State away = state;
+  dq[3] = -0.2;
+  EXPECT_FALSE(guard.step(q, dq, true, away).must_brake);
+  for (int n = 0; n < 3000; ++n) {
+    q += 1e-3 * dq;
+    ASSERT_FALSE(guard.step(q, dq, true, away).must_brake) << n;
+  }
+  dq[3] = 0.2;  // once it was far, the whole safe distance counts again
+  for (int n = 0; n < 2800; ++n) {
+    q += 1e-3 * dq;
+    if (guard.step(q, dq, true, away).must_brake) break;
+  }
+  EXPECT_LT(q[3], 2.93);
+
+  q[3] = 2.94;
+  dq[3] = 0.4;                                             // 10 mm to stop
+  EXPECT_TRUE(guard.step(q, dq, true, state).must_brake);  // and not nearer
+}
+
+TEST(Guard, GivesTheSameBitsFromTheSameState) {
+  const TestDevice device = device_of(folding_urdf());
+  Guard guard(device.config, device.chain);
+  Guard other(device.config, device.chain);
+  Wanderer wanderer(device, 13);
+  State state;
+  for (int n = 0; n < 3000; ++n) {
+    wanderer.move();
+    State copy = state;
+    const Prediction a = guard.step(wanderer.q, wanderer.dq, true, state);
+    const Prediction b = other.step(wanderer.q, wanderer.dq, true, copy);
+    ASSERT_EQ(a.report.distance, b.report.distance);
+    ASSERT_EQ(std::memcmp(state.left.data(), copy.left.data(), sizeof(state.left)), 0);
+    if (n % 100 == 0) other = Guard(device.config, device.chain);
+  }
+}
+
+TEST(Guard, AllocatesNothing) {
+  const TestDevice device = device_of(folding_urdf());
+  Guard guard(device.config, device.chain);
+  Wanderer wanderer(device, 14);
+  State state;
+  const AllocationCounter allocations;
+  for (int n = 0; n < 2000; ++n) {
+    wanderer.move();
+    guard.step(wanderer.q, wanderer.dq, true, state);
+  }
+  EXPECT_EQ(allocations.count(), 0U);
+}
+
+TEST(Levers, BoundEveryPointInEveryPosture) {
+  const TestDevice device = device_of(folding_urdf());
+  const Levers levers(device.chain, device.range);
+  model::Chain chain = device.chain;
+  Wanderer wanderer(device, 15);
+  std::vector<double> largest(8, 0.0);
+  const Shape& hand = *std::ranges::find(device.config.shapes, "hand", &Shape::name);
+  const VectorPM lever = levers.of(hand, 0);
+  const VectorPM none = VectorPM::Zero(8);
+  for (int n = 0; n < 5000; ++n) {
+    wanderer.jump();
+    chain.update_kinematics(wanderer.q, none);
+    const model::Jacobian J = chain.jacobian(hand.frame);
+    const Pose T_B_shape = chain.pose(hand.frame) * hand.T_frame_shape;
+    for (const double end : {-hand.half_length, hand.half_length}) {
+      const Eigen::Vector3d arm = T_B_shape.p + end * T_B_shape.R.col(2) - chain.pose(hand.frame).p;
+      for (int i = 0; i < 8; ++i) {
+        const Vector6 column = J.col(i);
+        const Eigen::Vector3d v = column.head<3>() + column.tail<3>().cross(arm);
+        const double speed = v.norm() + (column.tail<3>().norm() > 0.5 ? hand.radius : 0.0);
+        largest[static_cast<std::size_t>(i)] =
+            std::max(largest[static_cast<std::size_t>(i)], speed);
+      }
+    }
+  }
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_LE(largest[static_cast<std::size_t>(i)], lever[i] + 1e-9) << i;
+    EXPECT_GE(largest[static_cast<std::size_t>(i)], 0.6 * lever[i]) << i;  // and not for nothing
+  }
+}
+
+}  // namespace
+}  // namespace hg::collision

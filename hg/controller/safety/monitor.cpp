@@ -1,0 +1,463 @@
+#include "hg/controller/safety/monitor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "hg/controller/safety/stopping.h"
+#include "hg/core/error.h"
+#include "hg/core/first_not_finite.h"
+
+namespace hg::safety {
+namespace {
+
+constexpr double kClockMemory = 0.02;       // share of the newest sample in the clock's mean error
+constexpr double kPullMemory_s = 0.2;       // time constant of forgetting shifts of the reference
+constexpr double kGapMemory_s = 2.0;        // time constant of forgetting errors of the drive model
+constexpr double kDriftMemory_s = 60.0;     // the same for slow drift
+constexpr double kDriveError = 0.005;       // allowed drift of a drive, share of its way
+constexpr double kMotorMemory_s = 0.02;     // time constant of the motor torque observer
+constexpr double kShakingPatience_s = 3.0;  // as in hg/passivity
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+Fault make_fault(FaultCode code, int index, double value, double limit) noexcept {
+  return {code, static_cast<std::int16_t>(index), value, limit};
+}
+
+// Index of the first value that is not finite, < 0: none. Order: joints, joint speeds, gantry,
+// wrench, motors, joint torques, accelerometer, gyroscope, motor temperatures, clock.
+int first_bad_value(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
+  const Eigen::Vector3d kNone = Eigen::Vector3d::Zero();
+  return first_not_finite(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
+                          sensors.tau_m, config.has_imu ? sensors.a_S : kNone,
+                          config.has_imu ? sensors.omega_S : kNone, sensors.temperature_m,
+                          Eigen::Matrix<double, 1, 1>(sensors.time_s));
+}
+
+// angle wrapped to one turn about 0: encoders of joints without limits wrap
+double turned(double angle) noexcept { return angle - kTurn * std::nearbyint(angle / kTurn); }
+
+// Without power the range is `range` extended to `q`; with power it shrinks back to `range` with
+// `q`.
+void follow(const Interval& range, double q, bool is_powered, double& lowest,
+            double& highest) noexcept {
+  lowest = std::min(range.lb, is_powered ? std::max(lowest, q) : q);
+  highest = std::max(range.ub, is_powered ? std::min(highest, q) : q);
+}
+
+std::uint16_t count_up(std::uint16_t count) noexcept {
+  return count < UINT16_MAX ? static_cast<std::uint16_t>(count + 1) : count;
+}
+
+}  // namespace
+
+bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
+  return first_bad_value(config, sensors) < 0;
+}
+
+bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
+  return sensors.w_S.head<3>().norm() <= config.force_max &&
+         sensors.w_S.tail<3>().norm() <= config.torque_max;
+}
+
+Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
+                    std::uint64_t expected_sequence) noexcept {
+  if (sensors.driver_fault != FaultCode::kNone) {
+    return make_fault(sensors.driver_fault, -1, 0.0, 0.0);
+  }
+  if (sensors.sequence != expected_sequence) {
+    return make_fault(FaultCode::kSequenceGap, -1, static_cast<double>(sensors.sequence),
+                      static_cast<double>(expected_sequence));
+  }
+  const int index = first_bad_value(config, sensors);
+  if (index >= 0) return make_fault(FaultCode::kSensorNotFinite, index, NAN, 0.0);
+  return {};
+}
+
+Fault check_solution(const CycleRecord& record) noexcept {
+  if (record.solver_status != SolverStatus::kSolved &&
+      record.solver_status != SolverStatus::kBudgetSpent) {
+    return make_fault(FaultCode::kSolverFailed, -1, static_cast<double>(record.solver_status), 0.0);
+  }
+  int index = first_not_finite(record.reference.ddq_m);
+  if (index < 0) index = first_not_finite(record.twin.ddq_a);
+  if (index >= 0) return make_fault(FaultCode::kReferenceNotFinite, index, NAN, 0.0);
+  return {};
+}
+
+Monitor::Monitor(const MonitorConfig& config, int n_p, int n_m)
+    : config_(config), shaking_(config.dt, config.twin_mass), n_p_(n_p), n_m_(n_m) {
+  const auto require = [](bool ok, const std::string& text) {
+    if (!ok) throw SetupError("monitor: " + text);
+  };
+  const auto fits = [](const auto& list, int n) {
+    return list.empty() || list.size() == static_cast<std::size_t>(n);
+  };
+  require(config.dt > 0.0, "the period must be positive");
+  if (config_.gantry_range.empty()) config_.gantry_range.resize(at(n_p));
+  if (config_.joint_range.empty()) config_.joint_range.resize(at(n_m));
+  if (config_.is_slide.empty()) config_.is_slide.resize(at(n_m));
+  if (config_.joint_speed_max.empty()) config_.joint_speed_max.resize(at(n_m), kInfinity);
+  if (config_.joint_acceleration.empty()) config_.joint_acceleration.resize(at(n_m), kInfinity);
+  require(config_.gantry_range.size() == at(n_p), "one range per gantry axis is needed");
+  for (const auto* list : {&config_.joint_speed_max, &config_.joint_acceleration}) {
+    require(list->size() == at(n_m), "one rating per joint is needed");
+  }
+  require(config_.joint_range.size() == at(n_m) && config_.is_slide.size() == at(n_m),
+          "one range per joint is needed");
+  require(fits(config_.actuators, n_m), "one actuator per joint is needed, or none");
+  for (std::size_t i = 0; i < kRuleCount; ++i) {
+    const Debounce& debounce = kRules[i].debounce;
+    const int samples = static_cast<int>(std::ceil(debounce.seconds / config.dt - 1e-9));
+    debounce_[i] = std::min(std::max(debounce.samples, samples), int{UINT16_MAX});
+    fresh_[i] = {kRules[i].warn_from, 0.0, 0.0, -1};
+  }
+}
+
+// A threshold of zero is passed by any value above it.
+template <FaultCode code>
+void Monitor::look(int index, double value, double limit) noexcept {
+  constexpr std::size_t kRule = rule_index(code);
+  static_assert(kRule < kRuleCount);
+  Worst& worst = worst_[kRule];
+  if (!(value > worst.share * limit)) return;
+  worst = {limit > 0.0 ? value / limit : kInfinity, value, limit, index};
+}
+
+bool Monitor::has_jumped(const SensorFrame& sensors, const MonitorState& state) const noexcept {
+  if (!state.has_sample) return false;
+  const double far = config_.jump_factor * config_.dt;
+  for (int i = 0; i < n_m_; ++i) {
+    if (std::abs(turned(sensors.q_m[i] - state.q_m[i])) > far * config_.joint_speed_max[at(i)]) {
+      return true;
+    }
+  }
+  return ((sensors.q_p - state.q_p).array().abs() > far * config_.drive.dq_max).any();
+}
+
+Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
+                       const Watched& watched, MonitorState& state) noexcept {
+  worst_ = fresh_;
+  if (state.lowest.size() != n_m_) {
+    state.lowest = state.highest = record.robot.q_m;
+    state.lowest_p = state.highest_p = record.robot.q_p;
+    state.pulled_back = VectorM::Zero(n_m_);
+    state.dq_p_model = state.gantry_gap = VectorP::Zero(n_p_);
+    state.gantry_drift = state.gantry_way = VectorP::Zero(n_p_);
+  }
+  for (int i = 0; i < n_m_; ++i) look_at_joint(i, record, watched, state);
+  look_at_motors(record.robot, watched, state);
+  look_at_torques(watched);
+  look_at_inertial_unit(watched);
+  look_at_gantry(sensors, record, watched, state);
+  look_at_braking(record, watched, state);
+  look_at_frames(record, watched);
+  look_at_clocks(sensors, watched, state);
+  look_at_sensors(sensors, state);
+  const Fault shaking = look_for_shaking(sensors, record, watched, state);
+  Verdict verdict = judge(state);
+  if (shaking.code != FaultCode::kNone) verdict.warning = shaking;
+  state.is_broken = verdict.fault.code != FaultCode::kNone;
+  return verdict;
+}
+
+void Monitor::look_at_joint(int joint, const CycleRecord& record, const Watched& watched,
+                            MonitorState& state) noexcept {
+  const std::size_t i = at(joint);
+  const double q = record.robot.q_m[joint], dq = record.robot.dq_m[joint];
+  const bool is_on = is_powered(watched.state);
+  follow(config_.joint_range[i], q, is_on, state.lowest[joint], state.highest[joint]);
+  double& pulled = state.pulled_back[joint];
+  const bool is_pulled = watched.pulled_back.size() > 0 && watched.pulled_back[joint] != 0.0;
+  pulled =
+      is_pulled ? pulled + watched.pulled_back[joint] : pulled * (1.0 - config_.dt / kPullMemory_s);
+  if (!is_on) {
+    pulled = 0.0;
+    return;
+  }
+  const bool is_slide = config_.is_slide[i];
+  const double beyond = is_slide ? config_.slide_tolerance : config_.position_tolerance;
+  const double apart = is_slide ? config_.slide_tracking_tolerance : config_.tracking_tolerance;
+  const double fastest = config_.speed_tolerance * config_.joint_speed_max[i];
+  const ReferenceState& reference = record.reference;
+  const double q_r = reference.q_m[joint];
+  look<FaultCode::kLimitExceeded>(joint,
+                                  std::max({q - state.highest[joint], state.lowest[joint] - q,
+                                            q_r - state.highest[joint], state.lowest[joint] - q_r}),
+                                  beyond);
+  look<FaultCode::kSpeedExceeded>(joint, std::abs(dq), fastest);
+  look<FaultCode::kSpeedExceeded>(joint, std::abs(reference.dq_m[joint]), fastest);
+  look<FaultCode::kAccelerationExceeded>(
+      joint, std::abs(reference.ddq_m[joint]),
+      config_.acceleration_tolerance * config_.joint_acceleration[i]);
+  look<FaultCode::kTrackingLost>(joint, std::abs(q_r - q + pulled), apart);
+}
+
+// Motor torque that command, spring and inertia do not explain, observed from the momentum without
+// accelerations. Beyond friction, the motor does not follow its command.
+void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
+                             MonitorState& state) noexcept {
+  const bool is_told = watched.tau_m.size() == n_m_ && robot.dtheta_m.size() == n_m_ &&
+                       robot.tau_m.size() == n_m_ && !config_.actuators.empty();
+  if (!is_told || !is_powered(watched.state)) {
+    state.momentum.resize(0);
+    return;
+  }
+  const bool is_new = state.momentum.size() != n_m_;
+  if (is_new) state.momentum.resize(n_m_);
+  for (int i = 0; i < n_m_; ++i) {
+    const ActuatorModel& actuator = config_.actuators[at(i)];
+    const double dtheta = robot.dtheta_m[i], tau_J = robot.tau_m[i];
+    const double p = actuator.rotor_inertia * dtheta;
+    if (is_new) state.momentum[i] = p;
+    const double unexplained = (state.momentum[i] - p) / kMotorMemory_s;
+    const double most = torque_available(actuator, watched.tau_m[i] * dtheta > 0.0 ? dtheta : 0.0);
+    const double told = std::clamp(watched.tau_m[i], -most, most);
+    state.momentum[i] += config_.dt * (told - tau_J - unexplained);
+    const double friction =
+        coulomb_torque(actuator, 0.0, tau_J) + actuator.viscous_friction * std::abs(dtheta);
+    look<FaultCode::kMotorDeviates>(i, std::abs(unexplained) - friction,
+                                    config_.motor_tolerance * actuator.torque_max);
+  }
+}
+
+// Joint torque that neither motion nor the user's wrench explains: contact with the arm, or force
+// sensor and joint torques contradict each other. Running only: a stop need not brake exactly.
+void Monitor::look_at_torques(const Watched& watched) noexcept {
+  if (mode_of(watched.state) != Mode::kRunning || watched.unexplained.size() != n_m_) return;
+  for (int i = 0; i < n_m_ && !config_.actuators.empty(); ++i) {
+    look<FaultCode::kTorqueUnexplained>(
+        i, std::abs(watched.unexplained[i]),
+        config_.unexplained_tolerance * config_.actuators[at(i)].torque_max);
+  }
+}
+
+// Compares the inertial unit at the handle with the encoders.
+void Monitor::look_at_inertial_unit(const Watched& watched) noexcept {
+  if (!is_powered(watched.state)) return;
+  look<FaultCode::kTurnUnexplained>(-1, watched.turn,
+                                    config_.gyroscope_tolerance + watched.turn_uncertainty);
+  look<FaultCode::kMotionUnexplained>(-1, watched.slip,
+                                      config_.accelerometer_tolerance + watched.slip_uncertainty);
+}
+
+void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& record,
+                             const Watched& watched, MonitorState& state) noexcept {
+  const RobotState& robot = record.robot;
+  const bool is_on = is_powered(watched.state);
+  const double beyond = config_.is_gantry_slide ? config_.gantry_tolerance : config_.turn_tolerance;
+  const double off = config_.is_gantry_slide ? config_.gantry_deviation : config_.turn_deviation;
+  const double gap = config_.is_gantry_slide ? config_.gantry_gap : config_.turn_gap;
+  const double drift = config_.is_gantry_slide ? config_.gantry_drift : config_.turn_drift;
+  const double kept = 1.0 - config_.dt / kGapMemory_s;
+  const double kept_long = 1.0 - config_.dt / kDriftMemory_s;
+  const double while_dead = config_.drive.dead_time * config_.drive.ddq_max;
+  for (int axis = 0; axis < n_p_; ++axis) {
+    const double q = robot.q_p[axis], dq = robot.dq_p[axis];
+    double& model = state.dq_p_model[axis];
+    follow(config_.gantry_range[at(axis)], q, is_on, state.lowest_p[axis], state.highest_p[axis]);
+    if (!is_on) {
+      model = dq;
+      state.gantry_gap[axis] = state.gantry_drift[axis] = state.gantry_way[axis] = 0.0;
+      continue;
+    }
+    if (state.has_sample) {
+      const double moved = sensors.q_p[axis] - state.q_p[axis];
+      const double error = moved - config_.dt * model;
+      state.gantry_gap[axis] = kept * state.gantry_gap[axis] + error;
+      state.gantry_drift[axis] = kept_long * state.gantry_drift[axis] + error;
+      state.gantry_way[axis] = kept_long * state.gantry_way[axis] + config_.dt * std::abs(model);
+      // a drive that is as fast again as its model thinks is still no fault
+      const double by_lag = config_.drive.lag * std::abs(model);
+      look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_gap[axis]), gap + by_lag);
+      look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_drift[axis]),
+                                       drift + kDriveError * state.gantry_way[axis] + by_lag);
+    }
+    look<FaultCode::kGantryExceeded>(
+        axis, std::max(q - state.highest_p[axis], state.lowest_p[axis] - q), beyond);
+    look<FaultCode::kGantryExceeded>(axis, std::abs(dq),
+                                     config_.speed_tolerance * config_.drive.dq_max);
+    look<FaultCode::kGantryDeviates>(axis, std::abs(dq - model), off + while_dead);
+    model += config_.dt * drive_acceleration(config_.drive, model, watched.dq_p_command[axis]);
+  }
+}
+
+// Checks every axis of a controlled stop against its ramp: a gantry axis against its drive model, a
+// joint against the integrated accelerations of its reference (the reference itself is shifted back
+// to a joint that does not follow). An axis that does not brake as commanded needs its brakes.
+void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
+                              MonitorState& state) noexcept {
+  const bool is_new = !state.is_stopping;
+  state.is_stopping = mode_of(watched.state) == Mode::kStopping;
+  if (!state.is_stopping) return;
+  const RobotState& robot = record.robot;
+  if (is_new) {
+    state.stop_from = state.braking_ramp = robot.q_m;
+    state.ramp_speed = record.reference.dq_m;
+    state.stop_from_p = state.braking_ramp_p = robot.q_p;
+  } else {
+    state.ramp_speed += config_.dt * record.reference.ddq_m;
+    state.braking_ramp += config_.dt * state.ramp_speed;
+    state.braking_ramp_p += config_.dt * state.dq_p_model;
+  }
+  for (int i = 0; i < n_m_; ++i) {
+    const bool is_slide = config_.is_slide[at(i)];
+    look<FaultCode::kBrakingPosition>(i, std::abs(robot.q_m[i] - state.braking_ramp[i]),
+                                      is_slide ? config_.slide_braking_gap : config_.braking_gap);
+    look<FaultCode::kBrakingSpeed>(
+        i, std::abs(robot.dq_m[i] - state.ramp_speed[i]),
+        is_slide ? config_.slide_braking_deviation : config_.braking_deviation);
+    look<FaultCode::kStopTooFar>(i, std::abs(robot.q_m[i] - state.stop_from[i]),
+                                 kUntilBrakes * config_.stop_distance_of_joint(i));
+  }
+  const bool is_slide = config_.is_gantry_slide;
+  const double gap = is_slide ? config_.gantry_gap : config_.turn_gap;
+  const double off = is_slide ? config_.gantry_deviation : config_.turn_deviation;
+  const double by_dead_time = config_.drive.dead_time * config_.drive.ddq_max;
+  for (int i = 0; i < n_p_; ++i) {
+    const double moved = std::abs(robot.q_p[i] - state.stop_from_p[i]);
+    look<FaultCode::kBrakingPosition>(n_m_ + i, std::abs(robot.q_p[i] - state.braking_ramp_p[i]),
+                                      gap);
+    look<FaultCode::kBrakingSpeed>(n_m_ + i, std::abs(robot.dq_p[i] - state.dq_p_model[i]),
+                                   off + by_dead_time);
+    look<FaultCode::kStopTooFar>(n_m_ + i, moved, kUntilBrakes * config_.stop_distance_of_gantry());
+  }
+}
+
+void Monitor::look_at_frames(const CycleRecord& record, const Watched& watched) noexcept {
+  const Mode mode = mode_of(watched.state);
+  if (mode != Mode::kRunning && mode != Mode::kStopping) return;
+  for (int i = n_m_; i < config_.end_cartesian; ++i) {
+    const bool is_sum = i < config_.first_cartesian;
+    look<FaultCode::kLimitExceeded>(
+        i, record.limits[at(i)].excess,
+        is_sum ? config_.virtual_tolerance : config_.cartesian_tolerance);
+  }
+  look<FaultCode::kSyncLost>(-1, record.sync_error, config_.sync_tolerance);
+  if (watched.state != State::kAutonomous) return;
+  look<FaultCode::kSafeSpeedExceeded>(0, record.v_H.norm(), config_.safe_speed);
+  if (!config_.is_gantry_slide) return;
+  look<FaultCode::kSafeSpeedExceeded>(1, record.robot.dq_p.norm(), config_.safe_speed);
+}
+
+// Returns a warning. Oscillations of force, which added damping may end, are stopped by
+// hg/passivity.
+Fault Monitor::look_for_shaking(const SensorFrame& sensors, const CycleRecord& record,
+                                const Watched& watched, MonitorState& state) noexcept {
+  if (!config_.looks_for_shaking || mode_of(watched.state) != Mode::kRunning) {
+    state.shaking = {};
+    return {};
+  }
+  const ShakingReport found = shaking_.step(sensors, record, state.shaking);
+  if (found.what == Shaking::kNone) return {};
+  const auto index = static_cast<int>(found.what);
+  if (config_.stops_shaking && found.what != Shaking::kForce) {
+    look<FaultCode::kOscillation>(index, state.shaking.shakes_s, kShakingPatience_s);
+  }
+  return make_fault(FaultCode::kOscillation, index, found.index, 1.0);
+}
+
+void Monitor::look_at_clocks(const SensorFrame& sensors, const Watched& watched,
+                             MonitorState& state) noexcept {
+  if (state.has_sample) {
+    const double error = (sensors.time_s - state.time_s) / config_.dt - 1.0;
+    state.clock_error += kClockMemory * (error - state.clock_error);
+    look<FaultCode::kClockWrong>(-1, std::abs(state.clock_error), config_.clock_tolerance);
+  }
+  state.time_s = sensors.time_s;
+
+  const auto late = static_cast<double>(watched.late_cycles);
+  const bool is_on = is_powered(watched.state);
+  state.late = is_on ? std::max(0.0, state.late - config_.dt * config_.overruns_per_s) + late : 0.0;
+  state.late_in_a_row = is_on && watched.late_cycles > 0
+                            ? state.late_in_a_row + static_cast<int>(std::min(late, 1e6))
+                            : 0;
+  look<FaultCode::kCycleOverrun>(0, state.late_in_a_row, config_.overruns_in_a_row);
+  look<FaultCode::kCycleOverrun>(1, state.late, config_.overruns_per_s);
+}
+
+void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept {
+  look<FaultCode::kWrenchTooLarge>(0, sensors.w_S.head<3>().norm(), config_.force_max);
+  look<FaultCode::kWrenchTooLarge>(1, sensors.w_S.tail<3>().norm(), config_.torque_max);
+  look<FaultCode::kBusErrors>(-1, sensors.bus_errors, 0.0);
+  for (int i = 0; i < sensors.temperature_m.size(); ++i) {
+    look<FaultCode::kTooHot>(i, sensors.temperature_m[i], config_.temperature_max);
+  }
+  for (int i = 0; i < sensors.tau_m.size(); ++i) {
+    const double tau = sensors.tau_m[i];
+    if (config_.actuators.empty()) break;
+    const ActuatorModel& actuator = config_.actuators[at(i)];
+    look<FaultCode::kJointTorqueExceeded>(i, std::abs(tau),
+                                          config_.torque_tolerance * actuator.torque_max);
+    if (sensors.theta_m.size() == 0) continue;
+    const double twist = turned(sensors.theta_m[i] - sensors.q_m[i]);
+    look<FaultCode::kSensorImplausible>(i, std::abs(twist - tau / actuator.stiffness),
+                                        config_.plausibility);
+  }
+  if (state.has_sample) {
+    const double far = config_.jump_factor * config_.dt;
+    for (int i = 0; i < n_m_; ++i) {
+      look<FaultCode::kSensorJump>(i, std::abs(turned(sensors.q_m[i] - state.q_m[i])),
+                                   far * config_.joint_speed_max[at(i)]);
+    }
+    for (int i = 0; i < n_p_; ++i) {
+      look<FaultCode::kSensorJump>(n_m_ + i, std::abs(sensors.q_p[i] - state.q_p[i]),
+                                   far * config_.drive.dq_max);
+    }
+  }
+  if (config_.frozen_samples > 0.0) look_at_noise(sensors, state);
+  state.q_m = sensors.q_m;
+  state.q_p = sensors.q_p;
+  state.has_sample = true;
+}
+
+// joint torques by joint, then the components of wrench and inertial unit
+void Monitor::look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept {
+  const auto compare = [&](int first, const auto& now, const auto& before) {
+    const bool can_compare = state.has_sample && now.size() == before.size();
+    for (int i = 0; i < now.size(); ++i) {
+      std::uint16_t& same = state.same[at(first + i)];
+      same = can_compare && now[i] == before[i] ? count_up(same) : std::uint16_t{0};
+      look<FaultCode::kSensorFrozen>(first + i, same, config_.frozen_samples);
+    }
+  };
+  compare(0, sensors.tau_m, state.tau_m);
+  compare(n_m_, sensors.w_S, state.w_S);
+  state.tau_m = sensors.tau_m;
+  state.w_S = sensors.w_S;
+  if (!config_.has_imu) return;
+  Vector6 imu;
+  imu << sensors.a_S, sensors.omega_S;
+  compare(n_m_ + 6, imu, state.imu);
+  state.imu = imu;
+}
+
+// Of several rules that are broken the one with the hardest reaction, then the smallest number.
+Verdict Monitor::judge(MonitorState& state) const noexcept {
+  Verdict verdict;
+  Stop hardest = Stop::kNone;
+  double nearest = 0.0;
+  for (std::size_t i = 0; i < kRuleCount; ++i) {
+    const Worst& worst = worst_[i];
+    if (!(worst.value > 0.0)) {  // far from the threshold
+      state.broken[i] = 0;
+      continue;
+    }
+    const Fault fault = make_fault(kRules[i].code, worst.index, worst.value, worst.limit);
+    state.broken[i] = worst.share > 1.0 ? count_up(state.broken[i]) : std::uint16_t{0};
+    if (state.broken[i] >= debounce_[i] && kRules[i].reaction > hardest) {
+      verdict.fault = fault;
+      hardest = kRules[i].reaction;
+    }
+    if (worst.share > nearest && kRules[i].warn_from < 1.0) {
+      verdict.warning = fault;
+      nearest = worst.share;
+    }
+  }
+  return verdict;
+}
+
+}  // namespace hg::safety

@@ -1,0 +1,94 @@
+/// Monitors the energy at the handle and oscillations between hand and device, and computes the
+/// inertia and damping that end them.
+///
+/// Source: [HANDBOOK] 9.6 (tank), 9.7; the index of oscillation and its numbers are those of [C] 7:
+/// of the user's force f, x1 = LP30(f), x2 = LP3(x1), x3 = LP3(x2), high^2 = mean |x1-x2|^2, low^2
+/// = mean |x3|^2 over 0.2 s; it oscillates while high > 1 N and high > (low + 0.5 N) / 2, and is
+/// detected once it has for `trip_time` (counted down twice as fast), or at high > 15 N. Differs
+/// from [C] 7: detected after 0.25 s instead of 0.4 s. The force must also have reversed, since a
+/// hard start or stop is no oscillation: twice, and six times while a limit or a surface pushes
+/// back, and just after. Possible tremor of a person, up to 5 N rms about 10 Hz, is subtracted from
+/// `high`. Torques, forces above 30 Hz and bouncing: hg/controller/safety/shaking.h.
+///
+/// On detection the twin gets a damper at its end effector (`damping`), and enough inertia to be
+/// felt with `least_mass` at least. A growing inertia M is passive as long as M' / 2 <= D
+/// ([HANDBOOK] 9.6), so it grows no faster than that damper allows. Both return over a second, two
+/// seconds after the last oscillation.
+///
+/// Tank: charged by the dissipation of the twin; discharged by the energy that the handle gives
+/// beyond the rendered motion, w . (v_rendered - v_measured), and by the energy that a growing
+/// inertia takes.
+///
+/// Pure function of its arguments and the state: deterministic, no allocation, noexcept.
+#pragma once
+
+#include <cstdint>
+
+#include "hg/core/turns.h"
+#include "hg/core/types.h"
+#include "hg/signals/state.h"
+
+namespace hg::passivity {
+
+enum class Reaction : std::uint8_t {
+  kOff,      ///< nothing is computed
+  kObserve,  ///< reported only
+  kAct,      ///< damping and inertia are added to the twin
+};
+
+/// Set-up data.
+struct Config {
+  Reaction reaction = Reaction::kObserve;
+  double dt = 1e-3;         ///< Period, s
+  double trip_time = 0.25;  ///< Duration of oscillation until it is detected, s
+  double damping = 25.0;    ///< Damping added on detection, Ns/m; [C] 7
+  double least_mass = 3.0;  ///< Least mass felt at the handle on detection, kg; [C] 7
+  double tank_start = 5.0;  ///< Initial energy of the tank, J; [HANDBOOK] 9.6
+  double tank_max = 20.0;   ///< Largest energy of the tank, J
+  double tank_least = 0.1;  ///< Energy of the tank below which no inertia is added, J
+};
+
+/// Inputs of one cycle of the rendering.
+struct Input {
+  Eigen::Vector3d f = Eigen::Vector3d::Zero();  ///< Force of the user on the handle, N
+  double power_measured = 0.0;  ///< Wrench of the user times measured twist of the handle, W
+  double power_rendered = 0.0;  ///< Wrench of the user times twist of the twin's end effector, W
+  double dissipation = 0.0;     ///< Dissipation of dampers and friction of the twin, W, >= 0
+  double mass = 1.0;            ///< Least mass of the twin as set up, felt at the handle, kg
+  double speed = 0.0;           ///< Speed of the twin's end effector, m/s
+  bool is_pushed_back = false;  ///< A limit or a surface acts on the twin
+};
+
+/// Damping and inertia added to the twin.
+struct Calming {
+  double damping = 0.0;  ///< Damping at the end effector, in all directions, Ns/m
+  double inertia = 1.0;  ///< Factor of the twin's inertia, >= 1
+};
+
+struct State {
+  bool is_started = false;
+  Eigen::Vector3d x1 = Eigen::Vector3d::Zero(), x2 = Eigen::Vector3d::Zero(),
+                  x3 = Eigen::Vector3d::Zero();
+  double high = 0.0, low = 0.0;  ///< Mean squares of high and low band, N^2
+  /// Band-pass about 10 Hz: its last inputs and outputs, and its mean square `tremor`, N^2.
+  Eigen::Vector3d in1 = Eigen::Vector3d::Zero(), in2 = Eigen::Vector3d::Zero(),
+                  tremor1 = Eigen::Vector3d::Zero(), tremor2 = Eigen::Vector3d::Zero();
+  double tremor = 0.0;
+  Turns turns;                      ///< Reversals of x1 - x2
+  double oscillates_s = 0.0;        ///< Detection counter, s
+  double since_pushed_s = 0.0;      ///< Time since a limit or surface pushed back, s
+  double hold_s = 0.0;              ///< Time until the added damping ends, s
+  double restless_s = 0.0;          ///< Duration of oscillation at full damping, s
+  double tank = 0.0, energy = 0.0;  ///< Energy of the tank, and energy given to the user, J
+  Calming calming;
+};
+
+/// Advances by one cycle and returns its report; `state.calming` applies to the twin in the next
+/// one.
+PassivityReport step(const Config& config, const Input& input, State& state) noexcept;
+
+/// kOscillation when the oscillation has lasted 3 s at full damping, kEnergy when the tank has run
+/// empty, else kNone; only with Reaction::kAct.
+Fault check(const Config& config, const PassivityReport& report, const State& state) noexcept;
+
+}  // namespace hg::passivity

@@ -1,0 +1,657 @@
+#include "hg/controller/safety/monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace hg::safety {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+SensorFrame good_sensors() {
+  SensorFrame sensors;
+  sensors.sequence = 7;
+  sensors.q_m = VectorM::Zero(6);
+  sensors.dq_m = VectorM::Zero(6);
+  sensors.q_p = VectorP::Zero(2);
+  return sensors;
+}
+
+MonitorConfig config() {
+  MonitorConfig monitor;
+  monitor.joint_range.assign(6, {-2.0, 2.0});
+  monitor.gantry_range.assign(2, {-1.4, 1.4});
+  monitor.joint_speed_max.assign(6, 3.0);
+  monitor.joint_acceleration.assign(6, 20.0);
+  monitor.actuators.assign(6, {.rotor_inertia = 0.6,
+                               .stiffness = 10000.0,
+                               .coulomb_friction = 5.0,
+                               .load_friction = 0.0,
+                               .stiction = 1.0,
+                               .torque_max = 100.0,
+                               .speed_full_torque = 2.0,
+                               .speed_no_load = 4.0});
+  monitor.first_cartesian = 7;
+  monitor.end_cartesian = 10;
+  monitor.frozen_samples = 20;
+  return monitor;
+}
+
+TEST(CheckSensors, GoodOnesPass) {
+  EXPECT_EQ(check_sensors(config(), good_sensors(), 7).code, FaultCode::kNone);
+}
+
+TEST(CheckSensors, NamesTheComponentThatIsNotFinite) {
+  // counted through: 6 joints, 6 speeds, 2 gantry axes, 6 wrench components
+  SensorFrame sensors = good_sensors();
+  sensors.q_m[3] = kNan;
+  EXPECT_EQ(check_sensors(config(), sensors, 7).code, FaultCode::kSensorNotFinite);
+  EXPECT_EQ(check_sensors(config(), sensors, 7).index, 3);
+  sensors = good_sensors();
+  sensors.q_p[1] = kInfinity;
+  EXPECT_EQ(check_sensors(config(), sensors, 7).index, 13);
+  sensors = good_sensors();
+  sensors.w_S[5] = kNan;
+  EXPECT_EQ(check_sensors(config(), sensors, 7).index, 19);
+}
+
+TEST(CheckSensors, LooksAtMotorsJointTorquesAndTheInertialUnitToo) {
+  SensorFrame complete = good_sensors();
+  complete.theta_m = complete.tau_m = VectorM::Zero(6);
+  EXPECT_TRUE(is_finite(config(), complete));
+  const auto expect_named = [&](auto&& spoil, int index) {
+    SensorFrame sensors = complete;
+    spoil(sensors);
+    EXPECT_FALSE(is_finite(config(), sensors)) << index;
+    EXPECT_EQ(check_sensors(config(), sensors, 7).code, FaultCode::kSensorNotFinite) << index;
+    EXPECT_EQ(check_sensors(config(), sensors, 7).index, index);
+  };
+  expect_named([](SensorFrame& s) { s.theta_m[0] = kNan; }, 20);
+  expect_named([](SensorFrame& s) { s.tau_m[5] = kInfinity; }, 31);
+  expect_named([](SensorFrame& s) { s.a_S[1] = kNan; }, 33);
+  expect_named([](SensorFrame& s) { s.omega_S[2] = -kInfinity; }, 37);
+}
+
+TEST(CheckSensors, WhatADeviceWithoutInertialUnitSaysOfItDoesNotMatter) {
+  SensorFrame sensors = good_sensors();
+  sensors.a_S[0] = sensors.omega_S[0] = kNan;
+  MonitorConfig without = config();
+  without.has_imu = false;
+  EXPECT_TRUE(is_finite(without, sensors));
+  EXPECT_EQ(check_sensors(without, sensors, 7).code, FaultCode::kNone);
+}
+
+TEST(CheckSensors, AFaultThatTheDriverReportsComesFirst) {
+  SensorFrame sensors = good_sensors();
+  sensors.driver_fault = FaultCode::kDeviceSilent;
+  EXPECT_EQ(check_sensors(config(), sensors, 6).code, FaultCode::kDeviceSilent);
+}
+
+TEST(CheckSensors, SeesGaps) {
+  EXPECT_EQ(check_sensors(config(), good_sensors(), 6).code, FaultCode::kSequenceGap);
+}
+
+TEST(CheckSolution, FindsWhatMustNotBeIntegrated) {
+  CycleRecord good;
+  good.solver_status = SolverStatus::kSolved;
+  good.reference.ddq_m = VectorM::Zero(6);
+  good.twin.ddq_a = VectorA::Zero(2);
+  EXPECT_EQ(check_solution(good).code, FaultCode::kNone);
+  CycleRecord record = good;
+  record.solver_status = SolverStatus::kBudgetSpent;
+  EXPECT_EQ(check_solution(record).code, FaultCode::kNone);
+  record.solver_status = SolverStatus::kFailed;
+  EXPECT_EQ(check_solution(record).code, FaultCode::kSolverFailed);
+  record = good;
+  record.twin.ddq_a[1] = kNan;
+  EXPECT_EQ(check_solution(record).code, FaultCode::kReferenceNotFinite);
+  record = good;
+  record.reference.ddq_m[4] = kInfinity;
+  EXPECT_EQ(check_solution(record).code, FaultCode::kReferenceNotFinite);
+}
+
+// A device that runs and does as it is told, with noise on what has noise.
+struct Bench {
+  Monitor monitor;
+  MonitorState state;
+  SensorFrame sensors = good_sensors();
+  CycleRecord record;
+  Watched watched = {.state = State::kByHand, .dq_p_command = VectorP::Zero(2)};
+  Verdict verdict;
+  int cycles = 0;
+  double torque = 0.0;  ///< of joint 0
+
+  explicit Bench(const MonitorConfig& monitor_config = config()) : monitor(monitor_config, 2, 6) {
+    sensors.theta_m = sensors.tau_m = VectorM::Zero(6);
+    sensors.temperature_m = VectorM::Constant(6, 40.0);
+    record.robot.q_m = record.robot.dq_m = VectorM::Zero(6);
+    record.robot.q_p = record.robot.dq_p = VectorP::Zero(2);
+    record.reference = {VectorM::Zero(6), VectorM::Zero(6), VectorM::Zero(6)};
+    watched.state = State::kReady;
+    step();
+    watched.state = State::kByHand;
+    run(3);
+    EXPECT_EQ(verdict.fault.code, FaultCode::kNone);
+    EXPECT_EQ(verdict.warning.code, FaultCode::kNone);
+  }
+
+  void step(bool has_noise = true) {
+    sensors.time_s += 1e-3;
+    if (state.dq_p_model.size() > 0) sensors.q_p += 1e-3 * state.dq_p_model;
+    if (has_noise) {
+      ++cycles;
+      const double noise = cycles % 2 == 0 ? 1e-6 : -1e-6;
+      sensors.w_S.array() += noise;
+      sensors.a_S.array() += noise;
+      sensors.omega_S.array() += noise;
+      for (int i = 0; i < 6; ++i) sensors.tau_m[i] = 1e-4 * cycles + (i == 0 ? torque : 0.0);
+    }
+    verdict = monitor.watch(sensors, record, watched, state);
+  }
+  void run(int samples) {
+    for (int k = 0; k < samples; ++k) step();
+  }
+  // samples until the fault; -1: none within 2000
+  template <typename Change>
+  int until_fault(FaultCode code, Change change) {
+    for (int k = 1; k <= 2000; ++k) {
+      change();
+      step();
+      if (verdict.fault.code == FaultCode::kNone) continue;
+      EXPECT_EQ(verdict.fault.code, code) << to_string(verdict.fault.code);
+      return k;
+    }
+    return -1;
+  }
+};
+
+// A value that breaks a rule, one that does not, and how many samples it takes.
+struct Case {
+  FaultCode code;
+  const char* name;
+  int samples;
+  int index;
+  double over, under;
+  void (*put)(Bench&, double);
+  bool warns = true;
+};
+
+const Case kCases[] = {
+    {FaultCode::kLimitExceeded, "measured joint", 1, 3, 2.031, 2.029,
+     [](Bench& b, double x) {
+       b.record.robot.q_m[3] = x;
+       b.record.reference.q_m[3] = 2.0;
+     }},
+    {FaultCode::kLimitExceeded, "reference of a joint", 1, 2, -2.031, -2.029,
+     [](Bench& b, double x) {
+       b.record.reference.q_m[2] = x;
+       b.record.robot.q_m[2] = -2.0;
+     }},
+    {FaultCode::kLimitExceeded, "sum of joints", 1, 6, 0.051, 0.049,
+     [](Bench& b, double x) { b.record.limits[6].excess = x; }},
+    {FaultCode::kLimitExceeded, "frame", 1, 8, 0.031, 0.029,
+     [](Bench& b, double x) { b.record.limits[8].excess = x; }},
+    {FaultCode::kSpeedExceeded, "measured speed", 3, 4, -3.31, -3.29,
+     [](Bench& b, double x) { b.record.robot.dq_m[4] = x; }},
+    {FaultCode::kSpeedExceeded, "speed of the reference", 3, 4, 3.31, 3.29,
+     [](Bench& b, double x) { b.record.reference.dq_m[4] = x; }},
+    {FaultCode::kAccelerationExceeded, "acceleration", 3, 1, 41.0, 39.0,
+     [](Bench& b, double x) { b.record.reference.ddq_m[1] = x; }},
+    {FaultCode::kTrackingLost, "tracking", 20, 5, 0.081, 0.079,
+     [](Bench& b, double x) { b.record.robot.q_m[5] = -x; }},
+    {FaultCode::kSyncLost, "handle and twin", 3, -1, 0.021, 0.019,
+     [](Bench& b, double x) { b.record.sync_error = x; }},
+    {FaultCode::kJointTorqueExceeded, "torque", 3, 0, 101.0, 99.0,
+     [](Bench& b, double x) {
+       b.torque = x;
+       b.sensors.theta_m[0] = x / 10000.0;
+     }},
+    {FaultCode::kTorqueUnexplained, "unexplained torque", 20, 4, 10.1, 9.9,
+     [](Bench& b, double x) {
+       b.watched.unexplained = VectorM::Zero(6);
+       b.watched.unexplained[4] = -x;
+     }},
+    {FaultCode::kTurnUnexplained, "gyroscope", 3, -1, 0.0252, 0.0248,
+     [](Bench& b, double x) {
+       b.watched.turn = x;
+       b.watched.turn_uncertainty = 0.01;
+     }},
+    {FaultCode::kMotionUnexplained, "accelerometer", 5, -1, 0.152, 0.148,
+     [](Bench& b, double x) { b.watched.slip = x; }},
+    {FaultCode::kSensorImplausible, "contradiction", 3, 2, 0.0202, 0.0198,
+     [](Bench& b, double x) { b.sensors.theta_m[2] = x; }},
+    {FaultCode::kWrenchTooLarge, "force", 5, 0, 151.0, 149.0,
+     [](Bench& b, double x) { b.sensors.w_S[0] = x; }},
+    {FaultCode::kWrenchTooLarge, "torque of the user", 5, 1, -14.1, -13.9,
+     [](Bench& b, double x) { b.sensors.w_S[4] = x; }},
+    {FaultCode::kTooHot, "temperature", 100, 3, 90.1, 89.9,
+     [](Bench& b, double x) { b.sensors.temperature_m[3] = x; }},
+    {FaultCode::kBusErrors, "bus", 3, -1, 1.0, 0.0,
+     [](Bench& b, double x) { b.sensors.bus_errors = static_cast<std::uint32_t>(x); }, false},
+    {FaultCode::kGantryExceeded, "gantry range", 3, 1, -1.4201, -1.4199,
+     [](Bench& b, double x) { b.record.robot.q_p[1] = x; }},
+    {FaultCode::kGantryExceeded, "gantry speed", 3, 0, 1.66, 1.64,
+     [](Bench& b, double x) { b.record.robot.dq_p[0] = b.state.dq_p_model[0] = x; }},
+    {FaultCode::kGantryDeviates, "gantry deviation", 10, 0, 0.27, 0.25,
+     [](Bench& b, double x) { b.record.robot.dq_p[0] = x; }},
+};
+
+TEST(Monitor, EveryRuleActsBeyondItsThresholdAfterItsDebounceAndNotBelow) {
+  for (const Case& c : kCases) {
+    Bench over;
+    EXPECT_EQ(over.until_fault(c.code, [&] { c.put(over, c.over); }), c.samples) << c.name;
+    EXPECT_EQ(over.verdict.fault.index, c.index) << c.name;
+    EXPECT_GT(over.verdict.fault.value, over.verdict.fault.limit) << c.name;
+    Bench under;
+    EXPECT_EQ(under.until_fault(c.code, [&] { c.put(under, c.under); }), -1) << c.name;
+    EXPECT_EQ(under.verdict.warning.code, c.warns ? c.code : FaultCode::kNone) << c.name;
+    EXPECT_FALSE(under.state.is_broken);
+  }
+}
+
+TEST(Monitor, ABreakInBetweenBeginsTheDebounceAnew) {
+  for (const Case& c : kCases) {
+    if (c.samples == 1) continue;
+    Bench bench;
+    for (int k = 0; k < 5; ++k) {
+      for (int sample = 1; sample < c.samples; ++sample) {
+        c.put(bench, c.over);
+        bench.step();
+        EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone) << c.name;
+      }
+      c.put(bench, c.under);
+      bench.step();
+      EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone) << c.name;
+    }
+  }
+}
+
+TEST(Monitor, NoDebounceIsLongerAtAHigherRateInTime) {
+  MonitorConfig fast = config();
+  fast.dt = 0.5e-3;
+  fast.clock_tolerance = kInfinity;
+  Bench bench(fast);
+  EXPECT_EQ(bench.until_fault(FaultCode::kTrackingLost, [&] { bench.record.robot.q_m[5] = 0.081; }),
+            40);
+}
+
+TEST(Monitor, AJumpIsMoreThanThreeTimesTheSpeedAndATurnOfAnEndlessJointIsNone) {
+  Bench bench;
+  bench.sensors.q_m[1] += 8.9e-3;
+  bench.sensors.theta_m[1] += 8.9e-3;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.sensors.q_m[1] += 6.28318530717958;
+  bench.sensors.theta_m[1] += 8.9e-3;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.sensors.q_m[1] += 9.1e-3;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSensorJump);
+  EXPECT_EQ(bench.verdict.fault.index, 1);
+  bench.sensors.q_p[1] += 4.6e-3;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.index, 7);
+  Monitor::forget(bench.state);
+  bench.sensors.q_p[1] += 1.0;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone) << "there is nothing to compare with";
+}
+
+TEST(Monitor, SeesFrozenSensorsOnlyWhereTheyHaveNoise) {
+  const auto freeze = [](Bench& bench, int samples, auto&& spare) {
+    for (int k = 0; k < samples; ++k) {
+      spare(k);
+      bench.step(false);
+      if (bench.verdict.fault.code != FaultCode::kNone) return k + 1;
+    }
+    return -1;
+  };
+  Bench all;
+  EXPECT_EQ(freeze(all, 100, [](int) {}), 21);
+  EXPECT_EQ(all.verdict.fault.code, FaultCode::kSensorFrozen);
+  // joint torques, wrench, accelerometer, gyroscope: one component alone
+  for (const int frozen : {5, 6, 11, 12, 17}) {
+    Bench one;
+    const auto noise = [&](int k) {
+      const auto shake = [&](int first, auto& v) {
+        for (int i = 0; i < v.size(); ++i) {
+          if (first + i != frozen) v[i] = 1e-3 * k;
+        }
+      };
+      shake(0, one.sensors.tau_m);
+      shake(6, one.sensors.w_S);
+      shake(12, one.sensors.a_S);
+      shake(15, one.sensors.omega_S);
+    };
+    EXPECT_EQ(freeze(one, 100, noise), 21) << frozen;
+    EXPECT_EQ(one.verdict.fault.index, frozen);
+  }
+  MonitorConfig without = config();
+  without.frozen_samples = 0;
+  Bench ideal(without);
+  EXPECT_EQ(freeze(ideal, 1000, [](int) {}), -1);
+}
+
+TEST(Monitor, AClockThatStopsJumpsOrRunsWrongIsSeenAndOneThatJittersIsNot) {
+  Bench stops;
+  EXPECT_LT(stops.until_fault(FaultCode::kClockWrong, [&] { stops.sensors.time_s -= 1e-3; }), 20);
+  Bench jumps;
+  jumps.sensors.time_s += 1.0;
+  EXPECT_EQ(jumps.until_fault(FaultCode::kClockWrong, [] {}), 3);
+  Bench fast;
+  EXPECT_GT(fast.until_fault(FaultCode::kClockWrong, [&] { fast.sensors.time_s += 0.3e-3; }), 0);
+  Bench jitters;
+  int k = 0;
+  EXPECT_EQ(jitters.until_fault(FaultCode::kClockWrong,
+                                [&] { jitters.sensors.time_s += ++k % 2 == 0 ? 0.3e-3 : -0.3e-3; }),
+            -1);
+}
+
+TEST(Monitor, LateCyclesAreForgivenWhenTheyAreFewAndFarBetween) {
+  Bench rare;
+  int k = 0;
+  EXPECT_EQ(rare.until_fault(FaultCode::kCycleOverrun,
+                             [&] { rare.watched.late_cycles = ++k % 250 == 0 ? 1 : 0; }),
+            -1);
+  Bench often;
+  k = 0;
+  const int until = often.until_fault(FaultCode::kCycleOverrun,
+                                      [&] { often.watched.late_cycles = ++k % 50 == 0 ? 1 : 0; });
+  EXPECT_GT(until, 250);
+  EXPECT_LT(until, 500);
+  EXPECT_EQ(often.verdict.fault.index, 1);
+  Bench row;
+  EXPECT_EQ(row.until_fault(FaultCode::kCycleOverrun, [&] { row.watched.late_cycles = 1; }), 3);
+  Bench many;
+  EXPECT_EQ(many.until_fault(FaultCode::kCycleOverrun, [&] { many.watched.late_cycles = 3; }), 1);
+}
+
+TEST(Monitor, AReferenceThatHasToComeBackAgainAndAgainIsLostToo) {
+  Bench bench;
+  bench.record.robot.q_m[4] = -0.007;
+  bench.watched.pulled_back = VectorM::Zero(6);
+  bench.watched.pulled_back[4] = 0.001;  // 1 rad/s that the joint does not follow
+  EXPECT_NEAR(bench.until_fault(FaultCode::kTrackingLost, [] {}), 73 + 20, 2);
+  Bench brief;
+  int k = 0;
+  EXPECT_EQ(brief.until_fault(FaultCode::kTrackingLost,
+                              [&] {
+                                brief.watched.pulled_back = VectorM::Zero(6);
+                                if (++k < 50) brief.watched.pulled_back[4] = 0.001;
+                              }),
+            -1);
+}
+
+TEST(Monitor, WithoutPowerADeviceMayBeAnywhereAndFromThereItMayOnlyMoveBack) {
+  Bench bench;
+  bench.watched.state = State::kFault;
+  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.5;
+  bench.record.robot.dq_m[1] = 5.0;
+  bench.record.robot.q_p[0] = 1.6;
+  bench.record.robot.dq_p[1] = 3.0;
+  bench.run(200);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.record.robot.dq_m[1] = bench.record.robot.dq_p[1] = 0.0;
+  bench.step();
+  bench.watched.state = State::kByHand;
+  bench.run(200);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.3;
+  bench.record.robot.q_p[0] = 1.5;
+  bench.run(2);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.34;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kLimitExceeded);
+  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.3;
+  bench.record.robot.q_p[0] = 1.53;
+  bench.run(3);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kGantryExceeded);
+}
+
+TEST(Monitor, TheTwistOfALoadedSpringIsNoContradictionAndItsAbsenceIsOne) {
+  Bench bench;
+  bench.torque = 90.0;  // twists the spring by 9 mrad
+  bench.sensors.theta_m[0] = 0.009;
+  bench.run(10);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.sensors.theta_m[0] = -0.0115;
+  bench.run(3);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSensorImplausible);
+}
+
+TEST(Monitor, SlidesAndTurningGantriesHaveTolerancesOfTheirOwn) {
+  MonitorConfig other = config();
+  other.is_slide.assign(6, false);
+  other.is_slide[3] = true;
+  other.slide_tolerance = 0.01;
+  other.slide_tracking_tolerance = 0.005;
+  other.is_gantry_slide = false;
+  other.turn_tolerance = 0.2;
+  other.turn_deviation = 0.1;
+  const auto until = [&](FaultCode code, auto put) {
+    Bench bench(other);
+    return bench.until_fault(code, [&] { put(bench); });
+  };
+  for (const double excess : {0.009, 0.011}) {
+    EXPECT_EQ(
+        until(FaultCode::kLimitExceeded,
+              [&](Bench& b) { b.record.robot.q_m[3] = b.record.reference.q_m[3] = 2.0 + excess; }),
+        excess < 0.01 ? -1 : 1);
+    EXPECT_EQ(
+        until(FaultCode::kTrackingLost, [&](Bench& b) { b.record.robot.q_m[3] = 0.5 * excess; }),
+        excess < 0.01 ? -1 : 20);
+    EXPECT_EQ(until(FaultCode::kGantryExceeded,
+                    [&](Bench& b) { b.record.robot.q_p[1] = 1.4 + 20.0 * excess; }),
+              excess < 0.01 ? -1 : 3);
+    EXPECT_EQ(until(FaultCode::kGantryDeviates,
+                    [&](Bench& b) { b.record.robot.dq_p[1] = 11.5 * excess; }),
+              excess < 0.01 ? -1 : 10);
+  }
+}
+
+TEST(Monitor, BelowALimitItMayOnlyMoveBackToo) {
+  Bench bench;
+  const auto put = [&](double q) { bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = q; };
+  bench.watched.state = State::kReady;
+  put(-2.5);
+  bench.step();
+  bench.watched.state = State::kByHand;
+  put(-2.3);
+  bench.run(2);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  put(-2.34);
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kLimitExceeded);
+}
+
+TEST(Monitor, TheSafeSpeedHoldsOnlyWithNobodyAtTheHandle) {
+  Bench bench;
+  bench.record.v_H = {0.2, 0.16, 0.0};
+  bench.run(10);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+  bench.watched.state = State::kAutonomous;
+  EXPECT_EQ(bench.until_fault(FaultCode::kSafeSpeedExceeded, [] {}), 3);
+  bench.record.v_H.setZero();
+  bench.step();
+  bench.record.robot.dq_p << 0.2, -0.16;
+  EXPECT_EQ(bench.until_fault(FaultCode::kSafeSpeedExceeded,
+                              [&] { bench.state.dq_p_model = bench.record.robot.dq_p; }),
+            3);
+}
+
+// A motor of the bench that accelerates as `share` of its torque makes it, against its friction.
+struct Motor {
+  double dtheta = 0.0;
+  void step(Bench& bench, double told, double share, double spring) {
+    bench.watched.tau_m = VectorM::Zero(6);
+    bench.watched.tau_m[2] = told;
+    const double friction = 4.0 * std::tanh(dtheta / 0.01);
+    dtheta += 1e-3 * (share * told - spring - friction) / 0.6;
+    bench.record.robot.dtheta_m = bench.record.robot.tau_m = VectorM::Zero(6);
+    bench.record.robot.dtheta_m[2] = dtheta;
+    bench.record.robot.tau_m[2] = spring;
+    bench.step();
+  }
+};
+
+TEST(Monitor, AMotorThatDoesAsToldIsLeftAloneWhateverItsLoadAndSpeed) {
+  Bench bench;
+  Motor motor;
+  for (int k = 0; k < 3000; ++k) {
+    const double wave = std::sin(2e-3 * std::numbers::pi * 2.0 * k);
+    motor.step(bench, 40.0 + 15.0 * wave, 1.0, 40.0);
+    ASSERT_EQ(bench.verdict.fault.code, FaultCode::kNone) << k;
+  }
+  EXPECT_GT(std::abs(motor.dtheta), 0.1);
+}
+
+TEST(Monitor, AMotorThatGivesNoTorqueIsNoticedBeforeItHasMovedFar) {
+  Bench bench;
+  Motor motor;
+  int k = 0;
+  double moved = 0.0;
+  for (; k < 300 && bench.verdict.fault.code == FaultCode::kNone; ++k) {
+    motor.step(bench, 30.0, 0.0, 6.0);  // 30 Nm, of which the spring would carry 6
+    moved += 1e-3 * motor.dtheta;
+  }
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kMotorDeviates);
+  EXPECT_EQ(bench.verdict.fault.index, 2);
+  EXPECT_GE(k, 50);
+  EXPECT_LT(k, 120);
+}
+
+TEST(Monitor, WhatBrakingDoesNotExplainStopsNothing) {
+  Bench bench;
+  bench.watched.unexplained = VectorM::Constant(6, 50.0);
+  bench.watched.state = State::kToReady;
+  bench.run(200);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
+}
+
+TEST(Monitor, AGantryThatSlowlyComesAwayFromItsDriveModelDeviates) {
+  Bench bench;  // its encoder counts 0.1 m/s while it should stand
+  const int until =
+      bench.until_fault(FaultCode::kGantryDeviates, [&] { bench.sensors.q_p[0] += 1e-3 * 0.1; });
+  EXPECT_NEAR(until, 10 + 300 + 25, 10);  // debounce, and 0.03 m of which some is forgotten
+  Bench slow;
+  EXPECT_EQ(
+      slow.until_fault(FaultCode::kGantryDeviates, [&] { slow.sensors.q_p[0] += 1e-3 * 0.01; }),
+      -1);
+}
+
+TEST(Monitor, TheGantryFollowsItsDriveModel) {
+  Bench bench;
+  double speed = 0.0;
+  bench.watched.dq_p_command[0] = 1.2;
+  EXPECT_EQ(bench.until_fault(FaultCode::kGantryDeviates,
+                              [&] {
+                                speed +=
+                                    1e-3 * drive_acceleration(DriveModel{.lag = 0.06}, speed, 1.2);
+                                bench.record.robot.dq_p[0] = speed;
+                              }),
+            -1);
+  Bench stuck;
+  stuck.watched.dq_p_command[0] = 1.2;
+  const int until = stuck.until_fault(FaultCode::kGantryDeviates, [] {});
+  EXPECT_GT(until, 100);
+  EXPECT_LT(until, 140);
+}
+
+// A joint and an axis of the gantry that are being stopped, from a speed of 1.
+struct BrakingBench : Bench {
+  double reference = 1.0;
+
+  BrakingBench() {
+    record.reference.dq_m[2] = record.robot.dq_m[2] = reference;
+    record.robot.dq_p[1] = state.dq_p_model[1] = reference;
+    watched.state = State::kToFault;
+  }
+  // one period; the axes are faster than their ramps by so much
+  void brake(double joint_excess, double gantry_excess) {
+    reference = std::max(0.0, reference - 2e-3);
+    record.robot.dq_m[2] = reference + joint_excess;
+    // its acceleration is the ramp; the reference itself is brought back to the device
+    record.reference.ddq_m[2] = reference > 0.0 ? -2.0 : 0.0;
+    record.reference.dq_m[2] = state.is_stopping ? record.robot.dq_m[2] : reference;
+    record.robot.q_m[2] += 1e-3 * record.robot.dq_m[2];
+    record.reference.q_m[2] = record.robot.q_m[2];
+    record.robot.dq_p[1] = state.dq_p_model[1] + gantry_excess;
+    record.robot.q_p[1] += 1e-3 * record.robot.dq_p[1];
+    sensors.q_p[1] = record.robot.q_p[1] - 1e-3 * state.dq_p_model[1];  // step() adds this
+    sensors.q_m[2] = sensors.theta_m[2] = record.robot.q_m[2];
+    verdict = {};
+    step();
+  }
+};
+
+TEST(Monitor, AStopThatFollowsItsRampIsLeftAlone) {
+  BrakingBench bench;
+  for (int k = 0; k < 800; ++k) {
+    bench.brake(0.0, 0.0);
+    EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone) << k;
+  }
+}
+
+TEST(Monitor, WhatDoesNotBrakeAsItIsAskedToGetsItsBrakes) {
+  const auto first = [](double joint, double gantry, int samples) {
+    BrakingBench bench;
+    for (int k = 1; k <= samples; ++k) {
+      bench.brake(joint, gantry);
+      if (bench.verdict.fault.code != FaultCode::kNone) return std::pair(bench.verdict.fault, k);
+    }
+    return std::pair(bench.verdict.fault, -1);
+  };
+  const auto [fast, fast_at] = first(0.3, 0.0, 100);
+  EXPECT_EQ(fast.code, FaultCode::kBrakingSpeed);
+  EXPECT_EQ(fast.index, 2);
+  EXPECT_EQ(fast_at, 5);
+  const auto [slow, slow_at] = first(0.2, 0.0, 200);
+  EXPECT_EQ(slow.code, FaultCode::kBrakingPosition);
+  EXPECT_NEAR(slow_at, 125, 5);  // 0.025 rad
+  const auto [axis, axis_at] = first(0.0, 0.3, 100);
+  EXPECT_EQ(axis.code, FaultCode::kBrakingSpeed);
+  EXPECT_EQ(axis.index, 6 + 1);
+  EXPECT_LE(axis_at, 10);
+  for (const Fault& fault : {fast, slow, axis}) EXPECT_EQ(rule_of(fault.code).reaction, Stop::kSto);
+}
+
+TEST(Monitor, AStopThatGoesTooFarEndsWhateverItsRampSays) {
+  Bench bench;
+  bench.watched.state = State::kToArmed;
+  // the reference runs on, and the joint follows it
+  bench.record.reference.dq_m[0] = bench.record.robot.dq_m[0] = 0.5;
+  const auto go_on = [&] {
+    bench.record.robot.q_m[0] += 5e-4;
+    bench.record.reference.q_m[0] = bench.sensors.q_m[0] = bench.sensors.theta_m[0] =
+        bench.record.robot.q_m[0];
+  };
+  EXPECT_NEAR(bench.until_fault(FaultCode::kStopTooFar, go_on), 1441, 2);  // 90 % of 0.8 rad
+  EXPECT_EQ(bench.verdict.fault.index, 0);
+}
+
+TEST(Monitor, AJumpIsKnownBeforeAnythingElseIsMadeOfTheSample) {
+  Bench bench;
+  EXPECT_FALSE(bench.monitor.has_jumped(bench.sensors, bench.state));
+  bench.sensors.q_m[3] += 0.05;
+  EXPECT_TRUE(bench.monitor.has_jumped(bench.sensors, bench.state));
+}
+
+TEST(Monitor, OfSeveralBrokenRulesTheHardestReactionCounts) {
+  Bench bench;
+  bench.sensors.w_S[0] = 200.0;
+  bench.record.robot.dq_m[2] = 9.0;
+  bench.run(5);
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSpeedExceeded);  // SS1 before SS2
+  bench.sensors.q_m[0] += 0.1;
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSensorJump);  // STO before both
+  EXPECT_EQ(bench.verdict.warning.code, FaultCode::kSensorImplausible) << "the farthest beyond";
+}
+
+}  // namespace
+}  // namespace hg::safety

@@ -1,0 +1,353 @@
+#include "hg/controller/safety/supervisor.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace hg::safety {
+namespace {
+
+constexpr Fault kRuleFault{FaultCode::kWrenchTooLarge, 0, 151.0, 150.0};  // SS2
+constexpr Fault kHardFault{FaultCode::kSensorNotFinite, 3, 0.0, 0.0};     // STO
+
+std::vector<State> all_states() {
+  std::vector<State> states;
+  for (std::size_t i = 0; i < kStateCount; ++i) states.push_back(static_cast<State>(i));
+  return states;
+}
+
+std::vector<Event> all_events() {
+  std::vector<Event> events;
+  for (std::size_t i = 0; i < kEventCount; ++i) events.push_back(static_cast<Event>(i));
+  return events;
+}
+
+SupervisorState in(State state) {
+  SupervisorState supervisor;
+  supervisor.state = state;
+  if (state == State::kToFault || state == State::kFault) {
+    supervisor.fault = {FaultCode::kTooHot, 2, 91.0, 90.0};
+    supervisor.stop = Stop::kSs1;
+  }
+  return supervisor;
+}
+
+// what lets `state` go on as it is
+SupervisorInput quiet(State state) {
+  SupervisorInput input;
+  input.is_held = state == State::kByHand;
+  input.safety.override_key = state == State::kAutonomous;
+  return input;
+}
+
+// One cycle in which `event` happens to a device in `state`, with everything granted.
+Refusal let_happen(Event event, SupervisorState& state) {
+  SupervisorInput input = quiet(state.state);
+  switch (event) {
+    case Event::kSample:
+      break;
+    case Event::kArm:
+      input.request = ModeRequest::kArm;
+      break;
+    case Event::kRun:
+      input.request = ModeRequest::kRun;
+      if (state.state != State::kAutonomous) input.is_held = true;
+      break;
+    case Event::kRunAlone:
+      input.request = ModeRequest::kAutonomous;
+      input.safety.override_key = true;
+      break;
+    case Event::kStop:
+      input.request = ModeRequest::kStop;
+      break;
+    case Event::kReset:
+      input.request = ModeRequest::kReset;
+      break;
+    case Event::kHandOpens:
+      input.is_held = false;
+      break;
+    case Event::kHandCloses:
+      input.is_held = true;
+      break;
+    case Event::kKeyTurnsOff:
+      input.safety.override_key = false;
+      break;
+    case Event::kOperatorLetsGo:
+      input.safety.operator_enable = false;
+      break;
+    case Event::kStandstill:
+      go_on_stopping(true, 100, 0.1, state);
+      return Refusal::kNone;
+    case Event::kRule:
+      break_rule(kRuleFault, state);
+      return Refusal::kNone;
+    case Event::kHardRule:
+      break_rule(kHardFault, state);
+      return Refusal::kNone;
+  }
+  return advance(input, state);
+}
+
+TEST(Supervisor, DoesWhatTheTableSaysInEveryStateAtEveryEvent) {
+  for (const State state : all_states()) {
+    for (const Event event : all_events()) {
+      SupervisorState supervisor = in(state);
+      const Refusal refusal = let_happen(event, supervisor);
+      Transition expected = transition(state, event);
+      // a sample makes a device ready that is off, whatever else happens in that cycle
+      const bool is_rule = event == Event::kRule || event == Event::kHardRule;
+      if (state == State::kOff && !is_rule && event != Event::kStandstill) {
+        expected.next = State::kReady;
+      }
+      EXPECT_EQ(supervisor.state, expected.next)
+          << to_string(state) << " / " << to_string(event) << " -> " << to_string(supervisor.state);
+      EXPECT_EQ(refusal, expected.refusal) << to_string(state) << " / " << to_string(event);
+    }
+  }
+}
+
+// The table itself, written a second time in other words.
+TEST(Transitions, PowerComesOnlyByRequestsAndMotionOnlyFromArmed) {
+  for (const State state : all_states()) {
+    for (const Event event : all_events()) {
+      const State next = transition(state, event).next;
+      if (is_powered(next) && !is_powered(state)) {
+        EXPECT_TRUE(state == State::kReady && event == Event::kArm);
+      }
+      if (mode_of(next) == Mode::kRunning && next != state) {
+        EXPECT_EQ(state, State::kArmed);
+        EXPECT_EQ(event, next == State::kByHand ? Event::kRun : Event::kRunAlone);
+      }
+      if (state == State::kFault && next != state) {
+        EXPECT_EQ(next, State::kReady);
+        EXPECT_EQ(event, Event::kReset);
+      }
+      // what moves is braked before the drives go off, except by an STO
+      const bool moves = mode_of(state) == Mode::kRunning || mode_of(state) == Mode::kStopping;
+      if (moves && !is_powered(next)) {
+        EXPECT_TRUE(event == Event::kHardRule || event == Event::kStandstill);
+      }
+      if (event == Event::kHardRule) {
+        EXPECT_EQ(next, State::kFault);
+      } else if (event == Event::kRule) {
+        EXPECT_TRUE(next == State::kFault || next == State::kToFault);
+      }
+    }
+  }
+}
+
+TEST(Transitions, EveryRefusedRequestSaysWhyAndEveryOtherOneIsFollowed) {
+  const auto refusal = [](State state, Event event) { return transition(state, event).refusal; };
+  for (const State state : all_states()) {
+    const bool is_failed = state == State::kToFault || state == State::kFault;
+    EXPECT_EQ(refusal(state, Event::kArm), state == State::kReady ? Refusal::kNone
+                                           : is_failed            ? Refusal::kFaultPresent
+                                                                  : Refusal::kNotReady);
+    for (const Event event : {Event::kRun, Event::kRunAlone}) {
+      EXPECT_EQ(refusal(state, event), state == State::kArmed ? Refusal::kNone
+                                       : is_failed            ? Refusal::kFaultPresent
+                                                              : Refusal::kNotArmed);
+    }
+    EXPECT_EQ(refusal(state, Event::kReset), state == State::kFault     ? Refusal::kNone
+                                             : state == State::kToFault ? Refusal::kCauseRemains
+                                                                        : Refusal::kNoFault);
+    EXPECT_EQ(refusal(state, Event::kStop), Refusal::kNone) << "a stop is never refused";
+  }
+}
+
+TEST(Supervisor, ARefusedRequestChangesNothingAndEveryRefusalHasWords) {
+  const auto ask = [](State state, ModeRequest request, auto&& change) {
+    SupervisorState supervisor = in(state);
+    SupervisorInput input = quiet(state);
+    input.request = request;
+    change(input);
+    const Refusal refusal = advance(input, supervisor);
+    EXPECT_EQ(supervisor.state, state);
+    EXPECT_NE(to_string(refusal), "unknown");
+    return refusal;
+  };
+  const auto nothing = [](SupervisorInput&) {};
+  EXPECT_EQ(ask(State::kReady, ModeRequest::kArm,
+                [](SupervisorInput& i) { i.safety.operator_enable = false; }),
+            Refusal::kOperatorReleased);
+  EXPECT_EQ(ask(State::kReady, ModeRequest::kArm,
+                [](SupervisorInput& i) { i.to_arm = Refusal::kNotTared; }),
+            Refusal::kNotTared);
+  EXPECT_EQ(ask(State::kArmed, ModeRequest::kRun, nothing), Refusal::kNobodyHolds);
+  EXPECT_EQ(ask(State::kArmed, ModeRequest::kAutonomous, nothing), Refusal::kNoOverride);
+  EXPECT_EQ(ask(State::kArmed, ModeRequest::kAutonomous,
+                [](SupervisorInput& i) {
+                  i.safety.override_key = true;
+                  i.safety.is_field_clear = false;
+                }),
+            Refusal::kFieldOccupied);
+  EXPECT_EQ(ask(State::kArmed, ModeRequest::kAutonomous,
+                [](SupervisorInput& i) { i.safety.override_key = i.is_held = true; }),
+            Refusal::kSomebodyHolds);
+  EXPECT_EQ(ask(State::kReady, ModeRequest::kRun, nothing), Refusal::kNotArmed);
+  EXPECT_EQ(ask(State::kArmed, ModeRequest::kReset, nothing), Refusal::kNoFault);
+  EXPECT_EQ(ask(State::kFault, ModeRequest::kArm, nothing), Refusal::kFaultPresent);
+  EXPECT_EQ(
+      ask(State::kFault, ModeRequest::kReset, [](SupervisorInput& i) { i.fault = kRuleFault; }),
+      Refusal::kCauseRemains);
+  EXPECT_EQ(ask(State::kFault, ModeRequest::kReset, [](SupervisorInput& i) { i.is_broken = true; }),
+            Refusal::kCauseRemains);
+}
+
+TEST(Supervisor, StartsActOnEdgesAndStopsOnLevels) {
+  SupervisorState state = in(State::kReady);
+  SupervisorInput input;
+  input.safety.operator_enable = false;
+  input.request = ModeRequest::kArm;
+  EXPECT_EQ(advance(input, state), Refusal::kOperatorReleased);
+  input.safety.operator_enable = true;  // held again, the arm button still pressed
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(advance(input, state), Refusal::kNone);
+  EXPECT_EQ(state.state, State::kReady);
+  input.request = ModeRequest::kNone;
+  advance(input, state);
+  input.request = ModeRequest::kArm;
+  advance(input, state);
+  EXPECT_EQ(state.state, State::kArmed);
+  input.safety.operator_enable = false;
+  advance(input, state);
+  EXPECT_EQ(state.state, State::kReady);
+}
+
+TEST(Supervisor, AnOperatorWhoLetsGoStopsItWithoutAFaultToReset) {
+  SupervisorState state = in(State::kByHand);
+  SupervisorInput input = quiet(State::kByHand);
+  input.safety.operator_enable = false;
+  advance(input, state);
+  EXPECT_EQ(state.state, State::kToReady);
+  EXPECT_EQ(state.stop, Stop::kSs1);
+  EXPECT_EQ(state.fault.code, FaultCode::kOperatorReleased);
+  input.safety.operator_enable = true;
+  advance(input, state);
+  EXPECT_EQ(state.state, State::kToReady) << "holding it again does not go on";
+  go_on_stopping(true, 100, 0.1, state);
+  EXPECT_EQ(state.state, State::kReady);
+  EXPECT_EQ(state.fault.code, FaultCode::kNone);
+  EXPECT_EQ(state.stop, Stop::kNone);
+}
+
+TEST(Supervisor, EveryRuleHasTheReactionOfItsRow) {
+  for (const Rule& rule : kRules) {
+    SupervisorState state = in(State::kByHand);
+    break_rule({rule.code, 1, 2.0, 1.0}, state);
+    EXPECT_EQ(state.stop, rule.reaction) << rule.name;
+    EXPECT_EQ(state.fault.code, rule.code) << rule.name;
+    EXPECT_EQ(state.state, rule.reaction == Stop::kSto ? State::kFault : State::kToFault);
+  }
+  SupervisorState state = in(State::kByHand);
+  break_rule({static_cast<FaultCode>(999), 0, 0.0, 0.0}, state);
+  EXPECT_EQ(state.stop, Stop::kSto) << "what nobody knows switches off";
+}
+
+TEST(Supervisor, TheFirstCauseIsKeptAndWhatEndsAStopIsRememberedBesides) {
+  SupervisorState state = in(State::kByHand);
+  break_rule(kRuleFault, state);
+  break_rule({FaultCode::kSpeedExceeded, 1, 2.0, 1.0}, state);
+  EXPECT_EQ(state.fault.code, kRuleFault.code);
+  EXPECT_EQ(state.also.code, FaultCode::kNone);
+  break_rule(kHardFault, state);
+  EXPECT_EQ(state.state, State::kFault);
+  EXPECT_EQ(state.stop, Stop::kSto);
+  EXPECT_EQ(state.fault.code, kRuleFault.code);
+  EXPECT_EQ(state.also.code, kHardFault.code);
+}
+
+TEST(Supervisor, ABrakeThatSlipsIsToldWhateverMadeItClose) {
+  constexpr Fault kSlip{FaultCode::kBrakesSlip, 4, 0.11, 0.1};
+  SupervisorState state = in(State::kFault);
+  const FaultCode first = state.fault.code;
+  for (int k = 0; k < 2; ++k) {
+    break_rule(kSlip, state);
+    EXPECT_EQ(state.state, State::kFault);
+    EXPECT_EQ(state.fault.code, FaultCode::kBrakesSlip);
+    EXPECT_EQ(state.also.code, first) << "the first cause is kept besides";
+  }
+  SupervisorState ready = in(State::kReady);
+  break_rule(kSlip, ready);
+  EXPECT_EQ(ready.state, State::kFault);
+  EXPECT_EQ(ready.fault.code, FaultCode::kBrakesSlip);
+}
+
+TEST(Supervisor, AStopThatTakesTooLongIsBrokenOff) {
+  for (const State stopping : {State::kToArmed, State::kToReady, State::kToFault}) {
+    SupervisorState state = in(stopping);
+    for (int k = 0; k < 100; ++k) go_on_stopping(false, 100, 0.1, state);
+    EXPECT_EQ(state.state, stopping);
+    go_on_stopping(false, 100, 0.1, state);
+    EXPECT_EQ(state.state, State::kFault);
+    EXPECT_EQ(state.stop, Stop::kSto);
+    const Fault& told = stopping == State::kToFault ? state.also : state.fault;
+    EXPECT_EQ(told.code, FaultCode::kStopTooSlow);
+  }
+}
+
+TEST(Supervisor, AStopDoesNotGetNewTimeWhenItsReasonChanges) {
+  SupervisorState state = in(State::kByHand);
+  SupervisorInput input = quiet(State::kByHand);
+  input.request = ModeRequest::kStop;
+  advance(input, state);
+  for (int k = 0; k < 90; ++k) go_on_stopping(false, 100, 0.1, state);
+  break_rule(kRuleFault, state);
+  for (int k = 0; k < 11; ++k) go_on_stopping(false, 100, 0.1, state);
+  EXPECT_EQ(state.state, State::kFault);
+  EXPECT_EQ(state.also.code, FaultCode::kStopTooSlow);
+}
+
+TEST(Supervisor, AnUntrustedSensorMakesAnEmergencyStopHarderAndKeepsItsCause) {
+  SupervisorState state = in(State::kByHand);
+  SupervisorInput input = quiet(State::kByHand);
+  input.fault = {FaultCode::kEmergencyStop, -1, 1.0, 0.0};
+  input.reaction = Stop::kSto;
+  advance(input, state);
+  EXPECT_EQ(state.state, State::kFault);
+  EXPECT_EQ(state.stop, Stop::kSto);
+  EXPECT_EQ(state.fault.code, FaultCode::kEmergencyStop);
+}
+
+TEST(CheckSafetyInputs, TheScannerCountsOnlyWhileNobodyHoldsTheHandle) {
+  SafetyInputs safety;
+  safety.is_field_clear = false;
+  EXPECT_EQ(check_safety_inputs(safety, in(State::kByHand)).code, FaultCode::kNone);
+  EXPECT_EQ(check_safety_inputs(safety, in(State::kArmed)).code, FaultCode::kNone);
+  SupervisorState state = in(State::kAutonomous);
+  const Fault fault = check_safety_inputs(safety, state);
+  EXPECT_EQ(fault.code, FaultCode::kScannerField);
+  break_rule(fault, state);
+  EXPECT_EQ(check_safety_inputs(safety, state).code, FaultCode::kScannerField)
+      << "the cause is there until the field is clear";
+  safety.is_field_clear = true;
+  EXPECT_EQ(check_safety_inputs(safety, state).code, FaultCode::kNone);
+}
+
+TEST(CheckSafetyInputs, AStopComesBeforeADisagreement) {
+  SafetyInputs safety;
+  EXPECT_EQ(check_safety_inputs(safety, in(State::kArmed)).code, FaultCode::kNone);
+  safety.has_disagreement = true;
+  EXPECT_EQ(check_safety_inputs(safety, in(State::kArmed)).code, FaultCode::kSafetyInputsDisagree);
+  safety.emergency_stop = true;
+  EXPECT_EQ(check_safety_inputs(safety, in(State::kArmed)).code, FaultCode::kEmergencyStop);
+}
+
+TEST(Rules, AllFaultsHaveARuleAndAllTextsAreThere) {
+  for (const Rule& rule : kRules) {
+    EXPECT_EQ(&rule_of(rule.code), &rule);
+    EXPECT_NE(to_string(rule.code), "unknown fault") << rule.name;
+    EXPECT_FALSE(rule.name.empty() || rule.meaning.empty() || rule.threshold.empty() ||
+                 rule.release.empty());
+    EXPECT_EQ(rule.meaning.back(), '.') << rule.name;
+    EXPECT_NE(rule.reaction, Stop::kNone) << rule.name;
+  }
+  int known = 0;
+  for (int code = 1; code < 1000; ++code) {
+    if (to_string(static_cast<FaultCode>(code)) != "unknown fault") ++known;
+  }
+  EXPECT_EQ(static_cast<std::size_t>(known), kRuleCount);
+}
+
+}  // namespace
+}  // namespace hg::safety

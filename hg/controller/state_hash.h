@@ -1,0 +1,17 @@
+/// Hash of the state after a cycle: runs with equal hashes are identical.
+///
+/// Over the words of the state: hash = (rotated hash ^ word) * odd constant, a bijection of each
+/// word, so that a single differing value always changes the hash. Not cryptographic. About a
+/// nanosecond per word. No allocation, noexcept.
+#pragma once
+
+#include "hg/controller/cycle.h"
+
+namespace hg::controller {
+
+/// Hash of everything in `state`, except that of the drives' past commands only the last one counts
+/// (earlier hashes cover the others). `rows` is the number of rows of the rendering problem, whose
+/// active set is in the state.
+std::uint64_t hash_of(const State& state, int rows) noexcept;
+
+}  // namespace hg::controller

@@ -1,0 +1,171 @@
+/// Control of the manipulator joints: from the reference to the commands of the drives.
+///
+/// Drives that follow a position get the reference itself. Series elastic joints get motor torques:
+/// feedforward of everything the model knows (weight, inertia, gantry, user, friction, and the
+/// twist of the springs that all this takes), and feedback that damps the modes of the arm; [C] 1,
+/// where it is compared with others in closed loop. No allocation, noexcept after set-up.
+#pragma once
+
+#include <vector>
+
+#include "hg/controller/tracking/modes.h"
+#include "hg/core/interval.h"
+#include "hg/core/types.h"
+#include "hg/model/chain.h"
+#include "hg/signals/actuator_model.h"
+#include "hg/signals/presliding.h"
+#include "hg/signals/state.h"
+
+namespace hg::tracking {
+
+inline constexpr int kAnswersNeeded = 100;  ///< samples until the latency counts as known
+/// Largest factor on the friction of the configuration; more would be another fault.
+inline constexpr double kMostFriction = 2.0;
+
+enum class Method {
+  kDrives,   ///< the drives follow the reference autonomously
+  kModal,    ///< full-state feedback in the modes of the arm
+  kMotorPd,  ///< stiffness and damping on the motor side of each joint alone
+};
+
+/// Set-up data.
+struct Config {
+  double dt = 1e-3;  ///< period, s
+  Method method = Method::kDrives;
+  /// Actuators, one per manipulator joint; empty with kDrives.
+  std::vector<ActuatorModel> actuators;
+  TorqueLoop loop;  ///< Torque loop with the expected latency; the true latency is measured
+  /// Largest measured latency with which the loop is known to be stable, s.
+  double latency_max = kInfinity;
+  double integral_rate = 2.0;      ///< kModal: decay rate of the link error, 1/s
+  double integral_max = 3.5e-4;    ///< Largest integral of the link error, rad s: no wind-up beyond
+  Poles poles;                     ///< kModal: poles without latency
+  double flatness_Hz = 40.0;       ///< Low-pass of derivatives of feedforward torques; see check()
+  double wrench_lead = 0.0;        ///< kModal: lead of the user's wrench in the feedforward, s
+  double lead_low_pass_Hz = 65.0;  ///< Low-pass of the wrench's rate of change for that lead
+  double stiff_low_pass_Hz = 0.0;  ///< kModal: low-pass of the feedforward to stiff modes; 0 = none
+  double error_max = kInfinity;    ///< Largest lead of the reference over the joint, rad or m
+  double friction_share = 0.8;     ///< Share of the Coulomb friction that is fed forward, 0..1
+  /// Speed over which the fed-forward friction changes its sign, without presliding, rad/s.
+  double friction_speed = 0.01;
+  double friction_learning = 1.0;  ///< kModal: rate at which the true friction is learnt, 1/s
+};
+
+/// Largest flatness_Hz of a loop with `rate_Hz`; beyond it the feedforward filter is unstable.
+double largest_flatness_Hz(double rate_Hz) noexcept;
+
+/// Largest expected latency; stability with more is not checked.
+inline constexpr int kMostLatency = 64;  // periods
+
+/// Throws SetupError where the period is too long for flatness_Hz or too short for the latency.
+void check(const Config& config);
+
+/// Part of the copyable state of a cycle.
+struct State {
+  bool is_started = false;
+  double latency = 0.0;  ///< Mean latency measured while the drives were off, periods
+  int answers = 0;       ///< Samples in that mean, counted up to kAnswersNeeded
+  int late = 0;          ///< Samples with old commands minus those without, drives on; >= 0
+  Poles poles;           ///< Poles that the latency allows; chosen at the start
+  Modes modes;
+  VectorM integral;  ///< Integral of q_r - q, rad s
+  VectorM friction;  ///< Fed-forward friction over the Coulomb friction of the configuration
+  VectorM tau_r, dtau_r, ddtau_r;  ///< Feedforward torque of the links and its derivatives
+  Vector6 w_H = Vector6::Zero();   ///< User's wrench in the last sample
+  Vector6 dw_H = Vector6::Zero();  ///< Rate of change of the user's wrench, low-passed
+  VectorM stiff;                   ///< Torques of stiff modes, low-passed, Nm
+  BristleFeet feet;  ///< Bristle feet of the friction fed forward; empty: no joint has presliding
+  /// Joint torques that reference and user's wrench do not explain, a moving mean, Nm.
+  VectorM unexplained;
+  bool is_saturated = false;
+};
+
+class JointControl {
+ public:
+  /// `chain` holds the gantry joints first; `handle` is its frame H.
+  /// Throws SetupError where numbers of actuators and joints differ, and what check() throws.
+  JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
+
+  State start() const;
+  /// Resets the state after a fault, except for the measured latency.
+  void restart(State& state) const noexcept;
+  /// Evaluates the age of the command at work; call once per sample, with drives `on` or off. Off,
+  /// the latency is learnt from it; on, it is monitored.
+  void listen(const SensorFrame& sensors, bool on, State& state) const noexcept;
+  /// Whether enough commands were answered to know the latency, or there is no torque loop.
+  bool is_latency_known(const State& state) const noexcept {
+    return config_.method == Method::kDrives || state.answers >= kAnswersNeeded;
+  }
+  /// Whether the loop is stable with the measured latency; true without a torque loop.
+  bool is_stable(const State& state) const noexcept {
+    return config_.method == Method::kDrives || state.latency * config_.dt <= config_.latency_max;
+  }
+  /// kCommandsLost or kLatencyGrew once the samples with a command more than half a period older
+  /// than the latency assumed by the gains outnumber the others by 50 ms; kNone otherwise, and
+  /// without a torque loop.
+  Fault check_latency(const SensorFrame& sensors, const State& state) const noexcept;
+  /// Like check_latency(), but from 5 ms on and for any device that answers: enough to explain why
+  /// the device does not move as commanded.
+  Fault link_disturbance(const SensorFrame& sensors, const State& state) const noexcept;
+  /// Fills `command` while the drives are off and resets the control for the next step().
+  void rest(const ReferenceState& reference, State& state, CommandFrame& command) const noexcept;
+  /// Fills the manipulator part of `command`: `now` is the reference at the time of the sample,
+  /// `next` where the drives should be a period later.
+  void step(const ReferenceState& now, const ReferenceState& next, const RobotState& robot,
+            State& state, CommandFrame& command, TrackingReport& report) noexcept;
+
+  /// Torques on the joints, Nm.
+  struct JointTorques {
+    VectorM external;  ///< Torques explained by neither motion nor user: contact of the arm
+    VectorM motion;    ///< Model torques that move and hold the joints, and the user's
+  };
+  /// Joint torques in the last step(), with the measured acceleration `ddq` of the links instead of
+  /// that of the reference. Only with torque control.
+  JointTorques joint_torques(const RobotState& robot, const VectorM& ddq) const noexcept;
+
+ private:
+  /// Reference minus measured, at the time of the sample.
+  struct Errors {
+    VectorM theta, dtheta, q, dq;
+  };
+  /// For the next period: torques of the springs, motion of the motors.
+  struct Feedforward {
+    VectorM tau, dtheta, ddtheta;
+    VectorM dry, along;  ///< dry friction: at most, Nm, and the share of that, -1..1
+  };
+  Fault link_fault(const SensorFrame& sensors, const State& state) const noexcept;
+  VectorM link_torque(const ReferenceState& reference, const RobotState& robot) noexcept;
+  VectorM fed(const VectorM& tau) const noexcept {
+    return tau.cwiseMin(feed_max_).cwiseMax(-feed_max_);
+  }
+  MatrixM scaled_mass() const noexcept;
+  VectorM stiffness_shares(const State& state) const noexcept;
+  VectorM of_modes(const VectorM& in_modes, const State& state) const noexcept;
+  VectorM of_stiff_modes(const VectorM& tau, const VectorM& shares,
+                         const State& state) const noexcept;
+  VectorM timely(const VectorM& tau, const RobotState& robot, State& state) const noexcept;
+  void begin(const ReferenceState& reference, const RobotState& robot, State& state) noexcept;
+  Feedforward feedforward(const ReferenceState& reference, const RobotState& robot,
+                          State& state) noexcept;
+  void integrate(const VectorM& error, State& state) const noexcept;
+  void follow_torque(const VectorM& tau, State& state) const noexcept;
+  VectorM modal_torque(const Errors& errors, const RobotState& robot, const Feedforward& forward,
+                       State& state) const noexcept;
+  VectorM motor_pd_torque(const Errors& errors, const Feedforward& forward) const noexcept;
+  void dry_friction(const ReferenceState& reference, State& state,
+                    Feedforward& forward) const noexcept;
+  VectorM friction(const Feedforward& forward, const State& state) const noexcept;
+  void learn_friction(const Feedforward& forward, const VectorM& feedback, const RobotState& robot,
+                      State& state) const noexcept;
+
+  Config config_;
+  model::Chain chain_;
+  int n_p_, n_m_, handle_;
+  double lead_pole_ = 0.0, stiff_pole_ = 0.0;  ///< Poles of the low-passes
+  VectorM K_, sqrt_K_, Jm_;
+  bool has_feet_ = false;        ///< Some joint has presliding
+  VectorM feed_max_;             ///< Largest torque that is fed forward, Nm
+  VectorM link_torque_, ddq_r_;  ///< Result of link_torque() in this step, and its ddq
+};
+
+}  // namespace hg::tracking

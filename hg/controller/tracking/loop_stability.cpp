@@ -1,0 +1,137 @@
+#include "hg/controller/tracking/loop_stability.h"
+
+#include <vector>
+
+#include "hg/controller/tracking/sampled_arm.h"
+#include "hg/core/linear_algebra.h"
+
+namespace hg::tracking {
+namespace {
+
+// Where the parts of the sampled loop stand in its state.
+struct Layout {
+  int n, slots;
+  // theta, theta', q, q', current; LinearObservers; commands under way, the oldest first
+  int observers() const { return 5 * n; }
+  int size() const { return (9 + slots) * n; }
+};
+
+// Torques that the controller answers with to unit errors of theta, theta', q, q' and tau_J.
+// `weight` holds the links in posture `q`.
+Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const VectorM& weight,
+                         double latency) {
+  constexpr double kError = 1e-7;  // small against every limit of the controller
+  const int n = loop.n_m;
+  JointControl control(loop.config, loop.chain, loop.n_p, n, loop.handle);
+  State at_start = control.start();
+  at_start.latency = latency / loop.config.dt;
+  const RobotState robot = standing(loop.config.actuators, q, weight);
+  const ReferenceState reference = standing_reference(robot);
+  const auto torque = [&](const RobotState& seen) -> Eigen::VectorXd {
+    State state = at_start;
+    CommandFrame command;
+    TrackingReport report;
+    control.step(reference, reference, seen, state, command, report);
+    return command.tau_m;
+  };
+  const Eigen::VectorXd undisturbed = torque(robot);
+  Eigen::MatrixXd answers(n, 5 * n);
+  int column = 0;
+  for (VectorM RobotState::*part : {&RobotState::theta_m, &RobotState::dtheta_m, &RobotState::q_m,
+                                    &RobotState::dq_m, &RobotState::tau_m}) {
+    for (int i = 0; i < n; ++i) {
+      RobotState disturbed = robot;
+      (disturbed.*part)[i] += kError;
+      answers.col(column++) = (torque(disturbed) - undisturbed) / kError;
+    }
+  }
+  return answers;
+}
+
+// One period of the loop as a matrix, column by column.
+class SampledLoop {
+ public:
+  SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency, const Reality& reality)
+      : actuators_(reality.actuators),
+        delay_(reality.loop.latency, loop.config.dt),
+        layout_{loop.n_m, delay_.slots()},
+        observers_(loop.filters, loop.config.dt) {
+    model::Chain chain = loop.chain;
+    chain.update(q, Eigen::VectorXd::Zero(q.size()));
+    const MatrixM M = reality.link_mass * chain.M().bottomRightCorner(loop.n_m, loop.n_m);
+    step_ = matrix_exponential(plant_with_input(reality, M) * (loop.config.dt / kPlantSteps));
+    feedback_ = feedback(loop, q, chain.c().tail(loop.n_m), latency);
+  }
+
+  Eigen::MatrixXd period() const {
+    Eigen::MatrixXd matrix(layout_.size(), layout_.size());
+    for (int i = 0; i < layout_.size(); ++i) {
+      matrix.col(i) = advance(Eigen::VectorXd::Unit(layout_.size(), i));
+    }
+    return matrix;
+  }
+
+ private:
+  Eigen::VectorXd advance(const Eigen::VectorXd& now) const {
+    const Layout& at = layout_;
+    const int n = at.n;
+    const Eigen::VectorXd theta = now.segment(0, n), dtheta = now.segment(n, n),
+                          q = now.segment(2 * n, n), dq = now.segment(3 * n, n);
+    Eigen::VectorXd next = now;
+    observers_.advance(theta, q, Eigen::VectorXd::Zero(n), next.segment(at.observers(), 4 * n));
+
+    Eigen::VectorXd seen(5 * n);  // theta, theta', q, q', joint torque
+    seen << theta, next.segment(at.observers() + n, 3 * n), Eigen::VectorXd::Zero(n);
+    for (int i = 0; i < n; ++i) {
+      const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
+      seen[4 * n + i] =
+          actuator.stiffness * (theta[i] - q[i]) + actuator.damping * (dtheta[i] - dq[i]);
+    }
+
+    // the plant under the commands that arrive during this period, the oldest first
+    Eigen::VectorXd commands((at.slots + 1) * n);
+    commands << now.tail(at.slots * n), feedback_ * seen;
+    Eigen::VectorXd x(6 * n);
+    x.head(5 * n) = now.head(5 * n);
+    for (int i = 0; i < kPlantSteps; ++i) {
+      x.tail(n) = commands.segment((at.slots - delay_.age(i)) * n, n);
+      x = (step_ * x).eval();
+    }
+    next.head(5 * n) = x.head(5 * n);
+    next.tail(at.slots * n) = commands.tail(at.slots * n);
+    return next;
+  }
+
+  std::vector<ActuatorModel> actuators_;  // as they really are
+  CommandDelay delay_;
+  Layout layout_;
+  LinearObservers observers_;
+  Eigen::MatrixXd step_;
+  Eigen::MatrixXd feedback_;  // torques from theta, theta', q, q', tau_J
+};
+
+}  // namespace
+
+double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency) {
+  Reality as_believed = {loop.config.actuators, loop.config.loop};
+  as_believed.loop.latency = latency;
+  return spectral_radius(loop, q, latency, as_believed);
+}
+
+double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency,
+                       const Reality& reality) {
+  const Eigen::MatrixXd period = SampledLoop(loop, q, latency, reality).period();
+  return hg::spectral_radius(period);
+}
+
+int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures, int most,
+                           int least) {
+  for (int periods = least; periods <= most; ++periods) {
+    for (const Eigen::VectorXd& q : postures) {
+      if (spectral_radius(loop, q, periods * loop.config.dt) >= 1.0) return periods - 1;
+    }
+  }
+  return most;
+}
+
+}  // namespace hg::tracking

@@ -1,0 +1,158 @@
+#include "hg/controller/tracking/loop_stability.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hg/controller/tracking/test/control_setup.h"
+
+namespace hg::tracking {
+namespace {
+
+Loop reference_loop(Method method = Method::kModal) {
+  return {.config = reference_config(method),
+          .chain = arm(),
+          .n_p = kGantry,
+          .n_m = kJoints,
+          .handle = arm().frame("handle")};
+}
+
+std::vector<Eigen::VectorXd> usual_postures() {
+  return {posture(home()), posture(joints(0.0, 0.4, -0.3, 0.6, 0.4, 0.0)),  // stretched
+          posture(joints(0.0, 2.6, -1.5, 2.2, 0.5, 0.5)),                   // folded
+          posture(joints(0.3, 1.2, 0.8, 1.0, -0.5, 1.0))};
+}
+
+// with the worst one that was found: forearm and hand steeply down
+std::vector<Eigen::VectorXd> postures() {
+  std::vector<Eigen::VectorXd> all = usual_postures();
+  all.push_back(posture(joints(0.0, 1.57, -0.67, 0.4, 0.6, 0.0)));
+  return all;
+}
+
+double worst_radius(const Loop& loop, double latency) {
+  double worst = 0.0;
+  for (const Eigen::VectorXd& q : postures()) {
+    worst = std::max(worst, spectral_radius(loop, q, latency));
+  }
+  return worst;
+}
+
+// not faster than asked for, and not much slower: they die out within 50 ms
+TEST(LoopStability, AtOneMillisecondErrorsDieOutAboutAsFastAsThePolesSay) {
+  const double radius = worst_radius(reference_loop(), 1e-3);
+  EXPECT_LT(radius, std::exp(-20.0 * 1e-3));
+  EXPECT_GT(radius, std::exp(-65.0 * 1e-3));
+}
+
+TEST(LoopStability, GainsThatKnowTheLatencyAreStableWithIt) {
+  for (const double latency : {0.5e-3, 1e-3, 1.5e-3, 2e-3, 3e-3}) {
+    EXPECT_LT(worst_radius(reference_loop(), latency), 1.0) << latency;
+  }
+}
+
+// Gains for `believed` meet an arm whose latency is `latency` and whose rotors have `rotor` times
+// the inertia that the controller knows.
+double worst_radius_in_reality(double believed, double latency, double rotor) {
+  const Loop loop = reference_loop();
+  Reality reality = {loop.config.actuators, loop.config.loop};
+  reality.loop.latency = latency;
+  for (ActuatorModel& actuator : reality.actuators) actuator.rotor_inertia *= rotor;
+  double worst = 0.0;
+  for (const Eigen::VectorXd& q : usual_postures()) {
+    worst = std::max(worst, spectral_radius(loop, q, believed, reality));
+  }
+  return worst;
+}
+
+// [C] 1: with w0 = 200 a latency of 2 ms oscillates, with w0 = 140 or less it does not
+TEST(LoopStability, GainsForOneMillisecondAreTooHighForThree) {
+  EXPECT_LT(worst_radius_in_reality(1e-3, 1e-3, 1.0), 1.0);
+  EXPECT_LT(worst_radius_in_reality(1e-3, 1.5e-3, 1.0), 1.0);
+  EXPECT_GT(worst_radius_in_reality(1e-3, 2.5e-3, 1.0), 1.0);
+  EXPECT_GT(worst_radius_in_reality(1e-3, 3e-3, 1.0), 1.0);
+  EXPECT_LT(worst_radius_in_reality(2.5e-3, 2.5e-3, 1.0), 1.0);
+  EXPECT_LT(worst_radius_in_reality(3e-3, 1e-3, 1.0), 1.0);  // caution does no harm
+}
+
+// [C] 1: 0.5x is unstable, 0.7 to 1.5x is fine
+TEST(LoopStability, RotorsMustBeKnownToThirtyPercent) {
+  EXPECT_GT(worst_radius_in_reality(1e-3, 1e-3, 0.5), 1.0);
+  for (const double rotor : {0.7, 1.0, 1.5}) {
+    EXPECT_LT(worst_radius_in_reality(1e-3, 1e-3, rotor), 1.0) << rotor;
+  }
+}
+
+// Random postures within the limits of the reference device, q4 + q5 kept from the singularity.
+std::vector<Eigen::VectorXd> dense_postures(std::size_t count) {
+  std::mt19937 random(5);
+  const auto between = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+  };
+  std::vector<Eigen::VectorXd> all;
+  while (all.size() < count) {
+    const double m4 = between(0.2, 2.45), m5 = between(-2.0, 2.1);
+    if (m4 + m5 < 0.26 || m4 + m5 > 2.88) continue;
+    all.push_back(posture(joints(between(-3.1, 3.1), between(0.2, 2.75), between(-2.6, 2.6), m4, m5,
+                                 between(-2.6, 2.1))));
+  }
+  return all;
+}
+
+// Gains must hold for an arm that nobody knows exactly, wherever it stands, without the help of
+// friction.
+TEST(LoopStability, EveryPostureToleratesAQuarterOfErrorInMassesAndSpringsAndHalfMoreLatency) {
+  const Loop loop = reference_loop();
+  const Reality believed = {loop.config.actuators, loop.config.loop};
+  const auto with = [&](auto change) {
+    Reality reality = believed;
+    change(reality);
+    return reality;
+  };
+  const auto rotors = [](double factor) {
+    return [factor](Reality& r) {
+      for (ActuatorModel& actuator : r.actuators) actuator.rotor_inertia *= factor;
+    };
+  };
+  const auto springs = [](double factor) {
+    return [factor](Reality& r) {
+      for (ActuatorModel& actuator : r.actuators) actuator.stiffness *= factor;
+    };
+  };
+  const auto links = [](double factor) { return [factor](Reality& r) { r.link_mass = factor; }; };
+  const std::vector<std::pair<std::string, Reality>> realities = {
+      {"as believed", believed},
+      {"rotors x 0.75", with(rotors(0.75))},
+      {"rotors x 1.25", with(rotors(1.25))},
+      {"springs x 0.75", with(springs(0.75))},
+      {"springs x 1.25", with(springs(1.25))},
+      {"links x 0.75", with(links(0.75))},
+      {"links x 1.25", with(links(1.25))},
+      {"latency x 1.5", with([](Reality& r) { r.loop.latency *= 1.5; })}};
+  const std::vector<Eigen::VectorXd> dense = dense_postures(150);
+  for (const auto& [what, reality] : realities) {
+    double worst = 0.0;
+    for (const Eigen::VectorXd& q : dense) {
+      worst = std::max(worst, spectral_radius(loop, q, 1e-3, reality));
+    }
+    EXPECT_LT(worst, 0.995) << what;
+  }
+}
+
+TEST(LoopStability, TheMotorPdIsStableToo) {
+  EXPECT_LT(worst_radius(reference_loop(Method::kMotorPd), 1e-3), 1.0);
+}
+
+TEST(LoopStability, TheLongestStableLatencyEndsTheSearch) {
+  EXPECT_EQ(longest_stable_latency(reference_loop(), postures(), 3), 3);
+  Loop wrong = reference_loop();
+  for (ActuatorModel& actuator : wrong.config.actuators) actuator.torque_max = 1e9;
+  wrong.filters.link_pole_Hz = 20.0;  // [C] 2: unstable
+  EXPECT_EQ(longest_stable_latency(wrong, postures(), 3), 0);
+}
+
+}  // namespace
+}  // namespace hg::tracking

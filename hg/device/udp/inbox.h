@@ -1,0 +1,48 @@
+/// Filters the datagrams of one session: each good one is accepted once, in any order.
+///
+/// Pure: no socket, no clock. No allocation, noexcept.
+#pragma once
+
+#include <cstdint>
+
+#include "hg/device/udp/codec.h"
+#include "hg/signals/link_counts.h"
+
+namespace hg::udp {
+
+/// Window of seen numbers, like the replay window of IPsec (RFC 4303, 3.4.3).
+class NumberWindow {
+ public:
+  static constexpr std::uint64_t kSize = 64;  ///< window size: a number may be overtaken by so many
+  enum class Place { kNewest, kOvertaken, kSeen };
+
+  /// Classifies a number; one older than the window counts as seen.
+  Place accept(std::uint64_t number) noexcept;
+  /// Count of numbers since the first that have not been seen.
+  std::uint64_t missing() const noexcept { return count_ == 0 ? 0 : newest_ - first_ + 1 - count_; }
+
+ private:
+  std::uint64_t first_ = 0, newest_ = 0, count_ = 0;
+  std::uint64_t seen_ = 0;  ///< bit i set: newest_ - i was seen
+};
+
+class Inbox {
+ public:
+  explicit Inbox(std::uint32_t session) : session_(session) {}
+
+  /// Counts a datagram by the verdict of read_header(); true: its fields are to be decoded.
+  bool accept(Verdict verdict, const Header& header) noexcept;
+  /// Whether the datagram accepted last was overtaken by a later one.
+  bool was_overtaken() const noexcept { return was_overtaken_; }
+
+  /// Link counts known to the inbox; users add their own.
+  LinkCounts counts() const noexcept;
+
+ private:
+  std::uint32_t session_;
+  NumberWindow window_;
+  bool was_overtaken_ = false;
+  LinkCounts counts_;
+};
+
+}  // namespace hg::udp

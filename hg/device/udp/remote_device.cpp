@@ -1,0 +1,208 @@
+#include "hg/device/udp/remote_device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "hg/core/error.h"
+#include "hg/device/udp/agreement.h"
+
+namespace hg::udp {
+namespace {
+
+constexpr std::int64_t kHelloPeriod = 100'000'000;  // ns
+constexpr std::int64_t kRepeatPeriod = 20'000'000;  // ns, in lock-step and for the first frame
+constexpr int kMostAtOnce = 64;                     // datagrams
+constexpr int kGoodbyes = 3;                        // not acknowledged: one may be lost
+
+std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
+
+std::uint64_t random_number() {
+  std::random_device random;
+  return std::uint64_t{random()} << 32U | random();
+}
+
+// a device that left because of silence has lost our commands
+FaultCode reason_of(const Goodbye& goodbye) noexcept {
+  return goodbye.farewell == Farewell::kSilent ? FaultCode::kCommandsLost : FaultCode::kDeviceGone;
+}
+
+}  // namespace
+
+RemoteDevice::RemoteDevice(const Address& address, const ClientConfig& config)
+    : config_(config), socket_(UdpSocket::talking_to(address)), outbox_(0, config.key) {
+  connect(address.host + ":" + address.port);
+}
+
+RemoteDevice::~RemoteDevice() { close(fault_); }
+
+void RemoteDevice::connect(const std::string& at) {
+  const std::uint64_t nonce = random_number();
+  const std::int64_t busy_until = now_ns() + ns(config_.busy_patience_s);
+  const std::int64_t deadline = now_ns() + ns(config_.answer_timeout_s + config_.busy_patience_s);
+  while (now_ns() < deadline) {
+    send(Hello{nonce, config_.expected, config_.client});
+    const std::int64_t again = std::min(now_ns() + kHelloPeriod, deadline);
+    while (now_ns() < again) {
+      socket_.wait(again);
+      if (answers(at, nonce, now_ns() < busy_until)) return;
+      if (socket_.was_refused()) break;  // port closed: try again later
+    }
+    while (now_ns() < again) socket_.wait(again);
+  }
+  throw SetupError(
+      fmt::format("{}: no device answers there within {:g} s; is its server running "
+                  "(hapticgiant simulate --listen {})?",
+                  at, config_.answer_timeout_s, at));
+}
+
+// whether a datagram was the welcome
+bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce, bool is_patient) {
+  Peer from;
+  if (!socket_.receive(datagram_, from)) return false;
+  Header header;
+  const Verdict verdict = read_header(datagram_.view(), header, config_.key);
+  if (verdict == Verdict::kWrongVersion) {
+    throw SetupError(
+        fmt::format("{}: the device speaks version {} of the protocol, this program {}", at,
+                    header.version, kVersion));
+  }
+  // a server with another key or none can report just that
+  const bool is_forged = verdict == Verdict::kForged;
+  if (!(verdict == Verdict::kGood || is_forged) ||
+      header.type != static_cast<std::uint16_t>(MessageType::kWelcome)) {
+    return false;
+  }
+  if (!decode(datagram_.view(), welcome_) || welcome_.nonce != nonce) return false;
+  if (is_forged && welcome_.refusal == Refusal::kNone) {
+    throw SetupError(at + ": the device's answer is not of the key that was given (--key-file)");
+  }
+  if (welcome_.refusal == Refusal::kBusy && is_patient) return false;  // busy: ask again
+  if (welcome_.refusal != Refusal::kNone) {
+    throw SetupError(fmt::format("{}: the device refuses: {}", at, welcome_.reason.printable()));
+  }
+  const std::string unlike = difference(welcome_.actual, config_.expected);
+  if (!unlike.empty()) {
+    throw SetupError(fmt::format("{}: the device does not fit: {}", at, unlike));
+  }
+  outbox_.join(header.session);
+  inbox_ = Inbox(header.session);
+  return inbox_.accept(verdict, header);
+}
+
+void RemoteDevice::read(SensorFrame& sensors) noexcept {
+  if (fault_ != FaultCode::kNone) return stop(fault_, sensors);
+  const bool is_lock_step = config_.expected.is_lock_step;
+  const double timeout_s = !is_started_   ? config_.first_timeout_s
+                           : is_lock_step ? config_.lock_step_timeout_s
+                                          : config_.frame_timeout_s;
+  const std::int64_t begin = now_ns();
+  const std::int64_t deadline = begin + ns(timeout_s);
+  std::int64_t again = is_started_ ? begin + kRepeatPeriod : begin;
+  while (true) {
+    take_in();
+    if (queue_.pop(sensors)) {
+      is_started_ = true;
+      newest_ = sensors.sequence;
+      return;
+    }
+    if (has_left_) return stop(reason_of(goodbye_), sensors);
+    const std::int64_t now = now_ns();
+    if (now >= deadline) return stop(FaultCode::kDeviceSilent, sensors);
+    const bool says_again = is_lock_step || !is_started_;
+    if (says_again && now >= again) {
+      say_again();
+      again = now + kRepeatPeriod;
+    }
+    socket_.wait(says_again ? std::min(again, deadline) : deadline);
+  }
+}
+
+void RemoteDevice::take_in() noexcept {
+  Peer from;
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    if (queue_.is_full() || !socket_.receive(datagram_, from)) return;
+    Header header;
+    const Verdict verdict = read_header(datagram_.view(), header, config_.key);
+    if (inbox_.accept(verdict, header)) take(header);
+  }
+}
+
+void RemoteDevice::take(const Header& header) noexcept {
+  switch (static_cast<MessageType>(header.type)) {
+    case MessageType::kSensors:
+      if (!decode(datagram_.view(), arrived_) || !fits(config_.expected, arrived_)) {
+        ++own_.malformed;
+      } else if (!queue_.push(arrived_)) {
+        ++own_.late;
+      }
+      return;
+    case MessageType::kGoodbye:
+      if (!decode(datagram_.view(), goodbye_)) ++own_.malformed;
+      has_left_ = true;
+      return;
+    case MessageType::kWelcome:  // answer to a hello that was sent twice
+      return;
+    case MessageType::kHello:
+    case MessageType::kReady:
+    case MessageType::kCommand:
+      ++own_.foreign;
+      return;
+  }
+}
+
+// repeats what was lost: the server waits for it
+void RemoteDevice::say_again() noexcept {
+  if (has_command_) {
+    send(last_command_);
+    ++own_.repeated;
+  } else {
+    send(Ready{});
+  }
+}
+
+void RemoteDevice::stop(FaultCode fault, SensorFrame& sensors) noexcept {
+  fault_ = fault;
+  if (!is_started_) {
+    const auto n_m = static_cast<Eigen::Index>(config_.expected.n_m);
+    sensors.q_m = sensors.dq_m = sensors.theta_m = sensors.tau_m = VectorM::Zero(n_m);
+    sensors.q_p = VectorP::Zero(static_cast<Eigen::Index>(config_.expected.n_p));
+  }
+  ++sensors.sequence;
+  sensors.driver_fault = fault;
+}
+
+void RemoteDevice::write(const CommandFrame& command) noexcept {
+  // in lock-step a frame has one answer; the command at the end is followed by a goodbye
+  const bool is_answered = has_command_ && command.sequence == last_command_.sequence;
+  if (config_.expected.is_lock_step && is_answered) return;
+  last_command_ = command;
+  // after a fault, frames are generated locally: the server accepts no answer to an unsent frame
+  last_command_.sequence = std::min(command.sequence, newest_);
+  has_command_ = true;
+  send(last_command_);
+}
+
+void RemoteDevice::close(FaultCode reason) noexcept {
+  if (is_closed_ || has_left_) return;
+  is_closed_ = true;
+  const bool is_fault = reason != FaultCode::kNone;
+  const Goodbye goodbye{is_fault ? Farewell::kFault : Farewell::kDone,
+                        is_fault ? to_string(reason) : "done"};
+  for (int i = 0; i < kGoodbyes; ++i) send(goodbye);
+}
+
+LinkCounts RemoteDevice::counts() const noexcept {
+  LinkCounts counts = inbox_.counts();
+  counts.sent = outbox_.number();
+  counts.held = queue_.held();
+  counts.late = own_.late;
+  counts.repeated = own_.repeated;
+  counts.malformed = own_.malformed;
+  counts.foreign += own_.foreign;
+  return counts;
+}
+
+}  // namespace hg::udp

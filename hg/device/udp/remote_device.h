@@ -1,0 +1,85 @@
+/// A device at the other end of a network: the client of docs/device_protocol.md.
+///
+/// Set-up (constructor, close()) may block and throw; read() and write() follow the contract of
+/// Device, but read() waits for the next frame: the device is the clock.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "hg/device/device.h"
+#include "hg/device/udp/frame_queue.h"
+#include "hg/device/udp/inbox.h"
+#include "hg/device/udp/outbox.h"
+#include "hg/device/udp/protocol.h"
+#include "hg/device/udp/udp_socket.h"
+#include "hg/signals/link_counts.h"
+
+namespace hg::udp {
+
+/// Set-up data of a remote device.
+struct ClientConfig {
+  Description expected;           ///< expected description; any other is refused
+  std::string client;             ///< program and version, for the server's log
+  double answer_timeout_s = 3.0;  ///< time-out for the welcome
+  double busy_patience_s = 0.0;   ///< time to keep asking a device that has another client
+  double first_timeout_s = 1.0;   ///< time-out for the first frame
+  /// Time-out between frames. In real time it is limited by the possible travel of a gantry at 1.5
+  /// m/s (75 mm), in lock-step by the patience with a slow simulator.
+  double frame_timeout_s = 0.05;
+  double lock_step_timeout_s = 5.0;
+  Key key;  ///< shared key, which the server must have, too
+};
+
+class RemoteDevice final : public device::Device {
+ public:
+  /// Connects. Throws SetupError: no answer, refused and why, other device or version.
+  RemoteDevice(const Address& address, const ClientConfig& config);
+  ~RemoteDevice() override;
+
+  /// Waits for the next frame, at most one of the time-outs. After a time-out or a goodbye of the
+  /// server, the last frame is repeated with its driver_fault set, from now on without waiting.
+  void read(SensorFrame& sensors) noexcept override;
+  void write(const CommandFrame& command) noexcept override;
+  bool is_clock() const noexcept override { return true; }
+
+  /// Notifies the server that the session is over, and why: kNone = as planned. Only once.
+  void close(FaultCode reason) noexcept;
+
+  const Welcome& welcome() const noexcept { return welcome_; }
+  /// Reason why the server ended the session, printable; empty: it did not.
+  std::string farewell() const { return goodbye_.reason.printable(); }
+  LinkCounts counts() const noexcept;
+
+ private:
+  void connect(const std::string& at);
+  bool answers(const std::string& at, std::uint64_t nonce, bool is_patient);
+  void take_in() noexcept;
+  void take(const Header& header) noexcept;
+  void say_again() noexcept;
+  void stop(FaultCode fault, SensorFrame& sensors) noexcept;
+  template <typename Message>
+  void send(const Message& message) noexcept {
+    socket_.send(outbox_.encode(message));
+  }
+
+  ClientConfig config_;
+  UdpSocket socket_;
+  Outbox outbox_;
+  Inbox inbox_{0};
+  FrameQueue queue_;
+  Welcome welcome_;
+  Goodbye goodbye_;
+  SensorFrame arrived_;
+  CommandFrame last_command_;
+  std::uint64_t newest_ = 0;  ///< number of the newest frame received
+  Datagram datagram_;
+  bool is_started_ = false;  ///< the first frame has arrived
+  bool has_command_ = false;
+  bool has_left_ = false;  ///< the server has left
+  bool is_closed_ = false;
+  FaultCode fault_ = FaultCode::kNone;
+  LinkCounts own_;  ///< counts beyond those of inbox and queue
+};
+
+}  // namespace hg::udp

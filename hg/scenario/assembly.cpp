@@ -1,0 +1,320 @@
+#include "hg/scenario/assembly.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "hg/controller/rendering/catalogue.h"
+#include "hg/core/error.h"
+#include "hg/core/linear_algebra.h"
+#include "hg/scenario/start_posture.h"
+
+namespace hg::scenario {
+namespace {
+
+// channels that the script leaves open begin where the handle is
+void fill_in_start(const config::Scenario& scenario, const Start& start, person::Script& script) {
+  std::array<double, person::kPoseChannels> pose{};
+  switch (script.frame) {
+    case person::ScriptFrame::kBase: {
+      const config::HandPose hand = config::hand_of(start.T_B_H);
+      pose = {hand.p.x(), hand.p.y(), hand.p.z(), hand.azimuth, hand.pitch, hand.roll};
+      break;
+    }
+    case person::ScriptFrame::kCylindrical: {
+      const Eigen::Vector3d p = (inverse(scenario.twin.T_B_root) * start.T_B_H).p;
+      pose = {std::atan2(p.y(), p.x()), std::hypot(p.x(), p.y()), p.z()};
+      break;
+    }
+    case person::ScriptFrame::kTwinJoints: {
+      const ConfigurationA& q = scenario.twin.model.q_start;
+      std::copy_n(q.data(), std::min<Eigen::Index>(q.size(), person::kPoseChannels), pose.begin());
+      break;
+    }
+  }
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    if (!scenario.script.start_given[i]) script.start[i] = pose[i];
+  }
+}
+
+// Ends of travel of a joint with these limits.
+Interval end_stops(const config::Simulation& reality, const model::Joint& joint, double q_min,
+                   double q_max) {
+  const bool is_slide = joint.type == model::JointType::kPrismatic;
+  const double beyond = is_slide ? reality.stop_distance_length : reality.stop_distance_angle;
+  return {q_min - beyond, q_max + beyond};
+}
+
+simulator::PlantConfig elastic_plant(const config::Device& device, const Start& start,
+                                     double step) {
+  const config::Simulation& reality = device.simulation;
+  simulator::PlantConfig plant = {
+      .step = step,
+      .gantry = reality.gantry,
+      .manipulator = reality.manipulator,
+      .flexible = reality.flexible,
+      .current_lag = actual(device.control.loop, reality.factors).current_lag,
+      .mass = reality.factors.mass,
+      .drive = actual(device.drive, reality.factors),
+      .end_stop = reality.end_stop,
+      .waviness = reality.waviness,
+      .seed = reality.seed,
+      .q_p_start = start.q_p,
+      .q_m_start = start.q_m};
+  if (!reality.chain) {
+    for (int i = 0; i < device.model.n_p; ++i) plant.gantry.push_back(i);
+    for (int i = 0; i < device.model.n_m; ++i) plant.manipulator.push_back(device.model.n_p + i);
+  }
+  const std::vector<model::Joint>& joints = device.model.chain.joints();
+  const auto n_p = static_cast<std::size_t>(device.model.n_p);
+  for (std::size_t axis = 0; axis < n_p; ++axis) {
+    const Interval& limits = device.prepositioning.q_limits[axis];
+    plant.gantry_stops.push_back(end_stops(reality, joints[axis], limits.lb, limits.ub));
+  }
+  for (int i = 0; i < device.model.n_m; ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    plant.actuators.push_back(actual(device.control.actuators[joint], reality.factors));
+    plant.effects.push_back(
+        effects_of(plant.actuators.back(), reality.motors, reality.gears, reality.gear_ratio[i]));
+    const limits::JointLimits& limits = device.model.joint_limits[joint];
+    plant.end_stops.push_back(end_stops(reality, joints[n_p + joint], limits.q_min, limits.q_max));
+  }
+  return plant;
+}
+
+// The machine of a device: elastic joints where its joints have actuators.
+simulator::Config device_simulation(const config::Device& device, const Start& start) {
+  const config::Simulation& reality = device.simulation;
+  const double period = device.rendering.dt;
+  const bool is_elastic = device.control.method != tracking::Method::kDrives;
+  simulator::Config config = {.sensors = reality.sensors,
+                              .has_dead_man = device.monitor.has_dead_man};
+  if (is_elastic) {
+    config.steps = static_cast<int>(std::ceil(period / reality.step_s - 1e-9));
+    config.latency = actual(device.control.loop, reality.factors).latency;
+    config.plant = elastic_plant(device, start, period / config.steps);
+  } else {
+    config.plant = simulator::IdealPlantConfig{.period = period,
+                                               .drive = actual(device.drive, reality.factors),
+                                               .q_p_start = start.q_p,
+                                               .q_m_start = start.q_m};
+  }
+  simulator::SensedDevice& sensed = config.sensed;
+  sensed.step = period / config.steps;
+  sensed.period = period;
+  config.safety = device.simulation.safety;
+  config.safety.period = period;
+  sensed.gear_ratio = reality.gear_ratio;
+  sensed.T_H_S = device.T_H_S;
+  sensed.payload = actual(device.estimation.wrench.payload, reality.factors);
+  sensed.torque_full_scale = VectorM::Ones(device.model.n_m);
+  sensed.torque_rated = VectorM::Zero(is_elastic ? device.model.n_m : 0);
+  for (int i = 0; i < device.model.n_m; ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    const auto in_chain = static_cast<std::size_t>(device.model.n_p + i);
+    sensed.is_endless[joint] =
+        device.model.chain.joints()[in_chain].type == model::JointType::kContinuous;
+    if (!is_elastic) continue;
+    sensed.torque_full_scale[i] = device.control.actuators[joint].torque_max;
+    sensed.torque_rated[i] = device.control.actuators[joint].torque_rated;
+  }
+  return config;
+}
+
+// Places the bystander. Throws SetupError where the arm cannot hit anyone.
+void place(const config::BystanderInTheWay& bystander, const model::Chain& chain,
+           simulator::Config& simulation) {
+  auto* plant = std::get_if<simulator::PlantConfig>(&simulation.plant);
+  if (plant == nullptr) {
+    throw SetupError(
+        "bystander: only elastic joints can hit somebody, here the drives follow positions: leave "
+        "it out, or run with --plant elastic");
+  }
+  plant->bystander = bystander.config;
+  plant->bystander->frame = chain.frame(bystander.hit_by);
+}
+
+simulator::Simulation simulation_of(
+    const config::Device& device, const Start& start, person::Person person,
+    const std::optional<config::BystanderInTheWay>& bystander = {}) {
+  const bool is_elastic = device.control.method != tracking::Method::kDrives;
+  const model::Chain& chain =
+      device.simulation.chain && is_elastic ? *device.simulation.chain : device.model.chain;
+  const std::string& handle =
+      device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
+  simulator::Config config = device_simulation(device, start);
+  for (const int frame : device.estimation.units.frames) {
+    const auto index = static_cast<std::size_t>(frame);
+    config.link_units.push_back(chain.frame(device.model.chain.frame_names()[index]));
+  }
+  config.sensed.link_units = static_cast<int>(config.link_units.size());
+  if (bystander) place(*bystander, chain, config);
+  return simulator::Simulation(config, chain, chain.frame(handle), std::move(person));
+}
+
+bool has_noise(const simulator::SensorsConfig& sensors) {
+  return sensors.wrench.force_noise > 0.0 && sensors.wrench.torque_noise > 0.0 &&
+         sensors.torque.noise > 0.0 && sensors.accelerometer.noise > 0.0 &&
+         sensors.gyroscope.noise > 0.0;
+}
+
+constexpr int kStabilityPostures = 32;
+constexpr int kMostDraws = 1'000'000;  // of a posture; takes less than a second
+constexpr int kFurtherLatency = 4;     // periods beyond what is expected
+
+// Elastic joints: until which latency the gains that follow from it are stable.
+tracking::Config checked_control(const config::Device& device) {
+  tracking::Config control = device.control;
+  if (control.method == tracking::Method::kDrives) return control;
+  const tracking::Loop loop = torque_loop(device);
+  const int expected =
+      std::max(1, static_cast<int>(std::ceil(control.loop.latency / control.dt - 1e-9)));
+  const int periods =
+      tracking::longest_stable_latency(loop, random_postures(device.model, kStabilityPostures, 1),
+                                       expected + kFurtherLatency, expected);
+  control.latency_max = (periods + 0.25) * control.dt;  // what was measured is a mean
+  if (control.loop.latency > control.latency_max) {
+    throw SetupError(fmt::format(
+        "control.latency_s: at {:g} Hz the torque loop is stable up to {:g} s, got {:g}: raise the "
+        "rate, lower rotor_pole_rad_per_s or spring_damping, or run with --plant ideal",
+        device.rate_Hz, periods * control.dt, control.loop.latency));
+  }
+  return control;
+}
+
+compliance::Config compliance_of(const config::Device& device) {
+  compliance::Config compliance = device.compliance;
+  compliance.dt = device.rendering.dt;
+  if (device.control.method == tracking::Method::kDrives) return compliance;
+  compliance.torque_max.resize(device.model.n_m);
+  for (int i = 0; i < device.model.n_m; ++i) {
+    compliance.torque_max[i] = device.control.actuators[static_cast<std::size_t>(i)].torque_max;
+  }
+  return compliance;
+}
+
+}  // namespace
+
+std::vector<Eigen::VectorXd> random_postures(const rendering::DeviceModel& device, int count,
+                                             std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::vector<Eigen::VectorXd> postures;
+  for (int k = 0; k < kMostDraws; ++k) {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(device.n_p + device.n_m);
+    for (int i = 0; i < device.n_m; ++i) {
+      const limits::JointLimits& joint = device.joint_limits[static_cast<std::size_t>(i)];
+      const double lo = std::max(joint.q_min, -std::numbers::pi);
+      const double hi = std::min(joint.q_max, std::numbers::pi);
+      const double share = static_cast<double>(random()) / static_cast<double>(random.max());
+      q[device.n_p + i] = lo + (hi - lo) * share;
+    }
+    const auto is_within = [&](const rendering::VirtualJoint& joint) {
+      const double sum = joint.weights.dot(q.tail(device.n_m));
+      return joint.limits.q_min <= sum && sum <= joint.limits.q_max;
+    };
+    if (!std::ranges::all_of(device.virtual_joints, is_within)) continue;
+    postures.push_back(std::move(q));
+    if (static_cast<int>(postures.size()) == count) return postures;
+  }
+  throw SetupError(fmt::format(
+      "virtual_joints: only {} of {} random postures within the limits of the joints keep these "
+      "limits, {} are needed to check that the torque loop is stable: widen them, or tighten those "
+      "of the joints",
+      postures.size(), kMostDraws, count));
+}
+
+tracking::Loop torque_loop(const config::Device& device) {
+  return {.config = device.control,
+          .filters = {.link_pole_Hz = device.estimation.link_pole_Hz,
+                      .motor_low_pass_Hz = device.estimation.motor_low_pass_Hz},
+          .chain = device.model.chain,
+          .n_p = device.model.n_p,
+          .n_m = device.model.n_m,
+          .handle = device.model.handle};
+}
+
+bool notices_frozen_sensors(const config::Device& device) {
+  const bool is_noisy = !device.simulation.is_from_file || has_noise(device.simulation.sensors);
+  return is_noisy && device.monitor.frozen_samples > 0.0;
+}
+
+controller::Cycle make_cycle(const config::Scenario& scenario) {
+  const config::Device& device = scenario.device;
+  safety::MonitorConfig monitor = device.monitor;
+  if (!notices_frozen_sensors(device)) monitor.frozen_samples = 0.0;
+  // the paper's bounds ask for more than any rating where they contradict each other, and where the
+  // law knows torques they are what limits accelerations
+  if (device.rendering.bounds == rendering::Bounds::kPaper || !device.model.motors.empty()) {
+    monitor.acceleration_tolerance = kInfinity;
+  }
+  monitor.looks_for_shaking = device.passivity.reaction != passivity::Reaction::kOff;
+  monitor.stops_shaking = device.passivity.reaction == passivity::Reaction::kAct;
+  const double heaviest = rendering::felt_mass(scenario.twin.model).mass.ub;
+  monitor.twin_mass = std::isfinite(heaviest) ? heaviest : 0.0;
+  return controller::Cycle({.estimation = device.estimation,
+                            .prepositioning = device.prepositioning,
+                            .rendering = device.rendering,
+                            .control = checked_control(device),
+                            .monitor = monitor,
+                            .sanitiser = device.sanitiser,
+                            .collision = device.collision,
+                            .passivity = device.passivity,
+                            .compliance = compliance_of(device),
+                            .surfaces = scenario.surfaces},
+                           device.model, scenario.twin.model);
+}
+
+person::Person make_person(const config::Scenario& scenario, const Start& start) {
+  person::Config person{scenario.person, scenario.script.hand, scenario.script.script,
+                        scenario.device.simulation.seed};
+  if (scenario.person == person::PersonKind::kScript) fill_in_start(scenario, start, person.script);
+  return person::Person(person, scenario.twin.model.chain, scenario.twin.model.end_effector,
+                        scenario.twin.T_B_root);
+}
+
+simulator::Simulation make_simulation(const config::Scenario& scenario) {
+  const Start start = find_start(scenario);
+  return simulation_of(scenario.device, start, make_person(scenario, start), scenario.bystander);
+}
+
+simulator::Simulation make_unheld_simulation(const config::Device& device, const Start& start) {
+  return simulation_of(
+      device, start,
+      person::Person({.kind = person::PersonKind::kNone}, model::Chain::free_body({}), 0, Pose{}));
+}
+
+simulator::SimulatedDevice make_simulated_device(const config::Scenario& scenario) {
+  return simulator::SimulatedDevice(make_simulation(scenario), faults::Injector(scenario.faults));
+}
+
+analysis::Summary make_summary(const config::Scenario& scenario) {
+  auto positions = [device = scenario.device.model](const Truth& truth,
+                                                    std::vector<double>& values) mutable {
+    rendering::limit_positions(device, truth.q_p, truth.q_m, values);
+  };
+  const std::vector<ActuatorModel>& actuators = scenario.device.control.actuators;
+  VectorM torque_rated(static_cast<Eigen::Index>(actuators.size()));
+  for (Eigen::Index i = 0; i < torque_rated.size(); ++i) {
+    torque_rated[i] = actuators[static_cast<std::size_t>(i)].torque_rated;
+  }
+  return {scenario.limits, std::move(positions), scenario.device.rate_Hz, torque_rated};
+}
+
+double planned_duration_s(const config::Scenario& scenario) {
+  if (scenario.person != person::PersonKind::kScript) return 0.0;
+  const person::Script& script = scenario.script.script;
+  return script.grasp_s + (scenario.duration_s > 0.0 ? scenario.duration_s : script.duration_s);
+}
+
+double longest_stop_s(const config::Scenario& scenario) {
+  constexpr double kMargin = 0.1;
+  return scenario.device.monitor.stop_time + kMargin;
+}
+
+}  // namespace hg::scenario

@@ -1,0 +1,24 @@
+/// Start of a run: the twin at its start, the device with its handle there.
+#pragma once
+
+#include "hg/config/scenario.h"
+#include "hg/controller/rendering/twin_model.h"
+#include "hg/core/types.h"
+
+namespace hg::scenario {
+
+struct Start {
+  Pose T_B_H;   ///< pose of the handle = end effector of the twin at its start
+  VectorP q_p;  ///< gantry positions
+  VectorM q_m;  ///< manipulator positions
+};
+
+/// Pose of the twin's end effector at its start.
+Pose handle_start(const rendering::TwinModel& twin);
+
+/// The device in its best posture with the handle where the twin's end effector starts. Throws
+/// SetupError with a suggested change when the device cannot be there within its limits and above
+/// its floor.
+Start find_start(const config::Scenario& scenario);
+
+}  // namespace hg::scenario

@@ -1,0 +1,270 @@
+/// Every kind of fault does what its words say, from its begin to its end and to nothing else.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "hg/core/allocation_counter.h"
+#include "hg/core/error.h"
+#include "hg/simulator/faults/injector.h"
+
+namespace hg::faults {
+namespace {
+
+constexpr double kDt = 1e-3;
+constexpr double kFrom_s = 0.010, kFor_s = 0.005;
+
+SensorFrame sensors_at(int cycle) {
+  SensorFrame sensors;
+  sensors.sequence = static_cast<std::uint64_t>(cycle);
+  sensors.answered_sequence = static_cast<std::uint64_t>(cycle);
+  sensors.time_s = 100.0 + kDt * cycle;
+  for (VectorM* v :
+       {&sensors.q_m, &sensors.dq_m, &sensors.theta_m, &sensors.tau_m, &sensors.temperature_m}) {
+    *v = VectorM::Constant(6, 1.0 + cycle);
+  }
+  sensors.q_p = VectorP::Constant(2, 1.0 + cycle);
+  sensors.w_S.setConstant(1.0 + cycle);
+  sensors.a_S.setConstant(1.0 + cycle);
+  sensors.omega_S.setConstant(1.0 + cycle);
+  sensors.dead_man = true;
+  return sensors;
+}
+
+CommandFrame command_at(int cycle) {
+  CommandFrame command;
+  command.sequence = static_cast<std::uint64_t>(cycle);
+  command.enable = true;
+  command.tau_m = VectorM::Constant(6, 1.0 + cycle);
+  command.dq_p = VectorP::Constant(2, 1.0 + cycle);
+  return command;
+}
+
+Injection injection_of(const Kind& kind, int index) {
+  const bool has_magnitude = !kind.unit.empty();
+  return {.kind = &kind,
+          .index = index,
+          .magnitude = has_magnitude ? kind.magnitude.ub : 0.0,
+          .from_s = kFrom_s,
+          .for_s = kFor_s};
+}
+
+// What differs from a good sample, as words.
+std::set<std::string> spoilt_parts(const SensorFrame& a, const SensorFrame& b, int index) {
+  std::set<std::string> parts;
+  const auto compare = [&](const char* name, const auto& x, const auto& y) {
+    for (int i = 0; i < x.size(); ++i) {
+      const bool is_same = x[i] == y[i];
+      if (!is_same) parts.insert(i == index ? name : "another component");
+    }
+  };
+  compare("q_m", a.q_m, b.q_m);
+  compare("dq_m", a.dq_m, b.dq_m);
+  compare("theta_m", a.theta_m, b.theta_m);
+  compare("tau_m", a.tau_m, b.tau_m);
+  compare("temperature_m", a.temperature_m, b.temperature_m);
+  compare("q_p", a.q_p, b.q_p);
+  compare("w_S", a.w_S, b.w_S);
+  compare("a_S", a.a_S, b.a_S);
+  compare("omega_S", a.omega_S, b.omega_S);
+  if (a.sequence != b.sequence) parts.insert("sequence");
+  if (a.answered_sequence != b.answered_sequence) parts.insert("answer");
+  if (a.time_s != b.time_s) parts.insert("time");
+  if (a.dead_man != b.dead_man) parts.insert("dead_man");
+  if (a.bus_errors != b.bus_errors) parts.insert("bus");
+  if (a.driver_fault != b.driver_fault) parts.insert("drive");
+  if (a.safety.emergency_stop != b.safety.emergency_stop) parts.insert("emergency_stop");
+  if (a.safety.operator_enable != b.safety.operator_enable) parts.insert("operator_enable");
+  if (a.safety.has_disagreement != b.safety.has_disagreement) parts.insert("disagreement");
+  return parts;
+}
+
+std::string part_name(Part part) {
+  switch (part) {
+    case Part::kLinkEncoder:
+      return "q_m";
+    case Part::kLinkSpeed:
+      return "dq_m";
+    case Part::kMotorEncoder:
+      return "theta_m";
+    case Part::kTorqueSensor:
+      return "tau_m";
+    case Part::kGantryEncoder:
+      return "q_p";
+    case Part::kForceSensor:
+      return "w_S";
+    case Part::kAccelerometer:
+      return "a_S";
+    case Part::kGyroscope:
+      return "omega_S";
+    case Part::kTemperature:
+      return "temperature_m";
+    case Part::kDeadMan:
+      return "dead_man";
+    case Part::kEmergencyStop:
+      return "emergency_stop";
+    case Part::kOperatorEnable:
+      return "operator_enable";
+    case Part::kSafetyChannels:
+      return "disagreement";
+    case Part::kClock:
+      return "time";
+    case Part::kBus:
+      return "bus";
+    case Part::kDrive:
+      return "drive";
+    case Part::kAnswers:
+      return "answer";
+    default:
+      return "";
+  }
+}
+
+TEST(Injector, EverySensorFaultSpoilsItsPartAloneAndOnlyWhileItLasts) {
+  for (const Kind& kind : kinds()) {
+    const std::string part = part_name(kind.part);
+    if (part.empty()) continue;
+    SCOPED_TRACE(kind.name);
+    const int index = std::max(0, parts_of(kind.part, 6, 2) - 1);
+    Injector injector({injection_of(kind, index)});
+    bool was_spoilt = false;
+    for (int cycle = 0; cycle < 30; ++cycle) {
+      const SensorFrame good = sensors_at(cycle);
+      SensorFrame sensors = good;
+      injector.spoil(sensors);
+      const bool is_during = cycle >= 10 && cycle < 15;
+      const std::set<std::string> spoilt = spoilt_parts(good, sensors, index);
+      if (!is_during) {
+        EXPECT_TRUE(spoilt.empty()) << "cycle " << cycle;
+      }
+      for (const std::string& name : spoilt) EXPECT_EQ(name, part) << "cycle " << cycle;
+      was_spoilt = was_spoilt || !spoilt.empty();
+    }
+    EXPECT_TRUE(was_spoilt);
+  }
+}
+
+// The value of the first joint of one kind of fault, cycle by cycle from its begin.
+std::vector<double> link_values(const char* name, double magnitude) {
+  const Kind* kind = find_kind(name);
+  Injector injector({{.kind = kind, .index = 0, .magnitude = magnitude, .from_s = kFrom_s}});
+  std::vector<double> values;
+  for (int cycle = 0; cycle < 13; ++cycle) {
+    SensorFrame sensors = sensors_at(cycle);
+    injector.spoil(sensors);
+    if (cycle >= 10) values.push_back(sensors.q_m[0]);
+  }
+  return values;
+}
+
+TEST(Injector, EffectsHaveTheirValues) {
+  EXPECT_EQ(link_values("link_encoder_frozen", 0.0), (std::vector{11.0, 11.0, 11.0}));
+  EXPECT_EQ(link_values("link_encoder_zero", 0.0), (std::vector{0.0, 0.0, 0.0}));
+  EXPECT_EQ(link_values("link_encoder_jump", 0.5), (std::vector{11.5, 12.5, 13.5}));
+  const std::vector<double> drift = link_values("link_encoder_drift", 100.0);
+  EXPECT_NEAR(drift[0], 11.0, 1e-9);
+  EXPECT_NEAR(drift[2], 13.2, 1e-9);
+  EXPECT_TRUE(std::isnan(link_values("link_encoder_nan", 0.0)[0]));
+}
+
+// What arrives of commands 10, 11, 12.
+std::vector<CommandFrame> arrivals(const char* name, double magnitude) {
+  Injector injector(
+      {{.kind = find_kind(name), .index = 0, .magnitude = magnitude, .from_s = kFrom_s}});
+  std::vector<CommandFrame> arrived;
+  for (int cycle = 0; cycle < 13; ++cycle) {
+    SensorFrame sensors = sensors_at(cycle);
+    injector.spoil(sensors);
+    CommandFrame command = command_at(cycle);
+    injector.spoil(command);
+    if (cycle >= 10) arrived.push_back(command);
+  }
+  return arrived;
+}
+
+TEST(Injector, CommandsAreSpoiltOnTheirWay) {
+  EXPECT_EQ(arrivals("motor_dead", 0.0)[1].tau_m[0], 0.0);
+  EXPECT_EQ(arrivals("motor_dead", 0.0)[1].tau_m[1], 12.0);
+  EXPECT_EQ(arrivals("motor_weak", 0.5)[1].tau_m[0], 6.0);
+  EXPECT_EQ(arrivals("motor_offset", 7.0)[1].tau_m[0], 19.0);
+  EXPECT_EQ(arrivals("motor_frozen", 0.0)[2].tau_m[0], 11.0);
+  EXPECT_EQ(arrivals("gantry_dead", 0.0)[1].dq_p[0], 0.0);
+  EXPECT_EQ(arrivals("gantry_runaway", 0.5)[1].dq_p[0], 12.5);
+  EXPECT_FALSE(arrivals("power_lost", 0.0)[0].enable);
+  EXPECT_EQ(arrivals("commands_lost", 0.0)[2].sequence, 10U);
+  EXPECT_EQ(arrivals("commands_late", 3.0)[2].sequence, 9U);
+}
+
+TEST(Injector, SamplesAreLostRepeatedAndLate) {
+  Injector lost({{.kind = find_kind("samples_lost"), .magnitude = 4.0, .from_s = kFrom_s}});
+  Injector repeated({{.kind = find_kind("samples_repeated"), .from_s = kFrom_s}});
+  Injector late({{.kind = find_kind("cycles_late"), .magnitude = 2.0, .from_s = kFrom_s}});
+  OperatorFrame input;
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    SensorFrame one = sensors_at(cycle), two = one, three = one;
+    lost.spoil(one);
+    repeated.spoil(two);
+    late.spoil(three);
+    const auto sequence = static_cast<std::uint64_t>(cycle);
+    EXPECT_EQ(one.sequence, sequence + (cycle < 10 ? 0U : 4U));
+    EXPECT_EQ(two.sequence, cycle < 10 ? sequence : 10U);
+    EXPECT_EQ(three.sequence, sequence);
+    late.spoil(input);
+  }
+  EXPECT_EQ(input.late_cycles, 2U);
+}
+
+TEST(Injector, TheSolverHasFewActiveSetsWhileItLasts) {
+  Injector injector({{.kind = find_kind("solver_hurried"),
+                      .magnitude = 2.0,
+                      .from_s = kFrom_s,
+                      .for_s = kFor_s}});
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    SensorFrame sensors = sensors_at(cycle);
+    OperatorFrame input;
+    injector.spoil(sensors);
+    injector.spoil(input);
+    EXPECT_EQ(input.most_active_sets, cycle >= 10 && cycle < 15 ? 2U : 0U) << cycle;
+  }
+}
+
+TEST(Injector, BrakesAndChannelsHaveABitEachWhileItLasts) {
+  const auto injection = [](const char* name, int index) -> Injection {
+    return {.kind = find_kind(name), .index = index, .from_s = kFrom_s, .for_s = kFor_s};
+  };
+  Injector injector({injection("brake_closes", 0), injection("brake_closes", 5),
+                     injection("brake_weak", 1), injection("safety_channel_opens", 2),
+                     injection("safety_channel_stuck", 3)});
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    SensorFrame sensors = sensors_at(cycle);
+    CommandFrame command = command_at(cycle);
+    injector.spoil(sensors);
+    injector.spoil(command);
+    const bool is_during = cycle >= 10 && cycle < 15;
+    EXPECT_EQ(injector.hardware().closed_brakes, is_during ? 0b100001U : 0U) << cycle;
+    EXPECT_EQ(injector.hardware().weak_brakes, is_during ? 0b10U : 0U) << cycle;
+    EXPECT_EQ(injector.hardware().open_channels, is_during ? 0b100U : 0U) << cycle;
+    EXPECT_EQ(injector.hardware().stuck_channels, is_during ? 0b1000U : 0U) << cycle;
+  }
+}
+
+TEST(Injector, RefusesCommandsThatAreTooLateAndAllocatesNothing) {
+  EXPECT_THROW(Injector({{.kind = find_kind("commands_late"), .magnitude = 17.0}}), SetupError);
+  EXPECT_EQ(find_kind("no_such_fault"), nullptr);
+
+  std::vector<Injection> all;
+  for (const Kind& kind : kinds()) all.push_back(injection_of(kind, 0));
+  Injector injector(all);
+  AllocationCounter allocations;
+  for (int cycle = 0; cycle < 30; ++cycle) {
+    SensorFrame sensors = sensors_at(cycle);
+    CommandFrame command = command_at(cycle);
+    injector.spoil(sensors);
+    injector.spoil(command);
+  }
+  EXPECT_EQ(allocations.count(), 0U);
+}
+
+}  // namespace
+}  // namespace hg::faults

@@ -1,0 +1,135 @@
+#include "hg/simulator/simulation.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "hg/core/error.h"
+
+namespace hg::simulator {
+namespace {
+
+std::variant<IdealPlant, Plant> make_plant(const Config& config, const model::Chain& chain,
+                                           int handle) {
+  if (const auto* elastic = std::get_if<PlantConfig>(&config.plant)) {
+    return Plant(*elastic, chain, handle);
+  }
+  return IdealPlant(std::get<IdealPlantConfig>(config.plant), chain, handle);
+}
+
+// drives off, brakes closed
+CommandFrame silence(const Truth& truth) {
+  CommandFrame command;
+  command.q_m = truth.q_m;
+  command.dq_m = command.ddq_m = VectorM::Zero(truth.q_m.size());
+  command.tau_m = VectorM::Zero(truth.theta_m.size());
+  command.dq_p = VectorP::Zero(truth.q_p.size());
+  return command;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Config& config, const model::Chain& chain, int handle,
+                       person::Person person)
+    : config_(config),
+      plant_(make_plant(config, chain, handle)),
+      latency_steps_(static_cast<std::uint64_t>(std::llround(config.latency / config.sensed.step))),
+      sensors_(config.sensors, config.sensed),
+      safety_plc_(config.safety),
+      person_(std::move(person)) {
+  if (latency_steps_ > static_cast<std::uint64_t>(kMaxLatency * config_.steps)) {
+    throw SetupError("simulation: latency must be at most " + std::to_string(kMaxLatency) +
+                     " periods, got " + std::to_string(config_.latency) + " s");
+  }
+  look({});
+  at_work_ = silence(truth_);
+  sample();
+}
+
+void Simulation::step(const CommandFrame& command, const HardwareFaults& faults) noexcept {
+  faults_ = faults;
+  const std::size_t slot = (first_waiting_ + waiting_count_) % waiting_.size();
+  waiting_[slot] = {command, steps_ + latency_steps_};
+  ++waiting_count_;
+  const bool is_new = command.sequence == 0 || command.sequence != last_number_;
+  silent_s_ = is_new ? 0.0 : silent_s_ + config_.sensed.period;
+  last_number_ = command.sequence;
+  for (int i = 0; i < config_.steps; ++i) {
+    take_due_command();
+    move(at_work_);
+    ++steps_;
+    look(command.hand_target);
+  }
+  watch_over(command.panel);
+  ++frame_.sequence;
+  sample();
+}
+
+// The safety controller sees its own switches and speeds, not those reported to the program.
+void Simulation::watch_over(const SafetyPanel& panel) noexcept {
+  const double time_s = static_cast<double>(steps_) * config_.sensed.step;
+  safety_plc_.step(
+      {.stop_free = TwoChannels::both(!panel.emergency_stop),
+       .operator_enable = TwoChannels::both(panel.operator_enable),
+       .user_hold = TwoChannels::both(!config_.has_dead_man || person_.is_holding(time_s)),
+       .override_key = TwoChannels::both(panel.override_key),
+       .field = panel.person_in_field ? ScannerField::kSmall : ScannerField::kNone,
+       .hand_speed = truth_.twist.head<3>().norm(),
+       .gantry_speed = truth_.dq_p.norm(),
+       .drives_on = at_work_.enable,
+       .reset = panel.reset,
+       .faults = faults_});
+  frame_.safety = safety_plc_.outputs();
+}
+
+void Simulation::take_due_command() noexcept {
+  while (waiting_count_ > 0 && waiting_[first_waiting_].due <= steps_) {
+    at_work_ = waiting_[first_waiting_].command;
+    first_waiting_ = (first_waiting_ + 1) % waiting_.size();
+    --waiting_count_;
+  }
+}
+
+void Simulation::move(const CommandFrame& command) noexcept {
+  const bool is_watched = silent_s_ <= config_.drive_watchdog;
+  const bool is_on = command.enable && is_watched && safety_plc_.has_power();
+  if (auto* ideal = std::get_if<IdealPlant>(&plant_)) {
+    ideal->step(command, is_on);
+    return;
+  }
+  PlantInput input = {.tau_command = command.tau_m,
+                      .brakes_closed = !is_on,
+                      .faults = faults_,
+                      .dq_p_command = command.dq_p,
+                      .w_H = w_H_};
+  if (!is_on) {
+    input.tau_command.setZero();
+    input.dq_p_command.setZero();
+  }
+  std::get<Plant>(plant_).step(input);
+}
+
+// The person's wrench follows from the present motion of the handle and holds until the next step;
+// on an ideal plant, which no force can move, it acts at once.
+void Simulation::look(const HandTarget& target) noexcept {
+  truth_ = std::visit([](const auto& plant) noexcept { return plant.truth(); }, plant_);
+  const double time_s = static_cast<double>(steps_) * config_.sensed.step;
+  w_H_ = person_.wrench(time_s, {truth_.T_B_H, truth_.twist}, target);
+  if (std::holds_alternative<IdealPlant>(plant_)) truth_.w_H = w_H_;
+  sensors_.observe(truth_);
+  for (std::size_t unit = 0; unit < config_.link_units.size(); ++unit) {
+    const int frame = config_.link_units[unit];
+    sensors_.observe(
+        unit, std::visit([&](const auto& plant) noexcept { return plant.motion(frame); }, plant_));
+  }
+}
+
+void Simulation::sample() noexcept {
+  take_due_command();  // a command that arrives at the moment of the sample is in effect
+  sensors_.sample(truth_, frame_);
+  frame_.answered_sequence = at_work_.sequence;
+  frame_.dead_man =
+      config_.has_dead_man && person_.is_holding(static_cast<double>(steps_) * config_.sensed.step);
+}
+
+}  // namespace hg::simulator

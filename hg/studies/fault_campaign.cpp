@@ -1,0 +1,341 @@
+#include "hg/studies/fault_campaign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "hg/controller/rendering/catalogue.h"
+#include "hg/core/error.h"
+#include "hg/recording/recording_reader.h"
+#include "hg/scenario/assembly.h"
+#include "hg/studies/player.h"
+
+namespace hg::studies {
+namespace {
+
+constexpr double kSettling = 1.0;  // s after the grasp: no fault before
+constexpr double kLatest = 8.0;    // s: later faults add no information
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+
+// Worst of all limits of the device, from the truth.
+class TrueLimits {
+ public:
+  explicit TrueLimits(const config::Scenario& scenario)
+      : device_(scenario.device.model), limits_(scenario.limits) {}
+
+  double excess(const Truth& truth) {
+    rendering::limit_positions(device_, truth.q_p, truth.q_m, positions_);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+      const Interval& range = limits_[i].range;
+      const double nearest = std::clamp(positions_[i], range.lb, range.ub);
+      worst = std::max(worst, std::abs(positions_[i] - nearest));
+    }
+    return worst;
+  }
+
+ private:
+  rendering::DeviceModel device_;
+  LimitCatalogue limits_;
+  std::vector<double> positions_;
+};
+
+// Whether the machine has reacted and no longer follows its request.
+bool has_reacted(const CycleRecord& record, bool was_on) {
+  return record.fault.code != FaultCode::kNone || record.mode == Mode::kStopping ||
+         (was_on && record.mode == Mode::kReady) || record.mode == Mode::kFault;
+}
+
+// Unplanned travel of axes, see FaultCase::travel_share.
+class Travel {
+ public:
+  Travel(const config::Scenario& scenario) : device_(scenario.device) {}
+
+  // One period from the begin of the fault on.
+  void add(const Truth& truth, const Sample& sample, bool has_reacted) {
+    const double dt = device_.rendering.dt;
+    if (!has_begun_) {
+      has_begun_ = true;
+      from_m_ = truth.q_m;
+      from_p_ = plan_p_ = truth.q_p;
+      plan_from_m_ = sample.record.reference.q_m;
+      speed_p_ = truth.dq_p;
+    }
+    if (!has_reacted) {
+      plan_m_ = sample.record.reference.q_m - plan_from_m_;
+      for (Eigen::Index i = 0; i < plan_p_.size(); ++i) {
+        const double command = sample.command.enable ? sample.command.dq_p[i] : 0.0;
+        plan_p_[i] += dt * speed_p_[i];
+        speed_p_[i] += dt * drive_acceleration(device_.drive, speed_p_[i], command);
+      }
+      at_stop_m_ = truth.q_m;
+      at_stop_p_ = truth.q_p;
+      off_m_ = truth.q_m - from_m_ - plan_m_;
+      off_p_ = truth.q_p - plan_p_;
+    }
+    const safety::MonitorConfig& stated = device_.monitor;
+    for (Eigen::Index i = 0; i < truth.q_m.size(); ++i) {
+      look(off_m_[i] + truth.q_m[i] - at_stop_m_[i], truth.q_m[i] - from_m_[i],
+           stated.stop_distance_of_joint(static_cast<int>(i)));
+    }
+    for (Eigen::Index i = 0; i < truth.q_p.size(); ++i) {
+      look(off_p_[i] + truth.q_p[i] - at_stop_p_[i], truth.q_p[i] - from_p_[i],
+           stated.stop_distance_of_gantry());
+    }
+    if (!has_reacted) return;
+    energy_ -= dt * truth.w_H.dot(truth.twist);
+    most_energy_ = std::max(most_energy_, energy_);
+  }
+
+  double share() const { return share_; }
+  double energy() const { return most_energy_; }
+
+ private:
+  // A plan that moves while the axis stands still, because its encoder drifts, is no travel.
+  void look(double off, double moved, double stated) {
+    share_ = std::max(share_, std::min(std::abs(off), std::abs(moved)) / stated);
+  }
+
+  const config::Device& device_;
+  bool has_begun_ = false;
+  VectorM from_m_, plan_from_m_, plan_m_, at_stop_m_, off_m_;
+  VectorP from_p_, plan_p_, speed_p_, at_stop_p_, off_p_;
+  double share_ = 0.0, energy_ = 0.0, most_energy_ = 0.0;
+};
+
+// Peaks of the person's force in a run without faults, one per tenth of a second.
+class CleanRun {
+ public:
+  explicit CleanRun(config::Scenario scenario) {
+    scenario.faults.clear();
+    Player player(scenario);
+    for (bool goes_on = true; goes_on; goes_on = player.end()) {
+      player.begin();
+      player.run();
+      const auto slot = static_cast<std::size_t>(player.record().time_s / kSlot);
+      peaks_.resize(std::max(peaks_.size(), slot + 1), 0.0);
+      peaks_[slot] = std::max(peaks_[slot], player.truth().w_H.head<3>().norm());
+    }
+  }
+
+  double peak(double from_s, double to_s) const {
+    double peak = 0.0;
+    for (std::size_t i = 0; i < peaks_.size(); ++i) {
+      const double time_s = static_cast<double>(i) * kSlot;
+      if (time_s >= from_s - kSlot && time_s < to_s) peak = std::max(peak, peaks_[i]);
+    }
+    return peak;
+  }
+
+ private:
+  static constexpr double kSlot = 0.1;
+  std::vector<double> peaks_;
+};
+
+faults::Injection draw(const faults::Kind& kind, const config::Scenario& scenario,
+                       std::mt19937_64& random) {
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  faults::Injection drawn = {.kind = &kind};
+  const rendering::DeviceModel& device = scenario.device.model;
+  const int parts = faults::parts_of(kind.part, device.n_m, device.n_p);
+  if (parts > 0) drawn.index = std::uniform_int_distribution<int>(0, parts - 1)(random);
+  if (!kind.unit.empty()) {
+    drawn.magnitude = std::exp(uniform(std::log(kind.magnitude.lb), std::log(kind.magnitude.ub)));
+    if (kind.has_sign && uniform(-1.0, 1.0) < 0.0) drawn.magnitude *= -1.0;
+    const bool is_count = kind.effect == faults::Effect::kLost ||
+                          kind.effect == faults::Effect::kLate || kind.part == faults::Part::kBus ||
+                          kind.part == faults::Part::kCycles || kind.part == faults::Part::kSolver;
+    if (is_count) drawn.magnitude = std::round(drawn.magnitude);
+    const bool is_torque = kind.part == faults::Part::kForceSensor && drawn.index >= 3;
+    if (is_torque) drawn.magnitude *= 0.1;
+  }
+  const Interval times = fault_times(scenario);
+  drawn.from_s = uniform(times.lb, times.ub);
+  return drawn;
+}
+
+constexpr std::size_t kPhases = 4;
+constexpr double kStartingWatch = 2.0;  // s longer: the device is to be armed and to run
+constexpr double kFirst = 0.1;  // s: what is wrong from the first sample on is no fault that begins
+
+FaultCase draw_case(std::size_t number, const config::Scenario& scenario, std::mt19937_64& random) {
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  const auto kinds = faults::kinds();
+  FaultCase drawn = {.phase = static_cast<Phase>(number / kinds.size() % kPhases),
+                     .injection = draw(kinds[number % kinds.size()], scenario, random)};
+  double& from_s = drawn.injection.from_s;
+  switch (drawn.phase) {
+    case Phase::kRunning:
+      break;
+    case Phase::kPair:
+      drawn.other = draw(kinds[random() % kinds.size()], scenario, random);
+      drawn.other->from_s = from_s + uniform(0.0, 0.5);
+      break;
+    case Phase::kStopping:
+      drawn.other = {.kind = faults::find_kind("emergency_stop"), .from_s = from_s};
+      from_s += uniform(-0.05, 0.3);
+      break;
+    case Phase::kStarting:
+      from_s = uniform(kFirst, scenario.script.script.grasp_s);
+      break;
+  }
+  return drawn;
+}
+
+// Counts the cycles of a recording, and whether they are all there.
+class CycleCounter final : public recording::RecordingListener {
+ public:
+  void configuration(const recording::NamedText& /*text*/) override {}
+  void event(const recording::Event& /*event*/) override {}
+  void sample(const Sample& sample) override {
+    is_gapless_ = is_gapless_ && sample.record.cycle == count_;
+    ++count_;
+  }
+
+  bool has_all(std::uint64_t cycles) const { return is_gapless_ && count_ == cycles; }
+
+ private:
+  std::uint64_t count_ = 0;
+  bool is_gapless_ = true;
+};
+
+bool has_all_cycles(const std::filesystem::path& file, std::uint64_t cycles) {
+  CycleCounter counter;
+  try {
+    return recording::read_recording(file, counter).is_whole() && counter.has_all(cycles);
+  } catch (const SetupError&) {
+    return false;  // damaged
+  }
+}
+
+}  // namespace
+
+bool stands_still(const Truth& truth) {
+  constexpr double kStandstill = 0.02;  // rad/s and m/s
+  const double gantry = truth.dq_p.size() > 0 ? truth.dq_p.lpNorm<Eigen::Infinity>() : 0.0;
+  // of a joint whose brake is closed the motor stands, and the hand swings its link on the spring;
+  // one that is controlled holds its link, and its motor shakes a little with the sensors' noise
+  VectorM speed = truth.dq_m.cwiseAbs();
+  if (truth.dtheta_m.size() > 0) speed = speed.cwiseMin(truth.dtheta_m.cwiseAbs());
+  return speed.maxCoeff() < kStandstill && gantry < kStandstill;
+}
+
+Interval fault_times(const config::Scenario& scenario) {
+  const double grasp_s = scenario.script.script.grasp_s;
+  const double last_s = scenario::planned_duration_s(scenario) - 1.0;
+  return {grasp_s + kSettling, std::min(last_s, grasp_s + kLatest)};
+}
+
+FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
+                     const CampaignConfig& config, double clean_force,
+                     const recording::RecordingInfo* recording) {
+  FaultCase result = std::move(drawn);
+  config::Scenario played = scenario;
+  played.faults = {result.injection};
+  double from_s = result.injection.from_s;
+  double end_s = from_s + config.watched_s;
+  if (result.other) {
+    played.faults.push_back(*result.other);
+    from_s = std::min(from_s, result.other->from_s);
+    end_s = std::max(end_s, result.other->from_s + config.watched_s);
+  }
+  // a fault from the start on is in force when the device begins to run
+  if (result.phase == Phase::kStarting) end_s += kStartingWatch;
+  Player player(played);
+  TrueLimits limits(scenario);
+  Travel travel(scenario);
+  bool was_on = false, has_run = false;
+  double noticed_at_s = kNever;
+  std::uint64_t cycles = 0;
+  const auto recorder =
+      recording != nullptr ? std::make_unique<recording::Recorder>(*recording) : nullptr;
+  result.stopped_s = kNever;
+  for (bool goes_on = true; goes_on;) {
+    player.begin();
+    player.run();
+    const CycleRecord& record = player.record();
+    const Truth truth = player.truth();
+    if (recorder != nullptr) recorder->push_waiting(player.sample());
+    player.end();
+    goes_on = record.time_s < end_s;
+    ++cycles;
+    if (record.time_s < from_s) continue;
+
+    result.peak_force = std::max(result.peak_force, truth.w_H.head<3>().norm());
+    result.worst_excess = std::max(result.worst_excess, limits.excess(truth));
+    if (record.mode == Mode::kRunning || record.mode == Mode::kStopping) {
+      const double distance = (truth.T_B_H.p - record.T_B_E.p).norm();
+      result.worst_distance = std::max(result.worst_distance, distance);
+    }
+    has_run = has_run || record.mode == Mode::kRunning;
+    was_on = was_on || has_run || record.mode == Mode::kArmed;
+    if (std::isnan(noticed_at_s) && has_reacted(record, was_on)) {
+      noticed_at_s = record.time_s;
+      result.outcome = Outcome::kNoticed;
+      result.noticed_s = record.time_s - from_s;
+      result.fault = record.fault.code;
+    }
+    const bool was_noticed = !std::isnan(noticed_at_s);
+    travel.add(truth, player.sample(), was_noticed);
+    result.is_told_to_fall = result.is_told_to_fall || record.fault.code == FaultCode::kBrakesSlip;
+    result.stop = std::max(result.stop, record.stop);
+    if (std::isnan(noticed_at_s) || !stands_still(truth)) {
+      result.stopped_s = kNever;
+    } else if (std::isnan(result.stopped_s)) {
+      result.stopped_s = record.time_s - noticed_at_s;
+    }
+  }
+  if (recorder != nullptr) {
+    result.is_complete = has_all_cycles(recorder->close().file, cycles);
+    std::filesystem::remove_all(recording->folder);
+  }
+  result.travel_share = travel.share();
+  result.energy = travel.energy();
+  // a device that did not run held still, however the person pulled
+  const bool is_worse = has_run && (result.worst_excess > config.harmless_excess ||
+                                    result.peak_force > clean_force + config.harmless_force ||
+                                    result.worst_distance > config.harmless_distance);
+  if (result.outcome != Outcome::kNoticed && is_worse) result.outcome = Outcome::kUnnoticed;
+  return result;
+}
+
+Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const CampaignConfig& config,
+                      const std::vector<recording::RecordingInfo>& recordings,
+                      const Progress& progress) {
+  Campaign campaign = {.config = config};
+  for (const config::Scenario& scenario : scenarios) campaign.scenarios.push_back(scenario.title);
+  std::vector<std::unique_ptr<CleanRun>> clean(scenarios.size());
+  do_all(scenarios.size(),
+         [&](std::size_t i) { clean[i] = std::make_unique<CleanRun>(scenarios[i]); }, {});
+
+  campaign.cases.resize(static_cast<std::size_t>(config.cases));
+  do_all(
+      campaign.cases.size(),
+      [&](std::size_t i) {
+        std::mt19937_64 random(config.seed * 1'000'003 + i);
+        const std::size_t which = random() % scenarios.size();
+        FaultCase drawn = draw_case(i, scenarios[which], random);
+        drawn.scenario = which;
+        const double from_s = drawn.injection.from_s;
+        const double until_s =
+            from_s + config.watched_s + (drawn.phase == Phase::kStarting ? kStartingWatch : 0.0);
+        const double clean_force = clean[which]->peak(from_s, until_s);
+        recording::RecordingInfo recording;
+        if (!recordings.empty()) {
+          recording = recordings[which];
+          recording.folder /= fmt::format("case_{}", i);
+        }
+        campaign.cases[i] = play_fault(scenarios[which], std::move(drawn), config, clean_force,
+                                       recordings.empty() ? nullptr : &recording);
+      },
+      progress);
+  return campaign;
+}
+
+}  // namespace hg::studies

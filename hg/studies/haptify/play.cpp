@@ -1,0 +1,79 @@
+#include "hg/studies/haptify/play.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "hg/scenario/assembly.h"
+#include "hg/studies/changes.h"
+#include "hg/studies/player.h"
+
+namespace hg::haptify {
+namespace {
+
+// Of a free body: the force of the surface, as far as limits do not take from it, times the way
+// along it. What limits do to the rest of the motion is not the wall's.
+double contact_power(const CycleRecord& record, double period) {
+  const Budget& budget = record.budget;
+  if (record.contact.surface < 0) return 0.0;
+  const Eigen::Vector3d surface = -budget.surface.head<3>();
+  const double force = surface.norm();
+  if (force == 0.0) return 0.0;
+  const Eigen::Vector3d along = surface / force;
+  const double taken = along.dot((budget.limits + budget.conflict).head<3>());
+  const VectorA dq = record.twin.dq_a + 0.5 * period * record.twin.ddq_a;
+  return std::clamp(force - taken, 0.0, force) * along.dot(dq.head<3>());
+}
+
+}  // namespace
+
+config::Scenario with_script(config::Scenario scenario, const person::Script& script) {
+  studies::play_script(scenario, script);
+  scenario.script.script.start[person::kGripChannel] = 1.0;
+  scenario.events.clear();
+  return scenario;
+}
+
+Played play(const config::Scenario& scenario) {
+  studies::Player player(scenario);
+  analysis::Summary summary = scenario::make_summary(scenario);
+  const double grasp_s = scenario.script.script.grasp_s;
+  Played played;
+  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    player.begin();
+    player.run();
+    const Sample& sample = player.judged_sample();
+    summary.add(sample);
+    const CycleRecord& record = sample.record;
+    if (record.time_s < grasp_s) continue;
+    const Truth& truth = sample.truth;
+    played.instants.push_back(
+        {.time_s = record.time_s - grasp_s,
+         .T_B_H = truth.T_B_H,
+         .twist = truth.twist,
+         .acceleration = truth.acceleration,
+         .w_H = truth.w_H,
+         .p_B_E = record.T_B_E.p,
+         .p_ref = record.T_B_H.p,
+         .surface = record.contact.force,
+         .contact_power = contact_power(record, 1.0 / scenario.device.rate_Hz),
+         .q_p = truth.q_p,
+         .dq_p = truth.dq_p,
+         .q_m = truth.q_m,
+         .dq_m = truth.dq_m,
+         .is_limited = record.felt_limit >= 0});
+  }
+  const Fault& fault = player.record().fault;
+  if (fault.code != FaultCode::kNone) {
+    played.failure = fmt::format("fault {} ({}) at {:.2f} s", static_cast<int>(fault.code),
+                                 to_string(fault.code), player.record().time_s);
+  } else if (!player.is_running()) {
+    played.failure = "the device did not run";
+  } else if (!summary.limits_held()) {
+    played.failure = "a limit was exceeded";
+  }
+  return played;
+}
+
+}  // namespace hg::haptify

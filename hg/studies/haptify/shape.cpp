@@ -1,0 +1,106 @@
+#include "hg/studies/haptify/shape.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <vector>
+
+#include "hg/controller/rendering/device_model.h"
+
+namespace hg::haptify {
+namespace {
+
+// Joints and virtual joints of a posture (gantry first) that stand at a limit beyond which the
+// handle would go farther along `axis`, to the side of the sign of `side`.
+std::vector<std::string> binding_limits(const rendering::DeviceModel& model,
+                                        const Eigen::VectorXd& q, int axis, double side) {
+  constexpr double kNear = 0.02;   // rad
+  constexpr double kMoves = 1e-3;  // m/rad; what moves it less does not end its way
+  model::Chain chain = model.chain;
+  chain.update(q, Eigen::VectorXd::Zero(chain.nv()));
+  const Eigen::VectorXd gain =
+      side * chain.jacobian(model.handle).row(axis).tail(model.n_m).transpose();
+  const Eigen::VectorXd arm = q.tail(model.n_m);
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name, const limits::JointLimits& range, double value,
+                       double up, double down) {
+    if (value > range.q_max - kNear && up > kMoves)
+      names.push_back(fmt::format("{} at {:.2f} rad", name, range.q_max));
+    if (value < range.q_min + kNear && down > kMoves)
+      names.push_back(fmt::format("{} at {:.2f} rad", name, range.q_min));
+  };
+  for (Eigen::Index i = 0; i < arm.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(model.n_p + i);
+    add(model.chain.joints()[joint].name, model.joint_limits[static_cast<std::size_t>(i)], arm[i],
+        gain[i], -gain[i]);
+  }
+  for (const rendering::VirtualJoint& joint : model.virtual_joints) {
+    const Eigen::VectorXd gains = joint.weights.cwiseProduct(gain);
+    add(joint.name, joint.limits, joint.weights.dot(arm), gains.maxCoeff(), -gains.minCoeff());
+  }
+  return names;
+}
+
+// The posture of those drawn that brings the handle farthest along `axis`, `side` = -1 or 1; empty
+// when the limits permit none.
+Eigen::VectorXd farthest(const config::Device& device, const ShapeConfig& config,
+                         std::uint64_t seed, int axis, double side) {
+  checks::Random random(seed);
+  const checks::JointRanges ranges = checks::joint_ranges(device);
+  model::Chain chain = device.model.chain;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
+  Eigen::VectorXd best;
+  double most = 0.0;
+  for (int i = 0; i < config.postures; ++i) {
+    const auto q = checks::draw(device, ranges, true, random);
+    if (!q) break;
+    chain.update_kinematics(*q, zero);
+    if (!checks::permits_boxes(device.model, chain)) continue;
+    const double reach = side * chain.pose(device.model.handle).p[axis];
+    if (best.size() > 0 && reach <= most) continue;
+    most = reach;
+    best = *q;
+  }
+  return best;
+}
+
+}  // namespace
+
+checks::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
+                                std::uint64_t seed) {
+  checks::Random random(seed);
+  checks::Survey survey;
+  survey.options.seed = seed;
+  survey.cloud = checks::cloud(device, config.postures, true, random);
+  return checks::workspace(device, survey);
+}
+
+std::string unreached_sides(const config::Device& device, const checks::Workspace& shape,
+                            const ShapeConfig& config, std::uint64_t seed) {
+  constexpr double kReached = 2e-3;  // m
+  if (!shape.has_box) return {};
+  const Eigen::AlignedBox3d box = checks::handle_box(device.model);
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const double limit = side < 0.0 ? box.min()[axis] : box.max()[axis];
+      const double reached = side < 0.0 ? shape.bounds.min()[axis] : shape.bounds.max()[axis];
+      const double short_by = side * (limit - reached);
+      if (short_by < kReached) continue;
+      const Eigen::VectorXd q = farthest(device, config, seed, axis, side);
+      text += fmt::format(" The side {} = {:.2f} m is missed by {:.0f} mm, {:.2f} m^3 of the box",
+                          "xyz"[axis], limit, 1e3 * short_by,
+                          short_by * box.volume() / box.sizes()[axis]);
+      std::vector<std::string> names;
+      if (q.size() > 0) names = binding_limits(device.model, q, axis, side);
+      if (!names.empty()) {
+        text += fmt::format(": where the handle comes nearest, {}", fmt::join(names, " and "));
+      }
+      text += ".";
+    }
+  }
+  return text;
+}
+
+}  // namespace hg::haptify

@@ -1,0 +1,28 @@
+/// Workspace volume and shape: postures within all limits, drawn at random.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "hg/commissioning/checks/workspace.h"
+#include "hg/config/device.h"
+
+namespace hg::haptify {
+
+struct ShapeConfig {
+  /// Number of postures of the arm, each with eight positions of the gantry
+  int postures = 60'000;
+};
+
+/// Measures the workspace. Joint limits, the distance to the singularity (virtual joints), travel
+/// of the gantry and walls (Cartesian limits of handle and elbow) all hold; the control loop does
+/// not run.
+checks::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
+                                std::uint64_t seed);
+
+/// Sides of the handle's box that the handle misses by more than 2 mm, with the joints at a limit
+/// where it comes nearest; empty = none.
+std::string unreached_sides(const config::Device& device, const checks::Workspace& shape,
+                            const ShapeConfig& config, std::uint64_t seed);
+
+}  // namespace hg::haptify

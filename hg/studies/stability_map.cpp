@@ -1,0 +1,256 @@
+#include "hg/studies/stability_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "hg/studies/changes.h"
+#include "hg/studies/player.h"
+
+namespace hg::studies {
+namespace {
+
+struct NamedHand {
+  std::string name;
+  person::HandImpedance hand;
+};
+
+std::vector<NamedHand> hands_of(const StabilityConfig& config) {
+  std::vector<NamedHand> hands;
+  for (const double stiffness : config.stiffness) {
+    hands.push_back({fmt::format("{:g} N/m", stiffness), spring_hand(config.hand, stiffness)});
+  }
+  for (const auto& [name, preset] : {std::pair{"relaxed", person::HandPreset::kRelaxed},
+                                     std::pair{"normal", person::HandPreset::kNormal},
+                                     std::pair{"stiff", person::HandPreset::kStiff}}) {
+    person::HandImpedance hand = person::hand(preset);
+    hand.tremor_rms = 0.0;
+    hands.push_back({name, hand});
+  }
+  return hands;
+}
+
+// the hand stays where the handle is and pushes once
+void set_kick(const Kick& kick, config::Scenario& scenario) {
+  person::Script script;
+  script.start[person::kGripChannel] = 1.0;
+  add_kick(kick, kick.settling, script);
+  script.duration_s = kick.settling + kick.duration + kick.watched;
+  play_script(scenario, script);
+}
+
+// From the first stable mass of the ladder downwards.
+double stable_from(const StabilityConfig& config, const StabilityRow& row,
+                   const std::function<Verdict(double)>& verdict_at) {
+  const auto first = std::ranges::find_if(
+      row.outcomes, [](const KickOutcome& outcome) { return is_stable(outcome.verdict); });
+  if (first == row.outcomes.end()) return kInfinity;
+  const auto index = static_cast<std::size_t>(first - row.outcomes.begin());
+  double stable = config.mass[index];
+  double unstable = index > 0 ? config.mass[index - 1] : config.least_mass;
+  if (index == 0 && is_stable(verdict_at(unstable))) return unstable;
+  while (stable > (1.0 + config.mass_tolerance) * unstable) {
+    const double middle = std::sqrt(stable * unstable);
+    (is_stable(verdict_at(middle)) ? stable : unstable) = middle;
+  }
+  return stable;
+}
+
+std::string mass_text(const StabilityMap& map, double mass) {
+  if (std::isinf(mass)) return "none";
+  if (mass <= map.config.least_mass) return fmt::format("<= {:g}", mass);
+  return fmt::format("{:.2f}", mass);
+}
+
+KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) {
+  Player player(kicked);
+  const double rate_Hz = kicked.device.rate_Hz;
+  const double begin_s = kicked.script.script.grasp_s + config.kick.settling + config.kick.duration;
+  const double last_window_s = begin_s + config.kick.watched - config.calm.window;
+  KickOutcome outcome;
+  std::vector<double> speed;
+  bool was_lost = false;  // in the last window
+  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    player.begin();
+    player.run();
+    const CycleRecord& record = player.record();
+    if (record.time_s >= begin_s) speed.push_back(player.truth().twist.head<3>().norm());
+    if (record.time_s > last_window_s && record.tracking.is_clamped) was_lost = true;
+  }
+  outcome.fault = player.record().fault.code;
+  if (!player.is_running()) {
+    outcome.was_lost = true;
+    outcome.verdict = Verdict::kDiverges;
+    return outcome;
+  }
+  const auto window = std::llround(config.calm.window * rate_Hz);
+  outcome.last_speed = *std::max_element(speed.end() - window, speed.end());
+  outcome.was_lost = was_lost;
+  outcome.verdict = was_lost ? Verdict::kDiverges : judge_decay(speed, config.calm, rate_Hz);
+  return outcome;
+}
+
+}  // namespace
+
+void add_kick(const Kick& kick, double at_s, person::Script& script) {
+  constexpr double kEdge = 1e-4;  // s: less than a step of the plant
+  const double each = kick.force / std::sqrt(3.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int channel = person::kWrenchChannel + axis;
+    script.segments.push_back(
+        {.start_s = at_s, .duration_s = kEdge, .channel = channel, .value = each});
+    script.segments.push_back(
+        {.start_s = at_s + kick.duration, .duration_s = kEdge, .channel = channel, .value = 0.0});
+  }
+  std::ranges::stable_sort(script.segments, {}, &person::Segment::start_s);
+}
+
+person::HandImpedance spring_hand(const SpringHand& hand, double stiffness) {
+  const auto damping = [&](double ratio, double spring) {
+    return 2.0 * ratio * std::sqrt(spring * hand.mass);
+  };
+  person::HandImpedance result;
+  result.stiffness.setConstant(stiffness);
+  result.damping.setConstant(damping(hand.damping_ratio, stiffness));
+  result.mass.setConstant(hand.mass);
+  result.grip_stiffness = hand.grip;
+  result.grip_damping = damping(hand.grip_ratio, hand.grip);
+  result.force_max = kInfinity;
+  result.tremor_rms = 0.0;
+  return result;
+}
+
+config::Scenario kicked(const config::Scenario& scenario, const StabilityConfig& config,
+                        const person::HandImpedance& hand, double mass, double damping) {
+  config::Scenario kicked = scenario;
+  set_free_twin(kicked, {.mass = mass, .damping = damping});
+  kicked.twin.model.q_start.head<3>() = config.position;
+  kicked.person = person::PersonKind::kScript;
+  kicked.device.passivity.reaction = config.reaction;
+  kicked.script.hand = hand;
+  set_kick(config.kick, kicked);
+  return kicked;
+}
+
+KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config,
+                 const person::HandImpedance& hand, double mass, double damping) {
+  config::Scenario played = kicked(scenario, config, hand, mass, damping);
+  KickOutcome outcome = play(played, config);
+  if (!is_stable(outcome.verdict) && !outcome.was_lost) {
+    take_friction(played.device.control);
+    if (is_stable(play(played, config).verdict)) outcome.verdict = Verdict::kHunts;
+  }
+  return outcome;
+}
+
+StabilityMap make_stability_map(const config::Scenario& scenario, const StabilityConfig& config,
+                                const Progress& progress) {
+  const bool is_modal = scenario.device.control.method == tracking::Method::kModal;
+  StabilityMap map = {
+      .config = config,
+      .device = scenario.device.name + (is_modal ? ", modal control" : ", motor control")};
+  const std::vector<NamedHand> hands = hands_of(config);
+  for (const double damping : config.damping) {
+    for (const NamedHand& hand : hands) {
+      map.rows.push_back({.hand = hand.name,
+                          .damping = damping,
+                          .outcomes = std::vector<KickOutcome>(config.mass.size())});
+    }
+  }
+  const std::size_t columns = config.mass.size(), cells = map.rows.size() * columns;
+  const std::size_t total = cells + map.rows.size();
+  const auto hand_of = [&](std::size_t row) -> const person::HandImpedance& {
+    return hands[row % hands.size()].hand;
+  };
+  const auto told = [&](std::size_t before) {
+    return [&progress, before, total](std::size_t done, std::size_t) {
+      if (progress) progress(before + done, total);
+    };
+  };
+  do_all(
+      cells,
+      [&](std::size_t i) {
+        StabilityRow& row = map.rows[i / columns];
+        row.outcomes[i % columns] =
+            kick(scenario, config, hand_of(i / columns), config.mass[i % columns], row.damping);
+      },
+      told(0));
+  do_all(
+      map.rows.size(),
+      [&](std::size_t i) {
+        StabilityRow& row = map.rows[i];
+        row.stable_from = stable_from(config, row, [&](double mass) {
+          return kick(scenario, config, hand_of(i), mass, row.damping).verdict;
+        });
+      },
+      told(cells));
+  return map;
+}
+
+std::string to_text(const StabilityMap& map) {
+  std::string text;
+  double damping = -1.0;
+  for (const StabilityRow& row : map.rows) {
+    if (row.damping != damping) {
+      damping = row.damping;
+      text +=
+          fmt::format("{}twin with {:g} Ns/m\n{:<10}", text.empty() ? "" : "\n", damping, "hand");
+      for (const double mass : map.config.mass) text += fmt::format("{:>5g}", mass);
+      text += "  kg   stable from, kg\n";
+    }
+    text += fmt::format("{:<10}", row.hand);
+    for (const KickOutcome& outcome : row.outcomes) {
+      text += fmt::format("{:>5}", symbol(outcome.verdict));
+    }
+    text += fmt::format("       {}\n", mass_text(map, row.stable_from));
+  }
+  const auto count = [&](Verdict verdict) {
+    std::ptrdiff_t sum = 0;
+    for (const StabilityRow& row : map.rows) {
+      sum += std::ranges::count(row.outcomes, verdict, &KickOutcome::verdict);
+    }
+    return sum;
+  };
+  text += fmt::format("\n{} of {} cells hunt (h), {} swing or diverge without end (U, X)\n",
+                      count(Verdict::kHunts), map.rows.size() * map.config.mass.size(),
+                      count(Verdict::kSustained) + count(Verdict::kDiverges));
+  return text +
+         fmt::format(
+             "\n.  stable        r  calms down, but not within {0:g} s        X  diverges\n"
+             "U  sustained, above {1:g} mm/s        h  the same, but not without friction: the "
+             "joints stick and slip, not stable either\n",
+             map.config.kick.watched, 1e3 * map.config.calm.calm_speed);
+}
+
+nlohmann::ordered_json to_json(const StabilityMap& map) {
+  nlohmann::ordered_json json;
+  json["experiment"] = "stability-map";
+  json["mass_kg"] = map.config.mass;
+  json["rows"] = nlohmann::ordered_json::array();
+  for (const StabilityRow& row : map.rows) {
+    nlohmann::ordered_json entry;
+    entry["hand"] = row.hand;
+    entry["damping_Ns_per_m"] = row.damping;
+    if (std::isfinite(row.stable_from)) {
+      entry["stable_from_kg"] = row.stable_from;
+    } else {
+      entry["stable_from_kg"] = nullptr;
+    }
+    entry["cells"] = nlohmann::ordered_json::array();
+    for (const KickOutcome& outcome : row.outcomes) {
+      nlohmann::ordered_json cell;
+      cell["verdict"] = to_string(outcome.verdict);
+      cell["was_lost"] = outcome.was_lost;
+      cell["last_speed_m_per_s"] = outcome.last_speed;
+      if (outcome.fault != FaultCode::kNone) cell["fault"] = to_string(outcome.fault);
+      entry["cells"].push_back(cell);
+    }
+    json["rows"].push_back(entry);
+  }
+  return json;
+}
+
+}  // namespace hg::studies

@@ -1,0 +1,287 @@
+// The experiments on the device that ships: short ones, with ends that are known.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "hg/config/scenario.h"
+#include "hg/core/error.h"
+#include "hg/signals/drive_model.h"
+#include "hg/studies/changes.h"
+#include "hg/studies/free_space.h"
+#include "hg/studies/impedance.h"
+#include "hg/studies/player.h"
+#include "hg/studies/stability_map.h"
+
+namespace hg::studies {
+namespace {
+
+config::Scenario walk_scenario() { return config::load_scenario("models/scenarios/walk.yaml"); }
+
+TEST(DoAll, DoesEverythingOnceAndCounts) {
+  std::vector<std::atomic<int>> done(50);
+  std::vector<std::size_t> told;
+  do_all(
+      done.size(), [&](std::size_t i) { ++done[i]; },
+      [&](std::size_t now, std::size_t total) {
+        EXPECT_EQ(total, 50u);
+        told.push_back(now);
+      });
+  for (const auto& times : done) EXPECT_EQ(times, 1);
+  ASSERT_EQ(told.size(), 50u);
+  for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], i + 1);
+}
+
+TEST(DoAll, HandsAnExceptionOn) {
+  const auto work = [](std::size_t i) {
+    if (i == 3) throw SetupError("three");
+  };
+  EXPECT_THROW(do_all(20, work, {}), SetupError);
+  EXPECT_NO_THROW(do_all(3, work, {}));
+}
+
+TEST(SetFreeTwin, ChangesMassAndDampingAndNothingElse) {
+  config::Scenario scenario = walk_scenario();
+  const FreeTwin shipped = free_twin_of(scenario);
+  EXPECT_DOUBLE_EQ(shipped.mass, 6.0);
+  EXPECT_DOUBLE_EQ(shipped.damping, 4.0);
+  model::Chain before = scenario.twin.model.chain;
+  set_free_twin(scenario, {.mass = 2.5, .damping = 7.0});
+  EXPECT_DOUBLE_EQ(free_twin_of(scenario).mass, 2.5);
+  EXPECT_DOUBLE_EQ(free_twin_of(scenario).damping, 7.0);
+  EXPECT_DOUBLE_EQ(scenario.twin.model.dofs[3].damping, 0.1);  // angular
+
+  model::Chain after = scenario.twin.model.chain;
+  const VectorA at_rest = VectorA::Zero(6);
+  before.update(scenario.twin.model.q_start, at_rest);
+  after.update(scenario.twin.model.q_start, at_rest);
+  EXPECT_TRUE(after.M().bottomRightCorner(3, 3).isApprox(before.M().bottomRightCorner(3, 3)));
+  EXPECT_TRUE(after.gravity().isZero());
+  EXPECT_TRUE(after.pose(scenario.twin.model.end_effector)
+                  .p.isApprox(before.pose(before.frame("handle")).p));
+}
+
+TEST(SetFreeTwin, RefusesOtherTwins) {
+  config::Scenario door = config::load_scenario("models/scenarios/door.yaml");
+  EXPECT_THROW(set_free_twin(door, {}), SetupError);
+}
+
+TEST(Player, PlaysTheSameToTheEndEveryTime) {
+  config::Scenario scenario = walk_scenario();
+  scenario.duration_s = 0.6;
+  std::uint64_t hash = 0;
+  for (int play = 0; play < 2; ++play) {
+    Player player(scenario);
+    for (bool goes_on = true; goes_on; goes_on = player.end()) {
+      player.begin();
+      player.run();
+    }
+    EXPECT_TRUE(player.is_running());
+    EXPECT_NEAR(player.record().time_s, scenario.script.script.grasp_s + 0.6, 2e-3);
+    if (play == 1) {
+      EXPECT_EQ(player.record().state_hash, hash);
+    }
+    hash = player.record().state_hash;
+  }
+}
+
+TEST(SpringHand, HasTheDampingRatiosItIsGiven) {
+  const person::HandImpedance hand = spring_hand({}, 3000.0);
+  EXPECT_DOUBLE_EQ(hand.stiffness.x(), 3000.0);
+  EXPECT_DOUBLE_EQ(hand.mass.z(), 1.5);
+  EXPECT_NEAR(hand.damping.y(), 0.2 * 2.0 * std::sqrt(3000.0 * 1.5), 1e-12);
+  EXPECT_NEAR(hand.grip_damping, 0.2 * 2.0 * std::sqrt(1e4 * 1.5), 1e-12);
+  EXPECT_EQ(hand.tremor_rms, 0.0);
+}
+
+TEST(Kick, AHeavyDampedBodyInANormalHandIsStable) {
+  const KickOutcome outcome =
+      kick(walk_scenario(), {}, person::hand(person::HandPreset::kNormal), 6.0, 20.0);
+  EXPECT_EQ(outcome.verdict, Verdict::kStable);
+  EXPECT_EQ(outcome.fault, FaultCode::kNone);
+  EXPECT_GT(outcome.last_speed, 0.0);
+}
+
+// [C] 3: without compensation of the handle nothing below 1.7 times its 1.18 kg is stable.
+TEST(Kick, ALightBodyWithoutCompensationOfTheHandleIsNot) {
+  config::Scenario scenario = walk_scenario();
+  scenario.device.estimation.wrench.has_imu = false;
+  const person::HandImpedance hand = spring_hand({}, 1000.0);
+  const KickOutcome outcome = kick(scenario, {}, hand, 0.4, 4.0);
+  EXPECT_FALSE(is_stable(outcome.verdict));
+  const KickOutcome again = kick(scenario, {}, hand, 0.4, 4.0);
+  EXPECT_EQ(again.verdict, outcome.verdict);
+  EXPECT_EQ(again.last_speed, outcome.last_speed);
+}
+
+TEST(Kick, IsAPushAndTheHandHoldsOn) {
+  StabilityConfig config;
+  config.calm.window = 0.05;
+  config.kick.watched = 0.15;  // the last window ends 0.15 s after the kick
+  const auto speed = [&](double force) {
+    config.kick.force = force;
+    person::HandImpedance hand = person::hand(person::HandPreset::kNormal);
+    hand.tremor_rms = 0.0;
+    return kick(walk_scenario(), config, hand, 6.0, 4.0).last_speed;
+  };
+  EXPECT_GT(speed(15.0), 0.012);  // 0.15 Ns on 6 kg and some of the arm
+  EXPECT_LT(speed(15.0), 0.030);
+  EXPECT_LT(speed(0.0), 0.006);
+}
+
+TEST(StabilityMap, HasARowPerHandAndFindsTheSmallestMass) {
+  StabilityConfig config;
+  config.stiffness = {1000};
+  config.mass = {0.05, 6};
+  config.damping = {20};
+  config.mass_tolerance = 3.0;
+  std::size_t last = 0, all = 0;
+  const StabilityMap map =
+      make_stability_map(walk_scenario(), config, [&](std::size_t done, std::size_t total) {
+        last = std::max(last, done);
+        all = total;
+      });
+  EXPECT_EQ(all, 4u * 3u);
+  EXPECT_EQ(last, all);
+  ASSERT_EQ(map.rows.size(), 4u);
+  EXPECT_EQ(map.rows[0].hand, "1000 N/m");
+  EXPECT_EQ(map.rows[2].hand, "normal");
+  for (const StabilityRow& row : map.rows) {
+    ASSERT_EQ(row.outcomes.size(), 2u);
+    EXPECT_FALSE(is_stable(row.outcomes[0].verdict)) << row.hand;
+    EXPECT_TRUE(is_stable(row.outcomes[1].verdict)) << row.hand;
+    EXPECT_GT(row.stable_from, 0.05) << row.hand;
+    EXPECT_LT(row.stable_from, 6.0) << row.hand;
+  }
+}
+
+StabilityMap drawn_map() {
+  StabilityMap map;
+  map.config.mass = {1, 2};
+  map.config.damping = {4};
+  map.rows = {{"300 N/m", 4.0, {{Verdict::kDiverges}, {Verdict::kHunts, 0.01}}, 1.25},
+              {"stiff", 4.0, {{Verdict::kSustained}, {Verdict::kSustained}}, kInfinity},
+              {"normal", 4.0, {{Verdict::kStable}, {Verdict::kSlow}}, 0.1}};
+  map.device = "test";
+  return map;
+}
+
+TEST(StabilityMap, TextShowsAllVerdictsAndMasses) {
+  const std::string text = to_text(drawn_map());
+  for (const char* line : {"300 N/m       X    h       1.25", "stiff         U    U       none",
+                           "normal        .    r       <= 0.1"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
+  }
+}
+
+TEST(StabilityMap, JsonAndDrawingHaveEveryCell) {
+  const nlohmann::ordered_json json = to_json(drawn_map());
+  EXPECT_EQ(json["rows"][0]["cells"][1]["verdict"], "hunts");
+  EXPECT_EQ(json["rows"][0]["stable_from_kg"], 1.25);
+  EXPECT_TRUE(json["rows"][1]["stable_from_kg"].is_null());
+  const std::string svg = to_svg(drawn_map());
+  const auto count = [&](const std::string& part) {
+    int found = 0;
+    for (std::size_t at = svg.find(part); at != std::string::npos; at = svg.find(part, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_EQ(count(">U</text>"), 3);  // two cells and the legend
+  EXPECT_EQ(count(">X</text>"), 2);
+  EXPECT_EQ(count(">h</text>"), 2);
+  EXPECT_EQ(count(">none</text>"), 1);
+  EXPECT_EQ(count("</svg>"), 1);
+}
+
+TEST(Walk, OfTheShippedDeviceNeedsLittleMoreThanTheTwin) {
+  config::Scenario scenario = walk_scenario();
+  scenario.duration_s = 4.0;
+  const std::vector<FreeSpaceVariant> variants = free_space_variants();
+  const FreeSpaceRun run = walk(scenario, variants.front());
+  EXPECT_EQ(run.name, "as shipped");
+  EXPECT_NEAR(run.judged_s, 2.0, 0.01);
+  EXPECT_GT(run.feel.own_share, 0.9);  // 6 kg, 4 Ns/m at 0.25 m/s on 0.7 m: 1.13 N
+  EXPECT_LT(run.feel.own_share, 1.5);
+  EXPECT_LT(run.feel.extra, 0.6);
+  EXPECT_GT(run.feel.extra, 0.02);
+  EXPECT_LT(run.joint_error, 4e-3);
+  EXPECT_GT(run.torque_share, 0.05);
+}
+
+TEST(Walk, AVibratingGantryIsFelt) {
+  config::Scenario scenario = walk_scenario();
+  scenario.duration_s = 3.0;
+  const std::vector<FreeSpaceVariant> variants = free_space_variants();
+  const FreeSpaceRun run = walk(scenario, variants.back());
+  EXPECT_GT(run.feel.vibration_5, 0.2);
+  EXPECT_GT(run.feel.extra, 1.0);
+}
+
+TEST(Shake, GivesDrivesOfThatLagTheWantedAcceleration) {
+  constexpr GantryVibration kVibration = {.acceleration = 0.24, .frequency_Hz = 12.0};
+  constexpr double kLag = 0.08, kStep = 1e-5;
+  Eigen::Vector2d dq = Eigen::Vector2d::Zero(), a = dq;
+  double smallest = 1.0, largest = 0.0;
+  for (int i = 0; i < 100'000; ++i) {
+    VectorP command = VectorP::Zero(2);
+    shake(kVibration, kLag, i * kStep, command);
+    a = (command - dq) / kLag;
+    dq += kStep * a;
+    if (i * kStep < 0.6) continue;
+    smallest = std::min(smallest, a.norm());  // the axes are 90 degrees apart
+    largest = std::max(largest, a.norm());
+  }
+  EXPECT_NEAR(smallest, 0.24, 0.002);
+  EXPECT_NEAR(largest, 0.24, 0.002);
+}
+
+TEST(FreeSpaceText, SaysWhatDominates) {
+  FreeSpaceRun shipped = {.name = "as shipped", .judged_s = 1.0};
+  shipped.feel = {.force = 1.2, .extra = 0.3, .vibration_5 = 0.1, .vibration_20 = 0.05};
+  FreeSpaceRun quiet = {.name = "quiet", .takes_away = true, .judged_s = 1.0};
+  quiet.feel = {.force = 1.2, .extra = 0.2, .vibration_5 = 0.02, .vibration_20 = 0.06};
+  FreeSpaceRun smooth = quiet;
+  smooth.name = "smooth";
+  smooth.feel.extra = 0.1;
+  smooth.feel.vibration_5 = 0.05;
+  FreeSpaceRun other = {.name = "another twin", .judged_s = 1.0};  // takes nothing away
+  FreeSpaceRun failed = {.name = "failed", .takes_away = true};
+  const std::string text = to_text({shipped, quiet, smooth, other, failed});
+  EXPECT_NE(text.find("most by 'smooth': 0.100 instead of 0.300 N"), std::string::npos) << text;
+  EXPECT_NE(text.find("most by 'quiet': 0.020 instead of 0.100 m/s^2"), std::string::npos) << text;
+  EXPECT_NE(text.find("nothing that was taken away"), std::string::npos) << text;
+  EXPECT_NE(text.find("did not run"), std::string::npos) << text;
+}
+
+TEST(Push, RendersTheTwinAndHoldsWhatDoesNotMove) {
+  config::Scenario scenario = walk_scenario();
+  scenario.device.simulation.factors = {};
+  scenario.device.simulation.sensors = simulator::ideal_sensors();
+  ImpedanceConfig config;
+  config.frequency_Hz = {2.0};
+  config.periods = 3;
+  config.held = 0.4;
+  constexpr int kZ = 2;
+  const ImpedanceRun free =
+      push(scenario, config, {.name = "free", .has_friction = false, .is_rigid = false}, kZ);
+  ASSERT_EQ(free.mobility.size(), 1u);
+  const std::complex<double> wanted = {4.0, 2.0 * 3.14159265 * 2.0 * 6.0};  // 6 kg, 4 Ns/m
+  EXPECT_NEAR(std::abs(free.mobility[0] * wanted - 1.0), 0.0, 0.1);
+  EXPECT_EQ(free.static_peak, 0.0);
+
+  const ImpedanceRun held = push(scenario, config, {.name = "held", .has_friction = false}, kZ);
+  const ImpedanceRun blind =
+      push(scenario, config, {.name = "blind", .has_friction = false, .is_blind = true}, kZ);
+  EXPECT_LT(std::abs(held.mobility[0]), 0.02 * std::abs(free.mobility[0]));
+  EXPECT_GT(std::abs(blind.mobility[0]), 3.0 * std::abs(held.mobility[0]));
+  EXPECT_GT(blind.static_peak, held.static_peak);
+  EXPECT_GT(blind.static_peak, 5e-4);
+  EXPECT_LT(blind.static_peak, 2e-2);
+}
+
+}  // namespace
+}  // namespace hg::studies

@@ -1,0 +1,85 @@
+// Many seeds of a scenario: each one is itself, and the table tells the worst.
+
+#include "hg/studies/seed_ranges.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace hg::studies {
+namespace {
+
+Trial short_walk() {
+  Trial trial = {
+      .name = "walk", .hand = "", .scenario = config::load_scenario("models/scenarios/walk.yaml")};
+  trial.scenario.duration_s = 2.0;
+  return trial;
+}
+
+TEST(PlaySeeds, EverySeedIsPlayedOnceInOrderAndIsTheSameAgain) {
+  const std::vector<Trial> trials = {short_walk(), short_walk()};
+  const std::vector<SeededRun> runs = play_seeds(trials, 5, 3, {});
+  ASSERT_EQ(runs.size(), 6U);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    EXPECT_EQ(runs[i].trial, i / 3);
+    EXPECT_EQ(runs[i].seed, 5 + i % 3);
+    EXPECT_TRUE(runs[i].has_held);
+    EXPECT_GT(runs[i].joint_error, 0.0);
+    EXPECT_EQ(runs[i].missing, 3U) << "too short for its events";
+  }
+  EXPECT_NE(runs[0].joint_error, runs[1].joint_error) << "another seed";
+  EXPECT_EQ(runs[0].joint_error, runs[3].joint_error) << "the same seed";
+}
+
+TEST(PlaySeeds, AFaultAndALimitThatIsLeftHaveNotHeld) {
+  Trial trial = short_walk();
+  trial.scenario.faults = {{.kind = faults::find_kind("torque_sensor_nan"), .from_s = 1.5}};
+  const std::vector<SeededRun> runs = play_seeds({trial}, 1, 1, {});
+  EXPECT_EQ(runs[0].fault.code, FaultCode::kSensorNotFinite);
+  EXPECT_NEAR(runs[0].ended_s, 1.5, 0.01);
+  EXPECT_FALSE(have_all_held(runs));
+  EXPECT_NE(to_text({trial}, runs).find("100 measured value is not finite in 1 runs"),
+            std::string::npos);
+
+  Trial tight = short_walk();
+  for (LimitInfo& limit : tight.scenario.limits) {
+    if (limit.name == "hand x") limit.range = {-0.1, 0.1};
+  }
+  const std::vector<SeededRun> outside = play_seeds({tight}, 1, 1, {});
+  EXPECT_EQ(outside[0].length.name, "hand x");
+  EXPECT_GT(outside[0].length.excess, 0.3);
+  EXPECT_FALSE(have_all_held(outside));
+}
+
+TEST(PlaySeeds, TheScenariosOfStressBeginWell) {
+  std::vector<Trial> trials;
+  for (const auto& entry : std::filesystem::directory_iterator("models/stress")) {
+    if (entry.path().extension() != ".yaml") continue;
+    trials.push_back({.name = entry.path().stem().string(),
+                      .hand = "",
+                      .scenario = config::load_scenario(entry.path().string())});
+    trials.back().scenario.duration_s = 1.5;
+  }
+  EXPECT_EQ(trials.size(), 11U);
+  const std::vector<SeededRun> runs = play_seeds(trials, 1, 1, {});
+  EXPECT_TRUE(have_all_held(runs)) << to_text(trials, runs);
+}
+
+TEST(PlaySeeds, TheTableHasMedianAndWorst) {
+  const std::vector<Trial> trials = {short_walk()};
+  std::vector<SeededRun> runs(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    runs[i].has_held = true;
+    runs[i].length = {1e-3 * static_cast<double>(i * i), "elbow x"};
+  }
+  EXPECT_TRUE(have_all_held(runs));
+  const std::string page = to_markdown(trials, runs);
+  EXPECT_NE(page.find("| 3 of 3 | 3 of 3 | 0.00 / 0.00 | - | 1.00 / 4.00 | elbow x |"),
+            std::string::npos)
+      << page;
+  EXPECT_EQ(to_json(trials, runs)["runs"].size(), 3U);
+}
+
+}  // namespace
+}  // namespace hg::studies

@@ -1,0 +1,140 @@
+#include "hg/studies/tuning/proof.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hg/core/linear_algebra.h"
+#include "hg/studies/stability_map.h"
+
+namespace hg::tuning {
+namespace {
+
+Doubt late(const tracking::Config& believed) {
+  constexpr double kMore = 1.5;
+  tracking::Reality reality = {believed.actuators, believed.loop};
+  reality.loop.latency *= kMore;
+  return {fmt::format("latency x {:g}", kMore), reality};
+}
+
+}  // namespace
+
+std::vector<Doubt> doubts(const tracking::Config& believed) {
+  const tracking::Reality as_believed = {believed.actuators, believed.loop};
+  std::vector<Doubt> all = {{"as believed", as_believed}};
+  for (const double factor : {0.75, 1.25}) {
+    tracking::Reality rotors = as_believed, springs = as_believed, links = as_believed;
+    for (ActuatorModel& actuator : rotors.actuators) actuator.rotor_inertia *= factor;
+    for (ActuatorModel& actuator : springs.actuators) actuator.stiffness *= factor;
+    links.link_mass = factor;
+    all.push_back({fmt::format("rotors x {:g}", factor), rotors});
+    all.push_back({fmt::format("springs x {:g}", factor), springs});
+    all.push_back({fmt::format("links x {:g}", factor), links});
+  }
+  all.push_back(late(believed));
+  return all;
+}
+
+std::vector<Doubt> doubts_in_hand(const tracking::Config& believed) {
+  const tracking::Reality as_believed = {believed.actuators, believed.loop};
+  constexpr double kLighter = 0.65;
+  return {{"as believed", as_believed, 1.0, kLighter},
+          late(believed),
+          {"torques at their bounds", as_believed, 0.5, kLighter}};
+}
+
+std::vector<Doubt> doubts_in_friction(const tracking::Config& believed) {
+  std::vector<Doubt> all;
+  if (std::ranges::none_of(believed.actuators, has_presliding)) return all;
+  for (const double real : {0.5, 1.0, 1.25}) {
+    for (const double share : {0.5, 1.0, 1.25}) {
+      tracking::Reality reality = {believed.actuators, believed.loop};
+      reality.bristles.resize(static_cast<Eigen::Index>(believed.actuators.size()));
+      for (Eigen::Index i = 0; i < reality.bristles.size(); ++i) {
+        reality.bristles[i] =
+            real * presliding_stiffness(believed.actuators[static_cast<std::size_t>(i)]);
+      }
+      all.push_back({.what = fmt::format("bristles x {:g}, fed forward x {:g}", real, share * real),
+                     .reality = reality,
+                     .fed = share * real});
+    }
+  }
+  return all;
+}
+
+std::vector<Grasp> grasps(const Body& body) {
+  std::vector<Grasp> all;
+  const auto add = [&](const std::string& what, const person::HandImpedance& hand, double mass) {
+    Body held = body;
+    held.mass = std::min(body.mass, mass);
+    all.push_back({what, hand, held});
+  };
+  add("relaxed hand", person::hand(person::HandPreset::kRelaxed), 0.3);
+  add("normal hand", person::hand(person::HandPreset::kNormal), 0.4);
+  add("stiff hand", person::hand(person::HandPreset::kStiff), 0.9);
+  for (const double stiffness : {300.0, 1000.0, 2000.0}) {
+    add(fmt::format("spring of {:g} N/m", stiffness), studies::spring_hand({}, stiffness), 2.0);
+  }
+  return all;
+}
+
+Demands::Demands(const tracking::Config& believed, const Body& body,
+                 std::vector<Eigen::VectorXd> postures)
+    : body_(body),
+      doubts_(doubts(believed)),
+      doubts_in_hand_(doubts_in_hand(believed)),
+      grasps_(grasps(body)),
+      postures_(std::move(postures)) {
+  for (Doubt& doubt : doubts_in_friction(believed)) doubts_in_hand_.push_back(std::move(doubt));
+}
+
+std::vector<Case> Demands::cases(std::size_t posture) const {
+  std::vector<Case> all;
+  for (std::size_t doubt = 0; doubt < doubts_.size(); ++doubt) all.push_back({posture, doubt});
+  for (std::size_t doubt = 0; doubt < doubts_in_hand_.size(); ++doubt) {
+    for (int grasp = 0; grasp < static_cast<int>(grasps_.size()); ++grasp) {
+      all.push_back({posture, doubt, grasp});
+    }
+  }
+  return all;
+}
+
+const Doubt& Demands::doubt(const Case& one) const {
+  return (one.grasp < 0 ? doubts_ : doubts_in_hand_)[one.doubt];
+}
+
+double Demands::radius(const Device& device, const Case& one) const {
+  const Doubt& real = doubt(one);
+  const Eigen::VectorXd& q = postures_[one.posture];
+  const tracking::Config& config = device.loop.config;
+  const double scale = 1e-3 / config.dt;
+  if (one.grasp < 0) {
+    return std::pow(tracking::spectral_radius(device.loop, q, config.loop.latency, real.reality),
+                    scale);
+  }
+  const Grasp& grasp = grasps_[static_cast<std::size_t>(one.grasp)];
+  Body body = is_friction(one) ? body_ : grasp.body;
+  body.mass *= real.mass;
+  Device doubted = device;
+  if (is_friction(one)) doubted.loop.config.friction_share = real.fed;
+  doubted.loop.config.flatness_Hz *= real.follower;
+  return std::pow(hg::spectral_radius(linearise(doubted, real.reality, body, grasp.hand, {}, q).A),
+                  scale);
+}
+
+double Demands::excess(const Device& device, const Case& one) const {
+  const double in_hand = is_friction(one) ? kFrictionRadius : kHandRadius;
+  return radius(device, one) - (one.grasp < 0 ? kArmRadius : in_hand);
+}
+
+std::string Demands::name(const Case& one) const {
+  const std::string& what = doubt(one).what;
+  if (one.grasp < 0) return what;
+  const Grasp& grasp = grasps_[static_cast<std::size_t>(one.grasp)];
+  const double mass = is_friction(one) ? body_.mass : doubt(one).mass * grasp.body.mass;
+  return fmt::format("{}, {:.2g} kg, {}", grasp.what, mass, what);
+}
+
+}  // namespace hg::tuning

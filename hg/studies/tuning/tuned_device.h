@@ -1,0 +1,23 @@
+/// Inputs of tuning from a device file.
+#pragma once
+
+#include "hg/config/device.h"
+#include "hg/studies/tuning/handle_loop.h"
+
+namespace hg::tuning {
+
+/// The loop of a device with elastic joints, with the delay of the wrench that its simulation has.
+/// Throws SetupError for a device that cannot be tuned: one whose drives follow positions, with
+/// fewer than six joints, without an accelerometer, or whose sensors have no noise.
+Device device_of(const config::Device& device);
+
+/// Sensor noise of the simulation.
+Noise noise_of(const config::Device& device);
+
+/// Unmodelled friction: assumed share of the friction in the device file, Nm.
+Eigen::VectorXd unexpected_friction(const config::Device& device);
+
+/// Reality of the simulation, which differs from the controller's model.
+tracking::Reality simulated(const config::Device& device);
+
+}  // namespace hg::tuning
