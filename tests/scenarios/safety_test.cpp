@@ -14,7 +14,7 @@
 namespace hg {
 namespace {
 
-config::Scenario scenario(const std::string& name) {
+config::Scenario shipped_scenario(const std::string& name) {
   return config::load_scenario("models/scenarios/" + name + ".yaml");
 }
 
@@ -36,7 +36,7 @@ struct Machine {
       : scenario(std::move(s)),
         cycle(scenario::make_cycle(scenario)),
         device(scenario::make_simulated_device(scenario)) {}
-  explicit Machine(const std::string& name) : Machine(hg::scenario(name)) {}
+  explicit Machine(const std::string& name) : Machine(shipped_scenario(name)) {}
 
   void step() {
     device.read(sensors);
@@ -104,7 +104,7 @@ TEST(Safety, NoShippedScenarioIsStoppedOrTouchedByARuleWithAllSensorErrors) {
                         {"path", 1000, kStiff, 8},         {"walk", 1000, kNormal, 9},
                         {"walk", 2000, kRelaxed, 10}};
   for (const Case& c : cases) {
-    config::Scenario s = scenario(c.name);
+    config::Scenario s = shipped_scenario(c.name);
     config::set_rate(s.device, c.rate_Hz);
     s.script.hand = person::hand(c.hand);
     s.device.simulation.seed = s.device.simulation.sensors.seed = c.seed;
@@ -181,7 +181,7 @@ TEST(Safety, TheSafetyControllerTakesThePowerAwayWhateverTheProgramDoes) {
 
 // pushed by its twin's own force, with nobody there
 Machine pushed() {
-  config::Scenario s = scenario("free_space");
+  config::Scenario s = shipped_scenario("free_space");
   s.person = person::PersonKind::kNone;
   s.script.script.grasp_s = kInfinity;  // nor does anybody close the dead-man switch
   Machine machine(std::move(s));

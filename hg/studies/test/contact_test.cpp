@@ -7,13 +7,13 @@
 namespace hg::studies {
 namespace {
 
-config::Scenario scenario(const std::string& name) {
+config::Scenario shipped_scenario(const std::string& name) {
   return config::load_scenario("models/scenarios/" + name + ".yaml");
 }
 
 TEST(Contact, NothingIsFeltInFreeMotion) {
   for (const char* name : {"door", "free_space", "walk"}) {
-    config::Scenario free = scenario(name);
+    config::Scenario free = shipped_scenario(name);
     free.device.compliance.is_on = true;
     Player player(free);
     double largest = 0.0;
@@ -28,7 +28,7 @@ TEST(Contact, NothingIsFeltInFreeMotion) {
 }
 
 TEST(Contact, IsToldInMilliseconds) {
-  const config::Scenario walk = scenario("walk");
+  const config::Scenario walk = shipped_scenario("walk");
   const ContactConfig config;
   for (const HittingPoint& point : config.points) {
     const ContactRun run = hit(walk, config, {"chest", point, 0.25}, true, 1);
@@ -40,7 +40,7 @@ TEST(Contact, IsToldInMilliseconds) {
 }
 
 TEST(Contact, ABodyBearsLessWhereTheArmGivesWay) {
-  const config::Scenario walk = scenario("walk");
+  const config::Scenario walk = shipped_scenario("walk");
   const ContactConfig config;
   for (const bool is_clamped : {false, true}) {
     const ContactCase what = {"chest", config.points[0], 0.5, is_clamped};
