@@ -1,5 +1,5 @@
 # The C++ package: `cmake --install BUILD --component cpp --prefix PREFIX`, then
-# find_package(hapticgiant COMPONENTS ...) gives hapticgiant::MODULE; docs/packages.md.
+# find_package(hapticgiant COMPONENTS ...) gives hapticgiant::MODULE; docs/start/packages.md.
 #
 # Everything but what only the program needs.
 set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning tracking safety

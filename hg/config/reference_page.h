@@ -1,4 +1,5 @@
-/// The reference of all configuration files, docs/configuration.md, from their descriptions.
+/// The reference of all configuration files, docs/reference/configuration.md, from their
+/// descriptions.
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@
 namespace hg::config {
 namespace {
 
-constexpr const char* kPage = "docs/configuration.md";
+constexpr const char* kPage = "docs/reference/configuration.md";
 
 // HG_UPDATE_DOCS=1 in the environment writes the page instead of comparing it
 TEST(ReferencePage, CommittedPageIsCurrent) {

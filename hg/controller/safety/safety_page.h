@@ -1,4 +1,4 @@
-/// Generates the tables of docs/safety.md from rules.h and transitions.h.
+/// Generates the tables of docs/concepts/safety.md from rules.h and transitions.h.
 #pragma once
 
 #include <string>

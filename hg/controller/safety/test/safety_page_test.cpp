@@ -13,7 +13,7 @@
 namespace hg::safety {
 namespace {
 
-constexpr const char* kPage = "docs/safety.md";
+constexpr const char* kPage = "docs/concepts/safety.md";
 
 std::string read(const char* file) {
   std::ifstream stream(file);
@@ -46,7 +46,7 @@ TEST(SafetyPage, HasEveryRuleAndEveryStateAndEvent) {
 }
 
 TEST(SafetyPage, ThresholdsAreKeysThatExist) {
-  const std::string reference = read("docs/configuration.md");
+  const std::string reference = read("docs/reference/configuration.md");
   for (const Rule& rule : kRules) {
     const std::string text(rule.threshold);
     for (std::size_t at = text.find("monitor."); at != std::string::npos;

@@ -1,4 +1,4 @@
-/// docs/device_protocol.md shows the fields of the code, byte by byte.
+/// docs/reference/device_protocol.md shows the fields of the code, byte by byte.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ std::string section(const char* title) {
 }
 
 TEST(Document, ShowsEveryMessageByteByByte) {
-  std::ifstream file("docs/device_protocol.md");
+  std::ifstream file("docs/reference/device_protocol.md");
   const std::string document{std::istreambuf_iterator<char>(file), {}};
   for (const std::string& table :
        {section<Header>("Header"), section<Hello>("Hello"), section<Welcome>("Welcome"),
