@@ -33,9 +33,9 @@ template <typename Archive, Is<Description> T>
 void fields(Archive& a, T& description) {
   a("device", description.device, "name of the device as in its device.yaml, UTF-8");
   a("n_p", description.n_p, "gantry axes, 0..2");
-  a("n_m", description.n_m, "joints of the manipulator, 1..7");
+  a("n_m", description.n_m, "joints of the manipulator, 6 or 7");
   a("rate_Hz", description.rate_Hz, "frames per second");
-  a("interface", description.interface, "1 the drives follow q_m, 2 they are told torques");
+  a("interface", description.interface, "1 the drives follow q_m, 2 they give tau_m");
   a("is_lock_step", description.is_lock_step, "0 real time, 1 lock-step");
 }
 
@@ -71,9 +71,10 @@ void fields(Archive& a, T& sensors) {
   a("emergency_stop", sensors.safety.emergency_stop, "1: the safety inputs ask for a stop");
   a("operator_enable", sensors.safety.operator_enable,
     "1: the operator holds the enabling switch, or there is none");
-  a("override_key", sensors.safety.override_key, "1: it may move slowly with nobody at the handle");
+  a("override_key", sensors.safety.override_key,
+    "1: it may move slowly while no hand is at the handle");
   a("is_field_clear", sensors.safety.is_field_clear,
-    "1: nobody stands in the scanner's field, or there is no scanner");
+    "1: the scanner's field is empty, or there is no scanner");
   a("has_disagreement", sensors.safety.has_disagreement,
     "1: channels of a safety input differed for too long");
   a("driver_fault", sensors.driver_fault, "0, or a number of hg/signals/fault.h");

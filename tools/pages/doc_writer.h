@@ -12,10 +12,16 @@
 
 #include "hg/config/range.h"
 
-namespace hg::config {
+namespace hg::pages {
 
 class DocWriter {
  public:
+  using JointKey = config::JointKey;
+  using JointUnit = config::JointUnit;
+  using Need = config::Need;
+  using Range = config::Range;
+  template <class T>
+  using Choices = config::Choices<T>;
   using Names = std::span<const std::string>;
 
   bool number(std::string_view key, const double& value, const Range& range, std::string_view text,
@@ -38,7 +44,7 @@ class DocWriter {
   template <class T>
   bool choice(std::string_view key, const T& value, Choices<T> choices, std::string_view text) {
     std::string_view standard;
-    for (const Choice<T>& candidate : choices) {
+    for (const config::Choice<T>& candidate : choices) {
       if (candidate.value == value) standard = candidate.name;
     }
     return row(key, standard, Need::kOptional, names_of<T>(choices, "").substr(2), text);
@@ -70,7 +76,7 @@ class DocWriter {
  private:
   template <class T>
   static std::string names_of(Choices<T> choices, std::string text) {
-    for (const Choice<T>& candidate : choices) (text += ", ") += candidate.name;
+    for (const config::Choice<T>& candidate : choices) (text += ", ") += candidate.name;
     return text;
   }
   bool row(std::string_view key, std::string_view standard, Need need, std::string_view allowed,
@@ -81,4 +87,4 @@ class DocWriter {
   std::string rows_;
 };
 
-}  // namespace hg::config
+}  // namespace hg::pages

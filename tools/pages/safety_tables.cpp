@@ -1,4 +1,4 @@
-#include "hg/controller/safety/safety_page.h"
+#include "tools/pages/safety_tables.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,12 @@
 
 #include "hg/controller/safety/rules.h"
 #include "hg/controller/safety/transitions.h"
+#include "tools/pages/marks.h"
 
-namespace hg::safety {
+namespace hg::pages {
 namespace {
+
+using namespace safety;
 
 void add(std::string& text, std::initializer_list<std::string_view> parts) {
   for (const std::string_view part : parts) text.append(part);
@@ -102,26 +105,13 @@ std::string stops_list() {
   return text;
 }
 
-void replace(std::string& page, std::string_view name, const std::string& table) {
-  std::string mark;
-  add(mark, {"<!-- ", name, " -->\n"});
-  const std::size_t begin = page.find(mark);
-  if (begin == std::string::npos) return;
-  const std::size_t first = begin + mark.size();
-  const std::size_t end = page.find("<!-- end -->", first);
-  if (end == std::string::npos) return;
-  std::string text;
-  add(text, {"\n", table, "\n"});
-  page.replace(first, end - first, text);
-}
-
 }  // namespace
 
-std::string with_tables(std::string page) {
-  replace(page, "transitions", transitions_table());
-  replace(page, "rules", rules_table());
-  replace(page, "stops", stops_list());
+std::string with_safety_tables(std::string page) {
+  replace_marked(page, "transitions", transitions_table());
+  replace_marked(page, "rules", rules_table());
+  replace_marked(page, "stops", stops_list());
   return page;
 }
 
-}  // namespace hg::safety
+}  // namespace hg::pages

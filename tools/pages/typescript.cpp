@@ -1,4 +1,4 @@
-#include "hg/viewer_server/typescript.h"
+#include "tools/pages/typescript.h"
 
 #include <array>
 #include <concepts>
@@ -11,8 +11,10 @@
 #include "hg/viewer_server/frame_message.h"
 #include "hg/viewer_server/scene_message.h"
 
-namespace hg::viewer_server {
+namespace hg::pages {
 namespace {
+
+using namespace viewer_server;
 
 constexpr std::string_view kHead =
     "// Generated from hg/viewer_server/*_message.h; do not edit. Units are part of the names; B "
@@ -122,4 +124,4 @@ std::string typescript_text() {
   return text;
 }
 
-}  // namespace hg::viewer_server
+}  // namespace hg::pages

@@ -1,11 +1,13 @@
-#include "hg/config/doc_writer.h"
+#include "tools/pages/doc_writer.h"
 
 #include <cmath>
 
 #include "hg/model/urdf.h"
 
-namespace hg::config {
+namespace hg::pages {
 namespace {
+
+using namespace config;
 
 std::string default_of(double value) {
   if (std::isnan(value)) return "";
@@ -124,4 +126,4 @@ void DocWriter::inside(std::string_view prefix, const std::function<void(DocWrit
   prefix_ = outer;
 }
 
-}  // namespace hg::config
+}  // namespace hg::pages

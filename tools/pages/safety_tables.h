@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace hg::safety {
+namespace hg::pages {
 
 /// Returns `page` with the text between the marks `<!-- NAME -->` and `<!-- end -->` regenerated,
 /// for the names transitions, rules and stops.
-std::string with_tables(std::string page);
+std::string with_safety_tables(std::string page);
 
-}  // namespace hg::safety
+}  // namespace hg::pages

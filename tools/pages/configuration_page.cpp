@@ -1,4 +1,4 @@
-#include "hg/config/reference_page.h"
+#include "tools/pages/configuration_page.h"
 
 #include "hg/config/describe_bystander.h"
 #include "hg/config/describe_changes.h"
@@ -14,10 +14,12 @@
 #include "hg/config/describe_tool.h"
 #include "hg/config/describe_twin.h"
 #include "hg/config/describe_twin_joints.h"
-#include "hg/config/doc_writer.h"
+#include "tools/pages/doc_writer.h"
 
-namespace hg::config {
+namespace hg::pages {
 namespace {
+
+using namespace config;
 
 constexpr const char* kIntroduction = R"(# Configuration files
 
@@ -120,7 +122,7 @@ std::string scenario_table() {
 
 }  // namespace
 
-std::string reference_page() {
+std::string configuration_page() {
   std::string page = kIntroduction;
   const auto section = [&](const std::string& title, const std::string& text) {
     page += "\n" + title + "\n\n" + text;
@@ -140,4 +142,4 @@ std::string reference_page() {
   return page;
 }
 
-}  // namespace hg::config
+}  // namespace hg::pages

@@ -1,18 +1,18 @@
-/// docs/reference/device_protocol.md shows the fields of the code, byte by byte.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "tools/pages/datagram_tables.h"
 
-#include <fstream>
-#include <iterator>
-#include <string>
+#include <fmt/format.h>
+
 #include <type_traits>
 
 #include "hg/device/udp/codec.h"
+#include "tools/pages/marks.h"
 
-namespace hg::udp {
+namespace hg::pages {
 namespace {
 
-/// Archive that writes a table.
+using namespace udp;
+
+// The archive that writes one row per field.
 class Table {
  public:
   explicit Table(std::size_t offset) : offset_(offset) {}
@@ -48,7 +48,6 @@ class Table {
  private:
   void row(std::size_t size, const std::string& type, const std::string& name,
            const std::string& note) {
-    EXPECT_EQ(offset_ % std::min<std::size_t>(size, 8), 0U) << name << " is not aligned";
     text += fmt::format("| {} | {} | {} | {} |\n", offset_, type, name, note);
     offset_ += size;
   }
@@ -57,35 +56,25 @@ class Table {
 
 template <typename Message>
 std::string section(const char* title) {
-  Table table(std::same_as<Message, Header> ? 0 : size_of<Header>());
+  Table table(size_of<Header>());
   const Message message{};
   fields(table, message);
-  if constexpr (std::same_as<Message, Header>) {
-    return fmt::format("### Header\n\n{}", table.text);
-  } else {
-    return fmt::format("### {} (type {}, {} bytes)\n\n{}| {} | u32 | checksum | |\n", title,
-                       static_cast<int>(kTypeOf<Message>), table.end() + 4, table.text,
-                       table.end());
-  }
-}
-
-TEST(Document, ShowsEveryMessageByteByByte) {
-  std::ifstream file("docs/reference/device_protocol.md");
-  const std::string document{std::istreambuf_iterator<char>(file), {}};
-  for (const std::string& table :
-       {section<Header>("Header"), section<Hello>("Hello"), section<Welcome>("Welcome"),
-        section<Ready>("Ready"), section<SensorFrame>("Sensors"), section<CommandFrame>("Command"),
-        section<Goodbye>("Goodbye")}) {
-    EXPECT_NE(document.find(table), std::string::npos) << "should stand there:\n\n" << table;
-  }
-}
-
-TEST(Document, EveryMessageFitsIntoADatagramThatNoNetworkDivides) {
-  for (const std::size_t size : {size_of<Hello>(), size_of<Welcome>(), size_of<SensorFrame>(),
-                                 size_of<CommandFrame>(), size_of<Goodbye>()}) {
-    EXPECT_LE(size_of<Header>() + size + 4, kLargestDatagram);
-  }
+  return fmt::format("\n### {} (type {}, {} bytes)\n\n{}| {} | u32 | checksum | |\n", title,
+                     static_cast<int>(kTypeOf<Message>), table.end() + 4, table.text, table.end());
 }
 
 }  // namespace
-}  // namespace hg::udp
+
+std::string with_datagram_tables(std::string page) {
+  Table header(0);
+  const Header fields_of_header{};
+  fields(header, fields_of_header);
+  replace_marked(page, "messages",
+                 "### Header\n\n" + header.text + section<Hello>("Hello") +
+                     section<Welcome>("Welcome") + section<Ready>("Ready") +
+                     section<SensorFrame>("Sensors") + section<CommandFrame>("Command") +
+                     section<Goodbye>("Goodbye"));
+  return page;
+}
+
+}  // namespace hg::pages

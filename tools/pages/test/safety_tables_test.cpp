@@ -1,35 +1,21 @@
-#include "hg/controller/safety/safety_page.h"
+#include "tools/pages/safety_tables.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "hg/controller/safety/rules.h"
 #include "hg/controller/safety/transitions.h"
+#include "hg/core/open_file.h"
+#include "tools/pages/configuration_page.h"
 
-namespace hg::safety {
+namespace hg::pages {
 namespace {
 
-constexpr const char* kPage = "docs/concepts/safety.md";
+using namespace safety;
 
-std::string read(const char* file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-// HG_UPDATE_DOCS=1 in the environment writes the tables instead of comparing them
-TEST(SafetyPage, CommittedTablesAreCurrent) {
-  const std::string committed = read(kPage);
-  const std::string expected = with_tables(committed);
-  if (std::getenv("HG_UPDATE_DOCS") != nullptr) std::ofstream(kPage) << expected;
-  EXPECT_EQ(read(kPage), expected) << "run safety_test with HG_UPDATE_DOCS=1 and commit " << kPage;
-}
-
-TEST(SafetyPage, HasEveryRuleAndEveryStateAndEvent) {
-  const std::string page = with_tables(read(kPage));
+TEST(SafetyTables, HasEveryRuleAndEveryStateAndEvent) {
+  const std::string page = with_safety_tables(read_file("docs/concepts/safety.md"));
   for (const Rule& rule : kRules) {
     const std::string number = std::to_string(static_cast<int>(rule.code));
     EXPECT_NE(page.find("| " + number + " | " + std::string(rule.name) + " |"), std::string::npos);
@@ -45,8 +31,8 @@ TEST(SafetyPage, HasEveryRuleAndEveryStateAndEvent) {
   }
 }
 
-TEST(SafetyPage, ThresholdsAreKeysThatExist) {
-  const std::string reference = read("docs/reference/configuration.md");
+TEST(SafetyTables, ThresholdsAreKeysThatExist) {
+  const std::string reference = configuration_page();
   for (const Rule& rule : kRules) {
     const std::string text(rule.threshold);
     for (std::size_t at = text.find("monitor."); at != std::string::npos;
@@ -58,4 +44,4 @@ TEST(SafetyPage, ThresholdsAreKeysThatExist) {
 }
 
 }  // namespace
-}  // namespace hg::safety
+}  // namespace hg::pages
