@@ -20,7 +20,8 @@
 #   make headers checks that every header compiles alone
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
 #                FUZZ_SECONDS=600 of random bytes each, under sanitizers. What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
-#   make docs    builds the pages of docs/ as a searchable site: build/site/index.html
+#   make docs    writes the pages and tables that are generated from the code (tools/pages), and
+#                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
 #                memory, faults and limits; begun again it goes on where it was (tools/soak.py)
 #
@@ -132,6 +133,11 @@ $(DOCS_VENV)/bin/mkdocs: tools/requirements-docs.txt
 	@touch $@
 
 docs: $(DOCS_VENV)/bin/mkdocs
+	@tools/setup.sh test
+	@tools/configure.sh $(PRESET) test
+	@cmake --build $(BUILD) --target hg_pages _core_stubs
+	@$(BUILD)/hg_pages
+	@cmake --install $(BUILD) --component python --prefix build/docs_python >/dev/null
 	@NO_MKDOCS_2_WARNING=1 $< build --quiet
 	@echo "docs: build/site/index.html"
 

@@ -1,5 +1,5 @@
 # The C++ package: `cmake --install BUILD --component cpp --prefix PREFIX`, then
-# find_package(hapticgiant COMPONENTS ...) gives hapticgiant::MODULE; docs/packages.md.
+# find_package(hapticgiant COMPONENTS ...) gives hapticgiant::MODULE; docs/start/packages.md.
 #
 # Everything but what only the program needs.
 set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning tracking safety
@@ -7,7 +7,7 @@ set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning
 # headers that only their own module includes; Eigen or YAML show in them
 set(HG_PRIVATE_HEADERS
   "/hqp/(cone|dense_least_squares|direct_elimination|elimination|primal|rows|sweep|workspace)[.]h$"
-  "/config/(describe_.*|doc_writer|loader|range|read_chain)[.]h$")
+  "/config/(describe_.*|loader|range|read_chain)[.]h$")
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)

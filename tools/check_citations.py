@@ -3,8 +3,8 @@
 A citation is a tag in brackets, with sections for the tags of the handbook: `[HANDBOOK] 1.5, 1.6`,
 `[HANDBOOK] 4.1-4.4`, `[C] 3 and 4`, also "handbook 10.3" in words. A number like 1.2 behind a tag
 of origin, `[A] 1.2`, is a section of the handbook, too. Tags have to stand in the tables of
-docs/references.md, sections as headings in docs/handbook. Relative links of Markdown pages need
-their file and, behind #, their heading; docs/NAME.md in any text needs its page.
+docs/reference/references.md, sections as headings in docs/handbook. Relative links of Markdown
+pages need their file and, behind #, their heading; docs/NAME.md in any text needs its page.
 
 Exits with 1 and one line per fault: file:line: what is cited, what was expected, what is nearest.
 """
@@ -16,7 +16,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-REFERENCES = "docs/references.md"
+REFERENCES = "docs/reference/references.md"
 HANDBOOK = "docs/handbook/"
 NOT_TEXT = (".gz", ".lock", ".png", ".skip", ".svg", ".csv", ".json")
 SKIPPED = ("tests/fuzz/", "viewer/package-lock.json", "tools/check_citations.py")

@@ -1,4 +1,5 @@
-/// `hapticgiant bench`: solver, control cycle and laws, measured in one run; docs/benchmarks.md.
+/// `hapticgiant bench`: solver, control cycle and laws, measured in one run;
+/// docs/reports/benchmarks.md.
 #pragma once
 
 #include <string>

@@ -52,7 +52,7 @@ void print(const CheckReport& report) {
   print_out("\n{}: {}, {}, {}\n", counted(static_cast<int>(report.files.size()), "file"),
             counted(faults, "fault"), counted(count(report, Severity::kWarning), "warning"),
             counted(count(report, Severity::kNote), "note"));
-  if (faults > 0) print_out("Every key, its range and meaning: docs/configuration.md\n");
+  if (faults > 0) print_out("Every key, its range and meaning: docs/reference/configuration.md\n");
 }
 
 std::string to_json(const CheckReport& report) {

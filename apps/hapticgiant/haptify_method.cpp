@@ -17,7 +17,7 @@ std::vector<std::string> method_of(const haptify::Benchmark& result) {
        "without an error of their own. What the device's own sensors get wrong is in the "
        "figures: it is controlled with them.",
        "Person: Haptify's user holds and leads the handle by hand; here a scripted hand of "
-       "docs/person.md (arm, grip, tremor) does.",
+       "docs/concepts/person.md (arm, grip, tremor) does.",
        "Corner frequencies, speeds and durations of Haptify's protocol are not in the paper: "
        "vibration "
        "counts above 20 Hz, and speeds are ours. Forces of free motion depend on them, because "

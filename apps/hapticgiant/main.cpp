@@ -123,7 +123,7 @@ void add_run(CLI::App& app, hg::apps::RunArguments& run, int& exit_code) {
       "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one");
   command
       ->add_option("--key-file", run.key_file,
-                   "secret that the remote device has, too (docs/device_protocol.md)")
+                   "secret that the remote device has, too (docs/reference/device_protocol.md)")
       ->needs("--device-address");
   command
       ->add_flag("--without-start-test", run.without_start_test,
@@ -267,18 +267,18 @@ void add_simulate(CLI::App& app, hg::apps::SimulateArguments& simulate, int& exi
           "the key")
       ->required();
   command->add_option("--key-file", simulate.key_file,
-                      "secret that clients must have, too (docs/device_protocol.md)");
+                      "secret that clients must have, too (docs/reference/device_protocol.md)");
   command->add_flag("--fast", simulate.is_fast,
                     "lock-step: each side waits for the other (run --fast) instead of real time");
   command->add_option("--capture", simulate.capture,
-                      "write every datagram to this pcap file (docs/device_protocol.md)");
+                      "write every datagram to this pcap file (docs/reference/device_protocol.md)");
   command->callback([&simulate, &exit_code] { exit_code = hg::apps::simulate(simulate); });
 }
 
 void add_start_test(CLI::App& app, hg::apps::StartTestArguments& test, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "start-test",
-      "Brakes and stop inputs, step by step, before the first run of a day (docs/start_test.md).");
+  CLI::App* command = app.add_subcommand("start-test",
+                                         "Brakes and stop inputs, step by step, before the first "
+                                         "run of a day (docs/reference/start_test.md).");
   command->footer(
       "Examples:\n"
       "  hapticgiant start-test                   the simulated device, with a simulated operator\n"
@@ -288,7 +288,7 @@ void add_start_test(CLI::App& app, hg::apps::StartTestArguments& test, int& exit
                       "HOST:PORT of a remote device instead of a simulated one");
   command
       ->add_option("--key-file", test.key_file,
-                   "secret that the remote device has, too (docs/device_protocol.md)")
+                   "secret that the remote device has, too (docs/reference/device_protocol.md)")
       ->needs("--device-address");
   command->add_flag("--fast", test.is_fast, "lock-step with a remote device that is simulated")
       ->needs("--device-address");
@@ -332,7 +332,8 @@ void add_new(CLI::App& app, hg::apps::NewArguments& arguments, int& exit_code) {
 
 void add_bench(CLI::App& app, hg::apps::BenchArguments& arguments, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "bench", "How fast and how right solver, cycle and laws are; minutes (docs/benchmarks.md).");
+      "bench",
+      "How fast and how right solver, cycle and laws are; minutes (docs/reports/benchmarks.md).");
   command->footer(
       "Examples:\n"
       "  hapticgiant bench                        everything, on the three scenarios\n"
@@ -355,7 +356,8 @@ void add_hqp(CLI::App& app, hg::apps::HqpSolveArguments& arguments, int& exit_co
       "Examples:\n"
       "  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --timing\n"
       "  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --problem 7 --explain");
-  solve->add_option("file", arguments.file, "problem file, format in docs/hqp.md")->required();
+  solve->add_option("file", arguments.file, "problem file, format in docs/concepts/hqp.md")
+      ->required();
   solve->add_option("--problem", arguments.problem, "only this problem, counted from 0")
       ->check(at_least(0));
   solve->add_flag("--explain", arguments.explains, "levels, rows that act and why, in words");
@@ -403,7 +405,8 @@ void add_identify(CLI::App& app, hg::apps::IdentifyArguments& arguments,
   payload->callback(
       [&arguments, &exit_code] { exit_code = hg::apps::identify_payload(arguments); });
   CLI::App* friction = identify->add_subcommand(
-      "friction", "Friction of each joint from a recording of its motion (docs/friction.md).");
+      "friction",
+      "Friction of each joint from a recording of its motion (docs/concepts/friction.md).");
   friction->footer(
       "Examples:\n"
       "  hapticgiant run free_space --user friction --fast   moves all joints\n"
@@ -485,7 +488,7 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
   CLI::App* command =
       app.add_subcommand("experiment",
                          "The paper's experiments, and what the simulated device is like to hold "
-                         "(docs/experiments, docs/simulator.md).");
+                         "(docs/experiments, docs/concepts/simulator.md).");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n"
@@ -523,7 +526,8 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
 
 void add_faults(CLI::App& app, hg::apps::FaultsArguments& arguments, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "faults", "Breaks the simulated machine on purpose, hundreds of times (docs/safety.md).");
+      "faults",
+      "Breaks the simulated machine on purpose, hundreds of times (docs/concepts/safety.md).");
   command->footer(
       "Examples:\n"
       "  hapticgiant faults\n"

@@ -196,7 +196,8 @@ void print_datasheet(const Datasheet& sheet) {
   print_stopping(sheet);
   print_out(
       "  Of {} postures drawn uniformly in the joint ranges (seed {}), handle in the worst "
-      "direction, at rest,\n  against the ratings less gravity. How to read it: docs/check.md\n",
+      "direction, at rest,\n  against the ratings less gravity. How to read it: "
+      "docs/start/check.md\n",
       sheet.postures, sheet.options.seed);
 }
 

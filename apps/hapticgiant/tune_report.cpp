@@ -131,7 +131,8 @@ std::string tune_yaml(const TuneReport& report) {
 std::string tune_markdown(const TuneReport& report) {
   std::string text = fmt::format(
       "# Filters and poles of {}\n\n`{}`\n\nComputed from the linear loop around the handle "
-      "(docs/control.md): without torque limits and with no friction but that of the row that says "
+      "(docs/concepts/control.md): without torque limits and with no friction but that of the row "
+      "that says "
       "so. Play it before you trust it: `hapticgiant haptify`, `hapticgiant experiment "
       "stability-map`.\n\n| | now | tuned |\n| --- | --- | --- |\n",
       report.name, report.command);

@@ -18,7 +18,7 @@
 namespace hg::bench {
 
 /// Options of the cascade, chosen for the fewest errors on the recorded problems
-/// (docs/benchmarks.md).
+/// (docs/reports/benchmarks.md).
 struct CascadeOptions {
   double hessian_epsilon = 1e-11;
   double bound_epsilon = 1e-9;

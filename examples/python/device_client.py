@@ -1,4 +1,6 @@
-"""A client of the device protocol (docs/device_protocol.md) with nothing but the standard library.
+"""A client of the device protocol with nothing but the standard library.
+
+The protocol: docs/reference/device_protocol.md.
 
 Connects to a server, for example `hapticgiant simulate door --listen 127.0.0.1:4810`, takes the
 device as it is, prints what its sensors say, and holds the arm where it is.

@@ -1,6 +1,6 @@
-"""The HapticGiant in MuJoCo, as a server of the device protocol (docs/device_protocol.md).
+"""The HapticGiant in MuJoCo, as a server of the device protocol.
 
-The links come from the URDF. Each joint has a motor behind a spring (handbook 1.2: rotor inertia,
+The protocol: docs/reference/device_protocol.md. The links come from the URDF. Each joint has a motor behind a spring (handbook 1.2: rotor inertia,
 stiffness, damping, friction), the gantry follows its drive model, the scenario's person holds the
 handle. Sensors are exact. Needs the packages hapticgiant and mujoco.
 

@@ -56,7 +56,7 @@ void describe_bystander(V& v, BystanderDraft& d) {
         describe(child, d, *d.bystander);
       },
       "somebody who stands in the way of the arm, whom only a simulated device can hit, "
-      "docs/compliance.md");
+      "docs/concepts/compliance.md");
 }
 
 }  // namespace hg::config

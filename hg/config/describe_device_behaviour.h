@@ -207,7 +207,7 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       "gains that pull the handle onto the twin, eq. (11)");
   v.group(
       "rendering", [&](auto& child) { describe(child, d.rendering, d.manipulator.size()); },
-      "the law, see docs/law.md");
+      "the law, see docs/concepts/law.md");
   describe_prepositioning(v, d);
   describe_estimation(v, d);
   v.group(
@@ -221,7 +221,7 @@ void describe_behaviour(V& v, DeviceDraft& d) {
         child.number("least_mass_kg", d.passivity.least_mass, kPositive,
                      "that is felt at the handle while it is calmed");
       },
-      "energy and oscillation at the handle, docs/passivity.md");
+      "energy and oscillation at the handle, docs/concepts/passivity.md");
   v.group(
       "compliance",
       [&](auto& child) {
@@ -229,7 +229,7 @@ void describe_behaviour(V& v, DeviceDraft& d) {
                    "arm and gantry give way to what touches the arm, before the device stops; only "
                    "with torque sensors in the joints");
       },
-      "contact anywhere along the arm, docs/compliance.md");
+      "contact anywhere along the arm, docs/concepts/compliance.md");
   v.group(
       "collision",
       [&](auto& child) {
@@ -238,20 +238,20 @@ void describe_behaviour(V& v, DeviceDraft& d) {
         child.number("safe_distance_m", d.safe_distance, kPositive,
                      "between any two parts while the device brakes");
       },
-      "self-collision, from the collision elements of the URDF; docs/collision.md");
+      "self-collision, from the collision elements of the URDF; docs/concepts/collision.md");
   for (double* distance : {&d.monitor.stop_distance, &d.monitor.slide_stop_distance,
                            &d.monitor.gantry_stop_distance, &d.monitor.turn_stop_distance}) {
     *distance = kNoDefault;  // from the ratings
   }
   v.group(
       "monitor", [&](auto& child) { describe(child, d.monitor); },
-      "when the device is stopped by a fault, docs/safety.md");
+      "when the device is stopped by a fault, docs/concepts/safety.md");
   v.group(
       "sanitiser", [&](auto& child) { describe(child, d.sanitiser); },
-      "what is taken out of commands near and beyond limits, docs/safety.md");
+      "what is taken out of commands near and beyond limits, docs/concepts/safety.md");
   v.group(
       "start_test", [&](auto& child) { describe(child, d.start_test, d.input_names); },
-      "brakes and stop inputs before the first run of a day, docs/start_test.md");
+      "brakes and stop inputs before the first run of a day, docs/reference/start_test.md");
 }
 
 }  // namespace hg::config

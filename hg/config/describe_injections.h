@@ -73,13 +73,13 @@ void describe(V& v, InjectionsDraft& d) {
            Need::kRequired);
   v.number("for_s", fault.for_s, kNotNegative, "how long it lasts; 0: until the end");
   v.name("fault", kind, d.kinds, "a fault",
-         "what goes wrong, see the list in docs/fault_campaign.md", Need::kRequired);
+         "what goes wrong, see the list in docs/reports/fault_campaign.md", Need::kRequired);
   v.name(
       "of", name, d.names, "a joint, a component or an input",
       "a joint; x, y, z, torque x, torque y, torque z of the sensor at the handle; stop buttons, "
       "operator enable, dead-man switch, override key of the safety controller");
   v.number("magnitude", magnitude, {.lb = -1e6, .ub = 1e6},
-           "how much of it; unit and usual sizes in docs/fault_campaign.md");
+           "how much of it; unit and usual sizes in docs/reports/fault_campaign.md");
 
   fault.kind = &faults::kinds()[static_cast<std::size_t>(kind)];
   const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());

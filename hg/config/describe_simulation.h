@@ -215,7 +215,7 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
       "true values over those of the device file and its URDF");
   v.group(
       "safety", [&](auto& child) { describe(child, draft.simulation.safety); },
-      "the safety controller, docs/safety.md");
+      "the safety controller, docs/concepts/safety.md");
   v.group(
       "end_stops", [&](auto& child) { describe_end_stops(child, draft.simulation); },
       "buffers at the ends of all joints");

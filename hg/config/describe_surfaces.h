@@ -83,7 +83,7 @@ void describe(V& v, std::vector<SurfaceDraft>& surfaces) {
            "of the spring between handle and surface");
   v.number("damping_Ns_per_m", d.damping, range_of(surfaces::kDamping),
            "against the motion of the handle inside; without it critical for the twin, and the "
-           "surface catches what meets it, docs/environment.md");
+           "surface catches what meets it, docs/concepts/environment.md");
   v.number("friction", d.surface.friction, range_of(surfaces::kFriction),
            "coefficient of Coulomb friction");
 }
@@ -92,7 +92,7 @@ template <class V>
 void describe_surfaces(V& v, std::vector<SurfaceDraft>& surfaces) {
   v.list(
       "surfaces", [&](auto& child) { describe(child, surfaces); },
-      "virtual surfaces that push the end effector of the twin, docs/environment.md");
+      "virtual surfaces that push the end effector of the twin, docs/concepts/environment.md");
   v.rule(surfaces.size() <= surfaces::kMaxSurfaces, "surfaces", "at most 64 surfaces");
 }
 

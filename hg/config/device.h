@@ -1,4 +1,4 @@
-/// A device from its YAML file: device.yaml, described in docs/configuration.md.
+/// A device from its YAML file: device.yaml, described in docs/reference/configuration.md.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-/// A whole run from its YAML file: scenario.yaml, described in docs/configuration.md.
+/// A whole run from its YAML file: scenario.yaml, described in docs/reference/configuration.md.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-/// A scripted hand from its YAML file: script.yaml, described in docs/configuration.md.
+/// A scripted hand from its YAML file: script.yaml, described in docs/reference/configuration.md.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 /// Sensors of the simulated machine and its differences from the controller's model, from a YAML
-/// file: simulation.yaml, described in docs/configuration.md.
+/// file: simulation.yaml, described in docs/reference/configuration.md.
 #pragma once
 
 #include <cstdint>

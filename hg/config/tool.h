@@ -1,4 +1,4 @@
-/// A tool, held by the user, from its YAML file, described in docs/configuration.md.
+/// A tool, held by the user, from its YAML file, described in docs/reference/configuration.md.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-/// A twin from its YAML file: twin.yaml, described in docs/configuration.md.
+/// A twin from its YAML file: twin.yaml, described in docs/reference/configuration.md.
 #pragma once
 
 #include <filesystem>

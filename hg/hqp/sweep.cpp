@@ -8,7 +8,8 @@ namespace {
 
 // Rest of a gradient, relative to its terms, up to which direct elimination has cancelled it.
 constexpr double kSmallRest = 1e-10;
-// Steps from the first point, docs/hqp.md: more help where few rows act, and harm where many do.
+// Steps from the first point, docs/concepts/hqp.md: more help where few rows act, and harm where
+// many do.
 constexpr int kVariablesPerEarlyStep = 6;
 // Rest of a gradient, relative to its terms, of a level that counts as optimal by values alone.
 constexpr double kOptimalRest = 1e-7;

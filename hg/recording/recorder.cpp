@@ -28,7 +28,7 @@ using namespace std::chrono_literals;
 constexpr double kRingSeconds = 0.7;  // outlasts the pauses of a busy disk
 // Of nominal time; with the ring: the maximum loss in a crash
 constexpr double kFlushSeconds = 0.25;
-static_assert(kRingSeconds + kFlushSeconds < 1.0, "the promise of docs/recording.md");
+static_assert(kRingSeconds + kFlushSeconds < 1.0, "the promise of docs/reference/recording.md");
 constexpr double kToolRate_Hz = 100.0;  // rate of the messages for other tools
 constexpr auto kPollPeriod = 5ms;  // polled: waking the thread from the loop would be a system call
 constexpr int kIdlePolls = 50;     // after that, a paused loop is flushed, too

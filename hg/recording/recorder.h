@@ -1,4 +1,4 @@
-/// Records a run into one MCAP file; docs/recording.md lists topics and schemas.
+/// Records a run into one MCAP file; docs/reference/recording.md lists topics and schemas.
 ///
 /// The control loop pushes samples into a ring; a thread of the recorder encodes, compresses and
 /// writes them. Log times are the start plus the nominal time of the samples. Errors while running

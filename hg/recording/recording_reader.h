@@ -1,4 +1,5 @@
-/// Reads a recording back into memory, downsampled for display. docs/recording.md lists its topics.
+/// Reads a recording back into memory, downsampled for display. docs/reference/recording.md lists
+/// its topics.
 #pragma once
 
 #include <cstddef>

@@ -42,7 +42,7 @@ class SchemaWriter {
 
  private:
   // appends the meanings of an enum's numbers; fault codes have a table of their own,
-  // docs/safety.md
+  // docs/concepts/safety.md
   template <typename T>
   static std::string with_numbers(const std::string& note) {
     if constexpr (std::is_enum_v<T> && sizeof(T) == 1) {

@@ -11,7 +11,7 @@
 
 namespace hg {
 
-/// Signals of the device's safety controller (PLC), docs/safety.md, [HANDBOOK] 6.8.
+/// Signals of the device's safety controller (PLC), docs/concepts/safety.md, [HANDBOOK] 6.8.
 struct SafetyInputs {
   bool emergency_stop = false;    ///< Stop request: button, or fault of the safety controller
   bool operator_enable = true;    ///< The operator holds the enabling switch

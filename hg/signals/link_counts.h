@@ -6,7 +6,7 @@
 
 namespace hg {
 
-/// Datagrams by outcome; docs/device_protocol.md describes the reaction to each.
+/// Datagrams by outcome; docs/reference/device_protocol.md describes the reaction to each.
 struct LinkCounts {
   std::uint64_t sent = 0;
   std::uint64_t received = 0;       ///< Valid datagrams of this session, each counted once

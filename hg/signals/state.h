@@ -19,7 +19,7 @@
 
 namespace hg {
 
-/// Operating states, docs/safety.md.
+/// Operating states, docs/concepts/safety.md.
 enum class Mode : std::uint8_t {
   kOff = 0,
   kReady = 1,

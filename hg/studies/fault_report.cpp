@@ -230,7 +230,8 @@ std::string to_markdown(const Campaign& campaign) {
   for (const Cells& cells : table_of(campaign)) text += line(cells);
   return fmt::format(
       "# What became of {} cases of faults on purpose\n\n"
-      "Written by `hapticgiant faults --markdown`; [safety.md](safety.md) says what the columns "
+      "Written by `hapticgiant faults --markdown`; [safety.md](../concepts/safety.md) says what "
+      "the columns "
       "mean.\n"
       "Seed {}; {}: {}.\n\n{}\n"
       "## The faults\n\n"

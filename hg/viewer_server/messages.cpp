@@ -332,7 +332,7 @@ std::string_view refusal_text(DecodeStatus status) noexcept {
     case DecodeStatus::kCommand:
       return "";
     case DecodeStatus::kMalformed:
-      return "not a message of docs/viewer.md";
+      return "not a message of docs/start/viewer.md";
     case DecodeStatus::kOutOfRange:
       return "a number or name is out of range";
   }

@@ -3,7 +3,7 @@
 ///
 /// HTTP and WebSocket, on 127.0.0.1 by default. Every request but those for the files of the page
 /// needs the token of url(), and every request a Host of this server; the WebSocket also an Origin
-/// of this server (against DNS rebinding). Protocol: docs/viewer.md, fields:
+/// of this server (against DNS rebinding). Protocol: docs/start/viewer.md, fields:
 /// viewer/src/messages.ts.
 ///
 /// One thread of its own does all the work. The functions below may be called from one other

@@ -25,7 +25,7 @@ using config::Scenario;
 void bind_options(nb::module_& module) {
   using rendering::Bounds;
   using rendering::Law;
-  nb::enum_<Law>(module, "Law", "How limits become forces; docs/law.md.")
+  nb::enum_<Law>(module, "Law", "How limits become forces; docs/concepts/law.md.")
       .value("GAUSS", Law::kGauss, "Gauss' principle of least constraint")
       .value("PAPER", Law::kPaper, "[HG] (20)-(26)");
   nb::enum_<Bounds>(module, "Bounds", "How limits become bounds on accelerations.")

@@ -320,7 +320,7 @@ void bind_hqp(nb::module_& module) {
              "ValueError with the first row that is not right: not finite, lb > ub, weight <= 0; "
              "SetupError for options that are not.");
   module.def("read_problems", &hqp::read_problems, nb::arg("file"),
-             "All problems of a file in the format of docs/hqp.md, plain or gzipped.");
+             "All problems of a file in the format of docs/concepts/hqp.md, plain or gzipped.");
   module.def("read_recorded_problems", &hqp::read_recorded_problems, nb::arg("file"),
              "The same with how each is to be solved.");
   module.def("write_problem", &write_problem, nb::arg("file"), nb::arg("problem"),

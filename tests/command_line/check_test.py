@@ -93,7 +93,7 @@ class Check(unittest.TestCase):
                      r"got 'hing', did you mean 'hinge'\?"):
             self.assertRegex(out, line)
         self.assertIn("2 files: 4 faults", out)
-        self.assertIn("docs/configuration.md", out)
+        self.assertIn("docs/reference/configuration.md", out)
 
     def test_physics_fault_ends_with_2_and_says_how_to_mend_it(self):
         device = self.changed(DEVICE.parent, "device.yaml", ("kD_rot_1_per_s: 40",

@@ -4,7 +4,7 @@ In docs/**/*.md a block ```yaml NAME or ```hqp NAME is a file, ```yaml +NAME is 
 ```sh holds commands. Both are taken in the order of the document, in a folder of its own that
 starts as a copy of models/examples. Every command must end with exit code 0, or with N where its line ends with
 `# exit N`. Lines that a ```text block shows after a command are not compared. The tests that
-docs/threats.md names must be there.
+docs/concepts/threats.md names must be there.
 
     docs_test.py PROGRAM
 """
@@ -73,7 +73,7 @@ def main():
             count, found = run_document(document, program, pathlib.Path(folder))
         total += count
         faults += found
-    faults += missing_tests(ROOT / "docs" / "threats.md")
+    faults += missing_tests(ROOT / "docs" / "concepts" / "threats.md")
     for fault in faults:
         print(fault, file=sys.stderr)
     print(f"{total} commands ran, {len(faults)} were wrong")

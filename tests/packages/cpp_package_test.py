@@ -35,9 +35,9 @@ def check(holds, what):
 
 
 def main():
-    text = pathlib.Path("docs/packages.md").read_text()
+    text = pathlib.Path("docs/start/packages.md").read_text()
     for example in EXAMPLES.glob("*.cpp"):
-        check(example.read_text() in text, f"docs/packages.md shows another {example.name}")
+        check(example.read_text() in text, f"docs/start/packages.md shows another {example.name}")
 
     tree = pathlib.Path(sys.argv[1]).resolve()
     eigen = sys.argv[2]

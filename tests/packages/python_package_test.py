@@ -57,11 +57,11 @@ def main():
     environment = dict(os.environ) if is_installed else prepare(*map(pathlib.Path, sys.argv[1:]))
     print(run(sys.executable, "-m", "unittest", "discover", "-s", ROOT / "python" / "test",
               "-p", "*_test.py", env=environment))
-    text = (ROOT / "docs" / "packages.md").read_text()
+    text = (ROOT / "docs" / "start" / "packages.md").read_text()
     for name, expected in EXAMPLES.items():
         example = ROOT / "examples" / "python" / name
         if example.read_text() not in text:
-            sys.exit(f"docs/packages.md shows another {name}")
+            sys.exit(f"docs/start/packages.md shows another {name}")
         output = run(sys.executable, example, env=environment)
         if not re.search(expected, output):
             sys.exit(f"{name} printed\n{output}\nexpected {expected}")

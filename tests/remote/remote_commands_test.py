@@ -479,7 +479,7 @@ class MachineTest(unittest.TestCase):
 class PythonCodec(unittest.TestCase):
     def test_a_datagram_with_a_tag_is_good_with_its_key_only(self):
         key = bytes(range(32))
-        document = (ROOT / "docs" / "device_protocol.md").read_text()
+        document = (ROOT / "docs" / "reference" / "device_protocol.md").read_text()
         shown = re.search(r"```text\n([0-9a-f]{64})\n([0-9a-f]{32})\n([0-9a-f]{8})\n```", document)
         datagram = bytes.fromhex("".join(shown.groups()))
         self.assertEqual(device_client.decode(datagram, key),

@@ -51,7 +51,8 @@ void expect_friction(const std::vector<FrictionEstimate>& found, double factor, 
     SCOPED_TRACE("m" + std::to_string(i + 1));
     expect_near(found[i].coulomb, factor * kCoulomb[i], 0.03, "coulomb");
     expect_near(found[i].viscous, factor * kViscous[i], 0.05, "viscous");
-    // docs/friction.md: the heavier the arm behind a joint, the more of the peak at rest is missed
+    // docs/concepts/friction.md: the heavier the arm behind a joint, the more of the peak at rest
+    // is missed
     expect_near(found[i].stiction, 1.2, i < 2 ? 0.09 : 0.03, "stiction");
     if (i < 5) expect_near(found[i].load, factor * 0.06, 0.05, "load");
   }
@@ -66,7 +67,7 @@ TEST(IdentifyFriction, FindsThatOfTheShippedSimulationAndNoPresliding) {
 
 TEST(IdentifyFriction, FindsPreslidingOfAnotherSimulation) {
   const std::vector<FrictionEstimate> found = identified("as_published");
-  constexpr std::size_t kFirst = 2;  // m1 and m2 are shaken, docs/friction.md
+  constexpr std::size_t kFirst = 2;  // m1 and m2 are shaken, docs/concepts/friction.md
   expect_friction(found, 1.333, kFirst);
   for (std::size_t i = kFirst; i < found.size(); ++i) {
     EXPECT_EQ(found[i].presliding_elements, 2);

@@ -2,8 +2,8 @@
 /// limits.
 ///
 /// A Cartesian row brakes with A_c; that takes A_c <= 1/2 sum |J_xi| A_i of the manipulator joints
-/// i along axis x (docs/check.md). The half is left to the other rows. A speed limit needs no such
-/// rule: where the joints are slower it does not act.
+/// i along axis x (docs/start/check.md). The half is left to the other rows. A speed limit needs no
+/// such rule: where the joints are slower it does not act.
 #pragma once
 
 #include <vector>

@@ -115,7 +115,7 @@ void inspect_demand(const rendering::TwinDof& dof, const Demand& demand, Collect
 }
 
 // The work of a cycle grows with the cube of the twin's degrees of freedom at most. Measured, 99.9
-// % of the cycles (docs/benchmarks.md): gauss 38 us with 20 and 79 us with 30, paper 1.2 ms
+// % of the cycles (docs/reports/benchmarks.md): gauss 38 us with 20 and 79 us with 30, paper 1.2 ms
 // with 30.
 void inspect_work(const config::Device& device, const config::Twin& twin, Collector& out) {
   const bool is_paper = device.rendering.law == rendering::Law::kPaper;

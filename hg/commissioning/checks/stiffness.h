@@ -1,6 +1,6 @@
 /// Limits of stiffness and oscillation frequency for a surface or a spring of a twin on a device.
 ///
-/// Sources: Colgate and Schenkel 1997 (passivity of sampled data); docs/environment.md
+/// Sources: Colgate and Schenkel 1997 (passivity of sampled data); docs/concepts/environment.md
 /// (measurements). SI units at the handle, at the start of the twin.
 #pragma once
 

@@ -1,6 +1,6 @@
 /// Whether a computer is ready for a control loop, line by line, with what to change.
 ///
-/// Judged at the rate of the loop with the limits below; reasons: docs/runtime.md.
+/// Judged at the rate of the loop with the limits below; reasons: docs/reference/runtime.md.
 #pragma once
 
 #include <string>

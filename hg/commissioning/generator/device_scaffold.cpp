@@ -279,7 +279,7 @@ std::string device_yaml(const ChainPart& part, const std::filesystem::path& fold
   std::string text = fmt::format(
       "# {} as a device, from {}.\n"
       "# [V] worked out from the URDF, [A] assumed: look at these first. All keys: "
-      "docs/configuration.md\n\n"
+      "docs/reference/configuration.md\n\n"
       "name: {}\n{}",
       d.chain.name(), part.urdf.filename().generic_string(), quoted(d.chain.name()),
       part_lines(part, folder));

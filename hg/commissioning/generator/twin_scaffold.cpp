@@ -245,7 +245,7 @@ std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder
   return fmt::format(
              "# {} as a twin, from {}, placed for the device {}.\n"
              "# [V] worked out from the URDF, [A] assumed: look at these first. All keys: "
-             "docs/configuration.md\n\n"
+             "docs/reference/configuration.md\n\n"
              "name: {}\n{}"
              "end_effector: {}  # [A] frame that the hand holds\n",
              d.chain.name(), part.urdf.filename().generic_string(), device.name,

@@ -1,8 +1,8 @@
 /// Reserve with which the device can brake before all its limits together.
 ///
-/// Ours; docs/law.md, "Braking together". Limit k at speed v towards an end that is d away needs a
-/// deceleration of n_k = v^2 / (2 d) to stop in front of it. The reserve is the largest mu for
-/// which there is one motion of device and twin with
+/// Ours; docs/concepts/law.md, "Braking together". Limit k at speed v towards an end that is d away
+/// needs a deceleration of n_k = v^2 / (2 d) to stop in front of it. The reserve is the largest mu
+/// for which there is one motion of device and twin with
 ///   - the handle on the twin, and the gantry within what its drives can follow,
 ///   - every motor within its allowed torque,
 ///   - and C_k ddq <= room_k - mu n_k for every limit k, mirrored for lower ends,

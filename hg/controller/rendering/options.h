@@ -6,7 +6,7 @@
 
 namespace hg::rendering {
 
-/// How limits become forces; docs/law.md.
+/// How limits become forces; docs/concepts/law.md.
 enum class Law : std::uint8_t {
   kGauss,  ///< Gauss' principle of least constraint as the last level
   kPaper,  ///< [HG] (20)-(26) with constraint torques as unknowns; needs six manipulator joints

@@ -1,7 +1,7 @@
 /// The rendering law: from the state of device and twin and the user's wrench to
 /// accelerations, integrated to the next reference.
 ///
-/// Source: [HG] sec. VI-C; docs/law.md. One object serves one thread.
+/// Source: [HG] sec. VI-C; docs/concepts/law.md. One object serves one thread.
 /// No allocation, noexcept after construction.
 #pragma once
 

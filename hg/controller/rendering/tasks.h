@@ -1,6 +1,7 @@
 /// The tasks of the rendering law as one lexicographic problem, refilled every cycle.
 ///
-/// Source: [HG] (9)-(19) and Table II, tasks 1-8; law and bounds are options, see docs/law.md.
+/// Source: [HG] (9)-(19) and Table II, tasks 1-8; law and bounds are options, see
+/// docs/concepts/law.md.
 ///
 ///   law gauss       bounds of the gantry's drives, where the law leads it
 ///   then            coupling of H and E (12), 6 equalities

@@ -22,7 +22,7 @@
 namespace hg::safety {
 
 /// Set-up data. Values from [HANDBOOK] 6.2 unless noted; differences are explained in
-/// docs/safety.md.
+/// docs/concepts/safety.md.
 struct MonitorConfig {
   double force_max = 150.0;  ///< Largest force of the user, N
   double torque_max = 14.0;  ///< Largest torque of the user, Nm; the sensor's range ends at 15

@@ -1,8 +1,8 @@
-/// Rules that stop the device, as data: source of the table in docs/safety.md, of the explanations
-/// of program and page, and of the reactions of supervisor and monitor.
+/// Rules that stop the device, as data: source of the table in docs/concepts/safety.md, of the
+/// explanations of program and page, and of the reactions of supervisor and monitor.
 ///
-/// Source: [HANDBOOK] 6.2, 6.5; where a number differs, docs/safety.md says why. Not a certified
-/// safety function.
+/// Source: [HANDBOOK] 6.2, 6.5; where a number differs, docs/concepts/safety.md says why. Not a
+/// certified safety function.
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ inline constexpr Rule kRules[] = {
     {.code = FaultCode::kDeviceSilent,
      .name = "device silent",
      .meaning = "Nothing was heard from a remote device for too long.",
-     .threshold = "50 ms (5 s in lock-step), docs/device_protocol.md",
+     .threshold = "50 ms (5 s in lock-step), docs/reference/device_protocol.md",
      .reaction = Stop::kSto,
      .release = "the run is started again"},
     {.code = FaultCode::kDeviceGone,

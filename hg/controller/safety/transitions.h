@@ -1,7 +1,7 @@
 /// Operating states and allowed transitions, as data: advance() follows them, and the table of
-/// docs/safety.md is generated from them.
+/// docs/concepts/safety.md is generated from them.
 ///
-/// Source: [HANDBOOK] 6.5, docs/safety.md. Every transition to a state with power needs an
+/// Source: [HANDBOOK] 6.5, docs/concepts/safety.md. Every transition to a state with power needs an
 /// edge of a request.
 #pragma once
 

@@ -492,7 +492,7 @@ TEST(Cycle, ALatencyThatGrowsWhileTheDrivesAreOnStopsTheDevice) {
   EXPECT_GT(cycles_until_latency_fault(1, {3, 3, 1, 3, 3, 1}), 0);  // mostly late
   EXPECT_EQ(cycles_until_latency_fault(1, {1}), -1);
   EXPECT_EQ(cycles_until_latency_fault(3, {1, 2, 3}), -1);
-  // frames that were lost and filled in, see docs/device_protocol.md
+  // frames that were lost and filled in, see docs/reference/device_protocol.md
   EXPECT_EQ(cycles_until_latency_fault(1, {2, 3, 4, 1, 1, 1, 1}), -1);
 }
 

@@ -1,4 +1,4 @@
-/// Serves a device to one client at a time: the other side of docs/device_protocol.md.
+/// Serves a device to one client at a time: the other side of docs/reference/device_protocol.md.
 ///
 /// Single-threaded. Real time: the device advances by this server's clock, with the newest command.
 /// Lock-step: it advances by a period when the command that answers its last frame has arrived.

@@ -1,5 +1,5 @@
 /// The messages between a controller and a remote device, one per datagram. Byte layout:
-/// docs/device_protocol.md; the fields are defined only in message_fields.h.
+/// docs/reference/device_protocol.md; the fields are defined only in message_fields.h.
 ///
 /// Little endian, fixed layout. No allocation, noexcept.
 #pragma once

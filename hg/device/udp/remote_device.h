@@ -1,4 +1,4 @@
-/// A device at the other end of a network: the client of docs/device_protocol.md.
+/// A device at the other end of a network: the client of docs/reference/device_protocol.md.
 ///
 /// Set-up (constructor, close()) may block and throw; read() and write() follow the contract of
 /// Device, but read() waits for the next frame: the device is the clock.

@@ -46,8 +46,8 @@ Problem empty_problem(int variables) {
   return problem;
 }
 
-// The smallest case in which a law that is not complementary shows (docs/law.md): M^-1 = [1 .8; .8
-// 1], a_free = 0, a <= (-1, -.9). Last level: |L^T a|^2 with L L^T = M.
+// The smallest case in which a law that is not complementary shows (docs/concepts/law.md): M^-1 =
+// [1 .8; .8 1], a_free = 0, a <= (-1, -.9). Last level: |L^T a|^2 with L L^T = M.
 Problem coupled_limits() {
   Problem problem = empty_problem(2);
   problem.add_level();

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr double kRate_Hz = 1000.0;
 constexpr int kKills = 12;
-constexpr double kMostLost_s = 1.0;  // docs/recording.md; in the ring, or not flushed yet
+constexpr double kMostLost_s = 1.0;  // docs/reference/recording.md; in the ring, or not flushed yet
 
 // Records until it is killed; `pushed` counts in memory that outlives it.
 [[noreturn]] void record_for_ever(const fs::path& folder, std::atomic<std::uint64_t>& pushed) {

@@ -29,7 +29,8 @@ struct BodyPart {
   double transient;  ///< factor on both for a transient contact; 1 where the source allows none
 };
 
-/// Body parts of ISO/TS 15066:2016, Tables A.2 and A.3; docs/compliance.md says what was verified.
+/// Body parts of ISO/TS 15066:2016, Tables A.2 and A.3; docs/concepts/compliance.md says what was
+/// verified.
 inline constexpr std::array kBodyParts = {
     BodyPart{"skull", 150e3, 4.4, 130.0, 110.0, 1.0},
     BodyPart{"face", 75e3, 4.4, 65.0, 110.0, 1.0},

@@ -31,7 +31,7 @@ struct FlexibleJoint {
 };
 
 /// Effects of motor and gear of a joint beyond its ActuatorModel; 0 = off. Angles and torques at
-/// the output of the gear, as everywhere in the plant. Equations: docs/simulator.md.
+/// the output of the gear, as everywhere in the plant. Equations: docs/concepts/simulator.md.
 struct JointEffects {
   double cogging = 0.0;            ///< amplitude, Nm, >= 0; acts without current, too
   double cogging_wave = 0.0;       ///< periods of cogging per 2 pi of theta, >= 0

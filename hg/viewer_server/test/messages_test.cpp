@@ -4,8 +4,6 @@
 #include <rapidcheck.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -17,7 +15,6 @@
 #include "hg/viewer_server/frame_parts_message.h"
 #include "hg/viewer_server/limit_text.h"
 #include "hg/viewer_server/scene_parts_message.h"
-#include "hg/viewer_server/typescript.h"
 
 namespace hg::viewer_server {
 namespace {
@@ -140,13 +137,6 @@ View make_view() {
 
 Json frame_of(const View& view, const LimitCatalogue& limits = make_scene().limits) {
   return Json::parse(encode_frame(view, limits, 2));
-}
-
-// HG_UPDATE_DOCS=1 in the environment writes the file instead of comparing it
-TEST(MessagesTs, IsMadeFromTheDescriptionOfTheMessages) {
-  if (std::getenv("HG_UPDATE_DOCS") != nullptr) std::ofstream(kTypes) << typescript_text();
-  EXPECT_EQ(read_file(kTypes), typescript_text())
-      << "run viewer_server_test with HG_UPDATE_DOCS=1 and commit " << kTypes;
 }
 
 TEST(EncodeScene, HasTheFieldsOfTheTypeScriptSide) {

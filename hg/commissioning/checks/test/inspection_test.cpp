@@ -497,7 +497,7 @@ TEST(Shipped, DeviceAndTwinsHaveNoFaultsAndNoWarningsButTheExplainedOnes) {
       all.insert(all.end(), findings.begin(), findings.end());
     }
   }
-  // docs/check.md explains them
+  // docs/start/check.md explains them
   std::vector<std::string> warnings;
   for (const Finding& finding : all) {
     EXPECT_NE(finding.severity, Severity::kFault) << finding.item << ": " << finding.what;

@@ -46,8 +46,8 @@ TEST(Stiffness, FollowsFromMassDampingDelayAndAcceleration) {
   EXPECT_GT(prompt.by_frequency(), limits.by_frequency());
 }
 
-// What was measured (docs/environment.md): 6 kg are calm on 16 and not on 32 kN/m, 3 kg on 8 and
-// not on 16.
+// What was measured (docs/concepts/environment.md): 6 kg are calm on 16 and not on 32 kN/m, 3 kg on
+// 8 and not on 16.
 TEST(Stiffness, FitsTheSurfacesThatWereCalm) {
   const config::Scenario scenario = walk();
   StiffnessLimits limits = stiffness_limits(scenario.device, scenario.twin);

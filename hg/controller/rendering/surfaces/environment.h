@@ -9,7 +9,7 @@
 /// environments, SIGGRAPH 1997 (way of the proxy, friction as a cone); J. E. Colgate, G. Schenkel,
 /// Passivity of a class of sampled-data systems, J. Robotic Systems 14(1), 1997 (K < 2 b / T); K.
 /// Hunt, F. Crossley, J. Applied Mechanics 42, 1975 (damping that begins with the depth).
-/// Differs from them: docs/environment.md.
+/// Differs from them: docs/concepts/environment.md.
 ///
 /// SI units, frame B. No allocation after construction. At most kMaxSweeps searches along the path
 /// of the proxy in a step.

@@ -170,9 +170,9 @@ TwinModel two_coupled_joints() {
                         "handle");
 }
 
-// docs/law.md: with a_free = 0 and a <= (-1, -0.9), Gauss leaves the second row alone: pushing the
-// first joint takes the second one along by 0.8. Law paper, once both limits have been touched,
-// minimises |alpha| and pushes with the second one, too, although nothing touches it.
+// docs/concepts/law.md: with a_free = 0 and a <= (-1, -0.9), Gauss leaves the second row alone:
+// pushing the first joint takes the second one along by 0.8. Law paper, once both limits have been
+// touched, minimises |alpha| and pushes with the second one, too, although nothing touches it.
 TEST(Laws, DifferWithTwoCoupledLimits) {
   TwinModel twin = two_coupled_joints();
   for (TwinDof& dof : twin.dofs) dof.limits.dq_max = 1.0;

@@ -44,14 +44,14 @@ TEST(Key, TheTagIsTheOneOfRfc4231) {
             "60e431591ee0b67f0d8a26aacbf5b77f");
 }
 
-// docs/device_protocol.md shows these bytes
+// docs/reference/device_protocol.md shows these bytes
 TEST(Key, AReadyWithATagIsTheOneOfTheDocument) {
   std::string secret;
   for (char byte = 0; byte < 32; ++byte) secret += byte;
   Datagram datagram;
   encode({.session = 0x01020305, .number = 2, .time_ns = 0}, Ready{}, datagram,
          Key(bytes_of(secret)));
-  std::ifstream file("docs/device_protocol.md");
+  std::ifstream file("docs/reference/device_protocol.md");
   const std::string document{std::istreambuf_iterator<char>(file), {}};
   EXPECT_NE(
       document.find(hex(datagram.view().first(32)) + "\n" + hex(datagram.view().subspan(32, 16)) +

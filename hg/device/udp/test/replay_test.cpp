@@ -76,7 +76,7 @@ TEST(Capture, WhatIsWrittenIsReadAndOtherFilesAreRefused) {
   ASSERT_EQ(datagrams.size(), 2U);
   EXPECT_TRUE(std::ranges::equal(datagrams[0], bytes));
   EXPECT_EQ(datagrams[1].size(), 1U);
-  EXPECT_THROW(read_capture("docs/device_protocol.md"), SetupError);
+  EXPECT_THROW(read_capture("docs/reference/device_protocol.md"), SetupError);
   EXPECT_THROW(read_capture("no_such_file"), SetupError);
   EXPECT_THROW(Capture("no_such_folder/file"), SetupError);
 }

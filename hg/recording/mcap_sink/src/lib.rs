@@ -20,7 +20,7 @@ use read::{read, Item};
 
 /// Uncompressed size after which a chunk ends, whether it is flushed or not.
 const CHUNK_BYTES: u64 = 2 * 1024 * 1024;
-/// The fastest level of zstd that is not a trade against size on these messages (docs/recording.md).
+/// The fastest level of zstd that is not a trade against size on these messages (docs/reference/recording.md).
 const ZSTD_LEVEL: u32 = 1;
 
 type Failure = Box<dyn std::error::Error>;

@@ -45,7 +45,7 @@ double worst(Device device, double real, double fed, int postures) {
   return largest;
 }
 
-// docs/control.md, "Friction"
+// docs/concepts/control.md, "Friction"
 TEST(FrictionProof, HoldsWhereAboutAsMuchIsFedForwardAsIsThere) {
   const Device device = with_presliding(kPresliding);
   const auto postures = scenario::random_postures(reference().model, 5, 1);

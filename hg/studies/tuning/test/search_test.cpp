@@ -67,7 +67,7 @@ TEST(Knobs, TakeNoMoreThanLatencyAndRateAllow) {
   EXPECT_LT(wild.loop.config.flatness_Hz, tracking::largest_flatness_Hz(1000.0));
 }
 
-// docs/control.md: what the notes had was unstable with light rotors
+// docs/concepts/control.md: what the notes had was unstable with light rotors
 TEST(Demands, RefuseTheDampingOfTheNotes) {
   const Problem problem = problem_of(30);
   const Demands demands = demands_of(problem);

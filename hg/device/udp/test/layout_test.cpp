@@ -1,0 +1,71 @@
+/// The layout of the messages.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+
+#include "hg/device/udp/codec.h"
+
+namespace hg::udp {
+namespace {
+
+/// Archive that expects each field at a multiple of its size, 8 bytes at most.
+class Alignment {
+ public:
+  template <typename T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void operator()(const char* name, const T&, const char*) {
+    field(std::is_enum_v<T> || std::same_as<T, bool> ? 4 : sizeof(T), name);
+  }
+  template <std::size_t kSize>
+  void operator()(const char* name, const Text<kSize>&, const char*) {
+    field(kSize, name);
+  }
+  template <int kRows, int kOptions, int kMaxRows>
+  void operator()(const char* name, const Eigen::Matrix<double, kRows, 1, kOptions, kMaxRows, 1>&,
+                  const char*) {
+    if constexpr (kRows == Eigen::Dynamic) {
+      field(4, "count");
+      zeros("zero");
+    }
+    field(8 * kMaxRows, name);
+  }
+  void zeros(const char* name) { field(4, name); }
+
+  std::size_t offset = 0;
+
+ private:
+  void field(std::size_t size, const char* name) {
+    EXPECT_EQ(offset % std::min<std::size_t>(size, 8), 0U) << name << " is not aligned";
+    offset += size;
+  }
+};
+
+TEST(Layout, EveryFieldIsAligned) {
+  Alignment header;
+  const Header fields_of_header{};
+  fields(header, fields_of_header);
+  EXPECT_EQ(header.offset, size_of<Header>());
+  const auto expect_aligned = [&](const auto& message) {
+    Alignment alignment{header};
+    fields(alignment, message);
+    EXPECT_EQ(alignment.offset % 4, 0U);
+  };
+  expect_aligned(Hello{});
+  expect_aligned(Welcome{});
+  expect_aligned(Ready{});
+  expect_aligned(SensorFrame{});
+  expect_aligned(CommandFrame{});
+  expect_aligned(Goodbye{});
+}
+
+TEST(Layout, EveryMessageFitsIntoADatagramThatNoNetworkDivides) {
+  for (const std::size_t size : {size_of<Hello>(), size_of<Welcome>(), size_of<SensorFrame>(),
+                                 size_of<CommandFrame>(), size_of<Goodbye>()}) {
+    EXPECT_LE(size_of<Header>() + size + 4, kLargestDatagram);
+  }
+}
+
+}  // namespace
+}  // namespace hg::udp

@@ -1,0 +1,127 @@
+#include "tools/pages/typescript.h"
+
+#include <array>
+#include <concepts>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "hg/viewer_server/command_message.h"
+#include "hg/viewer_server/frame_message.h"
+#include "hg/viewer_server/scene_message.h"
+
+namespace hg::pages {
+namespace {
+
+using namespace viewer_server;
+
+constexpr std::string_view kHead =
+    "// Generated from hg/viewer_server/*_message.h; do not edit. Units are part of the names; B "
+    "is\n"
+    "// the base frame (z up), H the handle. A number that is not finite arrives as null.\n"
+    "\n"
+    "export type Vec3 = [number, number, number];\n"
+    "export type Quaternion = [number, number, number, number]; // x y z w\n";
+
+template <typename T>
+struct Type;
+
+template <typename T>
+requires IsWord<T>
+struct Type<T> {
+  static std::string name() {
+    std::string text;
+    for (const std::string_view word : kWords<T>) {
+      ((text += text.empty() ? "\"" : " | \"") += word) += '"';
+    }
+    return text;
+  }
+};
+
+template <IsMessage T>
+struct Type<T> {
+  static std::string name() { return std::string(kInterface<T>.name); }
+};
+
+template <typename T>
+requires std::is_arithmetic_v<T>
+struct Type<T> {
+  static std::string name() { return std::same_as<T, bool> ? "boolean" : "number"; }
+};
+
+template <>
+struct Type<std::string> {
+  static std::string name() { return "string"; }
+};
+
+template <>
+struct Type<Vec3> {
+  static std::string name() { return "Vec3"; }
+};
+
+template <>
+struct Type<Quaternion> {
+  static std::string name() { return "Quaternion"; }
+};
+
+template <typename T>
+struct Type<std::optional<T>> {
+  static std::string name() { return Type<T>::name() + " | null"; }
+};
+
+template <typename T>
+struct Type<std::vector<T>> {
+  static std::string name() {
+    const std::string item = Type<T>::name();
+    return item.find('|') == std::string::npos ? item + "[]" : "(" + item + ")[]";
+  }
+};
+
+// The archive that writes the fields of one interface.
+class InterfaceWriter {
+ public:
+  void type(std::string_view word) { line("type", '"' + std::string(word) + '"', {}); }
+
+  template <typename T>
+  void operator()(std::string_view name, const T&, std::string_view note = {}) {
+    line(name, Type<T>::name(), note);
+  }
+
+  std::string text;
+
+ private:
+  void line(std::string_view name, const std::string& type, std::string_view note) {
+    ((text += "  ") += name) += ": " + type + ";";
+    if (!note.empty()) (text += " // ") += note;
+    text += '\n';
+  }
+};
+
+template <IsMessage Message>
+void add(std::string& text) {
+  InterfaceWriter writer;
+  fields(writer, static_cast<const Message&>(Message{}));
+  ((text += "\n// ") += kInterface<Message>.note) += '\n';
+  ((text += "export interface ") += kInterface<Message>.name) += " {\n" + writer.text + "}\n";
+}
+
+template <IsMessage... Messages>
+void add_all(std::string& text) {
+  (add<Messages>(text), ...);
+}
+
+}  // namespace
+
+std::string typescript_text() {
+  std::string text(kHead);
+  add_all<SceneMessage, SceneChainMessage, SceneJointMessage, SceneLimitMessage, SceneBoxMessage,
+          SceneSurfaceMessage, Choices, Choice, SettingMessage>(text);
+  add_all<FrameMessage, FeltLimitMessage, ActiveLimitMessage, ContactMessage, BudgetMessage,
+          WrenchMessage, SingularityMessage, RunStateMessage, SafetyMessage, GhostMessage>(text);
+  add_all<HandMessage, HoldMessage, CommandMessage, WelcomeMessage, AnswerMessage, ValuesMessage,
+          EventMessage>(text);
+  return text;
+}
+
+}  // namespace hg::pages
