@@ -19,12 +19,6 @@ constexpr double kSafeShare = 0.9;  // of the monitored safe speed
 constexpr double kCoasting = 0.1;   // rad/s and m/s, threshold of motion
 constexpr double kRampIn = 0.3;     // s, ramp of the forces at the start of a run
 
-bool stands_still(const CycleRecord& record) noexcept {
-  return record.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
-         record.reference.dq_m.lpNorm<Eigen::Infinity>() < kStandstill &&
-         record.robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
-}
-
 // On measured speeds: the threshold is above encoder noise and the motion of a braked arm's springs
 // under a hand.
 bool is_coasting(const RobotState& robot) noexcept {
@@ -33,6 +27,15 @@ bool is_coasting(const RobotState& robot) noexcept {
 }
 
 bool is_moving(Mode mode) noexcept { return mode == Mode::kRunning || mode == Mode::kStopping; }
+
+// Whether the law's accelerations, or those of a stop, move the device.
+bool is_moving(Motion motion) noexcept {
+  return motion != Motion::kNone && motion != Motion::kHold;
+}
+
+bool is_stopping(Motion motion) noexcept {
+  return motion == Motion::kRenderStop || motion == Motion::kBrakeJoints;
+}
 
 // Deceleration of joints braked without the law.
 VectorM braking_of(const rendering::DeviceModel& device) {
@@ -92,15 +95,34 @@ bool follows_from_link(FaultCode code) noexcept {
 
 // Whether the end of a range or a surface pushes back. Limits of acceleration do so in every
 // oscillation, so that only limits that are near count.
-bool is_pushed_back(const CycleRecord& record) noexcept {
+bool is_pushed_back(const rendering::LawResult& law) noexcept {
   constexpr double kPush = 0.5;   // N, or Nm of a limit
   constexpr double kNear = 0.05;  // m or rad
-  for (int i = 0; i < record.limit_count; ++i) {
-    const LimitReport& limit = record.limits[static_cast<std::size_t>(i)];
+  for (int i = 0; i < law.limit_count; ++i) {
+    const LimitReport& limit = law.limits[static_cast<std::size_t>(i)];
     const double left = std::min(limit.to_lower, limit.to_upper);
     if (left < kNear && std::abs(limit.reaction) > kPush) return true;
   }
-  return record.contact.force.norm() > kPush;
+  return law.contact.force.norm() > kPush;
+}
+
+void copy(const rendering::LawResult& law, CycleRecord& record) noexcept {
+  record.T_B_H = law.T_B_H;
+  record.T_B_E = law.T_B_E;
+  record.v_H = law.v_H;
+  record.a_H = law.a_H;
+  record.p_B_elbow = law.p_B_elbow;
+  record.sync_error_angle = law.sync_error_angle;
+  record.tau_a = law.tau_a;
+  record.budget = law.budget;
+  record.contact = law.contact;
+  std::copy_n(law.limits.begin(), law.limit_count, record.limits.begin());
+  record.limit_count = law.limit_count;
+  record.felt_limit = law.felt_limit;
+  record.w_felt = law.w_felt;
+  record.solver_status = law.solver_status;
+  record.solver_iterations = law.solver_iterations;
+  record.active_set_changes = law.active_set_changes;
 }
 
 }  // namespace
@@ -127,68 +149,41 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
 
 void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input,
                  CommandFrame& command, CycleRecord& record) noexcept HG_NONBLOCKING {
-  std::destroy_at(&record);  // rebuilt in place: `record = {}` would copy an empty one
-  ::new (&record) CycleRecord;
-  record.cycle = state_.cycle;
-  record.time_s = static_cast<double>(state_.cycle) * config_.rendering.dt;
-
-  // supervisor: is this sample usable, which mode is permitted
-  if (state_.cycle == 0) state_.next_sequence = sensors.sequence;
-  supervise(sensors, operator_input, record);
-
-  record.change = rendering_.change(operator_input.change, state_.rendering);
-  rendering_.limit_solver(operator_input.most_active_sets);
+  const Supervision supervision = supervise(sensors, operator_input);
   ended_(Stage::kSupervision);
 
-  // estimation -> prepositioning -> rendering
-  if (safety::is_finite(monitor_.config(), sensors)) {
-    record.robot =
-        estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
-    if (estimation_.has_units()) record.inertial = estimation_.inertial_report(state_.estimation);
-    trust_wrench(sensors, record.robot);
-    estimation_.check_motion(sensors, safety::is_powered(state_.supervisor.state),
-                             state_.estimation);
-    state_.is_coasting = is_coasting(record.robot);
-    ended_(Stage::kEstimation);
-    // positions after a jump are unusable, and the jump is itself the fault
-    if (!monitor_.has_jumped(sensors, state_.monitor)) look_ahead(record);
-    if (is_moving(state_.supervisor.mode())) {
-      render(is_held(sensors), record);
-    } else {
-      hold(record);
-    }
-    monitor(sensors, operator_input.late_cycles, record);
-  } else {
-    safety::Monitor::forget(state_.monitor);
-  }
+  const RobotState robot = supervision.is_usable ? estimate(sensors) : RobotState{};
+  ended_(Stage::kEstimation);
 
-  const Fault slip = safety::watch_brakes(
-      monitor_.config(), sensors, safety::is_powered(state_.supervisor.state), state_.brakes);
-  if (slip.code != FaultCode::kNone) safety::break_rule(slip, state_.supervisor);
+  const collision::Prediction ahead = look_ahead(sensors, robot);
+  const Motion motion = decide(supervision.is_usable, ahead.must_brake);
 
-  // control -> sanitiser
-  write_command(sensors, operator_input, command, record);
-  feel_touch(command.enable, record);
+  const VectorM pulled_back = place_reference(motion, robot);
+  const GantryAim gantry = preposition(motion, robot);
+  ended_(Stage::kPrepositioning);
+
+  const rendering::LawResult& law = render(motion, is_held(sensors), robot, gantry);
+  const PassivityReport passivity = watch_energy(motion, robot, law);
+  const Moved moved = advance(motion, robot, gantry, law);
+  time_stop(motion, robot, moved);
+  ended_(Stage::kIntegration);
+
+  const Results results = {supervision, robot, ahead.report, motion, pulled_back,
+                           gantry,      law,   passivity,    moved};
+  const Fault warning = monitor(sensors, operator_input.late_cycles, results);
+
+  command.sequence = sensors.sequence;
+  command.hand_target = operator_input.hand_target;
+  command.panel = operator_input.panel;
+  const TrackingReport tracking = control(robot, moved, command);
+  const TouchReport touch = feel_touch(command.enable, robot);
   ended_(Stage::kControl);
-  sanitise(command, record);
+
+  const std::uint32_t sanitised = sanitise(robot, command);
   ended_(Stage::kSafety);
 
-  state_.dq_p = command.dq_p;
-  state_.q_m = command.q_m;
-  state_.tau_m = command.tau_m;
-  state_.was_on = command.enable;
-  state_.next_sequence = sensors.sequence + 1;
-  ++state_.cycle;
-  const safety::SupervisorState& supervisor = state_.supervisor;
-  record.mode = supervisor.mode();
-  record.is_autonomous = supervisor.state == safety::State::kAutonomous;
-  record.stop = supervisor.stop;
-  record.fault = supervisor.fault;
-  if (supervisor.also.code != FaultCode::kNone) record.warning = supervisor.also;
-  record.tare = state_.estimation.wrench.tare.status;
-  record.is_tared = estimation_.is_tared(state_.estimation);
-  record.is_latency_known = control_.is_latency_known(state_.control);
-  record.state_hash = hash_of(state_, rendering_.problem().rows());
+  remember(sensors.sequence, command);
+  fill(results, warning, tracking, touch, sanitised, record);
   ended_(Stage::kStateHash);
 }
 
@@ -197,8 +192,11 @@ void Cycle::watch(const StageProbe& probe) noexcept {
   rendering_.watch(probe);
 }
 
-void Cycle::supervise(const SensorFrame& sensors, const OperatorFrame& operator_input,
-                      CycleRecord& record) noexcept {
+// Is this sample usable, which mode is permitted, which parameters change.
+Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
+                                    const OperatorFrame& operator_input) noexcept {
+  Supervision result = {.is_usable = safety::is_finite(monitor_.config(), sensors)};
+  if (state_.cycle == 0) state_.next_sequence = sensors.sequence;
   safety::SupervisorState& supervisor = state_.supervisor;
   const ModeRequest request = operator_input.request;
   // the panel's emergency stop acts on every device
@@ -218,11 +216,14 @@ void Cycle::supervise(const SensorFrame& sensors, const OperatorFrame& operator_
       // no control with such a sample
       .reaction = fault.code != FaultCode::kNone ? Stop::kSto : Stop::kNone};
   if (input.fault.code == FaultCode::kNone) input.fault = fault;
-  record.refusal = safety::advance(input, supervisor);
+  result.refusal = safety::advance(input, supervisor);
   if (was_fault && supervisor.state != safety::State::kFault) begin_anew();
 
   estimation_.tare(is_new && request == ModeRequest::kTare, !is_moving(supervisor.mode()),
                    state_.estimation);
+  result.change = rendering_.change(operator_input.change, state_.rendering);
+  rendering_.limit_solver(operator_input.most_active_sets);
+  return result;
 }
 
 Fault Cycle::check(const SensorFrame& sensors) noexcept {
@@ -260,63 +261,284 @@ void Cycle::begin_anew() noexcept {
   state_.rendering = rendering_.start(state_.rendering.reference.q_m);
 }
 
-// Beyond the sensor's range its reading is invalid: the last valid wrench is used until the rule
-// trips and during the stop.
-void Cycle::trust_wrench(const SensorFrame& sensors, RobotState& robot) noexcept {
+// The state of the device. Beyond the force sensor's range its reading is invalid: the last valid
+// wrench is used until the rule trips and during the stop.
+RobotState Cycle::estimate(const SensorFrame& sensors) noexcept {
+  RobotState robot =
+      estimation_.step(sensors, state_.dq_p, state_.rendering.reference.ddq_m, state_.estimation);
   if (safety::is_wrench_in_range(monitor_.config(), sensors)) {
     state_.w_H = robot.w_H;
   } else {
     robot.w_H = state_.w_H;
   }
+  estimation_.check_motion(sensors, safety::is_powered(state_.supervisor.state), state_.estimation);
+  state_.is_coasting = is_coasting(robot);
+  return robot;
 }
 
-// Checks whether braking now avoids all collisions. The prediction assumes that all joints brake at
-// once, so the joints then brake like that: the law's own stopping path may differ.
-void Cycle::look_ahead(CycleRecord& record) noexcept {
-  const RobotState& robot = record.robot;
+// Checks whether braking now avoids all collisions. Positions after a jump are unusable, and the
+// jump is itself the fault.
+collision::Prediction Cycle::look_ahead(const SensorFrame& sensors,
+                                        const RobotState& robot) noexcept {
+  if (robot.q_m.size() == 0 || monitor_.has_jumped(sensors, state_.monitor)) return {};
   const safety::State state = state_.supervisor.state;
   const collision::Prediction ahead =
       guard_.step(stacked(robot.q_p, robot.q_m), stacked(robot.dq_p, robot.dq_m),
                   safety::is_powered(state), state_.collision);
-  record.collision = ahead.report;
-  if (!ahead.must_brake || !is_moving(safety::mode_of(state))) return;
-  state_.brakes_joints = true;
-  if (safety::mode_of(state) == Mode::kStopping) return;
-  safety::break_rule({.code = FaultCode::kCollisionAhead,
-                      .index = static_cast<std::int16_t>(ahead.report.pair),
-                      .value = ahead.report.distance,
-                      .limit = ahead.allowed},
-                     state_.supervisor);
+  if (ahead.must_brake && safety::mode_of(state) == Mode::kRunning) {
+    safety::break_rule({.code = FaultCode::kCollisionAhead,
+                        .index = static_cast<std::int16_t>(ahead.report.pair),
+                        .value = ahead.report.distance,
+                        .limit = ahead.allowed},
+                       state_.supervisor);
+  }
+  return ahead;
+}
+
+// The prediction of collisions assumes that all joints brake at once, so they then brake like that:
+// the law's own stopping path may differ.
+Motion Cycle::decide(bool is_usable, bool must_brake) const noexcept {
+  if (!is_usable) return Motion::kNone;
+  const Mode mode = state_.supervisor.mode();
+  if (!is_moving(mode)) return Motion::kHold;
+  if (must_brake || state_.motion == Motion::kBrakeJoints) return Motion::kBrakeJoints;
+  return mode == Mode::kStopping ? Motion::kRenderStop : Motion::kRender;
+}
+
+// Reference and twin from which the law starts. Standstill: before arming, the device may be moved
+// from outside, and both follow it; after joints braked one by one the twin is realigned with the
+// handle. In motion: both are moved back to a device that lags behind. Returns by how much the
+// reference was moved back; empty = not at all.
+VectorM Cycle::place_reference(Motion motion, const RobotState& robot) noexcept {
+  rendering::State& rendering = state_.rendering;
+  if (motion == Motion::kHold) {
+    const bool is_armed = state_.supervisor.state == safety::State::kArmed;
+    if (!is_armed) {
+      rendering.reference.q_m = robot.q_m;
+      rendering.contact = {};
+    }
+    if (!is_armed || state_.motion == Motion::kBrakeJoints) rendering_.align(robot, rendering);
+    rendering.reference.dq_m.setZero();
+    rendering.twin.dq_a.setZero();
+  }
+  if (!is_moving(motion)) return {};
+  const VectorM before = rendering.reference.q_m;
+  if (!rendering_.stay_near(robot, config_.control.error_max, rendering)) return {};
+  return before - rendering.reference.q_m;
+}
+
+// Largest speed of handle and gantry, m/s.
+double Cycle::speed_max() const noexcept {
+  const bool is_alone = state_.supervisor.state == safety::State::kAutonomous;
+  return is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
+}
+
+// The motion of the gantry that the arm wants, and the range in which the law may lead it.
+Cycle::GantryAim Cycle::preposition(Motion motion, const RobotState& robot) noexcept {
+  if (!is_moving(motion)) return {};
+  const VectorP q_p_target =
+      gantry_target_.step(robot, state_.rendering.reference.q_m, state_.gantry_target);
+  GantryAim aim = {.command = prepositioning::step(config_.prepositioning, robot, q_p_target,
+                                                   state_.is_blocked, speed_max() / std::sqrt(2.0),
+                                                   state_.room, state_.touch.away)};
+  if (rendering_.leads_gantry() && motion == Motion::kRender) {
+    aim.task = prepositioning::accelerations(aim.command, config_.estimation.drive, robot,
+                                             state_.rendering.ddq_p, config_.rendering.dt);
+    aim.task.unexplained = estimation_.gantry_disturbance(state_.estimation);
+  }
+  return aim;
+}
+
+// Share of the forces on the twin in this cycle; sets that of the next one. A requested stop ramps
+// forces down if the handle is held; all other stops drop them at once.
+double Cycle::ramp_forces(Motion motion, bool is_held) noexcept {
+  if (!is_moving(motion)) return state_.force_share = 0.0;
+  const safety::State state = state_.supervisor.state;
+  if (!is_stopping(motion)) state_.was_alone = state == safety::State::kAutonomous;
+  const bool is_gentle = is_held && !state_.was_alone && state == safety::State::kToArmed;
+  const double share = is_stopping(motion) && !is_gentle ? 0.0 : state_.force_share;
+  const double step =
+      is_stopping(motion) ? -config_.rendering.dt / kRampOut : config_.rendering.dt / kRampIn;
+  state_.force_share = std::clamp(share + step, 0.0, 1.0);
+  return share;
+}
+
+// Accelerations of device and twin, and their causes. While the device stands still, the law runs
+// like in a stop that has ended: its limits and the distance of handle and twin are shown and
+// checked before arming, its active set is the start of the first motion; its accelerations are not
+// used.
+const rendering::LawResult& Cycle::render(Motion motion, bool is_held, const RobotState& robot,
+                                          const GantryAim& gantry) noexcept {
+  if (motion == Motion::kNone) return law_;
+  const double share = ramp_forces(motion, is_held);
+  const bool must_brake = motion == Motion::kHold || state_.touch.is_told;
+  const double braking_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
+  rendering_.step({.robot = robot,
+                   .braking_rate = must_brake ? kBrakingRate : braking_rate,
+                   .force_share = share,
+                   .handle_speed_max = speed_max() / std::sqrt(3.0),
+                   .gantry = gantry.task,
+                   .cycle = state_.cycle},
+                  state_.rendering, law_);
+  rendering_.gantry_room(state_.room.down, state_.room.up);
+  state_.is_blocked = is_moving(motion) && rendering_.is_blocked();
+  if (motion == Motion::kHold) {
+    state_.is_apart = law_.sync_error > monitor_.config().sync_tolerance;
+  }
+  return law_;
 }
 
 // Monitors energy and oscillation at the handle; added damping and inertia act from the next cycle.
-void Cycle::watch_energy(CycleRecord& record) noexcept {
-  if (config_.passivity.reaction == passivity::Reaction::kOff) return;
-  const rendering::State& rendering = state_.rendering;
+PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
+                                    const rendering::LawResult& law) noexcept {
+  rendering::State& rendering = state_.rendering;
+  if (motion == Motion::kHold) {
+    state_.passivity = {};
+    rendering.calming = {};
+  }
+  if (motion != Motion::kRender || config_.passivity.reaction == passivity::Reaction::kOff) {
+    return {};
+  }
   const Vector6 twist_E = rendering_.end_effector_twist(rendering);
-  const Vector6& w = record.robot.w_H;
-  const Budget& budget = record.budget;
-  record.passivity =
-      passivity::step(config_.passivity,
-                      {.f = w.head<3>(),
-                       .power_measured = w.dot(rendering_.handle_twist(record.robot)),
-                       .power_rendered = w.dot(twist_E),
-                       .dissipation = (budget.damping + budget.friction).dot(rendering.twin.dq_a),
-                       .mass = rendering_.apparent_mass(rendering),
-                       .speed = twist_E.head<3>().norm(),
-                       .is_pushed_back = is_pushed_back(record)},
-                      state_.passivity);
+  const Vector6& w = robot.w_H;
+  const PassivityReport report = passivity::step(
+      config_.passivity,
+      {.f = w.head<3>(),
+       .power_measured = w.dot(rendering_.handle_twist(robot)),
+       .power_rendered = w.dot(twist_E),
+       .dissipation = (law.budget.damping + law.budget.friction).dot(rendering.twin.dq_a),
+       .mass = rendering_.apparent_mass(rendering),
+       .speed = twist_E.head<3>().norm(),
+       .is_pushed_back = is_pushed_back(law)},
+      state_.passivity);
   const passivity::Calming& calming = state_.passivity.calming;
-  state_.rendering.calming = {calming.damping, calming.inertia};
-  const Fault fault = passivity::check(config_.passivity, record.passivity, state_.passivity);
+  rendering.calming = {calming.damping, calming.inertia};
+  const Fault fault = passivity::check(config_.passivity, report, state_.passivity);
   if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
+  return report;
+}
+
+// The motion that the solution permits: without a solution the law cannot brake.
+Motion Cycle::accept(Motion motion, const rendering::LawResult& law) noexcept {
+  if (!is_moving(motion)) return motion;
+  const Fault unsolved = safety::check_solution(law.solver_status, law.ddq_m, law.ddq_a);
+  if (unsolved.code == FaultCode::kNone) return motion;
+  safety::break_rule(unsolved, state_.supervisor);
+  return Motion::kBrakeJoints;
+}
+
+// Moves reference and twin by one period, and tells the gantry how to move.
+Cycle::Moved Cycle::advance(Motion motion, const RobotState& robot, const GantryAim& gantry,
+                            const rendering::LawResult& law) noexcept {
+  Moved moved = {.dq_p = VectorP::Zero(state_.dq_p.size())};
+  if (motion == Motion::kNone) return moved;
+  rendering::State& rendering = state_.rendering;
+  motion = accept(motion, law);
+  state_.motion = motion;
+  if (motion == Motion::kHold) {
+    rendering.reference.ddq_m.setZero();
+    rendering.twin.ddq_a.setZero();
+  }
+  if (motion == Motion::kBrakeJoints) brake_joints();
+  const bool is_led = gantry.task.ddq.size() > 0;
+  if (motion == Motion::kRender) {
+    moved.dq_p = is_led ? prepositioning::velocity_for(rendering.ddq_p, gantry.command,
+                                                       config_.estimation.drive, robot)
+                        : gantry.command.dq;
+  }
+  moved.reference = rendering.reference;
+  moved.twin = rendering.twin;
+  moved.sync_error = motion == Motion::kBrakeJoints ? 0.0 : law.sync_error;
+  if (is_moving(motion)) rendering_.integrate(rendering);
+  return moved;
+}
+
+// Joints brake with their own ratings, for which their position limits leave room; twin and gantry
+// do not follow. [HANDBOOK] 6.2 has a ramp of 50 ms, which exceeds the motor torques of a stretched
+// arm.
+void Cycle::brake_joints() noexcept {
+  rendering::State& rendering = state_.rendering;
+  const double rate = 1.0 / config_.rendering.dt;
+  rendering.reference.ddq_m =
+      (-rate * rendering.reference.dq_m).cwiseMin(ddq_max_).cwiseMax(-ddq_max_);
+  rendering.twin.dq_a.setZero();
+  rendering.twin.ddq_a.setZero();
+}
+
+// Ends a stop once everything is at rest, or reports that it takes too long.
+void Cycle::time_stop(Motion motion, const RobotState& robot, const Moved& moved) noexcept {
+  if (!is_stopping(motion)) return;
+  const bool is_at_rest = state_.force_share == 0.0 &&
+                          moved.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
+                          moved.reference.dq_m.lpNorm<Eigen::Infinity>() < kStandstill &&
+                          robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
+  safety::go_on_stopping(is_at_rest, longest_stop_, config_.monitor.stop_time, state_.supervisor);
+}
+
+// Compares measured and desired values with the thresholds of all rules, and watches the brakes.
+// Returns the warning of this cycle.
+Fault Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
+                     const Results& results) noexcept {
+  safety::Verdict verdict;
+  if (results.motion == Motion::kNone) {
+    safety::Monitor::forget(state_.monitor);
+  } else {
+    const rendering::LawResult& law = results.law;
+    const estimation::InertialCheck& inertial = state_.estimation.inertial;
+    verdict = monitor_.watch(sensors,
+                             {.robot = results.robot,
+                              .reference = results.moved.reference,
+                              .limits = law.limits,
+                              .sync_error = results.moved.sync_error,
+                              .v_H = law.v_H,
+                              .contact_force = law.contact.force,
+                              .oscillation = results.passivity.oscillation},
+                             {.state = state_.supervisor.state,
+                              .late_cycles = late_cycles,
+                              .dq_p_command = results.moved.dq_p,
+                              .tau_m = state_.tau_m,
+                              .pulled_back = results.pulled_back,
+                              .unexplained = state_.control.unexplained,
+                              .turn = inertial.turn.norm(),
+                              .turn_uncertainty = estimation::turn_uncertainty(inertial),
+                              .slip = inertial.slip.norm(),
+                              .slip_uncertainty = estimation::slip_uncertainty(inertial)},
+                             state_.monitor);
+    if (state_.monitor.is_broken) {
+      const Fault link = follows_from_link(verdict.fault.code)
+                             ? control_.link_disturbance(sensors, state_.control)
+                             : Fault{};
+      safety::break_rule(link.code != FaultCode::kNone ? link : verdict.fault, state_.supervisor);
+    }
+  }
+  const Fault slip = safety::watch_brakes(
+      monitor_.config(), sensors, safety::is_powered(state_.supervisor.state), state_.brakes);
+  if (slip.code != FaultCode::kNone) safety::break_rule(slip, state_.supervisor);
+  return verdict.warning;
+}
+
+// The commands of the drives: from the reference at the time of the sample to the one a period
+// later.
+TrackingReport Cycle::control(const RobotState& robot, const Moved& moved,
+                              CommandFrame& command) noexcept {
+  TrackingReport report;
+  command.enable = safety::is_powered(state_.supervisor.state);
+  command.dq_p = moved.dq_p;
+  const ReferenceState& next = state_.rendering.reference;
+  if (command.enable) {
+    control_.step(moved.reference, next, robot, state_.control, command, report);
+  } else {
+    control_.rest(next, state_.control, command);
+    command.dq_p.setZero();
+  }
+  return report;
 }
 
 // Contact with the arm pushes twin and gantry from the next cycle on. Detection needs joint torques
 // and is active while the law moves the arm. During a stop caused by the contact the arm yields in
 // the first third of the stop time, faded out within 50 ms to leave time for braking; during any
 // other stop it does not.
-void Cycle::feel_touch(bool is_on, CycleRecord& record) noexcept {
+TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
   const safety::SupervisorState& supervisor = state_.supervisor;
   constexpr double kFade = 0.05;  // s
   double share = 1.0;
@@ -325,181 +547,92 @@ void Cycle::feel_touch(bool is_on, CycleRecord& record) noexcept {
     const bool is_stopped_by_it = supervisor.fault.code == FaultCode::kTorqueUnexplained;
     share = is_stopped_by_it ? std::clamp(left / kFade, 0.0, 1.0) : 0.0;
   }
-  const bool gives_way = share > 0.0 && is_moving(supervisor.mode());
+  const bool gives_way =
+      share > 0.0 && is_moving(supervisor.mode()) && state_.motion != Motion::kBrakeJoints;
   compliance::State& touch = state_.touch;
-  const VectorM& dq = record.robot.dq_m;
+  const VectorM& dq = robot.dq_m;
   const bool is_known = config_.compliance.torque_max.size() == dq.size() && dq.size() > 0;
-  if (!config_.compliance.is_on || !is_on || !gives_way || !is_known || state_.brakes_joints) {
+  if (!config_.compliance.is_on || !is_on || !gives_way || !is_known) {
     touch = {};
     state_.rendering.touch.setZero();
-    return;
+    return {};
   }
+  TouchReport report;
   if (touch.dq.size() == dq.size()) {
     const tracking::JointControl::JointTorques torques =
-        control_.joint_torques(record.robot, (dq - touch.dq) / config_.rendering.dt);
-    record.touch = compliance::step(config_.compliance,
-                                    {.torque = torques.external,
-                                     .load = torques.motion,
-                                     .J = rendering_.handle_jacobian(),
-                                     .n_p = static_cast<int>(record.robot.q_p.size())},
-                                    touch);
+        control_.joint_torques(robot, (dq - touch.dq) / config_.rendering.dt);
+    report = compliance::step(config_.compliance,
+                              {.torque = torques.external,
+                               .load = torques.motion,
+                               .J = rendering_.handle_jacobian(),
+                               .n_p = static_cast<int>(robot.q_p.size())},
+                              touch);
   }
   touch.dq = dq;
-  state_.rendering.touch = share * record.touch.wrench;
+  state_.rendering.touch = share * report.wrench;
+  return report;
 }
 
-// Standstill. Before arming, the device may be moved from outside: the twin follows. After joints
-// braked without the law the twin is realigned with the handle.
-void Cycle::hold(CycleRecord& record) noexcept {
-  rendering::State& rendering = state_.rendering;
-  const bool is_armed = state_.supervisor.state == safety::State::kArmed;
-  if (!is_armed) {
-    rendering.reference.q_m = record.robot.q_m;
-    rendering.contact = {};
+// Last check of the command. Returns which of its entries were changed.
+std::uint32_t Cycle::sanitise(const RobotState& robot, CommandFrame& command) noexcept {
+  const safety::Sanitised sanitised = sanitiser_.step(
+      {.robot = robot, .was_on = state_.was_on, .q_before = state_.q_m, .tau_before = state_.tau_m},
+      command);
+  if (sanitised.fault.code != FaultCode::kNone) {
+    safety::break_rule(sanitised.fault, state_.supervisor);
   }
-  if (!is_armed || state_.brakes_joints) rendering_.align(record.robot, rendering);
-  rendering.reference.dq_m.setZero();
-  rendering.twin.dq_a.setZero();
-  rendering_.step(rendering, kBrakingRate, record, 0.0);
-  rendering_.gantry_room(state_.room.down, state_.room.up);
-  state_.is_apart = record.sync_error > monitor_.config().sync_tolerance;
-  rendering.reference.ddq_m.setZero();
-  rendering.twin.ddq_a.setZero();
-  record.reference = rendering.reference;
-  record.twin = rendering.twin;
-  state_.dq_p.setZero();
-  state_.is_blocked = state_.brakes_joints = false;
-  pulled_back_.resize(0);
-  state_.force_share = 0.0;
-  state_.passivity = {};
-  rendering.calming = {};
+  return sanitised.changed;
 }
 
-// A requested stop ramps forces down if the handle is held; all other stops drop them at once.
-void Cycle::render(bool is_held, CycleRecord& record) noexcept {
-  const bool is_stopping = state_.supervisor.mode() == Mode::kStopping;
-  double& share = state_.force_share;
-  const bool is_alone = state_.supervisor.state == safety::State::kAutonomous;
-  if (!is_stopping) state_.was_alone = is_alone;
-  const bool is_gentle =
-      is_held && !state_.was_alone && state_.supervisor.state == safety::State::kToArmed;
-  if (is_stopping && !is_gentle) share = 0.0;
-  pulled_back_ = state_.rendering.reference.q_m;
-  const bool has_left =
-      rendering_.stay_near(record.robot, config_.control.error_max, state_.rendering);
-  if (has_left) pulled_back_ -= state_.rendering.reference.q_m;
-  if (!has_left) pulled_back_.resize(0);
-  const double speed = is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
-  const VectorP q_p_target =
-      gantry_target_.step(record.robot, state_.rendering.reference.q_m, state_.gantry_target);
-  const prepositioning::Command gantry =
-      prepositioning::step(config_.prepositioning, record.robot, q_p_target, state_.is_blocked,
-                           speed / std::sqrt(2.0), state_.room, state_.touch.away);
-  record.q_p_target = gantry.q_target;
-  const DriveModel& drive = config_.estimation.drive;
-  const bool leads = rendering_.leads_gantry() && !is_stopping;
-  GantryTask gantry_task;
-  if (leads) {
-    gantry_task = prepositioning::accelerations(gantry, drive, record.robot, state_.rendering.ddq_p,
-                                                config_.rendering.dt);
-    gantry_task.unexplained = estimation_.gantry_disturbance(state_.estimation);
-  }
-  ended_(Stage::kPrepositioning);
-  const double braking = is_stopping ? kBrakingRate * (1.0 - share) : 0.0;
-  rendering_.step(state_.rendering, state_.touch.is_told ? kBrakingRate : braking, record, share,
-                  speed / std::sqrt(3.0), gantry_task);
-  rendering_.gantry_room(state_.room.down, state_.room.up);
-  const double step =
-      is_stopping ? -config_.rendering.dt / kRampOut : config_.rendering.dt / kRampIn;
-  share = std::clamp(share + step, 0.0, 1.0);
-
-  if (!is_stopping) watch_energy(record);
-
-  const Fault unsolved = safety::check_solution(record);
-  if (unsolved.code != FaultCode::kNone) {
-    safety::break_rule(unsolved, state_.supervisor);
-    state_.brakes_joints = true;
-  }
-  state_.dq_p = is_stopping ? VectorP::Zero(gantry.dq.size()) : gantry.dq;
-  if (leads) {
-    state_.dq_p = prepositioning::velocity_for(state_.rendering.ddq_p, gantry, drive, record.robot);
-  }
-  state_.is_blocked = rendering_.is_blocked();
-  record.tracking.is_clamped = has_left;
-  if (state_.brakes_joints) brake_joints(record);
-  rendering_.integrate(state_.rendering);
-  if (is_stopping) {
-    safety::go_on_stopping(share == 0.0 && stands_still(record), longest_stop_,
-                           config_.monitor.stop_time, state_.supervisor);
-  }
-  ended_(Stage::kIntegration);
+// What the next cycle needs of the command.
+void Cycle::remember(std::uint64_t sequence, const CommandFrame& command) noexcept {
+  state_.dq_p = command.dq_p;
+  state_.q_m = command.q_m;
+  state_.tau_m = command.tau_m;
+  state_.was_on = command.enable;
+  state_.next_sequence = sequence + 1;
+  ++state_.cycle;
 }
 
-// Without a solution the law cannot brake, and its stopping path may lead to a collision: joints
-// brake with their own ratings, for which their position limits leave room; twin and gantry do not
-// follow. [HANDBOOK] 6.2 has a ramp of 50 ms, which exceeds the motor torques of a stretched arm.
-void Cycle::brake_joints(CycleRecord& record) noexcept {
-  rendering::State& rendering = state_.rendering;
-  ReferenceState& reference = rendering.reference;
-  const double rate = 1.0 / config_.rendering.dt;
-  reference.ddq_m = (-rate * reference.dq_m).cwiseMin(ddq_max_).cwiseMax(-ddq_max_);
-  rendering.twin.dq_a.setZero();
-  rendering.twin.ddq_a.setZero();
-  record.reference = reference;
-  record.twin = rendering.twin;
-  record.sync_error = 0.0;
-  state_.dq_p.setZero();
-}
-
-void Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
-                    CycleRecord& record) noexcept {
-  const safety::Verdict verdict =
-      monitor_.watch(sensors, record,
-                     {.state = state_.supervisor.state,
-                      .late_cycles = late_cycles,
-                      .dq_p_command = state_.dq_p,
-                      .tau_m = state_.tau_m,
-                      .pulled_back = pulled_back_,
-                      .unexplained = state_.control.unexplained,
-                      .turn = state_.estimation.inertial.turn.norm(),
-                      .turn_uncertainty = estimation::turn_uncertainty(state_.estimation.inertial),
-                      .slip = state_.estimation.inertial.slip.norm(),
-                      .slip_uncertainty = estimation::slip_uncertainty(state_.estimation.inertial)},
-                     state_.monitor);
-  record.warning = verdict.warning;
-  if (!state_.monitor.is_broken) return;
-  const Fault link = follows_from_link(verdict.fault.code)
-                         ? control_.link_disturbance(sensors, state_.control)
-                         : Fault{};
-  safety::break_rule(link.code != FaultCode::kNone ? link : verdict.fault, state_.supervisor);
-}
-
-void Cycle::sanitise(CommandFrame& command, CycleRecord& record) noexcept {
-  const safety::Sanitised sanitised = sanitiser_.step({.robot = record.robot,
-                                                       .was_on = state_.was_on,
-                                                       .q_before = state_.q_m,
-                                                       .tau_before = state_.tau_m},
-                                                      command);
-  record.sanitised = sanitised.changed;
-  if (sanitised.fault.code == FaultCode::kNone) return;
-  safety::break_rule(sanitised.fault, state_.supervisor);
-}
-
-void Cycle::write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
-                          CommandFrame& command, CycleRecord& record) noexcept {
-  command.sequence = sensors.sequence;
-  command.enable = safety::is_powered(state_.supervisor.state);
-  command.dq_p = state_.dq_p;
-  const ReferenceState& reference = state_.rendering.reference;
-  if (command.enable) {
-    control_.step(record.reference, reference, record.robot, state_.control, command,
-                  record.tracking);
-  } else {
-    control_.rest(reference, state_.control, command);
-    command.dq_p.setZero();
+// Writes all fields of the record. Nothing reads it in this cycle or a later one.
+void Cycle::fill(const Results& results, const Fault& warning, const TrackingReport& tracking,
+                 const TouchReport& touch, std::uint32_t sanitised,
+                 CycleRecord& record) const noexcept {
+  std::destroy_at(&record);  // rebuilt in place: `record = {}` would copy an empty one
+  ::new (&record) CycleRecord;
+  record.cycle = state_.cycle - 1;
+  record.time_s = static_cast<double>(record.cycle) * config_.rendering.dt;
+  // supervisor, after all rules of this cycle
+  const safety::SupervisorState& supervisor = state_.supervisor;
+  record.mode = supervisor.mode();
+  record.is_autonomous = supervisor.state == safety::State::kAutonomous;
+  record.stop = supervisor.stop;
+  record.fault = supervisor.fault;
+  record.warning = supervisor.also.code != FaultCode::kNone ? supervisor.also : warning;
+  record.refusal = results.supervision.refusal;
+  record.change = results.supervision.change;
+  // estimation
+  record.robot = results.robot;
+  record.tare = state_.estimation.wrench.tare.status;
+  record.is_tared = estimation_.is_tared(state_.estimation);
+  if (results.motion != Motion::kNone && estimation_.has_units()) {
+    record.inertial = estimation_.inertial_report(state_.estimation);
   }
-  command.hand_target = operator_input.hand_target;
-  command.panel = operator_input.panel;
+  record.collision = results.collision;
+  record.q_p_target = results.gantry.command.q_target;
+  // rendering
+  if (results.motion != Motion::kNone) copy(results.law, record);
+  record.passivity = results.passivity;
+  record.reference = results.moved.reference;
+  record.twin = results.moved.twin;
+  record.sync_error = results.moved.sync_error;
+  // control and sanitiser
+  record.tracking = tracking;
+  record.tracking.is_clamped = results.pulled_back.size() > 0;
+  record.is_latency_known = control_.is_latency_known(state_.control);
+  record.touch = touch;
+  record.sanitised = sanitised;
+  record.state_hash = hash_of(state_, rendering_.problem().rows());
 }
 
 }  // namespace hg::controller

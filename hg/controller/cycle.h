@@ -4,6 +4,7 @@
 /// construction.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "hg/controller/estimation/estimation.h"
@@ -39,6 +40,15 @@ struct Config {
   std::vector<surfaces::Surface> surfaces;  ///< Virtual surfaces in contact with the twin
 };
 
+/// How the device moves in a cycle; decided once, between estimation and prepositioning.
+enum class Motion : std::uint8_t {
+  kNone,         ///< the sample is unusable: nothing is computed, and the drives are off
+  kHold,         ///< the device stands still; before arming, the twin follows it
+  kRender,       ///< the law moves twin and device
+  kRenderStop,   ///< a stop: the law brings both to rest
+  kBrakeJoints,  ///< a stop without a solution or with a collision ahead: joints brake one by one
+};
+
 /// Complete state of a cycle. Copy it for a snapshot, assign it to restore. Members added here or
 /// in nested states must be added to state_hash.cpp, too.
 struct State {
@@ -54,13 +64,15 @@ struct State {
   collision::State collision;
   passivity::State passivity;
   compliance::State touch;
+  /// Motion in the last cycle that was not kNone. Of it, only kBrakeJoints matters later: joints
+  /// that brake one by one do so until they are held.
+  Motion motion = Motion::kHold;
   Vector6 w_H = Vector6::Zero();  ///< Wrench of the user, the last one within the sensor's range
   VectorP dq_p;                   ///< Gantry command of the last cycle
-  prepositioning::Room room;      ///< Room of the gantry in the last cycle
   VectorM q_m, tau_m;             ///< Positions and torques of the last command
   bool was_on = false;            ///< The last command had the drives on
+  prepositioning::Room room;      ///< Room of the gantry in the last cycle
   bool is_blocked = false;        ///< A device limit could not be met in the last cycle
-  bool brakes_joints = false;     ///< No solution, or a collision ahead: joints brake one by one
   bool is_coasting = false;       ///< Joints or gantry moved in the last sample
   bool is_apart = false;          ///< The twin cannot reach the handle's pose while held
   bool was_alone = false;         ///< Last rendering without stopping was autonomous
@@ -100,22 +112,69 @@ class Cycle {
   }
 
  private:
-  void supervise(const SensorFrame& sensors, const OperatorFrame& operator_input,
-                 CycleRecord& record) noexcept;
+  /// Result of the supervisor.
+  struct Supervision {
+    bool is_usable = false;  ///< All values of the sample are finite
+    Refusal refusal = Refusal::kNone;
+    ChangeStatus change = ChangeStatus::kNone;
+  };
+  /// Aim of the gantry. Empty where the device does not move.
+  struct GantryAim {
+    prepositioning::Command command;
+    GantryTask task;  ///< Empty where the law does not lead the gantry
+  };
+  /// Motion from this sample to the next. Empty without a usable sample.
+  struct Moved {
+    ReferenceState reference;  ///< Reference at the time of the sample, and its accelerations
+    TwinState twin;            ///< Twin at the time of the sample, and its accelerations
+    double sync_error = 0.0;   ///< Distance of handle and twin, m; 0 where the twin does not follow
+    VectorP dq_p;              ///< Velocity command of the gantry, m/s or rad/s
+  };
+  /// Results of the stages from the supervisor to the rendering.
+  struct Results {
+    const Supervision& supervision;
+    const RobotState& robot;
+    const CollisionReport& collision;
+    Motion motion;
+    const VectorM& pulled_back;  ///< Shift of the reference back to the device; empty = none
+    const GantryAim& gantry;
+    const rendering::LawResult& law;
+    const PassivityReport& passivity;
+    const Moved& moved;
+  };
+
+  // stages, in the order of their calls
+  Supervision supervise(const SensorFrame& sensors, const OperatorFrame& operator_input) noexcept;
+  RobotState estimate(const SensorFrame& sensors) noexcept;
+  collision::Prediction look_ahead(const SensorFrame& sensors, const RobotState& robot) noexcept;
+  Motion decide(bool is_usable, bool must_brake) const noexcept;
+  VectorM place_reference(Motion motion, const RobotState& robot) noexcept;
+  GantryAim preposition(Motion motion, const RobotState& robot) noexcept;
+  const rendering::LawResult& render(Motion motion, bool is_held, const RobotState& robot,
+                                     const GantryAim& gantry) noexcept;
+  PassivityReport watch_energy(Motion motion, const RobotState& robot,
+                               const rendering::LawResult& law) noexcept;
+  Moved advance(Motion motion, const RobotState& robot, const GantryAim& gantry,
+                const rendering::LawResult& law) noexcept;
+  void time_stop(Motion motion, const RobotState& robot, const Moved& moved) noexcept;
+  Fault monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
+                const Results& results) noexcept;
+  TrackingReport control(const RobotState& robot, const Moved& moved,
+                         CommandFrame& command) noexcept;
+  TouchReport feel_touch(bool is_on, const RobotState& robot) noexcept;
+  std::uint32_t sanitise(const RobotState& robot, CommandFrame& command) noexcept;
+  void remember(std::uint64_t sequence, const CommandFrame& command) noexcept;
+  void fill(const Results& results, const Fault& warning, const TrackingReport& tracking,
+            const TouchReport& touch, std::uint32_t sanitised, CycleRecord& record) const noexcept;
+
+  // parts of these stages
   Fault check(const SensorFrame& sensors) noexcept;
   Refusal refusal_to_arm() const noexcept;
   void begin_anew() noexcept;
-  void trust_wrench(const SensorFrame& sensors, RobotState& robot) noexcept;
-  void look_ahead(CycleRecord& record) noexcept;
-  void watch_energy(CycleRecord& record) noexcept;
-  void feel_touch(bool is_on, CycleRecord& record) noexcept;
-  void hold(CycleRecord& record) noexcept;
-  void render(bool is_held, CycleRecord& record) noexcept;
-  void monitor(const SensorFrame& sensors, std::uint32_t late_cycles, CycleRecord& record) noexcept;
-  void sanitise(CommandFrame& command, CycleRecord& record) noexcept;
-  void brake_joints(CycleRecord& record) noexcept;
-  void write_command(const SensorFrame& sensors, const OperatorFrame& operator_input,
-                     CommandFrame& command, CycleRecord& record) noexcept;
+  double speed_max() const noexcept;
+  double ramp_forces(Motion motion, bool is_held) noexcept;
+  Motion accept(Motion motion, const rendering::LawResult& law) noexcept;
+  void brake_joints() noexcept;
 
   Config config_;
   VectorM ddq_max_;   ///< Deceleration of joints that brake without the law, rad/s^2 or m/s^2
@@ -127,7 +186,7 @@ class Cycle {
   collision::Guard guard_;
   safety::Monitor monitor_;
   safety::Sanitiser sanitiser_;
-  VectorM pulled_back_;  ///< Shift of the reference back to the device; empty = none
+  rendering::LawResult law_;  ///< Result of the law in this cycle; a member because of its size
   State state_;
   StageProbe ended_;
 };

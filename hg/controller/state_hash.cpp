@@ -229,7 +229,8 @@ std::uint64_t hash_of(const State& state, int rows) noexcept {
   hash.mix(state.dq_p);
   hash.mix(state.room.down);
   hash.mix(state.room.up);
-  hash.mix(std::uint64_t{state.is_blocked} | std::uint64_t{state.brakes_joints} << 1U |
+  hash.mix(std::uint64_t{state.is_blocked} |
+           std::uint64_t{state.motion == Motion::kBrakeJoints} << 1U |
            std::uint64_t{state.was_on} << 2U | std::uint64_t{state.is_coasting} << 3U |
            std::uint64_t{state.is_apart} << 4U | std::uint64_t{state.was_alone} << 5U);
   hash.mix(state.force_share);

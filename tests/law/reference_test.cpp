@@ -49,15 +49,15 @@ rendering::State recorded_state(const nlohmann::json& in, rendering::Rendering& 
   return state;
 }
 
-CycleRecord recorded_input(const nlohmann::json& in) {
-  CycleRecord record;
-  record.robot.q_m = vector_of(in.at("qm"));
-  record.robot.dq_m = vector_of(in.at("dqm"));
-  record.robot.q_p = vector_of(in.at("qp"));
-  record.robot.dq_p = vector_of(in.at("dqp"));
-  record.robot.ddq_p = vector_of(in.at("ddqp"));
-  record.robot.w_H = vector_of(in.at("w"));
-  return record;
+RobotState recorded_input(const nlohmann::json& in) {
+  RobotState robot;
+  robot.q_m = vector_of(in.at("qm"));
+  robot.dq_m = vector_of(in.at("dqm"));
+  robot.q_p = vector_of(in.at("qp"));
+  robot.dq_p = vector_of(in.at("dqp"));
+  robot.ddq_p = vector_of(in.at("ddqp"));
+  robot.w_H = vector_of(in.at("w"));
+  return robot;
 }
 
 void expect_near(double got, double expected, double tolerance, const std::string& what) {
@@ -93,18 +93,18 @@ void expect_same_problem(const hqp::Problem& got, const hqp::Problem& expected) 
 }
 
 void expect_same_outputs(const nlohmann::json& out, const std::vector<double>& solution,
-                         const CycleRecord& record, const rendering::State& state) {
+                         const rendering::LawResult& result, const rendering::State& state) {
   double largest = 0.0;
-  const int n_a = static_cast<int>(record.twin.ddq_a.size());
+  const int n_a = static_cast<int>(result.ddq_a.size());
   for (int i = 0; i < 6 + n_a; ++i) {
     largest = std::max(largest, std::abs(solution[static_cast<std::size_t>(i)]));
   }
   for (int i = 0; i < 6 + n_a; ++i) {
-    const double got = i < 6 ? record.reference.ddq_m[i] : record.twin.ddq_a[i - 6];
+    const double got = i < 6 ? result.ddq_m[i] : result.ddq_a[i - 6];
     EXPECT_NEAR(got, solution[static_cast<std::size_t>(i)], kAccelerationError * (1.0 + largest))
         << "acceleration " << i;
   }
-  const auto flags = static_cast<std::size_t>(record.limit_count);
+  const auto flags = static_cast<std::size_t>(result.limit_count);
   for (std::size_t i = 0; i < flags; ++i) {
     const std::size_t limit = limit_of(i, static_cast<std::size_t>(n_a), flags);
     EXPECT_EQ(state.touched.upper[limit], out.at("next_up").at(i).get<int>() != 0) << "flag " << i;
@@ -112,14 +112,14 @@ void expect_same_outputs(const nlohmann::json& out, const std::vector<double>& s
   }
 }
 
-void expect_same_kinematics(const nlohmann::json& out, const CycleRecord& record,
+void expect_same_kinematics(const nlohmann::json& out, const rendering::LawResult& result,
                             const Vector6& s) {
   const Eigen::VectorXd p = vector_of(out.at("xH")), R = vector_of(out.at("CH"));
   const Eigen::VectorXd elbow = vector_of(out.at("xElbow")), recorded_s = vector_of(out.at("s"));
   for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(record.T_B_H.p[i], p[i], kMatrixError);
-    EXPECT_NEAR(record.p_B_elbow[i], elbow[i], kMatrixError);
-    for (int j = 0; j < 3; ++j) EXPECT_NEAR(record.T_B_H.R(i, j), R[3 * i + j], kMatrixError);
+    EXPECT_NEAR(result.T_B_H.p[i], p[i], kMatrixError);
+    EXPECT_NEAR(result.p_B_elbow[i], elbow[i], kMatrixError);
+    for (int j = 0; j < 3; ++j) EXPECT_NEAR(result.T_B_H.R(i, j), R[3 * i + j], kMatrixError);
   }
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(s[i], recorded_s[i], kMatrixError);
 }
@@ -137,13 +137,14 @@ TEST_P(RecordedStates, GiveTheRecordedProblemsAccelerationsAndFlags) {
     const nlohmann::json& line = recording.states[k];
     rendering::Rendering& rendering = renderings.with(line.at("locked").get<std::vector<int>>());
     rendering::State state = recorded_state(line, rendering);
-    CycleRecord record = recorded_input(line);
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    const RobotState robot = recorded_input(line);
+    rendering::LawResult result;
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
 
-    expect_same_kinematics(line, record, rendering.synchronisation());
+    expect_same_kinematics(line, result, rendering.synchronisation());
     expect_same_problem(rendering.problem(), recording.problems[k]);
     if (!recording.is_skipped[k]) {
-      expect_same_outputs(line, recording.solutions[k], record, state);
+      expect_same_outputs(line, recording.solutions[k], result, state);
     }
     if (HasFailure()) return;  // one state is enough to look at
   }
@@ -185,9 +186,10 @@ TEST(RecordedDoor, FollowsALockThatEngagesInMotion) {
       state.twin.q_a[0] = q;
       state.twin.dq_a[0] = dq;
       state.touched.upper[13] = state.touched.lower[13] = false;  // the hinge's limit
-      CycleRecord record = recorded_input(line);
-      EXPECT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
-      return record;
+      const RobotState robot = recorded_input(line);
+      rendering::LawResult result;
+      EXPECT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+      return result;
     };
     rendering::State state;
     step({0, 0}, state);
@@ -198,9 +200,9 @@ TEST(RecordedDoor, FollowsALockThatEngagesInMotion) {
     expected.set_bounds(level_8, {ddq, ddq});
     expected.set_bounds(expected.first_row(9), {-kInfinity, kInfinity});
 
-    const CycleRecord record = step(locked, state);
+    const rendering::LawResult result = step(locked, state);
     expect_same_problem(renderings.with(locked).problem(), expected);
-    EXPECT_NEAR(record.twin.ddq_a[0], ddq, kAccelerationError * (1.0 + ddq_max));
+    EXPECT_NEAR(result.ddq_a[0], ddq, kAccelerationError * (1.0 + ddq_max));
     EXPECT_TRUE(state.touched.lower[13]);
     EXPECT_TRUE(state.touched.upper[13]);
     if (HasFailure()) return;

@@ -214,19 +214,19 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
   }
 }
 
-void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const MatrixA& L,
-                       const model::Jacobian& J_a, double dt, CycleRecord& record) const noexcept {
+void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const Felt& felt,
+                       LawResult& result) const noexcept {
   const auto& rows = tasks.limit_rows();
-  record.limit_count = device_limits_ + n_a_;
-  for (int limit = 0; limit < record.limit_count; ++limit) {
+  result.limit_count = device_limits_ + n_a_;
+  for (int limit = 0; limit < result.limit_count; ++limit) {
     const auto i = static_cast<std::size_t>(limit);
     const int acting_row = tasks.acting_row(limit, solution);
     const auto row = static_cast<std::size_t>(acting_row);
     const Interval ddq =
         acting_row == rows[i].rating_row ? tasks.problem().bounds(acting_row) : rows[i].ddq;
-    LimitReport& report = record.limits[i];
+    LimitReport& report = result.limits[i];
     report.state = limit_state(solution.state[row], value_[i]);
-    report.cause = cause_of(rows[i], ddq, solution.state[row], value_[i], dt);
+    report.cause = cause_of(rows[i], ddq, solution.state[row], value_[i], felt.dt);
     report.position = rows[i].q;
     report.to_lower = rows[i].q - rows[i].limits.q_min;
     report.to_upper = rows[i].limits.q_max - rows[i].q;
@@ -234,32 +234,31 @@ void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const 
     report.slack = solution.slack[row];
     report.reaction = value_[i];
   }
-  report_felt(L, record);
-
-  record.budget.structure = bearing_wrench(J_a, record.robot.w_H);
+  report_felt(felt.L, result);
+  result.budget.structure = bearing_wrench(felt.J_a, felt.w_H);
 }
 
 // The limit felt most takes most of the acceleration, in the metric of M_a, that the user's wrench
 // demands; a stop that only carries a spring is not felt.
-void Reactions::report_felt(const MatrixA& L, CycleRecord& record) const noexcept {
-  Budget& budget = record.budget;
+void Reactions::report_felt(const MatrixA& L, LawResult& result) const noexcept {
+  Budget& budget = result.budget;
   budget.limits = VectorA::Zero(n_a_);
   budget.conflict = -rest_;
-  record.felt_limit = -1;
-  record.w_felt.setZero();
+  result.felt_limit = -1;
+  result.w_felt.setZero();
   const auto factor = L.triangularView<Eigen::Lower>();
-  VectorA pushed = record.tau_a;
+  VectorA pushed = result.tau_a;
   factor.solveInPlace(pushed);
   double most = kFeltMin * kFeltMin;
   for (int j = 0; j < active_count_; ++j) {
     const int limit = active_[static_cast<std::size_t>(j)];
     const double value = value_[static_cast<std::size_t>(limit)];
     VectorA tau = torque(limit) * value;
-    if (limit >= record.limit_count) {
+    if (limit >= result.limit_count) {
       budget.surface -= tau;
       continue;
     }
-    if (record.limits[static_cast<std::size_t>(limit)].state == LimitState::kViolated) {
+    if (result.limits[static_cast<std::size_t>(limit)].state == LimitState::kViolated) {
       budget.conflict -= tau;
     } else {
       budget.limits -= tau;
@@ -268,9 +267,9 @@ void Reactions::report_felt(const MatrixA& L, CycleRecord& record) const noexcep
     const double opposed = -tau.dot(pushed);
     if (opposed > most) {
       most = opposed;
-      record.felt_limit = limit;
-      record.w_felt.setZero();
-      if (limit < device_limits_) record.w_felt = directions_.wrench(limit) * value;
+      result.felt_limit = limit;
+      result.w_felt.setZero();
+      if (limit < device_limits_) result.w_felt = directions_.wrench(limit) * value;
     }
   }
 }

@@ -14,6 +14,7 @@
 #include <array>
 
 #include "hg/controller/rendering/constraint_directions.h"
+#include "hg/controller/rendering/law_result.h"
 #include "hg/controller/rendering/tasks.h"
 #include "hg/hqp/solver.h"
 #include "hg/signals/state.h"
@@ -43,10 +44,18 @@ class Reactions {
   /// Torque of all limits of the device on the twin (n_a).
   VectorA torque_of_device() const noexcept;
 
-  /// Fills limits, felt_limit, w_felt and the constraint parts and structure of the budget.
-  /// `L` is the Cholesky factor of M_a, `J_a` the Jacobian of the twin's end effector.
-  void report(const Tasks& tasks, const hqp::Solution& solution, const MatrixA& L,
-              const model::Jacobian& J_a, double dt, CycleRecord& record) const noexcept;
+  /// What report() needs besides the problem and its solution.
+  struct Felt {
+    const MatrixA& L;            ///< Cholesky factor of M_a
+    const model::Jacobian& J_a;  ///< Jacobian of the twin's end effector
+    const Vector6& w_H;          ///< Wrench of the user
+    double dt;                   ///< Period, s
+  };
+
+  /// Fills limits, felt_limit, w_felt and the constraint parts and structure of the budget. Needs
+  /// tau_a of `result`, and adds the reactions of stops to its budget.
+  void report(const Tasks& tasks, const hqp::Solution& solution, const Felt& felt,
+              LawResult& result) const noexcept;
 
  private:
   void find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept;
@@ -55,7 +64,7 @@ class Reactions {
   void add_signs(const Tasks& tasks, const hqp::Solution& solution) noexcept;
   void add_sum(const VectorA& tau_constraint) noexcept;
   VectorA torque(int limit) const noexcept;
-  void report_felt(const MatrixA& L, CycleRecord& record) const noexcept;
+  void report_felt(const MatrixA& L, LawResult& result) const noexcept;
 
   static constexpr int kMaxReactions = kMaxLimits + surfaces::kMostFacing;
 

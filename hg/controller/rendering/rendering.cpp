@@ -187,9 +187,8 @@ void Rendering::update_device(const RobotState& robot, const ReferenceState& ref
   }
 }
 
-SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& record, double share,
-                             double handle_speed, const GantryTask& gantry) noexcept {
-  update_device(record.robot, state.reference);
+SolverStatus Rendering::step(const LawInput& input, State& state, LawResult& result) noexcept {
+  update_device(input.robot, state.reference);
   advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
   const model::Loads loads = {values.loads.mass * state.calming.inertia,
@@ -201,18 +200,40 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
   reactions_.update(J_H_, J_a_);
   advance_locks(twin_, options_.bounds, state.twin.q_a, state.inner);
 
+  const bool is_released = input.braking_rate > 0.0 && input.force_share == 0.0;
+  add_torques(input, is_released, state, result);
+  feel_surfaces(input, state, result);
+
+  RowStates previous;
+  copy(state.active_set.state, tasks_.problem().rows(), previous);
+  solve(input, state, result);
+  result.active_set_changes = changed_rows(previous, state.active_set.state,
+                                           tasks_.first_limit_row(), tasks_.limit_row_count());
+  if (!is_released) catch_reversals(state.twin, options_.dt, state.inner);
+  give_way(result.contact, state);
+  if (environment_.has_stops()) add_stops(result.contact);
+  find_kinematics(state, result);
+  ended_(Stage::kReactions);
+  return result.solver_status;
+}
+
+// Torques on the twin that are no constraints: the user's, and the parts of the budget that balance
+// it.
+void Rendering::add_torques(const LawInput& input, bool is_released, State& state,
+                            LawResult& result) const noexcept {
   const int n_a = twin_.chain.nv();
-  Budget& budget = record.budget;
-  const bool is_released = braking_rate > 0.0 && share == 0.0;
+  const double share = input.force_share;
+  const TwinValues& values = state.inner.parameters.now;
+  Budget& budget = result.budget;
   if (is_released) {
     state.inner.sticks.fill(false);
-    record.tau_a = VectorA::Zero(n_a);
+    result.tau_a = VectorA::Zero(n_a);
     budget.spring = -twin_.chain.gravity();
     budget.damping = VectorA::Zero(n_a);
     budget.friction = VectorA::Zero(n_a);
     budget.surface = VectorA::Zero(n_a);
   } else {
-    record.tau_a = J_a_.transpose() * (share * record.robot.w_H);
+    result.tau_a = J_a_.transpose() * (share * input.robot.w_H);
     budget.spring = share * spring_torque(twin_, state.twin.q_a, state.inner.parameters);
     if (share < 1.0) budget.spring -= (1.0 - share) * twin_.chain.gravity();
     budget.damping = damping_torque(L_, state.twin.dq_a, options_.dt, values);
@@ -223,24 +244,11 @@ SolverStatus Rendering::step(State& state, double braking_rate, CycleRecord& rec
     budget.friction = slip_torque(state.twin.dq_a, state.inner);
     budget.surface = J_a_.transpose() * (share * values.w_ref);
   }
-  if (braking_rate > 0.0) {
-    const VectorA braking = braking_rate * state.twin.dq_a;
+  if (input.braking_rate > 0.0) {
+    const VectorA braking = input.braking_rate * state.twin.dq_a;
     budget.damping.noalias() += twin_.chain.M() * braking;
   }
   if (!state.touch.isZero(0.0)) budget.surface.noalias() -= J_a_.transpose() * state.touch;
-  feel_surfaces(state, share, record);
-
-  RowStates previous;
-  copy(state.active_set.state, tasks_.problem().rows(), previous);
-  solve(state, handle_speed, gantry, record);
-  record.active_set_changes = changed_rows(previous, state.active_set.state,
-                                           tasks_.first_limit_row(), tasks_.limit_row_count());
-  if (!is_released) catch_reversals(state.twin, options_.dt, state.inner);
-  give_way(state, record);
-  if (environment_.has_stops()) report_stops(record);
-  report_kinematics(state, record);
-  ended_(Stage::kReactions);
-  return record.solver_status;
 }
 
 // The force on the end effector that accelerates it as springs, weight and reference wrench of the
@@ -259,48 +267,48 @@ Eigen::Vector3d Rendering::push_of_twin(const Budget& budget) const noexcept {
 }
 
 // Updates the proxy even while no surface is felt.
-void Rendering::feel_surfaces(State& state, double share, CycleRecord& record) noexcept {
+void Rendering::feel_surfaces(const LawInput& input, State& state, LawResult& result) noexcept {
   const Eigen::Vector3d p_E = twin_.chain.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
   if (environment_.has_stops()) stops_ = environment_.stops(p_E, v_E, stop_rating_);
-  Eigen::Vector3d push = record.robot.w_H.head<3>();
-  if (!environment_.surfaces().empty()) push += push_of_twin(record.budget);
+  Eigen::Vector3d push = input.robot.w_H.head<3>();
+  if (!environment_.surfaces().empty()) push += push_of_twin(result.budget);
   const double mass_scale =
       state.inner.parameters.now.loads.mass * state.calming.inertia / twin_.mass_scale;
-  record.contact = environment_.step(p_E, v_E, push, state.contact, mass_scale);
-  if (record.contact.surface < 0) return;
-  record.contact.force *= share;
-  record.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * record.contact.force;
+  result.contact = environment_.step(p_E, v_E, push, state.contact, mass_scale);
+  if (result.contact.surface < 0) return;
+  result.contact.force *= input.force_share;
+  result.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * result.contact.force;
 }
 
 // The reactions of stops are forces of their surfaces.
-void Rendering::report_stops(CycleRecord& record) const noexcept {
+void Rendering::add_stops(ContactReport& contact) const noexcept {
   const int first = device_.limit_count() + twin_.chain.nv();
-  double most = record.contact.force.norm();
+  double most = contact.force.norm();
   for (int i = 0; i < tasks_.stop_count(); ++i) {
     const surfaces::Facing& stop = stops_[static_cast<std::size_t>(i)];
     const double force = reactions_.of(first + i);
     if (stop.surface < 0 || force == 0.0) continue;
-    record.contact.force += force * stop.normal;
+    contact.force += force * stop.normal;
     if (force <= most) continue;
     most = force;
-    record.contact.surface = stop.surface;
+    contact.surface = stop.surface;
   }
 }
 
 // A surface does not push with the part of its force that limits of the device take.
-void Rendering::give_way(State& state, const CycleRecord& record) const noexcept {
-  const double force = record.contact.force.norm();
-  if (record.contact.surface < 0 || force == 0.0) return;
+void Rendering::give_way(const ContactReport& contact, State& state) const noexcept {
+  const double force = contact.force.norm();
+  if (contact.surface < 0 || force == 0.0) return;
   const auto factor = L_.triangularView<Eigen::Lower>();
-  VectorA along = J_a_.topRows<3>().transpose() * (record.contact.force / force);
+  VectorA along = J_a_.topRows<3>().transpose() * (contact.force / force);
   VectorA limits = reactions_.torque_of_device();
   factor.solveInPlace(along);
   factor.solveInPlace(limits);
   const double missing = -along.dot(limits) / along.squaredNorm();
   const Eigen::Vector3d v_E =
       J_a_.topRows<3>() * (state.twin.dq_a + 0.5 * options_.dt * state.twin.ddq_a);
-  environment_.give_way(record.contact, std::clamp(missing, 0.0, force), v_E, state.contact);
+  environment_.give_way(contact, std::clamp(missing, 0.0, force), v_E, state.contact);
 }
 
 void Rendering::align(const RobotState& robot, State& state) noexcept {
@@ -345,23 +353,22 @@ bool Rendering::stay_near(const RobotState& robot, double largest, State& state)
 }
 
 // Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
-void Rendering::solve(State& state, double handle_speed, const GantryTask& gantry,
-                      CycleRecord& record) noexcept {
+void Rendering::solve(const LawInput& input, State& state, LawResult& result) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
   const int first_twin_limit = device_.limit_count();
-  record.solver_iterations = 0;
+  result.solver_iterations = 0;
   bool was_spent = false;  // a solve of this cycle has spent its budget
   for (int attempt = 0; attempt <= n_a; ++attempt) {
-    Budget& budget = record.budget;
+    Budget& budget = result.budget;
     const VectorA tau =
-        record.tau_a - budget.damping - budget.friction - budget.spring - budget.surface;
+        result.tau_a - budget.damping - budget.friction - budget.spring - budget.surface;
     tasks_.fill(device_, twin_,
-                {.robot = record.robot,
+                {.robot = input.robot,
                  .reference = state.reference,
                  .twin = state.twin,
                  .inner = state.inner,
                  .motor_torque = state.motor_torque,
-                 .gantry = gantry,
+                 .gantry = input.gantry,
                  .touched = state.touched,
                  .L = L_,
                  .J_H = J_H_,
@@ -369,20 +376,20 @@ void Rendering::solve(State& state, double handle_speed, const GantryTask& gantr
                  .directions = reactions_.directions(),
                  .stops = stops_,
                  .tau = tau,
-                 .handle_speed = handle_speed});
+                 .handle_speed = input.handle_speed_max});
     ended_(Stage::kRenderingSetUp);
     copy(state.active_set.state, tasks_.problem().rows(), guess_.state);
     copy(state.active_set.before, tasks_.problem().rows(), guess_.before);
-    solved_cycle_ = record.cycle;
+    solved_cycle_ = input.cycle;
     solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_);
-    record.solver_status = solver_status(tasks_, solver_options_, solution_);
-    record.solver_iterations += solution_.iterations;
-    was_spent = was_spent || record.solver_status == SolverStatus::kBudgetSpent;
+    result.solver_status = solver_status(tasks_, solver_options_, solution_);
+    result.solver_iterations += solution_.iterations;
+    was_spent = was_spent || result.solver_status == SolverStatus::kBudgetSpent;
     const bool has_budget = solver_options_.budget > 0;
     if ((solution_.status != hqp::Status::kSolved && !has_budget) ||
-        record.solver_status == SolverStatus::kFailed ||
+        result.solver_status == SolverStatus::kFailed ||
         solution_.iterations >= options_.slow_solve) {
-      keep_problem(record.cycle);
+      keep_problem(input.cycle);
     }
     ended_(Stage::kSolver);
 
@@ -409,15 +416,18 @@ void Rendering::solve(State& state, double handle_speed, const GantryTask& gantr
     }
     if (!released) break;
   }
-  if (was_spent && record.solver_status == SolverStatus::kSolved) {
-    record.solver_status = SolverStatus::kBudgetSpent;
+  if (was_spent && result.solver_status == SolverStatus::kSolved) {
+    result.solver_status = SolverStatus::kBudgetSpent;
   }
   tasks_.find_motor_torques(solution_);
   state.motor_torque = tasks_.motor_torque();
   state.ddq_p.resize(0);
-  if (gantry.ddq.size() > 0) state.ddq_p = tasks_.gantry_acceleration(solution_);
+  if (input.gantry.ddq.size() > 0) state.ddq_p = tasks_.gantry_acceleration(solution_);
   if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
-  reactions_.report(tasks_, solution_, L_, J_a_, options_.dt, record);
+  result.ddq_m = state.reference.ddq_m;
+  result.ddq_a = state.twin.ddq_a;
+  reactions_.report(tasks_, solution_,
+                    {.L = L_, .J_a = J_a_, .w_H = input.robot.w_H, .dt = options_.dt}, result);
 }
 
 void Rendering::keep_problem(std::uint64_t cycle, double cycle_time_us) noexcept {
@@ -468,17 +478,15 @@ double Rendering::apparent_mass(const State& state) const noexcept {
   return 1.0 / (state.calming.inertia * root.colwise().squaredNorm().maxCoeff());
 }
 
-void Rendering::report_kinematics(const State& state, CycleRecord& record) const noexcept {
-  record.reference = state.reference;
-  record.twin = state.twin;
-  record.T_B_H = device_.chain.pose(device_.handle);
-  record.v_H = device_.chain.twist(device_.handle).head<3>();
-  record.a_H =
+void Rendering::find_kinematics(const State& state, LawResult& result) const noexcept {
+  result.T_B_H = device_.chain.pose(device_.handle);
+  result.v_H = device_.chain.twist(device_.handle).head<3>();
+  result.a_H =
       (J_a_ * state.twin.ddq_a + twin_.chain.bias_acceleration(twin_.end_effector)).head<3>();
-  if (device_.elbow >= 0) record.p_B_elbow = device_.chain.pose(device_.elbow).p;
-  record.T_B_E = twin_.chain.pose(twin_.end_effector);
-  record.sync_error = (record.T_B_E.p - record.T_B_H.p).norm();
-  record.sync_error_angle = angle_between(record.T_B_H.R, record.T_B_E.R);
+  if (device_.elbow >= 0) result.p_B_elbow = device_.chain.pose(device_.elbow).p;
+  result.T_B_E = twin_.chain.pose(twin_.end_effector);
+  result.sync_error = (result.T_B_E.p - result.T_B_H.p).norm();
+  result.sync_error_angle = angle_between(result.T_B_H.R, result.T_B_E.R);
 }
 
 void Rendering::integrate(State& state) const noexcept {

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "hg/controller/rendering/device_model.h"
+#include "hg/controller/rendering/law_result.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/reactions.h"
 #include "hg/controller/rendering/surfaces/environment.h"
@@ -24,7 +25,7 @@
 
 namespace hg::rendering {
 
-/// Additional damping and inertia of the twin; see hg/passivity.
+/// Additional damping and inertia of the twin; see hg/controller/safety/passivity.
 struct Calming {
   double damping = 0.0;  ///< Damping of the end effector in all directions, Ns/m
   double inertia = 1.0;  ///< Factor of the twin's inertia, without more weight
@@ -63,17 +64,10 @@ class Rendering {
   /// Changes a parameter of the twin, from the next step() on.
   ChangeStatus change(const ParameterChange& change, State& state) const noexcept;
 
-  /// Solves for the accelerations of this sample and reports their causes. Needs record.robot;
-  /// fills the rest that concerns device, twin, limits and solver. Does not advance the state:
-  /// integrate() does. `share` (0..1) scales the user's wrench, the twin's springs, its weight, its
-  /// reference wrench and the surfaces around it, so that a run against a leaning hand begins and
-  /// ends without a jump. `braking_rate` > 0 (1/s) brings the twin to rest, under the same limits;
-  /// with `share` 0 it is then a body without friction and without the user. The handle moves no
-  /// faster than `handle_speed` along each axis of B (m/s), where the device has Cartesian limits
-  /// for it. `gantry` bounds where the law may lead the gantry; state.ddq_p is then the demanded
-  /// acceleration.
-  SolverStatus step(State& state, double braking_rate, CycleRecord& record, double share = 1.0,
-                    double handle_speed = kInfinity, const GantryTask& gantry = {}) noexcept;
+  /// Solves for the accelerations of this sample. Writes them, their causes and the kinematics to
+  /// `result`, all fields of it, and the accelerations to `state`, too. Does not advance the state:
+  /// integrate() does. Where the law leads the gantry, state.ddq_p is its demanded acceleration.
+  SolverStatus step(const LawInput& input, State& state, LawResult& result) noexcept;
 
   /// Whether the law can lead the gantry.
   bool leads_gantry() const noexcept { return tasks_.leads_gantry(); }
@@ -129,12 +123,13 @@ class Rendering {
  private:
   void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
   Eigen::Vector3d push_of_twin(const Budget& budget) const noexcept;
-  void feel_surfaces(State& state, double share, CycleRecord& record) noexcept;
-  void give_way(State& state, const CycleRecord& record) const noexcept;
-  void solve(State& state, double handle_speed, const GantryTask& gantry,
-             CycleRecord& record) noexcept;
-  void report_stops(CycleRecord& record) const noexcept;
-  void report_kinematics(const State& state, CycleRecord& record) const noexcept;
+  void add_torques(const LawInput& input, bool is_released, State& state,
+                   LawResult& result) const noexcept;
+  void feel_surfaces(const LawInput& input, State& state, LawResult& result) noexcept;
+  void give_way(const ContactReport& contact, State& state) const noexcept;
+  void solve(const LawInput& input, State& state, LawResult& result) noexcept;
+  void add_stops(ContactReport& contact) const noexcept;
+  void find_kinematics(const State& state, LawResult& result) const noexcept;
 
   DeviceModel device_;
   TwinModel twin_;

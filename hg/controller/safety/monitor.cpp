@@ -77,13 +77,12 @@ Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
   return {};
 }
 
-Fault check_solution(const CycleRecord& record) noexcept {
-  if (record.solver_status != SolverStatus::kSolved &&
-      record.solver_status != SolverStatus::kBudgetSpent) {
-    return make_fault(FaultCode::kSolverFailed, -1, static_cast<double>(record.solver_status), 0.0);
+Fault check_solution(SolverStatus status, const VectorM& ddq_m, const VectorA& ddq_a) noexcept {
+  if (status != SolverStatus::kSolved && status != SolverStatus::kBudgetSpent) {
+    return make_fault(FaultCode::kSolverFailed, -1, static_cast<double>(status), 0.0);
   }
-  int index = first_not_finite(record.reference.ddq_m);
-  if (index < 0) index = first_not_finite(record.twin.ddq_a);
+  int index = first_not_finite(ddq_m);
+  if (index < 0) index = first_not_finite(ddq_a);
   if (index >= 0) return make_fault(FaultCode::kReferenceNotFinite, index, NAN, 0.0);
   return {};
 }
@@ -138,36 +137,36 @@ bool Monitor::has_jumped(const SensorFrame& sensors, const MonitorState& state) 
   return ((sensors.q_p - state.q_p).array().abs() > far * config_.drive.dq_max).any();
 }
 
-Verdict Monitor::watch(const SensorFrame& sensors, const CycleRecord& record,
-                       const Watched& watched, MonitorState& state) noexcept {
+Verdict Monitor::watch(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
+                       MonitorState& state) noexcept {
   worst_ = fresh_;
   if (state.lowest.size() != n_m_) {
-    state.lowest = state.highest = record.robot.q_m;
-    state.lowest_p = state.highest_p = record.robot.q_p;
+    state.lowest = state.highest = rendered.robot.q_m;
+    state.lowest_p = state.highest_p = rendered.robot.q_p;
     state.pulled_back = VectorM::Zero(n_m_);
     state.dq_p_model = state.gantry_gap = VectorP::Zero(n_p_);
     state.gantry_drift = state.gantry_way = VectorP::Zero(n_p_);
   }
-  for (int i = 0; i < n_m_; ++i) look_at_joint(i, record, watched, state);
-  look_at_motors(record.robot, watched, state);
+  for (int i = 0; i < n_m_; ++i) look_at_joint(i, rendered, watched, state);
+  look_at_motors(rendered.robot, watched, state);
   look_at_torques(watched);
   look_at_inertial_unit(watched);
-  look_at_gantry(sensors, record, watched, state);
-  look_at_braking(record, watched, state);
-  look_at_frames(record, watched);
+  look_at_gantry(sensors, rendered, watched, state);
+  look_at_braking(rendered, watched, state);
+  look_at_frames(rendered, watched);
   look_at_clocks(sensors, watched, state);
   look_at_sensors(sensors, state);
-  const Fault shaking = look_for_shaking(sensors, record, watched, state);
+  const Fault shaking = look_for_shaking(sensors, rendered, watched, state);
   Verdict verdict = judge(state);
   if (shaking.code != FaultCode::kNone) verdict.warning = shaking;
   state.is_broken = verdict.fault.code != FaultCode::kNone;
   return verdict;
 }
 
-void Monitor::look_at_joint(int joint, const CycleRecord& record, const Watched& watched,
+void Monitor::look_at_joint(int joint, const Rendered& rendered, const Watched& watched,
                             MonitorState& state) noexcept {
   const std::size_t i = at(joint);
-  const double q = record.robot.q_m[joint], dq = record.robot.dq_m[joint];
+  const double q = rendered.robot.q_m[joint], dq = rendered.robot.dq_m[joint];
   const bool is_on = is_powered(watched.state);
   follow(config_.joint_range[i], q, is_on, state.lowest[joint], state.highest[joint]);
   double& pulled = state.pulled_back[joint];
@@ -182,7 +181,7 @@ void Monitor::look_at_joint(int joint, const CycleRecord& record, const Watched&
   const double beyond = is_slide ? config_.slide_tolerance : config_.position_tolerance;
   const double apart = is_slide ? config_.slide_tracking_tolerance : config_.tracking_tolerance;
   const double fastest = config_.speed_tolerance * config_.joint_speed_max[i];
-  const ReferenceState& reference = record.reference;
+  const ReferenceState& reference = rendered.reference;
   const double q_r = reference.q_m[joint];
   look<FaultCode::kLimitExceeded>(joint,
                                   std::max({q - state.highest[joint], state.lowest[joint] - q,
@@ -244,9 +243,9 @@ void Monitor::look_at_inertial_unit(const Watched& watched) noexcept {
                                       config_.accelerometer_tolerance + watched.slip_uncertainty);
 }
 
-void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& record,
+void Monitor::look_at_gantry(const SensorFrame& sensors, const Rendered& rendered,
                              const Watched& watched, MonitorState& state) noexcept {
-  const RobotState& robot = record.robot;
+  const RobotState& robot = rendered.robot;
   const bool is_on = is_powered(watched.state);
   const double beyond = config_.is_gantry_slide ? config_.gantry_tolerance : config_.turn_tolerance;
   const double off = config_.is_gantry_slide ? config_.gantry_deviation : config_.turn_deviation;
@@ -288,18 +287,18 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const CycleRecord& reco
 // Checks every axis of a controlled stop against its ramp: a gantry axis against its drive model, a
 // joint against the integrated accelerations of its reference (the reference itself is shifted back
 // to a joint that does not follow). An axis that does not brake as commanded needs its brakes.
-void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
+void Monitor::look_at_braking(const Rendered& rendered, const Watched& watched,
                               MonitorState& state) noexcept {
   const bool is_new = !state.is_stopping;
   state.is_stopping = mode_of(watched.state) == Mode::kStopping;
   if (!state.is_stopping) return;
-  const RobotState& robot = record.robot;
+  const RobotState& robot = rendered.robot;
   if (is_new) {
     state.stop_from = state.braking_ramp = robot.q_m;
-    state.ramp_speed = record.reference.dq_m;
+    state.ramp_speed = rendered.reference.dq_m;
     state.stop_from_p = state.braking_ramp_p = robot.q_p;
   } else {
-    state.ramp_speed += config_.dt * record.reference.ddq_m;
+    state.ramp_speed += config_.dt * rendered.reference.ddq_m;
     state.braking_ramp += config_.dt * state.ramp_speed;
     state.braking_ramp_p += config_.dt * state.dq_p_model;
   }
@@ -327,31 +326,36 @@ void Monitor::look_at_braking(const CycleRecord& record, const Watched& watched,
   }
 }
 
-void Monitor::look_at_frames(const CycleRecord& record, const Watched& watched) noexcept {
+void Monitor::look_at_frames(const Rendered& rendered, const Watched& watched) noexcept {
   const Mode mode = mode_of(watched.state);
   if (mode != Mode::kRunning && mode != Mode::kStopping) return;
   for (int i = n_m_; i < config_.end_cartesian; ++i) {
     const bool is_sum = i < config_.first_cartesian;
     look<FaultCode::kLimitExceeded>(
-        i, record.limits[at(i)].excess,
+        i, rendered.limits[at(i)].excess,
         is_sum ? config_.virtual_tolerance : config_.cartesian_tolerance);
   }
-  look<FaultCode::kSyncLost>(-1, record.sync_error, config_.sync_tolerance);
+  look<FaultCode::kSyncLost>(-1, rendered.sync_error, config_.sync_tolerance);
   if (watched.state != State::kAutonomous) return;
-  look<FaultCode::kSafeSpeedExceeded>(0, record.v_H.norm(), config_.safe_speed);
+  look<FaultCode::kSafeSpeedExceeded>(0, rendered.v_H.norm(), config_.safe_speed);
   if (!config_.is_gantry_slide) return;
-  look<FaultCode::kSafeSpeedExceeded>(1, record.robot.dq_p.norm(), config_.safe_speed);
+  look<FaultCode::kSafeSpeedExceeded>(1, rendered.robot.dq_p.norm(), config_.safe_speed);
 }
 
 // Returns a warning. Oscillations of force, which added damping may end, are stopped by
 // hg/passivity.
-Fault Monitor::look_for_shaking(const SensorFrame& sensors, const CycleRecord& record,
+Fault Monitor::look_for_shaking(const SensorFrame& sensors, const Rendered& rendered,
                                 const Watched& watched, MonitorState& state) noexcept {
   if (!config_.looks_for_shaking || mode_of(watched.state) != Mode::kRunning) {
     state.shaking = {};
     return {};
   }
-  const ShakingReport found = shaking_.step(sensors, record, state.shaking);
+  const ShakingReport found = shaking_.step({.w_S = sensors.w_S,
+                                             .w_H = rendered.robot.w_H,
+                                             .v_H = rendered.v_H,
+                                             .contact_force = rendered.contact_force,
+                                             .oscillation = rendered.oscillation},
+                                            state.shaking);
   if (found.what == Shaking::kNone) return {};
   const auto index = static_cast<int>(found.what);
   if (config_.stops_shaking && found.what != Shaking::kForce) {

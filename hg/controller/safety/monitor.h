@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "hg/controller/safety/rules.h"
@@ -120,10 +121,22 @@ bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors)
 Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
                     std::uint64_t expected_sequence) noexcept;
 
-/// Fault that forbids integrating the solution of the rendering, or kNone.
-Fault check_solution(const CycleRecord& record) noexcept;
+/// Fault that forbids integrating the accelerations that the law found, or kNone.
+Fault check_solution(SolverStatus status, const VectorM& ddq_m, const VectorA& ddq_a) noexcept;
 
-/// Monitored values of a cycle, besides sensors and record.
+/// Results of estimation and rendering that the monitor compares.
+struct Rendered {
+  const RobotState& robot;
+  /// Reference at the time of the sample, with the accelerations from there on.
+  const ReferenceState& reference;
+  std::span<const LimitReport> limits;   ///< Limits in the order of the catalogue
+  double sync_error = 0.0;               ///< Distance of handle and twin, m
+  const Eigen::Vector3d& v_H;            ///< Velocity of the handle at the reference, m/s
+  const Eigen::Vector3d& contact_force;  ///< Force of virtual surfaces on the handle, N
+  double oscillation = 0.0;              ///< PassivityReport::oscillation
+};
+
+/// Other monitored values of a cycle.
 struct Watched {
   State state = State::kOff;      ///< State of the supervisor
   std::uint32_t late_cycles = 0;  ///< Late cycles since the last cycle
@@ -185,7 +198,7 @@ class Monitor {
 
   /// Checks a cycle with usable sensors; call once per cycle, after the rendering. With unusable
   /// sensors call forget() instead.
-  Verdict watch(const SensorFrame& sensors, const CycleRecord& record, const Watched& watched,
+  Verdict watch(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
                 MonitorState& state) noexcept;
 
   /// Whether a position moved farther since the last sample than its rated speed and jump_factor
@@ -204,7 +217,7 @@ class Monitor {
 
   template <FaultCode code>
   void look(int index, double value, double limit) noexcept;
-  void look_at_joint(int joint, const CycleRecord& record, const Watched& watched,
+  void look_at_joint(int joint, const Rendered& rendered, const Watched& watched,
                      MonitorState& state) noexcept;
   void look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept;
   void look_at_torques(const Watched& watched) noexcept;
@@ -212,12 +225,12 @@ class Monitor {
   void look_at_motors(const RobotState& robot, const Watched& watched,
                       MonitorState& state) noexcept;
   void look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept;
-  void look_at_gantry(const SensorFrame& sensors, const CycleRecord& record, const Watched& watched,
+  void look_at_gantry(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
                       MonitorState& state) noexcept;
-  void look_at_braking(const CycleRecord& record, const Watched& watched,
+  void look_at_braking(const Rendered& rendered, const Watched& watched,
                        MonitorState& state) noexcept;
-  void look_at_frames(const CycleRecord& record, const Watched& watched) noexcept;
-  Fault look_for_shaking(const SensorFrame& sensors, const CycleRecord& record,
+  void look_at_frames(const Rendered& rendered, const Watched& watched) noexcept;
+  Fault look_for_shaking(const SensorFrame& sensors, const Rendered& rendered,
                          const Watched& watched, MonitorState& state) noexcept;
   void look_at_clocks(const SensorFrame& sensors, const Watched& watched,
                       MonitorState& state) noexcept;

@@ -76,17 +76,17 @@ void ShakingWatch::look_above(const Vector6& w_S, ShakingState& s) const noexcep
   count(s.torque > kFastTorque * kFastTorque, dt_, kFastTrip, s.fast_torque_s);
 }
 
-double ShakingWatch::look_for_bouncing(const CycleRecord& record, ShakingState& s) const noexcept {
-  const Eigen::Vector3d& push = record.contact.force;
+double ShakingWatch::look_for_bouncing(const ShakingInput& input, ShakingState& s) const noexcept {
+  const Eigen::Vector3d& push = input.contact_force;
   const bool touches = push.norm() > kTouch;
   s.since_contact_s += dt_;
-  s.given -= dt_ * record.robot.w_H.head<3>().dot(record.v_H);
+  s.given -= dt_ * input.w_H.head<3>().dot(input.v_H);
   if (s.since_contact_s > kLongest) {
     s.contacts = 0;
     s.bounces = false;
   }
   if (touches && !s.touches) {
-    const double speed = -push.normalized().dot(record.v_H);
+    const double speed = -push.normalized().dot(input.v_H);
     // a contact at less than half the first speed starts a new series
     if (s.contacts == 0 || speed < kSpeedKept * s.first_speed) {
       s.contacts = 0;
@@ -102,20 +102,18 @@ double ShakingWatch::look_for_bouncing(const CycleRecord& record, ShakingState& 
   return s.bounces ? 1.0 : 0.0;
 }
 
-ShakingReport ShakingWatch::step(const SensorFrame& sensors, const CycleRecord& record,
-                                 ShakingState& state) const noexcept {
+ShakingReport ShakingWatch::step(const ShakingInput& input, ShakingState& state) const noexcept {
   if (!state.is_started) {
-    state.x1 = state.x2 = state.x3 = record.robot.w_H.tail<3>();
-    state.in1 = state.in2 = sensors.w_S;
+    state.x1 = state.x2 = state.x3 = input.w_H.tail<3>();
+    state.in1 = state.in2 = input.w_S;
     state.is_started = true;
   }
-  const double torque = look_at_torque(record.robot.w_H.tail<3>(), state);
-  look_above(sensors.w_S, state);
-  const double bouncing = look_for_bouncing(record, state);
+  const double torque = look_at_torque(input.w_H.tail<3>(), state);
+  look_above(input.w_S, state);
+  const double bouncing = look_for_bouncing(input, state);
   ShakingReport report;
   for (const ShakingReport& found :
-       {ShakingReport{Shaking::kForce, record.passivity.oscillation},
-        ShakingReport{Shaking::kTorque, torque},
+       {ShakingReport{Shaking::kForce, input.oscillation}, ShakingReport{Shaking::kTorque, torque},
         ShakingReport{Shaking::kFastForce, state.fast_force_s / kFastTrip},
         ShakingReport{Shaking::kFastTorque, state.fast_torque_s / kFastTrip},
         ShakingReport{Shaking::kBouncing, bouncing}}) {

@@ -16,8 +16,7 @@
 
 #include "hg/core/turns.h"
 #include "hg/core/types.h"
-#include "hg/signals/frames.h"
-#include "hg/signals/state.h"
+#include "hg/signals/fault.h"
 
 namespace hg::safety {
 
@@ -43,6 +42,15 @@ struct ShakingState {
   double shakes_s = 0.0;         ///< Time for which anything has been detected, s
 };
 
+/// Inputs of one cycle in which the twin is rendered.
+struct ShakingInput {
+  const Vector6& w_S;                    ///< Wrench that the sensor measures, in its own frame
+  const Vector6& w_H;                    ///< Wrench of the user on the handle
+  const Eigen::Vector3d& v_H;            ///< Velocity of the handle, m/s
+  const Eigen::Vector3d& contact_force;  ///< Force of virtual surfaces on the handle, N
+  double oscillation = 0.0;              ///< PassivityReport::oscillation
+};
+
 struct ShakingReport {
   Shaking what = Shaking::kNone;  ///< Detected kind with the largest index, or kNone
   double index = 0.0;             ///< Index of that kind; 1 = detected
@@ -54,13 +62,12 @@ class ShakingWatch {
   ShakingWatch(double dt, double mass) noexcept;
 
   /// Advances by one sample; call once per cycle in which the twin is rendered.
-  ShakingReport step(const SensorFrame& sensors, const CycleRecord& record,
-                     ShakingState& state) const noexcept;
+  ShakingReport step(const ShakingInput& input, ShakingState& state) const noexcept;
 
  private:
   double look_at_torque(const Eigen::Vector3d& torque, ShakingState& state) const noexcept;
   void look_above(const Vector6& w_S, ShakingState& state) const noexcept;
-  double look_for_bouncing(const CycleRecord& record, ShakingState& state) const noexcept;
+  double look_for_bouncing(const ShakingInput& input, ShakingState& state) const noexcept;
 
   double dt_, mass_;
   double b_, a1_, a2_;  ///< Coefficients of the high-pass, Butterworth of second order

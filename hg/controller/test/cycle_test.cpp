@@ -292,7 +292,7 @@ TEST(Cycle, TheTwinMeetsTheHandleWhereJointsBrakedByThemselvesInAStopThatEndsArm
   loop.run(3);
   ASSERT_EQ(loop.record.mode, Mode::kStopping);
   State state = loop.cycle->state();
-  state.brakes_joints = true;  // as a collision ahead does
+  state.motion = Motion::kBrakeJoints;  // as a collision ahead does
   loop.cycle->restore(state);
   loop.sensors.w_S[0] = 0.0;
   double farthest = 0.0;

@@ -155,7 +155,7 @@ TEST(Closer, MeasuresFromTheLowerLimitThatHoldsNow) {
   ASSERT_EQ(playing.change(Parameter::kLowerLimit, 0, 0.4), ChangeStatus::kTaken);
   playing.run(4.0, 0, 0.0);
   EXPECT_NEAR(playing.q(0), 0.4, 1e-4);
-  EXPECT_NEAR(playing.record.budget.spring[0], 3.0, 1e-3);
+  EXPECT_NEAR(playing.result.budget.spring[0], 3.0, 1e-3);
 }
 
 TEST(Stopping, KnowsNoFriction) {
@@ -165,9 +165,10 @@ TEST(Stopping, KnowsNoFriction) {
   playing.run(0.01, 0, 1.0);
   ASSERT_EQ(playing.limit(0).cause, LimitCause::kFriction);
   playing.state.twin.dq_a[0] = 0.1;
-  playing.record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
-  playing.rendering.step(playing.state, 20.0, playing.record, 0.0);
-  EXPECT_EQ(playing.record.budget.friction[0], 0.0);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
+  playing.rendering.step({.robot = robot, .braking_rate = 20.0, .force_share = 0.0}, playing.state,
+                         playing.result);
+  EXPECT_EQ(playing.result.budget.friction[0], 0.0);
   EXPECT_NEAR(playing.state.twin.ddq_a[0], -2.0, 1e-6);
   EXPECT_NE(playing.limit(0).cause, LimitCause::kFriction);
 }
@@ -203,13 +204,14 @@ TEST(LargeTwin, OfThirtyJointsWithLimitsStaysSolvedInsideAndAttached) {
     w << 40, -30, 30, 3, -3, 2;
     for (int i = 0; i < 6; ++i) w[i] *= std::sin((30.0 + 7.0 * i) * t) > 0.0 ? 4.0 : -4.0;
     if (k % 20 == 0) state.active_set = {};  // the solver knows nothing of the cycle before
-    CycleRecord record = record_with(kGantryAtHome, kPosture, w);
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved) << k;
-    ASSERT_LT(budget_gap(record, rendering.twin().chain.M()), 1e-8) << k;
-    ASSERT_LT(record.sync_error, 1e-4) << k;
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+    LawResult result;
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved) << k;
+    ASSERT_LT(budget_gap(result, rendering.twin().chain.M()), 1e-8) << k;
+    ASSERT_LT(result.sync_error, 1e-4) << k;
     int at_limits = 0;
     for (int i = 0; i < 30; ++i) {
-      const LimitReport& limit = record.limits[static_cast<std::size_t>(kFirstTwinLimit + i)];
+      const LimitReport& limit = result.limits[static_cast<std::size_t>(kFirstTwinLimit + i)];
       ASSERT_LT(limit.excess, 1e-6) << k << " " << i;
       at_limits += limit.state != LimitState::kInactive;
     }

@@ -301,7 +301,7 @@ class Thrown {
     dq << Eigen::Vector2d::Zero(), state.reference.dq_m;
     moving_device.chain.update(q, dq);
     moving_twin.chain.update(state.twin.q_a, state.twin.dq_a);
-    const CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
     const MatrixA L = Eigen::MatrixXd(moving_twin.chain.M()).llt().matrixL();
     const model::Jacobian J_H = moving_device.chain.jacobian(device.handle);
     const model::Jacobian J_a = moving_twin.chain.jacobian(twin.end_effector);
@@ -309,7 +309,7 @@ class Thrown {
     directions.update(J_H, J_a);
     Tasks result(moving_device, moving_twin, options);
     result.fill(moving_device, moving_twin,
-                {.robot = record.robot,
+                {.robot = robot,
                  .reference = state.reference,
                  .twin = state.twin,
                  .inner = state.inner,

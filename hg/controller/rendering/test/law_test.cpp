@@ -26,16 +26,15 @@ Options with(Law law, Bounds bounds) {
 }
 
 // Steps law paper on the same state until the active limits are those of the cycle before.
-CycleRecord settled(Rendering& rendering, State state, const CycleRecord& input) {
-  CycleRecord record;
+LawResult settled(Rendering& rendering, State state, const RobotState& robot) {
+  LawResult result;
   for (int k = 0; k < 10; ++k) {
     const TouchedEnds before = state.touched;
-    record = input;
-    EXPECT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
-    if (state.touched.lower == before.lower && state.touched.upper == before.upper) return record;
+    EXPECT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    if (state.touched.lower == before.lower && state.touched.upper == before.upper) return result;
   }
   ADD_FAILURE() << "the active limits do not settle";
-  return record;
+  return result;
 }
 
 class Random {
@@ -98,9 +97,9 @@ void add_one_limit(Random& random, const State& state, DeviceModel& device, Twin
   }
 }
 
-int active_limits(const CycleRecord& record) {
+int active_limits(const LawResult& result) {
   int active = 0;
-  for (const LimitReport& limit : record.limits) active += limit.state != LimitState::kInactive;
+  for (const LimitReport& limit : result.limits) active += limit.state != LimitState::kInactive;
   return active;
 }
 
@@ -129,20 +128,19 @@ TEST(Laws, AgreeWhileAtMostOneLimitActs) {
     random.fill(state.twin.dq_a, 0.1);
     Vector6 w;
     random.fill(w, 20.0);
-    const CycleRecord input = record_with(kGantryAtHome, q_m, w);
+    const RobotState robot = robot_with(kGantryAtHome, q_m, w);
 
-    const CycleRecord expected = settled(gauss, state, input);
-    const CycleRecord record = settled(paper, state, input);
+    const LawResult expected = settled(gauss, state, robot);
+    const LawResult result = settled(paper, state, robot);
     const int active = active_limits(expected);
     ASSERT_LE(active, 1);
     with_a_limit += active;
-    const double scale =
-        1.0 + std::max(expected.twin.ddq_a.norm(), expected.reference.ddq_m.norm());
-    ASSERT_LT((record.twin.ddq_a - expected.twin.ddq_a).norm(), 1e-9 * scale);
-    ASSERT_LT((record.reference.ddq_m - expected.reference.ddq_m).norm(), 1e-9 * scale);
+    const double scale = 1.0 + std::max(expected.ddq_a.norm(), expected.ddq_m.norm());
+    ASSERT_LT((result.ddq_a - expected.ddq_a).norm(), 1e-9 * scale);
+    ASSERT_LT((result.ddq_m - expected.ddq_m).norm(), 1e-9 * scale);
     for (int i = 0; i < expected.limit_count; ++i) {
       const auto limit = static_cast<std::size_t>(i);
-      ASSERT_NEAR(record.limits[limit].reaction, expected.limits[limit].reaction, 1e-6) << i;
+      ASSERT_NEAR(result.limits[limit].reaction, expected.limits[limit].reaction, 1e-6) << i;
     }
   }
   EXPECT_GT(with_a_limit, 100);
@@ -185,12 +183,13 @@ TEST(Laws, DifferWithTwoCoupledLimits) {
     for (int cycle = 0; cycle < 12; ++cycle) {
       const TouchedEnds before = state.touched;
       const bool both_touched = before.upper[6] && before.upper[7];
-      CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
-      ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+      const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
+      LawResult result;
+      ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
       changes += state.touched.upper != before.upper;
       if (law == Law::kPaper && !both_touched) continue;
-      EXPECT_NEAR(record.twin.ddq_a[0], -1.0, 1e-9);
-      EXPECT_NEAR(record.twin.ddq_a[1], law == Law::kGauss ? -0.9 : -1.6 / 1.64, 1e-9);
+      EXPECT_NEAR(result.ddq_a[0], -1.0, 1e-9);
+      EXPECT_NEAR(result.ddq_a[1], law == Law::kGauss ? -0.9 : -1.6 / 1.64, 1e-9);
     }
     const Eigen::Matrix2d M_inverse = inverse(rendering.twin().chain.M());
     ASSERT_NEAR(M_inverse(0, 1), 0.8, 1e-9);
@@ -256,13 +255,14 @@ TEST_P(EveryVariant, ClosesTheBudgetWithoutAllocation) {
     random.fill(state.twin.dq_a, 0.2);
     Vector6 w;
     random.fill(w, 30.0);
-    CycleRecord record = record_with(kGantryAtHome, kPosture, w);
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+    LawResult result;
     const AllocationCounter counter;
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
     allocations += counter.count();
-    const Budget& b = record.budget;
+    const Budget& b = result.budget;
     const VectorA rest = b.inertia + b.damping + b.friction + b.spring + b.surface + b.limits +
-                         b.conflict - record.tau_a;
+                         b.conflict - result.tau_a;
     ASSERT_LT(rest.norm(), 1e-8 * (1.0 + b.limits.norm() + b.conflict.norm())) << k;
   }
   EXPECT_EQ(allocations, 0u);
@@ -283,8 +283,8 @@ class Door {
       const Eigen::MatrixXd J_T = chain.jacobian(rendering_.twin().end_effector).transpose();
       const Eigen::VectorXd tau = torque * Eigen::Vector2d::UnitX();
       const Vector6 w = J_T.completeOrthogonalDecomposition().solve(tau);
-      record = record_with(kGantryAtHome, kPosture, w);
-      ASSERT_EQ(rendering_.step(state_, 0.0, record), SolverStatus::kSolved);
+      const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+      ASSERT_EQ(rendering_.step({.robot = robot}, state_, result), SolverStatus::kSolved);
       rendering_.integrate(state_);
     }
   }
@@ -292,10 +292,10 @@ class Door {
   double hinge() const { return state_.twin.q_a[0]; }
   double hinge_speed() const { return state_.twin.dq_a[0]; }
   double inertia() const { return rendering_.twin().chain.M()(0, 0); }
-  const LimitReport& limit() const { return record.limits[6]; }
+  const LimitReport& limit() const { return result.limits[6]; }
   State& state() { return state_; }
 
-  CycleRecord record;
+  LawResult result;
 
  private:
   static TwinModel twin(double friction, bool has_bolt) {
@@ -350,8 +350,8 @@ TEST_P(EveryVariant, AJointComesToRestAtItsLimit) {
   EXPECT_EQ(door.limit().cause, LimitCause::kPosition);
 }
 
-int limits_with_reaction(const CycleRecord& record) {
-  return static_cast<int>(std::count_if(record.limits.begin(), record.limits.end(),
+int limits_with_reaction(const LawResult& result) {
+  return static_cast<int>(std::count_if(result.limits.begin(), result.limits.end(),
                                         [](auto& l) { return std::abs(l.reaction) > 1e-9; }));
 }
 
@@ -361,11 +361,11 @@ TEST(PaperLaw, KnowsALimitOneCycleLater) {
   Door door(with(Law::kPaper, Bounds::kPaper), 0.0, false);
   door.state().twin.q_a[0] = 1.0;
   door.run(0.001, 20.0);
-  EXPECT_GT(limits_with_reaction(door.record), 1);
+  EXPECT_GT(limits_with_reaction(door.result), 1);
   EXPECT_TRUE(door.state().touched.upper[6]);
   EXPECT_FALSE(door.state().touched.lower[6]);
   door.run(0.001, 20.0);
-  EXPECT_EQ(limits_with_reaction(door.record), 1);
+  EXPECT_EQ(limits_with_reaction(door.result), 1);
   EXPECT_LT(door.limit().reaction, -1.0);
 }
 
@@ -377,14 +377,15 @@ TEST(PaperBounds, ShowTheRatingThatActs) {
   State state = rendering.start(kPosture);
   Vector6 w;
   w << 30, -20, 10, 2, 1, 1.5;
-  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
-  rendering.step(state, 0.0, record);
-  EXPECT_EQ(record.limits[5].cause, LimitCause::kAcceleration);
-  EXPECT_NEAR(std::abs(record.reference.ddq_m[5]), 1.0, 1e-9);
-  state.reference.dq_m[5] = std::copysign(2.0, record.reference.ddq_m[5]);
-  rendering.step(state, 0.0, record);
-  EXPECT_EQ(record.limits[5].cause, LimitCause::kVelocity);
-  EXPECT_NEAR(record.reference.ddq_m[5], 0.0, 1e-9);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+  LawResult result;
+  rendering.step({.robot = robot}, state, result);
+  EXPECT_EQ(result.limits[5].cause, LimitCause::kAcceleration);
+  EXPECT_NEAR(std::abs(result.ddq_m[5]), 1.0, 1e-9);
+  state.reference.dq_m[5] = std::copysign(2.0, result.ddq_m[5]);
+  rendering.step({.robot = robot}, state, result);
+  EXPECT_EQ(result.limits[5].cause, LimitCause::kVelocity);
+  EXPECT_NEAR(result.ddq_m[5], 0.0, 1e-9);
 }
 
 // tests/reference/README.md: rows of levels 6 and 8 of a lock get clip(-dq / dt, +-ddq_max)
@@ -396,9 +397,10 @@ TEST(PaperBounds, ALockBrakesWithTheRatingOfItsJoint) {
   Rendering rendering(unlimited_device(), twin, with(Law::kPaper, Bounds::kPaper));
   State state = rendering.start(kPosture);
   state.twin.dq_a[0] = -0.5;
-  CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
-  ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
-  EXPECT_NEAR(record.twin.ddq_a[0], 6.0, 1e-9);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
+  LawResult result;
+  ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+  EXPECT_NEAR(result.ddq_a[0], 6.0, 1e-9);
   const int level_6 = 6 + 6, level_8 = level_6 + 2 + 6;  // rows before: coupling, joints, ...
   for (const int row : {level_6, level_8}) {
     EXPECT_EQ(rendering.problem().bounds(row).lb, 6.0) << row;
@@ -425,7 +427,7 @@ TEST(PaperBounds, ALockThatEngagesInMotionStopsTheJointWhereItIs) {
     while (dq != 0.0) {
       const double ddq = std::clamp(-dq / dt, -kRating, kRating);
       door.run(dt, kTorque);
-      ASSERT_NEAR(door.record.twin.ddq_a[0], ddq, 1e-8);
+      ASSERT_NEAR(door.result.ddq_a[0], ddq, 1e-8);
       ASSERT_EQ(door.limit().cause, LimitCause::kLock);
       q += dt * dq + 0.5 * dt * dt * ddq;
       dq = std::abs(dq) <= dt * kRating ? 0.0 : dq + dt * ddq;

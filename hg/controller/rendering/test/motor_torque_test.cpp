@@ -61,7 +61,8 @@ TEST(ReachedTorque, FromBeyondABoundComesBackToIt) {
 struct Pulled {
   Rendering rendering;
   State state;
-  CycleRecord record;
+  LawResult result;
+  VectorM dq_m;  // joint speeds in the last step
 
   static DeviceModel device(bool knows_motors) {
     DeviceModel device = unlimited_device();
@@ -82,8 +83,9 @@ struct Pulled {
         state(rendering.start(kPosture)) {}
 
   void pull(const Vector6& w) {
-    record = record_with(kGantryAtHome, state.reference.q_m, w);
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    const RobotState robot = robot_with(kGantryAtHome, state.reference.q_m, w);
+    dq_m = state.reference.dq_m;
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
     rendering.integrate(state);
   }
 };
@@ -102,7 +104,7 @@ TEST(MotorRows, AMotorGivesNoMoreThanItsShareAndIsNamed) {
   for (int k = 0; k < 60; ++k) {
     twin.pull(force(0.0, 120.0, 0.0));
     ASSERT_FALSE(HasFatalFailure());
-    const VectorM& dq = twin.record.reference.dq_m;
+    const VectorM& dq = twin.dq_m;
     for (int i = 0; i < 6; ++i) {
       const double torque = twin.state.motor_torque[i];
       // a bound that has shrunk with the speed is followed with the time constant
@@ -112,7 +114,7 @@ TEST(MotorRows, AMotorGivesNoMoreThanItsShareAndIsNamed) {
       largest = std::max(largest, std::abs(torque) / kMotor.torque_max);
     }
     for (std::size_t i = 0; i < catalogue.size(); ++i) {
-      const LimitReport& limit = twin.record.limits[i];
+      const LimitReport& limit = twin.result.limits[i];
       if (catalogue[i].kind != LimitKind::kMotor || limit.state == LimitState::kInactive) continue;
       was_named = true;
       EXPECT_EQ(limit.cause, LimitCause::kTorque) << catalogue[i].name;
@@ -129,7 +131,7 @@ TEST(MotorRows, RatingsCapAccelerationsOnlyWhereTheMotorsAreNotKnown) {
     double largest = 0.0;
     for (int k = 0; k < 60; ++k) {
       twin.pull(force(0.0, 60.0, 0.0));
-      largest = std::max(largest, twin.record.reference.ddq_m.cwiseAbs().maxCoeff());
+      largest = std::max(largest, twin.result.ddq_m.cwiseAbs().maxCoeff());
     }
     return largest;
   };

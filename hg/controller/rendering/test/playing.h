@@ -19,12 +19,12 @@ inline constexpr int kFirstTwinLimit = 6;  // the device has six joints and noth
 
 // what does not add up, relative to the largest of what is added: M ddq_a is a sum itself, and on
 // an ill-conditioned twin one of large terms
-inline double budget_gap(const CycleRecord& record, const Eigen::MatrixXd& M) {
-  const Budget& b = record.budget;
+inline double budget_gap(const LawResult& result, const Eigen::MatrixXd& M) {
+  const Budget& b = result.budget;
   const VectorA rest = b.inertia + b.damping + b.friction + b.spring + b.surface + b.limits +
-                       b.conflict - record.tau_a;
-  const VectorA terms = M.cwiseAbs() * record.twin.ddq_a.cwiseAbs();
-  const double scale = std::max({1.0, terms.norm(), b.damping.norm(), record.tau_a.norm()});
+                       b.conflict - result.tau_a;
+  const VectorA terms = M.cwiseAbs() * result.ddq_a.cwiseAbs();
+  const double scale = std::max({1.0, terms.norm(), b.damping.norm(), result.tau_a.norm()});
   return rest.norm() / scale;
 }
 
@@ -32,7 +32,8 @@ inline double budget_gap(const CycleRecord& record, const Eigen::MatrixXd& M) {
 struct Playing {
   Rendering rendering;
   State state;
-  CycleRecord record;
+  RobotState robot;
+  LawResult result;
   double worst_gap = 0.0;
   double worst_jump = 0.0;  // of a twin acceleration from one cycle to the next
   VectorA last_ddq;
@@ -43,14 +44,14 @@ struct Playing {
 
   void step(const Vector6& w) {
     state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-    record = record_with(kGantryAtHome, kPosture, w);
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
-    worst_gap = std::max(worst_gap, budget_gap(record, rendering.twin().chain.M()));
+    robot = robot_with(kGantryAtHome, kPosture, w);
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    worst_gap = std::max(worst_gap, budget_gap(result, rendering.twin().chain.M()));
     const VectorA& ddq = state.twin.ddq_a;
     if (last_ddq.size() > 0)
       worst_jump = std::max(worst_jump, (ddq - last_ddq).cwiseAbs().maxCoeff());
     last_ddq = ddq;
-    changes += record.active_set_changes;
+    changes += result.active_set_changes;
     rendering.integrate(state);
   }
 
@@ -76,7 +77,7 @@ struct Playing {
   double q(int dof) const { return state.twin.q_a[dof]; }
   double dq(int dof) const { return state.twin.dq_a[dof]; }
   const LimitReport& limit(int dof) const {
-    return record.limits[static_cast<std::size_t>(kFirstTwinLimit + dof)];
+    return result.limits[static_cast<std::size_t>(kFirstTwinLimit + dof)];
   }
 };
 

@@ -33,15 +33,16 @@ TEST(Rendering, GoldenCaseOfTheHandbookJoint6AtItsUpperLimit) {
   State state = rendering.start(kPosture);
   Vector6 w;
   w << 3, -2, 1, 0.2, 0.1, 1.5;
-  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+  LawResult result;
 
-  ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+  ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
   const double expected[] = {1.2663, -1.8867, 0.1771, -0.1169, 0.0455, 15.4167};
-  for (int i = 0; i < 6; ++i) EXPECT_NEAR(record.twin.ddq_a[i], expected[i], 5e-5) << i;
-  EXPECT_EQ(record.limits[5].state, LimitState::kUpper);
-  EXPECT_LT(record.limits[5].reaction, 0.0);
-  EXPECT_NEAR(record.reference.ddq_m[5], 0.0, 1e-12);
-  EXPECT_EQ(record.felt_limit, 5);
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(result.ddq_a[i], expected[i], 5e-5) << i;
+  EXPECT_EQ(result.limits[5].state, LimitState::kUpper);
+  EXPECT_LT(result.limits[5].reaction, 0.0);
+  EXPECT_NEAR(result.ddq_m[5], 0.0, 1e-12);
+  EXPECT_EQ(result.felt_limit, 5);
 }
 
 TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonSays) {
@@ -49,12 +50,13 @@ TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonSays) {
   State state = rendering.start(kPosture);
   Vector6 w;
   w << 3, -2, 1, 0.2, 0.1, 1.5;
-  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
-  rendering.step(state, 0.0, record);
-  const VectorA expected = free_acceleration(rendering.twin(), record.tau_a);
-  EXPECT_LT((record.twin.ddq_a - expected).norm(), 1e-12);
-  EXPECT_NEAR(record.reference.ddq_m[5], 1.16142, 5e-6);  // free value of the golden case
-  EXPECT_EQ(record.felt_limit, -1);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+  LawResult result;
+  rendering.step({.robot = robot}, state, result);
+  const VectorA expected = free_acceleration(rendering.twin(), result.tau_a);
+  EXPECT_LT((result.ddq_a - expected).norm(), 1e-12);
+  EXPECT_NEAR(result.ddq_m[5], 1.16142, 5e-6);  // free value of the golden case
+  EXPECT_EQ(result.felt_limit, -1);
 }
 
 TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
@@ -66,14 +68,14 @@ TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
   State state = rendering.start(kPosture);
   Vector6 w;
   w << 3, -2, 1, 0.2, 0.1, 1.5;
-  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
-  record.cycle = 77;
-  rendering.step(state, 0.0, record);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+  LawResult result;
+  rendering.step({.robot = robot, .cycle = 77}, state, result);
 
   ASSERT_EQ(rendering.kept_problems().size(), 1U);
   const hqp::KeptProblem& kept = rendering.kept_problems()[0];
   EXPECT_EQ(kept.cycle, 77U);
-  EXPECT_EQ(kept.iterations, record.solver_iterations);
+  EXPECT_EQ(kept.iterations, result.solver_iterations);
   EXPECT_GT(kept.iterations, 1);  // the guess was not yet right
   hqp::Solver solver(kept.problem.capacity());
   hqp::Solution solution(kept.problem.capacity());
@@ -81,8 +83,8 @@ TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
   EXPECT_EQ(solver.solve(kept.problem, kept.options, active, solution), hqp::Status::kSolved);
   EXPECT_EQ(solution.iterations, kept.iterations);
   for (int i = 0; i < 6; ++i) {
-    EXPECT_EQ(solution.x[static_cast<std::size_t>(i)], record.reference.ddq_m[i]) << i;
-    EXPECT_EQ(solution.x[static_cast<std::size_t>(6 + i)], record.twin.ddq_a[i]) << i;
+    EXPECT_EQ(solution.x[static_cast<std::size_t>(i)], result.ddq_m[i]) << i;
+    EXPECT_EQ(solution.x[static_cast<std::size_t>(6 + i)], result.ddq_a[i]) << i;
   }
 }
 
@@ -103,10 +105,12 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   const auto play = [&](const GantryTask& gantry, VectorP& ddq_p) {
     Rendering rendering(device, golden_twin(), options);
     State state = rendering.start(kPosture);
-    CycleRecord record = record_with(kGantryAtHome, kPosture, w);
-    EXPECT_EQ(rendering.step(state, 0.0, record, 1.0, kInfinity, gantry), SolverStatus::kSolved);
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+    LawResult result;
+    EXPECT_EQ(rendering.step({.robot = robot, .gantry = gantry}, state, result),
+              SolverStatus::kSolved);
     ddq_p = state.ddq_p;
-    const VectorA missing = record.twin.ddq_a - free_acceleration(rendering.twin(), record.tau_a);
+    const VectorA missing = result.ddq_a - free_acceleration(rendering.twin(), result.tau_a);
     return std::sqrt(missing.dot(rendering.twin().chain.M() * missing));
   };
   VectorP ddq_p;
@@ -126,12 +130,13 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   task = {aim, aim, aim, Eigen::Vector2d(0.3, 0.3)};  // it does more than it was told
   Rendering rendering(device, golden_twin(), options);
   State state = rendering.start(kPosture);
-  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
-  rendering.step(state, 0.0, record, 1.0, kInfinity, task);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+  LawResult result;
+  rendering.step({.robot = robot, .gantry = task}, state, result);
   Eigen::VectorXd ddq(8);
-  ddq << aim + task.unexplained, record.reference.ddq_m;
+  ddq << aim + task.unexplained, result.ddq_m;
   const Vector6 a_H = rendering.device().chain.jacobian(device.handle) * ddq;
-  EXPECT_LT((a_H.head<3>() - record.a_H).norm(), 1e-9);
+  EXPECT_LT((a_H.head<3>() - result.a_H).norm(), 1e-9);
 }
 
 // level 0 couples, 1 to 3 are those of the device, the twin's follow
@@ -164,10 +169,10 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
 TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessAskedFor) {
   Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
   State state = rendering.start(kPosture);
-  CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
-  rendering.keep_problem(record.cycle);  // nothing has been solved
-  record.cycle = 5;
-  rendering.step(state, 0.0, record);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
+  LawResult result;
+  rendering.keep_problem(0);  // nothing has been solved
+  rendering.step({.robot = robot, .cycle = 5}, state, result);
   rendering.keep_problem(6);  // not that cycle's
   EXPECT_EQ(rendering.kept_problems().size(), 0U);
   EXPECT_EQ(rendering.kept_problems().count(), 0U);
@@ -221,8 +226,9 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     State state = rendering.start(q);
     Vector6 w;
     for (double& value : w) value = 20 * uniform(random);
-    CycleRecord record = record_with(kGantryAtHome, q, w);
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    const RobotState robot = robot_with(kGantryAtHome, q, w);
+    LawResult result;
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
 
     // ddq_m = J_m^-1 J_a ddq_a, everything at rest
     model::Chain chain = device.chain;
@@ -238,13 +244,13 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
       lb[i] = limits.q_min == q[i] ? 0.0 : -kInfinity;
       ub[i] = limits.q_max == q[i] ? 0.0 : kInfinity;
     }
-    const VectorA a_free = free_acceleration(rendering.twin(), record.tau_a);
+    const VectorA a_free = free_acceleration(rendering.twin(), result.tau_a);
     const VectorA expected = box_qp_oracle(rendering.twin().chain.M(), a_free, G, lb, ub);
     const double scale = 1.0 + a_free.norm();
-    ASSERT_LT((record.twin.ddq_a - expected).norm(), 1e-7 * scale) << "trial " << trial;
+    ASSERT_LT((result.ddq_a - expected).norm(), 1e-7 * scale) << "trial " << trial;
     int active = 0;
     for (int i = 0; i < 6; ++i) {
-      const LimitReport& limit = record.limits[static_cast<std::size_t>(i)];
+      const LimitReport& limit = result.limits[static_cast<std::size_t>(i)];
       if (limit.state == LimitState::kInactive) continue;
       ++active;
       // a limit only pushes inwards
@@ -256,10 +262,10 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
 }
 
 // sum of all parts of the budget minus J_a^T w
-double budget_gap(const CycleRecord& record) {
-  const Budget& b = record.budget;
+double budget_gap(const LawResult& result) {
+  const Budget& b = result.budget;
   return (b.inertia + b.damping + b.friction + b.spring + b.surface + b.limits + b.conflict -
-          record.tau_a)
+          result.tau_a)
       .norm();
 }
 
@@ -280,15 +286,16 @@ TEST(Rendering, TheBudgetClosesAndTheBearingsCarryTheRest) {
     state.twin.dq_a[0] = uniform(random) * (state.twin.q_a[0] > 0.0);
     Vector6 w;
     for (double& value : w) value = 30 * uniform(random);
-    CycleRecord record = record_with(kGantryAtHome, kPosture, w);
-    rendering.step(state, 0.0, record);
-    ASSERT_LT(budget_gap(record), 1e-9) << "trial " << trial;
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+    LawResult result;
+    rendering.step({.robot = robot}, state, result);
+    ASSERT_LT(budget_gap(result), 1e-9) << "trial " << trial;
 
     // the part called structure moves no joint, the rest reaches all of them
     const auto J_a = rendering.twin().chain.jacobian(rendering.twin().end_effector);
-    ASSERT_LT((J_a.transpose() * record.budget.structure).norm(), 1e-9);
-    const Vector6 rest = record.robot.w_H - record.budget.structure;
-    ASSERT_LT((J_a.transpose() * rest - record.tau_a).norm(), 1e-9);
+    ASSERT_LT((J_a.transpose() * result.budget.structure).norm(), 1e-9);
+    const Vector6 rest = robot.w_H - result.budget.structure;
+    ASSERT_LT((J_a.transpose() * rest - result.tau_a).norm(), 1e-9);
   }
 }
 
@@ -303,37 +310,39 @@ TEST(Rendering, AtAHeldLimitTheOtherJointsMoveLikeTheReducedModel) {
   state.twin.dq_a << 0.3, -0.2, 0.4, 0.0;
   Vector6 w;
   w << 5, 3, 4, 2, 6, -1;
-  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
-  rendering.step(state, 0.0, record);
-  if (record.limits[9].state == LimitState::kInactive) {  // 6 device joints before the twin
-    record = record_with(kGantryAtHome, kPosture, -w);
-    rendering.step(state, 0.0, record);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+  LawResult result;
+  rendering.step({.robot = robot}, state, result);
+  if (result.limits[9].state == LimitState::kInactive) {  // 6 device joints before the twin
+    const RobotState opposite = robot_with(kGantryAtHome, kPosture, -w);
+    rendering.step({.robot = opposite}, state, result);
   }
-  ASSERT_EQ(record.limits[9].state, LimitState::kUpper);
+  ASSERT_EQ(result.limits[9].state, LimitState::kUpper);
 
   const Eigen::MatrixXd M = rendering.twin().chain.M();
   const Eigen::VectorXd c = rendering.twin().chain.c();
   const Eigen::Vector3d expected =
-      LeastSquares(M.topLeftCorner<3, 3>()).solve(record.tau_a.head<3>() - c.head<3>());
-  EXPECT_LT((record.twin.ddq_a.head<3>() - expected).norm(), 1e-9);
-  EXPECT_NEAR(record.twin.ddq_a[3], 0.0, 1e-9);
+      LeastSquares(M.topLeftCorner<3, 3>()).solve(result.tau_a.head<3>() - c.head<3>());
+  EXPECT_LT((result.ddq_a.head<3>() - expected).norm(), 1e-9);
+  EXPECT_NEAR(result.ddq_a[3], 0.0, 1e-9);
   // what the limit pushes with is what the equation of the held joint lacks
-  EXPECT_NEAR(record.limits[9].reaction, M.row(3).head<3>().dot(expected) + c[3] - record.tau_a[3],
+  EXPECT_NEAR(result.limits[9].reaction, M.row(3).head<3>().dot(expected) + c[3] - result.tau_a[3],
               1e-9);
 }
 
 // The free body at the handle, pushed by `force` along x, while the gantry accelerates by `ddq_p`.
-CycleRecord pushed_along_x(const DeviceModel& device, double force, double ddq_p) {
+LawResult pushed_along_x(const DeviceModel& device, double force, double ddq_p) {
   TwinModel twin = golden_twin();
   twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
   Rendering rendering(device, twin, {});
   State state = rendering.start(kPosture);
   Vector6 w = Vector6::Zero();
   w[0] = force;
-  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
-  record.robot.ddq_p[0] = ddq_p;
-  EXPECT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
-  return record;
+  RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+  LawResult result;
+  robot.ddq_p[0] = ddq_p;
+  EXPECT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+  return result;
 }
 
 TEST(Rendering, ACartesianLimitHoldsTheHandWhateverTheGantryDoes) {
@@ -342,7 +351,7 @@ TEST(Rendering, ACartesianLimitHoldsTheHandWhateverTheGantryDoes) {
   device.cartesian_limits = {{.name = "hand", .frame = device.handle, .axes = {}, .margin = 0.0}};
   device.cartesian_limits[0].axes[0] = {-10.0, x, 1.5, 5.0};
   for (const double ddq_p : {0.0, 2.0, -2.0}) {
-    const CycleRecord held = pushed_along_x(device, 20.0, ddq_p);
+    const LawResult held = pushed_along_x(device, 20.0, ddq_p);
     EXPECT_EQ(held.limits[6].state, LimitState::kUpper);
     EXPECT_NEAR(held.a_H.x(), 0.0, 1e-9) << ddq_p;
     EXPECT_NEAR(held.limits[6].reaction, held.w_felt[0], 1e-9);
@@ -359,10 +368,10 @@ TEST(Rendering, AVirtualJointIsHeldAtItsEnd) {
       {.name = "q4+q5", .weights = posture({0, 0, 0, 1, 1, 0}), .limits = {s, 2.88, 4, 40}}};
   int held = 0;
   for (const double force : {20.0, -20.0}) {
-    const CycleRecord record = pushed_along_x(device, force, 0.0);
-    const double ddq_s = record.reference.ddq_m[3] + record.reference.ddq_m[4];
+    const LawResult result = pushed_along_x(device, force, 0.0);
+    const double ddq_s = result.ddq_m[3] + result.ddq_m[4];
     EXPECT_GE(ddq_s, -1e-9);
-    if (record.limits[6].state == LimitState::kLower) ++held;
+    if (result.limits[6].state == LimitState::kLower) ++held;
   }
   EXPECT_EQ(held, 1);  // one way it is pushed onto its end, the other way off
 }
@@ -374,14 +383,15 @@ TEST(Rendering, AGantryThatDragsJointsFromTheirLimitsBlocksTheDevice) {
   }
   Rendering rendering(device, door_with_closer(), without_synchronisation());
   State state = rendering.start(kPosture);
-  CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
-  rendering.step(state, 0.0, record);
+  RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
+  LawResult result;
+  rendering.step({.robot = robot}, state, result);
   EXPECT_FALSE(rendering.is_blocked());
   // a door cannot follow in all six directions, and the hand stays on it
-  record.robot.ddq_p[0] = 2.0;
-  ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+  robot.ddq_p[0] = 2.0;
+  ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
   EXPECT_TRUE(rendering.is_blocked());
-  EXPECT_LT(budget_gap(record), 1e-9);
+  EXPECT_LT(budget_gap(result), 1e-9);
 }
 
 TEST(Rendering, TheHandFollowsTheTwinAndTheErrorDecays) {
@@ -393,18 +403,18 @@ TEST(Rendering, TheHandFollowsTheTwinAndTheErrorDecays) {
   twin.q_start = floating_at(start);
   Rendering rendering(device, twin, {});
   State state = rendering.start(kPosture);
-  CycleRecord record;
+  LawResult result;
   for (int k = 0; k < 1000; ++k) {
-    record = record_with(kGantryAtHome, state.reference.q_m, Vector6::Zero());
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    const RobotState robot = robot_with(kGantryAtHome, state.reference.q_m, Vector6::Zero());
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
     rendering.integrate(state);
     if (k == 0) {
-      EXPECT_NEAR(record.sync_error, 1e-3, 1e-9);
-      EXPECT_NEAR(record.sync_error_angle, 2e-3, 1e-9);
+      EXPECT_NEAR(result.sync_error, 1e-3, 1e-9);
+      EXPECT_NEAR(result.sync_error_angle, 2e-3, 1e-9);
     }
   }
-  EXPECT_LT(record.sync_error, 1e-8);
-  EXPECT_LT(record.sync_error_angle, 1e-7);
+  EXPECT_LT(result.sync_error, 1e-8);
+  EXPECT_LT(result.sync_error_angle, 1e-7);
   EXPECT_LT((handle_pose(device, kGantryAtHome, state.reference.q_m).p - start.p).norm(), 1e-6);
 }
 
@@ -423,14 +433,17 @@ TEST(Rendering, AStepMakesNoAllocation) {
   State state = rendering.start(kPosture);
   Vector6 w;
   w << 30, -20, 10, 2, 1, 1.5;
-  CycleRecord record = record_with(kGantryAtHome, kPosture, w);
+  const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+  LawResult result;
   const AllocationCounter allocations;
   for (int k = 0; k < 20; ++k) {
-    rendering.step(state, k < 10 ? 0.0 : 20.0, record, k < 10 ? 1.0 : 0.0);
+    rendering.step(
+        {.robot = robot, .braking_rate = k < 10 ? 0.0 : 20.0, .force_share = k < 10 ? 1.0 : 0.0},
+        state, result);
     rendering.integrate(state);
   }
   EXPECT_EQ(allocations.count(), 0u);
-  EXPECT_EQ(record.solver_status, SolverStatus::kSolved);
+  EXPECT_EQ(result.solver_status, SolverStatus::kSolved);
 }
 
 TEST(Rendering, RefusesModelsThatDoNotFitTogether) {

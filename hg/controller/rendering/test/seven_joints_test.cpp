@@ -58,13 +58,13 @@ TwinModel door() {
 
 const VectorM kPosture = posture({0.2, 0.5, -0.3, 1.9, 0.4, 2.2, 0.6});
 
-CycleRecord record_of(const VectorM& q_m, const Vector6& w) {
-  CycleRecord record;
-  record.robot.q_m = q_m;
-  record.robot.dq_m = VectorM::Zero(7);
-  record.robot.q_p = record.robot.dq_p = record.robot.ddq_p = VectorP::Zero(0);
-  record.robot.w_H = w;
-  return record;
+RobotState robot_at(const VectorM& q_m, const Vector6& w) {
+  RobotState robot;
+  robot.q_m = q_m;
+  robot.dq_m = VectorM::Zero(7);
+  robot.q_p = robot.dq_p = robot.ddq_p = VectorP::Zero(0);
+  robot.w_H = w;
+  return robot;
 }
 
 Eigen::MatrixXd handle_jacobian(const DeviceModel& device, const VectorM& q) {
@@ -106,23 +106,24 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
     State state = rendering.start(q);
     Vector6 w;
     for (double& value : w) value = 20 * uniform(random);
-    CycleRecord record = record_of(q, w);
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    const RobotState robot = robot_at(q, w);
+    LawResult result;
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
 
     // the hand moves with the twin
     const Eigen::MatrixXd J = handle_jacobian(device, q);
-    const Vector6 a_H = J * record.reference.ddq_m;
+    const Vector6 a_H = J * result.ddq_m;
     const auto& twin = rendering.twin();
-    const Vector6 a_E = twin.chain.jacobian(twin.end_effector) * record.twin.ddq_a;
+    const Vector6 a_E = twin.chain.jacobian(twin.end_effector) * result.ddq_a;
     ASSERT_LT((a_H - a_E).norm(), 1e-9 * (1.0 + a_E.norm()));
 
     const Eigen::VectorXd idle = idle_motion(device, q);
     double idle_push = 0.0, largest = 0.0;
     int active = 0;
     for (int i = 0; i < 7; ++i) {
-      const LimitReport& limit = record.limits[static_cast<std::size_t>(i)];
+      const LimitReport& limit = result.limits[static_cast<std::size_t>(i)];
       const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
-      const double ddq = record.reference.ddq_m[i];
+      const double ddq = result.ddq_m[i];
       if (limits.q_max == q[i]) {
         ASSERT_LE(ddq, 1e-9);
       }
@@ -146,9 +147,9 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
     with_two_or_more += active >= 2;
     with_idle_share += largest > 1e-3;
 
-    const Budget& b = record.budget;
+    const Budget& b = result.budget;
     const VectorA rest = b.inertia + b.damping + b.friction + b.spring + b.surface + b.limits +
-                         b.conflict - record.tau_a;
+                         b.conflict - result.tau_a;
     ASSERT_LT(rest.norm(), 1e-9 * (1.0 + b.limits.norm()));
     ASSERT_EQ(b.conflict.norm(), 0.0);
   }
@@ -161,8 +162,9 @@ void play_at_rest(Rendering& rendering, State& state, double seconds) {
   const Pose start = pose_of(rendering.device(), state.reference.q_m);
   state.twin.q_a = floating_at(start);
   for (int k = 0; k < static_cast<int>(1000 * seconds); ++k) {
-    CycleRecord record = record_of(state.reference.q_m, Vector6::Zero());
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    const RobotState robot = robot_at(state.reference.q_m, Vector6::Zero());
+    LawResult result;
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
     rendering.integrate(state);
   }
   EXPECT_LT((pose_of(rendering.device(), state.reference.q_m).p - start.p).norm(), 1e-6);

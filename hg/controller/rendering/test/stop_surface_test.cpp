@@ -31,7 +31,7 @@ DeviceModel device_with(double ddq_max) {
 struct Thrown {
   Rendering rendering;
   State state;
-  CycleRecord record;
+  LawResult result;
   double inside = 0.0;  // deepest so far, m
   Surface solid;        // of the same size, which has an inside
 
@@ -61,9 +61,9 @@ struct Thrown {
     Vector6 w = Vector6::Zero();
     w.head<3>() = push;
     state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-    record = record_with(kGantryAtHome, kPosture, w);
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
-    ASSERT_LT(budget_gap(record, rendering.twin().chain.M()), 1e-9);
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    ASSERT_LT(budget_gap(result, rendering.twin().chain.M()), 1e-9);
     rendering.integrate(state);
     for_each_facing(solid, position(), 1.0, [&](const surfaces::Facing& facing) {
       inside = std::max(inside, -facing.distance);
@@ -133,17 +133,17 @@ TEST(StopSurface, CarriesTheHandCalmlyAndIsNamed) {
     ASSERT_FALSE(HasFatalFailure());
     if (k < 1000) continue;
     ASSERT_LT(std::abs(body.state.twin.dq_a[2]), 1e-4);
-    ASSERT_NEAR(body.record.contact.force.z(), 50.0, 0.5);
-    ASSERT_EQ(body.record.contact.surface, 0);
-    ASSERT_NEAR(body.record.budget.surface[2], -50.0, 0.5);
-    ASSERT_EQ(body.record.felt_limit, -1);
+    ASSERT_NEAR(body.result.contact.force.z(), 50.0, 0.5);
+    ASSERT_EQ(body.result.contact.surface, 0);
+    ASSERT_NEAR(body.result.budget.surface[2], -50.0, 0.5);
+    ASSERT_EQ(body.result.felt_limit, -1);
   }
   EXPECT_LT(body.inside, 1e-5);
   EXPECT_NEAR(body.position().z(), -0.02, 1e-4);
   // it lets go without sticking
   for (int k = 0; k < 100; ++k) body.step(Vector3d(0, 0, 6.0));
   EXPECT_GT(body.position().z(), -0.02 + 0.004);
-  EXPECT_EQ(body.record.contact.force.norm(), 0.0);
+  EXPECT_EQ(body.result.contact.force.norm(), 0.0);
 }
 
 // Who moves the handle there before the device is armed is brought out slowly, without a kick.
@@ -164,7 +164,7 @@ TEST(StopSurface, BringsOutSlowlyWhatStartsInside) {
     EXPECT_GT(fastest, 0.1);
     EXPECT_LT(hardest, 30.0);
     EXPECT_GT(body.position().z(), kStart.z() + 0.06);
-    EXPECT_EQ(body.record.contact.force.norm(), 0.0);
+    EXPECT_EQ(body.result.contact.force.norm(), 0.0);
   }
 }
 

@@ -17,7 +17,7 @@ constexpr double kStiffness = 4000.0;
 struct Falling {
   Rendering rendering;
   State state;
-  CycleRecord record;
+  LawResult result;
 
   static TwinModel body() {
     TwinModel twin =
@@ -36,9 +36,11 @@ struct Falling {
 
   void step(const Vector6& w, double share = 1.0, double braking_rate = 0.0) {
     state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-    record = record_with(kGantryAtHome, kPosture, w);
-    ASSERT_EQ(rendering.step(state, braking_rate, record, share), SolverStatus::kSolved);
-    ASSERT_LT(budget_gap(record, rendering.twin().chain.M()), 1e-9);
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
+    ASSERT_EQ(rendering.step({.robot = robot, .braking_rate = braking_rate, .force_share = share},
+                             state, result),
+              SolverStatus::kSolved);
+    ASSERT_LT(budget_gap(result, rendering.twin().chain.M()), 1e-9);
     rendering.integrate(state);
   }
 };
@@ -55,10 +57,10 @@ TEST(TwinOnASurface, RestsWhereTheSurfaceCarriesTheUser) {
     ASSERT_FALSE(HasFatalFailure());
   }
   EXPECT_NEAR(twin.state.twin.q_a[2], -20.0 / kStiffness, 1e-6);
-  EXPECT_EQ(twin.record.contact.surface, 0);
-  EXPECT_NEAR(twin.record.contact.force.z(), 20.0, 1e-3);
-  EXPECT_NEAR(twin.record.contact.proxy.z(), 0.0, 1e-8);
-  EXPECT_NEAR(twin.record.budget.surface[2], -20.0, 1e-3);
+  EXPECT_EQ(twin.result.contact.surface, 0);
+  EXPECT_NEAR(twin.result.contact.force.z(), 20.0, 1e-3);
+  EXPECT_NEAR(twin.result.contact.proxy.z(), 0.0, 1e-8);
+  EXPECT_NEAR(twin.result.budget.surface[2], -20.0, 1e-3);
 }
 
 // A surface that says no damping brakes what comes in, and carries the weight of the twin besides.
@@ -73,8 +75,9 @@ TEST(TwinOnASurface, CarriesATwinThatHasWeight) {
   State state = rendering.start(kPosture);
   for (int k = 0; k < 3000; ++k) {
     state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-    CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
-    ASSERT_EQ(rendering.step(state, 0.0, record), SolverStatus::kSolved);
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
+    LawResult result;
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
     rendering.integrate(state);
     ASSERT_GT(state.twin.q_a[2], -0.03) << k;
   }
@@ -96,8 +99,9 @@ TEST(TwinOnASurface, IsCaughtWithTheMassThatItHasNow) {
     state.twin.dq_a[2] = -0.3;
     for (int k = 0; k < 60; ++k) {
       state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-      CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
-      rendering.step(state, 0.0, record);
+      const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
+      LawResult result;
+      rendering.step({.robot = robot}, state, result);
       rendering.integrate(state);
     }
     return std::pair{state.twin.q_a[2], state.twin.dq_a[2]};
@@ -113,7 +117,7 @@ TEST(TwinOnASurface, FeelsOnlyTheShareOfIt) {
   twin.state.twin.q_a[2] = -0.004;
   twin.state.contact = {{0.4, 0.1, 0.0}, true};
   twin.step(Vector6::Zero(), 0.25);
-  EXPECT_NEAR(twin.record.contact.force.z(), 4.0, 1e-4);
+  EXPECT_NEAR(twin.result.contact.force.z(), 4.0, 1e-4);
   EXPECT_NEAR(twin.state.twin.ddq_a[2], 4.0 / kMass, 1e-4);
 }
 
@@ -131,8 +135,9 @@ std::pair<double, double> fall(double ddq_max) {
   double depth = 0.0, back = 0.0;
   for (int k = 0; k < 1000; ++k) {
     state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-    CycleRecord record = record_with(kGantryAtHome, kPosture, Vector6::Zero());
-    rendering.step(state, 0.0, record);
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
+    LawResult result;
+    rendering.step({.robot = robot}, state, result);
     rendering.integrate(state);
     depth = std::max(depth, -state.twin.q_a[2]);
     back = std::max(back, state.twin.dq_a[2]);
@@ -154,8 +159,8 @@ TEST(TwinOnASurface, FeelsNothingWhileItIsBraked) {
   twin.state.twin.q_a[2] = -0.004;
   twin.state.contact = {{0.4, 0.1, 0.0}, true};
   twin.step(Vector6::Zero(), 0.0, 20.0);
-  EXPECT_EQ(twin.record.contact.force.norm(), 0.0);
-  EXPECT_EQ(twin.record.budget.surface.norm(), 0.0);
+  EXPECT_EQ(twin.result.contact.force.norm(), 0.0);
+  EXPECT_EQ(twin.result.budget.surface.norm(), 0.0);
   EXPECT_NEAR(twin.state.contact.proxy.z(), 0.0, 1e-8);
 }
 

@@ -35,16 +35,16 @@ inline TwinModel unlimited_twin(model::Chain chain, const std::string& end_effec
   return twin;
 }
 
-/// A record that carries what estimation gives: gantry at rest at `q_p`, wrench `w_H`.
-inline CycleRecord record_with(const Eigen::Vector2d& q_p, const VectorM& q_m, const Vector6& w_H) {
-  CycleRecord record;
-  record.robot.q_m = q_m;
-  record.robot.dq_m = VectorM::Zero(q_m.size());
-  record.robot.q_p = q_p;
-  record.robot.dq_p = VectorP::Zero(2);
-  record.robot.ddq_p = VectorP::Zero(2);
-  record.robot.w_H = w_H;
-  return record;
+/// What estimation gives: gantry at rest at `q_p`, wrench `w_H`.
+inline RobotState robot_with(const Eigen::Vector2d& q_p, const VectorM& q_m, const Vector6& w_H) {
+  RobotState robot;
+  robot.q_m = q_m;
+  robot.dq_m = VectorM::Zero(q_m.size());
+  robot.q_p = q_p;
+  robot.dq_p = VectorP::Zero(2);
+  robot.ddq_p = VectorP::Zero(2);
+  robot.w_H = w_H;
+  return robot;
 }
 
 /// Where H is for a posture.

@@ -50,7 +50,7 @@ TEST(Damper, IsExactlyViscousWhereTheSampleIsShortEnough) {
   playing.state.twin.dq_a << 0.3, -0.2, 0.4, 0.1;
   const VectorA dq = playing.state.twin.dq_a;
   playing.step(Vector6::Zero());
-  EXPECT_EQ(playing.record.budget.damping, VectorA(0.3 * dq));
+  EXPECT_EQ(playing.result.budget.damping, VectorA(0.3 * dq));
 }
 
 TEST(Damper, OfOneJointGrowsUntilItStopsTheJointWithinASample) {
@@ -102,7 +102,7 @@ TEST(Damper, QuadraticOnesGrowWithTheSquareOfTheSpeed) {
   Playing playing(twin);
   playing.state.twin.dq_a[0] = -0.6;
   playing.step(Vector6::Zero());
-  EXPECT_NEAR(playing.record.budget.damping[0], -2.0 * 0.6 * 0.6, 1e-12);
+  EXPECT_NEAR(playing.result.budget.damping[0], -2.0 * 0.6 * 0.6, 1e-12);
   EXPECT_GT(playing.state.twin.ddq_a[0], 0.0);
 }
 
@@ -113,7 +113,7 @@ TEST(Closer, PullsHarderTheFurtherAndLimitsTheClosingSpeedOnly) {
   twin.q_start[0] = 1.0;
   Playing playing(twin);
   playing.step(Vector6::Zero());
-  EXPECT_NEAR(playing.record.budget.spring[0], 3.0 + 4.0 * 0.9, 1e-12);
+  EXPECT_NEAR(playing.result.budget.spring[0], 3.0 + 4.0 * 0.9, 1e-12);
   playing.run(2.0, 0, 0.0);
   EXPECT_NEAR(playing.dq(0), -0.4, 1e-3);
   EXPECT_EQ(playing.limit(0).cause, LimitCause::kVelocity);
@@ -180,7 +180,7 @@ TEST(ReferenceWrench, IsTheOneAtWhichTheTwinRests) {
   Playing playing(twin);
   playing.step(twin.w_ref);
   EXPECT_LT(playing.state.twin.ddq_a.norm(), 1e-10);
-  EXPECT_LT((playing.record.budget.surface - playing.record.tau_a).norm(), 1e-12);
+  EXPECT_LT((playing.result.budget.surface - playing.result.tau_a).norm(), 1e-12);
   Playing alone(twin);
   alone.step(Vector6::Zero());
   const model::Jacobian J_a = alone.rendering.twin().chain.jacobian(twin.end_effector);
@@ -332,7 +332,7 @@ TEST(Changes, AllocateNothing) {
   (void)door.change(Parameter::kDamping, 0, 1e6);
   (void)door.change(Parameter::kLowerLimit, 0, 0.9);
   for (int k = 0; k < 100; ++k) {
-    (void)door.rendering.step(door.state, 0.0, door.record);
+    (void)door.rendering.step({.robot = door.robot}, door.state, door.result);
     door.rendering.integrate(door.state);
   }
   EXPECT_EQ(counter.count(), 0u);
@@ -426,7 +426,7 @@ TEST(AnyTwin, APuckOnATableWithLimitsAndSpringsPerCoordinate) {
   EXPECT_NEAR(playing.q(0), 0.2, 1e-6);
   EXPECT_NEAR(playing.q(1), 0.1, 1e-3);
   EXPECT_GT(playing.q(2), 0.5);
-  EXPECT_NEAR(playing.record.budget.structure[2], 100.0, 1e-9);  // the table carries it
+  EXPECT_NEAR(playing.result.budget.structure[2], 100.0, 1e-9);  // the table carries it
   EXPECT_LT(playing.worst_gap, 1e-9);
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -95,30 +96,45 @@ TEST(CheckSensors, SeesGaps) {
 }
 
 TEST(CheckSolution, FindsWhatMustNotBeIntegrated) {
-  CycleRecord good;
-  good.solver_status = SolverStatus::kSolved;
-  good.reference.ddq_m = VectorM::Zero(6);
-  good.twin.ddq_a = VectorA::Zero(2);
-  EXPECT_EQ(check_solution(good).code, FaultCode::kNone);
-  CycleRecord record = good;
-  record.solver_status = SolverStatus::kBudgetSpent;
-  EXPECT_EQ(check_solution(record).code, FaultCode::kNone);
-  record.solver_status = SolverStatus::kFailed;
-  EXPECT_EQ(check_solution(record).code, FaultCode::kSolverFailed);
-  record = good;
-  record.twin.ddq_a[1] = kNan;
-  EXPECT_EQ(check_solution(record).code, FaultCode::kReferenceNotFinite);
-  record = good;
-  record.reference.ddq_m[4] = kInfinity;
-  EXPECT_EQ(check_solution(record).code, FaultCode::kReferenceNotFinite);
+  const VectorM ddq_m = VectorM::Zero(6);
+  const VectorA ddq_a = VectorA::Zero(2);
+  EXPECT_EQ(check_solution(SolverStatus::kSolved, ddq_m, ddq_a).code, FaultCode::kNone);
+  EXPECT_EQ(check_solution(SolverStatus::kBudgetSpent, ddq_m, ddq_a).code, FaultCode::kNone);
+  EXPECT_EQ(check_solution(SolverStatus::kFailed, ddq_m, ddq_a).code, FaultCode::kSolverFailed);
+  VectorA bad_twin = ddq_a;
+  bad_twin[1] = kNan;
+  EXPECT_EQ(check_solution(SolverStatus::kSolved, ddq_m, bad_twin).code,
+            FaultCode::kReferenceNotFinite);
+  VectorM bad_joints = ddq_m;
+  bad_joints[4] = kInfinity;
+  EXPECT_EQ(check_solution(SolverStatus::kSolved, bad_joints, ddq_a).code,
+            FaultCode::kReferenceNotFinite);
 }
+
+// What estimation and rendering give.
+struct Results {
+  RobotState robot;
+  ReferenceState reference;
+  std::array<LimitReport, kMaxLimits> limits{};
+  double sync_error = 0.0;
+  Eigen::Vector3d v_H = Eigen::Vector3d::Zero(), contact_force = Eigen::Vector3d::Zero();
+
+  Rendered rendered() const {
+    return {.robot = robot,
+            .reference = reference,
+            .limits = limits,
+            .sync_error = sync_error,
+            .v_H = v_H,
+            .contact_force = contact_force};
+  }
+};
 
 // A device that runs and does as it is told, with noise on what has noise.
 struct Bench {
   Monitor monitor;
   MonitorState state;
   SensorFrame sensors = good_sensors();
-  CycleRecord record;
+  Results results;
   Watched watched = {.state = State::kByHand, .dq_p_command = VectorP::Zero(2)};
   Verdict verdict;
   int cycles = 0;
@@ -127,9 +143,9 @@ struct Bench {
   explicit Bench(const MonitorConfig& monitor_config = config()) : monitor(monitor_config, 2, 6) {
     sensors.theta_m = sensors.tau_m = VectorM::Zero(6);
     sensors.temperature_m = VectorM::Constant(6, 40.0);
-    record.robot.q_m = record.robot.dq_m = VectorM::Zero(6);
-    record.robot.q_p = record.robot.dq_p = VectorP::Zero(2);
-    record.reference = {VectorM::Zero(6), VectorM::Zero(6), VectorM::Zero(6)};
+    results.robot.q_m = results.robot.dq_m = VectorM::Zero(6);
+    results.robot.q_p = results.robot.dq_p = VectorP::Zero(2);
+    results.reference = {VectorM::Zero(6), VectorM::Zero(6), VectorM::Zero(6)};
     watched.state = State::kReady;
     step();
     watched.state = State::kByHand;
@@ -149,7 +165,7 @@ struct Bench {
       sensors.omega_S.array() += noise;
       for (int i = 0; i < 6; ++i) sensors.tau_m[i] = 1e-4 * cycles + (i == 0 ? torque : 0.0);
     }
-    verdict = monitor.watch(sensors, record, watched, state);
+    verdict = monitor.watch(sensors, results.rendered(), watched, state);
   }
   void run(int samples) {
     for (int k = 0; k < samples; ++k) step();
@@ -182,28 +198,28 @@ struct Case {
 const Case kCases[] = {
     {FaultCode::kLimitExceeded, "measured joint", 1, 3, 2.031, 2.029,
      [](Bench& b, double x) {
-       b.record.robot.q_m[3] = x;
-       b.record.reference.q_m[3] = 2.0;
+       b.results.robot.q_m[3] = x;
+       b.results.reference.q_m[3] = 2.0;
      }},
     {FaultCode::kLimitExceeded, "reference of a joint", 1, 2, -2.031, -2.029,
      [](Bench& b, double x) {
-       b.record.reference.q_m[2] = x;
-       b.record.robot.q_m[2] = -2.0;
+       b.results.reference.q_m[2] = x;
+       b.results.robot.q_m[2] = -2.0;
      }},
     {FaultCode::kLimitExceeded, "sum of joints", 1, 6, 0.051, 0.049,
-     [](Bench& b, double x) { b.record.limits[6].excess = x; }},
+     [](Bench& b, double x) { b.results.limits[6].excess = x; }},
     {FaultCode::kLimitExceeded, "frame", 1, 8, 0.031, 0.029,
-     [](Bench& b, double x) { b.record.limits[8].excess = x; }},
+     [](Bench& b, double x) { b.results.limits[8].excess = x; }},
     {FaultCode::kSpeedExceeded, "measured speed", 3, 4, -3.31, -3.29,
-     [](Bench& b, double x) { b.record.robot.dq_m[4] = x; }},
+     [](Bench& b, double x) { b.results.robot.dq_m[4] = x; }},
     {FaultCode::kSpeedExceeded, "speed of the reference", 3, 4, 3.31, 3.29,
-     [](Bench& b, double x) { b.record.reference.dq_m[4] = x; }},
+     [](Bench& b, double x) { b.results.reference.dq_m[4] = x; }},
     {FaultCode::kAccelerationExceeded, "acceleration", 3, 1, 41.0, 39.0,
-     [](Bench& b, double x) { b.record.reference.ddq_m[1] = x; }},
+     [](Bench& b, double x) { b.results.reference.ddq_m[1] = x; }},
     {FaultCode::kTrackingLost, "tracking", 20, 5, 0.081, 0.079,
-     [](Bench& b, double x) { b.record.robot.q_m[5] = -x; }},
+     [](Bench& b, double x) { b.results.robot.q_m[5] = -x; }},
     {FaultCode::kSyncLost, "handle and twin", 3, -1, 0.021, 0.019,
-     [](Bench& b, double x) { b.record.sync_error = x; }},
+     [](Bench& b, double x) { b.results.sync_error = x; }},
     {FaultCode::kJointTorqueExceeded, "torque", 3, 0, 101.0, 99.0,
      [](Bench& b, double x) {
        b.torque = x;
@@ -232,11 +248,11 @@ const Case kCases[] = {
     {FaultCode::kBusErrors, "bus", 3, -1, 1.0, 0.0,
      [](Bench& b, double x) { b.sensors.bus_errors = static_cast<std::uint32_t>(x); }, false},
     {FaultCode::kGantryExceeded, "gantry range", 3, 1, -1.4201, -1.4199,
-     [](Bench& b, double x) { b.record.robot.q_p[1] = x; }},
+     [](Bench& b, double x) { b.results.robot.q_p[1] = x; }},
     {FaultCode::kGantryExceeded, "gantry speed", 3, 0, 1.66, 1.64,
-     [](Bench& b, double x) { b.record.robot.dq_p[0] = b.state.dq_p_model[0] = x; }},
+     [](Bench& b, double x) { b.results.robot.dq_p[0] = b.state.dq_p_model[0] = x; }},
     {FaultCode::kGantryDeviates, "gantry deviation", 10, 0, 0.27, 0.25,
-     [](Bench& b, double x) { b.record.robot.dq_p[0] = x; }},
+     [](Bench& b, double x) { b.results.robot.dq_p[0] = x; }},
 };
 
 TEST(Monitor, EveryRuleActsBeyondItsThresholdAfterItsDebounceAndNotBelow) {
@@ -274,8 +290,8 @@ TEST(Monitor, NoDebounceIsLongerAtAHigherRateInTime) {
   fast.dt = 0.5e-3;
   fast.clock_tolerance = kInfinity;
   Bench bench(fast);
-  EXPECT_EQ(bench.until_fault(FaultCode::kTrackingLost, [&] { bench.record.robot.q_m[5] = 0.081; }),
-            40);
+  EXPECT_EQ(
+      bench.until_fault(FaultCode::kTrackingLost, [&] { bench.results.robot.q_m[5] = 0.081; }), 40);
 }
 
 TEST(Monitor, AJumpIsMoreThanThreeTimesTheSpeedAndATurnOfAnEndlessJointIsNone) {
@@ -372,7 +388,7 @@ TEST(Monitor, LateCyclesAreForgivenWhenTheyAreFewAndFarBetween) {
 
 TEST(Monitor, AReferenceThatHasToComeBackAgainAndAgainIsLostToo) {
   Bench bench;
-  bench.record.robot.q_m[4] = -0.007;
+  bench.results.robot.q_m[4] = -0.007;
   bench.watched.pulled_back = VectorM::Zero(6);
   bench.watched.pulled_back[4] = 0.001;  // 1 rad/s that the joint does not follow
   EXPECT_NEAR(bench.until_fault(FaultCode::kTrackingLost, [] {}), 73 + 20, 2);
@@ -389,26 +405,26 @@ TEST(Monitor, AReferenceThatHasToComeBackAgainAndAgainIsLostToo) {
 TEST(Monitor, WithoutPowerADeviceMayBeAnywhereAndFromThereItMayOnlyMoveBack) {
   Bench bench;
   bench.watched.state = State::kFault;
-  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.5;
-  bench.record.robot.dq_m[1] = 5.0;
-  bench.record.robot.q_p[0] = 1.6;
-  bench.record.robot.dq_p[1] = 3.0;
+  bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = 2.5;
+  bench.results.robot.dq_m[1] = 5.0;
+  bench.results.robot.q_p[0] = 1.6;
+  bench.results.robot.dq_p[1] = 3.0;
   bench.run(200);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
-  bench.record.robot.dq_m[1] = bench.record.robot.dq_p[1] = 0.0;
+  bench.results.robot.dq_m[1] = bench.results.robot.dq_p[1] = 0.0;
   bench.step();
   bench.watched.state = State::kByHand;
   bench.run(200);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
-  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.3;
-  bench.record.robot.q_p[0] = 1.5;
+  bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = 2.3;
+  bench.results.robot.q_p[0] = 1.5;
   bench.run(2);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
-  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.34;
+  bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = 2.34;
   bench.step();
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kLimitExceeded);
-  bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = 2.3;
-  bench.record.robot.q_p[0] = 1.53;
+  bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = 2.3;
+  bench.results.robot.q_p[0] = 1.53;
   bench.run(3);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kGantryExceeded);
 }
@@ -438,25 +454,28 @@ TEST(Monitor, SlidesAndTurningGantriesHaveTolerancesOfTheirOwn) {
     return bench.until_fault(code, [&] { put(bench); });
   };
   for (const double excess : {0.009, 0.011}) {
+    EXPECT_EQ(until(FaultCode::kLimitExceeded,
+                    [&](Bench& b) {
+                      b.results.robot.q_m[3] = b.results.reference.q_m[3] = 2.0 + excess;
+                    }),
+              excess < 0.01 ? -1 : 1);
     EXPECT_EQ(
-        until(FaultCode::kLimitExceeded,
-              [&](Bench& b) { b.record.robot.q_m[3] = b.record.reference.q_m[3] = 2.0 + excess; }),
-        excess < 0.01 ? -1 : 1);
-    EXPECT_EQ(
-        until(FaultCode::kTrackingLost, [&](Bench& b) { b.record.robot.q_m[3] = 0.5 * excess; }),
+        until(FaultCode::kTrackingLost, [&](Bench& b) { b.results.robot.q_m[3] = 0.5 * excess; }),
         excess < 0.01 ? -1 : 20);
     EXPECT_EQ(until(FaultCode::kGantryExceeded,
-                    [&](Bench& b) { b.record.robot.q_p[1] = 1.4 + 20.0 * excess; }),
+                    [&](Bench& b) { b.results.robot.q_p[1] = 1.4 + 20.0 * excess; }),
               excess < 0.01 ? -1 : 3);
     EXPECT_EQ(until(FaultCode::kGantryDeviates,
-                    [&](Bench& b) { b.record.robot.dq_p[1] = 11.5 * excess; }),
+                    [&](Bench& b) { b.results.robot.dq_p[1] = 11.5 * excess; }),
               excess < 0.01 ? -1 : 10);
   }
 }
 
 TEST(Monitor, BelowALimitItMayOnlyMoveBackToo) {
   Bench bench;
-  const auto put = [&](double q) { bench.record.robot.q_m[0] = bench.record.reference.q_m[0] = q; };
+  const auto put = [&](double q) {
+    bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = q;
+  };
   bench.watched.state = State::kReady;
   put(-2.5);
   bench.step();
@@ -471,16 +490,16 @@ TEST(Monitor, BelowALimitItMayOnlyMoveBackToo) {
 
 TEST(Monitor, TheSafeSpeedHoldsOnlyWithNobodyAtTheHandle) {
   Bench bench;
-  bench.record.v_H = {0.2, 0.16, 0.0};
+  bench.results.v_H = {0.2, 0.16, 0.0};
   bench.run(10);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
   bench.watched.state = State::kAutonomous;
   EXPECT_EQ(bench.until_fault(FaultCode::kSafeSpeedExceeded, [] {}), 3);
-  bench.record.v_H.setZero();
+  bench.results.v_H.setZero();
   bench.step();
-  bench.record.robot.dq_p << 0.2, -0.16;
+  bench.results.robot.dq_p << 0.2, -0.16;
   EXPECT_EQ(bench.until_fault(FaultCode::kSafeSpeedExceeded,
-                              [&] { bench.state.dq_p_model = bench.record.robot.dq_p; }),
+                              [&] { bench.state.dq_p_model = bench.results.robot.dq_p; }),
             3);
 }
 
@@ -492,9 +511,9 @@ struct Motor {
     bench.watched.tau_m[2] = told;
     const double friction = 4.0 * std::tanh(dtheta / 0.01);
     dtheta += 1e-3 * (share * told - spring - friction) / 0.6;
-    bench.record.robot.dtheta_m = bench.record.robot.tau_m = VectorM::Zero(6);
-    bench.record.robot.dtheta_m[2] = dtheta;
-    bench.record.robot.tau_m[2] = spring;
+    bench.results.robot.dtheta_m = bench.results.robot.tau_m = VectorM::Zero(6);
+    bench.results.robot.dtheta_m[2] = dtheta;
+    bench.results.robot.tau_m[2] = spring;
     bench.step();
   }
 };
@@ -552,7 +571,7 @@ TEST(Monitor, TheGantryFollowsItsDriveModel) {
                               [&] {
                                 speed +=
                                     1e-3 * drive_acceleration(DriveModel{.lag = 0.06}, speed, 1.2);
-                                bench.record.robot.dq_p[0] = speed;
+                                bench.results.robot.dq_p[0] = speed;
                               }),
             -1);
   Bench stuck;
@@ -567,23 +586,23 @@ struct BrakingBench : Bench {
   double reference = 1.0;
 
   BrakingBench() {
-    record.reference.dq_m[2] = record.robot.dq_m[2] = reference;
-    record.robot.dq_p[1] = state.dq_p_model[1] = reference;
+    results.reference.dq_m[2] = results.robot.dq_m[2] = reference;
+    results.robot.dq_p[1] = state.dq_p_model[1] = reference;
     watched.state = State::kToFault;
   }
   // one period; the axes are faster than their ramps by so much
   void brake(double joint_excess, double gantry_excess) {
     reference = std::max(0.0, reference - 2e-3);
-    record.robot.dq_m[2] = reference + joint_excess;
+    results.robot.dq_m[2] = reference + joint_excess;
     // its acceleration is the ramp; the reference itself is brought back to the device
-    record.reference.ddq_m[2] = reference > 0.0 ? -2.0 : 0.0;
-    record.reference.dq_m[2] = state.is_stopping ? record.robot.dq_m[2] : reference;
-    record.robot.q_m[2] += 1e-3 * record.robot.dq_m[2];
-    record.reference.q_m[2] = record.robot.q_m[2];
-    record.robot.dq_p[1] = state.dq_p_model[1] + gantry_excess;
-    record.robot.q_p[1] += 1e-3 * record.robot.dq_p[1];
-    sensors.q_p[1] = record.robot.q_p[1] - 1e-3 * state.dq_p_model[1];  // step() adds this
-    sensors.q_m[2] = sensors.theta_m[2] = record.robot.q_m[2];
+    results.reference.ddq_m[2] = reference > 0.0 ? -2.0 : 0.0;
+    results.reference.dq_m[2] = state.is_stopping ? results.robot.dq_m[2] : reference;
+    results.robot.q_m[2] += 1e-3 * results.robot.dq_m[2];
+    results.reference.q_m[2] = results.robot.q_m[2];
+    results.robot.dq_p[1] = state.dq_p_model[1] + gantry_excess;
+    results.robot.q_p[1] += 1e-3 * results.robot.dq_p[1];
+    sensors.q_p[1] = results.robot.q_p[1] - 1e-3 * state.dq_p_model[1];  // step() adds this
+    sensors.q_m[2] = sensors.theta_m[2] = results.robot.q_m[2];
     verdict = {};
     step();
   }
@@ -624,11 +643,11 @@ TEST(Monitor, AStopThatGoesTooFarEndsWhateverItsRampSays) {
   Bench bench;
   bench.watched.state = State::kToArmed;
   // the reference runs on, and the joint follows it
-  bench.record.reference.dq_m[0] = bench.record.robot.dq_m[0] = 0.5;
+  bench.results.reference.dq_m[0] = bench.results.robot.dq_m[0] = 0.5;
   const auto go_on = [&] {
-    bench.record.robot.q_m[0] += 5e-4;
-    bench.record.reference.q_m[0] = bench.sensors.q_m[0] = bench.sensors.theta_m[0] =
-        bench.record.robot.q_m[0];
+    bench.results.robot.q_m[0] += 5e-4;
+    bench.results.reference.q_m[0] = bench.sensors.q_m[0] = bench.sensors.theta_m[0] =
+        bench.results.robot.q_m[0];
   };
   EXPECT_NEAR(bench.until_fault(FaultCode::kStopTooFar, go_on), 1441, 2);  // 90 % of 0.8 rad
   EXPECT_EQ(bench.verdict.fault.index, 0);
@@ -644,7 +663,7 @@ TEST(Monitor, AJumpIsKnownBeforeAnythingElseIsMadeOfTheSample) {
 TEST(Monitor, OfSeveralBrokenRulesTheHardestReactionCounts) {
   Bench bench;
   bench.sensors.w_S[0] = 200.0;
-  bench.record.robot.dq_m[2] = 9.0;
+  bench.results.robot.dq_m[2] = 9.0;
   bench.run(5);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSpeedExceeded);  // SS1 before SS2
   bench.sensors.q_m[0] += 0.1;

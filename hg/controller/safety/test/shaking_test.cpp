@@ -16,8 +16,11 @@ namespace {
 constexpr double kDt = 1e-3;
 
 struct Cycle {
-  SensorFrame sensors;
-  CycleRecord record;
+  Vector6 w_S = Vector6::Zero(), w_H = Vector6::Zero();
+  Eigen::Vector3d v_H = Eigen::Vector3d::Zero(), contact_force = Eigen::Vector3d::Zero();
+  double oscillation = 0.0;
+
+  ShakingInput input() const { return {w_S, w_H, v_H, contact_force, oscillation}; }
 };
 
 struct Found {
@@ -32,7 +35,7 @@ Found look(double seconds, const std::function<void(double, Cycle&)>& make) {
   for (int n = 0; n < static_cast<int>(seconds / kDt); ++n) {
     Cycle cycle;
     make(kDt * n, cycle);
-    const ShakingReport report = watch.step(cycle.sensors, cycle.record, state);
+    const ShakingReport report = watch.step(cycle.input(), state);
     if (report.index >= 1.0 && found.what == Shaking::kNone) found = {kDt * n, report.what};
   }
   return found;
@@ -44,13 +47,13 @@ double sine(double frequency_Hz, double t) {
 
 Found torque_of(double amplitude, double frequency_Hz, double pull = 0.0) {
   return look(5.0, [&](double t, Cycle& cycle) {
-    cycle.record.robot.w_H[4] = pull + amplitude * sine(frequency_Hz, t);
+    cycle.w_H[4] = pull + amplitude * sine(frequency_Hz, t);
   });
 }
 
 Found sensed(int component, double amplitude, double frequency_Hz) {
   return look(5.0, [&](double t, Cycle& cycle) {
-    cycle.sensors.w_S[component] = amplitude * sine(frequency_Hz, t);
+    cycle.w_S[component] = amplitude * sine(frequency_Hz, t);
   });
 }
 
@@ -74,7 +77,7 @@ TEST(Shaking, FindsWhatTheSensorFeelsAbove30Hz) {
   }
   EXPECT_EQ(sensed(1, 10.0, 8.0).what, Shaking::kNone);  // not above 30 Hz
   const Found impact = look(5.0, [](double t, Cycle& cycle) {
-    cycle.sensors.w_S[1] = 30.0 * std::exp(-t / 0.05) * sine(74.0, t);
+    cycle.w_S[1] = 30.0 * std::exp(-t / 0.05) * sine(74.0, t);
   });
   EXPECT_EQ(impact.what, Shaking::kNone);
 }
@@ -86,9 +89,9 @@ Found bounces(double speed, double kept, double power, int count) {
     if (n >= count) return;
     const double v = speed * std::pow(kept, n);
     const double phase = t - 0.5 * n;
-    cycle.record.v_H.x() = phase < 0.05 || phase > 0.3 ? v : -v;
-    if (phase < 0.1) cycle.record.contact.force.x() = -50.0;
-    cycle.record.robot.w_H.x() = power / cycle.record.v_H.x();
+    cycle.v_H.x() = phase < 0.05 || phase > 0.3 ? v : -v;
+    if (phase < 0.1) cycle.contact_force.x() = -50.0;
+    cycle.w_H.x() = power / cycle.v_H.x();
   });
 }
 
@@ -104,8 +107,7 @@ TEST(Shaking, FindsABodyThatBouncesAndDrivesTheHand) {
 }
 
 TEST(Shaking, PassesOnWhatPassivityFinds) {
-  const Found found =
-      look(0.1, [](double, Cycle& cycle) { cycle.record.passivity.oscillation = 1.5; });
+  const Found found = look(0.1, [](double, Cycle& cycle) { cycle.oscillation = 1.5; });
   EXPECT_EQ(found.what, Shaking::kForce);
 }
 
@@ -114,7 +116,7 @@ TEST(Shaking, AllocatesNothing) {
   ShakingState state;
   const Cycle cycle;
   const AllocationCounter allocations;
-  for (int n = 0; n < 100; ++n) (void)watch.step(cycle.sensors, cycle.record, state);
+  for (int n = 0; n < 100; ++n) (void)watch.step(cycle.input(), state);
   EXPECT_EQ(allocations.count(), 0U);
 }
 
