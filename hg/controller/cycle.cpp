@@ -137,7 +137,6 @@ void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input
   supervise(sensors, operator_input, record);
 
   record.change = rendering_.change(operator_input.change, state_.rendering);
-  rendering_.limit_solver(operator_input.most_active_sets);
   ended_(Stage::kSupervision);
 
   // estimation -> prepositioning -> rendering
