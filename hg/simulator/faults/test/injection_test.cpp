@@ -214,12 +214,13 @@ TEST(Injector, SamplesAreLostAndRepeated) {
 }
 
 TEST(Loads, CyclesAreLateInARowAndTheSolverHasFewActiveSetsWhileTheFaultLasts) {
+  constexpr double kBefore_s = kFrom_s - 0.5 * kDt;  // half a period: no rounding decides
   TimedLoads loads(
       loads_of({{.kind = find_kind("link_encoder_nan"), .from_s = kFrom_s},
-                {.kind = find_kind("cycles_late"), .magnitude = 2.0, .from_s = kFrom_s},
+                {.kind = find_kind("cycles_late"), .magnitude = 2.0, .from_s = kBefore_s},
                 {.kind = find_kind("solver_hurried"),
                  .magnitude = 2.0,
-                 .from_s = kFrom_s,
+                 .from_s = kBefore_s,
                  .for_s = kFor_s}}));
   for (int cycle = 0; cycle < 20; ++cycle) {
     const double time_s = kDt * cycle;
