@@ -3,6 +3,7 @@
 #include "apps/hapticgiant/device_memory.h"
 #include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/run_setup.h"
+#include "hg/core/error.h"
 #include "hg/scenario/assembly.h"
 
 namespace hg::apps {
@@ -10,8 +11,7 @@ namespace hg::apps {
 PreparedRun::PreparedRun(const RunArguments& a)
     : arguments(a), scenario(make_scenario(a)), cycle(scenario::make_cycle(scenario)) {
   if (arguments.device_address.empty()) {
-    device =
-        std::make_unique<simulator::SimulatedDevice>(scenario::make_simulated_device(scenario));
+    device = scenario::make_simulated_device(scenario);
     return;
   }
   const auto connect = [&](double busy_patience_s) {
@@ -21,6 +21,9 @@ PreparedRun::PreparedRun(const RunArguments& a)
   auto connected = connect(0.0);
   is_machine = !connected->welcome().is_simulated;
   if (is_machine) {
+    if (!faults::loads_of(scenario.faults).empty()) {
+      throw SetupError("faults: cycles_late and solver_hurried are for simulated devices only");
+    }
     start_test = check_start_test(arguments, scenario.device);
     posture = check_posture(arguments, scenario.device, *connected);
     // the server may not have heard yet that the session for the posture is over

@@ -80,12 +80,12 @@ class Witness final : public device::Device {
   Witness(const config::Scenario& scenario)
       : device_(scenario::make_simulated_device(scenario)), scenario_(scenario) {}
 
-  void read(SensorFrame& sensors) noexcept override { device_.read(sensors); }
+  void read(SensorFrame& sensors) noexcept override { device_->read(sensors); }
   void write(const CommandFrame& command) noexcept override {
-    device_.write(command);
+    device_->write(command);
     periods.fetch_add(1, std::memory_order_relaxed);
     is_on.store(command.enable, std::memory_order_relaxed);
-    if (is_watched.load(std::memory_order_relaxed)) watch(*device_.truth());
+    if (is_watched.load(std::memory_order_relaxed)) watch(*device_->truth());
   }
 
   void watch(const Truth& truth) noexcept {
@@ -120,7 +120,7 @@ class Witness final : public device::Device {
  private:
   void look(double way, double stated) noexcept { share = std::max(share, std::abs(way) / stated); }
 
-  simulator::SimulatedDevice device_;
+  std::unique_ptr<device::Device> device_;
   const config::Scenario& scenario_;
   VectorM from_m_;
   VectorP from_p_;

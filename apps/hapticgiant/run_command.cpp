@@ -187,6 +187,7 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   options.is_fast = arguments.is_fast;
   options.changes = scenario.changes;
   options.panel = scenario.panel;
+  options.load = faults::loads_of(scenario.faults);
   options.longest_stop_s = scenario::longest_stop_s(scenario);
   if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / options.rate_Hz;
   options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output.h"
@@ -34,13 +36,13 @@ std::string how_it_ended(const udp::SessionReport& report) {
 /// A device whose true state is observed, which no controller knows.
 class WatchedDevice final : public device::Device {
  public:
-  WatchedDevice(const simulator::SimulatedDevice& device, const rendering::DeviceModel& model)
-      : device_(device), model_(model) {}
+  WatchedDevice(std::unique_ptr<device::Device> device, const rendering::DeviceModel& model)
+      : device_(std::move(device)), model_(model) {}
 
-  void read(SensorFrame& sensors) noexcept override { device_.read(sensors); }
+  void read(SensorFrame& sensors) noexcept override { device_->read(sensors); }
   void write(const CommandFrame& command) noexcept override {
-    device_.write(command);
-    const Truth& truth = *device_.truth();
+    device_->write(command);
+    const Truth& truth = *device_->truth();
     for (int i = 0; i < truth.q_m.size(); ++i) {
       const limits::JointLimits& limits = model_.joint_limits[static_cast<std::size_t>(i)];
       const double q = truth.q_m[i];
@@ -65,7 +67,7 @@ class WatchedDevice final : public device::Device {
   }
 
  private:
-  simulator::SimulatedDevice device_;
+  std::unique_ptr<device::Device> device_;
   const rendering::DeviceModel& model_;
   double worst_excess_ = 0.0, max_force_ = 0.0;
   int worst_joint_ = -1;
@@ -95,7 +97,7 @@ std::string closing_lines(const udp::SessionReport& report, double rate_Hz) {
 int simulate(const SimulateArguments& arguments) {
   check_writable(arguments.capture, kCapture);
   const config::Scenario scenario = make_scenario(arguments.world);
-  const simulator::SimulatedDevice world = scenario::make_simulated_device(scenario);
+  const simulator::Simulation world = scenario::make_simulation(scenario);
   const udp::ServerConfig config{.actual = describe(scenario, arguments.is_fast),
                                  .server = std::string("hapticgiant simulate ") + kVersion,
                                  .is_simulated = true,
@@ -114,7 +116,7 @@ int simulate(const SimulateArguments& arguments) {
     if (!lost.empty()) print_error("{}: the capture ended early: {}\n", arguments.capture, lost);
   };
   while (server.wait_for_client(stop)) {
-    WatchedDevice device(world, scenario.device.model);
+    WatchedDevice device(scenario::make_simulated_device(scenario, world), scenario.device.model);
     const udp::SessionReport report = server.serve(device, stop);
     print_out(fmt::format("\n{}  {:<12} {}\n", closing_lines(report, scenario.device.rate_Hz),
                           "truth", device.truth_text()));

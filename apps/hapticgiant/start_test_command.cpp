@@ -193,8 +193,7 @@ int start_test(const StartTestArguments& arguments) {
   std::unique_ptr<device::Device> device;
   udp::RemoteDevice* remote = nullptr;
   if (arguments.device_address.empty()) {
-    device =
-        std::make_unique<simulator::SimulatedDevice>(scenario::make_simulated_device(scenario));
+    device = scenario::make_simulated_device(scenario);
   } else {
     auto connected = connect_device(arguments.device_address, key_of(arguments.key_file), scenario,
                                     arguments.is_fast);

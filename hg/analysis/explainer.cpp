@@ -232,10 +232,6 @@ void Explainer::add_others(const Sample& sample) {
     extend("late", "cycles that were missed at once", record.time_s,
            static_cast<double>(sample.operator_input.late_cycles));
   }
-  if (sample.operator_input.most_active_sets > 0) {
-    extend("hurried", "a fault on purpose: the solver had a budget of a few active sets only",
-           record.time_s);
-  }
   if (record.tracking.is_clamped) {
     extend("tracking", "the device was left behind: its reference was brought back to it",
            record.time_s);

@@ -222,7 +222,6 @@ Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
   estimation_.tare(is_new && request == ModeRequest::kTare, !is_moving(supervisor.mode()),
                    state_.estimation);
   result.change = rendering_.change(operator_input.change, state_.rendering);
-  rendering_.limit_solver(operator_input.most_active_sets);
   return result;
 }
 

@@ -95,6 +95,12 @@ class Cycle {
     return safety::is_held(monitor_.config(), sensors);
   }
 
+  /// Caps the active sets of a solve from the next step on, where smaller than configured; 0 = as
+  /// configured. Not part of the state: a replay sets it again.
+  void limit_solver(std::uint32_t most_active_sets) noexcept {
+    rendering_.limit_solver(most_active_sets);
+  }
+
   /// Installs a callback per stage; the default probe does nothing.
   void watch(const StageProbe& probe) noexcept;
 

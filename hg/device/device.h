@@ -18,9 +18,6 @@ class Device {
   virtual void write(const CommandFrame& command) noexcept = 0;
   /// Ground truth at the last read(); null: unknown, the device is real.
   virtual const Truth* truth() const noexcept { return nullptr; }
-  /// Injects faults of the computer that runs the cycle, after read(); simulated devices only, else
-  /// no effect.
-  virtual void spoil(OperatorFrame& /*input*/) const noexcept {}
   /// Whether read() waits for the next sample (for a bounded time) and so clocks the loop.
   virtual bool is_clock() const noexcept { return false; }
 };

@@ -104,7 +104,6 @@ void fields(Archive& a, T& input) {
   a("panel", input.panel, "of a simulated operator");
   a("change", input.change, "of a parameter of the twin");
   a("late_cycles", input.late_cycles, "missed since the last cycle");
-  a("most_active_sets", input.most_active_sets, "the budget of the solver; 0: as configured");
 }
 
 template <typename Archive, Is<CommandFrame> T>

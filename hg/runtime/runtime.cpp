@@ -10,7 +10,6 @@
 #include "hg/core/allowed_to_wait.h"
 #include "hg/core/error.h"
 #include "hg/core/monotonic_clock.h"
-#include "hg/runtime/requests.h"
 
 namespace hg::runtime {
 namespace {
@@ -62,11 +61,12 @@ Runtime::Runtime(const Options& options, controller::Cycle& cycle, device::Devic
     : options_((check(options), options)),
       cycle_(cycle),
       device_(device),
+      session_(cycle, device,
+               {.rate_Hz = options.rate_Hz, .changes = options.changes, .load = options.load}),
       samples_(options.ring),
       hand_targets_(256),
       parameter_changes_(256),
       requests_(64),
-      changes_(options.changes),
       timed_panels_(options.panel) {}
 
 Runtime::~Runtime() {
@@ -90,19 +90,19 @@ Report Runtime::join() {
   return report_;
 }
 
-void Runtime::run_cycle(Sample& sample) noexcept HG_NONBLOCKING {
-  device_.read(sample.sensors);
-  device_.spoil(sample.operator_input);
-  const Truth* truth = device_.truth();
-  sample.truth = truth != nullptr ? *truth : Truth{};
+void Runtime::run_cycle() noexcept HG_NONBLOCKING {
+  session_.read();
+  Sample& sample = session_.sample();
+  OperatorFrame& input = sample.operator_input;
   read_ns_ = stage_ns_ = now_ns();
-  while (hand_targets_.pop(sample.operator_input.hand_target)) {
+  while (hand_targets_.pop(session_.input().hand_target)) {
   }
-  sample.operator_input.change = next_change();
-  look_at_desk(sample.operator_input);
-  cycle_.step(sample.sensors, sample.operator_input, sample.command, sample.record);
+  input.hand_target = session_.input().hand_target;
+  if (input.change.parameter == Parameter::kNone) parameter_changes_.pop(input.change);
+  look_at_desk(input);
+  session_.step();
   const std::int64_t end_ns = now_ns();
-  device_.write(sample.command);
+  session_.write();
   sample.cycle_time_us = 1e-3 * static_cast<double>(end_ns - read_ns_);
   if (!options_.is_fast) count_stages();
   const bool is_slow = sample.cycle_time_us > options_.slow_cycle_us;
@@ -124,12 +124,6 @@ void Runtime::count_stages() noexcept {
     if (time_ns > 0) report_.stage_us[i].add(1e-3 * static_cast<double>(time_ns));
     time_ns = 0;
   }
-}
-
-ParameterChange Runtime::next_change() noexcept {
-  ParameterChange change = changes_.due(static_cast<double>(report_.cycles) / options_.rate_Hz);
-  if (change.parameter == Parameter::kNone) parameter_changes_.pop(change);
-  return change;
 }
 
 bool Runtime::stop_is_requested() const noexcept {
@@ -164,11 +158,11 @@ std::uint32_t Runtime::late_for_device() const noexcept {
   return periods > 1.0 ? static_cast<std::uint32_t>(std::min(periods, 1e9)) : 0;
 }
 
-void Runtime::count_late(std::uint32_t cycles, OperatorFrame& input) noexcept {
+void Runtime::count_late(std::uint32_t cycles) noexcept {
   report_.overruns += cycles;
   overruns_in_a_row_ = cycles == 0 ? 0 : overruns_in_a_row_ + cycles;
   report_.most_overruns_in_a_row = std::max(report_.most_overruns_in_a_row, overruns_in_a_row_);
-  input.late_cycles = report_.told_late_cycles ? cycles : 0;
+  session_.input().late_cycles = report_.told_late_cycles ? cycles : 0;
 }
 
 void Runtime::hand_out(const Sample& sample) noexcept {
@@ -204,11 +198,9 @@ void Runtime::play_script(const TimedPanel& due) noexcept {
   if (stays_pressed) script_panel_.emergency_stop = was_pressed;
 }
 
-// Operator input of the next cycle: by script, by an operator, or automatic.
-void Runtime::operate(const Sample& sample, bool is_stopping, OperatorFrame& input) noexcept {
-  const CycleRecord& record = sample.record;
+// Request of the next cycle: by script, by an operator, or automatic.
+void Runtime::operate(bool is_stopping) noexcept {
   script_panel_.reset = false;
-  input.late_cycles = 0;
   Request next;
   request_stops_.reset();
   if (requests_.pop(next)) {
@@ -224,10 +216,10 @@ void Runtime::operate(const Sample& sample, bool is_stopping, OperatorFrame& inp
       is_operated_ = true;
     }
   }
-  is_operated_ = is_operated_ || (options_.stays_in_fault && record.mode == Mode::kFault);
-  input.request = is_operated_ && !is_stopping
-                      ? next.request
-                      : next_request(record, cycle_.is_held(sample.sensors), is_stopping);
+  const bool is_fault = session_.record().mode == Mode::kFault;
+  is_operated_ = is_operated_ || (options_.stays_in_fault && is_fault);
+  if (is_operated_) session_.request(next.request);
+  if (is_stopping) session_.stop();
 }
 
 // Panel of this cycle, and stops of pages: requests made before a stop are dropped.
@@ -253,37 +245,37 @@ void Runtime::look_at_desk(OperatorFrame& input) noexcept {
 
 void Runtime::loop() noexcept {
   prepare_thread();
-  const auto sample = std::make_unique<Sample>();
   Schedule schedule = new_schedule();
   const long faults_before = page_faults();
 
   AllocationCounter allocations;
   double stop_since_s = -1.0;
   WayToRest way_to_rest(options_.longest_stop_s);
+  Sample& sample = session_.sample();
   while (true) {
-    run_cycle(*sample);
-    const CycleRecord& record = sample->record;
+    run_cycle();
+    const CycleRecord& record = sample.record;
     ++report_.cycles;
-    hand_out(*sample);
+    hand_out(sample);
 
     const bool is_over = options_.duration_s > 0.0 && record.time_s >= options_.duration_s;
     const bool is_stopping = is_over || stop_is_requested();
     if (is_stopping && stop_since_s < 0.0) stop_since_s = record.time_s;
     const bool ends_in_fault = !options_.stays_in_fault || is_stopping;
-    if (record.mode == Mode::kFault && ends_in_fault && way_to_rest.is_over(*sample)) break;
+    if (record.mode == Mode::kFault && ends_in_fault && way_to_rest.is_over(sample)) break;
     const bool is_at_rest = record.mode != Mode::kRunning && record.mode != Mode::kStopping;
     if (is_stopping && is_at_rest && record.mode != Mode::kFault) break;
     const bool has_waited = is_stopping && record.time_s > stop_since_s + options_.longest_stop_s;
     report_.stop_timed_out = has_waited && record.mode != Mode::kFault;
     if (has_waited) break;
-    operate(*sample, is_stopping, sample->operator_input);
+    operate(is_stopping);
 
     if (options_.is_fast) continue;
     const std::uint32_t late = device_.is_clock() ? late_for_device() : schedule.advance(now_ns());
-    count_late(late, sample->operator_input);
+    count_late(late);
     if (!device_.is_clock()) wait_for_turn(schedule);
   }
-  release(sample->command);
+  release(sample.command);
   cycle_.watch({});
   report_.page_faults = page_faults() - faults_before;
   report_.allocations = allocations.count();

@@ -21,9 +21,11 @@
 #include "hg/device/device.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/runtime/pace.h"
+#include "hg/runtime/session.h"
 #include "hg/signals/operator_desk.h"
 #include "hg/signals/state.h"
 #include "hg/signals/timed_changes.h"
+#include "hg/signals/timed_load.h"
 #include "hg/signals/timed_panel.h"
 
 namespace hg::runtime {
@@ -39,6 +41,7 @@ struct Options {
   std::size_t ring = 4096;           ///< Capacity of the ring to the observer, samples
   std::vector<TimedChange> changes;  ///< Changes of the twin, in the order of their times
   std::vector<TimedPanel> panel;     ///< Panels of the operator, in the order of their times
+  std::vector<TimedLoad> load;       ///< Load on the computer, for tests
   /// true: a fault does not end the run, because an operator can reset it. After a fault no request
   /// is made automatically.
   bool stays_in_fault = false;
@@ -122,30 +125,29 @@ class Runtime {
 
   void loop() noexcept;
   bool stop_is_requested() const noexcept;
-  void run_cycle(Sample& sample) noexcept HG_NONBLOCKING;
+  void run_cycle() noexcept HG_NONBLOCKING;
   void hand_out(const Sample& sample) noexcept;
   void release(CommandFrame& command) noexcept;
-  ParameterChange next_change() noexcept;
-  void operate(const Sample& sample, bool is_stopping, OperatorFrame& input) noexcept;
+  void operate(bool is_stopping) noexcept;
   void play_script(const TimedPanel& due) noexcept;
   void look_at_desk(OperatorFrame& input) noexcept;
   void prepare_thread() noexcept;
   Schedule new_schedule() const noexcept;
   void wait_for_turn(Schedule& schedule) noexcept;
   std::uint32_t late_for_device() const noexcept;
-  void count_late(std::uint32_t cycles, OperatorFrame& input) noexcept;
+  void count_late(std::uint32_t cycles) noexcept;
   static void stage_ended(void* runtime, Stage stage) noexcept;
   void count_stages() noexcept;
 
   Options options_;
   controller::Cycle& cycle_;
   device::Device& device_;
+  Session session_;
   SpscRing<Sample> samples_;
   SpscRing<HandTarget> hand_targets_;
   SpscRing<ParameterChange> parameter_changes_;
   SpscRing<Request> requests_;
   std::atomic<bool> is_reset_pressed_{false};
-  TimedChanges changes_;
   TimedPanels timed_panels_;
   SafetyPanel timed_panel_;   ///< Last due panel of the script
   SafetyPanel script_panel_;  ///< Panel by the script alone, without pages

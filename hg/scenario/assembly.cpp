@@ -14,6 +14,8 @@
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/scenario/start_posture.h"
+#include "hg/simulator/faults/faulty_device.h"
+#include "hg/simulator/simulated_device.h"
 
 namespace hg::scenario {
 namespace {
@@ -289,8 +291,15 @@ simulator::Simulation make_unheld_simulation(const config::Device& device, const
       person::Person({.kind = person::PersonKind::kNone}, model::Chain::free_body({}), 0, Pose{}));
 }
 
-simulator::SimulatedDevice make_simulated_device(const config::Scenario& scenario) {
-  return simulator::SimulatedDevice(make_simulation(scenario), faults::Injector(scenario.faults));
+std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario) {
+  return make_simulated_device(scenario, make_simulation(scenario));
+}
+
+std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario,
+                                                      simulator::Simulation world) {
+  auto device = std::make_unique<simulator::SimulatedDevice>(std::move(world));
+  if (scenario.faults.empty()) return device;
+  return std::make_unique<faults::FaultyDevice>(std::move(device), scenario.faults);
 }
 
 analysis::Summary make_summary(const config::Scenario& scenario) {

@@ -2,15 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "hg/analysis/summary.h"
 #include "hg/config/scenario.h"
 #include "hg/controller/cycle.h"
 #include "hg/controller/tracking/loop_stability.h"
+#include "hg/device/device.h"
 #include "hg/scenario/start_posture.h"
 #include "hg/simulator/person/person.h"
-#include "hg/simulator/simulated_device.h"
+#include "hg/simulator/simulation.h"
 
 namespace hg::scenario {
 
@@ -36,8 +38,12 @@ person::Person make_person(const config::Scenario& scenario, const Start& start)
 simulator::Simulation make_simulation(const config::Scenario& scenario);
 /// The device alone at `start` (the pose of the handle does not matter), with a free handle.
 simulator::Simulation make_unheld_simulation(const config::Device& device, const Start& start);
-/// The world of make_simulation() behind the interface of a device.
-simulator::SimulatedDevice make_simulated_device(const config::Scenario& scenario);
+/// The world of make_simulation() behind the interface of a device, with the faults of the
+/// scenario. Those of the computer act in a session or runtime: faults::loads_of().
+std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario);
+/// The same with a given world, to start several devices from one.
+std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario,
+                                                      simulator::Simulation world);
 
 /// Evaluation of a run of the scenario.
 analysis::Summary make_summary(const config::Scenario& scenario);

@@ -111,9 +111,6 @@ struct OperatorFrame {
   SafetyPanel panel;
   ParameterChange change;
   std::uint32_t late_cycles = 0;  ///< Cycles late or left out by this run since the last cycle
-  /// Cap on active sets of the solver in this cycle, for fault injection; it can only lower the
-  /// configured budget; 0 = as configured.
-  std::uint32_t most_active_sets = 0;
 };
 
 /// Command to the device until the next sample.

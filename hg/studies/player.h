@@ -1,16 +1,16 @@
-/// Plays a scenario on the simulated device as fast as it can, without page and recording.
+/// Plays a scenario on the simulated device as fast as it can, without page and recording: a
+/// session in three parts, so that a study can look at and change what passes between them.
 ///
 /// Deterministic: cycle k is the same in every play of the same scenario. One player serves one
 /// thread; several may play the same scenario at once.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "hg/config/scenario.h"
 #include "hg/controller/cycle.h"
+#include "hg/scenario/session.h"
 #include "hg/signals/state.h"
-#include "hg/simulator/simulated_device.h"
 
 namespace hg::studies {
 
@@ -19,43 +19,31 @@ void set_seed(config::Scenario& scenario, std::uint64_t seed);
 
 class Player {
  public:
-  /// `scenario` needs a planned end (scenario::planned_duration_s) and must outlive the player.
+  /// `scenario` needs a planned end (scenario::planned_duration_s). Throws SetupError.
   explicit Player(const config::Scenario& scenario);
 
   /// One period is begin(), run(), end(); run() is only Cycle::step.
-  void begin();
-  void run() noexcept {
-    cycle_.step(sample_->sensors, sample_->operator_input, sample_->command, sample_->record);
-  }
+  void begin() { session_.read(); }
+  void run() noexcept { session_.step(); }
   /// Ends the period; false when it was the last one: the plan is over, or a fault stopped the
   /// device.
   bool end();
 
-  const CycleRecord& record() const noexcept { return sample_->record; }
-  /// Sample of this period, without the truth; valid between run() and end().
-  const Sample& sample() const noexcept { return *sample_; }
+  const CycleRecord& record() const noexcept { return session_.record(); }
   /// Sample of this period, with the truth; valid between run() and end().
-  const Sample& judged_sample() noexcept {
-    sample_->truth = truth();
-    return *sample_;
-  }
+  const Sample& sample() const noexcept { return session_.sample(); }
+  const Sample& judged_sample() const noexcept { return sample(); }
   /// True state at the time of the sensors; valid between begin() and end().
-  const Truth& truth() const noexcept { return *device_.truth(); }
+  const Truth& truth() const noexcept { return session_.sample().truth; }
   /// Sensor values of the cycle, to inject faults: may be changed between begin() and run().
-  SensorFrame& sensors() noexcept { return sample_->sensors; }
+  SensorFrame& sensors() noexcept { return session_.sample().sensors; }
   /// Command to the device, to inject disturbances: may be changed between run() and end().
-  CommandFrame& command() noexcept { return sample_->command; }
+  CommandFrame& command() noexcept { return session_.sample().command; }
   bool is_running() const noexcept { return record().mode == Mode::kRunning; }
-  controller::Cycle& cycle() noexcept { return cycle_; }
+  controller::Cycle& cycle() noexcept { return session_.cycle(); }
 
  private:
-  const config::Scenario& scenario_;
-  controller::Cycle cycle_;
-  simulator::SimulatedDevice device_;
-  TimedChanges changes_;
-  double end_s_;
-  std::uint64_t played_ = 0;
-  std::unique_ptr<Sample> sample_ = std::make_unique<Sample>();
+  scenario::Session session_;
 };
 
 }  // namespace hg::studies

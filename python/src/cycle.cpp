@@ -6,6 +6,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -13,14 +14,15 @@
 #include "hg/config/scenario.h"
 #include "hg/runtime/requests.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/session.h"
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
-#include "python/src/session.h"
 
 namespace hg::python {
 namespace {
 
 using config::Scenario;
+using scenario::Session;
 
 void bind_options(nb::module_& module) {
   using rendering::Bounds;
@@ -110,7 +112,7 @@ struct OwnDevice {
       : joints(scenario), device(scenario::make_simulated_device(scenario)) {}
 
   Joints joints;
-  simulator::SimulatedDevice device;
+  std::unique_ptr<device::Device> device;
 };
 
 void restore(controller::Cycle& cycle, const controller::State& state) {
@@ -153,7 +155,7 @@ void bind_parts(nb::module_& module) {
           "read",
           [](OwnDevice& self) {
             SensorFrame sensors;
-            self.device.read(sensors);
+            self.device->read(sensors);
             return sensors;
           },
           "What the sensors say now.")
@@ -161,7 +163,7 @@ void bind_parts(nb::module_& module) {
           "write",
           [](OwnDevice& self, const CommandFrame& command) {
             self.joints.check(command);
-            self.device.write(command);
+            self.device->write(command);
           },
           nb::arg("command"), "Lives one period.");
   module.def("next_request", &runtime::next_request, nb::arg("record"), nb::arg("is_held"),
@@ -176,17 +178,20 @@ void bind_session(nb::module_& module) {
       .def(
           "step",
           [](Session& self) {
-            self.step();
-            return self.sample().record;
+            self.advance();
+            return self.record();
           },
           "Lives one period; the record is a copy.")
-      .def("stop", &Session::stop, "From now on the operator asks for a stop.")
-      .def_prop_ro("is_over", &Session::is_over, "after a fault, or stopped as asked")
+      .def(
+          "stop", [](Session& self) { self.stop(); }, "From now on the operator asks for a stop.")
+      .def_prop_ro(
+          "is_over", [](Session& self) { return self.is_over(); },
+          "after a fault, or stopped as asked")
       .def_prop_ro("sensors", [](Session& self) { return self.sample().sensors; })
       .def_prop_ro("command", [](Session& self) { return self.sample().command; })
-      .def_prop_ro("record", [](Session& self) { return self.sample().record; })
+      .def_prop_ro("record", [](Session& self) { return self.record(); })
       .def_prop_ro(
-          "operator_input", [](Session& self) -> OperatorFrame& { return self.wishes(); },
+          "operator_input", [](Session& self) -> OperatorFrame& { return self.input(); },
           nb::rv_policy::reference_internal,
           "what the next step() gets: set hand_target or change in it")
       .def_prop_rw(

@@ -10,9 +10,10 @@
 #include <utility>
 
 #include "hg/core/error.h"
+#include "hg/scenario/assembly.h"
+#include "hg/scenario/session.h"
 #include "python/src/bind.h"
 #include "python/src/columns.h"
-#include "python/src/session.h"
 
 namespace hg::python {
 
@@ -47,12 +48,12 @@ namespace {
 constexpr double kLongestStop = 1.0;  // s, as in runtime
 constexpr int kCyclesPerLook = 1000;  // between two looks at Ctrl-C
 
-void run_until(Session& session, double duration_s, Columns& columns) {
+void run_until(scenario::Session& session, double duration_s, Columns& columns) {
   double stop_since_s = -1.0;
   for (int look = 1; !session.is_over(); ++look) {
-    session.step();
+    session.advance();
     columns.append(session.sample());
-    const double time_s = session.sample().record.time_s;
+    const double time_s = session.record().time_s;
     if (time_s >= duration_s && stop_since_s < 0.0) {
       session.stop();
       stop_since_s = time_s;
@@ -73,7 +74,7 @@ nb::dict run(const config::Scenario& scenario, std::optional<double> duration_s)
   Columns columns;
   {
     const nb::gil_scoped_release no_gil;
-    Session session(scenario);
+    scenario::Session session(scenario);
     run_until(session, end_s, columns);
   }
   return columns.to_dict();

@@ -44,17 +44,18 @@ class Doctor(TemporaryFolder):
 
 
 class FlightRecorder(TemporaryFolder):
-    def spoilt(self, what):
-        """A door scenario in which something happens at 3 s."""
-        text = (MODELS / "scenarios" / "door.yaml").read_text()
+    def spoilt(self, what, scenario="door"):
+        """A scenario in which something happens at 3 s."""
+        text = (MODELS / "scenarios" / f"{scenario}.yaml").read_text()
         text = text.replace("../", f"{MODELS}/")
         head = text[: text.index("events:")]
         file = self.folder / "spoilt.yaml"
         file.write_text(head + what)
         return file
 
-    def play(self, *options, what="faults:\n  - {at_s: 3.0, fault: emergency_stop}\n"):
-        code, out, err = run("run", self.spoilt(what), "--fast", "--no-viewer", "--recordings",
+    def play(self, *options, what="faults:\n  - {at_s: 3.0, fault: emergency_stop}\n",
+             scenario="door"):
+        code, out, err = run("run", self.spoilt(what, scenario), "--fast", "--no-viewer", "--recordings",
                              self.folder / "new", *options)
         self.assertEqual(err, "")
         return code, out, sorted(self.folder.glob("new/spoilt_*.mcap"))
@@ -78,6 +79,20 @@ class FlightRecorder(TemporaryFolder):
             code, _, err = run("replay", files[0], *option)
             self.assertEqual(code, 2)
             self.assertIn("--view", err)
+
+    def test_faults_of_machine_and_computer_replay_bit_for_bit(self):
+        _, _, files = self.play("--law", "gauss", scenario="free_space", what="faults:\n"
+                                "  - {at_s: 0, fault: solver_hurried, magnitude: 1}\n"
+                                "  - {at_s: 6.0, fault: cycles_late, magnitude: 1}\n"
+                                "  - {at_s: 7.0, for_s: 0.1, fault: gantry_encoder_drift, of: ppu1, "
+                                "magnitude: 0.01}\n"
+                                "  - {at_s: 9.0, fault: clock_wrong, magnitude: 1.1}\n")
+        code, out, _ = run("explain", files[0])
+        self.assertIn("ended before its result was proven", out)
+        self.assertIn("cycles that were missed at once", out)
+        code, out, err = run("replay", files[0])
+        self.assertEqual((code, err), (0, ""), out)
+        self.assertRegex(out, r"run again   \d+ cycles, the same bit for bit")
 
     def test_an_operator_who_lets_go_is_no_fault(self):
         code, out, files = self.play(what="panel:\n  - {at_s: 10.5, operator_enable: false}\n")

@@ -17,8 +17,8 @@
 #include "hg/commissioning/checks/survey.h"
 #include "hg/commissioning/checks/twin_inspection.h"
 #include "hg/core/error.h"
-#include "hg/runtime/requests.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/session.h"
 #include "tests/scenarios/scenario_run.h"
 
 namespace hg {
@@ -53,17 +53,9 @@ std::vector<Number> numbers_in(const Texts& texts) {
 }
 
 void run(const config::Scenario& scenario) {
-  controller::Cycle cycle = scenario::make_cycle(scenario);
-  simulator::SimulatedDevice device = scenario::make_simulated_device(scenario);
+  scenario::Session session(scenario);
   scenario::make_summary(scenario);
-  const auto sample = std::make_unique<Sample>();
-  for (int k = 0; k < kCycles; ++k) {
-    device.read(sample->sensors);
-    cycle.step(sample->sensors, sample->operator_input, sample->command, sample->record);
-    device.write(sample->command);
-    sample->operator_input.request =
-        runtime::next_request(sample->record, cycle.is_held(sample->sensors), false);
-  }
+  for (int k = 0; k < kCycles; ++k) session.advance();
 }
 
 void inspect(const config::Scenario& scenario) {

@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 EXAMPLES = pathlib.Path("examples/cpp").resolve()
+MOVED = re.compile(r"the handle has moved by 0\.[5-9][0-9] m in 2[0-9]{3} cycles")
 DOOR_OPEN = re.compile(r"hinge at 1\.[0-9]+ rad after 10\.6 s")
 
 
@@ -63,7 +64,7 @@ def main():
     found = configure(alone, f"-DCMAKE_PREFIX_PATH={prefix}", f"-DEigen3_DIR={eigen}",
                       "-DCMAKE_DISABLE_FIND_PACKAGE_pinocchio=ON", f"-DCMAKE_CXX_FLAGS={flags}")
     run("cmake", "--build", alone)
-    check(not (alone / "step_cycle").exists(), "step_cycle was built without Pinocchio")
+    check(not (alone / "first_feel").exists(), "first_feel was built without Pinocchio")
     check("pinocchio" not in (alone / "CMakeCache.txt").read_text().replace(
         "CMAKE_DISABLE_FIND_PACKAGE_pinocchio", ""), f"Pinocchio was looked for:\n{found}")
     if "avx2" in pathlib.Path("/proc/cpuinfo").read_text():
@@ -76,13 +77,27 @@ def main():
     configure(both, path)
     run("cmake", "--build", both)
     door = prefix / "share" / "hapticgiant" / "models" / "scenarios" / "door.yaml"
-    opened = run(both / "step_cycle", door)
-    check(DOOR_OPEN.fullmatch(opened.strip()), f"step_cycle: {opened}")
+    opened = run(both / "first_feel", door)
+    check(DOOR_OPEN.fullmatch(opened.strip()), f"first_feel: {opened}")
+
+    # a program for a real machine: nothing of the simulator, its person or its faults is in it
+    arm = prefix / "share" / "hapticgiant" / "models" / "examples" / "arm.urdf"
+    moved = run(both / "own_machine", arm)
+    check(MOVED.fullmatch(moved.strip()), f"own_machine: {moved}")
+    link = run("ninja", "-C", both, "-t", "commands", "own_machine").strip().splitlines()[-1]
+    linked = set(re.findall(r"libhg_([a-z_]+)[.]a", link))
+    check({"controller", "runtime"} <= linked, f"own_machine links {linked}")
+    others = linked & {"simulator", "config", "scenario", "analysis"}
+    check(not others, f"own_machine links {others}")
+    symbols = run("nm", "--demangle", both / "own_machine")
+    check("hg::runtime::Runtime::start" in symbols, "nm shows no names")
+    found = re.findall(r"\bhg::(?:simulator|person|faults|config|scenario)::[A-Za-z_]+", symbols)
+    check(not found, f"own_machine has {found[:3]}")
 
     # what shows Eigen's types is refused where they would have another layout
     if flags:
         configure(both, path, "-DCMAKE_CXX_FLAGS=-mavx2")
-        refused = run("cmake", "--build", both, "--target", "step_cycle", fails=True)
+        refused = run("cmake", "--build", both, "--target", "first_feel", fails=True)
         check("without AVX" in refused, f"AVX was not refused:\n{refused}")
 
     print("cpp package: installed, found, built with its own flags, run")

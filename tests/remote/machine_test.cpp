@@ -25,6 +25,7 @@
 #include "hg/core/error.h"
 #include "hg/device/udp/device_server.h"
 #include "hg/scenario/assembly.h"
+#include "hg/simulator/simulated_device.h"
 
 namespace hg {
 namespace {
@@ -33,7 +34,7 @@ namespace {
 // may not hold
 class Homed final : public device::Device {
  public:
-  Homed(simulator::SimulatedDevice device, double offset, double falling)
+  Homed(simulator::Simulation device, double offset, double falling)
       : device_(std::move(device)), offset_(offset), falling_(falling) {}
   void read(SensorFrame& sensors) noexcept override {
     device_.read(sensors);
@@ -56,7 +57,7 @@ class Homed final : public device::Device {
 class Machine {
  public:
   explicit Machine(const config::Scenario& scenario, bool is_simulated = false)
-      : world_(scenario::make_simulated_device(scenario)),
+      : world_(scenario::make_simulation(scenario)),
         server_({"127.0.0.1", "0"}, {.actual = apps::describe(scenario, true),
                                      .server = "test",
                                      .is_simulated = is_simulated,
@@ -78,7 +79,7 @@ class Machine {
 
  private:
   std::atomic<bool> stop_{false};
-  simulator::SimulatedDevice world_;
+  simulator::Simulation world_;
   udp::DeviceServer server_;
   std::thread thread_;
 };

@@ -16,46 +16,35 @@ class Leaning {
  public:
   Leaning() : Leaning(shipped("free_space")) {}
 
-  Sample& step(ModeRequest request) {
-    device_->read(sample_->sensors);
-    sample_->truth = *device_->truth();
-    sample_->operator_input.request = request;
-    sample_->operator_input.hand_target = target_;
-    cycle_.step(sample_->sensors, sample_->operator_input, sample_->command, sample_->record);
-    device_->write(sample_->command);
-    return *sample_;
+  const Sample& step(ModeRequest request) {
+    session_.request(request);
+    session_.input().hand_target = target_;
+    session_.advance();
+    return session_.sample();
   }
 
   // Tared, armed and held, with a hand that pushes with kPush.
   void prepare() {
-    while (step(runtime::next_request(sample_->record, false, false)).record.mode != Mode::kArmed) {
-    }
-    while (!sample_->sensors.dead_man) step(ModeRequest::kNone);
+    while (session_.record().mode != Mode::kArmed) session_.advance();
+    while (!sample().sensors.dead_man) step(ModeRequest::kNone);
     target_.active = true;
     Eigen::Vector3d offset(0.1, 0.0, 0.0);
     for (int attempt = 0; attempt < 3; ++attempt) {
-      target_.p_B = sample_->record.T_B_H.p + offset;
+      target_.p_B = sample().record.T_B_H.p + offset;
       for (int k = 0; k < 1000; ++k) step(ModeRequest::kNone);
       offset *= kPush / force();
     }
     ASSERT_NEAR(force(), kPush, 1.5);
   }
 
-  double force() const { return sample_->truth.w_H.head<3>().norm(); }
-  const Sample& sample() const { return *sample_; }
+  double force() const { return sample().truth.w_H.head<3>().norm(); }
+  const Sample& sample() const { return session_.sample(); }
 
  private:
   explicit Leaning(config::Scenario scenario)
-      : scenario_((scenario.person = person::PersonKind::kMouse, std::move(scenario))),
-        cycle_(scenario::make_cycle(scenario_)),
-        device_(std::make_unique<simulator::SimulatedDevice>(
-            scenario::make_simulated_device(scenario_))),
-        sample_(std::make_unique<Sample>()) {}
+      : session_((scenario.person = person::PersonKind::kMouse, scenario)) {}
 
-  config::Scenario scenario_;
-  controller::Cycle cycle_;
-  std::unique_ptr<simulator::SimulatedDevice> device_;
-  std::unique_ptr<Sample> sample_;
+  scenario::Session session_;
   HandTarget target_;
 };
 

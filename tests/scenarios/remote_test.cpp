@@ -59,7 +59,7 @@ class World {
                                      .server = "test",
                                      .lock_step_timeout_s = 60.0}),
         thread_([this] {
-          if (server_.wait_for_client(stop_)) server_.serve(device_, stop_);
+          if (server_.wait_for_client(stop_)) server_.serve(*device_, stop_);
         }) {}
   ~World() {
     stop_.store(true);  // the goodbye may be lost on the way
@@ -69,7 +69,7 @@ class World {
 
  private:
   std::atomic<bool> stop_{false};
-  simulator::SimulatedDevice device_;
+  std::unique_ptr<device::Device> device_;
   udp::DeviceServer server_;
   std::thread thread_;
 };

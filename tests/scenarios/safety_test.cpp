@@ -9,7 +9,8 @@
 
 #include "hg/config/scenario.h"
 #include "hg/controller/safety/rules.h"
-#include "hg/scenario/assembly.h"
+#include "hg/runtime/requests.h"
+#include "hg/scenario/session.h"
 
 namespace hg {
 namespace {
@@ -21,42 +22,30 @@ config::Scenario shipped_scenario(const std::string& name) {
 // An operator who tares, arms and runs, and a panel for the test's hands.
 struct Machine {
   config::Scenario scenario;
-  controller::Cycle cycle;
-  simulator::SimulatedDevice device;
-  SensorFrame sensors;
-  OperatorFrame input;
-  CommandFrame command;
-  CycleRecord record;
+  scenario::Session session;
+  OperatorFrame& input = session.input();
+  const SensorFrame& sensors = session.sample().sensors;
+  const CommandFrame& command = session.sample().command;
+  const CycleRecord& record = session.record();
   bool is_alone = false;  // runs autonomously instead of by hand
-  bool asks = true;       // for what comes next; false: `input.request` is the test's
+  bool asks = true;       // for what comes next; false: only the test asks
   double handle_speed = 0.0, gantry_speed = 0.0, last_lateness = 0.0;
   int sanitised = 0;
 
-  explicit Machine(config::Scenario s)
-      : scenario(std::move(s)),
-        cycle(scenario::make_cycle(scenario)),
-        device(scenario::make_simulated_device(scenario)) {}
+  explicit Machine(config::Scenario s) : scenario(std::move(s)), session(scenario) {}
   explicit Machine(const std::string& name) : Machine(shipped_scenario(name)) {}
 
   void step() {
-    device.read(sensors);
-    cycle.step(sensors, input, command, record);
-    device.write(command);
-    handle_speed = device.truth()->twist.head<3>().norm();
-    gantry_speed = device.truth()->dq_p.norm();
+    if (asks) session.request(next());
+    session.advance();
+    const Truth& truth = *session.device().truth();
+    handle_speed = truth.twist.head<3>().norm();
+    gantry_speed = truth.dq_p.norm();
     if (record.sanitised != 0) ++sanitised;
-    if (asks) input.request = next();
   }
   ModeRequest next() const {
-    if (record.mode == Mode::kReady && !record.is_tared) {
-      return record.tare == TareStatus::kUnderWay ? ModeRequest::kNone : ModeRequest::kTare;
-    }
-    if (record.mode == Mode::kReady) {
-      return record.is_latency_known ? ModeRequest::kArm : ModeRequest::kNone;
-    }
-    if (record.mode != Mode::kArmed) return ModeRequest::kNone;
-    if (is_alone) return ModeRequest::kAutonomous;
-    return cycle.is_held(sensors) ? ModeRequest::kRun : ModeRequest::kNone;
+    if (record.mode == Mode::kArmed && is_alone) return ModeRequest::kAutonomous;
+    return runtime::next_request(record, session.cycle().is_held(sensors), false);
   }
   // until `condition` holds; false when it does not within `seconds`
   template <typename Condition>
@@ -76,9 +65,8 @@ struct Machine {
   }
   void ask(ModeRequest request) {
     asks = false;
-    input.request = ModeRequest::kNone;
     step();
-    input.request = request;
+    session.request(request);
     step();
   }
   // of the safety controller
@@ -169,22 +157,27 @@ TEST(Safety, TheSafetyControllerTakesThePowerAwayWhateverTheProgramDoes) {
   ASSERT_TRUE(machine.run_until_fast(0.6));
   CommandFrame mad = machine.command;
   mad.panel.emergency_stop = true;
+  device::Device& device = machine.session.device();
+  SensorFrame sensors;
   for (int k = 0; k < 2500; ++k) {
-    machine.device.read(machine.sensors);
-    mad.sequence = machine.sensors.sequence;
-    machine.device.write(mad);
+    device.read(sensors);
+    mad.sequence = sensors.sequence;
+    device.write(mad);
   }
   EXPECT_TRUE(mad.enable);
-  EXPECT_LT(machine.device.truth()->dtheta_m.lpNorm<Eigen::Infinity>(), 1e-9);
-  EXPECT_LT(machine.device.truth()->dq_p.norm(), 1e-3);
+  EXPECT_LT(device.truth()->dtheta_m.lpNorm<Eigen::Infinity>(), 1e-9);
+  EXPECT_LT(device.truth()->dq_p.norm(), 1e-3);
 }
 
-// pushed by its twin's own force, with nobody there
-Machine pushed() {
+config::Scenario without_person() {
   config::Scenario s = shipped_scenario("free_space");
   s.person = person::PersonKind::kNone;
   s.script.script.grasp_s = kInfinity;  // nor does anybody close the dead-man switch
-  Machine machine(std::move(s));
+  return s;
+}
+
+// pushed by its twin's own force
+void run_alone(Machine& machine) {
   machine.is_alone = true;
   machine.input.panel.override_key = true;
   machine.run_until([&] { return machine.record.mode == Mode::kRunning; }, 5.0);
@@ -193,12 +186,11 @@ Machine pushed() {
   machine.step();
   machine.input.change = {Parameter::kReferenceWrench, 1, -15.0};
   machine.step();
-  machine.input.change = {};
-  return machine;
 }
 
 TEST(Safety, WithNobodyAtTheHandleItNeverMovesFasterThanTheSafeSpeed) {
-  Machine machine = pushed();
+  Machine machine(without_person());
+  run_alone(machine);
   double handle = 0.0, gantry = 0.0;
   machine.run_until(
       [&] {
@@ -214,7 +206,8 @@ TEST(Safety, WithNobodyAtTheHandleItNeverMovesFasterThanTheSafeSpeed) {
 }
 
 TEST(Safety, SomebodyInTheFieldStopsADeviceThatMovesAlone) {
-  Machine machine = pushed();
+  Machine machine(without_person());
+  run_alone(machine);
   machine.run(1.0);
   ASSERT_GT(machine.handle_speed, 0.1);
   machine.input.panel.person_in_field = true;
@@ -231,7 +224,8 @@ TEST(Safety, SomebodyInTheFieldStopsADeviceThatMovesAlone) {
 }
 
 TEST(Safety, TurningTheKeyBackHoldsADeviceThatMovesAlone) {
-  Machine machine = pushed();
+  Machine machine(without_person());
+  run_alone(machine);
   machine.run(1.0);
   machine.asks = false;
   machine.input.panel.override_key = false;

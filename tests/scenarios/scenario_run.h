@@ -14,8 +14,8 @@
 #include "hg/analysis/events.h"
 #include "hg/analysis/summary.h"
 #include "hg/core/allocation_counter.h"
-#include "hg/runtime/requests.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/session.h"
 
 namespace hg {
 
@@ -73,39 +73,31 @@ class ScenarioRun {
   explicit ScenarioRun(const std::string& name) : ScenarioRun(shipped(name)) {}
 
   explicit ScenarioRun(const config::Scenario& scenario)
-      : ScenarioRun(scenario, std::make_unique<simulator::SimulatedDevice>(
-                                  scenario::make_simulated_device(scenario))) {}
+      : ScenarioRun(scenario, scenario::make_simulated_device(scenario)) {}
 
   ScenarioRun(config::Scenario scenario, std::unique_ptr<device::Device> device)
       : scenario_(std::move(scenario)),
-        cycle_(scenario::make_cycle(scenario_)),
-        device_(std::move(device)),
+        session_(scenario_, std::move(device)),
         detector_(scenario_.events, scenario_.limits),
-        changes_(scenario_.changes),
         summary_(scenario::make_summary(scenario_)) {}
 
   /// Plays until the script has played, or `seconds` of it; `look` sees every sample.
   void play(const std::function<void(const Sample&)>& look = {}, double seconds = 1e9) {
-    auto sample = std::make_unique<Sample>();
+    const Sample& sample = session_.sample();
     const double end = std::min(seconds, scenario::planned_duration_s(scenario_));
     do {
-      device_->read(sample->sensors);
-      if (device_->truth() != nullptr) sample->truth = *device_->truth();
-      sample->operator_input.change =
-          changes_.due(static_cast<double>(played_++) / scenario_.device.rate_Hz);
+      session_.read();
       {
         const AllocationCounter counter;
-        cycle_.step(sample->sensors, sample->operator_input, sample->command, sample->record);
+        session_.step();
         quality_.allocations += counter.count();
       }
-      device_->write(sample->command);
-      sample->operator_input.request =
-          runtime::next_request(sample->record, cycle_.is_held(sample->sensors), false);
-      summary_.add(*sample);
-      if (const auto event = detector_.observe(sample->record)) summary_.add(*event);
-      if (sample->record.mode == Mode::kRunning) add_quality(sample->record);
-      if (look) look(*sample);
-    } while (sample->record.time_s < end && sample->record.mode != Mode::kFault);
+      session_.write();
+      summary_.add(sample);
+      if (const auto event = detector_.observe(sample.record)) summary_.add(*event);
+      if (sample.record.mode == Mode::kRunning) add_quality(sample.record);
+      if (look) look(sample);
+    } while (sample.record.time_s < end && !session_.is_over());
   }
 
   const config::Scenario& scenario() const { return scenario_; }
@@ -150,11 +142,8 @@ class ScenarioRun {
   }
 
   config::Scenario scenario_;
-  controller::Cycle cycle_;
-  std::unique_ptr<device::Device> device_;
+  scenario::Session session_;
   analysis::EventDetector detector_;
-  TimedChanges changes_;
-  std::uint64_t played_ = 0;  ///< cycles
   analysis::Summary summary_;
   Quality quality_;
   std::array<bool, kMaxLimits> is_acting_{};

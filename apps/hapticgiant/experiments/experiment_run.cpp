@@ -175,10 +175,11 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
   options.duration_s = arguments.duration_s.value_or(scenario::planned_duration_s(scenario));
   options.longest_stop_s = scenario::longest_stop_s(scenario);
   options.changes = scenario.changes;
+  options.load = faults::loads_of(scenario.faults);
   runtime::check(options);
   controller::Cycle cycle = scenario::make_cycle(scenario);
-  simulator::SimulatedDevice device = scenario::make_simulated_device(scenario);
-  runtime::Runtime runtime(options, cycle, device);
+  const auto device = scenario::make_simulated_device(scenario);
+  runtime::Runtime runtime(options, cycle, *device);
   Watcher watcher{result,
                   {scenario.events, scenario.limits},
                   scenario::make_summary(scenario),

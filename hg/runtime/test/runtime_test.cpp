@@ -12,80 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "hg/controller/rendering/test/test_models.h"
 #include "hg/core/allowed_to_wait.h"
 #include "hg/core/error.h"
 #include "hg/core/monotonic_clock.h"
 #include "hg/core/schedule.h"
+#include "hg/runtime/test/still_device.h"
 
 namespace hg::runtime {
 namespace {
-
-const VectorM kPosture = rendering::posture({0.3, 1.5, -0.6, 1.3, 0.2, 0.4});
-
-// Follows perfectly; the gantry stands still whatever it is told.
-class StillDevice : public device::Device {
- public:
-  StillDevice() {
-    sensors_.q_m = kPosture;
-    sensors_.dq_m = VectorM::Zero(6);
-    sensors_.q_p = VectorP::Zero(2);
-    sensors_.dead_man = true;
-  }
-  void read(SensorFrame& sensors) noexcept override {
-    sensors_.dq_m[0] = speed;
-    sensors = sensors_;
-  }
-  void write(const CommandFrame& command) noexcept override {
-    ++sensors_.sequence;
-    sensors_.time_s += 1e-3;
-    if (sensors_.sequence == lost_sample) ++sensors_.sequence;
-    sensors_.dead_man = !(sensors_.sequence >= opens_at && sensors_.sequence < closes_at);
-    if (sensors_.sequence == stalls_at) stall();
-    last_target = command.hand_target;
-    last_command = command;
-    was_enabled |= command.enable;
-  }
-
-  bool is_clock() const noexcept override { return keeps_time; }
-  // works hard: a device that slept would break the promise of write()
-  void stall() const noexcept {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(25);
-    while (std::chrono::steady_clock::now() < end) {
-    }
-  }
-
-  bool keeps_time = false;
-  std::uint64_t lost_sample = 0;
-  double speed = 0.0;                         ///< that is measured, whatever it is told
-  std::uint64_t stalls_at = 0;                ///< sample during which write() takes 25 ms
-  std::uint64_t opens_at = 0, closes_at = 0;  ///< samples with an open dead-man
-  CommandFrame last_command;
-  bool was_enabled = false;
-  HandTarget last_target;
-
- private:
-  SensorFrame sensors_;
-};
-
-struct Parts {
-  StillDevice device;
-  std::unique_ptr<controller::Cycle> cycle;
-
-  Parts() {
-    const rendering::DeviceModel model = rendering::unlimited_device();
-    rendering::TwinModel twin =
-        rendering::unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
-    twin.q_start =
-        rendering::floating_at(rendering::handle_pose(model, Eigen::Vector2d::Zero(), kPosture));
-    controller::Config config;
-    config.estimation.wrench.has_imu = false;
-    config.prepositioning.n_p = 2;
-    config.monitor.joint_range.assign(6, {-10.0, 10.0});
-    config.monitor.joint_speed_max.assign(6, 10.0);
-    cycle = std::make_unique<controller::Cycle>(config, model, twin);
-  }
-};
 
 Report run(Parts& parts, const Options& options, std::uint64_t& seen) {
   Runtime runtime(options, *parts.cycle, parts.device);

@@ -232,6 +232,24 @@ bool is_count(const Kind& kind) noexcept {
          kind.part == Part::kCycles || kind.part == Part::kSolver;
 }
 
+std::vector<TimedLoad> loads_of(const std::vector<Injection>& injections) {
+  std::vector<TimedLoad> loads;
+  for (const Injection& injection : injections) {
+    const Part part = injection.kind->part;
+    if (part != Part::kCycles && part != Part::kSolver) continue;
+    const auto count = static_cast<std::uint32_t>(injection.magnitude);
+    loads.push_back({.from_s = injection.from_s,
+                     .for_s = injection.for_s,
+                     .late_cycles = part == Part::kCycles ? count : 0,
+                     .most_active_sets = part == Part::kSolver ? count : 0});
+  }
+  return loads;
+}
+
+bool is_of_hardware(const Injection& injection) noexcept {
+  return injection.kind->part == Part::kBrake || injection.kind->part == Part::kSafetyChannel;
+}
+
 int parts_of(Part part, int n_m, int n_p) noexcept {
   switch (part) {
     case Part::kLinkEncoder:

@@ -5,8 +5,10 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "hg/core/interval.h"
+#include "hg/signals/timed_load.h"
 
 namespace hg::faults {
 
@@ -90,5 +92,12 @@ struct Injection {
   double from_s = 0.0;     ///< start on the device's clock since its first sample, s
   double for_s = 0.0;      ///< duration, s; 0 = until the end
 };
+
+/// The faults of the computer that runs the cycle (cycles_late, solver_hurried) as load of a run.
+/// All others are faults of the device: see FaultyDevice.
+std::vector<TimedLoad> loads_of(const std::vector<Injection>& injections);
+/// Whether a fault is inside the machine, where no frame shows it: a brake, or one channel of a
+/// safety input.
+bool is_of_hardware(const Injection& injection) noexcept;
 
 }  // namespace hg::faults

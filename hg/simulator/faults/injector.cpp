@@ -34,7 +34,7 @@ bool Injector::is_active(const Fault& fault) const noexcept {
   return since_s >= 0.0 && (injection.for_s == 0.0 || since_s < injection.for_s);
 }
 
-double Injector::spoilt(const Fault& fault, double value) const noexcept {
+double Injector::faulty_value(const Fault& fault, double value) const noexcept {
   const double magnitude = fault.injection.magnitude;
   switch (fault.injection.kind->effect) {
     case Effect::kNotFinite:
@@ -57,65 +57,62 @@ double Injector::spoilt(const Fault& fault, double value) const noexcept {
 }
 
 template <typename Vector>
-void Injector::spoil_component(Fault& fault, Vector& v) const noexcept {
+void Injector::inject_component(Fault& fault, Vector& v) const noexcept {
   const int index = fault.injection.index;
   if (index >= v.size()) return;  // this device has no such sensor
   if (!fault.has_begun) fault.held = v[index];
-  v[index] = spoilt(fault, v[index]);
+  v[index] = faulty_value(fault, v[index]);
 }
 
-void Injector::spoil(SensorFrame& sensors) noexcept {
+void Injector::inject(SensorFrame& sensors) noexcept {
   if (!has_started_) start_s_ = sensors.time_s;
   has_started_ = true;
   now_s_ = sensors.time_s - start_s_;
-  late_cycles_ = most_active_sets_ = 0;
   for (Fault& fault : faults_) {
     const Part part = fault.injection.kind->part;
     if (is_of_command(part) || !is_active(fault)) continue;
     if (!fault.has_begun) fault.sensors = sensors;
-    spoil_sensors(fault, sensors);
-    spoil_inputs(fault, sensors);
-    spoil_samples(fault, sensors);
-    spoil_computer(fault);
-    ++fault.periods;
+    inject_sensors(fault, sensors);
+    inject_inputs(fault, sensors);
+    inject_samples(fault, sensors);
     fault.has_begun = true;
   }
 }
 
-void Injector::spoil_sensors(Fault& fault, SensorFrame& sensors) noexcept {
+void Injector::inject_sensors(Fault& fault, SensorFrame& sensors) noexcept {
   switch (fault.injection.kind->part) {
     case Part::kLinkEncoder:
-      return spoil_component(fault, sensors.q_m);
+      return inject_component(fault, sensors.q_m);
     case Part::kLinkSpeed:
-      return spoil_component(fault, sensors.dq_m);
+      return inject_component(fault, sensors.dq_m);
     case Part::kMotorEncoder:
-      return spoil_component(fault, sensors.theta_m);
+      return inject_component(fault, sensors.theta_m);
     case Part::kJointEncoders:
-      spoil_component(fault, sensors.theta_m);
-      return spoil_component(fault, sensors.q_m);
+      inject_component(fault, sensors.theta_m);
+      return inject_component(fault, sensors.q_m);
     case Part::kTorqueSensor:
-      return spoil_component(fault, sensors.tau_m);
+      return inject_component(fault, sensors.tau_m);
     case Part::kGantryEncoder:
-      return spoil_component(fault, sensors.q_p);
+      return inject_component(fault, sensors.q_p);
     case Part::kGantryCoupling: {
       const int axis = fault.injection.index;
       if (axis < sensors.q_p.size()) sensors.q_p[axis] -= slip_of(fault.injection).way;
       return;
     }
     case Part::kForceSensor:
-      return spoil_component(fault, sensors.w_S);
+      return inject_component(fault, sensors.w_S);
     case Part::kAccelerometer:
-      return spoil_component(fault, sensors.a_S);
+      return inject_component(fault, sensors.a_S);
     case Part::kGyroscope:
-      return spoil_component(fault, sensors.omega_S);
+      return inject_component(fault, sensors.omega_S);
     case Part::kTemperature:
-      return spoil_component(fault, sensors.temperature_m);
+      return inject_component(fault, sensors.temperature_m);
     default:
       return;
   }
 }
 
-void Injector::spoil_inputs(const Fault& fault, SensorFrame& sensors) const noexcept {
+void Injector::inject_inputs(const Fault& fault, SensorFrame& sensors) const noexcept {
   switch (fault.injection.kind->part) {
     case Part::kDeadMan:
       sensors.dead_man = false;
@@ -140,7 +137,7 @@ void Injector::spoil_inputs(const Fault& fault, SensorFrame& sensors) const noex
   }
 }
 
-void Injector::spoil_samples(const Fault& fault, SensorFrame& sensors) const noexcept {
+void Injector::inject_samples(const Fault& fault, SensorFrame& sensors) const noexcept {
   switch (fault.injection.kind->part) {
     case Part::kClock: {
       const double since_s = sensors.time_s - fault.sensors.time_s;
@@ -164,20 +161,7 @@ void Injector::spoil_samples(const Fault& fault, SensorFrame& sensors) const noe
   }
 }
 
-// Cycles: a number of late cycles in a row; solver: a cap on active sets while the fault lasts.
-void Injector::spoil_computer(const Fault& fault) noexcept {
-  const auto count = static_cast<std::uint32_t>(fault.injection.magnitude);
-  const Part part = fault.injection.kind->part;
-  if (part == Part::kCycles && fault.periods < count) late_cycles_ = 1;
-  if (part == Part::kSolver) most_active_sets_ = count;
-}
-
-void Injector::spoil(OperatorFrame& input) const noexcept {
-  input.late_cycles += late_cycles_;
-  input.most_active_sets = most_active_sets_;
-}
-
-void Injector::spoil(CommandFrame& command) noexcept {
+void Injector::inject(CommandFrame& command) noexcept {
   if (!has_commanded_) past_.fill(command);
   has_commanded_ = true;
   newest_ = (newest_ + 1) % past_.size();
@@ -191,16 +175,16 @@ void Injector::spoil(CommandFrame& command) noexcept {
       command.dq_p[index] += slip_of(fault.injection).speed;
     }
     if (!is_of_command(part)) continue;
-    spoil_command(fault, command);
-    spoil_hardware(fault.injection);
+    inject_command(fault, command);
+    inject_hardware(fault.injection);
     fault.has_begun = true;
   }
 }
 
-void Injector::spoil_command(Fault& fault, CommandFrame& command) const noexcept {
+void Injector::inject_command(Fault& fault, CommandFrame& command) const noexcept {
   const Part part = fault.injection.kind->part;
-  if (part == Part::kMotor) spoil_component(fault, command.tau_m);
-  if (part == Part::kGantryDrive) spoil_component(fault, command.dq_p);
+  if (part == Part::kMotor) inject_component(fault, command.tau_m);
+  if (part == Part::kGantryDrive) inject_component(fault, command.dq_p);
   if (part == Part::kPower) command.enable = false;
   if (part == Part::kCommands) {
     const auto age = static_cast<std::size_t>(fault.injection.magnitude);
@@ -221,7 +205,7 @@ Injector::Slip Injector::slip_of(const Injection& injection) const noexcept {
   return {.speed = speed, .way = speed * (since_s - 0.5 * ramp_s)};
 }
 
-void Injector::spoil_hardware(const Injection& injection) noexcept {
+void Injector::inject_hardware(const Injection& injection) noexcept {
   const std::uint32_t bit = 1U << static_cast<unsigned>(injection.index);
   const bool is_raised = injection.kind->effect == Effect::kRaised;
   if (injection.kind->part == Part::kBrake) {

@@ -1,8 +1,8 @@
-/// Injects faults between a device and its controller. No allocation after construction.
+/// Applies injected faults to the frames between a device and its controller. No allocation after
+/// construction.
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "hg/signals/frames.h"
@@ -14,16 +14,15 @@ namespace hg::faults {
 class Injector {
  public:
   Injector() = default;
-  /// Throws SetupError for a command delay above kMostLate.
+  /// Faults of the computer are ignored: see loads_of(). Throws SetupError for a command delay
+  /// above kMostLate.
   explicit Injector(const std::vector<Injection>& injections);
 
-  /// Applies the faults to a sample. Once per period, before the spoil() for the command.
-  void spoil(SensorFrame& sensors) noexcept;
+  /// Applies the faults to a sample. Once per period, before the inject() for the command.
+  void inject(SensorFrame& sensors) noexcept;
   /// Applies the faults to a command.
-  void spoil(CommandFrame& command) noexcept;
-  /// Applies faults of the computer in the cycle of the last sample passed to spoil().
-  void spoil(OperatorFrame& input) const noexcept;
-  /// Faults of the hardware in the period of the last command passed to spoil().
+  void inject(CommandFrame& command) noexcept;
+  /// Faults of the hardware in the period of the last command passed to inject().
   const simulator::HardwareFaults& hardware() const noexcept { return hardware_; }
 
  private:
@@ -31,10 +30,9 @@ class Injector {
   struct Fault {
     Injection injection;
     bool has_begun = false;
-    std::uint32_t periods = 0;  ///< periods it has lasted
-    double held = 0.0;          ///< value of its component at its begin
-    SensorFrame sensors;        ///< sample at its begin
-    CommandFrame command;       ///< command at its begin
+    double held = 0.0;     ///< value of its component at its begin
+    SensorFrame sensors;   ///< sample at its begin
+    CommandFrame command;  ///< command at its begin
   };
 
   /// Present motion of an axis beyond that of its drive: m/s and m, or rad/s and rad.
@@ -43,23 +41,21 @@ class Injector {
   };
 
   bool is_active(const Fault& fault) const noexcept;
-  double spoilt(const Fault& fault, double value) const noexcept;
+  double faulty_value(const Fault& fault, double value) const noexcept;
   template <typename Vector>
-  void spoil_component(Fault& fault, Vector& v) const noexcept;
-  void spoil_sensors(Fault& fault, SensorFrame& sensors) noexcept;
-  void spoil_inputs(const Fault& fault, SensorFrame& sensors) const noexcept;
-  void spoil_samples(const Fault& fault, SensorFrame& sensors) const noexcept;
-  void spoil_computer(const Fault& fault) noexcept;
-  void spoil_command(Fault& fault, CommandFrame& command) const noexcept;
+  void inject_component(Fault& fault, Vector& v) const noexcept;
+  void inject_sensors(Fault& fault, SensorFrame& sensors) noexcept;
+  void inject_inputs(const Fault& fault, SensorFrame& sensors) const noexcept;
+  void inject_samples(const Fault& fault, SensorFrame& sensors) const noexcept;
+  void inject_command(Fault& fault, CommandFrame& command) const noexcept;
   Slip slip_of(const Injection& injection) const noexcept;
-  void spoil_hardware(const Injection& injection) noexcept;
+  void inject_hardware(const Injection& injection) noexcept;
 
   std::vector<Fault> faults_;
   std::array<CommandFrame, kMostLate + 1> past_;  ///< ring of commands, the newest at newest_
   std::size_t newest_ = 0;
   double start_s_ = 0.0, now_s_ = 0.0;
   bool has_started_ = false, has_commanded_ = false;
-  std::uint32_t late_cycles_ = 0, most_active_sets_ = 0;
   simulator::HardwareFaults hardware_;
 };
 

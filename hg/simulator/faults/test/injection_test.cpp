@@ -2,11 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
+#include "hg/simulator/faults/faulty_device.h"
 #include "hg/simulator/faults/injector.h"
 
 namespace hg::faults {
@@ -132,7 +136,7 @@ TEST(Injector, EverySensorFaultSpoilsItsPartAloneAndOnlyWhileItLasts) {
     for (int cycle = 0; cycle < 30; ++cycle) {
       const SensorFrame good = sensors_at(cycle);
       SensorFrame sensors = good;
-      injector.spoil(sensors);
+      injector.inject(sensors);
       const bool is_during = cycle >= 10 && cycle < 15;
       const std::set<std::string> spoilt = spoilt_parts(good, sensors, index);
       if (!is_during) {
@@ -152,7 +156,7 @@ std::vector<double> link_values(const char* name, double magnitude) {
   std::vector<double> values;
   for (int cycle = 0; cycle < 13; ++cycle) {
     SensorFrame sensors = sensors_at(cycle);
-    injector.spoil(sensors);
+    injector.inject(sensors);
     if (cycle >= 10) values.push_back(sensors.q_m[0]);
   }
   return values;
@@ -175,9 +179,9 @@ std::vector<CommandFrame> arrivals(const char* name, double magnitude) {
   std::vector<CommandFrame> arrived;
   for (int cycle = 0; cycle < 13; ++cycle) {
     SensorFrame sensors = sensors_at(cycle);
-    injector.spoil(sensors);
+    injector.inject(sensors);
     CommandFrame command = command_at(cycle);
-    injector.spoil(command);
+    injector.inject(command);
     if (cycle >= 10) arrived.push_back(command);
   }
   return arrived;
@@ -196,37 +200,66 @@ TEST(Injector, CommandsAreSpoiltOnTheirWay) {
   EXPECT_EQ(arrivals("commands_late", 3.0)[2].sequence, 9U);
 }
 
-TEST(Injector, SamplesAreLostRepeatedAndLate) {
+TEST(Injector, SamplesAreLostAndRepeated) {
   Injector lost({{.kind = find_kind("samples_lost"), .magnitude = 4.0, .from_s = kFrom_s}});
   Injector repeated({{.kind = find_kind("samples_repeated"), .from_s = kFrom_s}});
-  Injector late({{.kind = find_kind("cycles_late"), .magnitude = 2.0, .from_s = kFrom_s}});
-  OperatorFrame input;
   for (int cycle = 0; cycle < 20; ++cycle) {
-    SensorFrame one = sensors_at(cycle), two = one, three = one;
-    lost.spoil(one);
-    repeated.spoil(two);
-    late.spoil(three);
+    SensorFrame one = sensors_at(cycle), two = one;
+    lost.inject(one);
+    repeated.inject(two);
     const auto sequence = static_cast<std::uint64_t>(cycle);
     EXPECT_EQ(one.sequence, sequence + (cycle < 10 ? 0U : 4U));
     EXPECT_EQ(two.sequence, cycle < 10 ? sequence : 10U);
-    EXPECT_EQ(three.sequence, sequence);
-    late.spoil(input);
   }
-  EXPECT_EQ(input.late_cycles, 2U);
 }
 
-TEST(Injector, TheSolverHasFewActiveSetsWhileItLasts) {
-  Injector injector({{.kind = find_kind("solver_hurried"),
-                      .magnitude = 2.0,
-                      .from_s = kFrom_s,
-                      .for_s = kFor_s}});
+TEST(Loads, CyclesAreLateInARowAndTheSolverHasFewActiveSetsWhileTheFaultLasts) {
+  constexpr double kBefore_s = kFrom_s - 0.5 * kDt;  // half a period: no rounding decides
+  TimedLoads loads(
+      loads_of({{.kind = find_kind("link_encoder_nan"), .from_s = kFrom_s},
+                {.kind = find_kind("cycles_late"), .magnitude = 2.0, .from_s = kBefore_s},
+                {.kind = find_kind("solver_hurried"),
+                 .magnitude = 2.0,
+                 .from_s = kBefore_s,
+                 .for_s = kFor_s}}));
   for (int cycle = 0; cycle < 20; ++cycle) {
-    SensorFrame sensors = sensors_at(cycle);
-    OperatorFrame input;
-    injector.spoil(sensors);
-    injector.spoil(input);
-    EXPECT_EQ(input.most_active_sets, cycle >= 10 && cycle < 15 ? 2U : 0U) << cycle;
+    const double time_s = kDt * cycle;
+    EXPECT_EQ(loads.late_cycles(time_s), cycle == 10 || cycle == 11 ? 1U : 0U) << cycle;
+    EXPECT_EQ(loads.most_active_sets(time_s), cycle >= 10 && cycle < 15 ? 2U : 0U) << cycle;
   }
+}
+
+// Shows always the same sample, and keeps the last command.
+class StillDevice final : public device::Device {
+ public:
+  void read(SensorFrame& sensors) noexcept override { sensors = sensors_at(3); }
+  void write(const CommandFrame& command) noexcept override { arrived = command; }
+  bool is_clock() const noexcept override { return true; }
+
+  CommandFrame arrived;
+};
+
+TEST(FaultyDevice, InjectsIntoSamplesAndCommandsOfAnyDevice) {
+  auto inner = std::make_unique<StillDevice>();
+  StillDevice& still = *inner;
+  FaultyDevice device(std::unique_ptr<device::Device>(std::move(inner)),
+                      {{.kind = find_kind("link_encoder_zero"), .index = 2},
+                       {.kind = find_kind("motor_dead"), .index = 1}});
+  SensorFrame sensors;
+  device.read(sensors);
+  EXPECT_EQ(sensors.q_m[2], 0.0);
+  EXPECT_EQ(sensors.q_m[3], 4.0);
+  device.write(command_at(3));
+  EXPECT_EQ(still.arrived.tau_m[1], 0.0);
+  EXPECT_EQ(still.arrived.tau_m[2], 4.0);
+  EXPECT_TRUE(device.is_clock());
+  EXPECT_EQ(device.truth(), nullptr);
+}
+
+TEST(FaultyDevice, RefusesAFaultOfTheHardwareWhereTheMachineIsNotSimulated) {
+  EXPECT_THROW(FaultyDevice(std::unique_ptr<device::Device>(std::make_unique<StillDevice>()),
+                            {{.kind = find_kind("brake_weak"), .index = 1}}),
+               SetupError);
 }
 
 TEST(Injector, BrakesAndChannelsHaveABitEachWhileItLasts) {
@@ -239,8 +272,8 @@ TEST(Injector, BrakesAndChannelsHaveABitEachWhileItLasts) {
   for (int cycle = 0; cycle < 20; ++cycle) {
     SensorFrame sensors = sensors_at(cycle);
     CommandFrame command = command_at(cycle);
-    injector.spoil(sensors);
-    injector.spoil(command);
+    injector.inject(sensors);
+    injector.inject(command);
     const bool is_during = cycle >= 10 && cycle < 15;
     EXPECT_EQ(injector.hardware().closed_brakes, is_during ? 0b100001U : 0U) << cycle;
     EXPECT_EQ(injector.hardware().weak_brakes, is_during ? 0b10U : 0U) << cycle;
@@ -260,8 +293,8 @@ TEST(Injector, RefusesCommandsThatAreTooLateAndAllocatesNothing) {
   for (int cycle = 0; cycle < 30; ++cycle) {
     SensorFrame sensors = sensors_at(cycle);
     CommandFrame command = command_at(cycle);
-    injector.spoil(sensors);
-    injector.spoil(command);
+    injector.inject(sensors);
+    injector.inject(command);
   }
   EXPECT_EQ(allocations.count(), 0U);
 }

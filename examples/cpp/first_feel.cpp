@@ -1,0 +1,12 @@
+// The door, opened by its scripted hand. Argument: the file of its scenario.
+#include <cstdio>
+
+#include "hg/scenario/session.h"
+
+int main(int count, char** arguments) {
+  if (count != 2) return 2;
+  hg::scenario::Session door(hg::config::load_scenario(arguments[1]));
+  while (door.advance()) {
+  }
+  std::printf("hinge at %.2f rad after %.1f s\n", door.record().twin.q_a[0], door.record().time_s);
+}

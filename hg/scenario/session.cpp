@@ -1,0 +1,26 @@
+#include "hg/scenario/session.h"
+
+#include <utility>
+
+#include "hg/scenario/assembly.h"
+
+namespace hg::scenario {
+namespace {
+
+runtime::SessionPlan plan_of(const config::Scenario& scenario) {
+  return {.rate_Hz = scenario.device.rate_Hz,
+          .duration_s = planned_duration_s(scenario),
+          .changes = scenario.changes,
+          .load = faults::loads_of(scenario.faults)};
+}
+
+}  // namespace
+
+Session::Session(const config::Scenario& scenario)
+    : Session(scenario, make_simulated_device(scenario)) {}
+
+Session::Session(const config::Scenario& scenario, std::unique_ptr<device::Device> device)
+    : SessionParts{make_cycle(scenario), std::move(device)},
+      runtime::Session(own_cycle, *own_device, plan_of(scenario)) {}
+
+}  // namespace hg::scenario

@@ -1,0 +1,36 @@
+/// A scenario as a session: its cycle, its simulated device, and an operator who arms and runs it.
+///
+///     scenario::Session door(config::load_scenario(file));
+///     while (door.advance()) look(door.record());
+///
+/// Deterministic: cycle k is the same in every session of the same scenario.
+#pragma once
+
+#include <memory>
+
+#include "hg/config/scenario.h"
+#include "hg/controller/cycle.h"
+#include "hg/device/device.h"
+#include "hg/runtime/session.h"
+
+namespace hg::scenario {
+
+/// What a session of a scenario owns, made before it.
+struct SessionParts {
+  controller::Cycle own_cycle;
+  std::unique_ptr<device::Device> own_device;
+};
+
+/// Session of a scenario, until its planned end. One session serves one thread.
+class Session final : private SessionParts, public runtime::Session {
+ public:
+  /// On the simulated device of the scenario. Throws SetupError.
+  explicit Session(const config::Scenario& scenario);
+  /// On another device with the same joints. Throws SetupError.
+  Session(const config::Scenario& scenario, std::unique_ptr<device::Device> device);
+
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+};
+
+}  // namespace hg::scenario
