@@ -1,5 +1,5 @@
-/// Elimination of one variable per row (Gauss): the task of Elimination without reflections, in an
-/// eighth of the time, where rounding leaves no doubt about ranks.
+/// HouseholderQr of one variable per row (Gauss): the task of HouseholderQr without reflections, in
+/// an eighth of the time, where rounding leaves no doubt about ranks.
 ///
 /// Row c_t becomes pivot t: R_t = c_t - sum over s < t of L_ts R_s meets only variables that the
 /// pivots before it have not taken. Rows of single variables stay unchanged; to keep it so,
@@ -14,16 +14,16 @@
 #include <span>
 #include <vector>
 
-#include "hg/hqp/elimination.h"
 #include "hg/hqp/problem.h"
+#include "hg/hqp/solver/householder_qr.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 
-class DirectElimination {
+class GaussElimination {
  public:
   enum class Outcome : std::uint8_t { kIndependent, kDependent, kUnsure };
 
-  DirectElimination(int max_variables, int max_rows);
+  GaussElimination(int max_variables, int max_rows);
 
   /// Forgets all pivots; gets ready for `problem`.
   void reset(const Problem& problem) noexcept;
@@ -93,7 +93,7 @@ class DirectElimination {
     }
   };
   /// A row put aside, reduced by the first `depth` pivots.
-  struct WeakRow {
+  struct DeferredRow {
     int row;
     double norm;
     int slot;  ///< index of y and its factors, stride_ apart
@@ -101,7 +101,6 @@ class DirectElimination {
     Rest rest;
   };
 
-  static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
   double* reduced_row(int t) noexcept { return R_.data() + t * stride_; }
   const double* reduced_row(int t) const noexcept { return R_.data() + t * stride_; }
   double* factors(int t) noexcept { return L_.data() + t * stride_; }
@@ -111,13 +110,13 @@ class DirectElimination {
   void reduce(const Problem& problem, TargetRow row) noexcept;
   void reduce_unit(int variable, double target) noexcept;
   void choose_variable() noexcept;
-  Outcome judge(double norm, double tolerance) noexcept;
-  Outcome judge_closely(double norm, double tolerance) noexcept;
+  Outcome decide_rank(double norm, double tolerance) noexcept;
+  Outcome decide_rank_closely(double norm, double tolerance) noexcept;
   void append(int row) noexcept;
   void keep_dependent(double weight, double smallest, int first) noexcept;
   double weight_of_pivot(const Problem& problem, int t) const noexcept;
-  void put_aside(int row, double norm) noexcept;
-  bool add_weak_rows(const Problem& problem, int first, double tolerance) noexcept;
+  void defer(int row, double norm) noexcept;
+  bool add_deferred_rows(const Problem& problem, int first, double tolerance) noexcept;
   void solve_level(const Problem& problem, int first) noexcept;
   bool solve_for_residuals(const Problem& problem, int first) noexcept;
   void solve_by_reflections(const Problem& problem, int first) noexcept;
@@ -140,9 +139,9 @@ class DirectElimination {
   double largest_ = 0.0;  ///< largest |y_i|
   Rest rest_;
 
-  std::vector<WeakRow> weak_;
-  Eigen::VectorXd weak_rows_;
-  Eigen::VectorXd weak_factors_;
+  std::vector<DeferredRow> deferred_;
+  Eigen::VectorXd deferred_rows_;
+  Eigen::VectorXd deferred_factors_;
 
   // least squares of a level: its dependent rows D, as combinations of its pivots, the residuals of
   // their targets, and the change of the pivots' values
@@ -158,4 +157,4 @@ class DirectElimination {
   Eigen::VectorXd scratch_;
 };
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -1,4 +1,4 @@
-#include "hg/hqp/primal.h"
+#include "hg/hqp/solver/level_by_level.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "hg/hqp/test/certificate.h"
 #include "hg/hqp/test/random_problem.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
 struct NamedKind {
@@ -23,20 +23,21 @@ void PrintTo(const NamedKind& kind, std::ostream* out) { *out << kind.name; }
 // Solver::solve() hardly ever comes to this method: here it solves everything.
 class LevelByLevel : public testing::TestWithParam<NamedKind> {
  protected:
-  PrimalOutcome solve(const Problem& problem) {
+  LevelOutcome solve(const Problem& problem) {
     iterations_ = 0;
-    const PrimalOutcome outcome =
+    const LevelOutcome outcome =
         solve_level_by_level(problem, options_, problem.levels(), iterations_, completed_, work_);
     solution_.status =
-        outcome == PrimalOutcome::kOptimal ? Status::kSolved : Status::kIterationLimit;
+        outcome == LevelOutcome::kOptimal ? Status::kSolved : Status::kIterationLimit;
     solution_.iterations = iterations_;
     solution_.completed_levels = completed_;
-    solution_.levels.resize(at(problem.levels()));
-    solution_.x.assign(work_.point.x.data(), work_.point.x.data() + problem.variables());
-    solution_.state.assign(work_.point.state.begin(), work_.point.state.begin() + problem.rows());
+    solution_.levels.resize(index(problem.levels()));
+    solution_.x.assign(work_.iterate.x.data(), work_.iterate.x.data() + problem.variables());
+    solution_.state.assign(work_.iterate.state.begin(),
+                           work_.iterate.state.begin() + problem.rows());
     solution_.slack.clear();
     for (int row = 0; row < problem.rows(); ++row) {
-      solution_.slack.push_back(-excess(problem.bounds(row), work_.value[at(row)]));
+      solution_.slack.push_back(-excess(problem.bounds(row), work_.iterate.value[index(row)]));
     }
     return outcome;
   }
@@ -53,7 +54,7 @@ TEST_P(LevelByLevel, SolvesRandomProblems) {
   for (std::uint32_t seed = 0; seed < GetParam().problems; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Problem problem = random_problem(seed, GetParam().kind);
-    ASSERT_EQ(solve(problem), PrimalOutcome::kOptimal);
+    ASSERT_EQ(solve(problem), LevelOutcome::kOptimal);
     ASSERT_EQ(fault_of(problem, options_, solution_), "");
     most = std::max(most, iterations_);
   }
@@ -83,4 +84,4 @@ INSTANTIATE_TEST_SUITE_P(, LevelByLevel,
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 }  // namespace
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -1,6 +1,6 @@
 // The dual method by what it is for: contradictions over several levels are found in few active
 // sets. Its guesses are judged as part of the solver, whose results the certificate proves.
-#include "hg/hqp/dual.h"
+#include "hg/hqp/solver/dual_method.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "hg/hqp/test/certificate.h"
 #include "hg/hqp/test/random_problem.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
 using Row = std::vector<double>;
@@ -32,7 +32,7 @@ Problem contradictory_problem(const Contradiction& kind, std::uint32_t seed) {
   std::normal_distribution<double> number;
   const int n = kind.variables;
   const auto random_row = [&] {
-    Row row(static_cast<std::size_t>(n));
+    Row row(index(n));
     for (double& c : row) c = number(random);
     return row;
   };
@@ -44,7 +44,7 @@ Problem contradictory_problem(const Contradiction& kind, std::uint32_t seed) {
     for (int copy = 0; copy <= (kind.is_duplicate ? 1 : 0); ++copy) problem.add_row(row, bounds);
   };
   // rows of the last of these levels are sums of rows above, and want what these forbid
-  std::vector<Row> sums(static_cast<std::size_t>(kind.count), Row(static_cast<std::size_t>(n)));
+  std::vector<Row> sums(index(kind.count), Row(index(n)));
   for (int level = 0; level + 1 < kind.depth; ++level) {
     problem.add_level();
     for (Row& sum : sums) {
@@ -81,7 +81,7 @@ Effort solve_all(const Contradiction& kind, int seeds) {
     ActiveSet active;
     EXPECT_EQ(solver.solve(problem, {}, active, solution), Status::kSolved);
     EXPECT_EQ(fault_of(problem, {}, solution), "");
-    EXPECT_GT(solution.levels[static_cast<std::size_t>(kind.depth)].slack_squared, 0.1);
+    EXPECT_GT(solution.levels[index(kind.depth)].slack_squared, 0.1);
     effort.most = std::max(effort.most, solution.iterations);
     effort.sum += solution.iterations;
 
@@ -178,4 +178,4 @@ TEST(DualMethod, LeavesDegenerateCorners) {
 }
 
 }  // namespace
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -1,11 +1,11 @@
-#include "hg/hqp/explanation.h"
+#include "hg/hqp/printing.h"
 
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
 #include <string_view>
 
-#include "hg/hqp/rows.h"
+#include "hg/hqp/solver/rows.h"
 
 namespace hg::hqp {
 namespace {
@@ -75,13 +75,13 @@ std::string head_text(const Problem& problem, const Solution& solution) {
 }
 
 std::string level_line(const Problem& problem, const Solution& solution, int level) {
-  const LevelResult& result = solution.levels[at(level)];
+  const LevelResult& result = solution.levels[index(level)];
   int rows = 0, met = 0, held = 0, violated = 0;
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-    const RowState state = solution.state[at(row)];
+    const RowState state = solution.state[index(row)];
     ++rows;
     met += state == RowState::kEqual;
-    held += is_held(state);
+    held += is_at_bound(state);
     violated += is_violated(state);
   }
   std::string text = padded(std::to_string(level), 5) + padded(std::to_string(rows), 6);
@@ -97,10 +97,10 @@ std::string level_line(const Problem& problem, const Solution& solution, int lev
 }
 
 std::string row_line(const Problem& problem, const Solution& solution, int row) {
-  const double slack = solution.slack[at(row)];
-  std::string text = joined({to_string(problem, row), ": ", to_string(solution.state[at(row)])});
-  if (is_violated(solution.state[at(row)])) text += joined({" by ", number(std::abs(slack))});
-  return text + joined({", value ", number(dot(problem, row, solution.x.data())), "\n"});
+  const double slack = solution.slack[index(row)];
+  std::string text = joined({to_string(problem, row), ": ", to_string(solution.state[index(row)])});
+  if (is_violated(solution.state[index(row)])) text += joined({" by ", number(std::abs(slack))});
+  return text + joined({", value ", number(solver::dot(problem, row, solution.x.data())), "\n"});
 }
 
 }  // namespace
@@ -144,8 +144,8 @@ std::string to_string(const Problem& problem, const Solution& solution) {
     text += level_line(problem, solution, level);
   }
   for (int row = 0; row < problem.rows(); ++row) {
-    const RowState state = solution.state[at(row)];
-    if (is_held(state) || is_violated(state)) text += row_line(problem, solution, row);
+    const RowState state = solution.state[index(row)];
+    if (is_at_bound(state) || is_violated(state)) text += row_line(problem, solution, row);
   }
   return text;
 }
@@ -155,7 +155,7 @@ std::string to_string(const Problem& problem, int level, std::span<const double>
   std::string text = joined({"multipliers of level ", std::to_string(level),
                              "; of the gradient they leave ", number(remainder), "\n"});
   for (int row = 0; row < problem.rows(); ++row) {
-    const double mu = multipliers[at(row)];
+    const double mu = multipliers[index(row)];
     if (mu != 0.0) text += joined({padded(number(mu), 13), "  ", to_string(problem, row), "\n"});
   }
   return text;

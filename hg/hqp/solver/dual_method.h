@@ -1,6 +1,6 @@
 /// A guess of the active set by a dual method: cheap changes instead of eliminations.
 ///
-/// Equalities are eliminated (DirectElimination) as far as they leave freedom and do not contradict
+/// Equalities are eliminated (GaussElimination) as far as they leave freedom and do not contradict
 /// each other. The first level s whose targets cannot all be met is a strictly convex quadratic
 /// program in the remaining variables: least squares of its rows, inequalities of the levels above
 /// as constraints, its own ones with a slack. D. Goldfarb, A. Idnani, A numerically stable dual
@@ -8,8 +8,8 @@
 /// the minimum without inequalities, the most violated row becomes active, and rows whose
 /// multiplier changes sign are released; the orthogonal factors of the active rows are updated.
 /// Rows above that contradict each other make the lowest level among them the new s. When level s
-/// is settled, its result becomes equalities, and so do the rows that push against it. Nothing here
-/// is proof: rounding and thresholds decide what is active. The result is a guess.
+/// is settled, its result becomes equalities, and so do the rows with positive multipliers. Nothing
+/// here is proof: rounding and thresholds decide what is active. The result is a guess.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,11 +17,11 @@
 #include <span>
 #include <vector>
 
-#include "hg/hqp/direct_elimination.h"
 #include "hg/hqp/problem.h"
 #include "hg/hqp/solution.h"
+#include "hg/hqp/solver/gauss_elimination.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 
 class DualMethod {
  public:
@@ -29,15 +29,17 @@ class DualMethod {
 
   /// Writes the active rows of the first `levels` levels into `guess`. `direct` holds the
   /// equalities of the first `top` levels, which have no other rows; on return it has other pivots
-  /// behind these. `hint`, per level: whether violated inequalities are expected there; such levels
-  /// are settled one by one at once. False if given up: `guess` is not written.
+  /// behind these. `expected_violated`, per level: whether violated inequalities are expected
+  /// there; such levels are settled one by one at once. False if given up: `guess` is not written.
   bool find_guess(const Problem& problem, const Options& options, int levels, int top,
-                  std::span<const std::uint8_t> hint, DirectElimination& direct,
+                  std::span<const std::uint8_t> expected_violated, GaussElimination& direct,
                   std::vector<RowState>& guess) noexcept;
   /// Point of the guess, all variables.
   const Eigen::VectorXd& point() const noexcept { return x_; }
-  /// Whether the row is held because a level surely pushes against it, by however little.
-  bool is_pushing(int row) const noexcept { return is_pushing_[index(row)]; }
+  /// Whether the row is active because its multiplier for some level is surely positive.
+  bool has_positive_multiplier(int row) const noexcept {
+    return has_positive_multiplier_[index(row)];
+  }
 
  private:
   enum class Outcome : std::uint8_t { kOptimal, kContradiction, kGivenUp };
@@ -46,10 +48,10 @@ class DualMethod {
   /// An inequality of the program.
   struct Candidate {
     int row;
-    bool is_soft;    ///< row of level s: has a slack
-    bool is_barred;  ///< active, or excluded
-    int slot;        ///< index of its row in candidate_rows_, kNoSlot: not there yet
-    double length;   ///< norm of that row, with its slack
+    bool is_soft;      ///< row of level s: has a slack
+    bool is_excluded;  ///< active, or excluded
+    int slot;          ///< index of its row in candidate_rows_, kNoSlot: not there yet
+    double length;     ///< norm of that row, with its slack
   };
   /// An active row, in the direction in which it is violated.
   struct Active {
@@ -59,42 +61,41 @@ class DualMethod {
     int slot;  ///< index of its slack, kNoSlot: none
   };
 
-  static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
   double* candidate_row(int i) noexcept {
     return candidate_rows_.data() + candidates_[index(i)].slot * stride_;
   }
   double* q(int j) noexcept { return Q_.data() + j * q_stride_; }
   double* r(int j) noexcept { return R_.data() + j * max_active_; }
 
-  int hinted_level() const noexcept;
-  bool choose_level(DirectElimination& direct) noexcept;
+  int expected_level() const noexcept;
+  bool choose_level(GaussElimination& direct) noexcept;
   void collect_candidates() noexcept;
-  void reduce(int candidate, DirectElimination& direct) noexcept;
-  bool set_up_metric(DirectElimination& direct) noexcept;
+  void reduce(int candidate, GaussElimination& direct) noexcept;
+  bool set_up_metric(GaussElimination& direct) noexcept;
   void collect_targets() noexcept;
-  int collect_objective(DirectElimination& direct, bool is_regular) noexcept;
+  int collect_objective(GaussElimination& direct, bool is_regular) noexcept;
   int most_violated() const noexcept;
-  Outcome run(DirectElimination& direct) noexcept;
+  Outcome run(GaussElimination& direct) noexcept;
   double project(const Active& entering) noexcept;
   void append(const Active& entering, double z_squared) noexcept;
   void remove(int j) noexcept;
-  int level_of_contradiction(DirectElimination& direct) noexcept;
-  void find_point(DirectElimination& direct) noexcept;
-  void freeze(DirectElimination& direct) noexcept;
+  int level_of_contradiction(GaussElimination& direct) noexcept;
+  void find_point(GaussElimination& direct) noexcept;
+  void fix_level(GaussElimination& direct) noexcept;
   void write(std::vector<RowState>& guess) const noexcept;
 
   // data of the solve
   const Problem* problem_ = nullptr;
   const Options* options_ = nullptr;
   int levels_ = 0;
-  std::span<const std::uint8_t> hint_;
+  std::span<const std::uint8_t> expected_violated_;
   int first_ = 0;  ///< levels above are settled
   int level_ = 0;  ///< s; problem.levels(): the smallest |x|
   int last_ = 0;   ///< the largest level that s may be
   int changes_ = 0;
   int max_changes_ = 0;
   std::vector<int> rank_at_level_;
-  std::vector<std::uint8_t> is_pushing_;  ///< per row
+  std::vector<std::uint8_t> has_positive_multiplier_;  ///< per row
   /// Per row: +1, -1: permanently active at its upper, lower bound
   std::vector<std::int8_t> side_;
 
@@ -133,4 +134,4 @@ class DualMethod {
   std::vector<TargetRow> targets_;
 };
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -1,12 +1,12 @@
-#include "hg/hqp/direct_elimination.h"
+#include "hg/hqp/solver/gauss_elimination.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hg/hqp/dense_least_squares.h"
-#include "hg/hqp/rows.h"
+#include "hg/hqp/solver/dense_least_squares.h"
+#include "hg/hqp/solver/rows.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
 // Ratio of a row's remainder, relative to its norm, to the tolerance: the decision is clear when
@@ -15,7 +15,7 @@ constexpr double kClear = 1e3;
 // Growth of the terms of y over its row from which rounding shows.
 constexpr double kLargestGrowth = 1e6;
 // Rows of a level with a smaller remaining share yield to the others of the level.
-constexpr double kWeak = 1e-2;
+constexpr double kSmallRemainder = 1e-2;
 // Weight of a row's coefficients in the choice of its variable, for variables eliminated last.
 constexpr double kTakenLast = 1e-2;
 constexpr double kRoundOff = 1e-14;  // a value below this share of its terms counts as zero
@@ -58,14 +58,14 @@ int find_size(int n, const double* y, double size) noexcept {
 
 }  // namespace
 
-DirectElimination::DirectElimination(int max_variables, int max_rows)
+GaussElimination::GaussElimination(int max_variables, int max_rows)
     : pivots_(index(max_variables)),
       pivot_of_variable_(index(max_variables)),
       preference_(padded(max_variables)),
       R_((max_variables + 1) * padded(max_variables)),
       L_((max_variables + 1) * padded(max_variables)),
-      weak_rows_(max_rows * padded(max_variables)),
-      weak_factors_(max_rows * padded(max_variables)),
+      deferred_rows_(max_rows * padded(max_variables)),
+      deferred_factors_(max_rows * padded(max_variables)),
       dependent_rows_(max_variables * std::max(max_variables, max_rows)),
       dependent_rest_(std::max(max_variables, max_rows)),
       dependent_weight_(std::max(max_variables, max_rows)),
@@ -74,10 +74,10 @@ DirectElimination::DirectElimination(int max_variables, int max_rows)
       change_(max_variables),
       order_(max_variables + max_rows),
       scratch_(padded(max_variables)) {
-  weak_.reserve(index(max_rows));
+  deferred_.reserve(index(max_rows));
 }
 
-void DirectElimination::reset(const Problem& problem) noexcept {
+void GaussElimination::reset(const Problem& problem) noexcept {
   n_ = problem.variables();
   stride_ = padded(n_);
   rank_ = 0;
@@ -93,18 +93,18 @@ void DirectElimination::reset(const Problem& problem) noexcept {
   }
 }
 
-void DirectElimination::truncate(int rank) noexcept {
+void GaussElimination::truncate(int rank) noexcept {
   while (rank_ > rank) pivot_of_variable_[index(pivots_[index(--rank_)].variable)] = -1;
 }
 
-void DirectElimination::load(const double* c, double* y) const noexcept {
+void GaussElimination::load(const double* c, double* y) const noexcept {
   std::copy_n(c, n_, y);
   std::fill(y + n_, y + stride_, 0.0);
 }
 
 // y -= factors R for the pivots from `first` up to `end`; `rest` follows.
-void DirectElimination::subtract_pivots(int first, int end, double* y, double* factors,
-                                        Rest& rest) const noexcept {
+void GaussElimination::subtract_pivots(int first, int end, double* y, double* factors,
+                                       Rest& rest) const noexcept {
   for (int s = first; s < end; ++s) {
     const Pivot& pivot = pivots_[index(s)];
     const double factor = y[pivot.variable] * pivot.inverse;
@@ -118,7 +118,7 @@ void DirectElimination::subtract_pivots(int first, int end, double* y, double* f
 
 // A row of a single variable is left alone when the variable is free, and vanishes when another
 // such row has taken it.
-void DirectElimination::reduce_unit(int variable, double target) noexcept {
+void GaussElimination::reduce_unit(int variable, double target) noexcept {
   rest_ = {.value = target, .value_scale = std::abs(target)};
   variable_ = variable;
   const int t = pivot_of_variable_[index(variable)];
@@ -142,7 +142,7 @@ void DirectElimination::reduce_unit(int variable, double target) noexcept {
   }
 }
 
-void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
+void GaussElimination::reduce(const Problem& problem, TargetRow row) noexcept {
   const int variable = problem.variable(row.row);
   if (variable >= 0) {
     reduce_unit(variable, row.target);
@@ -157,7 +157,7 @@ void DirectElimination::reduce(const Problem& problem, TargetRow row) noexcept {
 }
 
 // Chooses the variable that y would eliminate, and computes the size of y.
-void DirectElimination::choose_variable() noexcept {
+void GaussElimination::choose_variable() noexcept {
   const double* y = reduced_row(rank_);
   largest_ = largest(stride_, y);
   if (has_preference_) {
@@ -168,17 +168,17 @@ void DirectElimination::choose_variable() noexcept {
   }
 }
 
-DirectElimination::Outcome DirectElimination::judge(double norm, double tolerance) noexcept {
+GaussElimination::Outcome GaussElimination::decide_rank(double norm, double tolerance) noexcept {
   if (rest_.growth > kLargestGrowth * norm) return Outcome::kUnsure;
   if (largest_ * kClear <= tolerance * norm) return Outcome::kDependent;
   if (largest_ > kClear * tolerance * norm) return Outcome::kIndependent;
-  return judge_closely(norm, tolerance);
+  return decide_rank_closely(norm, tolerance);
 }
 
 // The distance of the row from the pivots is at most |y|; and at least |y z| / |z|, where z is the
 // free direction that moves variable_ and, of the others, only taken ones.
-DirectElimination::Outcome DirectElimination::judge_closely(double norm,
-                                                            double tolerance) noexcept {
+GaussElimination::Outcome GaussElimination::decide_rank_closely(double norm,
+                                                                double tolerance) noexcept {
   const VectorView y(reduced_row(rank_), n_);
   const double rounding = kRoundOff * (norm + rest_.growth);
   if (y.norm() + rounding < tolerance * norm) return Outcome::kDependent;
@@ -195,7 +195,7 @@ DirectElimination::Outcome DirectElimination::judge_closely(double norm,
   return distance > tolerance * norm ? Outcome::kIndependent : Outcome::kUnsure;
 }
 
-void DirectElimination::append(int row) noexcept {
+void GaussElimination::append(int row) noexcept {
   const double inverse = is_unit_ ? 1.0 : 1.0 / reduced_row(rank_)[variable_];
   pivots_[index(rank_)] = {.row = row,
                            .variable = variable_,
@@ -207,70 +207,70 @@ void DirectElimination::append(int row) noexcept {
   ++rank_;
 }
 
-DirectElimination::Outcome DirectElimination::add_row(const Problem& problem, TargetRow row,
-                                                      double tolerance) noexcept {
+GaussElimination::Outcome GaussElimination::add_row(const Problem& problem, TargetRow row,
+                                                    double tolerance) noexcept {
   reduce(problem, row);
-  const Outcome outcome = judge(problem.norm(row.row), tolerance);
+  const Outcome outcome = decide_rank(problem.norm(row.row), tolerance);
   if (outcome == Outcome::kIndependent) append(row.row);
   return outcome;
 }
 
 // The row under work depends on the pivots, of which those from `first` on are of its level. It
 // takes part in the level unless its share of these is smaller than `smallest`.
-void DirectElimination::keep_dependent(double weight, double smallest, int first) noexcept {
+void GaussElimination::keep_dependent(double weight, double smallest, int first) noexcept {
   if (std::abs(rest_.value) > kRoundOff * rest_.value_scale) is_met_ = false;
   const double* factor = factors(rank_);
   double share = 0.0;
   for (int s = first; s < rank_; ++s) share += std::abs(factor[s]) * pivots_[index(s)].size;
   if (share <= smallest) return;
-  double* kept = dependent_rows_.data() + dependents_ * n_;
-  std::copy(factor + first, factor + rank_, kept);
-  std::fill(kept + rank_ - first, kept + n_ - first, 0.0);
+  double* dependent = dependent_rows_.data() + dependents_ * n_;
+  std::copy(factor + first, factor + rank_, dependent);
+  std::fill(dependent + rank_ - first, dependent + n_ - first, 0.0);
   dependent_rest_[dependents_] = rest_.value;
   dependent_weight_[dependents_++] = weight;
 }
 
-bool DirectElimination::add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
-                                          double tolerance) noexcept {
+bool GaussElimination::add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
+                                         double tolerance) noexcept {
   const int first = rank_;
-  weak_.clear();
+  deferred_.clear();
   dependents_ = 0;
   is_met_ = true;
   for (const TargetRow& row : rows) {
     const double norm = problem.norm(row.row);
     reduce(problem, row);
     if (rest_.growth > kLargestGrowth * norm) return false;
-    if (largest_ >= std::max(kWeak, kClear * tolerance) * norm) {
+    if (largest_ >= std::max(kSmallRemainder, kClear * tolerance) * norm) {
       append(row.row);
-    } else if (judge(norm, tolerance) == Outcome::kDependent) {
+    } else if (decide_rank(norm, tolerance) == Outcome::kDependent) {
       keep_dependent(problem.weight(row.row), tolerance * norm, first);
     } else {
-      put_aside(row.row, norm);
+      defer(row.row, norm);
     }
   }
-  if (!weak_.empty() && !add_weak_rows(problem, first, tolerance)) return false;
+  if (!deferred_.empty() && !add_deferred_rows(problem, first, tolerance)) return false;
   if (!is_met_ && rank_ > first) solve_level(problem, first);
   return true;
 }
 
-// Stores the row under work in weak_, to be decided later.
-void DirectElimination::put_aside(int row, double norm) noexcept {
-  const int slot = static_cast<int>(weak_.size());
-  std::copy_n(reduced_row(rank_), stride_, weak_rows_.data() + slot * stride_);
-  std::copy_n(factors(rank_), rank_, weak_factors_.data() + slot * stride_);
-  weak_.push_back({.row = row, .norm = norm, .slot = slot, .depth = rank_, .rest = rest_});
+// Stores the row under work in deferred_, to be decided later.
+void GaussElimination::defer(int row, double norm) noexcept {
+  const int slot = static_cast<int>(deferred_.size());
+  std::copy_n(reduced_row(rank_), stride_, deferred_rows_.data() + slot * stride_);
+  std::copy_n(factors(rank_), rank_, deferred_factors_.data() + slot * stride_);
+  deferred_.push_back({.row = row, .norm = norm, .slot = slot, .depth = rank_, .rest = rest_});
 }
 
 // Adds the rows put aside, always the one with the largest remainder.
-bool DirectElimination::add_weak_rows(const Problem& problem, int first,
-                                      double tolerance) noexcept {
-  while (!weak_.empty()) {
+bool GaussElimination::add_deferred_rows(const Problem& problem, int first,
+                                         double tolerance) noexcept {
+  while (!deferred_.empty()) {
     std::size_t best = 0;
     double largest_share = -1.0;
-    for (std::size_t k = 0; k < weak_.size(); ++k) {
-      WeakRow& row = weak_[k];
-      double* y = weak_rows_.data() + row.slot * stride_;
-      double* factor = weak_factors_.data() + row.slot * stride_;
+    for (std::size_t k = 0; k < deferred_.size(); ++k) {
+      DeferredRow& row = deferred_[k];
+      double* y = deferred_rows_.data() + row.slot * stride_;
+      double* factor = deferred_factors_.data() + row.slot * stride_;
       subtract_pivots(row.depth, rank_, y, factor, row.rest);
       row.depth = rank_;
       const double share = VectorView(y, n_).cwiseAbs().maxCoeff() / row.norm;
@@ -278,16 +278,16 @@ bool DirectElimination::add_weak_rows(const Problem& problem, int first,
       largest_share = share;
       best = k;
     }
-    const WeakRow row = weak_[best];
-    weak_[best] = weak_.back();
-    weak_.pop_back();
+    const DeferredRow row = deferred_[best];
+    deferred_[best] = deferred_.back();
+    deferred_.pop_back();
 
-    std::copy_n(weak_rows_.data() + row.slot * stride_, stride_, reduced_row(rank_));
-    std::copy_n(weak_factors_.data() + row.slot * stride_, rank_, factors(rank_));
+    std::copy_n(deferred_rows_.data() + row.slot * stride_, stride_, reduced_row(rank_));
+    std::copy_n(deferred_factors_.data() + row.slot * stride_, rank_, factors(rank_));
     is_unit_ = false;
     rest_ = row.rest;
     choose_variable();
-    const Outcome outcome = judge(row.norm, tolerance);
+    const Outcome outcome = decide_rank(row.norm, tolerance);
     if (outcome == Outcome::kUnsure) return false;
     if (outcome == Outcome::kIndependent) {
       append(row.row);
@@ -298,7 +298,7 @@ bool DirectElimination::add_weak_rows(const Problem& problem, int first,
   return true;
 }
 
-void DirectElimination::add_smallest_norm(const Problem& problem) noexcept {
+void GaussElimination::add_smallest_norm(const Problem& problem) noexcept {
   const int first = rank_;
   dependents_ = 0;
   for (int v = 0; v < n_; ++v) {
@@ -313,7 +313,7 @@ void DirectElimination::add_smallest_norm(const Problem& problem) noexcept {
   solve_level(problem, first);
 }
 
-double DirectElimination::weight_of_pivot(const Problem& problem, int t) const noexcept {
+double GaussElimination::weight_of_pivot(const Problem& problem, int t) const noexcept {
   const int row = pivots_[index(t)].row;
   return row < 0 ? 1.0 : problem.weight(row);
 }
@@ -321,7 +321,7 @@ double DirectElimination::weight_of_pivot(const Problem& problem, int t) const n
 // Values of the pivots from `first` on, in the sense of least squares over all rows of the level:
 // the change u minimises |W L u|^2 + |V (D u - rest)|^2, with the weights W of pivots and V of
 // dependent rows.
-void DirectElimination::solve_level(const Problem& problem, int first) noexcept {
+void GaussElimination::solve_level(const Problem& problem, int first) noexcept {
   if (!solve_for_residuals(problem, first)) solve_by_reflections(problem, first);
   for (int t = first; t < rank_; ++t) pivots_[index(t)].value += change_[t - first];
 }
@@ -329,7 +329,7 @@ void DirectElimination::solve_level(const Problem& problem, int first) noexcept 
 // Few dependent rows: the residuals z = (W L u, V (D u - rest)) are the smallest with [E -I] z = V
 // rest, E = V D L^-1 W^-1. The rows of [E -I], made orthogonal one after the other, span z. False
 // when this method is not suitable.
-bool DirectElimination::solve_for_residuals(const Problem& problem, int first) noexcept {
+bool GaussElimination::solve_for_residuals(const Problem& problem, int first) noexcept {
   const int r = rank_ - first;
   const int d = dependents_;
   if (d >= r) return false;
@@ -370,7 +370,7 @@ bool DirectElimination::solve_for_residuals(const Problem& problem, int first) n
   return true;
 }
 
-void DirectElimination::solve_by_reflections(const Problem& problem, int first) noexcept {
+void GaussElimination::solve_by_reflections(const Problem& problem, int first) noexcept {
   const int r = rank_ - first;
   const int m = r + dependents_;
   Eigen::Map<Eigen::MatrixXd> A(matrix_.data(), m, r);
@@ -391,7 +391,7 @@ void DirectElimination::solve_by_reflections(const Problem& problem, int first) 
   solve_least_squares(m, r, A.data(), rhs_.data(), order_.data(), change_.data());
 }
 
-bool DirectElimination::find_point(double* x) const noexcept {
+bool GaussElimination::find_point(double* x) const noexcept {
   std::fill_n(x, n_, 0.0);
   double largest_term = 0.0;
   for (int t = rank_ - 1; t >= 0; --t) {
@@ -403,7 +403,7 @@ bool DirectElimination::find_point(double* x) const noexcept {
   return VectorView(x, n_).cwiseAbs().maxCoeff() <= kLargestGrowth * largest_term;  // false for NaN
 }
 
-double DirectElimination::reduce_to_free(const Problem& problem, int row, double* y) noexcept {
+double GaussElimination::reduce_to_free(const Problem& problem, int row, double* y) noexcept {
   const int variable = problem.variable(row);
   if (variable >= 0) return reduce_to_free(variable, y);
   load(problem.coefficients(row).data(), y);
@@ -412,7 +412,7 @@ double DirectElimination::reduce_to_free(const Problem& problem, int row, double
   return -rest.value;
 }
 
-double DirectElimination::reduce_to_free(int variable, double* y) noexcept {
+double GaussElimination::reduce_to_free(int variable, double* y) noexcept {
   std::fill_n(y, stride_, 0.0);
   y[variable] = 1.0;
   const int t = pivot_of_variable_[index(variable)];
@@ -422,7 +422,7 @@ double DirectElimination::reduce_to_free(int variable, double* y) noexcept {
   return -rest.value;
 }
 
-void DirectElimination::complete(double* x) const noexcept {
+void GaussElimination::complete(double* x) const noexcept {
   for (int t = 0; t < rank_; ++t) x[pivots_[index(t)].variable] = 0.0;  // 0 * NaN is not 0
   for (int t = rank_ - 1; t >= 0; --t) {
     const Pivot& pivot = pivots_[index(t)];
@@ -431,8 +431,8 @@ void DirectElimination::complete(double* x) const noexcept {
   }
 }
 
-double DirectElimination::find_multipliers(const double* g, int rank, int first,
-                                           double* mu) noexcept {
+double GaussElimination::find_multipliers(const double* g, int rank, int first,
+                                          double* mu) noexcept {
   double* y = reduced_row(n_);
   Eigen::Map<Eigen::VectorXd> factor(factors(n_), n_);
   load(g, y);
@@ -445,4 +445,4 @@ double DirectElimination::find_multipliers(const double* g, int rank, int first,
   return VectorView(y, n_).cwiseAbs().maxCoeff();
 }
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -1,7 +1,7 @@
 /// Dense least squares by Householder QR, safe for rows of very different size.
 #pragma once
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 
 /// Minimises |A z - e|: A (m x r, column after column, m >= r, full column rank) and e (m) are
 /// overwritten; z (r) is the result; `order` (r) is scratch.
@@ -9,4 +9,4 @@ namespace hg::hqp {
 /// [Bj96] A. Bjorck, Numerical methods for least squares problems, 1996, sec. 4.4.
 void solve_least_squares(int m, int r, double* A, double* e, int* order, double* z) noexcept;
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -1,4 +1,4 @@
-#include "hg/hqp/cone.h"
+#include "hg/hqp/solver/nnls.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
 constexpr double kRank = 1e-9;
@@ -23,15 +23,15 @@ struct Corner {
     problem.add_row(std::vector{1.0, 0.0}, {});  // duplicate of the first
     elimination.reset(2);
   }
-  void solve(const std::vector<TouchedRow>& rows, const Eigen::Vector2d& g) {
+  void solve(const std::vector<RowAtBound>& rows, const Eigen::Vector2d& g) {
     cone.solve(problem, rows, g.data(), g.norm(), kRank, elimination);
   }
   Problem problem;
-  Elimination elimination{2, 4};
-  Cone cone{2, 8};
+  HouseholderQr elimination{2, 4};
+  Nnls cone{2, 8};
 };
 
-TEST(Cone, HoldsOnlyRowsThatPush) {
+TEST(Nnls, HoldsOnlyRowsThatPush) {
   Corner corner;
   corner.solve({{0, 1.0}, {1, 1.0}}, {-2.0, 3.0});  // wants to go right and down
   ASSERT_EQ(corner.cone.pushing(), 1);
@@ -41,7 +41,7 @@ TEST(Cone, HoldsOnlyRowsThatPush) {
   EXPECT_EQ(corner.elimination.rank(), 1);
 }
 
-TEST(Cone, ProvesACornerWithMoreRowsThanVariables) {
+TEST(Nnls, ProvesACornerWithMoreRowsThanVariables) {
   Corner corner;
   corner.solve({{0, 1.0}, {1, 1.0}, {2, 1.0}, {3, 1.0}}, {-2.0, -1.0});
   EXPECT_LT(corner.cone.descent().norm(), 1e-15);
@@ -54,14 +54,14 @@ TEST(Cone, ProvesACornerWithMoreRowsThanVariables) {
   EXPECT_NEAR(sum_0, 2.0, 1e-14);
 }
 
-TEST(Cone, HoldsARowThatIsHardlyInTheWay) {
+TEST(Nnls, HoldsARowThatIsHardlyInTheWay) {
   Corner corner;
   corner.solve({{0, 1.0}}, {-1e-5, 1.0});  // wants to go down, and right a little
   ASSERT_EQ(corner.cone.pushing(), 1);
   EXPECT_EQ(corner.cone.descent()[0], 0.0);
 }
 
-TEST(Cone, MeetsTheConditionsOfItsMinimum) {
+TEST(Nnls, MeetsTheConditionsOfItsMinimum) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   int largest = 0;
@@ -71,7 +71,7 @@ TEST(Cone, MeetsTheConditionsOfItsMinimum) {
     const int m = 3 * n;
     Problem problem({.variables = n, .levels = 1, .rows = m});
     problem.add_level();
-    std::vector<TouchedRow> candidates;
+    std::vector<RowAtBound> candidates;
     Eigen::MatrixXd C(m, n);
     for (int i = 0; i < m; ++i) {
       for (int j = 0; j < n; ++j) C(i, j) = normal(random) + (j == 0 ? 1.0 : 0.0);
@@ -80,9 +80,9 @@ TEST(Cone, MeetsTheConditionsOfItsMinimum) {
           {problem.add_row({c.data(), c.data() + n}, {}), i % 4 == 0 ? -1.0 : 1.0});
     }
     const Eigen::VectorXd g = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
-    Elimination elimination(n, m);
+    HouseholderQr elimination(n, m);
     elimination.reset(n);
-    Cone cone(n, m);
+    Nnls cone(n, m);
     cone.solve(problem, candidates, g.data(), g.norm(), kRank, elimination);
 
     // descent = -(g + sum mu s c), opposed by no row and neutral to those that push
@@ -104,4 +104,4 @@ TEST(Cone, MeetsTheConditionsOfItsMinimum) {
 }
 
 }  // namespace
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -27,7 +27,7 @@ std::string to_string(const Options& options);
 /// that is held or violated. `solution` must be one of `problem`.
 std::string to_string(const Problem& problem, const Solution& solution);
 
-/// Report on the result of Solver::multipliers() for `level`: a line per row that pushes, and
+/// Report on the result of Solver::multipliers() for `level`: a line per row with a multiplier, and
 /// `remainder`, its return value.
 std::string to_string(const Problem& problem, int level, std::span<const double> multipliers,
                       double remainder);

@@ -11,7 +11,7 @@
 
 #include "hg/hqp/problem.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 
 /// A row with its target value.
 struct TargetRow {
@@ -19,9 +19,9 @@ struct TargetRow {
   double target;
 };
 
-class Elimination {
+class HouseholderQr {
  public:
-  Elimination(int max_variables, int max_rows);
+  HouseholderQr(int max_variables, int max_rows);
 
   /// Forgets all pivots; n variables.
   void reset(int n) noexcept;
@@ -73,4 +73,4 @@ class Elimination {
   Eigen::VectorXd z_;
 };
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

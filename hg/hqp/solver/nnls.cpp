@@ -1,10 +1,10 @@
-#include "hg/hqp/cone.h"
+#include "hg/hqp/solver/nnls.h"
 
 #include <algorithm>
 
-#include "hg/hqp/rows.h"
+#include "hg/hqp/solver/rows.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
 // Residual below this share of the gradient's terms counts as zero
@@ -14,22 +14,22 @@ constexpr int kChangesPerRow = 4;    // bound on the loop; convergence mostly ne
 
 }  // namespace
 
-Cone::Cone(int max_variables, int max_candidates)
-    : rows_(at(max_variables)),
+Nnls::Nnls(int max_variables, int max_candidates)
+    : rows_(index(max_variables)),
       mu_(max_variables),
       mu_new_(max_variables),
-      is_barred_(at(max_candidates)),
-      candidate_(at(max_variables)),
+      is_excluded_(index(max_candidates)),
+      candidate_(index(max_variables)),
       descent_(max_variables),
       rest_(max_variables) {}
 
-int Cone::most_opposed(const Problem& problem, const std::vector<TouchedRow>& candidates,
+int Nnls::most_opposed(const Problem& problem, const std::vector<RowAtBound>& candidates,
                        double descent_norm) const noexcept {
   int best = -1;
   double best_cosine = kParallel;
   for (int i = 0; i < static_cast<int>(candidates.size()); ++i) {
-    if (is_barred_[at(i)]) continue;
-    const auto [row, sign] = candidates[at(i)];
+    if (is_excluded_[index(i)]) continue;
+    const auto [row, sign] = candidates[index(i)];
     const double cosine =
         sign * dot(problem, row, descent_.data()) / (problem.norm(row) * descent_norm);
     if (cosine > best_cosine) {
@@ -41,8 +41,8 @@ int Cone::most_opposed(const Problem& problem, const std::vector<TouchedRow>& ca
 }
 
 // Multipliers of the pivots above `base` that cancel g in their span, of any sign.
-void Cone::solve_passive(const Problem& problem, const double* g, int base,
-                         const Elimination& elimination) noexcept {
+void Nnls::solve_passive(const Problem& problem, const double* g, int base,
+                         const HouseholderQr& elimination) noexcept {
   const int n = problem.variables();
   rest_.head(n) = VectorView(g, n);
   for (int i = size_ - 1; i >= 0; --i) {
@@ -50,13 +50,13 @@ void Cone::solve_passive(const Problem& problem, const double* g, int base,
     const double multiplier =
         -VectorView(elimination.column(t), n).dot(rest_.head(n)) / elimination.pivot(t);
     add_multiple(problem, elimination.pivot_row(t), multiplier, rest_.data());
-    mu_new_[i] = rows_[at(i)].sign * multiplier;
+    mu_new_[i] = rows_[index(i)].sign * multiplier;
   }
 }
 
 // Moves from mu_ towards mu_new_ until the first multiplier vanishes, and drops the vanished ones.
-void Cone::remove_non_positive(const Problem& problem, int base, double rank_tolerance,
-                               Elimination& elimination) noexcept {
+void Nnls::remove_non_positive(const Problem& problem, int base, double rank_tolerance,
+                               HouseholderQr& elimination) noexcept {
   double fraction = 1.0;
   int first_to_vanish = 0;
   for (int i = 0; i < size_; ++i) {
@@ -71,25 +71,25 @@ void Cone::remove_non_positive(const Problem& problem, int base, double rank_tol
   mu_[first_to_vanish] = 0.0;
 
   elimination.truncate(base);
-  int kept = 0;
+  int count = 0;
   for (int i = 0; i < size_; ++i) {
-    if (mu_[i] > 0.0 && elimination.add_row(problem, rows_[at(i)].row, rank_tolerance)) {
-      rows_[at(kept)] = rows_[at(i)];
-      candidate_[at(kept)] = candidate_[at(i)];
-      mu_[kept++] = mu_[i];
+    if (mu_[i] > 0.0 && elimination.add_row(problem, rows_[index(i)].row, rank_tolerance)) {
+      rows_[index(count)] = rows_[index(i)];
+      candidate_[index(count)] = candidate_[index(i)];
+      mu_[count++] = mu_[i];
     } else {
-      is_barred_[at(candidate_[at(i)])] = false;
+      is_excluded_[index(candidate_[index(i)])] = false;
     }
   }
-  size_ = kept;
+  size_ = count;
 }
 
-void Cone::solve(const Problem& problem, const std::vector<TouchedRow>& candidates, const double* g,
-                 double g_scale, double rank_tolerance, Elimination& elimination) noexcept {
+void Nnls::solve(const Problem& problem, const std::vector<RowAtBound>& candidates, const double* g,
+                 double g_scale, double rank_tolerance, HouseholderQr& elimination) noexcept {
   const int n = problem.variables();
   const int base = elimination.rank();
   const int max_changes = kChangesPerRow * (static_cast<int>(candidates.size()) + 1);
-  std::fill_n(is_barred_.begin(), candidates.size(), false);
+  std::fill_n(is_excluded_.begin(), candidates.size(), false);
   size_ = 0;
 
   for (int change = 0; change < max_changes; ++change) {
@@ -100,11 +100,11 @@ void Cone::solve(const Problem& problem, const std::vector<TouchedRow>& candidat
 
     const int entering = most_opposed(problem, candidates, descent_norm);
     if (entering < 0) break;
-    is_barred_[at(entering)] = true;
-    const TouchedRow touched = candidates[at(entering)];
-    if (!elimination.add_row(problem, touched.row, rank_tolerance)) continue;
-    rows_[at(size_)] = touched;
-    candidate_[at(size_)] = entering;
+    is_excluded_[index(entering)] = true;
+    const RowAtBound candidate = candidates[index(entering)];
+    if (!elimination.add_row(problem, candidate.row, rank_tolerance)) continue;
+    rows_[index(size_)] = candidate;
+    candidate_[index(size_)] = entering;
     mu_[size_++] = 0.0;
 
     solve_passive(problem, g, base, elimination);
@@ -121,4 +121,4 @@ void Cone::solve(const Problem& problem, const std::vector<TouchedRow>& candidat
   }
 }
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -7,9 +7,7 @@
 
 #include "hg/hqp/problem.h"
 
-namespace hg::hqp {
-
-inline std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+namespace hg::hqp::solver {
 
 using VectorView = Eigen::Map<const Eigen::VectorXd>;
 
@@ -64,4 +62,4 @@ inline double magnitude(double norm, double bound, double x_norm) noexcept {
   return norm * x_norm + (std::isfinite(bound) ? std::abs(bound) : 0.0);
 }
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -1,11 +1,11 @@
-#include "hg/hqp/dense_least_squares.h"
+#include "hg/hqp/solver/dense_least_squares.h"
 
 #include <Eigen/Core>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
 using Matrix = Eigen::Map<Eigen::MatrixXd>;
@@ -78,4 +78,4 @@ void solve_least_squares(int m, int r, double* A_data, double* e_data, int* orde
   }
 }
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

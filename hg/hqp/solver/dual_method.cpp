@@ -1,11 +1,11 @@
-#include "hg/hqp/dual.h"
+#include "hg/hqp/solver/dual_method.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "hg/hqp/rows.h"
+#include "hg/hqp/solver/rows.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
 constexpr double kViolated = 1e-9;    // share of |bound| + norm |x| beyond which a row is violated
@@ -13,8 +13,9 @@ constexpr double kDependent = 1e-11;  // remainder up to which a row depends on 
 constexpr double kLittleLost = 1e-3;  // share of a row (squared) from which enough digits remain
 constexpr double kTakesPart = 1e-8;   // share of a contradiction from which a row belongs to it
 constexpr double kTurns = 1e-12;      // ratio from which a multiplier falls
-constexpr double kPushes = 1e-10;     // share of the gradient from which a row surely pushes
-constexpr double kMet = 1e-9;         // share of its terms up to which a gradient counts as zero
+constexpr double kPositive =
+    1e-10;                     // share of the gradient above which a multiplier is surely positive
+constexpr double kMet = 1e-9;  // share of its terms up to which a gradient counts as zero
 // Weight of |x|, squared in the objective, beside a level that leaves freedom.
 constexpr double kRegularisation = 1e-6;
 constexpr double kSingular = 1e-7;  // pivots below this share of the largest need regularisation
@@ -31,35 +32,35 @@ void add(int n, double factor, const double* __restrict x, double* __restrict y)
 }  // namespace
 
 DualMethod::DualMethod(const Capacity& c)
-    : rank_at_level_(at(c.levels) + 1),
-      is_pushing_(at(c.rows)),
-      side_(at(c.rows)),
+    : rank_at_level_(index(c.levels) + 1),
+      has_positive_multiplier_(index(c.rows)),
+      side_(index(c.rows)),
       max_active_(2 * c.variables + kMoreActive),
-      objective_(at((std::max(c.rows, c.variables) + c.variables) * c.variables)),
-      objective_rhs_(at(std::max(c.rows, c.variables) + c.variables)),
-      candidate_rows_(at(c.rows * padded(c.variables))),
+      objective_(index((std::max(c.rows, c.variables) + c.variables) * c.variables)),
+      objective_rhs_(index(std::max(c.rows, c.variables) + c.variables)),
+      candidate_rows_(index(c.rows * padded(c.variables))),
       x_(c.variables),
       reduced_(padded(c.variables)),
-      is_slot_used_(at(max_active_)),
-      Q_(at(max_active_ * (padded(c.variables) + padded(max_active_)))),
-      R_(at(max_active_ * max_active_)),
+      is_slot_used_(index(max_active_)),
+      Q_(index(max_active_ * (padded(c.variables) + padded(max_active_)))),
+      R_(index(max_active_ * max_active_)),
       u_(padded(c.variables) + padded(max_active_)),
       a_(u_.size()),
       z_(u_.size()),
       d_(max_active_),
       ratio_(max_active_) {
-  free_.reserve(at(c.variables));
-  candidates_.reserve(at(c.rows));
-  active_.reserve(at(max_active_));
-  targets_.reserve(at(c.rows));
+  free_.reserve(index(c.variables));
+  candidates_.reserve(index(c.rows));
+  active_.reserve(index(max_active_));
+  targets_.reserve(index(c.rows));
 }
 
 // Takes equalities of level after level as pivots, up to the first level s that contradicts itself
 // or leaves no freedom, or to last_. False: in doubt.
-bool DualMethod::choose_level(DirectElimination& direct) noexcept {
+bool DualMethod::choose_level(GaussElimination& direct) noexcept {
   for (; level_ < last_; ++level_) {
     const int rank = direct.rank();
-    rank_at_level_[at(level_)] = rank;
+    rank_at_level_[index(level_)] = rank;
     collect_targets();
     if (targets_.empty()) continue;
     if (2 * static_cast<int>(targets_.size()) >= direct.freedom()) return true;
@@ -68,7 +69,7 @@ bool DualMethod::choose_level(DirectElimination& direct) noexcept {
     direct.truncate(rank);
     return true;
   }
-  rank_at_level_[at(level_)] = direct.rank();
+  rank_at_level_[index(level_)] = direct.rank();
   return true;
 }
 
@@ -80,11 +81,11 @@ void DualMethod::collect_candidates() noexcept {
   for (int level = 0; level < levels; ++level) {
     for (int row = problem_->first_row(level); row < problem_->end_row(level); ++row) {
       const auto [lb, ub] = problem_->bounds(row);
-      if (side_[at(row)] != 0 || lb == ub || problem_->norm(row) == 0.0) continue;
+      if (side_[index(row)] != 0 || lb == ub || problem_->norm(row) == 0.0) continue;
       if (!std::isfinite(lb) && !std::isfinite(ub)) continue;
       candidates_.push_back({.row = row,
                              .is_soft = level == level_,
-                             .is_barred = false,
+                             .is_excluded = false,
                              .slot = kNoSlot,
                              .length = 0.0});
     }
@@ -92,14 +93,14 @@ void DualMethod::collect_candidates() noexcept {
 }
 
 // Reduces a candidate by the equalities, in the metric of the program.
-void DualMethod::reduce(int i, DirectElimination& direct) noexcept {
-  Candidate& candidate = candidates_[at(i)];
+void DualMethod::reduce(int i, GaussElimination& direct) noexcept {
+  Candidate& candidate = candidates_[index(i)];
   candidate.slot = reduced_rows_++;
   direct.reduce_to_free(*problem_, candidate.row, reduced_.data());
   double* y = candidate_row(i);
   double largest = 0.0;
   for (int k = 0; k < freedom_; ++k) {
-    y[k] = reduced_[free_[at(k)]];
+    y[k] = reduced_[free_[index(k)]];
     largest = std::max(largest, std::abs(y[k]));
   }
   std::fill(y + freedom_, y + stride_, 0.0);
@@ -131,7 +132,7 @@ void DualMethod::collect_targets() noexcept {
 // Writes the objective of level s, targets_ or the smallest |x|, as rows of objective_, a column
 // per free variable, with room for as many rows more as there are columns. Returns the number of
 // rows.
-int DualMethod::collect_objective(DirectElimination& direct, bool is_regular) noexcept {
+int DualMethod::collect_objective(GaussElimination& direct, bool is_regular) noexcept {
   const bool is_norm = level_ == levels_;
   const int wanted = is_norm ? problem_->variables() : static_cast<int>(targets_.size());
   const int rows = is_regular ? wanted + freedom_ : wanted;
@@ -144,7 +145,7 @@ int DualMethod::collect_objective(DirectElimination& direct, bool is_regular) no
     if (is_norm) {
       offset = direct.reduce_to_free(i, reduced_.data());
     } else {
-      const TargetRow& row = targets_[at(i)];
+      const TargetRow& row = targets_[index(i)];
       offset = direct.reduce_to_free(*problem_, row.row, reduced_.data());
       weight = problem_->weight(row.row);
       norm = problem_->norm(row.row);
@@ -152,14 +153,14 @@ int DualMethod::collect_objective(DirectElimination& direct, bool is_regular) no
     }
     double largest_of_row = 0.0;
     for (int k = 0; k < freedom_; ++k) {
-      const double number = weight * reduced_[free_[at(k)]];
-      objective_[at(k * rows + i)] = number;
+      const double number = weight * reduced_[free_[index(k)]];
+      objective_[index(k * rows + i)] = number;
       largest_of_row = std::max(largest_of_row, std::abs(number));
     }
-    objective_rhs_[at(i)] = weight * (target - offset);
+    objective_rhs_[index(i)] = weight * (target - offset);
     if (largest_of_row <= options_->rank_tolerance * weight * norm) {  // nothing can change it
-      for (int k = 0; k < freedom_; ++k) objective_[at(k * rows + i)] = 0.0;
-      objective_rhs_[at(i)] = 0.0;
+      for (int k = 0; k < freedom_; ++k) objective_[index(k * rows + i)] = 0.0;
+      objective_rhs_[index(i)] = 0.0;
       continue;
     }
     largest = std::max(largest, largest_of_row);
@@ -177,13 +178,13 @@ int DualMethod::collect_objective(DirectElimination& direct, bool is_regular) no
     double* column = objective_.data() + k * rows + wanted;
     std::fill_n(column, freedom_, 0.0);
     column[k] = regularisation_;
-    objective_rhs_[at(wanted + k)] = 0.0;
+    objective_rhs_[index(wanted + k)] = 0.0;
   }
   return rows;
 }
 
 // Triangular factor of the objective, and the candidates in its metric. False: not finite.
-bool DualMethod::set_up_metric(DirectElimination& direct) noexcept {
+bool DualMethod::set_up_metric(GaussElimination& direct) noexcept {
   const int n = problem_->variables();
   free_.clear();
   for (int v = 0; v < n; ++v) {
@@ -252,8 +253,8 @@ int DualMethod::most_violated() const noexcept {
   int best = -1;
   double largest = 0.0;
   for (int i = 0; i < static_cast<int>(candidates_.size()); ++i) {
-    const Candidate& candidate = candidates_[at(i)];
-    if (candidate.is_barred) continue;
+    const Candidate& candidate = candidates_[index(i)];
+    if (candidate.is_excluded) continue;
     const Interval bounds = problem_->bounds(candidate.row);
     const double distance = excess(bounds, dot(*problem_, candidate.row, x_.data()));
     if (distance == 0.0) continue;
@@ -271,7 +272,7 @@ int DualMethod::most_violated() const noexcept {
 // The entering row a = N ratio + z, z orthogonal to N. Returns |z|^2, 0 when a depends on N.
 double DualMethod::project(const Active& entering) noexcept {
   const int size = stride_ + used_slots_;
-  const Candidate& candidate = candidates_[at(entering.candidate)];
+  const Candidate& candidate = candidates_[index(entering.candidate)];
   const double* y = candidate_row(entering.candidate);
   double* a = a_.data();
   double* z = z_.data();
@@ -311,15 +312,15 @@ void DualMethod::append(const Active& entering, double z_squared) noexcept {
   std::copy_n(d_.data(), j, r(j));
   r(j)[j] = length;
   active_.push_back(entering);
-  candidates_[at(entering.candidate)].is_barred = true;
+  candidates_[index(entering.candidate)].is_excluded = true;
 }
 
 // Releases the active row j: removes its column of R; rotations restore the triangle.
 void DualMethod::remove(int j) noexcept {
   const int size = stride_ + used_slots_;
-  const Active row = active_[at(j)];
+  const Active row = active_[index(j)];
   active_.erase(active_.begin() + j);
-  candidates_[at(row.candidate)].is_barred = false;
+  candidates_[index(row.candidate)].is_excluded = false;
   const int active = static_cast<int>(active_.size());
   for (int k = j; k < active; ++k) {
     std::copy_n(r(k + 1), k + 2, r(k));
@@ -346,18 +347,18 @@ void DualMethod::remove(int j) noexcept {
     }
   }
   if (row.slot < 0) return;
-  is_slot_used_[at(row.slot)] = false;
+  is_slot_used_[index(row.slot)] = false;
   for (int k = 0; k < active; ++k) q(k)[stride_ + row.slot] = 0.0;
   u_[stride_ + row.slot] = 0.0;
 }
 
 // Finds the minimum of the program.
-DualMethod::Outcome DualMethod::run(DirectElimination& direct) noexcept {
+DualMethod::Outcome DualMethod::run(GaussElimination& direct) noexcept {
   while (true) {
     const int best = most_violated();
     if (best < 0) return Outcome::kOptimal;
     if (static_cast<int>(active_.size()) == max_active_) return Outcome::kGivenUp;
-    Candidate& candidate = candidates_[at(best)];
+    Candidate& candidate = candidates_[index(best)];
     if (candidate.slot < 0) reduce(best, direct);
     const Interval bounds = problem_->bounds(candidate.row);
     double rest = excess(bounds, dot(*problem_, candidate.row, x_.data()));
@@ -369,12 +370,12 @@ DualMethod::Outcome DualMethod::run(DirectElimination& direct) noexcept {
           std::find(is_slot_used_.begin(), is_slot_used_.begin() + slots_, std::uint8_t{0});
       entering_.slot = static_cast<int>(free_slot - is_slot_used_.begin());
       if (entering_.slot == slots_) return Outcome::kGivenUp;
-      is_slot_used_[at(entering_.slot)] = true;
+      is_slot_used_[index(entering_.slot)] = true;
       used_slots_ = std::max(used_slots_, entering_.slot + 1);
     }
 
     bool is_full = false;
-    while (!is_full && !candidate.is_barred) {
+    while (!is_full && !candidate.is_excluded) {
       if (++changes_ > max_changes_) return Outcome::kGivenUp;
       const double z_squared = project(entering_);
       const int active = static_cast<int>(active_.size());
@@ -382,7 +383,7 @@ DualMethod::Outcome DualMethod::run(DirectElimination& direct) noexcept {
       int leaving = -1;
       for (int j = 0; j < active; ++j) {
         if (!(ratio_[j] > kTurns)) continue;
-        const double length_j = active_[at(j)].multiplier / ratio_[j];
+        const double length_j = active_[index(j)].multiplier / ratio_[j];
         if (length_j >= length) continue;
         length = length_j;
         leaving = j;
@@ -391,14 +392,14 @@ DualMethod::Outcome DualMethod::run(DirectElimination& direct) noexcept {
         contradiction_ = level_of_contradiction(direct);
         if (contradiction_ >= level_) return Outcome::kGivenUp;
         if (contradiction_ >= first_) return Outcome::kContradiction;
-        candidate.is_barred = true;  // settled levels contradict each other by rounding only
+        candidate.is_excluded = true;  // settled levels contradict each other by rounding only
         continue;
       }
       if (z_squared > 0.0) {
         add(stride_ + used_slots_, -length, z_.data(), u_.data());
         rest -= length * z_squared;
       }
-      for (int j = 0; j < active; ++j) active_[at(j)].multiplier -= length * ratio_[j];
+      for (int j = 0; j < active; ++j) active_[index(j)].multiplier -= length * ratio_[j];
       entering_.multiplier += length;
       is_full = leaving < 0;
       if (is_full) {
@@ -412,20 +413,20 @@ DualMethod::Outcome DualMethod::run(DirectElimination& direct) noexcept {
 }
 
 // The lowest level among the entering row, the active ones and the equalities that contradict it.
-int DualMethod::level_of_contradiction(DirectElimination& direct) noexcept {
+int DualMethod::level_of_contradiction(GaussElimination& direct) noexcept {
   const int n = problem_->variables();
-  const Candidate& entering = candidates_[at(entering_.candidate)];
+  const Candidate& entering = candidates_[index(entering_.candidate)];
   Eigen::VectorXd& rest = z_;
   rest.head(n).setZero();
   add_multiple(*problem_, entering.row, entering_.sign, rest.data());
   int lowest = problem_->level_of(entering.row);
   for (int j = 0; j < static_cast<int>(active_.size()); ++j) {
-    const Candidate& candidate = candidates_[at(active_[at(j)].candidate)];
+    const Candidate& candidate = candidates_[index(active_[index(j)].candidate)];
     if (std::abs(ratio_[j]) * candidate.length <= kTakesPart * entering.length) continue;
-    add_multiple(*problem_, candidate.row, -ratio_[j] * active_[at(j)].sign, rest.data());
+    add_multiple(*problem_, candidate.row, -ratio_[j] * active_[index(j)].sign, rest.data());
     lowest = std::max(lowest, problem_->level_of(candidate.row));
   }
-  const int first = rank_at_level_[at(first_)];
+  const int first = rank_at_level_[index(first_)];
   direct.find_multipliers(rest.data(), direct.rank(), first, a_.data());
   const double norm = problem_->norm(entering.row);
   for (int t = first; t < direct.rank(); ++t) {
@@ -437,20 +438,20 @@ int DualMethod::level_of_contradiction(DirectElimination& direct) noexcept {
 }
 
 // Computes x from u_.
-void DualMethod::find_point(DirectElimination& direct) noexcept {
+void DualMethod::find_point(GaussElimination& direct) noexcept {
   Eigen::VectorXd& y = z_;
-  for (int j = 0; j < freedom_; ++j) y[j] = objective_rhs_[at(j)] + u_[j];
+  for (int j = 0; j < freedom_; ++j) y[j] = objective_rhs_[index(j)] + u_[j];
   for (int j = freedom_ - 1; j >= 0; --j) {
     const double* column = objective_.data() + j * freedom_;
     y[j] /= column[j];
     add(j, -y[j], column, y.data());
   }
-  for (int k = 0; k < freedom_; ++k) x_[free_[at(k)]] = y[k];
+  for (int k = 0; k < freedom_; ++k) x_[free_[index(k)]] = y[k];
   direct.complete(x_.data());
 }
 
-// Turns the result of level s into equalities, with the rows that push against it.
-void DualMethod::freeze(DirectElimination& direct) noexcept {
+// Turns the result of level s into equalities, with the rows of positive multiplier.
+void DualMethod::fix_level(GaussElimination& direct) noexcept {
   const bool is_norm = level_ == levels_;
   double scale = 0.0;
   double size = 0.0;
@@ -471,13 +472,13 @@ void DualMethod::freeze(DirectElimination& direct) noexcept {
   const bool is_met = !has_objective_ || scale <= kMet * size;
   double x_free = 0.0;
   for (const int v : free_) x_free = std::max(x_free, std::abs(x_[v]));
-  const double pushing = kPushes * scale + 10.0 * regularisation_ * regularisation_ * x_free;
+  const double threshold = kPositive * scale + 10.0 * regularisation_ * regularisation_ * x_free;
   for (const Active& active : active_) {
-    const Candidate& candidate = candidates_[at(active.candidate)];
-    const double push = active.multiplier * problem_->norm(candidate.row);
-    if (is_met || push <= pushing) continue;
-    if (!candidate.is_soft) is_pushing_[at(candidate.row)] = true;
-    side_[at(candidate.row)] = active.sign > 0.0 ? 1 : -1;
+    const Candidate& candidate = candidates_[index(active.candidate)];
+    const double multiplier = active.multiplier * problem_->norm(candidate.row);
+    if (is_met || multiplier <= threshold) continue;
+    if (!candidate.is_soft) has_positive_multiplier_[index(candidate.row)] = true;
+    side_[index(candidate.row)] = active.sign > 0.0 ? 1 : -1;
     const Interval bounds = problem_->bounds(candidate.row);
     const double target = candidate.is_soft ? dot(*problem_, candidate.row, x_.data())
                                             : (active.sign > 0.0 ? bounds.ub : bounds.lb);
@@ -495,10 +496,10 @@ void DualMethod::write(std::vector<RowState>& guess) const noexcept {
   for (int level = 0; level < levels_; ++level) {
     for (int row = problem_->first_row(level); row < problem_->end_row(level); ++row) {
       const Interval bounds = problem_->bounds(row);
-      RowState& state = guess[at(row)];
+      RowState& state = guess[index(row)];
       state = is_equality(bounds) ? RowState::kEqual : RowState::kInactive;
       if (state == RowState::kEqual || problem_->norm(row) == 0.0) continue;
-      int side = side_[at(row)];
+      int side = side_[index(row)];
       if (side == 0) {
         const double distance = excess(bounds, dot(*problem_, row, x_.data()));
         const double bound = distance > 0.0 ? bounds.ub : bounds.lb;
@@ -512,24 +513,24 @@ void DualMethod::write(std::vector<RowState>& guess) const noexcept {
 }
 
 // The first level from first_ on that is expected to have violated inequalities.
-int DualMethod::hinted_level() const noexcept {
+int DualMethod::expected_level() const noexcept {
   int level = first_;
-  while (level < levels_ && hint_[at(level)] == 0) ++level;
+  while (level < levels_ && expected_violated_[index(level)] == 0) ++level;
   return level;
 }
 
 bool DualMethod::find_guess(const Problem& problem, const Options& options, int levels, int top,
-                            std::span<const std::uint8_t> hint, DirectElimination& direct,
-                            std::vector<RowState>& guess) noexcept {
+                            std::span<const std::uint8_t> expected_violated,
+                            GaussElimination& direct, std::vector<RowState>& guess) noexcept {
   problem_ = &problem;
   options_ = &options;
   levels_ = levels;
   const int rows = levels > 0 ? problem.end_row(levels - 1) : 0;
   std::fill_n(side_.begin(), rows, std::int8_t{0});
-  std::fill_n(is_pushing_.begin(), rows, std::uint8_t{0});
+  std::fill_n(has_positive_multiplier_.begin(), rows, std::uint8_t{0});
   first_ = level_ = top;
-  hint_ = hint;
-  last_ = hinted_level();
+  expected_violated_ = expected_violated;
+  last_ = expected_level();
   changes_ = 0;
   max_changes_ = 8 * (problem.variables() + 8);
   while (true) {
@@ -539,20 +540,20 @@ bool DualMethod::find_guess(const Problem& problem, const Options& options, int 
     const Outcome outcome = run(direct);
     if (outcome == Outcome::kGivenUp) return false;
     if (outcome == Outcome::kContradiction) {
-      direct.truncate(rank_at_level_[at(contradiction_)]);
+      direct.truncate(rank_at_level_[index(contradiction_)]);
       level_ = last_ = contradiction_;
       continue;
     }
-    freeze(direct);
+    fix_level(direct);
     if (level_ == levels || direct.freedom() == 0) break;
     first_ = ++level_;
-    last_ = hinted_level();
+    last_ = expected_level();
   }
   for (const Active& active : active_) {
-    side_[at(candidates_[at(active.candidate)].row)] = active.sign > 0.0 ? 1 : -1;
+    side_[index(candidates_[index(active.candidate)].row)] = active.sign > 0.0 ? 1 : -1;
   }
   write(guess);
   return true;
 }
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -1,15 +1,15 @@
-#include "hg/hqp/elimination.h"
+#include "hg/hqp/solver/householder_qr.h"
 
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "hg/hqp/dense_least_squares.h"
-#include "hg/hqp/rows.h"
+#include "hg/hqp/solver/dense_least_squares.h"
+#include "hg/hqp/solver/rows.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 
-Elimination::Elimination(int max_variables, int max_rows)
+HouseholderQr::HouseholderQr(int max_variables, int max_rows)
     : Q_(max_variables * max_variables),
       pivot_row_(max_variables),
       pivot_(max_variables),
@@ -22,18 +22,18 @@ Elimination::Elimination(int max_variables, int max_rows)
       factor_(max_variables * max_rows),
       z_(max_variables) {}
 
-void Elimination::reset(int n) noexcept {
+void HouseholderQr::reset(int n) noexcept {
   n_ = n;
   rank_ = 0;
   Eigen::Map<Eigen::MatrixXd>(Q_.data(), n, n).setIdentity();
 }
 
-Eigen::Map<Eigen::MatrixXd> Elimination::free_columns() noexcept {
+Eigen::Map<Eigen::MatrixXd> HouseholderQr::free_columns() noexcept {
   return {Q_.data() + rank_ * n_, n_, freedom()};
 }
 
 // y = factor * N^T c
-void Elimination::reduce(const Problem& problem, int row, double factor, double* y) noexcept {
+void HouseholderQr::reduce(const Problem& problem, int row, double factor, double* y) noexcept {
   const auto N = free_columns();
   Eigen::Map<Eigen::VectorXd> reduced(y, freedom());
   const int variable = problem.variable(row);
@@ -47,7 +47,7 @@ void Elimination::reduce(const Problem& problem, int row, double factor, double*
 
 // Turns the free columns so that the row reduced to y meets only the first of them; returns its
 // product with that column. The reflection is kept.
-double Elimination::reflect(const double* y, int size) noexcept {
+double HouseholderQr::reflect(const double* y, int size) noexcept {
   auto h = reflection_.head(size);
   h = VectorView(y, size);
   const double length = h.norm();
@@ -63,7 +63,7 @@ double Elimination::reflect(const double* y, int size) noexcept {
   return pivot;
 }
 
-bool Elimination::add_row(const Problem& problem, int row, double tolerance) noexcept {
+bool HouseholderQr::add_row(const Problem& problem, int row, double tolerance) noexcept {
   if (freedom() == 0) return false;
   double* y = z_.data();
   reduce(problem, row, 1.0, y);
@@ -77,8 +77,8 @@ bool Elimination::add_row(const Problem& problem, int row, double tolerance) noe
 
 // Reduced rows are in reduced_, `size` numbers each. Afterwards the first r rows of order_ form a
 // lower triangular matrix; returns r.
-int Elimination::choose_pivots(std::span<const TargetRow> rows, double tolerance,
-                               const Problem& problem) noexcept {
+int HouseholderQr::choose_pivots(std::span<const TargetRow> rows, double tolerance,
+                                 const Problem& problem) noexcept {
   const int m = static_cast<int>(rows.size());
   const int size = freedom();
   Eigen::Map<Eigen::MatrixXd> reduced(reduced_.data(), size, m);
@@ -89,7 +89,7 @@ int Elimination::choose_pivots(std::span<const TargetRow> rows, double tolerance
     int best = -1;
     double best_share = tolerance;
     for (int i = r; i < m; ++i) {
-      const int row = rows[static_cast<std::size_t>(order_[i])].row;
+      const int row = rows[index(order_[i])].row;
       const double share =
           reduced.col(order_[i]).tail(size - r).norm() / (problem.norm(row) * problem.weight(row));
       if (share > best_share) {
@@ -100,7 +100,7 @@ int Elimination::choose_pivots(std::span<const TargetRow> rows, double tolerance
     if (best < 0) break;
     std::swap(order_[r], order_[best]);
 
-    const int row = rows[static_cast<std::size_t>(order_[r])].row;
+    const int row = rows[index(order_[r])].row;
     const double pivot = reflect(reduced.col(order_[r]).data() + r, size - r);
     const auto h = reflection_.head(size - r);
     for (int i = r; i < m; ++i) {
@@ -114,13 +114,13 @@ int Elimination::choose_pivots(std::span<const TargetRow> rows, double tolerance
   return r;
 }
 
-void Elimination::add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
-                                    const double* x, double tolerance) noexcept {
+void HouseholderQr::add_least_squares(const Problem& problem, std::span<const TargetRow> rows,
+                                      const double* x, double tolerance) noexcept {
   const int m = static_cast<int>(rows.size());
   const int size = freedom();
   const int first = rank_;
   for (int i = 0; i < m; ++i) {
-    const auto [row, target] = rows[static_cast<std::size_t>(i)];
+    const auto [row, target] = rows[index(i)];
     const double weight = problem.weight(row);
     Eigen::Map<Eigen::VectorXd> y(reduced_.data() + i * size, size);
     reduce(problem, row, weight, y.data());
@@ -146,7 +146,7 @@ void Elimination::add_least_squares(const Problem& problem, std::span<const Targ
   for (int j = 0; j < r; ++j) d += z_[j] * VectorView(column(first + j), n_);
 }
 
-void Elimination::project_to_free(const double* g, double* out) noexcept {
+void HouseholderQr::project_to_free(const double* g, double* out) noexcept {
   const auto N = free_columns();
   const VectorView gradient(g, n_);
   Eigen::Map<Eigen::VectorXd> result(out, n_);
@@ -154,4 +154,4 @@ void Elimination::project_to_free(const double* g, double* out) noexcept {
   for (Eigen::Index k = 0; k < N.cols(); ++k) result += N.col(k).dot(gradient) * N.col(k);
 }
 
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

@@ -1,4 +1,4 @@
-#include "hg/hqp/direct_elimination.h"
+#include "hg/hqp/solver/gauss_elimination.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <limits>
 #include <vector>
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
-using Outcome = DirectElimination::Outcome;
+using Outcome = GaussElimination::Outcome;
 
 constexpr double kRank = 1e-9;
 constexpr double kRounding = 1e-12;
@@ -21,17 +21,17 @@ Problem problem_of(const Eigen::MatrixXd& C) {
   problem.add_level();
   for (int i = 0; i < m; ++i) {
     const Eigen::VectorXd c = C.row(i);
-    problem.add_row({c.data(), static_cast<std::size_t>(c.size())}, {}, 1.0 + i);
+    problem.add_row({c.data(), index(c.size())}, {}, 1.0 + i);
   }
   for (int v = 0; v < n; ++v) problem.add_bound(v, {0.0, 1.0});
   return problem;
 }
 
-TEST(DirectElimination, FindsThePointWhereAllRowsHaveTheirValues) {
+TEST(GaussElimination, FindsThePointWhereAllRowsHaveTheirValues) {
   srand(1);
   const Eigen::MatrixXd C = Eigen::MatrixXd::Random(4, 6);
   const Problem problem = problem_of(C);
-  DirectElimination elimination(6, 10);
+  GaussElimination elimination(6, 10);
   elimination.reset(problem);
   const std::vector<TargetRow> rows = {{0, 1.0}, {4, 2.0}, {1, 3.0}, {2, -4.0}, {8, 5.0}, {3, 6.0}};
   for (const TargetRow& row : rows) {
@@ -45,11 +45,11 @@ TEST(DirectElimination, FindsThePointWhereAllRowsHaveTheirValues) {
   EXPECT_NEAR(x[4], 5.0, kRounding);
 }
 
-TEST(DirectElimination, SeparatesDependentRowsFromDoubtfulOnes) {
+TEST(GaussElimination, SeparatesDependentRowsFromDoubtfulOnes) {
   Eigen::MatrixXd C(4, 3);
   C << 1, 2, 3, -2, -4, -6, 1, 2, 3 + 5.2e-9, 1, 2, 3 + 1e-4;
   const Problem problem = problem_of(C);
-  DirectElimination elimination(3, 7);
+  GaussElimination elimination(3, 7);
   elimination.reset(problem);
   EXPECT_EQ(elimination.add_row(problem, {0, 0.0}, kRank), Outcome::kIndependent);
   EXPECT_EQ(elimination.add_row(problem, {1, 0.0}, kRank), Outcome::kDependent);
@@ -62,14 +62,14 @@ TEST(DirectElimination, SeparatesDependentRowsFromDoubtfulOnes) {
 
 // The row is a pivot plus a little of the last variable. Along the free direction, in which all
 // other variables move with it a million times as far, the row hardly changes: it depends.
-TEST(DirectElimination, IsNotSureOfARowThatOnlyGrowthKeepsApart) {
+TEST(GaussElimination, IsNotSureOfARowThatOnlyGrowthKeepsApart) {
   constexpr int n = 24;
   Eigen::MatrixXd C = Eigen::MatrixXd::Constant(n, n, -0.95);
   C.triangularView<Eigen::StrictlyLower>().setZero();
   C.diagonal().setOnes();
   C.row(n - 1) = C.row(0) + 5e-7 * Eigen::RowVectorXd::Unit(n, n - 1);
   const Problem problem = problem_of(C);
-  DirectElimination elimination(n, 2 * n);
+  GaussElimination elimination(n, 2 * n);
   elimination.reset(problem);
   for (int row = 0; row < n - 1; ++row) {
     ASSERT_EQ(elimination.add_row(problem, {row, 0.0}, kRank), Outcome::kIndependent);
@@ -77,22 +77,22 @@ TEST(DirectElimination, IsNotSureOfARowThatOnlyGrowthKeepsApart) {
   EXPECT_EQ(elimination.add_row(problem, {n - 1, 0.0}, kRank), Outcome::kUnsure);
 }
 
-TEST(DirectElimination, IsSureOfARowThatIsNearerThanTheTolerance) {
+TEST(GaussElimination, IsSureOfARowThatIsNearerThanTheTolerance) {
   Eigen::MatrixXd C(2, 3);
   C << 1, 2, 3, 1, 2, 3 + 1e-10;
   const Problem problem = problem_of(C);
-  DirectElimination elimination(3, 5);
+  GaussElimination elimination(3, 5);
   elimination.reset(problem);
   ASSERT_EQ(elimination.add_row(problem, {0, 0.0}, kRank), Outcome::kIndependent);
   EXPECT_EQ(elimination.add_row(problem, {1, 0.0}, kRank), Outcome::kDependent);
 }
 
-TEST(DirectElimination, MeetsContradictoryRowsInTheSenseOfWeightedLeastSquares) {
+TEST(GaussElimination, MeetsContradictoryRowsInTheSenseOfWeightedLeastSquares) {
   srand(2);
   Eigen::MatrixXd C = Eigen::MatrixXd::Random(7, 4);
   C.row(6) = C.row(5);  // duplicate with another target
   const Problem problem = problem_of(C);
-  DirectElimination elimination(4, 11);
+  GaussElimination elimination(4, 11);
   elimination.reset(problem);
   ASSERT_EQ(elimination.add_row(problem, {0, 0.5}, kRank), Outcome::kIndependent);
   std::vector<TargetRow> rows;
@@ -115,11 +115,11 @@ TEST(DirectElimination, MeetsContradictoryRowsInTheSenseOfWeightedLeastSquares) 
   EXPECT_LT((gradient + mu * C.row(0).transpose()).norm(), 100 * kRounding);
 }
 
-TEST(DirectElimination, FindsMultipliersAndSaysWhatTheyLeave) {
+TEST(GaussElimination, FindsMultipliersAndSaysWhatTheyLeave) {
   srand(3);
   const Eigen::MatrixXd C = Eigen::MatrixXd::Random(3, 5);
   const Problem problem = problem_of(C);
-  DirectElimination elimination(5, 8);
+  GaussElimination elimination(5, 8);
   elimination.reset(problem);
   for (const int row : {0, 4, 1, 2}) {  // row 4: variable 1
     ASSERT_EQ(elimination.add_row(problem, {row, 0.0}, kRank), Outcome::kIndependent);
@@ -132,12 +132,12 @@ TEST(DirectElimination, FindsMultipliersAndSaysWhatTheyLeave) {
   EXPECT_GT(elimination.find_multipliers(g.data(), 3, 0, mu.data()), 0.1);
 }
 
-TEST(DirectElimination, LeavesFixedVariablesToTheirOwnRows) {
+TEST(GaussElimination, LeavesFixedVariablesToTheirOwnRows) {
   Eigen::MatrixXd C(1, 3);
   C << 0.7, 9.1, 0.3;
   Problem problem = problem_of(C);
   problem.set_bounds(2, {0.1, 0.1});  // x[1] = 0.1
-  DirectElimination elimination(3, 4);
+  GaussElimination elimination(3, 4);
   elimination.reset(problem);
   ASSERT_EQ(elimination.add_row(problem, {0, 1.3}, kRank), Outcome::kIndependent);
   ASSERT_EQ(elimination.add_row(problem, {2, 0.1}, kRank), Outcome::kIndependent);
@@ -149,11 +149,11 @@ TEST(DirectElimination, LeavesFixedVariablesToTheirOwnRows) {
 }
 
 // What x was where variables are taken, NaN included, does not show.
-TEST(DirectElimination, CompletesAPointFromItsFreeVariables) {
+TEST(GaussElimination, CompletesAPointFromItsFreeVariables) {
   srand(5);
   const Eigen::MatrixXd C = Eigen::MatrixXd::Random(3, 4);
   const Problem problem = problem_of(C);
-  DirectElimination elimination(4, 7);
+  GaussElimination elimination(4, 7);
   elimination.reset(problem);
   for (int row = 0; row < 3; ++row) {
     ASSERT_EQ(elimination.add_row(problem, {row, 1.0 + row}, kRank), Outcome::kIndependent);
@@ -166,10 +166,10 @@ TEST(DirectElimination, CompletesAPointFromItsFreeVariables) {
   EXPECT_LT((C * x - Eigen::Vector3d(1.0, 2.0, 3.0)).norm(), kRounding);
 }
 
-TEST(DirectElimination, ForgetsPivotsOnDemand) {
+TEST(GaussElimination, ForgetsPivotsOnDemand) {
   srand(4);
   const Problem problem = problem_of(Eigen::MatrixXd::Random(4, 3));
-  DirectElimination elimination(3, 7);
+  GaussElimination elimination(3, 7);
   elimination.reset(problem);
   const auto point_of = [&](int last_row) {
     EXPECT_EQ(elimination.add_row(problem, {last_row, 1.0}, kRank), Outcome::kIndependent);
@@ -188,4 +188,4 @@ TEST(DirectElimination, ForgetsPivotsOnDemand) {
 }
 
 }  // namespace
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver

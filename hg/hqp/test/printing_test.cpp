@@ -1,4 +1,4 @@
-#include "hg/hqp/explanation.h"
+#include "hg/hqp/printing.h"
 
 #include <gtest/gtest.h>
 

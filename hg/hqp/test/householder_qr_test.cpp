@@ -1,13 +1,13 @@
-#include "hg/hqp/elimination.h"
+#include "hg/hqp/solver/householder_qr.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <vector>
 
-#include "hg/hqp/dense_least_squares.h"
+#include "hg/hqp/solver/dense_least_squares.h"
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
 constexpr double kRank = 1e-9;
@@ -18,23 +18,23 @@ Problem problem_of(const Eigen::MatrixXd& rows) {
   problem.add_level();
   for (int i = 0; i < m; ++i) {
     const Eigen::VectorXd c = rows.row(i);
-    problem.add_row({c.data(), static_cast<std::size_t>(c.size())}, {});
+    problem.add_row({c.data(), index(c.size())}, {});
   }
   return problem;
 }
 
-Eigen::MatrixXd basis(const Elimination& elimination, int n) {
+Eigen::MatrixXd basis(const HouseholderQr& elimination, int n) {
   Eigen::MatrixXd Q(n, n);
   for (int t = 0; t < n; ++t)
     Q.col(t) = Eigen::Map<const Eigen::VectorXd>(elimination.column(t), n);
   return Q;
 }
 
-TEST(Elimination, KeepsAnOrthogonalBasisWithTriangularPivots) {
+TEST(HouseholderQr, KeepsAnOrthogonalBasisWithTriangularPivots) {
   srand(1);
   const Eigen::MatrixXd C = Eigen::MatrixXd::Random(5, 7);
   const Problem problem = problem_of(C);
-  Elimination elimination(7, 5);
+  HouseholderQr elimination(7, 5);
   elimination.reset(7);
   for (int row = 0; row < 5; ++row) ASSERT_TRUE(elimination.add_row(problem, row, kRank));
   const Eigen::MatrixXd Q = basis(elimination, 7);
@@ -47,11 +47,11 @@ TEST(Elimination, KeepsAnOrthogonalBasisWithTriangularPivots) {
   }
 }
 
-TEST(Elimination, RefusesDependentAndZeroRows) {
+TEST(HouseholderQr, RefusesDependentAndZeroRows) {
   Eigen::MatrixXd C(4, 3);
   C << 1, 2, 3, -2, -4, -6 + 1e-12, 0, 0, 0, 1, 2, 3 + 1e-6;
   const Problem problem = problem_of(C);
-  Elimination elimination(3, 4);
+  HouseholderQr elimination(3, 4);
   elimination.reset(3);
   EXPECT_TRUE(elimination.add_row(problem, 0, kRank));
   EXPECT_FALSE(elimination.add_row(problem, 1, kRank));
@@ -62,7 +62,7 @@ TEST(Elimination, RefusesDependentAndZeroRows) {
   EXPECT_TRUE(elimination.add_row(problem, 1, kRank));
 }
 
-TEST(Elimination, StepsToTheSmallestLeastSquaresPointBesideFixedRows) {
+TEST(HouseholderQr, StepsToTheSmallestLeastSquaresPointBesideFixedRows) {
   srand(2);
   Eigen::MatrixXd C = Eigen::MatrixXd::Random(7, 6);
   C.row(4) = C.row(2) + C.row(0);  // dependent on the fixed row and another
@@ -70,7 +70,7 @@ TEST(Elimination, StepsToTheSmallestLeastSquaresPointBesideFixedRows) {
   const Problem problem = problem_of(C);
   const Eigen::VectorXd x = Eigen::VectorXd::Random(6);
   const Eigen::VectorXd targets = Eigen::VectorXd::Random(7);
-  Elimination elimination(6, 7);
+  HouseholderQr elimination(6, 7);
   elimination.reset(6);
   ASSERT_TRUE(elimination.add_row(problem, 0, kRank));
   std::vector<TargetRow> rows;
@@ -87,7 +87,7 @@ TEST(Elimination, StepsToTheSmallestLeastSquaresPointBesideFixedRows) {
   EXPECT_LT((elimination.step() - d).norm(), 1e-9);
 }
 
-TEST(Elimination, JudgesRankByTheMostIndependentRows) {
+TEST(HouseholderQr, JudgesRankByTheMostIndependentRows) {
   // rows 0 and 1 differ by 2e-9 of row 2: taken in order, row 1 would give a bad direction, and row
   // 2 would seem to add a third one
   const Eigen::RowVector3d a = Eigen::RowVector3d(1, 2, 3).normalized();
@@ -95,7 +95,7 @@ TEST(Elimination, JudgesRankByTheMostIndependentRows) {
   Eigen::MatrixXd C(3, 3);
   C << a, a + 2e-9 * b, b;
   const Problem problem = problem_of(C);
-  Elimination elimination(3, 3);
+  HouseholderQr elimination(3, 3);
   elimination.reset(3);
   const std::vector<TargetRow> rows = {{0, 1.0}, {1, 1.0}, {2, 1.0}};
   const Eigen::Vector3d x = Eigen::Vector3d::Zero();
@@ -103,10 +103,10 @@ TEST(Elimination, JudgesRankByTheMostIndependentRows) {
   EXPECT_EQ(elimination.rank(), 2);
 }
 
-TEST(Elimination, ProjectsToWhatIsFree) {
+TEST(HouseholderQr, ProjectsToWhatIsFree) {
   const Eigen::MatrixXd C = Eigen::RowVector3d(0, 2, 0);
   const Problem problem = problem_of(C);
-  Elimination elimination(3, 1);
+  HouseholderQr elimination(3, 1);
   elimination.reset(3);
   elimination.add_row(problem, 0, kRank);
   const Eigen::Vector3d g(1, 2, 3);
@@ -142,4 +142,4 @@ TEST(SolveLeastSquares, PivotsColumnsForStiffRows) {
 }
 
 }  // namespace
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver
