@@ -6,6 +6,6 @@
 namespace hg {
 
 /// `i` as an index; i >= 0.
-constexpr std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
+constexpr std::size_t index(std::ptrdiff_t i) noexcept { return static_cast<std::size_t>(i); }
 
 }  // namespace hg

@@ -16,6 +16,7 @@
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
 #include "hg/core/open_file.h"
+#include "hg/core/text.h"
 
 namespace hg::hqp {
 namespace {
@@ -26,13 +27,6 @@ constexpr std::string_view kStateLetters = ".lu=<>";  // in the order of RowStat
 constexpr std::array kTolerances = {
     std::pair{"rank_tolerance", &Options::rank_tolerance},
     std::pair{"feasibility_tolerance", &Options::feasibility_tolerance}};
-
-std::string in_quotes(std::string_view word) { return std::string("'").append(word).append("'"); }
-
-std::string to_text(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof(text), value).ptr};
-}
 
 // A name of several lines, or with other control characters, would not be read back.
 std::string in_one_line(std::string name) {
@@ -188,7 +182,7 @@ ParsedRow parse_row(Reader& reader, int level, int n, bool is_equality) {
   }
   const char* const rule = broken_rule(row.bounds, row.weight, norm_of(row.coefficients));
   if (rule != nullptr && !row.is_bad) {
-    reader.fail(std::string(rule) + "; a row that is wrong on purpose ends in 'bad'");
+    reader.fail(std::string(rule) + "; a deliberately invalid row ends in 'bad'");
   }
   return row;
 }

@@ -24,32 +24,32 @@ struct Corner {
     elimination.reset(2);
   }
   void solve(const std::vector<RowAtBound>& rows, const Eigen::Vector2d& g) {
-    cone.solve(problem, rows, g.data(), g.norm(), kRank, elimination);
+    nnls.solve(problem, rows, g.data(), g.norm(), kRank, elimination);
   }
   Problem problem;
   HouseholderQr elimination{2, 4};
-  Nnls cone{2, 8};
+  Nnls nnls{2, 8};
 };
 
 TEST(Nnls, HoldsOnlyRowsThatPush) {
   Corner corner;
   corner.solve({{0, 1.0}, {1, 1.0}}, {-2.0, 3.0});  // wants to go right and down
-  ASSERT_EQ(corner.cone.pushing(), 1);
-  EXPECT_EQ(corner.cone.row(0).row, 0);
-  EXPECT_NEAR(corner.cone.mu(0), 2.0, 1e-15);
-  EXPECT_LT((corner.cone.descent() - Eigen::Vector2d(0.0, -3.0)).norm(), 1e-15);
+  ASSERT_EQ(corner.nnls.size(), 1);
+  EXPECT_EQ(corner.nnls.row(0).row, 0);
+  EXPECT_NEAR(corner.nnls.mu(0), 2.0, 1e-15);
+  EXPECT_LT((corner.nnls.descent() - Eigen::Vector2d(0.0, -3.0)).norm(), 1e-15);
   EXPECT_EQ(corner.elimination.rank(), 1);
 }
 
 TEST(Nnls, ProvesACornerWithMoreRowsThanVariables) {
   Corner corner;
   corner.solve({{0, 1.0}, {1, 1.0}, {2, 1.0}, {3, 1.0}}, {-2.0, -1.0});
-  EXPECT_LT(corner.cone.descent().norm(), 1e-15);
+  EXPECT_LT(corner.nnls.descent().norm(), 1e-15);
   double sum_0 = 0.0;
-  for (int i = 0; i < corner.cone.pushing(); ++i) {
-    EXPECT_GT(corner.cone.mu(i), 0.0);
-    EXPECT_NE(corner.cone.row(i).row, 3);  // the earlier of two equal rows
-    if (corner.cone.row(i).row != 1) sum_0 += corner.cone.mu(i);
+  for (int i = 0; i < corner.nnls.size(); ++i) {
+    EXPECT_GT(corner.nnls.mu(i), 0.0);
+    EXPECT_NE(corner.nnls.row(i).row, 3);  // the earlier of two equal rows
+    if (corner.nnls.row(i).row != 1) sum_0 += corner.nnls.mu(i);
   }
   EXPECT_NEAR(sum_0, 2.0, 1e-14);
 }
@@ -57,8 +57,8 @@ TEST(Nnls, ProvesACornerWithMoreRowsThanVariables) {
 TEST(Nnls, HoldsARowThatIsHardlyInTheWay) {
   Corner corner;
   corner.solve({{0, 1.0}}, {-1e-5, 1.0});  // wants to go down, and right a little
-  ASSERT_EQ(corner.cone.pushing(), 1);
-  EXPECT_EQ(corner.cone.descent()[0], 0.0);
+  ASSERT_EQ(corner.nnls.size(), 1);
+  EXPECT_EQ(corner.nnls.descent()[0], 0.0);
 }
 
 TEST(Nnls, MeetsTheConditionsOfItsMinimum) {
@@ -82,23 +82,23 @@ TEST(Nnls, MeetsTheConditionsOfItsMinimum) {
     const Eigen::VectorXd g = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
     HouseholderQr elimination(n, m);
     elimination.reset(n);
-    Nnls cone(n, m);
-    cone.solve(problem, candidates, g.data(), g.norm(), kRank, elimination);
+    Nnls nnls(n, m);
+    nnls.solve(problem, candidates, g.data(), g.norm(), kRank, elimination);
 
     // descent = -(g + sum mu s c), opposed by no row and neutral to those that push
-    const Eigen::VectorXd descent = cone.descent().head(n);
+    const Eigen::VectorXd descent = nnls.descent().head(n);
     Eigen::VectorXd sum = g + descent;
-    for (int i = 0; i < cone.pushing(); ++i) {
-      ASSERT_GT(cone.mu(i), 0.0);
-      const auto [row, sign] = cone.row(i);
-      sum += cone.mu(i) * sign * C.row(row).transpose();
+    for (int i = 0; i < nnls.size(); ++i) {
+      ASSERT_GT(nnls.mu(i), 0.0);
+      const auto [row, sign] = nnls.row(i);
+      sum += nnls.mu(i) * sign * C.row(row).transpose();
       ASSERT_LT(std::abs(C.row(row).dot(descent)), 1e-9 * C.row(row).norm() * g.norm());
     }
     ASSERT_LT(sum.norm(), 1e-9 * g.norm());
     for (const auto& [row, sign] : candidates) {
       ASSERT_LT(sign * C.row(row).dot(descent), 1e-9 * C.row(row).norm() * g.norm());
     }
-    largest = std::max(largest, cone.pushing());
+    largest = std::max(largest, nnls.size());
   }
   EXPECT_EQ(largest, 8);
 }

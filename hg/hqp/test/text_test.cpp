@@ -71,7 +71,7 @@ TEST(ParseProblems, NamesLineAndExpectationOfWhatIsWrong) {
 
 TEST(ParseProblems, NamesTheRuleThatARowBreaks) {
   const std::string head = "hqp 2 1\nlevel 1 1\n1 2 3\n";
-  const std::string tail = "; a row that is wrong on purpose ends in 'bad'";
+  const std::string tail = "; a deliberately invalid row ends in 'bad'";
   const std::string coefficients = "x.hqp:4: coefficients and their norm must be finite" + tail;
   EXPECT_EQ(message_of(head + "1 nan 3 4\n"), coefficients);
   EXPECT_EQ(message_of(head + "-inf 1 3 4\n"), coefficients);

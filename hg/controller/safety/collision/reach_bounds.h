@@ -10,10 +10,10 @@
 namespace hg::collision {
 
 /// Joints of a chain at its neutral posture.
-class Levers {
+class ReachBounds {
  public:
   /// `range`: range of each joint; a prismatic joint shifts the bodies behind it that far.
-  Levers(model::Chain chain, std::vector<Interval> range);
+  ReachBounds(model::Chain chain, std::vector<Interval> range);
 
   /// Bounds as in Pair::lever for `shape` as seen from body `from`.
   VectorPM of(const Shape& shape, int from) const;

@@ -137,65 +137,65 @@ Sample known(int k) {
   return sample;
 }
 
-Reality reality() {
+TruthSummary truth() {
   const auto positions = [](const Truth& truth, std::vector<double>& values) {
     values = {truth.q_m[0]};
   };
   return {catalogue(), positions, 1000.0, VectorM::Constant(2, 20.0)};
 }
 
-TEST(Reality, JudgesTheTrueLinksNotTheBelievedOnes) {
-  Reality truly = reality();
+TEST(TruthSummary, JudgesTheTrueLinksNotTheBelievedOnes) {
+  TruthSummary summary = truth();
   for (int k = 0; k < 100; ++k) {
     Sample sample = known(k);
     sample.truth.q_m << (k == 50 ? 2.452 : 1.0), 0.0;  // m4 ends at 2.45
     sample.record.reference.q_m << 1.0, (k == 70 ? 1.5 : 0.0);
     sample.truth.T_B_H.p.x() = k == 20 ? 3e-3 : 0.0;
-    truly.add(sample);
+    summary.add(sample);
   }
-  EXPECT_NEAR(truly.worst_excess()[0], 2e-3, 1e-12);
-  EXPECT_NEAR(truly.max_joint_error(), 1.5, 1e-12);
-  EXPECT_EQ(truly.worst_joint(), 1);
-  EXPECT_NEAR(truly.max_hand_distance(), 3e-3, 1e-12);
+  EXPECT_NEAR(summary.worst_excess()[0], 2e-3, 1e-12);
+  EXPECT_NEAR(summary.max_joint_error(), 1.5, 1e-12);
+  EXPECT_EQ(summary.worst_joint(), 1);
+  EXPECT_NEAR(summary.max_hand_distance(), 3e-3, 1e-12);
 }
 
-TEST(Reality, LimitsCountInEveryModeAndJointsWhileTheyAreStopped) {
-  Reality truly = reality();
+TEST(TruthSummary, LimitsCountInEveryModeAndJointsWhileTheyAreStopped) {
+  TruthSummary summary = truth();
   for (const Mode mode : {Mode::kRunning, Mode::kStopping, Mode::kFault}) {
     Sample sample = known(0);
     sample.record.mode = mode;
     const double beyond = mode == Mode::kFault ? 0.02 : 0.0;
     sample.truth.q_m << 2.45 + beyond, (mode == Mode::kStopping ? 0.3 : 0.0);
     sample.record.reference.q_m << 2.45, 0.0;
-    truly.add(sample);
+    summary.add(sample);
   }
-  EXPECT_NEAR(truly.worst_excess()[0], 0.02, 1e-12);
-  EXPECT_NEAR(truly.max_joint_error(), 0.3, 1e-12);
+  EXPECT_NEAR(summary.worst_excess()[0], 0.02, 1e-12);
+  EXPECT_NEAR(summary.max_joint_error(), 0.3, 1e-12);
 }
 
-TEST(Reality, TorquesAreComparedWithWhatTheMotorsCanGiveForEver) {
-  Reality truly = reality();
-  EXPECT_EQ(truly.rated_torque_share().size(), 0);
+TEST(TruthSummary, TorquesAreComparedWithWhatTheMotorsCanGiveForEver) {
+  TruthSummary summary = truth();
+  EXPECT_EQ(summary.rated_torque_share().size(), 0);
   for (int k = 0; k < 1000; ++k) {
     Sample sample = known(k);
     sample.truth.tau_motor << 10.0, (k % 2 == 0 ? 30.0 : -30.0);
     sample.record.tracking.torque_share[1] = k == 10 ? 1.2 : 0.3;
-    truly.add(sample);
+    summary.add(sample);
   }
-  EXPECT_NEAR(truly.rated_torque_share()[0], 0.5, 1e-12);
-  EXPECT_NEAR(truly.rated_torque_share()[1], 1.5, 1e-12);
-  EXPECT_EQ(truly.max_torque_share()[1], 1.2);
+  EXPECT_NEAR(summary.rated_torque_share()[0], 0.5, 1e-12);
+  EXPECT_NEAR(summary.rated_torque_share()[1], 1.5, 1e-12);
+  EXPECT_EQ(summary.max_torque_share()[1], 1.2);
 }
 
-TEST(Reality, VibrationIsWhatIsFasterThanPeopleMove) {
+TEST(TruthSummary, VibrationIsWhatIsFasterThanPeopleMove) {
   const auto vibration_at = [](double f_Hz) {
-    Reality truly = reality();
+    TruthSummary summary = truth();
     for (int k = 0; k < 20000; ++k) {
       Sample sample = known(k);
       sample.truth.acceleration[1] = std::sin(2.0 * std::numbers::pi * f_Hz * 1e-3 * k);
-      truly.add(sample);
+      summary.add(sample);
     }
-    return std::pair(truly.vibration(), truly.vibration_20());
+    return std::pair(summary.vibration(), summary.vibration_20());
   };
   const double rms = std::numbers::sqrt2 / 2.0;
   EXPECT_LT(vibration_at(0.5).first, 0.011 * rms);                              // (0.5 / 5)^2
@@ -210,7 +210,8 @@ TEST(Summary, TellsATimedOutStop) {
   EXPECT_EQ(text({}).find("timed out"), std::string::npos);
   EXPECT_NE(text({.stop_timed_out = true}).find("timed out"), std::string::npos);
   EXPECT_EQ(text({}).find("LOST"), std::string::npos);
-  EXPECT_NE(text({.dropped = 7}).find("7 samples: neither judged nor recorded"), std::string::npos);
+  EXPECT_NE(text({.dropped = 7}).find("7 samples: neither analysed nor recorded"),
+            std::string::npos);
   EXPECT_NE(text({.unrecorded = 8}).find("8 samples of the recording"), std::string::npos);
   EXPECT_NE(text({.recording_error = "disk full"}).find("0 samples of the recording: disk full"),
             std::string::npos);
@@ -304,9 +305,9 @@ TEST(Summary, SaysThatHandAndDeviceShookEachOther) {
     EXPECT_EQ(summary.has_shaken(), n > 300);
     summary.add(sample);
   }
-  EXPECT_NE(summary.to_text({}, {}).find(
-                "SHAKING      hand and device shake each other, 0.25 s in all, first at 0.300 s: "
-                "force above 30 Hz"),
+  EXPECT_NE(summary.to_text({}, {}).find("SHAKING      hand and device oscillate against each "
+                                         "other, 0.25 s in all, first at 0.300 s: "
+                                         "force above 30 Hz"),
             std::string::npos);
   const auto json = nlohmann::json::parse(summary.to_json({}, {}));
   EXPECT_NEAR(json["shaking"]["duration_s"].get<double>(), 0.25, 1e-9);

@@ -1,4 +1,4 @@
-#include "hg/analysis/explainer.h"
+#include "hg/analysis/run_story.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hg/controller/safety/rules.h"
+#include "hg/core/index.h"
 
 namespace hg::analysis {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr double kGap_s = 0.5;          // interruptions of a span up to this are not reported
 constexpr double kShortest_s = 0.02;    // limits that act for less are not reported
 constexpr double kMoving = 2e-2;        // rad/s or m/s, measured
-constexpr double kForceWindow_s = 0.5;  // the largest force is known of this one and the last
+constexpr double kForceWindow_s = 0.5;  // the largest force is that of this window and the last
 
 double speed_of(const Sample& sample) {
   double speed = 0.0;
@@ -61,8 +62,8 @@ std::string why_it_stops(const Sample& sample, bool was_autonomous) {
   const FaultCode code = sample.record.fault.code;
   if (code == FaultCode::kOperatorReleased) return ": the operator let go of the enabling switch";
   if (safety::is_fault(code)) return ": a fault, see there";
-  if (sample.operator_input.request == ModeRequest::kStop) return ": a stop was asked for";
-  if (was_autonomous && sample.sensors.dead_man) return ": somebody took hold of the handle";
+  if (sample.operator_input.request == ModeRequest::kStop) return ": a stop was requested";
+  if (was_autonomous && sample.sensors.dead_man) return ": the handle was grasped";
   if (was_autonomous && !sample.sensors.safety.override_key) {
     return ": the override key was turned off";
   }
@@ -83,9 +84,9 @@ std::string detail(const char* label, const std::string& text) {
 
 }  // namespace
 
-Explainer::Explainer(Names names) : names_(std::move(names)) {}
+RunStory::RunStory(Names names) : names_(std::move(names)) {}
 
-void Explainer::add(const Sample& sample) {
+void RunStory::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
   if (first_s_ < 0.0) {
     begin(sample);
@@ -110,34 +111,34 @@ void Explainer::add(const Sample& sample) {
 }
 
 // A recording that does not begin with the run does not show how its first state arose.
-void Explainer::begin(const Sample& sample) {
+void RunStory::begin(const Sample& sample) {
   first_s_ = last_.time_s = sample.record.time_s;
   if (sample.record.cycle != 0) remember(sample);
 }
 
-void Explainer::remember(const Sample& sample) {
+void RunStory::remember(const Sample& sample) {
   const CycleRecord& record = sample.record;
   last_ = {record.cycle,      record.time_s, record.mode,
            record.fault.code, record.tare,   record.is_autonomous};
 }
 
-void Explainer::add_gap(const CycleRecord& record) {
+void RunStory::add_gap(const CycleRecord& record) {
   if (record.cycle <= last_.cycle + 1) return;
   if (lost_.gaps++ == 0) lost_.first_s = last_.time_s;
   lost_.samples += record.cycle - last_.cycle - 1;
   lost_.longest_s = std::max(lost_.longest_s, record.time_s - last_.time_s);
 }
 
-void Explainer::add_event(double time_s, const std::string& name, const std::string& text) {
+void RunStory::add_event(double time_s, const std::string& name, const std::string& text) {
   entries_.push_back({time_s, "event", name + ": " + text, {}});
 }
 
-void Explainer::add_modes(const Sample& sample) {
+void RunStory::add_modes(const Sample& sample) {
   const CycleRecord& record = sample.record;
   if (record.mode == last_.mode) return;
   std::string text = fmt::format("{} -> {}", to_string(last_.mode), to_string(record.mode));
   if (record.mode == Mode::kRunning) {
-    text += record.is_autonomous ? ": by itself, with nobody at the handle"
+    text += record.is_autonomous ? ": autonomous, with the handle free"
                                  : ": the user holds the handle (dead-man closed)";
   }
   if (record.mode == Mode::kStopping) text += why_it_stops(sample, last_.is_autonomous);
@@ -149,12 +150,12 @@ void Explainer::add_modes(const Sample& sample) {
   entries_.push_back({record.time_s, "mode", text, {}});
 }
 
-void Explainer::add_requests(const CycleRecord& record) {
+void RunStory::add_requests(const CycleRecord& record) {
   if (record.refusal != Refusal::kNone) {
     entries_.push_back({record.time_s, "refused", std::string(to_string(record.refusal)), {}});
   }
-  const bool is_told = record.tare == TareStatus::kNone || record.tare == TareStatus::kUnderWay;
-  if (record.tare != last_.tare && !is_told) {
+  const bool is_silent = record.tare == TareStatus::kNone || record.tare == TareStatus::kUnderWay;
+  if (record.tare != last_.tare && !is_silent) {
     entries_.push_back({record.time_s, "tare", std::string(to_string(record.tare)), {}});
   }
   if (record.change == ChangeStatus::kRefused) {
@@ -162,8 +163,8 @@ void Explainer::add_requests(const CycleRecord& record) {
   }
 }
 
-void Explainer::extend(const char* kind, const std::string& text, double time_s, double value,
-                       const char* unit) {
+void RunStory::extend(const char* kind, const std::string& text, double time_s, double value,
+                      const char* unit) {
   const auto [found, is_new] = spans_.try_emplace({kind, text});
   Span& span = found->second;
   if (is_new) span.begin_s = time_s;
@@ -173,16 +174,16 @@ void Explainer::extend(const char* kind, const std::string& text, double time_s,
   span.unit = unit;
 }
 
-void Explainer::add_limits(const CycleRecord& record) {
+void RunStory::add_limits(const CycleRecord& record) {
   if (record.mode != Mode::kRunning && record.mode != Mode::kStopping) return;
   const int count = std::min(record.limit_count, static_cast<int>(names_.limits.size()));
   for (int i = 0; i < count; ++i) {
-    const LimitReport& report = record.limits[static_cast<std::size_t>(i)];
+    const LimitReport& report = record.limits[index(i)];
     const bool is_plain =
         report.state != LimitState::kViolated &&
         (report.cause == LimitCause::kAcceleration || report.cause == LimitCause::kFriction);
     if (report.state == LimitState::kInactive || is_plain) continue;
-    const LimitInfo& info = names_.limits[static_cast<std::size_t>(i)];
+    const LimitInfo& info = names_.limits[index(i)];
     extend(
         "limit",
         fmt::format("{}: {}{} limit", info.name, side_text(report.state), to_string(report.cause)),
@@ -190,14 +191,14 @@ void Explainer::add_limits(const CycleRecord& record) {
   }
 }
 
-void Explainer::add_others(const Sample& sample) {
+void RunStory::add_others(const Sample& sample) {
   const CycleRecord& record = sample.record;
   if (record.warning.code != FaultCode::kNone) {
     const safety::Rule& rule = safety::rule_of(record.warning.code);
     const std::string part = part_of(record.warning, names_, sample.sensors);
     const std::string what = fmt::format("{}{}", rule.name, part.empty() ? "" : " (" + part + ")");
     if (record.warning.code == FaultCode::kOscillation) {
-      extend("warning", what + ": hand and device shake each other", record.time_s);
+      extend("warning", what + ": hand and device oscillate against each other", record.time_s);
     } else {
       extend("warning", fmt::format("{}, stops at {:.4g}", what, record.warning.limit),
              record.time_s, record.warning.value);
@@ -208,7 +209,7 @@ void Explainer::add_others(const Sample& sample) {
         record.touch.joint < 0
             ? ""
             : fmt::format(" beyond joint {}", name_in(names_.joints, record.touch.joint, "number"));
-    extend("contact", fmt::format("something touches the arm{}: arm and gantry give way", where),
+    extend("contact", fmt::format("something touches the arm{}: arm and gantry yield", where),
            record.time_s, record.touch.wrench.head<3>().norm(), " N");
   }
   if (sample.truth.bystander.force > 0.0) {
@@ -233,16 +234,15 @@ void Explainer::add_others(const Sample& sample) {
            static_cast<double>(sample.operator_input.late_cycles));
   }
   if (sample.operator_input.most_active_sets > 0) {
-    extend("hurried", "a fault on purpose: the solver had a budget of a few active sets only",
+    extend("hurried", "an injected fault: the solver had a budget of a few active sets only",
            record.time_s);
   }
   if (record.tracking.is_clamped) {
-    extend("tracking", "the device was left behind: its reference was brought back to it",
-           record.time_s);
+    extend("tracking", "the device lagged behind: its reference was clamped to it", record.time_s);
   }
 }
 
-void Explainer::close_spans(double now_s, bool all) {
+void RunStory::close_spans(double now_s, bool all) {
   for (auto it = spans_.begin(); it != spans_.end();) {
     const Span& span = it->second;
     if (!all && now_s < span.end_s + kGap_s) {
@@ -263,7 +263,7 @@ void Explainer::close_spans(double now_s, bool all) {
   }
 }
 
-void Explainer::add_fault(const Sample& sample) {
+void RunStory::add_fault(const Sample& sample) {
   const CycleRecord& record = sample.record;
   const Fault& fault = record.fault;
   if (fault.code == last_.fault) return;
@@ -291,7 +291,7 @@ void Explainer::add_fault(const Sample& sample) {
   entries_.push_back(std::move(entry));
 }
 
-void Explainer::follow(const Sample& sample) {
+void RunStory::follow(const Sample& sample) {
   const CycleRecord& record = sample.record;
   aftermath_.force = std::max(aftermath_.force, force_of(sample));
   aftermath_.speed = speed_of(sample);
@@ -300,7 +300,7 @@ void Explainer::follow(const Sample& sample) {
   if (record.stop != Stop::kNone) aftermath_.stop = record.stop;
 }
 
-void Explainer::end_aftermath() {
+void RunStory::end_aftermath() {
   if (!std::exchange(has_aftermath_, false)) return;
   std::vector<std::string>& details = entries_[aftermath_.entry].details;
   const auto after_ms = [&](double time_s) { return 1e3 * (time_s - aftermath_.fault_s); };
@@ -326,7 +326,7 @@ void Explainer::end_aftermath() {
                          aftermath_.force)));
 }
 
-std::vector<Entry> Explainer::finish() {
+std::vector<Entry> RunStory::finish() {
   end_aftermath();
   close_spans(last_.time_s, true);
   if (lost_.gaps > 0) {

@@ -1,6 +1,6 @@
 /// Whether a computer is ready for a control loop, line by line, with what to change.
 ///
-/// Judged at the rate of the loop with the limits below; reasons: docs/runtime.md.
+/// Assessed at the rate of the loop with the limits below; reasons: docs/runtime.md.
 #pragma once
 
 #include <string>
@@ -12,19 +12,20 @@
 
 namespace hg::doctor {
 
-enum class Level {
+enum class Readiness {
   kOk,
   kWarn,  ///< usable, with less certainty
   kBad,   ///< a device must not be driven from here
 };
 
-std::string_view to_string(Level level) noexcept;
+std::string_view to_string(Readiness level) noexcept;
 
-struct Line {
-  Level level = Level::kOk;
+/// Assessment of one property of the computer.
+struct Assessment {
+  Readiness level = Readiness::kOk;
   std::string item;   ///< "kernel"
   std::string found;  ///< value found
-  std::string mend;   ///< commands that fix it, or why it cannot be fixed; empty = no change needed
+  std::string fix;    ///< commands that fix it, or why it cannot be fixed; empty = no change needed
 };
 
 /// Limits of the largest lateness, as a share of the period: a device gets its command within it.
@@ -33,13 +34,13 @@ inline constexpr double kBadShare = 0.5;   ///< share of the period from which o
 /// Idle wake-up latency above which a warning is given, us.
 inline constexpr double kIdleLatency_us = 50.0;
 
-std::vector<Line> judge(const Readings& readings);
+std::vector<Assessment> assess(const Readings& readings);
 
-/// Judges two measurements at the same rate, `ordinary` and `real_time`. `must_hold`: a lateness
+/// Assesses two measurements at the same rate, `ordinary` and `real_time`. `must_hold`: a lateness
 /// beyond kBadShare is bad, not only a warning.
-Line judge(const Jitter& ordinary, const Jitter& real_time, bool must_hold);
+Assessment assess(const Jitter& ordinary, const Jitter& real_time, bool must_hold);
 
 /// 0 = nothing is bad, else 1.
-int exit_code(const std::vector<Line>& lines) noexcept;
+int exit_code(const std::vector<Assessment>& lines) noexcept;
 
 }  // namespace hg::doctor

@@ -1,4 +1,4 @@
-/// Explains a run in words, from its samples and events in their order.
+/// The story of a run in words, from its samples and events in their order.
 ///
 /// Each line states what happened and how much; for a fault also its meaning, the reaction of the
 /// machine and what releases it. Works on recordings, outside any loop.
@@ -24,9 +24,9 @@ struct Entry {
   std::vector<std::string> details;  ///< further lines, "meaning      ..."
 };
 
-class Explainer {
+class RunStory {
  public:
-  explicit Explainer(Names names);
+  explicit RunStory(Names names);
 
   /// Adds the next sample; samples must be in order.
   void add(const Sample& sample);

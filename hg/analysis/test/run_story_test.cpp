@@ -1,4 +1,4 @@
-#include "hg/analysis/explainer.h"
+#include "hg/analysis/run_story.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ Names names() {
 // A run of `seconds` at 1 kHz, armed at 0.1 s and running from 0.2 s on, that `change` alters.
 std::vector<Entry> explained(double seconds,
                              const std::function<void(double, Sample&)>& change = {}) {
-  Explainer explainer(names());
+  RunStory story(names());
   for (int k = 0; k < static_cast<int>(1000.0 * seconds); ++k) {
     Sample sample;
     const double t = 1e-3 * k;
@@ -35,9 +35,9 @@ std::vector<Entry> explained(double seconds,
     sample.sensors.dead_man = t >= 0.2;
     sample.command.enable = t >= 0.1;
     if (change) change(t, sample);
-    explainer.add(sample);
+    story.add(sample);
   }
-  return explainer.finish();
+  return story.finish();
 }
 
 std::vector<Entry> of_kind(const std::vector<Entry>& entries, const std::string& kind) {
@@ -59,22 +59,22 @@ bool has_detail(const Entry& entry, const std::string& part) {
   return false;
 }
 
-TEST(Explainer, SaysThatSamplesAreMissing) {
-  Explainer explainer(names());
+TEST(RunStory, ReportsMissingSamples) {
+  RunStory story(names());
   for (const std::uint64_t cycle : {5U, 6U, 7U, 10U, 11U, 500U}) {
     Sample sample;
     sample.record.cycle = cycle;
     sample.record.time_s = 1e-3 * static_cast<double>(cycle);
-    explainer.add(sample);
+    story.add(sample);
   }
-  const auto lost = of_kind(explainer.finish(), "LOST");
+  const auto lost = of_kind(story.finish(), "LOST");
   ASSERT_EQ(lost.size(), 1U);
   EXPECT_EQ(lost[0].time_s, 0.007);
   EXPECT_TRUE(has(lost[0].text, "490 samples")) << lost[0].text;
   EXPECT_TRUE(has(lost[0].text, "2 gaps, the longest 0.489 s")) << lost[0].text;
 }
 
-TEST(Explainer, TellsModesInOrderAndNothingElseOfAQuietRun) {
+TEST(RunStory, ReportsOnlyModesOfAnUneventfulRun) {
   const auto entries = explained(0.5);
   ASSERT_EQ(entries.size(), 3u);
   EXPECT_EQ(entries[0].text, "off -> ready");
@@ -83,7 +83,7 @@ TEST(Explainer, TellsModesInOrderAndNothingElseOfAQuietRun) {
   EXPECT_TRUE(has(entries[2].text, "armed -> running: the user holds the handle"));
 }
 
-TEST(Explainer, TellsWhyARunStops) {
+TEST(RunStory, ReportsWhyARunStops) {
   const auto stopped = [](bool lets_go) {
     return of_kind(explained(0.5,
                              [=](double t, Sample& sample) {
@@ -97,10 +97,10 @@ TEST(Explainer, TellsWhyARunStops) {
         .text;
   };
   EXPECT_TRUE(has(stopped(true), "let go of the handle"));
-  EXPECT_TRUE(has(stopped(false), "a stop was asked for"));
+  EXPECT_TRUE(has(stopped(false), "a stop was requested"));
 }
 
-TEST(Explainer, TellsWhyARunByItselfStops) {
+TEST(RunStory, ReportsWhyAnAutonomousRunStops) {
   const auto stopped = [](bool is_held, bool is_key_turned) {
     return of_kind(explained(1.0,
                              [&](double t, Sample& sample) {
@@ -117,10 +117,10 @@ TEST(Explainer, TellsWhyARunByItselfStops) {
         .text;
   };
   EXPECT_TRUE(has(stopped(false, false), "the override key was turned off"));
-  EXPECT_TRUE(has(stopped(true, true), "somebody took hold of the handle"));
+  EXPECT_TRUE(has(stopped(true, true), "the handle was grasped"));
 }
 
-TEST(Explainer, JoinsWhatALimitDoesAcrossShortInterruptions) {
+TEST(RunStory, JoinsSpansAcrossShortInterruptions) {
   const auto entries =
       of_kind(explained(2.0,
                         [](double t, Sample& sample) {
@@ -138,7 +138,7 @@ TEST(Explainer, JoinsWhatALimitDoesAcrossShortInterruptions) {
   EXPECT_NEAR(entries[1].time_s, 1.501, 1e-9);
 }
 
-TEST(Explainer, ExplainsAFaultAndWhatTheMachineDid) {
+TEST(RunStory, ExplainsAFaultAndTheReaction) {
   const auto entries = explained(1.0, [](double t, Sample& sample) {
     if (t > 0.35 && t < 0.4) sample.record.robot.w_H[0] = 60.0;
     if (t < 0.4) return;
@@ -162,7 +162,7 @@ TEST(Explainer, ExplainsAFaultAndWhatTheMachineDid) {
   EXPECT_TRUE(has_detail(fault, "60.0 N"));
 }
 
-TEST(Explainer, SaysWhenTheEndIsNotSeen) {
+TEST(RunStory, ReportsAnUnseenStandstill) {
   const auto entries = explained(0.45, [](double t, Sample& sample) {
     if (t < 0.4) return;
     sample.record.mode = Mode::kFault;
@@ -178,7 +178,7 @@ TEST(Explainer, SaysWhenTheEndIsNotSeen) {
   EXPECT_TRUE(has_detail(faults[0], "0.700"));
 }
 
-TEST(Explainer, TellsWarningsRefusalsLateCyclesAndTheSanitiser) {
+TEST(RunStory, ReportsWarningsRefusalsLateCyclesAndTheSanitiser) {
   const auto entries = explained(1.0, [](double t, Sample& sample) {
     if (t > 0.3 && t < 0.4) {
       sample.record.warning = {FaultCode::kTrackingLost, 0, 0.05, 0.08};
@@ -193,15 +193,16 @@ TEST(Explainer, TellsWarningsRefusalsLateCyclesAndTheSanitiser) {
   });
   ASSERT_EQ(of_kind(entries, "warning").size(), 2u);
   EXPECT_TRUE(has(of_kind(entries, "warning")[0].text, "tracking (m1), stops at 0.08, up to 0.05"));
-  EXPECT_TRUE(has(of_kind(entries, "warning")[1].text,
-                  "oscillation (bouncing on a surface): hand and device shake each other, for "));
+  EXPECT_TRUE(has(
+      of_kind(entries, "warning")[1].text,
+      "oscillation (bouncing on a surface): hand and device oscillate against each other, for "));
   EXPECT_EQ(of_kind(entries, "command").size(), 2u);
   EXPECT_EQ(of_kind(entries, "refused").size(), 1u);
   EXPECT_TRUE(has(of_kind(entries, "late")[0].text, "up to 3"));
   EXPECT_TRUE(has(of_kind(entries, "solver")[0].text, "before its result was proven"));
 }
 
-TEST(Explainer, DoesNotTellAnOperatorWhoLetsGoAsAFault) {
+TEST(RunStory, OperatorReleaseIsNoFault) {
   const auto entries = explained(1.0, [](double t, Sample& sample) {
     if (t < 0.4 || t >= 0.8) return;
     sample.record.mode = t < 0.5 ? Mode::kStopping : Mode::kReady;
@@ -214,8 +215,8 @@ TEST(Explainer, DoesNotTellAnOperatorWhoLetsGoAsAFault) {
             "running -> stopping: the operator let go of the enabling switch");
 }
 
-TEST(Explainer, TakesTheFirstStateOfARecordingThatBeginsLateAsItIs) {
-  Explainer explainer(names());
+TEST(RunStory, AcceptsARecordingThatBeginsLate) {
+  RunStory story(names());
   Sample sample;
   sample.record.mode = Mode::kRunning;
   sample.record.tare = TareStatus::kDone;
@@ -223,10 +224,10 @@ TEST(Explainer, TakesTheFirstStateOfARecordingThatBeginsLateAsItIs) {
     sample.record.cycle = cycle;
     sample.record.time_s = 1e-3 * static_cast<double>(cycle);
     if (cycle == 2400) sample.record.mode = Mode::kStopping;
-    explainer.add(sample);
+    story.add(sample);
   }
-  EXPECT_NEAR(explainer.first_s(), 2.376, 1e-9);
-  const auto entries = explainer.finish();
+  EXPECT_NEAR(story.first_s(), 2.376, 1e-9);
+  const auto entries = story.finish();
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_EQ(entries[0].text.rfind("running -> stopping", 0), 0u) << entries[0].text;
 }
@@ -258,10 +259,10 @@ TEST(FaultFigures, NameThePartTheValueAndTheLimit) {
   EXPECT_EQ(text(FaultCode::kCommandNotFinite, 5, NAN, 0.0), "acceleration m2: not finite");
 }
 
-TEST(Explainer, SurvivesWhatNoRecordingHolds) {
-  Explainer nothing({});
+TEST(RunStory, SurvivesInvalidRecords) {
+  RunStory nothing({});
   EXPECT_TRUE(nothing.finish().empty());
-  Explainer explainer({});  // without names
+  RunStory story({});  // without names
   Sample sample;
   sample.record.limit_count = kMaxLimits;
   sample.record.mode = Mode::kRunning;
@@ -272,9 +273,9 @@ TEST(Explainer, SurvivesWhatNoRecordingHolds) {
     sample.record.fault = {static_cast<FaultCode>(code), static_cast<std::int16_t>(code), 1.0,
                            std::numeric_limits<double>::infinity()};
     sample.record.warning = sample.record.fault;
-    explainer.add(sample);
+    story.add(sample);
   }
-  EXPECT_GT(explainer.finish().size(), 400u);
+  EXPECT_GT(story.finish().size(), 400u);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "hg/controller/safety/collision/levers.h"
+#include "hg/controller/safety/collision/reach_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,8 @@ int frame_on(const model::Chain& chain, int body) {
 
 }  // namespace
 
-Levers::Levers(model::Chain chain, std::vector<Interval> range) : chain_(std::move(chain)) {
+ReachBounds::ReachBounds(model::Chain chain, std::vector<Interval> range)
+    : chain_(std::move(chain)) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain_.nv());
   chain_.update_kinematics(chain_.neutral(), zero);
   for (int i = 0; i < chain_.nv(); ++i) {
@@ -55,7 +56,7 @@ Levers::Levers(model::Chain chain, std::vector<Interval> range) : chain_(std::mo
   }
 }
 
-VectorPM Levers::of(const Shape& shape, int from) const {
+VectorPM ReachBounds::of(const Shape& shape, int from) const {
   VectorPM lever = VectorPM::Zero(chain_.nv());
   for (int i = from; i < shape.body; ++i) {
     const bool is_slide =
@@ -67,7 +68,7 @@ VectorPM Levers::of(const Shape& shape, int from) const {
 
 // The largest distance from the axis of a joint that a point of the shape can have: the offsets
 // from joint to joint, added up. While all axes are parallel only what is across them counts.
-double Levers::lever(int joint, const Shape& shape) const {
+double ReachBounds::lever(int joint, const Shape& shape) const {
   constexpr double kParallel = 1e-9;
   const Eigen::Vector3d& axis = axis_[static_cast<std::size_t>(joint)];
   bool is_parallel = true;

@@ -1,8 +1,8 @@
-/// True behaviour of a simulated device, compared with its controller's belief: errors of the
+/// True behaviour of a simulated device, compared with its controller's estimate: errors of the
 /// links, distance of handle and twin, limits, torques, forces and vibration at the handle.
 ///
-/// Fed with samples whose truth is known, outside the control loop. Limits are evaluated in every
-/// mode, joints while running or stopping, and felt quantities while running.
+/// Computed from samples whose truth is known, outside the control loop. Limits are evaluated in
+/// every mode, joints while running or stopping, and felt quantities while running.
 #pragma once
 
 #include <cstdint>
@@ -29,12 +29,12 @@ class HighPass {
 /// Positions of all limits of the device in the order of its catalogue.
 using LimitPositions = std::function<void(const Truth&, std::vector<double>&)>;
 
-class Reality {
+class TruthSummary {
  public:
   /// `catalogue` begins with the limits of the device. `torque_rated`: rated motor torques, Nm;
   /// empty for a device without torque control.
-  Reality(const LimitCatalogue& catalogue, LimitPositions positions, double rate_Hz,
-          const VectorM& torque_rated = {});
+  TruthSummary(const LimitCatalogue& catalogue, LimitPositions positions, double rate_Hz,
+               const VectorM& torque_rated = {});
 
   void add(const Sample& sample);
 

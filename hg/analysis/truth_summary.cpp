@@ -1,4 +1,4 @@
-#include "hg/analysis/reality.h"
+#include "hg/analysis/truth_summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,8 @@ Eigen::Vector3d HighPass::step(const Eigen::Vector3d& value) noexcept {
   return y;
 }
 
-Reality::Reality(const LimitCatalogue& catalogue, LimitPositions positions, double rate_Hz,
-                 const VectorM& torque_rated)
+TruthSummary::TruthSummary(const LimitCatalogue& catalogue, LimitPositions positions,
+                           double rate_Hz, const VectorM& torque_rated)
     : positions_of_(std::move(positions)),
       above_5_(5.0, rate_Hz),
       above_20_(20.0, rate_Hz),
@@ -43,7 +43,7 @@ Reality::Reality(const LimitCatalogue& catalogue, LimitPositions positions, doub
   worst_excess_.resize(ranges_.size(), 0.0);
 }
 
-void Reality::add(const Sample& sample) {
+void TruthSummary::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
   const Truth& truth = sample.truth;
   if (!truth.is_known) return;
@@ -78,16 +78,16 @@ void Reality::add(const Sample& sample) {
   sum_vibration_20_ += above_20_.step(a).squaredNorm();
 }
 
-VectorM Reality::rated_torque_share() const {
+VectorM TruthSummary::rated_torque_share() const {
   if (max_torque_share_.size() == 0) return {};
   return (sum_torque_ / static_cast<double>(cycles_)).cwiseSqrt().cwiseQuotient(torque_rated_);
 }
 
-double Reality::mean_force() const noexcept {
+double TruthSummary::mean_force() const noexcept {
   return cycles_ > 0 ? sum_force_ / static_cast<double>(cycles_) : 0.0;
 }
 
-double Reality::rms(double sum_of_squares) const noexcept {
+double TruthSummary::rms(double sum_of_squares) const noexcept {
   return cycles_ > 0 ? std::sqrt(sum_of_squares / static_cast<double>(cycles_)) : 0.0;
 }
 
