@@ -18,6 +18,7 @@
 #                waits in it ends the program. make rtsan-tests: without scenarios
 #   make audit   asks advisory databases about the crates and the page's packages, where they answer
 #   make headers checks that every header compiles alone
+#   make lint    checks names and some common mistakes (clang-tidy)
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
 #                FUZZ_SECONDS=600 of random bytes each, under sanitizers. What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
@@ -56,7 +57,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers clean
+.PHONY: demo audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -156,6 +157,11 @@ headers:
 	@[ -f $(BUILD)/compile_commands.json ] || \
 	  { tools/setup.sh build && tools/configure.sh $(PRESET) build; }
 	@.venv/bin/python tools/check_headers.py $(BUILD) --jobs $(JOBS)
+
+lint:
+	@[ -f $(BUILD)/compile_commands.json ] || \
+	  { tools/setup.sh test && tools/configure.sh $(PRESET) test; }
+	@.venv/bin/python tools/lint.py $(BUILD) --jobs $(JOBS)
 
 clean:
 	rm -rf build viewer/dist

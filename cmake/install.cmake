@@ -4,9 +4,9 @@
 # Everything but what only the program needs.
 set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning tracking safety
   controller device simulator runtime analysis config scenario)
-# headers that only their own module includes; Eigen or YAML show in them
+# folders and headers that only their own module includes; Eigen or YAML show in them
+set(HG_PRIVATE_FOLDERS hg/hqp/solver)
 set(HG_PRIVATE_HEADERS
-  "/hqp/(cone|dense_least_squares|direct_elimination|elimination|primal|rows|sweep|workspace)[.]h$"
   "/config/(describe_.*|loader|range|read_chain)[.]h$")
 
 include(CMakePackageConfigHelpers)
@@ -22,6 +22,7 @@ foreach(module IN LISTS HG_PACKAGE)
   install(TARGETS hg_${module} EXPORT hapticgiant COMPONENT cpp
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   get_property(folders GLOBAL PROPERTY HG_FOLDERS_${module})
+  list(REMOVE_ITEM folders ${HG_PRIVATE_FOLDERS})
   foreach(folder IN LISTS folders)
     file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.h)
     foreach(pattern IN LISTS HG_PRIVATE_HEADERS)

@@ -110,7 +110,7 @@ void check_scripts(Check& check) {
     for (const config::Twin& twin : check.twins) try_twin(twin);
     for (const config::Scenario& scenario : check.scenarios) try_twin(scenario.twin);
     for (checks::Finding& finding : fewest) {
-      if (finding.item == "frame") finding.mend = "check the script together with its twin";
+      if (finding.item == "frame") finding.fix = "check the script together with its twin";
     }
     add(fewest, check);
   }

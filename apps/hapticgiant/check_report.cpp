@@ -46,7 +46,7 @@ void print(const CheckReport& report) {
     print_out("{}:{}:{}: {}: {}{}{}\n", finding.file, finding.place.line, finding.place.column,
               to_string(finding.severity), finding.item, finding.item.empty() ? "" : ": ",
               finding.what);
-    if (!finding.mend.empty()) print_out("    to mend: {}\n", finding.mend);
+    if (!finding.fix.empty()) print_out("    to fix: {}\n", finding.fix);
   }
   const int faults = count(report, Severity::kFault);
   print_out("\n{}: {}, {}, {}\n", counted(static_cast<int>(report.files.size()), "file"),
@@ -69,7 +69,7 @@ std::string to_json(const CheckReport& report) {
                                 {"column", finding.place.column},
                                 {"item", finding.item},
                                 {"what", finding.what},
-                                {"mend", finding.mend}});
+                                {"fix", finding.fix}});
   }
   json["faults"] = count(report, Severity::kFault);
   json["warnings"] = count(report, Severity::kWarning);

@@ -11,16 +11,16 @@
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/analysis/timing.h"
+#include "hg/commissioning/doctor/assessment.h"
 #include "hg/commissioning/doctor/jitter.h"
 #include "hg/commissioning/doctor/readings.h"
-#include "hg/commissioning/doctor/verdict.h"
 
 namespace hg::apps {
 namespace {
 
+using doctor::Assessment;
 using doctor::Jitter;
-using doctor::Level;
-using doctor::Line;
+using doctor::Readiness;
 
 constexpr double kRates_Hz[] = {1000.0, 10000.0};
 
@@ -29,22 +29,22 @@ struct Measured {
   Jitter ordinary, real_time;
 };
 
-void print(const Line& line) {
+void print(const Assessment& line) {
   print_out(
       fmt::format("  {:<5} {:<11} {}\n", doctor::to_string(line.level), line.item, line.found));
-  if (!line.mend.empty()) print_out(fmt::format("  {:<17} -> {}\n", "", line.mend));
+  if (!line.fix.empty()) print_out(fmt::format("  {:<17} -> {}\n", "", line.fix));
 }
 
-nlohmann::ordered_json to_json(const std::vector<Line>& lines,
+nlohmann::ordered_json to_json(const std::vector<Assessment>& lines,
                                const std::vector<Measured>& measured) {
   nlohmann::ordered_json json;
   json["version"] = kVersion;
   json["exit_code"] = doctor::exit_code(lines);
-  for (const Line& line : lines) {
+  for (const Assessment& line : lines) {
     json["lines"].push_back({{"level", doctor::to_string(line.level)},
                              {"item", line.item},
                              {"found", line.found},
-                             {"mend", line.mend}});
+                             {"fix", line.fix}});
   }
   for (const Measured& pair : measured) {
     for (const Jitter* jitter : {&pair.ordinary, &pair.real_time}) {
@@ -63,8 +63,8 @@ int doctor(const DoctorArguments& arguments) {
   runtime::check({.priority = arguments.priority, .cpu = arguments.cpu});
   print_out(
       fmt::format("HapticGiant {}: is this computer ready for a control loop?\n\n", kVersion));
-  std::vector<Line> lines = doctor::judge(doctor::read());
-  for (const Line& line : lines) print(line);
+  std::vector<Assessment> lines = doctor::assess(doctor::read());
+  for (const Assessment& line : lines) print(line);
 
   print_out(
       fmt::format("\nhow late threads wake up, measured for {:.0f} s:\n", 4.0 * arguments.seconds));
@@ -79,19 +79,20 @@ int doctor(const DoctorArguments& arguments) {
     const double rate_Hz = pair.ordinary.rate_Hz;
     pair.real_time = measure(rate_Hz, arguments.priority);
     // 1 kHz is what devices need; faster is a choice
-    lines.push_back(doctor::judge(pair.ordinary, pair.real_time, rate_Hz == kRates_Hz[0]));
+    lines.push_back(doctor::assess(pair.ordinary, pair.real_time, rate_Hz == kRates_Hz[0]));
     print(lines.back());
   }
 
-  const auto count = [&](Level level) {
-    return std::ranges::count_if(lines, [=](const Line& line) { return line.level == level; });
+  const auto count = [&](Readiness level) {
+    return std::ranges::count_if(lines,
+                                 [=](const Assessment& line) { return line.level == level; });
   };
-  print_out(fmt::format("\n{} ok, {} to look at, {} bad: {}\n", count(Level::kOk),
-                        count(Level::kWarn), count(Level::kBad),
-                        count(Level::kBad) > 0
+  print_out(fmt::format("\n{} ok, {} to look at, {} bad: {}\n", count(Readiness::kOk),
+                        count(Readiness::kWarn), count(Readiness::kBad),
+                        count(Readiness::kBad) > 0
                             ? "simulate here, but do not drive a device from here"
-                            : (count(Level::kWarn) > 0 ? "a device can be driven, see above"
-                                                       : "a device can be driven")));
+                            : (count(Readiness::kWarn) > 0 ? "a device can be driven, see above"
+                                                           : "a device can be driven")));
   if (!arguments.json.empty()) {
     write_output(arguments.json, to_json(lines, measured).dump(2) + "\n");
   }

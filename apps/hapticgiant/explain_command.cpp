@@ -10,7 +10,7 @@
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "hg/analysis/explainer.h"
+#include "hg/analysis/run_story.h"
 #include "hg/core/error.h"
 #include "hg/recording/recording_reader.h"
 
@@ -21,19 +21,19 @@ namespace {
 class Reader final : public recording::RecordingListener {
  public:
   void configuration(const recording::NamedText& text) override {
-    if (!explainer_) configuration_.push_back(text);
+    if (!story_) configuration_.push_back(text);
   }
   void event(const recording::Event& event) override { events_.push_back(event); }
   void sample(const Sample& sample) override {
-    if (!explainer_) explainer_ = std::make_unique<analysis::Explainer>(names());
-    explainer_->add(sample);
+    if (!story_) story_ = std::make_unique<analysis::RunStory>(names());
+    story_->add(sample);
     ++samples_;
   }
 
   const std::string& title() const { return title_; }
   std::uint64_t samples() const { return samples_; }
-  double first_s() const { return explainer_->first_s(); }
-  double last_s() const { return explainer_->last_s(); }
+  double first_s() const { return story_->first_s(); }
+  double last_s() const { return story_->last_s(); }
   std::vector<analysis::Entry> entries() {
     for (const recording::Event& event : events_) {
       // the samples contain these events as well, in more detail
@@ -41,9 +41,9 @@ class Reader final : public recording::RecordingListener {
           event.name == "stopped" || event.name == "contact") {
         continue;
       }
-      explainer_->add_event(event.time_s, event.name, event.text);
+      story_->add_event(event.time_s, event.name, event.text);
     }
-    return explainer_->finish();
+    return story_->finish();
   }
 
  private:
@@ -62,7 +62,7 @@ class Reader final : public recording::RecordingListener {
 
   std::vector<recording::NamedText> configuration_;
   std::vector<recording::Event> events_;
-  std::unique_ptr<analysis::Explainer> explainer_;
+  std::unique_ptr<analysis::RunStory> story_;
   std::string title_;
   std::uint64_t samples_ = 0;
 };

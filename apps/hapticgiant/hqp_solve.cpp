@@ -9,7 +9,7 @@
 
 #include "apps/hapticgiant/output.h"
 #include "hg/core/error.h"
-#include "hg/hqp/explanation.h"
+#include "hg/hqp/printing.h"
 #include "hg/hqp/solver.h"
 #include "hg/hqp/text.h"
 

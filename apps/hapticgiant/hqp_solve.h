@@ -19,7 +19,7 @@ struct HqpSolveArguments {
 ///
 /// Prints one line per problem to stdout: x, then per level the optimal squared slack norm, in the
 /// shortest form that reads back to the same number. With `explains` or `level`: the solution in
-/// words, hg/hqp/explanation.h. With `has_timing` a table: microseconds per problem, median, mean,
+/// words, hg/hqp/printing.h. With `has_timing` a table: microseconds per problem, median, mean,
 /// 99.9 % and maximum, from a cold start and as above; each problem counts with the fastest of
 /// several runs, so that interruptions by the system do not show.
 ///

@@ -369,8 +369,7 @@ void add_hqp(CLI::App& app, hg::apps::HqpSolveArguments& arguments, int& exit_co
 
 void add_check(CLI::App& app, hg::apps::CheckArguments& check, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "check",
-      "What is wrong with configuration files, and how to mend it; datasheet of a device.");
+      "check", "What is wrong with configuration files, and how to fix it; datasheet of a device.");
   command->footer(
       "Examples:\n"
       "  hapticgiant check models/scenarios/door.yaml\n"

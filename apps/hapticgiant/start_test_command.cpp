@@ -69,7 +69,7 @@ class DeviceStation final : public start_test::Station {
     print_out(fmt::format("{:8.1f} s  -> {}\n", sample_.sensors.time_s, words));
     operator_.ask(act);
   }
-  void tell(const std::string& words) override {
+  void report(const std::string& words) override {
     print_out(fmt::format("{:8.1f} s  {}\n", sample_.sensors.time_s, words));
   }
 

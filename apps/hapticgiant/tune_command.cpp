@@ -18,10 +18,10 @@
 namespace hg::apps {
 namespace {
 
-tuning::Problem problem_of(const config::Device& device, const TuneArguments& arguments) {
+tuning::TuningProblem problem_of(const config::Device& device, const TuneArguments& arguments) {
   return {.device = tuning::device_of(device),
           .noise = tuning::noise_of(device),
-          .reality = tuning::simulated(device),
+          .plant = tuning::simulated(device),
           .friction = tuning::unexpected_friction(device),
           .body = {.mass = arguments.mass, .damping = arguments.damping},
           .postures = scenario::random_postures(device.model, arguments.postures, arguments.seed)};
@@ -46,7 +46,7 @@ std::string command_of(const TuneArguments& arguments) {
 
 int run_tune(const TuneArguments& arguments) {
   const config::Device device = config::load_device(find_device(arguments.device));
-  tuning::Problem problem = problem_of(device, arguments);
+  tuning::TuningProblem problem = problem_of(device, arguments);
   const tuning::Figures now = tuning::figures_of(problem, problem.device);
   problem.friction_most_N = now.friction_N;
   if (!arguments.only_checks) make_folder(arguments.out);
@@ -59,7 +59,7 @@ int run_tune(const TuneArguments& arguments) {
   if (arguments.has_front) {
     for (const double share : {0.75, 0.5, 1.5, 2.0}) limits.push_back(share * limit);
   }
-  const tuning::Result result = tuning::search(
+  const tuning::TuningResult result = tuning::search(
       problem, limits, [](const std::string& what, std::size_t done, std::size_t total) {
         if (const auto tell = progress_of(what)) tell(done, total);
       });

@@ -75,7 +75,7 @@ std::string worst_of(const tuning::Demands& demands, const Proof& proof) {
 }  // namespace
 
 std::string tune_check_text(const TuneReport& report) {
-  const tuning::Result& result = report.result;
+  const tuning::TuningResult& result = report.result;
   std::string text;
   for (const Column& column : kColumns) {
     text += fmt::format("{:28}{:>10} {}\n", column.name, value_of(column, result.before.figures),
@@ -169,7 +169,7 @@ std::string tune_csv(const TuneReport& report) {
                         proof.arm, proof.hand, proof.holds() ? 1 : 0);
     for (const double value : candidate.values) text += fmt::format(",{:g}", value);
   };
-  const tuning::Result& result = report.result;
+  const tuning::TuningResult& result = report.result;
   add(result.before.figures.vibration, result.before, result.proof_before);
   for (std::size_t i = 0; i < result.front.size(); ++i) {
     add(result.limits[i], result.front[i], result.proofs[i]);
@@ -190,7 +190,7 @@ Json point_of(const Candidate& candidate, const Proof& proof) {
 }
 
 // Felt over rendered impedance, largest and least over the axes and postures evaluated for feel.
-Json felt_of(const tuning::Problem& problem, const tuning::Device& device) {
+Json felt_of(const tuning::TuningProblem& problem, const tuning::Device& device) {
   constexpr double kFrom_Hz = 0.5, kTo_Hz = 60.0, kPerDecade = 24.0;
   std::vector<double> frequencies;
   for (double f = kFrom_Hz; f <= kTo_Hz; f *= std::pow(10.0, 1.0 / kPerDecade)) {
@@ -199,7 +199,7 @@ Json felt_of(const tuning::Problem& problem, const tuning::Device& device) {
   std::vector<double> least(frequencies.size(), kInfinity), largest(frequencies.size(), 0.0);
   for (std::size_t k = 0; k < std::min(problem.felt_postures, problem.postures.size()); ++k) {
     const tuning::HandleLoop loop =
-        tuning::linearise(device, problem.reality, problem.body, person::HandImpedance{},
+        tuning::linearise(device, problem.plant, problem.body, person::HandImpedance{},
                           problem.noise, problem.postures[k]);
     tuning::Resolvent resolvent(loop.A);
     for (std::size_t i = 0; i < frequencies.size(); ++i) {
@@ -225,7 +225,7 @@ Json radii_of(const std::vector<Proof>& everywhere) {
 }  // namespace
 
 std::string tune_figure(const TuneReport& report) {
-  const tuning::Result& result = report.result;
+  const tuning::TuningResult& result = report.result;
   Json front = Json::array();
   for (std::size_t i = 0; i < result.front.size(); ++i) {
     front.push_back(point_of(result.front[i], result.proofs[i]));

@@ -9,8 +9,8 @@ namespace hg::apps {
 
 /// A report with its command, and the lines for device.yaml.
 struct TuneReport {
-  const tuning::Problem& problem;
-  const tuning::Result& result;  ///< result; the first of its front is the requested one
+  const tuning::TuningProblem& problem;
+  const tuning::TuningResult& result;  ///< result; the first of its front is the requested one
   tuning::Demands demands;
   std::string name, command;
 };

@@ -17,7 +17,7 @@ struct Event {
   std::string what;
 };
 
-/// Detects events in the order of their rules: each is looked for once the one before it has
+/// Detects events in the order of their rules: each is expected after the one before it has
 /// happened.
 class EventDetector {
  public:

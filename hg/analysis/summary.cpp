@@ -46,7 +46,7 @@ std::string link_text(const LinkCounts& counts) {
 Summary::Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz,
                  const VectorM& torque_rated)
     : catalogue_(std::move(catalogue)),
-      reality_(catalogue_, std::move(positions), rate_Hz, torque_rated),
+      truth_(catalogue_, std::move(positions), rate_Hz, torque_rated),
       worst_excess_(catalogue_.size(), 0.0),
       rate_Hz_(rate_Hz) {}
 
@@ -55,7 +55,7 @@ void Summary::add(const Sample& sample) {
   ++cycles_;
   last_hash_ = record.state_hash;
   cycle_time_us_.add(sample.cycle_time_us);
-  // an operator who lets go is the cause of a stop, too, and no fault
+  // a released enabling switch also stops the device, and is no fault
   // a brake that does not hold takes the place of why it had to
   const bool is_first = fault_.code == FaultCode::kNone;
   const bool is_worse =
@@ -63,7 +63,7 @@ void Summary::add(const Sample& sample) {
   if (record.mode == Mode::kFault && (is_first || is_worse)) {
     fault_ = record.fault;
   }
-  reality_.add(sample);
+  truth_.add(sample);
   if (record.mode != Mode::kRunning) {
     last_acceleration_ = record.a_H;
     return;
@@ -105,7 +105,7 @@ bool Summary::limits_held() const noexcept {
     const double tolerance = catalogue_[i].is_angle ? kToleranceRadians : kToleranceMetres;
     if (worst_excess_[i] > tolerance) return false;
   }
-  const std::vector<double>& truly = reality_.worst_excess();
+  const std::vector<double>& truly = truth_.worst_excess();
   for (std::size_t i = 0; i < truly.size(); ++i) {
     if (truly[i] > (catalogue_[i].is_angle ? kTrueToleranceRadians : kTrueToleranceMetres)) {
       return false;
@@ -140,7 +140,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
                                           {"unit", catalogue_[i].is_angle ? "rad" : "m"}};
   }
   json["limits_held"] = limits_held();
-  if (reality_.is_known()) json["reality"] = reality_json();
+  if (truth_.is_known()) json["reality"] = truth_json();
   json["shaking"] = shaking_json();
   if (feels_touch_) json["touch"] = touch_json();
   json["sync_error"] = {{"max_m", max_sync_error_}, {"max_rad", max_sync_angle_}};
@@ -186,24 +186,24 @@ nlohmann::ordered_json Summary::touch_json() const {
           {"max_force_N", max_touch_force_}};
 }
 
-nlohmann::ordered_json Summary::reality_json() const {
+nlohmann::ordered_json Summary::truth_json() const {
   nlohmann::ordered_json json;
-  const std::vector<double>& excess = reality_.worst_excess();
+  const std::vector<double>& excess = truth_.worst_excess();
   for (std::size_t i = 0; i < excess.size(); ++i) {
     json["limits"][catalogue_[i].name] = {{"worst_violation", excess[i]},
                                           {"unit", catalogue_[i].is_angle ? "rad" : "m"}};
   }
-  json["max_joint_error"] = reality_.max_joint_error();
-  json["max_handle_to_twin_m"] = reality_.max_hand_distance();
-  const VectorM& share = reality_.max_torque_share();
+  json["max_joint_error"] = truth_.max_joint_error();
+  json["max_handle_to_twin_m"] = truth_.max_hand_distance();
+  const VectorM& share = truth_.max_torque_share();
   json["max_torque_over_peak"] = std::vector<double>(share.begin(), share.end());
-  const VectorM rated = reality_.rated_torque_share();
+  const VectorM rated = truth_.rated_torque_share();
   json["rms_torque_over_rated"] = std::vector<double>(rated.begin(), rated.end());
-  json["cycles_held_back"] = reality_.clamped_cycles();
-  json["mean_force_N"] = reality_.mean_force();
-  json["vibration_above_5_Hz_m_per_s2"] = reality_.vibration();
-  json["vibration_above_20_Hz_m_per_s2"] = reality_.vibration_20();
-  const BystanderReport& bystander = reality_.bystander();
+  json["cycles_held_back"] = truth_.clamped_cycles();
+  json["mean_force_N"] = truth_.mean_force();
+  json["vibration_above_5_Hz_m_per_s2"] = truth_.vibration();
+  json["vibration_above_20_Hz_m_per_s2"] = truth_.vibration_20();
+  const BystanderReport& bystander = truth_.bystander();
   if (bystander.force > 0.0) {
     json["bystander"] = {{"max_force_N", bystander.force},
                          {"max_pressure_N_per_cm2", bystander.pressure},
@@ -213,12 +213,12 @@ nlohmann::ordered_json Summary::reality_json() const {
 }
 
 // True values of the simulation, unknown to a controller.
-std::string Summary::reality_text() const {
+std::string Summary::truth_text() const {
   std::string text;
   const auto line = [&](const char* label, const std::string& value) {
     text += fmt::format("  {:<12} {}\n", label, value);
   };
-  const std::vector<double>& excess = reality_.worst_excess();
+  const std::vector<double>& excess = truth_.worst_excess();
   const auto worst = std::ranges::max_element(excess);
   if (worst == excess.end() || *worst == 0.0) {
     line("in truth", "all limits of the device held");
@@ -227,29 +227,29 @@ std::string Summary::reality_text() const {
     line("in truth", fmt::format("{} beyond its limit by {:.3f} {}", limit.name, 1e3 * *worst,
                                  limit.is_angle ? "mrad" : "mm"));
   }
-  const auto joint = static_cast<std::size_t>(std::max(reality_.worst_joint(), 0));
+  const auto joint = static_cast<std::size_t>(std::max(truth_.worst_joint(), 0));
   line("tracking",
        fmt::format("joints within {:.2f} mrad ({}), handle within {:.2f} mm of the twin",
-                   1e3 * reality_.max_joint_error(), catalogue_[joint].name,
-                   1e3 * reality_.max_hand_distance()));
-  const VectorM& share = reality_.max_torque_share();
+                   1e3 * truth_.max_joint_error(), catalogue_[joint].name,
+                   1e3 * truth_.max_hand_distance()));
+  const VectorM& share = truth_.max_torque_share();
   if (share.size() > 0) {
     Eigen::Index most = 0;
     const double largest = share.maxCoeff(&most);
     Eigen::Index hottest = 0;
-    const double warmth = reality_.rated_torque_share().maxCoeff(&hottest);
+    const double warmth = truth_.rated_torque_share().maxCoeff(&hottest);
     line("torque",
          fmt::format("at most {:.0f} % of the peak ({}), rms {:.0f} % of the rated ({}){}",
                      100.0 * largest, catalogue_[static_cast<std::size_t>(most)].name,
                      100.0 * warmth, catalogue_[static_cast<std::size_t>(hottest)].name,
-                     reality_.clamped_cycles() == 0
+                     truth_.clamped_cycles() == 0
                          ? std::string()
-                         : fmt::format("; held back in {} cycles", reality_.clamped_cycles())));
+                         : fmt::format("; held back in {} cycles", truth_.clamped_cycles())));
   }
   line("handle", fmt::format("mean force {:.2f} N, vibration {:.3f} m/s^2 rms above 5 Hz, {:.3f} "
                              "above 20 Hz",
-                             reality_.mean_force(), reality_.vibration(), reality_.vibration_20()));
-  const BystanderReport& bystander = reality_.bystander();
+                             truth_.mean_force(), truth_.vibration(), truth_.vibration_20()));
+  const BystanderReport& bystander = truth_.bystander();
   if (bystander.force > 0.0) {
     line("BYSTANDER",
          fmt::format("hit with up to {:.0f} N, {:.1f} N/cm^2, pressed in by {:.1f} mm",
@@ -287,10 +287,11 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
                      1e3 * worst_excess_[worst], catalogue_[worst].is_angle ? "mrad" : "mm"));
   }
   if (has_shaken()) {
-    line("SHAKING", fmt::format("hand and device shake each other, {:.2f} s in all, first at "
-                                "{:.3f} s: {}",
-                                static_cast<double>(shaking_cycles_) / rate_Hz_, shaking_from_s_,
-                                to_string(shaking_)));
+    line("SHAKING",
+         fmt::format("hand and device oscillate against each other, {:.2f} s in all, first at "
+                     "{:.3f} s: {}",
+                     static_cast<double>(shaking_cycles_) / rate_Hz_, shaking_from_s_,
+                     to_string(shaking_)));
   }
   if (touched_s_ > 0.0) {
     line("CONTACT", fmt::format("something touched the arm, which gave way for {:.2f} s, with up "
@@ -303,7 +304,7 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("hand - twin", fmt::format("at most {:.3f} mm apart", 1e3 * max_sync_error_));
   line("force",
        fmt::format("mean {:.1f} N, max {:.1f} N", mean(sum_force_, running_cycles_), max_force_));
-  if (reality_.is_known()) text += reality_text();
+  if (truth_.is_known()) text += truth_text();
   const auto count = [&](SolverStatus status) {
     return solver_status_[static_cast<std::size_t>(status)];
   };
@@ -326,7 +327,7 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   const char* none = facts.recording_error.empty() ? "off" : "none";
   line("recording", facts.recording.empty() ? none : facts.recording);
   if (facts.dropped > 0) {
-    line("LOST", fmt::format("{} samples: neither judged nor recorded", facts.dropped));
+    line("LOST", fmt::format("{} samples: neither analysed nor recorded", facts.dropped));
   }
   if (facts.unrecorded > 0 || !facts.recording_error.empty()) {
     line("LOST", fmt::format("{} samples of the recording: {}", facts.unrecorded,

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "hg/analysis/events.h"
-#include "hg/analysis/reality.h"
 #include "hg/analysis/timing.h"
+#include "hg/analysis/truth_summary.h"
 #include "hg/signals/link_counts.h"
 #include "hg/signals/state.h"
 
@@ -45,7 +45,7 @@ std::string link_text(const LinkCounts& counts);
 
 class Summary {
  public:
-  /// `positions` evaluates devices whose truth is known, as in Reality.
+  /// `positions` evaluates devices whose truth is known, as in TruthSummary.
   Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz,
           const VectorM& torque_rated = {});
 
@@ -60,7 +60,7 @@ class Summary {
   bool has_shaken() const noexcept { return shaking_cycles_ > 0; }
   const std::vector<Event>& events() const noexcept { return events_; }
   const Fault& fault() const noexcept { return fault_; }
-  const Reality& reality() const noexcept { return reality_; }
+  const TruthSummary& truth() const noexcept { return truth_; }
   double max_sync_error() const noexcept { return max_sync_error_; }
 
   /// The JSON text of --summary. `missing` are expected events that did not happen.
@@ -69,13 +69,13 @@ class Summary {
   std::string to_text(const RunFacts& facts, const std::vector<std::string>& missing) const;
 
  private:
-  nlohmann::ordered_json reality_json() const;
+  nlohmann::ordered_json truth_json() const;
   nlohmann::ordered_json shaking_json() const;
   nlohmann::ordered_json touch_json() const;
-  std::string reality_text() const;
+  std::string truth_text() const;
 
   LimitCatalogue catalogue_;
-  Reality reality_;
+  TruthSummary truth_;
   std::vector<Event> events_;
   std::vector<double> worst_excess_;
   std::uint64_t cycles_ = 0, running_cycles_ = 0;

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "hg/core/index.h"
 #include "hg/core/interval.h"
 
 namespace hg::hqp {
@@ -83,7 +84,6 @@ class Problem {
     int variable;
   };
 
-  static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
   int append(Interval bounds, double weight, int variable, double norm);
 
   Capacity capacity_;

@@ -32,10 +32,10 @@ void check(const Options& options) {
 
 Solution::Solution(const Capacity& capacity) {
   check(capacity);
-  x.reserve(static_cast<std::size_t>(capacity.variables));
-  state.reserve(static_cast<std::size_t>(capacity.rows));
-  slack.reserve(static_cast<std::size_t>(capacity.rows));
-  levels.reserve(static_cast<std::size_t>(capacity.levels));
+  x.reserve(index(capacity.variables));
+  state.reserve(index(capacity.rows));
+  slack.reserve(index(capacity.rows));
+  levels.reserve(index(capacity.levels));
 }
 
 }  // namespace hg::hqp

@@ -21,14 +21,14 @@ const char* to_string(Status status) noexcept;
 
 /// Place of a row relative to its interval.
 enum class RowState : std::uint8_t {
-  kInactive,  ///< inside, or touching without being held
+  kInactive,  ///< inside, or at a bound without being active
   kLower,     ///< held at its lower bound by lower levels
   kUpper,     ///< held at its upper bound by lower levels
   kEqual,     ///< lb = ub and reached
   kBelow,     ///< violated: stays below its lower bound
   kAbove,     ///< violated: stays above its upper bound
 };
-constexpr bool is_held(RowState s) noexcept {
+constexpr bool is_at_bound(RowState s) noexcept {
   return s == RowState::kLower || s == RowState::kUpper;
 }
 constexpr bool is_violated(RowState s) noexcept {
@@ -64,7 +64,7 @@ void check(const Options& options);
 
 struct LevelResult {
   double slack_squared;  ///< sum of (weight * slack)^2 over the level's rows
-  int freedom;           ///< dimensions left to this level; 0 = the level is frozen
+  int freedom;           ///< dimensions left to this level; 0 = levels above fix x
   int blocking_row;      ///< row of a higher level that costs this level most slack; -1 = none
 };
 

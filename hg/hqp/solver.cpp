@@ -6,11 +6,14 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "hg/hqp/primal.h"
-#include "hg/hqp/sweep.h"
-#include "hg/hqp/workspace.h"
+#include "hg/hqp/solver/active_set_iteration.h"
+#include "hg/hqp/solver/level_by_level.h"
+#include "hg/hqp/solver/workspace.h"
 
 namespace hg::hqp {
+
+using namespace solver;
+
 namespace {
 
 // Efforts are counted in direct eliminations.
@@ -47,8 +50,8 @@ bool misses_rows(const Problem& problem, const Options& options, int levels,
                  const Workspace& work) noexcept {
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
-    if (work.point.state[at(row)] == RowState::kInactive && problem.norm(row) > 0.0 &&
-        violation(problem, options, work, row) != 0.0) {
+    if (work.iterate.state[index(row)] == RowState::kInactive && problem.norm(row) > 0.0 &&
+        violation(problem, options, work.iterate, row) != 0.0) {
       return true;
     }
   }
@@ -60,23 +63,23 @@ bool repeats_mistake(const Problem& problem, int levels, const std::vector<RowSt
                      const std::vector<RowState>& other, const Workspace& work) noexcept {
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
-    if (is_equality(problem.bounds(row)) || other[at(row)] != guess[at(row)]) continue;
-    if (as_guess(work.point.state[at(row)]) != guess[at(row)]) return true;
+    if (is_equality(problem.bounds(row)) || other[index(row)] != guess[index(row)]) continue;
+    if (as_guess(work.iterate.state[index(row)]) != guess[index(row)]) return true;
   }
   return false;
 }
 
-// Tries the guess in work.point.state and its corrections until one is proven, or `max_effort` is
+// Tries the guess in work.iterate.state and its corrections until one is proven, or `max_effort` is
 // spent, or `iterations` reaches `max_iterations`.
 bool try_guesses(const Problem& problem, const Options& options, int levels, int max_effort,
                  int max_iterations, int& iterations, Workspace& work) noexcept {
   int effort = 0;
   while (effort < max_effort && iterations < max_iterations) {
     ++iterations;
-    const Judgement judgement = solve_guess(problem, options, levels, work);
-    if (judgement == Judgement::kProven) return true;
-    if (judgement == Judgement::kInDoubt) return false;
-    effort += work.is_direct ? 1 : kOrthogonalEffort;
+    const GuessResult result = solve_guess(problem, options, levels, work);
+    if (result == GuessResult::kProven) return true;
+    if (result == GuessResult::kInDoubt) return false;
+    effort += work.factors.is_gauss ? 1 : kOrthogonalEffort;
   }
   return false;
 }
@@ -84,7 +87,7 @@ bool try_guesses(const Problem& problem, const Options& options, int levels, int
 // The guesses of `active`, then that of the dual method, then the method from zero.
 bool solve_by_guesses(const Problem& problem, const Options& options, const ActiveSet& active,
                       int levels, int& iterations, Workspace& work) noexcept {
-  std::vector<RowState>& guess = work.point.state;
+  std::vector<RowState>& guess = work.iterate.state;
   const int effort_from_zero = kEffort + kEffortPerVariable * problem.variables();
   // the other half is for the method that completes level by level
   const int half = (options.max_iterations + 1) / 2;
@@ -124,7 +127,7 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
   }
   if (has_guess) {
     if (options.budget == 0 || iterations < options.budget) return false;
-    work.is_last = true;
+    work.outcome.is_last_guess = true;
     const int last = std::min(options.budget + 1, options.max_iterations);
     return try_guesses(problem, options, levels, 1, last, iterations, work);
   }
@@ -137,31 +140,32 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
 // optimal.
 Status complete_levels(const Problem& problem, const Options& options, int all_levels, int& levels,
                        int& iterations, Workspace& work) noexcept {
-  const PrimalOutcome outcome =
+  const LevelOutcome outcome =
       solve_level_by_level(problem, options, all_levels, iterations, levels, work);
-  if (outcome == PrimalOutcome::kIterationLimit) return Status::kIterationLimit;
-  if (outcome == PrimalOutcome::kNotFinite) return Status::kNumericalFailure;
+  if (outcome == LevelOutcome::kIterationLimit) return Status::kIterationLimit;
+  if (outcome == LevelOutcome::kNotFinite) return Status::kNumericalFailure;
 
-  // tolerances are relative to the largest x on the way: from far away they were too large
-  const double x_norm = work.point.x.head(problem.variables()).norm();
-  const bool came_from_afar = work.has_dual_point && work.x_norm > kFar * x_norm;
+  // tolerances are relative to the largest x on the way: from a distant start they were too large
+  const double x_norm = work.iterate.x.head(problem.variables()).norm();
+  const bool came_from_afar = work.outcome.has_dual_point && work.iterate.x_norm > kFar * x_norm;
 
-  // the same active set always gives the same bits, whichever way it was found
-  work.saved = work.point;
-  load_guess(problem, levels, work.saved.state, work.point.state);
+  // the same active set always gives the same bits, however it was found
+  work.saved = work.iterate.point();
+  load_guess(problem, levels, work.saved.state, work.iterate.state);
   start_from_zero(problem, work);
-  std::copy_n(work.value.begin(), problem.rows(), work.last_value.begin());
+  std::copy_n(work.iterate.value.begin(), problem.rows(), work.steps.last_value.begin());
   if (!try_guesses(problem, options, levels, kProofEffort, options.max_iterations, iterations,
                    work)) {
     if (came_from_afar) {
-      work.has_dual_point = false;
+      work.outcome.has_dual_point = false;
       return complete_levels(problem, options, all_levels, levels, iterations, work);
     }
-    work.point = work.saved;
+    work.iterate.point() = work.saved;
     const int optimal = count_optimal_levels(problem, options, all_levels, work);
     levels = std::min(optimal, all_levels);
     if (optimal <= all_levels) {
-      const bool is_finite = std::isfinite(work.gradient.head(problem.variables()).squaredNorm());
+      const bool is_finite =
+          std::isfinite(work.duals.gradient.head(problem.variables()).squaredNorm());
       return is_finite ? Status::kIterationLimit : Status::kNumericalFailure;
     }
   }
@@ -176,48 +180,49 @@ Status solve_levels(const Problem& problem, const Options& options, const Active
 
   Options limited = options;
   if (options.budget > 0) {
-    if (work.is_last) {
-      levels = take_better_point(problem, options, all_levels, work);
+    if (work.outcome.is_last_guess) {
+      levels = choose_better_point(problem, options, all_levels, work);
       if (levels > 0) return Status::kIterationLimit;
     }
-    work.is_last = false;
+    work.outcome.is_last_guess = false;
     limited.max_iterations =
         std::min(options.max_iterations, options.budget + kClosing * all_levels);
   }
   return complete_levels(problem, limited, all_levels, levels, iterations, work);
 }
 
-// Receives the states of a solution; what was there before is kept when it is another guess.
+// Receives the states of a solution; its previous states are kept as the second guess when they
+// differ.
 void update(const Problem& problem, const std::vector<RowState>& state,
             ActiveSet& active) noexcept {
   if (std::memcmp(state.data(), active.state.data(), state.size()) == 0) return;
   bool is_same = true;
   for (int row = 0; row < problem.rows() && is_same; ++row) {
     is_same = is_equality(problem.bounds(row)) ||
-              as_guess(state[at(row)]) == as_guess(active.state[at(row)]);
+              as_guess(state[index(row)]) == as_guess(active.state[index(row)]);
   }
   if (!is_same) std::copy_n(active.state.begin(), problem.rows(), active.before.begin());
   std::copy_n(state.begin(), problem.rows(), active.state.begin());
 }
 
-// Needs work.value.
+// Needs work.iterate.value.
 void read_levels(const Problem& problem, int levels, const Workspace& work,
                  Solution& solution) noexcept {
   for (int level = 0; level < levels; ++level) {
     double slack_squared = 0.0;
     for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-      const double slack = -excess(problem.bounds(row), work.value[at(row)]);
+      const double slack = -excess(problem.bounds(row), work.iterate.value[index(row)]);
       const double weighted = problem.weight(row) * slack;
-      solution.state[at(row)] = work.point.state[at(row)];
-      solution.slack[at(row)] = slack;
+      solution.state[index(row)] = work.iterate.state[index(row)];
+      solution.slack[index(row)] = slack;
       slack_squared += weighted * weighted;
     }
-    solution.levels[at(level)] = {
+    solution.levels[index(level)] = {
         .slack_squared = slack_squared,
-        .freedom = problem.variables() - work.point.rank_at_level[at(level)],
-        .blocking_row = work.point.blocking_row[at(level)]};
+        .freedom = problem.variables() - work.iterate.rank_at_level[index(level)],
+        .blocking_row = work.iterate.blocking_row[index(level)]};
   }
-  std::copy_n(work.point.x.data(), problem.variables(), solution.x.begin());
+  std::copy_n(work.iterate.x.data(), problem.variables(), solution.x.begin());
 
   const int rows = rows_of(problem, levels);
   std::fill(solution.state.begin() + rows, solution.state.end(), RowState::kInactive);
@@ -238,21 +243,21 @@ Solver& Solver::operator=(Solver&&) noexcept = default;
 Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& active,
                      Solution& solution) noexcept {
   Workspace& work = *workspace_;
-  require(problem.variables() <= work.point.x.size() &&
-              problem.levels() < static_cast<int>(work.point.rank_at_level.size()) &&
-              problem.rows() <= static_cast<int>(work.point.state.size()),
+  require(problem.variables() <= work.iterate.x.size() &&
+              problem.levels() < static_cast<int>(work.iterate.rank_at_level.size()) &&
+              problem.rows() <= static_cast<int>(work.iterate.state.size()),
           "the problem is larger than the capacity of the solver");
-  require(at(problem.variables()) <= solution.x.capacity() &&
-              at(problem.rows()) <= solution.slack.capacity() &&
-              at(problem.levels()) <= solution.levels.capacity(),
+  require(index(problem.variables()) <= solution.x.capacity() &&
+              index(problem.rows()) <= solution.slack.capacity() &&
+              index(problem.levels()) <= solution.levels.capacity(),
           "the problem is larger than the capacity of the solution");
   const int bad_row = find_bad_row(problem);
   const int levels = bad_row < 0 ? problem.levels() : problem.level_of(bad_row);
 
-  solution.x.resize(at(problem.variables()));
-  solution.state.resize(at(problem.rows()));
-  solution.slack.resize(at(problem.rows()));
-  solution.levels.resize(at(problem.levels()));
+  solution.x.resize(index(problem.variables()));
+  solution.state.resize(index(problem.rows()));
+  solution.slack.resize(index(problem.rows()));
+  solution.levels.resize(index(problem.levels()));
   solution.bad_row = bad_row;
   solution.bad_level = bad_row < 0 ? -1 : levels;
   solution.iterations = 0;
@@ -264,7 +269,7 @@ Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& 
 
   read_levels(problem, levels, work, solution);
   for (int level = 0; level < solution.completed_levels; ++level) {
-    if (std::isfinite(solution.levels[at(level)].slack_squared)) continue;
+    if (std::isfinite(solution.levels[index(level)].slack_squared)) continue;
     solution.status = Status::kNumericalFailure;
     solution.completed_levels = level;
   }
@@ -282,40 +287,41 @@ double Solver::multipliers(const Problem& problem, const Options& options, const
   Workspace& work = *workspace_;
   const int n = problem.variables();
   std::fill(mu.begin(), mu.end(), 0.0);
-  std::copy_n(solution.x.begin(), n, work.point.x.data());
-  work.x_norm = work.point.x.head(n).norm();
-  update_values(problem, level + 1, work);
+  std::copy_n(solution.x.begin(), n, work.iterate.x.data());
+  work.iterate.x_norm = work.iterate.x.head(n).norm();
+  update_values(problem, level + 1, work.iterate);
 
-  // rows of higher levels: those that may push either way first, then those at one bound
-  Elimination& elimination = work.elimination;
+  // rows of higher levels: those with multipliers of either sign first, then those at one bound
+  HouseholderQr& elimination = work.factors.householder;
   elimination.reset(n);
-  work.touched.clear();
+  work.rows_at_bounds.clear();
   for (int above = 0; above < level; ++above) {
-    collect_targets(problem, options, above, work);
-    elimination.add_least_squares(problem, work.targets, work.point.x.data(),
+    collect_targets(problem, options, above, work.iterate, work.targets);
+    elimination.add_least_squares(problem, work.targets, work.iterate.x.data(),
                                   options.rank_tolerance);
-    collect_touched(problem, options, above, work);
+    collect_rows_at_bounds(problem, options, above, work.iterate, work.rows_at_bounds);
   }
   const int two_sided = elimination.rank();
-  const LevelGradient size = level_gradient(problem, options, level, work);
-  work.cone.solve(problem, work.touched, work.gradient.data(), size.scale, options.rank_tolerance,
-                  elimination);
-  for (int i = 0; i < work.cone.pushing(); ++i) {
-    const auto [row, sign] = work.cone.row(i);
-    mu[at(row)] = sign * work.cone.mu(i);
-    add_multiple(problem, row, mu[at(row)], work.gradient.data());
+  const LevelGradient size =
+      level_gradient(problem, options, level, work.iterate, work.duals.gradient);
+  work.nnls.solve(problem, work.rows_at_bounds, work.duals.gradient.data(), size.scale,
+                  options.rank_tolerance, elimination);
+  for (int i = 0; i < work.nnls.size(); ++i) {
+    const auto [row, sign] = work.nnls.row(i);
+    mu[index(row)] = sign * work.nnls.mu(i);
+    add_multiple(problem, row, mu[index(row)], work.duals.gradient.data());
   }
   for (int t = two_sided - 1; t >= 0; --t) {
     const int row = elimination.pivot_row(t);
-    mu[at(row)] =
-        -VectorView(elimination.column(t), n).dot(work.gradient.head(n)) / elimination.pivot(t);
-    add_multiple(problem, row, mu[at(row)], work.gradient.data());
+    mu[index(row)] = -VectorView(elimination.column(t), n).dot(work.duals.gradient.head(n)) /
+                     elimination.pivot(t);
+    add_multiple(problem, row, mu[index(row)], work.duals.gradient.data());
   }
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
     const double factor = problem.weight(row) * problem.weight(row);
-    mu[at(row)] = factor * excess(problem.bounds(row), work.value[at(row)]);
+    mu[index(row)] = factor * excess(problem.bounds(row), work.iterate.value[index(row)]);
   }
-  return work.gradient.head(n).norm();
+  return work.duals.gradient.head(n).norm();
 }
 
 }  // namespace hg::hqp

@@ -18,7 +18,9 @@
 
 namespace hg::hqp {
 
+namespace solver {
 struct Workspace;
+}
 
 class Solver {
  public:
@@ -49,7 +51,7 @@ class Solver {
                      int level, std::span<double> mu) noexcept;
 
  private:
-  std::unique_ptr<Workspace> workspace_;
+  std::unique_ptr<solver::Workspace> workspace_;
 };
 
 }  // namespace hg::hqp

@@ -16,6 +16,7 @@
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
 #include "hg/core/open_file.h"
+#include "hg/core/text.h"
 
 namespace hg::hqp {
 namespace {
@@ -26,13 +27,6 @@ constexpr std::string_view kStateLetters = ".lu=<>";  // in the order of RowStat
 constexpr std::array kTolerances = {
     std::pair{"rank_tolerance", &Options::rank_tolerance},
     std::pair{"feasibility_tolerance", &Options::feasibility_tolerance}};
-
-std::string in_quotes(std::string_view word) { return std::string("'").append(word).append("'"); }
-
-std::string to_text(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof(text), value).ptr};
-}
 
 // A name of several lines, or with other control characters, would not be read back.
 std::string in_one_line(std::string name) {
@@ -169,7 +163,7 @@ struct ParsedRow {
 ParsedRow parse_row(Reader& reader, int level, int n, bool is_equality) {
   reader.need_line("a row of " + std::string(is_equality ? "an equality" : "an inequality"));
   const int count = n + (is_equality ? 1 : 2);
-  ParsedRow row = {level, std::vector<double>(static_cast<std::size_t>(n)), {}};
+  ParsedRow row = {level, std::vector<double>(index(n)), {}};
   int position = 0;
   const auto need_number = [&] {
     ++position;
@@ -188,7 +182,7 @@ ParsedRow parse_row(Reader& reader, int level, int n, bool is_equality) {
   }
   const char* const rule = broken_rule(row.bounds, row.weight, norm_of(row.coefficients));
   if (rule != nullptr && !row.is_bad) {
-    reader.fail(std::string(rule) + "; a row that is wrong on purpose ends in 'bad'");
+    reader.fail(std::string(rule) + "; a deliberately invalid row ends in 'bad'");
   }
   return row;
 }
@@ -234,7 +228,7 @@ Options parse_options(Reader& reader) {
 using States = std::array<RowState, kMaxRows>;
 
 void parse_states(Reader& reader, std::string_view letters, int rows, States& states) {
-  if (letters.size() != static_cast<std::size_t>(rows) ||
+  if (letters.size() != index(rows) ||
       letters.find_first_not_of(kStateLetters) != std::string_view::npos) {
     reader.fail("a letter of " + std::string(kStateLetters) + " for each of the " +
                     std::to_string(rows) + " rows",
@@ -339,7 +333,7 @@ bool has_one_bound(const Problem& problem, int row) {
 void write_row(std::ostream& out, const Problem& problem, int row, bool is_equality) {
   const std::span<const double> coefficients = problem.coefficients(row);
   for (int i = 0; i < problem.variables(); ++i) {
-    const double coefficient = problem.variable(row) < 0 ? coefficients[static_cast<std::size_t>(i)]
+    const double coefficient = problem.variable(row) < 0 ? coefficients[index(i)]
                                                          : (problem.variable(row) == i ? 1.0 : 0.0);
     write_number(out, coefficient);
     out << ' ';
@@ -434,7 +428,7 @@ std::string read_text(const std::string& file) {
   std::vector<char> buffer(1 << 16);
   int count = 0;
   while ((count = gzread(handle, buffer.data(), static_cast<unsigned>(buffer.size()))) > 0) {
-    text.append(buffer.data(), static_cast<std::size_t>(count));
+    text.append(buffer.data(), index(count));
   }
   const bool is_complete = gzclose(handle) == Z_OK && count == 0;
   if (!is_complete) throw SetupError(file + ": is damaged");

@@ -42,12 +42,6 @@ constexpr int kMostParts = 1000;         // links or joints; a chain has at most
 constexpr double kLeastMass = 1e-9;      // least nonzero mass of a link
 constexpr double kLeastInertia = 1e-15;  // principal moment
 
-std::string in_quotes(std::string_view text) {
-  std::string result = "'";
-  result += text;
-  return result += "'";
-}
-
 std::string place(const Urdf& urdf, int line) {
   return urdf.source + ":" + std::to_string(line) + ": ";
 }
@@ -322,12 +316,6 @@ class Reader {
 };
 
 }  // namespace
-
-std::string to_text(double value) {
-  std::array<char, 32> buffer;
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), result.ptr};
-}
 
 void check(const Inertial& inertial, std::string_view item) {
   // exported files carry six digits; a flat plate has I3 = I1 + I2

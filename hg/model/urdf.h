@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hg/core/interval.h"
+#include "hg/core/text.h"
 #include "hg/core/types.h"
 
 namespace hg::model {
@@ -71,7 +72,6 @@ Urdf read_urdf_text(std::string_view text, std::string_view source);
 /// Throws SetupError, beginning with `item`, unless the mass distribution is physically possible.
 void check(const Inertial& inertial, std::string_view item);
 
-/// `value` with the fewest digits that read back as the same number.
-std::string to_text(double value);
+using hg::to_text;
 
 }  // namespace hg::model

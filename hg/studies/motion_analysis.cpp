@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "hg/analysis/reality.h"
+#include "hg/analysis/truth_summary.h"
 
 namespace hg::studies {
 namespace {

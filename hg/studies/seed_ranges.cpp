@@ -27,23 +27,23 @@ SeededRun play(const Trial& trial, std::uint64_t seed) {
     summary.add(player.judged_sample());
     (void)detector.observe(player.record());
   }
-  const analysis::Reality& reality = summary.reality();
+  const analysis::TruthSummary& truth = summary.truth();
   SeededRun run = {.seed = seed,
                    .fault = summary.fault(),
                    .ended_s = player.record().time_s,
                    .missing = detector.missing().size(),
-                   .joint_error = reality.max_joint_error(),
-                   .handle_distance = reality.max_hand_distance(),
-                   .mean_force = reality.mean_force(),
-                   .vibration = reality.vibration()};
+                   .joint_error = truth.max_joint_error(),
+                   .handle_distance = truth.max_hand_distance(),
+                   .mean_force = truth.mean_force(),
+                   .vibration = truth.vibration()};
   run.has_held = run.fault.code == FaultCode::kNone && summary.limits_held();
-  if (reality.max_torque_share().size() > 0) {
-    run.torque_share = reality.max_torque_share().maxCoeff();
+  if (truth.max_torque_share().size() > 0) {
+    run.torque_share = truth.max_torque_share().maxCoeff();
   }
-  for (std::size_t i = 0; i < reality.worst_excess().size(); ++i) {
+  for (std::size_t i = 0; i < truth.worst_excess().size(); ++i) {
     const LimitInfo& limit = scenario.limits[i];
     WorstLimit& worst = limit.is_angle ? run.angle : run.length;
-    if (reality.worst_excess()[i] > worst.excess) worst = {reality.worst_excess()[i], limit.name};
+    if (truth.worst_excess()[i] > worst.excess) worst = {truth.worst_excess()[i], limit.name};
   }
   return run;
 }

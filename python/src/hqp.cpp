@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "hg/core/error.h"
-#include "hg/hqp/explanation.h"
+#include "hg/hqp/printing.h"
 #include "hg/hqp/solver.h"
 #include "hg/hqp/text.h"
 #include "python/src/arrays.h"

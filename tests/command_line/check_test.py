@@ -68,7 +68,7 @@ class Check(unittest.TestCase):
                          sum(f["severity"] == "warning" for f in told["findings"]))
         for finding in told["findings"]:
             self.assertEqual(set(finding), {"severity", "file", "line", "column", "item", "what",
-                                            "mend"})
+                                            "fix"})
         sheet = told["datasheets"][0]
         self.assertEqual([joint["name"] for joint in sheet["joints"]][2:],
                          ["m1", "m2", "m3", "m4", "m5", "m6"])
@@ -102,7 +102,7 @@ class Check(unittest.TestCase):
         code, out, _ = check(device)
         self.assertEqual(code, 2)
         self.assertIn(f"device.yaml:{line}:19: fault: synchronisation.kD_rot_1_per_s: kD dt = 2.5", out)
-        self.assertIn("to mend: lower it below 2000", out)
+        self.assertIn("to fix: lower it below 2000", out)
 
     def test_device_and_twin_are_checked_together(self):
         twin = self.changed(DOOR.parent, "twin.yaml", ("x_m: -0.30", "x_m: 4"))

@@ -30,7 +30,7 @@ class Doctor(TemporaryFolder):
         is_bad = any(line["level"] == "bad" for line in told["lines"])
         self.assertEqual(code, 1 if is_bad else 0)
         for line in told["lines"]:
-            self.assertEqual(bool(line["mend"]), line["level"] != "ok", line)
+            self.assertEqual(bool(line["fix"]), line["level"] != "ok", line)
         self.assertEqual(len(told["jitter"]), 4)
         for jitter in told["jitter"]:
             counted = sum(bin["count"] for bin in jitter["late_us"]["histogram"])

@@ -32,10 +32,10 @@ class SolverBudget : public ::testing::TestWithParam<Scenario> {
     EXPECT_EQ(run.quality().allocations, 0u);
     EXPECT_LT(run.quality().worst_budget, kBudgetMax);
     const auto device_limits = static_cast<std::size_t>(run.scenario().device.model.limit_count());
-    const std::vector<double>& excess = run.summary().reality().worst_excess();
+    const std::vector<double>& excess = run.summary().truth().worst_excess();
     ASSERT_GE(excess.size(), device_limits);
     for (std::size_t i = 0; i < device_limits; ++i) {
-      EXPECT_LE(excess[i], whole.summary().reality().worst_excess()[i] + kMore)
+      EXPECT_LE(excess[i], whole.summary().truth().worst_excess()[i] + kMore)
           << run.scenario().limits[i].name;
     }
   }

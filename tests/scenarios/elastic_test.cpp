@@ -46,7 +46,7 @@ config::Scenario scenario_of(const Case& c) {
 }
 
 void expect_limits_held_in_truth(const ScenarioRun& run) {
-  const std::vector<double>& excess = run.summary().reality().worst_excess();
+  const std::vector<double>& excess = run.summary().truth().worst_excess();
   for (std::size_t i = 0; i < excess.size(); ++i) {
     const LimitInfo& limit = run.scenario().limits[i];
     EXPECT_LT(excess[i], limit.is_angle ? kAngleMax : kLengthMax) << limit.name;
@@ -77,7 +77,7 @@ TEST_P(ElasticDevice, RunsTheScenarioWithinItsTolerances) {
   run.play();
   expect_sound(run);
   expect_limits_held_in_truth(run);
-  const analysis::Reality& reality = run.summary().reality();
+  const analysis::TruthSummary& reality = run.summary().truth();
   ASSERT_TRUE(reality.is_known());
   EXPECT_LT(reality.max_joint_error(), kErrorMax) << "m" << reality.worst_joint() + 1;
   EXPECT_LT(reality.max_hand_distance(), kSyncMax);
@@ -183,8 +183,8 @@ StuckJoint stuck_joint(const config::Scenario& scenario) {
     }
     last_dq = dq;
   });
-  result.hand = run.summary().reality().max_hand_distance();
-  result.clamped = run.summary().reality().clamped_cycles();
+  result.hand = run.summary().truth().max_hand_distance();
+  result.clamped = run.summary().truth().clamped_cycles();
   result.fault = run.summary().fault().code;
   return result;
 }

@@ -6,6 +6,7 @@
 
 #include "hg/commissioning/checks/survey.h"
 #include "hg/commissioning/checks/workspace.h"
+#include "hg/core/index.h"
 
 namespace hg::checks {
 namespace {
@@ -50,7 +51,7 @@ Cut make_cut(const Eigen::AlignedBox3d& bounds, const Eigen::AlignedBox3d& box, 
   section.box_x = {box.min()[right], box.max()[right]};
   section.box_y = {box.min()[up], box.max()[up]};
   cut.thickness = section.cell;
-  cut.values.resize(static_cast<std::size_t>(section.columns * section.rows));
+  cut.values.resize(index(section.columns * section.rows));
   return cut;
 }
 
@@ -63,7 +64,7 @@ void add(const Position& position, Cut& cut) {
   const int row =
       std::clamp(static_cast<int>((position.p[section.up] - section.y.lb) / section.cell), 0,
                  section.rows - 1);
-  cut.values[static_cast<std::size_t>(row * section.columns + column)].push_back(position.force);
+  cut.values[index(row * section.columns + column)].push_back(position.force);
 }
 
 }  // namespace
@@ -88,7 +89,7 @@ CapabilityMap capability_map(const config::Device& device) {
     map.sections.push_back(cut.section);
   }
   std::ranges::sort(all);
-  const auto high = static_cast<std::size_t>(0.98 * static_cast<double>(all.size()));
+  const auto high = index(0.98 * static_cast<double>(all.size()));
   if (!all.empty() && all[high] > 0.0) map.force_max = round_number(all[high]);
   return map;
 }

@@ -6,6 +6,8 @@
 #include <iterator>
 
 #include "hg/commissioning/checks/capability_map.h"
+#include "hg/core/index.h"
+#include "hg/core/text.h"
 
 namespace hg::checks {
 namespace {
@@ -19,27 +21,13 @@ std::string colour(double value) {
   constexpr std::array<std::array<double, 3>, 5> kStops = {
       {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
   const double at = std::clamp(value, 0.0, 1.0) * (kStops.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
+  const auto i = std::min(index(at), kStops.size() - 2);
   const double share = at - static_cast<double>(i);
   std::array<int, 3> rgb{};
   for (std::size_t k = 0; k < 3; ++k) {
     rgb[k] = static_cast<int>(std::lround(std::lerp(kStops[i][k], kStops[i + 1][k], share)));
   }
   return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
 }
 
 // One section in px: B's axes to the right and up, origin of the picture top left.
@@ -58,7 +46,7 @@ void draw_cells(const Section& section, const Frame& frame, double force_max, Ou
   const double size = section.cell * frame.scale;
   for (int row = 0; row < section.rows; ++row) {
     for (int column = 0; column < section.columns; ++column) {
-      const double force = section.force[static_cast<std::size_t>(row * section.columns + column)];
+      const double force = section.force[index(row * section.columns + column)];
       if (!std::isfinite(force)) continue;
       fmt::format_to(out,
                      "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{:.2f}\" "

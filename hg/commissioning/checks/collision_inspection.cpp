@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "hg/core/index.h"
+
 namespace hg::checks {
 
 void inspect_collisions(const config::Device& device, Collector& out) {
@@ -15,7 +17,7 @@ void inspect_collisions(const config::Device& device, Collector& out) {
   const std::string unknown =
       device.unknown_links.empty()
           ? std::string()
-          : fmt::format("nobody watches {}", fmt::join(device.unknown_links, ", "));
+          : fmt::format("not monitored: {}", fmt::join(device.unknown_links, ", "));
   if (config.shapes.empty()) {
     if (unknown.empty()) return;  // switched off
     out.add(Severity::kWarning, "collision", unknown,
@@ -55,14 +57,14 @@ void inspect_floor(const config::Device& device, const Survey& survey, Collector
   for (const collision::Excluded& pair : device.collision.pairs.excluded) {
     if (pair.reason != collision::Exclusion::kAlways) continue;
     const auto at = [&](int shape) -> const collision::Shape& {
-      return device.collision.shapes[static_cast<std::size_t>(shape)];
+      return device.collision.shapes[index(shape)];
     };
     if (at(pair.a).is_surrounding) inside.push_back(at(pair.b).name);
     if (at(pair.b).is_surrounding) inside.push_back(at(pair.a).name);
   }
   if (inside.empty()) return;
   out.add(Severity::kWarning, kKey,
-          fmt::format("{} in every posture in the floor at {:g} m: nobody watches how deep",
+          fmt::format("{} in every posture in the floor at {:g} m: how deep is not monitored",
                       fmt::join(inside, ", "), device.floor_z),
           "lower the floor, or make the collision elements of these links smaller");
 }

@@ -12,6 +12,7 @@
 #include "hg/commissioning/checks/collision_inspection.h"
 #include "hg/commissioning/checks/stopping_rule.h"
 #include "hg/commissioning/checks/workspace.h"
+#include "hg/core/index.h"
 
 namespace hg::checks {
 namespace {
@@ -73,7 +74,7 @@ void inspect_joints(const config::Device& device, const Survey& survey, Collecto
     const model::Joint& joint = model.chain.joints()[i];
     const bool is_gantry = static_cast<int>(i) < model.n_p;
     if (!is_gantry) {
-      const auto& limits = model.joint_limits[i - static_cast<std::size_t>(model.n_p)];
+      const auto& limits = model.joint_limits[i - index(model.n_p)];
       if (limits.q_min >= limits.q_max) {
         out.add(Severity::kFault, position_key(joint, "max"),
                 fmt::format("the joint has no range, it may only be at {:g}", limits.q_max),
@@ -105,7 +106,7 @@ void inspect_virtual_joints(const config::Device& device, Collector& out) {
     for (int i = 0; i < model.n_m; ++i) {
       const double weight = joint.weights[i];
       if (weight == 0.0) continue;
-      const auto& limits = model.joint_limits[static_cast<std::size_t>(i)];
+      const auto& limits = model.joint_limits[index(i)];
       reach.lb += std::min(weight * limits.q_min, weight * limits.q_max);
       reach.ub += std::max(weight * limits.q_min, weight * limits.q_max);
       ddq_sum += std::abs(weight) * limits.ddq_max;
@@ -136,7 +137,7 @@ void inspect_boxes(const config::Device& device, const Survey& survey, Collector
     if (survey.cloud.frames[k].isEmpty()) continue;  // no posture was found at all
     const rendering::CartesianLimit& limit = model.cartesian_limits[k];
     for (int axis = 0; axis < 3; ++axis) {
-      const limits::JointLimits& range = limit.axes[static_cast<std::size_t>(axis)];
+      const limits::JointLimits& range = limit.axes[index(axis)];
       const double lowest = survey.cloud.frames[k].min()[axis],
                    highest = survey.cloud.frames[k].max()[axis];
       if (!std::isfinite(range.q_min) && !std::isfinite(range.q_max)) continue;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 #include "hg/model/urdf.h"
 
 namespace hg::checks {
@@ -14,13 +15,13 @@ int take_number(std::string_view& text) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end == text.data() + text.size() || *end != ':') return 0;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()) + 1);
+  text.remove_prefix(index(end - text.data()) + 1);
   return value;
 }
 
 // "file:line:column: item: what"; column and item may be missing.
 Finding finding_of_line(std::string_view line, const std::string& file) {
-  Finding finding = {.file = file, .place = {}, .item = {}, .what = {}, .mend = {}};
+  Finding finding = {.file = file, .place = {}, .item = {}, .what = {}, .fix = {}};
   if (line.starts_with(file + ": ")) line.remove_prefix(file.size() + 2);
   for (std::size_t colon = line.find(':'); colon != std::string_view::npos;
        colon = line.find(':', colon + 1)) {
@@ -61,20 +62,19 @@ std::string_view to_string(Severity severity) noexcept {
 Collector::Collector(const std::vector<config::SourceText>& sources, const config::Places& places)
     : sources_(sources), places_(places) {}
 
-void Collector::add(Severity severity, const std::string& item, std::string what,
-                    std::string mend) {
+void Collector::add(Severity severity, const std::string& item, std::string what, std::string fix) {
   findings.push_back({severity, sources_.front().name, places_.nearest(item), item, std::move(what),
-                      std::move(mend)});
+                      std::move(fix)});
 }
 
 void Collector::add_at_urdf(Severity severity, std::string_view kind, const std::string& name,
-                            std::string what, std::string mend) {
+                            std::string what, std::string fix) {
   Finding finding = {severity,
                      sources_.front().name,
                      places_.nearest("urdf"),
                      std::string(kind) + " " + name,
                      std::move(what),
-                     std::move(mend)};
+                     std::move(fix)};
   for (const config::SourceText& source : sources_) {
     if (source.content.find("<robot") == std::string::npos) continue;
     const model::Urdf urdf = model::read_urdf_text(source.content, source.name);

@@ -24,7 +24,7 @@ struct Finding {
   config::Place place;
   std::string item;  ///< path of the key, e.g. "joints.m1.ddq_max_rad_per_s2"
   std::string what;  ///< the value and the expected one
-  std::string mend;  ///< suggested change; empty where `what` contains it
+  std::string fix;   ///< suggested change; empty where `what` contains it
 };
 using Findings = std::vector<Finding>;
 
@@ -37,11 +37,11 @@ class Collector {
 
   /// Adds a finding at a key of the YAML file or, where it is not given, at the map or list that
   /// would hold it.
-  void add(Severity severity, const std::string& item, std::string what, std::string mend);
+  void add(Severity severity, const std::string& item, std::string what, std::string fix);
   /// Adds a finding at the line of a joint or link of the URDF; at the YAML file where there is
   /// none.
   void add_at_urdf(Severity severity, std::string_view kind, const std::string& name,
-                   std::string what, std::string mend);
+                   std::string what, std::string fix);
 
   Findings findings;
 

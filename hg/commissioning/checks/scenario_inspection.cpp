@@ -12,6 +12,7 @@
 #include "hg/commissioning/checks/survey.h"
 #include "hg/commissioning/checks/twin_inspection.h"
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/stacked.h"
 #include "hg/scenario/start_posture.h"
@@ -54,7 +55,7 @@ void collect(const rendering::DeviceModel& model, const std::array<limits::Joint
   int joint = 0;
   for (int i = 0; i < model.n_m; ++i) {
     const double share = std::abs((*meeting.manipulator_of_twin)(i, dof)) * limits.ddq_max /
-                         model.joint_limits[static_cast<std::size_t>(i)].ddq_max;
+                         model.joint_limits[index(i)].ddq_max;
     if (share > largest) {
       largest = share;
       joint = i;
@@ -75,7 +76,7 @@ Demand summary(const rendering::DeviceModel& model, const std::string& name, Col
   const auto at = static_cast<std::ptrdiff_t>(kHigh * static_cast<double>(order.size() - 1));
   std::ranges::nth_element(order, order.begin() + at, {},
                            [&](std::size_t i) { return values.joint_acceleration[i]; });
-  const std::size_t high = order[static_cast<std::size_t>(at)];
+  const std::size_t high = order[index(at)];
   demand.joint_acceleration = values.joint_acceleration[high];
   demand.device_joint = model.manipulator_joint(values.device_joint[high]);
   return demand;
@@ -128,7 +129,7 @@ void inspect_work(const config::Device& device, const config::Twin& twin, Collec
       fmt::format("the twin has {} degrees of freedom, expected at most {:g} with the law {} at "
                   "{:g} Hz: the cycle may take longer than its period",
                   dofs, most, is_paper ? "paper" : "gauss", device.rate_Hz),
-      fmt::format("fix joints that nobody needs to move{}, or lower the device's rate_Hz",
+      fmt::format("fix joints that need not move{}, or lower the device's rate_Hz",
                   is_paper ? ", take the law gauss" : ""));
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "hg/core/index.h"
 #include "hg/model/joint_range.h"
 
 namespace hg::checks {
@@ -34,11 +35,11 @@ Scene make_scene(const config::Device& device) {
       device, joint_ranges(device), model.chain, Eigen::VectorXd::Zero(model.chain.nv()), {}, {}};
   scene.effort.resize(model.chain.nv());
   for (int i = 0; i < model.chain.nv(); ++i) {
-    scene.effort[i] = model.chain.joints()[static_cast<std::size_t>(i)].effort_max;
+    scene.effort[i] = model.chain.joints()[index(i)].effort_max;
   }
   scene.ddq_max.resize(model.n_m);
   for (int i = 0; i < model.n_m; ++i) {
-    scene.ddq_max[i] = model.joint_limits[static_cast<std::size_t>(i)].ddq_max;
+    scene.ddq_max[i] = model.joint_limits[index(i)].ddq_max;
   }
   return scene;
 }
@@ -101,7 +102,7 @@ void survey_postures(Scene& scene, Random& random, Survey& result) {
 
 // A gantry of prismatic joints shifts everything by J_p q_p: positions without further kinematics.
 bool gantry_only_shifts(const rendering::DeviceModel& model) {
-  const std::span joints(model.chain.joints().data(), static_cast<std::size_t>(model.n_p));
+  const std::span joints(model.chain.joints().data(), index(model.n_p));
   return model.n_p > 0 && std::ranges::all_of(joints, [](const model::Joint& joint) {
            return joint.type == model::JointType::kPrismatic;
          });
@@ -109,7 +110,7 @@ bool gantry_only_shifts(const rendering::DeviceModel& model) {
 
 bool is_inside(const rendering::CartesianLimit& limit, const Eigen::Vector3d& p) {
   for (int axis = 0; axis < 3; ++axis) {
-    const limits::JointLimits& range = limit.axes[static_cast<std::size_t>(axis)];
+    const limits::JointLimits& range = limit.axes[index(axis)];
     if (p[axis] < range.q_min || p[axis] > range.q_max) return false;
   }
   return true;
@@ -196,12 +197,12 @@ JointRanges joint_ranges(const config::Device& device) {
   const int n = model.chain.nv();
   JointRanges ranges = {Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (int i = 0; i < n; ++i) {
-    const model::Joint& joint = model.chain.joints()[static_cast<std::size_t>(i)];
+    const model::Joint& joint = model.chain.joints()[index(i)];
     Interval range = joint.position;
     if (i < model.n_p) {
-      range = device.prepositioning.q_limits[static_cast<std::size_t>(i)];
+      range = device.prepositioning.q_limits[index(i)];
     } else {
-      const auto& limits = model.joint_limits[static_cast<std::size_t>(i - model.n_p)];
+      const auto& limits = model.joint_limits[index(i - model.n_p)];
       range = {limits.q_min, limits.q_max};
     }
     range = model::finite_range(range, joint.type != model::JointType::kPrismatic);
@@ -242,7 +243,7 @@ Cloud cloud(const config::Device& device, int postures, bool at_limits, Random& 
   const rendering::DeviceModel& model = device.model;
   Scene scene = make_scene(device);
   const int copies = gantry_only_shifts(model) ? kCopies : 1;
-  const model::Joint& first = model.chain.joints()[static_cast<std::size_t>(model.n_p)];
+  const model::Joint& first = model.chain.joints()[index(model.n_p)];
   Cloud result;
   result.frames.assign(model.cartesian_limits.size(), Eigen::AlignedBox3d());
   for (int i = 0; i < postures; ++i) {

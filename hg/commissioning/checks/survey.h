@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <random>
 #include <vector>
 
 #include "hg/commissioning/checks/capability.h"
 #include "hg/config/device.h"
+#include "hg/core/random.h"
 
 namespace hg::checks {
 
@@ -28,16 +28,7 @@ struct JointRanges {
 };
 JointRanges joint_ranges(const config::Device& device);
 
-/// Uniform numbers that are the same with every standard library.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  /// Next number in [0, 1).
-  double next() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-
- private:
-  std::mt19937_64 engine_;
-};
+using hg::Random;
 
 /// Whether the virtual joints of the device permit `q` (gantry first).
 bool permits_virtual_joints(const rendering::DeviceModel& model, const Eigen::VectorXd& q);

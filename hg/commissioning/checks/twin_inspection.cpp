@@ -109,7 +109,7 @@ void inspect_spring(const rendering::TwinDof& dof, double inertia, double dt, Co
   } else if (0.5 * k > c && dof.friction == 0.0) {
     out.add(Severity::kWarning, damping,
             fmt::format("{:g} is less than stiffness * dt / 2 = {:.2g}: the spring gains energy "
-                        "while nobody holds the twin",
+                        "while the twin is not held",
                         dof.damping, 0.5 * stiffness * dt),
             fmt::format("raise it to {:.2g} or more", stiffness * dt));
   }

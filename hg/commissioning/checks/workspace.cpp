@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "hg/core/index.h"
+
 namespace hg::checks {
 namespace {
 
@@ -83,7 +85,7 @@ VoxelGrid::VoxelGrid(const Eigen::AlignedBox3d& box, double edge) : box_(box) {
     count_[axis] = static_cast<int>(std::clamp(std::round(length / edge), 1.0, kMost));
     edge_[axis] = length / count_[axis];
   }
-  touched_.assign(static_cast<std::size_t>(count_.prod()), 0);
+  touched_.assign(index(count_.prod()), 0);
 }
 
 void VoxelGrid::touch(const Eigen::Vector3d& point) {
@@ -128,7 +130,7 @@ bool VoxelGrid::is_touched(const Eigen::Vector3i& cell) const {
 }
 
 std::size_t VoxelGrid::index(const Eigen::Vector3i& cell) const {
-  return static_cast<std::size_t>((cell[0] * count_[1] + cell[1]) * count_[2] + cell[2]);
+  return index((cell[0] * count_[1] + cell[1]) * count_[2] + cell[2]);
 }
 
 Eigen::AlignedBox3d handle_box(const rendering::DeviceModel& model) {

@@ -10,6 +10,7 @@
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 
 namespace hg::generator {
 namespace {
@@ -30,9 +31,7 @@ struct DeviceDraft {
   Eigen::VectorXd posture;
 };
 
-const model::Joint& joint(const DeviceDraft& d, int i) {
-  return d.chain.joints()[static_cast<std::size_t>(i)];
-}
+const model::Joint& joint(const DeviceDraft& d, int i) { return d.chain.joints()[index(i)]; }
 
 // leading prismatic joints that six or seven others follow
 int gantry_joints(const model::Chain& chain, const std::string& source) {
@@ -90,7 +89,7 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
     const Eigen::VectorXd q = sampler.draw();
     double nearest = 1.0, sum = 0.0;  // 1 in the middle of a range, 0 at its ends
     for (int i = d.n_p; i < q.size(); ++i) {
-      const Interval range = d.ranges[static_cast<std::size_t>(i)];
+      const Interval range = d.ranges[index(i)];
       const double share = (2.0 * q[i] - range.lb - range.ub) / (range.ub - range.lb);
       nearest = std::min(nearest, 1.0 - std::abs(share));
       sum += 1.0 - share * share;
@@ -102,7 +101,7 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
     }
   }
   for (int i = 0; i < d.n_p; ++i) {
-    const Interval range = d.ranges[static_cast<std::size_t>(i)];
+    const Interval range = d.ranges[index(i)];
     best[i] = 0.5 * (range.lb + range.ub);
   }
   return best;
@@ -121,7 +120,7 @@ Interval without(Interval range, double singular, double value) {
 void leave_singularities(DeviceDraft& d) {
   for (const SingularValue& s : d.singular) {
     if (s.other >= 0) continue;
-    Interval& range = d.ranges[static_cast<std::size_t>(s.joint)];
+    Interval& range = d.ranges[index(s.joint)];
     range = without(range, s.value, d.posture[s.joint]);
   }
 }
@@ -166,8 +165,8 @@ Reach reach_of(DeviceDraft& d) {
         speed += 0.5 * std::abs(J(axis, i)) * speed_of(joint(d, i));
         acceleration += 0.5 * std::abs(J(axis, i)) * acceleration_of(joint(d, i));
       }
-      speeds[static_cast<std::size_t>(axis)].push_back(speed);
-      accelerations[static_cast<std::size_t>(axis)].push_back(acceleration);
+      speeds[index(axis)].push_back(speed);
+      accelerations[index(axis)].push_back(acceleration);
     }
   }
   const auto fifth_percentile = [](std::vector<double>& values) {
@@ -195,7 +194,7 @@ std::string joint_lines(const DeviceDraft& d) {
       "\njoints:  # positions and speeds that do not stand here are those of the URDF\n";
   for (int i = d.n_p; i < d.chain.nv(); ++i) {
     const model::Joint& j = joint(d, i);
-    const Interval range = d.ranges[static_cast<std::size_t>(i)];
+    const Interval range = d.ranges[index(i)];
     const std::string unit = unit_of(j);
     std::string keys, why = "full speed within 0.2 s";
     if (range.lb > j.position.lb && range.lb > -M_PI)
@@ -243,7 +242,7 @@ std::string virtual_joint_lines(const DeviceDraft& d) {
 
 std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   std::string text = fmt::format("\ncartesian_limits:\n  - name: hand\n    frame: {}\n",
-                                 quoted(d.chain.frame_names()[static_cast<std::size_t>(d.handle)]));
+                                 quoted(d.chain.frame_names()[index(d.handle)]));
   for (int axis = 0; axis < 3; ++axis) {
     text +=
         fmt::format("    {}: {{q_min_m: {}, q_max_m: {}}}{}\n", "xyz"[axis],
@@ -287,7 +286,7 @@ std::string device_yaml(const ChainPart& part, const std::filesystem::path& fold
     text += fmt::format("gantry: {}  # [V] the first prismatic joints\n", list_of(d, 0, d.n_p));
   text += fmt::format("manipulator: {}\n", list_of(d, d.n_p, d.chain.nv()));
   text += fmt::format("handle: {}  # [A] frame that is held, at the force/torque sensor\n",
-                      quoted(d.chain.frame_names()[static_cast<std::size_t>(d.handle)]));
+                      quoted(d.chain.frame_names()[index(d.handle)]));
   text += "rate_Hz: 1000\n";
   return text + joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/joint_range.h"
 
@@ -69,9 +70,9 @@ std::vector<SingularValue> singular_values(const model::Chain& chain, int frame,
   const int n = probe.nv();
   std::vector<SingularValue> found;
   const auto turns = [&](int joint) {
-    return probe.joints()[static_cast<std::size_t>(joint)].type != model::JointType::kPrismatic;
+    return probe.joints()[index(joint)].type != model::JointType::kPrismatic;
   };
-  const auto range = [&](int joint) { return ranges[static_cast<std::size_t>(joint)]; };
+  const auto range = [&](int joint) { return ranges[index(joint)]; };
 
   for (int i = first; i < n; ++i) {
     if (!turns(i)) continue;

@@ -8,6 +8,7 @@
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::generator {
@@ -35,9 +36,7 @@ struct Placement {
   bool is_upright = true;
 };
 
-const model::Joint& joint(const TwinDraft& d, int i) {
-  return d.chain.joints()[static_cast<std::size_t>(i)];
-}
+const model::Joint& joint(const TwinDraft& d, int i) { return d.chain.joints()[index(i)]; }
 
 TwinDraft make_draft(const ChainPart& part) {
   TwinDraft d{.chain = read_part(part), .ranges = {}, .start = {}, .lever = {}};
@@ -112,7 +111,7 @@ Pose nominal_handle(const config::Device& device) {
   const std::vector<Interval> ranges = joint_ranges(chain);
   Eigen::VectorXd q(chain.nq());
   for (int i = 0; i < q.size(); ++i) {
-    const Interval range = ranges[static_cast<std::size_t>(i)];
+    const Interval range = ranges[index(i)];
     q[i] = 0.5 * (range.lb + range.ub);
     const int goal = i - device.model.n_p;
     if (goal >= 0 && goal < device.model.posture.size() &&
@@ -250,7 +249,7 @@ std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder
              "end_effector: {}  # [A] frame that the hand holds\n",
              d.chain.name(), part.urdf.filename().generic_string(), device.name,
              quoted(d.chain.name()), part_lines(part, folder),
-             quoted(d.chain.frame_names()[static_cast<std::size_t>(d.end_effector)])) +
+             quoted(d.chain.frame_names()[index(d.end_effector)])) +
          placement_line(placement) +
          "gravity: false  # true: the hand carries the weight of the twin\n" +
          joint_lines(d, tip_ratings(device));

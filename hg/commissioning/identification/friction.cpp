@@ -244,7 +244,8 @@ class Decision {
       found.coulomb = {believed_.coulomb_friction, 0.0, false};
       found.viscous = {believed_.viscous_friction, 0.0, false};
       found.missing.push_back(
-          "Coulomb friction: cannot be told from load friction, likewise with different loads");
+          "Coulomb friction: cannot be distinguished from load friction, likewise with different "
+          "loads");
     }
     found.stiction = figure(kStiction);
     found.stribeck_speed = of_logarithm(kStribeck);

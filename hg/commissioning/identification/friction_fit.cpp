@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/core/index.h"
 #include "hg/core/interval.h"
 
 namespace hg::identification::friction {
@@ -184,13 +185,13 @@ Fit::Normal Fit::normal_of(const Model& model, const Free& free, double deviatio
   normal.r = residuals(model);
   normal.w = weights_of(normal.r, deviation).cwiseProduct(counts_);
   for (int i = 0; i < kParameters; ++i) {
-    if (free[static_cast<std::size_t>(i)]) normal.of.push_back(i);
+    if (free[index(i)]) normal.of.push_back(i);
   }
   const auto count = static_cast<Eigen::Index>(normal.of.size());
   normal.J.resize(rows_.size(), count);
   const VectorXd dry = rows_.dry(model);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const int parameter = normal.of[static_cast<std::size_t>(i)];
+    const int parameter = normal.of[index(i)];
     if (parameter >= kViscous) {
       normal.J.col(i) = linear_.col(parameter - kViscous);
       continue;
@@ -204,7 +205,7 @@ Fit::Normal Fit::normal_of(const Model& model, const Free& free, double deviatio
   normal.H = normal.J.transpose() * WJ;
   normal.g = WJ.transpose() * normal.r;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const int parameter = normal.of[static_cast<std::size_t>(i)];
+    const int parameter = normal.of[index(i)];
     if (parameter != kGain && parameter != kInertia) continue;
     const double more = precision(parameter == kGain ? kGainPrior : kInertiaPrior, deviation);
     normal.H(i, i) += more;

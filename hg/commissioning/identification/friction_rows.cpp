@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hg/core/index.h"
 #include "hg/signals/presliding.h"
 
 namespace hg::identification::friction {
@@ -19,7 +20,7 @@ constexpr double kBlock = 1.0;   // s
 std::array<double, 2 * kSmoothing + 1> window() {
   std::array<double, 2 * kSmoothing + 1> w{};
   for (int i = -kSmoothing; i <= kSmoothing; ++i) {
-    w[static_cast<std::size_t>(i + kSmoothing)] =
+    w[index(i + kSmoothing)] =
         (1.0 + std::cos(std::numbers::pi * i / (kSmoothing + 1))) / (2.0 * (kSmoothing + 1));
   }
   return w;
@@ -60,7 +61,7 @@ Rows::Rows(const FrictionTrace& trace, double rotor_inertia)
   ddtheta_.resize(rows);
   slides_.resize(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const std::size_t k = at_[static_cast<std::size_t>(i)];
+    const std::size_t k = at_[index(i)];
     ddtheta_[i] = smoothed(acceleration, k);
     y_[i] = smoothed(driven, k) - Jm_ * ddtheta_[i];
     v_[i] = speed_[k];
@@ -91,7 +92,7 @@ VectorXd Rows::dry(const Model& model) const {
                            model.elements;
       for (int e = 0; e < model.elements; ++e) {
         const double s = F / (x * (e + 1)), damper = d / model.elements / h;
-        double& z = way[static_cast<std::size_t>(e)];
+        double& z = way[index(e)];
         const double stuck = s * (z + moved) + damper * moved;
         if (std::abs(stuck) <= bound) {
           z += moved;
@@ -105,7 +106,7 @@ VectorXd Rows::dry(const Model& model) const {
     }
   });
   VectorXd rows(size());
-  for (Eigen::Index i = 0; i < size(); ++i) rows[i] = smoothed(f, at_[static_cast<std::size_t>(i)]);
+  for (Eigen::Index i = 0; i < size(); ++i) rows[i] = smoothed(f, at_[index(i)]);
   return rows;
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 
 namespace hg::identification {
 namespace {
@@ -39,7 +40,7 @@ const FrictionTraces::Given* FrictionTraces::at_work(const SensorFrame& sensors)
 void FrictionTraces::take(const SensorFrame& sensors, const VectorM& tau) {
   const auto n = static_cast<Eigen::Index>(joints_.size());
   for (Eigen::Index i = 0; i < n; ++i) {
-    FrictionTrace& joint = joints_[static_cast<std::size_t>(i)];
+    FrictionTrace& joint = joints_[index(i)];
     double theta = sensors.theta_m[i];
     if (is_cut_) {
       joint.cuts.push_back(joint.theta.size());

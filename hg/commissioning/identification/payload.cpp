@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hg/core/cross.h"
+#include "hg/core/index.h"
 #include "hg/core/interval.h"
 #include "hg/core/linear_algebra.h"
 
@@ -57,7 +58,8 @@ struct Fit {
 
 std::string missing_poses(const Spread& spread, std::size_t poses, const PayloadEstimate& result) {
   if (spread.of_mass() < kLeastSpread) {
-    return "all poses hold the sensor alike: its weight cannot be told from its offset; tilt it by "
+    return "all poses hold the sensor alike: its weight cannot be distinguished from its offset; "
+           "tilt it by "
            "30 degrees and more, about two axes";
   }
   if (spread.worst() < kLeastSpread) {
@@ -67,12 +69,12 @@ std::string missing_poses(const Spread& spread, std::size_t poses, const Payload
         "turned about this axis by 30 degrees and more",
         axis.x(), axis.y(), axis.z());
   }
-  if (poses < static_cast<std::size_t>(kFewestPoses)) {
+  if (poses < index(kFewestPoses)) {
     return fmt::format("{} poses, at least {} are needed", poses, kFewestPoses);
   }
   if (!(result.mass > 0.0)) return "no weight was measured: is there a payload, and is w_S in N?";
   if (result.mass_deviation > kMassAccuracy * result.mass || result.com_deviation > kComAccuracy) {
-    return "the poses contradict each other: was somebody at the handle, did something move? "
+    return "the poses contradict each other: was the handle touched, did something move? "
            "Otherwise more poses help";
   }
   return "";
@@ -88,7 +90,7 @@ PayloadEstimate identify_payload(std::span<const StaticPose> poses) {
     Eigen::MatrixXd A_f(3 * n, 4), A_n(3 * n, 6);
     Eigen::VectorXd f(3 * n), torque(3 * n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const StaticPose& pose = poses[static_cast<std::size_t>(i)];
+      const StaticPose& pose = poses[index(i)];
       A_f.middleRows<3>(3 * i) << -pose.a_S, Eigen::Matrix3d::Identity();
       A_n.middleRows<3>(3 * i) << cross_matrix(pose.a_S), Eigen::Matrix3d::Identity();
       f.segment<3>(3 * i) = pose.w_S.head<3>();

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hg/commissioning/start_test/brake_watch.h"
+#include "hg/core/index.h"
 
 namespace hg::start_test {
 namespace {
@@ -90,7 +91,7 @@ class Procedure {
       fail(items_.back(), fmt::format("the test has ended early: {}", ended.why));
     }
     for (Item& brake : brakes_.items()) {
-      station_.tell(fmt::format("{:<18} {}", brake.name, brake.found));
+      station_.report(fmt::format("{:<18} {}", brake.name, brake.found));
       items_.push_back(std::move(brake));
     }
     return std::move(items_);
@@ -99,9 +100,7 @@ class Procedure {
  private:
   using Seen = std::function<bool()>;
 
-  bool has(SafetyInput input) const noexcept {
-    return setup_.config.has_input[static_cast<std::size_t>(input)];
-  }
+  bool has(SafetyInput input) const noexcept { return setup_.config.has_input[index(input)]; }
 
   void live(Wish wish) {
     seen_ = station_.live(wish);
@@ -110,7 +109,7 @@ class Procedure {
     if (!watches_) return;
     for (const std::string& name : brakes_.look(seen_)) {
       has_slipped_ = true;
-      station_.tell(fmt::format("brake {:<12} SLIPS: let go of the handle and keep clear", name));
+      station_.report(fmt::format("brake {:<12} SLIPS: let go of the handle and keep clear", name));
     }
   }
 
@@ -142,7 +141,7 @@ class Procedure {
         if (other == wanted || !has_changed || is_told[i]) continue;
         is_told[i] = true;
         wrong = to_string(other);
-        station_.tell(fmt::format("that was the {}, not the {}", wrong, to_string(wanted)));
+        station_.report(fmt::format("that was the {}, not the {}", wrong, to_string(wanted)));
       }
       return is_operated(wanted, seen_) || has_disagreed_ || is_lost();
     });
@@ -167,17 +166,17 @@ class Procedure {
   bool fail(Item& item, std::string why) {
     item.outcome = Outcome::kFailed;
     item.found = std::move(why);
-    station_.tell(fmt::format("{:<18} FAILED: {}", item.name, item.found));
+    station_.report(fmt::format("{:<18} FAILED: {}", item.name, item.found));
     return false;
   }
   void pass(Item& item, std::string found) {
     item.outcome = Outcome::kPassed;
     item.found = std::move(found);
-    station_.tell(fmt::format("{:<18} {}", item.name, item.found));
+    station_.report(fmt::format("{:<18} {}", item.name, item.found));
   }
   void leave_out(Item& item, std::string why) {
     item.found = std::move(why);
-    station_.tell(fmt::format("{:<18} not tested: {}", item.name, item.found));
+    station_.report(fmt::format("{:<18} not tested: {}", item.name, item.found));
   }
 
   // undo instruction for the first input that is not in its rest state; empty: none
@@ -217,10 +216,10 @@ class Procedure {
       return words.empty();
     });
     if (!is_at_rest && seen_.safety.has_disagreement) {
-      return fail(item, "two channels of an input disagree, with nobody at it: " + broken_input());
+      return fail(item, "two channels of an input disagree, while not operated: " + broken_input());
     }
     if (!is_at_rest) return fail(item, "still to do: " + asked);
-    pass(item, "as they are when nobody touches anything");
+    pass(item, "in their rest states");
     return true;
   }
 
@@ -244,7 +243,7 @@ class Procedure {
   // A disagreement of channels at any time fails it permanently, even if it disappears.
   void operate(const Operation& operation, Item& item) {
     if (seen_.safety.has_disagreement) {
-      fail(item, "two channels of an input disagree before it was asked for");
+      fail(item, "two channels of an input disagree before the request");
       return;
     }
     const bool is_stop = stops_drives(operation.input);
@@ -256,7 +255,7 @@ class Procedure {
     bool is_good = why_not.empty();
     if (is_good) {
       item.answered_s = seen_.time_s - asked_s;
-      if (is_stop) is_good = look_at_stop(item);
+      if (is_stop) is_good = check_stop(item);
     } else {
       fail(item, why_not);
       stay(Wish::kOff, kHold);
@@ -298,7 +297,7 @@ class Procedure {
 
   // The stop itself: the supervisor removes the power, which is not requested during that time, and
   // the brakes take over the load of the drives.
-  bool look_at_stop(Item& item) {
+  bool check_stop(Item& item) {
     const double seen_s = seen_.time_s;
     brakes_.begin(powered_, seen_s);
     watches_ = was_stopped_ = true;
@@ -329,7 +328,7 @@ class Procedure {
         return fail(item, "the enabling switch was not held, so that nothing could be armed");
       }
     }
-    station_.tell(fmt::format(
+    station_.report(fmt::format(
         "in {:g} s the drives come on and hold the arm where it stands: keep clear", kWarning));
     stay(Wish::kOff, kWarning);
     // the only reset of this item: any later fault of the standing arm ends it
@@ -369,12 +368,12 @@ class Procedure {
     ask(Act::kLean, "push, pull and twist the handle hard, in all directions; the drives are off",
         kLeaning);
     watch_brakes();
-    double told_s = seen_.time_s;
+    double reported_s = seen_.time_s;
     wait(Wish::kOff, kLeaning, [&] {
       const std::vector<std::string> left = brakes_.without_load();
-      if (seen_.time_s - told_s > kReminder && !left.empty()) {
-        told_s = seen_.time_s;
-        station_.tell(fmt::format("still without load: {}", fmt::join(left, ", ")));
+      if (seen_.time_s - reported_s > kReminder && !left.empty()) {
+        reported_s = seen_.time_s;
+        station_.report(fmt::format("still without load: {}", fmt::join(left, ", ")));
       }
       return left.empty() || has_slipped_;
     });

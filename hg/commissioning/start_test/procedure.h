@@ -72,7 +72,7 @@ class Station {
   /// Asks the operator of the device to act.
   virtual void ask(Act act, const std::string& words) = 0;
   /// Reports a result.
-  virtual void tell(const std::string& words) = 0;
+  virtual void report(const std::string& words) = 0;
 };
 
 /// Joint with a brake.

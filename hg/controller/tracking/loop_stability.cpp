@@ -51,15 +51,15 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const Vecto
 // One period of the loop as a matrix, column by column.
 class SampledLoop {
  public:
-  SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency, const Reality& reality)
-      : actuators_(reality.actuators),
-        delay_(reality.loop.latency, loop.config.dt),
+  SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency, const TruePlant& plant)
+      : actuators_(plant.actuators),
+        delay_(plant.loop.latency, loop.config.dt),
         layout_{loop.n_m, delay_.slots()},
         observers_(loop.filters, loop.config.dt) {
     model::Chain chain = loop.chain;
     chain.update(q, Eigen::VectorXd::Zero(q.size()));
-    const MatrixM M = reality.link_mass * chain.M().bottomRightCorner(loop.n_m, loop.n_m);
-    step_ = matrix_exponential(plant_with_input(reality, M) * (loop.config.dt / kPlantSteps));
+    const MatrixM M = plant.link_mass * chain.M().bottomRightCorner(loop.n_m, loop.n_m);
+    step_ = matrix_exponential(plant_with_input(plant, M) * (loop.config.dt / kPlantSteps));
     feedback_ = feedback(loop, q, chain.c().tail(loop.n_m), latency);
   }
 
@@ -113,14 +113,14 @@ class SampledLoop {
 }  // namespace
 
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency) {
-  Reality as_believed = {loop.config.actuators, loop.config.loop};
+  TruePlant as_believed = {loop.config.actuators, loop.config.loop};
   as_believed.loop.latency = latency;
   return spectral_radius(loop, q, latency, as_believed);
 }
 
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency,
-                       const Reality& reality) {
-  const Eigen::MatrixXd period = SampledLoop(loop, q, latency, reality).period();
+                       const TruePlant& plant) {
+  const Eigen::MatrixXd period = SampledLoop(loop, q, latency, plant).period();
   return hg::spectral_radius(period);
 }
 

@@ -27,7 +27,7 @@ struct Loop {
 };
 
 /// True plant, independent of the model that the controller uses.
-struct Reality {
+struct TruePlant {
   std::vector<ActuatorModel> actuators;
   TorqueLoop loop;
   /// Masses and inertias of the links over those of the controller's model.
@@ -40,9 +40,9 @@ struct Reality {
 /// JointControl.
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency);
 /// Spectral radius where the controller's model is wrong: it uses its configuration and `latency`,
-/// the plant is `reality`.
+/// the plant is `plant`.
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency,
-                       const Reality& reality);
+                       const TruePlant& plant);
 
 /// Longest latency in whole periods, from `least` to `most`, up to which the loop is stable in all
 /// `postures`; least - 1 = not even at the least.

@@ -9,12 +9,12 @@
 
 namespace hg::tracking {
 
-Eigen::MatrixXd plant_with_input(const Reality& reality, const MatrixM& M) {
+Eigen::MatrixXd plant_with_input(const TruePlant& plant, const MatrixM& M) {
   const int n = static_cast<int>(M.rows());
   Eigen::VectorXd Jm(n), K(n), D(n), viscous(n), bristles = Eigen::VectorXd::Zero(n);
-  if (reality.bristles.size() > 0) bristles = reality.bristles;
+  if (plant.bristles.size() > 0) bristles = plant.bristles;
   for (int i = 0; i < n; ++i) {
-    const ActuatorModel& actuator = reality.actuators[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = plant.actuators[static_cast<std::size_t>(i)];
     Jm[i] = actuator.rotor_inertia;
     K[i] = actuator.stiffness;
     D[i] = actuator.damping;
@@ -35,7 +35,7 @@ Eigen::MatrixXd plant_with_input(const Reality& reality, const MatrixM& M) {
   block(3, 1) = M_inverse * D.asDiagonal();
   block(3, 2) = -(M_inverse * K.asDiagonal());
   block(3, 3) = -(M_inverse * D.asDiagonal());
-  const double rate = 1.0 / std::max(reality.loop.current_lag, 1e-6);
+  const double rate = 1.0 / std::max(plant.loop.current_lag, 1e-6);
   block(4, 4) = -rate * Eigen::MatrixXd::Identity(n, n);
   block(4, 5) = rate * Eigen::MatrixXd::Identity(n, n);
   return A;

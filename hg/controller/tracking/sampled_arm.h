@@ -17,7 +17,7 @@ inline constexpr int kPlantSteps = 8;
 /// Rate of change of (theta, theta', q, q', current) under constant torque commands: a square
 /// matrix of 6 n rows whose last n columns are those of the commands (its last n rows are 0). `M`
 /// is the mass matrix of the links (n x n, kg m^2).
-Eigen::MatrixXd plant_with_input(const Reality& reality, const MatrixM& M);
+Eigen::MatrixXd plant_with_input(const TruePlant& plant, const MatrixM& M);
 
 /// Delay with which torque commands arrive at the motors.
 class CommandDelay {

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "hg/core/allocation_counter.h"
-#include "hg/hqp/primal.h"
 #include "hg/hqp/solver.h"
+#include "hg/hqp/solver/level_by_level.h"
 #include "hg/hqp/test/random_problem.h"
 
 #ifndef HG_SANITIZED
 
-namespace hg::hqp {
+namespace hg::hqp::solver {
 namespace {
 
 constexpr Capacity kCapacity = {.variables = 60, .levels = 20, .rows = 600};
@@ -31,7 +31,7 @@ TEST(Allocation, DoesNotHappenAfterConstruction) {
     Problem problem = random_problem(seed, kind);
     ActiveSet active;
     for (int row = 0; row < problem.rows(); ++row) {
-      const auto r = static_cast<std::size_t>(row);
+      const auto r = index(row);
       active.state[r] = static_cast<RowState>(random() % 6);
       active.before[r] = static_cast<RowState>(random() % 6);
     }
@@ -40,8 +40,7 @@ TEST(Allocation, DoesNotHappenAfterConstruction) {
     active = {};
     solver.solve(problem, Options{}, active, solution);
     for (int level = 0; level < problem.levels(); ++level) {
-      solver.multipliers(problem, Options{}, solution, level,
-                         {mu.data(), static_cast<std::size_t>(problem.rows())});
+      solver.multipliers(problem, Options{}, solution, level, {mu.data(), index(problem.rows())});
     }
     for (int row = 0; row < problem.rows(); ++row) {
       problem.set_bounds(row, {-1.0, 1.0});
@@ -67,6 +66,6 @@ TEST(Allocation, DoesNotHappenLevelByLevel) {
 }
 
 }  // namespace
-}  // namespace hg::hqp
+}  // namespace hg::hqp::solver
 
 #endif

@@ -34,14 +34,14 @@ Problem problem_with_growth(int n, bool is_equality, std::vector<double>& expect
   std::uniform_real_distribution<double> number(0.9, 1.0);
   Problem problem({.variables = n, .levels = 2, .rows = 2 * n});
   problem.add_level();
-  expected.resize(static_cast<std::size_t>(n));
+  expected.resize(index(n));
   for (double& x : expected) x = number(random);
   for (int row = 0; row < n; ++row) {
     const bool is_last = row == n - 1;
     std::vector<double> c(expected.size(), 0.0);
     double value = 0.0;
     for (int i = is_last ? 0 : row; i < n; ++i) {
-      const auto k = static_cast<std::size_t>(i);
+      const auto k = index(i);
       c[k] = is_last ? number(random) : (i == row ? 1.0 : -number(random));
       value += c[k] * expected[k];
     }
@@ -49,7 +49,7 @@ Problem problem_with_growth(int n, bool is_equality, std::vector<double>& expect
   }
   problem.add_level();
   for (int i = 0; i < n; ++i) {
-    const double wish = expected[static_cast<std::size_t>(i)] + 1.0;
+    const double wish = expected[index(i)] + 1.0;
     problem.add_bound(i, {wish, wish});
   }
   return problem;
@@ -63,11 +63,11 @@ TEST(HardProblem, ARankThatNoRowShowsIsNoticed) {
       SCOPED_TRACE("n " + std::to_string(n) + (is_one_level ? ", one level" : ""));
       Problem problem({.variables = n, .levels = 2, .rows = n});
       problem.add_level();
-      std::vector<double> row(static_cast<std::size_t>(n), -1.0);
+      std::vector<double> row(index(n), -1.0);
       for (int t = 0; t + 1 < n; ++t) {
-        row[static_cast<std::size_t>(t)] = 1.0;
+        row[index(t)] = 1.0;
         problem.add_row(row, {0.0, 0.0});
-        row[static_cast<std::size_t>(t)] = 0.0;
+        row[index(t)] = 0.0;
       }
       if (!is_one_level) problem.add_level();
       problem.add_row(row, {-1.0, -1.0});  // -x[n-1]

@@ -25,23 +25,23 @@ constexpr Real kStandstill = 1e-12L;   // step, beside the slack, that ends the 
 constexpr int kMaxSteps = 300;         // of the proximal method
 constexpr Real kNonNegative = 1e-16L;  // cosine that opposes the residual in NNLS
 
-std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+std::size_t index(Eigen::Index i) { return index(i); }
 
 // min |E u - f| over u >= 0, columns of E of length 1; false when the loop does not end.
 bool solve_non_negative(const Matrix& E, const Vector& f, Vector& u) {
   const Eigen::Index m = E.cols();
   u = Vector::Zero(m);
   std::vector<Eigen::Index> passive;
-  std::vector<bool> is_barred(at(m), false);  // passive, or refused at this point
+  std::vector<bool> is_excluded(index(m), false);  // passive, or refused at this point
   for (int step = 0; step < 20 * (m + 1); ++step) {
     const Vector w = E.transpose() * (f - E * u);
     Eigen::Index entering = -1;
     for (Eigen::Index j = 0; j < m; ++j) {
-      if (is_barred[at(j)] || w[j] <= kNonNegative) continue;
+      if (is_excluded[index(j)] || w[j] <= kNonNegative) continue;
       if (entering < 0 || w[j] > w[entering]) entering = j;
     }
     if (entering < 0) return true;
-    is_barred[at(entering)] = true;
+    is_excluded[index(entering)] = true;
     passive.push_back(entering);
 
     bool has_moved = false;
@@ -55,25 +55,25 @@ bool solve_non_negative(const Matrix& E, const Vector& f, Vector& u) {
       }
       if (!has_moved) {
         has_moved = true;
-        std::fill(is_barred.begin(), is_barred.end(), false);
-        for (const Eigen::Index j : passive) is_barred[at(j)] = true;
+        std::fill(is_excluded.begin(), is_excluded.end(), false);
+        for (const Eigen::Index j : passive) is_excluded[index(j)] = true;
       }
       // towards z until the first u vanishes
       Real fraction = 1.0L;
       Eigen::Index leaving = -1;
       for (Eigen::Index k = 0; k < z.size(); ++k) {
-        const Real u_k = u[passive[at(k)]];
+        const Real u_k = u[passive[index(k)]];
         if (z[k] > 0.0L || u_k / (u_k - z[k]) >= fraction) continue;
         fraction = u_k / (u_k - z[k]);
         leaving = k;
       }
       for (Eigen::Index k = 0; k < z.size(); ++k) {
-        Real& u_k = u[passive[at(k)]];
+        Real& u_k = u[passive[index(k)]];
         u_k += fraction * (z[k] - u_k);
       }
       if (leaving < 0) break;
-      u[passive[at(leaving)]] = 0.0L;
-      is_barred[at(passive[at(leaving)])] = false;
+      u[passive[index(leaving)]] = 0.0L;
+      is_excluded[index(passive[index(leaving)])] = false;
       passive.erase(passive.begin() + leaving);
     }
   }
@@ -221,11 +221,11 @@ class Cascade {
     Vector h(G.rows());
     G.topRightCorner(m, m).setIdentity();
     for (Eigen::Index i = 0; i < m; ++i) {
-      G.row(i).head(k) = -factor * sides[at(i)].weight * (sides[at(i)].c.transpose() * free_);
+      G.row(i).head(k) = -factor * sides[index(i)].weight * (sides[index(i)].c.transpose() * free_);
       h[i] = slacks[i] / unit;
     }
     for (Eigen::Index i = m; i < G.rows(); ++i) {
-      const Side& side = constraints_[at(i - m)];
+      const Side& side = constraints_[index(i - m)];
       const bool is_touched = std::abs(excess(side)) <= kViolation.none * scale(side);
       G.row(i).head(k) = -factor * size / side.norm * (side.c.transpose() * free_);
       h[i] = is_touched ? 0.0L : size / side.norm * excess(side) / unit;
@@ -242,9 +242,9 @@ class Cascade {
     pushing_.assign(constraints_.size(), 0.0L);
     Real gradient = 0.0L;
     for (Eigen::Index i = 0; i < m; ++i) {
-      gradient += mu[i] * sides[at(i)].weight * sides[at(i)].norm / size;
+      gradient += mu[i] * sides[index(i)].weight * sides[index(i)].norm / size;
     }
-    for (Eigen::Index i = m; i < G.rows(); ++i) pushing_[at(i - m)] = mu[i] / gradient;
+    for (Eigen::Index i = m; i < G.rows(); ++i) pushing_[index(i - m)] = mu[i] / gradient;
     return step.norm() * size > kStandstill * unit;
   }
 
@@ -254,8 +254,9 @@ class Cascade {
     std::vector<Vector> equalities;
     std::vector<Side> constraints;
     for (std::size_t i = 0; i < constraints_.size(); ++i) {
-      const bool is_pushing = !pushing_.empty() && exceeds(pushing_[i], kPush, "a push");
-      if (is_pushing) equalities.push_back(constraints_[i].c);
+      const bool has_positive_multiplier =
+          !pushing_.empty() && exceeds(pushing_[i], kPush, "a push");
+      if (has_positive_multiplier) equalities.push_back(constraints_[i].c);
     }
     for (int row = problem_.first_row(level); row < problem_.end_row(level); ++row) {
       const std::vector<Side> sides = sides_of_row(problem_, row);

@@ -71,7 +71,7 @@ TEST(ParseProblems, NamesLineAndExpectationOfWhatIsWrong) {
 
 TEST(ParseProblems, NamesTheRuleThatARowBreaks) {
   const std::string head = "hqp 2 1\nlevel 1 1\n1 2 3\n";
-  const std::string tail = "; a row that is wrong on purpose ends in 'bad'";
+  const std::string tail = "; a deliberately invalid row ends in 'bad'";
   const std::string coefficients = "x.hqp:4: coefficients and their norm must be finite" + tail;
   EXPECT_EQ(message_of(head + "1 nan 3 4\n"), coefficients);
   EXPECT_EQ(message_of(head + "-inf 1 3 4\n"), coefficients);
@@ -178,9 +178,9 @@ TEST(WriteProblem, EverythingIsReadBackBitForBit) {
     original.options.max_iterations = 1 + static_cast<int>(seed % 7);
     original.options.rank_tolerance = 1e-9 * (1.0 + seed / 3.0);
     for (int row = 0; row < problem.rows(); ++row) {
-      original.guess->state[static_cast<std::size_t>(row)] =
+      original.guess->state[index(row)] =
           static_cast<RowState>((static_cast<std::uint32_t>(row) + seed) % 6);
-      original.guess->before[static_cast<std::size_t>(row)] =
+      original.guess->before[index(row)] =
           static_cast<RowState>((static_cast<std::uint32_t>(row) + seed / 2) % 6);
     }
     if (problem.rows() > 3) problem.set_bounds(2, {-0.0, 0.0});

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
-#include "hg/analysis/reality.h"
+#include "hg/analysis/truth_summary.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/simulator/random_stream.h"
 #include "hg/studies/motion_analysis.h"

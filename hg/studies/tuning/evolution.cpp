@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "hg/core/index.h"
 #include "hg/core/interval.h"
 #include "hg/core/linear_algebra.h"
 
@@ -56,8 +57,7 @@ Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
       best = children[order.front()];
     }
     Eigen::VectorXd step = Eigen::VectorXd::Zero(start.size());
-    for (int i = 0; i < parents; ++i)
-      step += weights[i] * steps[order[static_cast<std::size_t>(i)]];
+    for (int i = 0; i < parents; ++i) step += weights[i] * steps[order[index(i)]];
     mean += sigma * step;
 
     const Eigen::VectorXd whitened =
@@ -66,13 +66,13 @@ Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
         (1.0 - c_sigma) * path_sigma + std::sqrt(c_sigma * (2.0 - c_sigma) * mu) * whitened;
     const double length =
         path_sigma.norm() / std::sqrt(1.0 - std::pow(1.0 - c_sigma, 2.0 * generation));
-    const bool goes_on = length < (1.4 + 2.0 / (n + 1.0)) * expected;
+    const bool is_short = length < (1.4 + 2.0 / (n + 1.0)) * expected;
     path_c *= 1.0 - c_c;
-    if (goes_on) path_c += std::sqrt(c_c * (2.0 - c_c) * mu) * step;
-    C *= 1.0 - c_1 - c_mu + (goes_on ? 0.0 : c_1 * c_c * (2.0 - c_c));
+    if (is_short) path_c += std::sqrt(c_c * (2.0 - c_c) * mu) * step;
+    C *= 1.0 - c_1 - c_mu + (is_short ? 0.0 : c_1 * c_c * (2.0 - c_c));
     C += c_1 * path_c * path_c.transpose();
     for (int i = 0; i < parents; ++i) {
-      const Eigen::VectorXd& one = steps[order[static_cast<std::size_t>(i)]];
+      const Eigen::VectorXd& one = steps[order[index(i)]];
       C += c_mu * weights[i] * one * one.transpose();
     }
     sigma *= std::exp(c_sigma / d_sigma * (path_sigma.norm() / expected - 1.0));

@@ -11,6 +11,7 @@
 #include "hg/controller/rendering/twin_forces.h"
 #include "hg/controller/tracking/sampled_arm.h"
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 
 namespace hg::tuning {
@@ -105,8 +106,7 @@ Dampers dampers_of(const Body& body) {
   Dampers dampers;
   for (int i = 0; i < 6; ++i) {
     dampers.L(i, i) = std::sqrt(i < 3 ? body.mass : body.inertia);
-    dampers.values.dofs[static_cast<std::size_t>(i)].damping =
-        i < 3 ? body.damping : body.angular_damping;
+    dampers.values.dofs[index(i)].damping = i < 3 ? body.damping : body.angular_damping;
   }
   return dampers;
 }
@@ -114,14 +114,14 @@ Dampers dampers_of(const Body& body) {
 // Everything that one period needs, column by column.
 class Period {
  public:
-  Period(const Device& device, const tracking::Reality& reality, const Body& body,
+  Period(const Device& device, const tracking::TruePlant& plant, const Body& body,
          const person::HandImpedance& hand, const VectorXd& q)
       : body_(body),
         dampers_(dampers_of(body)),
         config_(without_friction(device.loop.config)),
-        reality_(reality),
+        plant_(plant),
         dt_(config_.dt),
-        command_delay_(reality.loop.latency, dt_),
+        command_delay_(plant.loop.latency, dt_),
         observers_(device.loop.filters, dt_),
         average_(std::max(1, rounded_groups(device.wrench.average_s))),
         delay_(rounded_groups(device.wrench.delay_s)),
@@ -143,11 +143,11 @@ class Period {
     K_.resize(n);
     D_.resize(n);
     for (int i = 0; i < n; ++i) {
-      const ActuatorModel& actuator = reality.actuators[static_cast<std::size_t>(i)];
+      const ActuatorModel& actuator = plant.actuators[index(i)];
       K_[i] = actuator.stiffness;
       D_[i] = actuator.damping;
     }
-    make_plant(reality.link_mass * chain.M().bottomRightCorner(n, n));
+    make_plant(plant.link_mass * chain.M().bottomRightCorner(n, n));
     wrench_pole_ = estimation::low_pass_pole(device.wrench.low_pass_Hz, dt_);
     start_control(q, chain.c().tail(n));
   }
@@ -248,7 +248,7 @@ class Period {
       means.push_back(sum / kGroup);
     }
     for (int group = 0; group < kGroups; ++group) {
-      means[static_cast<std::size_t>(group)] += disturbance.wrench.col(group);
+      means[index(group)] += disturbance.wrench.col(group);
     }
     next.head(size) = x.head(size);
     next.segment(at.commands, at.slots * n) = commands.tail(at.slots * n);
@@ -256,7 +256,7 @@ class Period {
     for (int i = 0; i < at.groups; ++i) {
       const int from = i + kGroups;
       const Vector6 value = from < at.groups ? Vector6(now.segment<6>(at.means + 6 * from))
-                                             : means[static_cast<std::size_t>(from - at.groups)];
+                                             : means[index(from - at.groups)];
       next.segment<6>(at.means + 6 * i) = value;
     }
     return next;
@@ -296,12 +296,11 @@ class Period {
 
     const int inputs = 2 * n + 3;  // commands, push, torques on the motors
     MatrixXd A = MatrixXd::Zero(size + inputs, size + inputs);
-    const MatrixXd arm = tracking::plant_with_input(reality_, M);
+    const MatrixXd arm = tracking::plant_with_input(plant_, M);
     A.topLeftCorner(5 * n, 5 * n) = arm.topLeftCorner(5 * n, 5 * n);
     A.block(0, size, 5 * n, n) = arm.topRightCorner(5 * n, n);
     for (int i = 0; i < n; ++i) {
-      A(at.dtheta + i, size + n + 3 + i) =
-          1.0 / reality_.actuators[static_cast<std::size_t>(i)].rotor_inertia;
+      A(at.dtheta + i, size + n + 3 + i) = 1.0 / plant_.actuators[index(i)].rotor_inertia;
     }
     A.block(at.dq, 0, n, size) += inverse(M) * J_.transpose() * grip_;
     A.block(at.hand, at.dhand, 3, 3) = I;
@@ -339,7 +338,7 @@ class Period {
   Body body_;
   Dampers dampers_;
   tracking::Config config_;
-  tracking::Reality reality_;
+  tracking::TruePlant plant_;
   double dt_;
   tracking::CommandDelay command_delay_;
   tracking::LinearObservers observers_;
@@ -357,11 +356,11 @@ class Period {
 
 }  // namespace
 
-HandleLoop linearise(const Device& device, const tracking::Reality& reality, const Body& body,
+HandleLoop linearise(const Device& device, const tracking::TruePlant& plant, const Body& body,
                      const person::HandImpedance& hand, const Noise& noise, const VectorXd& q) {
   // small against every limit of the controller, large against its rounding
   constexpr double kUnit = 1e-6, kTorque = 1e-3, kTorqueRate = 0.1;
-  Period period(device, reality, body, hand, q);
+  Period period(device, plant, body, hand, q);
   const Layout& at = period.layout();
   const int n = at.n;
   VectorXd unit_of = VectorXd::Constant(at.size, kUnit);
@@ -424,12 +423,12 @@ void Resolvent::at(std::complex<double> z) {
   U_ = -H_.cast<std::complex<double>>();
   U_.diagonal().array() += z;
   multipliers_ = Eigen::VectorXcd::Zero(n);
-  is_exchanged_.assign(static_cast<std::size_t>(n), false);
+  is_exchanged_.assign(index(n), false);
   for (Eigen::Index i = 0; i + 1 < n; ++i) {
     const Eigen::Index rest = n - i;
     if (std::abs(U_(i + 1, i)) > std::abs(U_(i, i))) {
       U_.row(i).tail(rest).swap(U_.row(i + 1).tail(rest));
-      is_exchanged_[static_cast<std::size_t>(i)] = true;
+      is_exchanged_[index(i)] = true;
     }
     const std::complex<double> multiplier = U_(i + 1, i) / U_(i, i);
     multipliers_[i] = multiplier;
@@ -441,7 +440,7 @@ Eigen::MatrixXcd Resolvent::solve(const MatrixXd& B) const {
   const Eigen::Index n = H_.rows();
   Eigen::MatrixXcd X = (Q_.transpose() * B).cast<std::complex<double>>();
   for (Eigen::Index i = 0; i + 1 < n; ++i) {
-    if (is_exchanged_[static_cast<std::size_t>(i)]) X.row(i).swap(X.row(i + 1));
+    if (is_exchanged_[index(i)]) X.row(i).swap(X.row(i + 1));
     X.row(i + 1) -= multipliers_[i] * X.row(i);
   }
   X = U_.triangularView<Eigen::Upper>().solve(X).eval();
@@ -454,7 +453,7 @@ Eigen::MatrixXcd Resolvent::solve_transposed(const MatrixXd& C) const {
   X = U_.transpose().triangularView<Eigen::Lower>().solve(X).eval();
   for (Eigen::Index i = n - 2; i >= 0; --i) {
     X.row(i) -= multipliers_[i] * X.row(i + 1);
-    if (is_exchanged_[static_cast<std::size_t>(i)]) X.row(i).swap(X.row(i + 1));
+    if (is_exchanged_[index(i)]) X.row(i).swap(X.row(i + 1));
   }
   return (Q_.cast<std::complex<double>>() * X).transpose();
 }

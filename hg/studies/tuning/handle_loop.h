@@ -63,9 +63,9 @@ struct HandleLoop {
   double period_s = 1e-3;
 };
 
-/// Linearises the loop in posture `q` (gantry first) with `hand` on the handle; `reality` holds
+/// Linearises the loop in posture `q` (gantry first) with `hand` on the handle; `plant` holds
 /// deviations unknown to the controller.
-HandleLoop linearise(const Device& device, const tracking::Reality& reality, const Body& body,
+HandleLoop linearise(const Device& device, const tracking::TruePlant& plant, const Body& body,
                      const person::HandImpedance& hand, const Noise& noise,
                      const Eigen::VectorXd& q);
 

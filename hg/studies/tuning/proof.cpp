@@ -6,26 +6,27 @@
 #include <cmath>
 #include <utility>
 
+#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/studies/stability_map.h"
 
 namespace hg::tuning {
 namespace {
 
-Doubt late(const tracking::Config& believed) {
+Deviation late(const tracking::Config& believed) {
   constexpr double kMore = 1.5;
-  tracking::Reality reality = {believed.actuators, believed.loop};
-  reality.loop.latency *= kMore;
-  return {fmt::format("latency x {:g}", kMore), reality};
+  tracking::TruePlant plant = {believed.actuators, believed.loop};
+  plant.loop.latency *= kMore;
+  return {fmt::format("latency x {:g}", kMore), plant};
 }
 
 }  // namespace
 
-std::vector<Doubt> doubts(const tracking::Config& believed) {
-  const tracking::Reality as_believed = {believed.actuators, believed.loop};
-  std::vector<Doubt> all = {{"as believed", as_believed}};
+std::vector<Deviation> deviations(const tracking::Config& believed) {
+  const tracking::TruePlant as_believed = {believed.actuators, believed.loop};
+  std::vector<Deviation> all = {{"as believed", as_believed}};
   for (const double factor : {0.75, 1.25}) {
-    tracking::Reality rotors = as_believed, springs = as_believed, links = as_believed;
+    tracking::TruePlant rotors = as_believed, springs = as_believed, links = as_believed;
     for (ActuatorModel& actuator : rotors.actuators) actuator.rotor_inertia *= factor;
     for (ActuatorModel& actuator : springs.actuators) actuator.stiffness *= factor;
     links.link_mass = factor;
@@ -37,27 +38,26 @@ std::vector<Doubt> doubts(const tracking::Config& believed) {
   return all;
 }
 
-std::vector<Doubt> doubts_in_hand(const tracking::Config& believed) {
-  const tracking::Reality as_believed = {believed.actuators, believed.loop};
+std::vector<Deviation> deviations_in_hand(const tracking::Config& believed) {
+  const tracking::TruePlant as_believed = {believed.actuators, believed.loop};
   constexpr double kLighter = 0.65;
   return {{"as believed", as_believed, 1.0, kLighter},
           late(believed),
           {"torques at their bounds", as_believed, 0.5, kLighter}};
 }
 
-std::vector<Doubt> doubts_in_friction(const tracking::Config& believed) {
-  std::vector<Doubt> all;
+std::vector<Deviation> deviations_in_friction(const tracking::Config& believed) {
+  std::vector<Deviation> all;
   if (std::ranges::none_of(believed.actuators, has_presliding)) return all;
   for (const double real : {0.5, 1.0, 1.25}) {
     for (const double share : {0.5, 1.0, 1.25}) {
-      tracking::Reality reality = {believed.actuators, believed.loop};
-      reality.bristles.resize(static_cast<Eigen::Index>(believed.actuators.size()));
-      for (Eigen::Index i = 0; i < reality.bristles.size(); ++i) {
-        reality.bristles[i] =
-            real * presliding_stiffness(believed.actuators[static_cast<std::size_t>(i)]);
+      tracking::TruePlant plant = {believed.actuators, believed.loop};
+      plant.bristles.resize(static_cast<Eigen::Index>(believed.actuators.size()));
+      for (Eigen::Index i = 0; i < plant.bristles.size(); ++i) {
+        plant.bristles[i] = real * presliding_stiffness(believed.actuators[index(i)]);
       }
       all.push_back({.what = fmt::format("bristles x {:g}, fed forward x {:g}", real, share * real),
-                     .reality = reality,
+                     .plant = plant,
                      .fed = share * real});
     }
   }
@@ -83,44 +83,46 @@ std::vector<Grasp> grasps(const Body& body) {
 Demands::Demands(const tracking::Config& believed, const Body& body,
                  std::vector<Eigen::VectorXd> postures)
     : body_(body),
-      doubts_(doubts(believed)),
-      doubts_in_hand_(doubts_in_hand(believed)),
+      deviations_(deviations(believed)),
+      deviations_in_hand_(deviations_in_hand(believed)),
       grasps_(grasps(body)),
       postures_(std::move(postures)) {
-  for (Doubt& doubt : doubts_in_friction(believed)) doubts_in_hand_.push_back(std::move(doubt));
+  for (Deviation& deviation : deviations_in_friction(believed))
+    deviations_in_hand_.push_back(std::move(deviation));
 }
 
 std::vector<Case> Demands::cases(std::size_t posture) const {
   std::vector<Case> all;
-  for (std::size_t doubt = 0; doubt < doubts_.size(); ++doubt) all.push_back({posture, doubt});
-  for (std::size_t doubt = 0; doubt < doubts_in_hand_.size(); ++doubt) {
+  for (std::size_t deviation = 0; deviation < deviations_.size(); ++deviation)
+    all.push_back({posture, deviation});
+  for (std::size_t deviation = 0; deviation < deviations_in_hand_.size(); ++deviation) {
     for (int grasp = 0; grasp < static_cast<int>(grasps_.size()); ++grasp) {
-      all.push_back({posture, doubt, grasp});
+      all.push_back({posture, deviation, grasp});
     }
   }
   return all;
 }
 
-const Doubt& Demands::doubt(const Case& one) const {
-  return (one.grasp < 0 ? doubts_ : doubts_in_hand_)[one.doubt];
+const Deviation& Demands::deviation(const Case& one) const {
+  return (one.grasp < 0 ? deviations_ : deviations_in_hand_)[one.deviation];
 }
 
 double Demands::radius(const Device& device, const Case& one) const {
-  const Doubt& real = doubt(one);
+  const Deviation& real = deviation(one);
   const Eigen::VectorXd& q = postures_[one.posture];
   const tracking::Config& config = device.loop.config;
   const double scale = 1e-3 / config.dt;
   if (one.grasp < 0) {
-    return std::pow(tracking::spectral_radius(device.loop, q, config.loop.latency, real.reality),
+    return std::pow(tracking::spectral_radius(device.loop, q, config.loop.latency, real.plant),
                     scale);
   }
-  const Grasp& grasp = grasps_[static_cast<std::size_t>(one.grasp)];
+  const Grasp& grasp = grasps_[index(one.grasp)];
   Body body = is_friction(one) ? body_ : grasp.body;
   body.mass *= real.mass;
   Device doubted = device;
   if (is_friction(one)) doubted.loop.config.friction_share = real.fed;
   doubted.loop.config.flatness_Hz *= real.follower;
-  return std::pow(hg::spectral_radius(linearise(doubted, real.reality, body, grasp.hand, {}, q).A),
+  return std::pow(hg::spectral_radius(linearise(doubted, real.plant, body, grasp.hand, {}, q).A),
                   scale);
 }
 
@@ -130,10 +132,10 @@ double Demands::excess(const Device& device, const Case& one) const {
 }
 
 std::string Demands::name(const Case& one) const {
-  const std::string& what = doubt(one).what;
+  const std::string& what = deviation(one).what;
   if (one.grasp < 0) return what;
-  const Grasp& grasp = grasps_[static_cast<std::size_t>(one.grasp)];
-  const double mass = is_friction(one) ? body_.mass : doubt(one).mass * grasp.body.mass;
+  const Grasp& grasp = grasps_[index(one.grasp)];
+  const double mass = is_friction(one) ? body_.mass : deviation(one).mass * grasp.body.mass;
   return fmt::format("{}, {:.2g} kg, {}", grasp.what, mass, what);
 }
 

@@ -9,27 +9,27 @@
 namespace hg::tuning {
 
 /// A deviation from the controller's model.
-struct Doubt {
+struct Deviation {
   std::string what;  ///< description, e.g. "springs x 0.75"
-  tracking::Reality reality;
+  tracking::TruePlant plant;
   double follower = 1.0;  ///< factor of flatness_Hz
   double mass = 1.0;      ///< factor of the lightest bodies
   double fed = -1.0;      ///< factor of presliding friction that is fed forward; < 0 = none
 };
 
 /// Deviations without a hand: none; rotors, springs and links of 0.75 and 1.25 times the believed
-/// value; each separately, as in doubts_in_hand().
-std::vector<Doubt> doubts(const tracking::Config& believed);
+/// value; each separately, as in deviations_in_hand().
+std::vector<Deviation> deviations(const tracking::Config& believed);
 
 /// Deviations in a hand: none; 1.5 times the latency; torques that follow half as fast. The last
 /// occurs when motors are at their peak (follow_torque() in control/joint_control.cpp) and can make
 /// a stable hand oscillate for ever.
-std::vector<Doubt> doubts_in_hand(const tracking::Config& believed);
+std::vector<Deviation> deviations_in_hand(const tracking::Config& believed);
 
 /// Deviations in joints with presliding: the friction has not slipped, with a stiffness of 0.5, 1
 /// and 1.25 times the believed one; the feedforward is 0.5 to 1.25 times as stiff as the friction.
 /// In hands, with the body itself. Empty for a device without presliding.
-std::vector<Doubt> doubts_in_friction(const tracking::Config& believed);
+std::vector<Deviation> deviations_in_friction(const tracking::Config& believed);
 
 /// A hand that holds the handle of a body.
 struct Grasp {
@@ -42,10 +42,10 @@ struct Grasp {
 /// so light (no heavier than `body`) that little stability margin remains.
 std::vector<Grasp> grasps(const Body& body);
 
-/// A case that a loop must tolerate in one posture: one of doubts() without a hand; with a hand,
-/// one of doubts_in_hand() or, after them, of doubts_in_friction().
+/// A case that a loop must tolerate in one posture: one of deviations() without a hand; with a
+/// hand, one of deviations_in_hand() or, after them, of deviations_in_friction().
 struct Case {
-  std::size_t posture = 0, doubt = 0;
+  std::size_t posture = 0, deviation = 0;
   int grasp = -1;  ///< index of the grasp; -1 = without a hand
 
   bool operator==(const Case&) const = default;
@@ -65,8 +65,8 @@ class Demands {
           std::vector<Eigen::VectorXd> postures);
 
   const std::vector<Eigen::VectorXd>& postures() const { return postures_; }
-  /// Whether the case is one of doubts_in_friction().
-  bool is_friction(const Case& one) const { return doubt(one).fed >= 0.0; }
+  /// Whether the case is one of deviations_in_friction().
+  bool is_friction(const Case& one) const { return deviation(one).fed >= 0.0; }
   /// All cases of a posture.
   std::vector<Case> cases(std::size_t posture) const;
   /// Largest modulus of the eigenvalues of `device`, per millisecond.
@@ -77,10 +77,10 @@ class Demands {
   std::string name(const Case& one) const;
 
  private:
-  const Doubt& doubt(const Case& one) const;
+  const Deviation& deviation(const Case& one) const;
 
   Body body_;
-  std::vector<Doubt> doubts_, doubts_in_hand_;
+  std::vector<Deviation> deviations_, deviations_in_hand_;
   std::vector<Grasp> grasps_;
   std::vector<Eigen::VectorXd> postures_;
 };

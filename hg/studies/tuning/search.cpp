@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/core/index.h"
 #include "hg/studies/tuning/evolution.h"
 #include "hg/studies/workers.h"
 
@@ -33,12 +34,12 @@ Values rounded(const Device& device, const Values& values) {
 
 class Search {
  public:
-  Search(const Problem& problem, const Told& told)
-      : problem_(problem), told_(told), demands_(demands_of(problem)) {
-    // every doubt once, in different postures; what else matters comes with the proofs
+  Search(const TuningProblem& problem, const Progress& progress)
+      : problem_(problem), progress_(progress), demands_(demands_of(problem)) {
+    // every deviation once, in different postures; what else matters comes with the proofs
     for (const Case& one : demands_.cases(0)) {
       if (one.grasp >= 0) continue;
-      hard_.push_back({one.doubt % problem.postures.size(), one.doubt});
+      hard_.push_back({one.deviation % problem.postures.size(), one.deviation});
     }
   }
 
@@ -84,7 +85,7 @@ class Search {
           Proof& here = proofs[i];
           for (const Case& one : demands_.cases(i)) take(one, demands_.radius(device, one), here);
         },
-        [&](std::size_t done, std::size_t total) { tell("proof", done, total); });
+        [&](std::size_t done, std::size_t total) { notify("proof", done, total); });
     return proofs;
   }
 
@@ -99,8 +100,8 @@ class Search {
   }
 
  private:
-  void tell(const std::string& what, std::size_t done, std::size_t total) const {
-    if (told_) told_(what, done, total);
+  void notify(const std::string& what, std::size_t done, std::size_t total) const {
+    if (progress_) progress_(what, done, total);
   }
 
   void take(const Case& one, double radius, Proof& proof) const {
@@ -137,32 +138,32 @@ class Search {
                       {});
       return result;
     };
-    const Eigen::VectorXd found = minimise(
-        costs, place_of(start), {.step = step, .generations = problem_.most_rounds},
-        [&](int round, double best) {
-          tell(fmt::format("vibration at most {:.3g} m/s^2: cost {:.3f}", limit, best),
-               static_cast<std::size_t>(round), static_cast<std::size_t>(problem_.most_rounds) + 1);
-        });
+    const Eigen::VectorXd found =
+        minimise(costs, place_of(start), {.step = step, .generations = problem_.most_rounds},
+                 [&](int round, double best) {
+                   notify(fmt::format("vibration at most {:.3g} m/s^2: cost {:.3f}", limit, best),
+                          index(round), index(problem_.most_rounds) + 1);
+                 });
     return values_of(with_values(problem_.device, values_at(found.cwiseMax(0.0).cwiseMin(1.0))));
   }
 
-  const Problem& problem_;
-  const Told& told_;
+  const TuningProblem& problem_;
+  const Progress& progress_;
   Demands demands_;
   std::vector<Case> hard_;  // cases checked during the search
 };
 
 }  // namespace
 
-Demands demands_of(const Problem& problem) {
+Demands demands_of(const TuningProblem& problem) {
   return {problem.device.loop.config, problem.body, problem.postures};
 }
 
-Figures figures_of(const Problem& problem, const Device& device) {
+Figures figures_of(const TuningProblem& problem, const Device& device) {
   Figures worst = {.transparency_Hz = kInfinity};
   const std::size_t count = std::min(problem.felt_postures, problem.postures.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const Feel now = feel(linearise(device, problem.reality, problem.body, person::HandImpedance{},
+    const Feel now = feel(linearise(device, problem.plant, problem.body, person::HandImpedance{},
                                     problem.noise, problem.postures[i]),
                           problem.body, problem.friction);
     worst.transparency_Hz = std::min(worst.transparency_Hz, now.least_transparency_Hz());
@@ -177,9 +178,10 @@ Figures figures_of(const Problem& problem, const Device& device) {
   return worst;
 }
 
-Result search(const Problem& problem, const std::vector<double>& limits, const Told& told) {
-  Search searching(problem, told);
-  Result result = {.limits = limits};
+TuningResult search(const TuningProblem& problem, const std::vector<double>& limits,
+                    const Progress& progress) {
+  Search searching(problem, progress);
+  TuningResult result = {.limits = limits};
   const Values present = values_of(problem.device);
   result.before = {present, figures_of(problem, problem.device)};
   result.everywhere_before = searching.proof_everywhere(problem.device);

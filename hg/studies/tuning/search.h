@@ -14,10 +14,10 @@
 namespace hg::tuning {
 
 /// Tuning problem: properties of a device and design goals.
-struct Problem {
+struct TuningProblem {
   Device device;
   Noise noise;
-  tracking::Reality reality;  ///< known reality, for which feel and vibration are computed
+  tracking::TruePlant plant;  ///< known plant, for which feel and vibration are computed
   Eigen::VectorXd friction;   ///< unmodelled friction, Nm
   Body body;
   std::vector<Eigen::VectorXd> postures;  ///< postures of the proof
@@ -27,7 +27,7 @@ struct Problem {
 };
 
 /// Cases that the loops of a problem must tolerate.
-Demands demands_of(const Problem& problem);
+Demands demands_of(const TuningProblem& problem);
 
 /// Figures of the worst posture and axis.
 struct Figures {
@@ -38,7 +38,7 @@ struct Figures {
   double friction_N = 0.0;
   double vibration = 0.0, centroid_Hz = 0.0;
 };
-Figures figures_of(const Problem& problem, const Device& device);
+Figures figures_of(const TuningProblem& problem, const Device& device);
 
 struct Candidate {
   Values values;
@@ -46,9 +46,9 @@ struct Candidate {
 };
 
 /// Progress callback: current task, and how far it is.
-using Told = std::function<void(const std::string& what, std::size_t done, std::size_t total)>;
+using Progress = std::function<void(const std::string& what, std::size_t done, std::size_t total)>;
 
-struct Result {
+struct TuningResult {
   Candidate before;
   Proof proof_before;
   std::vector<Candidate> front;  ///< candidate per limit of vibration, proven where possible
@@ -60,6 +60,7 @@ struct Result {
 
 /// The best loop for each of `limits` of vibration (rms above 20 Hz, m/s^2), by evolution; a case
 /// that fails the proof in any posture is added, and the search continues.
-Result search(const Problem& problem, const std::vector<double>& limits, const Told& told);
+TuningResult search(const TuningProblem& problem, const std::vector<double>& limits,
+                    const Progress& progress);
 
 }  // namespace hg::tuning

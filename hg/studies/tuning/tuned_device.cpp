@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 #include "hg/scenario/assembly.h"
 
 namespace hg::tuning {
@@ -62,8 +63,7 @@ Noise noise_of(const config::Device& device) {
     least_ratio = device.simulation.gear_ratio.minCoeff();
   noise.motor_encoder = rounding(sensors.motor_encoder.resolution) / least_ratio;
   for (int i = 0; i < device.model.n_m; ++i) {
-    noise.joint[i] =
-        sensors.torque.noise * device.control.actuators[static_cast<std::size_t>(i)].torque_max;
+    noise.joint[i] = sensors.torque.noise * device.control.actuators[index(i)].torque_max;
   }
   return noise;
 }
@@ -72,17 +72,17 @@ Eigen::VectorXd unexpected_friction(const config::Device& device) {
   constexpr double kShare = 0.3;
   Eigen::VectorXd friction(device.model.n_m);
   for (int i = 0; i < device.model.n_m; ++i) {
-    friction[i] = kShare * device.control.actuators[static_cast<std::size_t>(i)].coulomb_friction;
+    friction[i] = kShare * device.control.actuators[index(i)].coulomb_friction;
   }
   return friction;
 }
 
-tracking::Reality simulated(const config::Device& device) {
+tracking::TruePlant simulated(const config::Device& device) {
   const config::RealityFactors& factors = device.simulation.factors;
-  tracking::Reality reality = {device.control.actuators,
+  tracking::TruePlant plant = {device.control.actuators,
                                config::actual(device.control.loop, factors), factors.mass};
-  for (ActuatorModel& actuator : reality.actuators) actuator = config::actual(actuator, factors);
-  return reality;
+  for (ActuatorModel& actuator : plant.actuators) actuator = config::actual(actuator, factors);
+  return plant;
 }
 
 }  // namespace hg::tuning

@@ -18,6 +18,6 @@ Noise noise_of(const config::Device& device);
 Eigen::VectorXd unexpected_friction(const config::Device& device);
 
 /// Reality of the simulation, which differs from the controller's model.
-tracking::Reality simulated(const config::Device& device);
+tracking::TruePlant simulated(const config::Device& device);
 
 }  // namespace hg::tuning

@@ -102,7 +102,7 @@ void check_case(const Case& expected, const Findings& findings, const std::strin
   const Finding* finding = find(findings, expected.item, expected.what);
   ASSERT_NE(finding, nullptr) << all_of(findings);
   EXPECT_EQ(finding->severity, expected.severity);
-  EXPECT_FALSE(finding->mend.empty());
+  EXPECT_FALSE(finding->fix.empty());
   const bool is_urdf = finding->file.ends_with(".urdf");
   const std::string text =
       is_urdf ? replaced(text_of(urdf), expected.change.urdf_from, expected.change.urdf_to)
@@ -386,7 +386,7 @@ TEST(Pair, AccelerationThatTheHandCannotBrakeIsNamedWithTheOneItCan) {
   const Finding* finding = find(bad, "joints.hinge.ddq_max_rad_per_s2", "Cartesian limits");
   ASSERT_NE(finding, nullptr) << all_of(bad);
   // 3 m/s^2 at 0.75 m and what m1 and m2 can do
-  EXPECT_EQ(finding->mend.substr(0, 14), "lower it to 3.");
+  EXPECT_EQ(finding->fix.substr(0, 14), "lower it to 3.");
   EXPECT_EQ(find(inspect(device, door({})), "joints.hinge.ddq_max_rad_per_s2", "Cartesian limits"),
             nullptr);
 }

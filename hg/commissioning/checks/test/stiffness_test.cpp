@@ -82,7 +82,7 @@ TEST(Stiffness, WarnsOfSpringsThatAreTooStiff) {
   for (int i = 1; i < 3; ++i) {
     EXPECT_EQ(findings[i].severity, Severity::kWarning);
     EXPECT_NE(findings[i].what.find("so do 1 other joints"), std::string::npos);
-    EXPECT_EQ(findings[i].mend.rfind("lower it to ", 0), 0u);
+    EXPECT_EQ(findings[i].fix.rfind("lower it to ", 0), 0u);
   }
   EXPECT_NE(findings[1].what.find("this device shows up to"), std::string::npos);
   EXPECT_NE(findings[2].what.find("their swings may grow"), std::string::npos);
@@ -97,7 +97,7 @@ TEST(Stiffness, WarnsOfSurfacesThatAreTooStiff) {
   EXPECT_EQ(findings[0].severity, Severity::kWarning);
   EXPECT_EQ(findings[0].item, "surfaces[0].stiffness_N_per_m");
   EXPECT_GT(findings[0].place.line, 8);
-  EXPECT_NE(findings[0].mend.find("lower it to 2"), std::string::npos) << findings[0].mend;
+  EXPECT_NE(findings[0].fix.find("lower it to 2"), std::string::npos) << findings[0].fix;
 }
 
 TEST(Stiffness, SaysWhatDampingOfASurfaceIsGivenAndAdvisesOnlyWhatASurfaceMayHave) {
@@ -115,7 +115,7 @@ TEST(Stiffness, SaysWhatDampingOfASurfaceIsGivenAndAdvisesOnlyWhatASurfaceMayHav
   for (rendering::TwinDof& dof : wall.twin.model.dofs) dof.damping = 0.0;
   const Findings without = inspect_surfaces(wall);
   ASSERT_EQ(without.size(), 1u);
-  EXPECT_EQ(without[0].mend,
+  EXPECT_EQ(without[0].fix,
             "raise its damping and the mass of the twin: a surface has at least 10 N/m");
   surface.damping = 1e4;
   const Findings heavy = inspect_surfaces(wall);

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "hg/commissioning/doctor/assessment.h"
 #include "hg/commissioning/doctor/jitter.h"
 #include "hg/commissioning/doctor/readings.h"
-#include "hg/commissioning/doctor/verdict.h"
 #include "hg/core/test/temporary_folder.h"
 
 namespace hg::doctor {
@@ -57,14 +57,14 @@ class Computer {
   }
   void remove(const std::string& file) { fs::remove_all(folder_.path() / file); }
 
-  Line line(const std::string& item) const {
-    for (const Line& line : judge(read(folder_.path()))) {
+  Assessment line(const std::string& item) const {
+    for (const Assessment& line : assess(read(folder_.path()))) {
       if (line.item == item) return line;
     }
     ADD_FAILURE() << "no line " << item;
     return {};
   }
-  std::vector<Line> lines() const { return judge(read(folder_.path())); }
+  std::vector<Assessment> lines() const { return assess(read(folder_.path())); }
 
  private:
   TemporaryFolder folder_;
@@ -76,9 +76,9 @@ bool has(const std::string& text, const std::string& part) {
 
 TEST(Doctor, FindsNothingWrongWithAComputerThatIsReady) {
   const Computer computer;
-  for (const Line& line : computer.lines()) {
-    EXPECT_EQ(line.level, Level::kOk) << line.item << ": " << line.found;
-    EXPECT_EQ(line.mend, "") << line.item;
+  for (const Assessment& line : computer.lines()) {
+    EXPECT_EQ(line.level, Readiness::kOk) << line.item << ": " << line.found;
+    EXPECT_EQ(line.fix, "") << line.item;
   }
   EXPECT_EQ(exit_code(computer.lines()), 0);
   EXPECT_TRUE(has(computer.line("processors").found, "--cpu 2"));
@@ -87,84 +87,84 @@ TEST(Doctor, FindsNothingWrongWithAComputerThatIsReady) {
 TEST(Doctor, TellsTheKernel) {
   Computer computer;
   computer.remove("sys/kernel/realtime");
-  EXPECT_EQ(computer.line("kernel").level, Level::kOk);  // older ones say it in their version
+  EXPECT_EQ(computer.line("kernel").level, Readiness::kOk);  // older ones say it in their version
   computer.put("proc/sys/kernel/version", "#1 SMP PREEMPT_DYNAMIC");
-  EXPECT_EQ(computer.line("kernel").level, Level::kWarn);
-  EXPECT_TRUE(has(computer.line("kernel").mend, "linux-image-rt"));
+  EXPECT_EQ(computer.line("kernel").level, Readiness::kWarn);
+  EXPECT_TRUE(has(computer.line("kernel").fix, "linux-image-rt"));
 }
 
 TEST(Doctor, TellsWhoMayNotBeRealTimeAndHowToChangeIt) {
   Computer computer;
   computer.limits("0", "8388608");
-  EXPECT_EQ(computer.line("priority").level, Level::kBad);
-  EXPECT_TRUE(has(computer.line("priority").mend, "limits.d"));
-  EXPECT_EQ(computer.line("memory").level, Level::kWarn);
+  EXPECT_EQ(computer.line("priority").level, Readiness::kBad);
+  EXPECT_TRUE(has(computer.line("priority").fix, "limits.d"));
+  EXPECT_EQ(computer.line("memory").level, Readiness::kWarn);
   EXPECT_TRUE(has(computer.line("memory").found, "8 MiB"));
   EXPECT_EQ(exit_code(computer.lines()), 1);
   computer.limits("50", "unlimited");
-  EXPECT_EQ(computer.line("priority").level, Level::kWarn);
-  EXPECT_TRUE(has(computer.line("priority").mend, "--priority 50"));
+  EXPECT_EQ(computer.line("priority").level, Readiness::kWarn);
+  EXPECT_TRUE(has(computer.line("priority").fix, "--priority 50"));
   // capabilities stand above the limits: bits 14 and 23
   computer.limits("0", "8388608");
   computer.put("proc/self/status", "CapEff:\t0000000000804000");
-  EXPECT_EQ(computer.line("priority").level, Level::kOk);
-  EXPECT_EQ(computer.line("memory").level, Level::kOk);
+  EXPECT_EQ(computer.line("priority").level, Readiness::kOk);
+  EXPECT_EQ(computer.line("memory").level, Readiness::kOk);
   computer.put("proc/self/status", "CapEff:\t0000000000800000");
-  EXPECT_EQ(computer.line("memory").level, Level::kWarn);
+  EXPECT_EQ(computer.line("memory").level, Readiness::kWarn);
 }
 
 TEST(Doctor, DoesNotTakeProcessorsThatAreNotToldForOne) {
   Computer computer;
   computer.put("sys/devices/system/cpu/online", "0");
-  EXPECT_EQ(computer.line("processors").level, Level::kBad);
+  EXPECT_EQ(computer.line("processors").level, Readiness::kBad);
   computer.remove("sys/devices/system/cpu/online");
-  EXPECT_EQ(computer.line("processors").level, Level::kWarn);
-  EXPECT_EQ(computer.line("processors").found, "not told");
+  EXPECT_EQ(computer.line("processors").level, Readiness::kWarn);
+  EXPECT_EQ(computer.line("processors").found, "not reported");
 }
 
 TEST(Doctor, TellsWhatSlowsProcessorsDown) {
   Computer computer;
   computer.put("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "powersave");
-  EXPECT_EQ(computer.line("governor").level, Level::kWarn);
-  EXPECT_TRUE(has(computer.line("governor").mend, "performance"));
+  EXPECT_EQ(computer.line("governor").level, Readiness::kWarn);
+  EXPECT_TRUE(has(computer.line("governor").fix, "performance"));
   computer.put("sys/devices/system/cpu/cpu0/cpuidle/state1/latency", "300");
-  EXPECT_EQ(computer.line("idle").level, Level::kWarn);
+  EXPECT_EQ(computer.line("idle").level, Readiness::kWarn);
   computer.put("sys/devices/system/cpu/cpu0/cpuidle/state1/disable", "1");
-  EXPECT_EQ(computer.line("idle").level, Level::kOk);
+  EXPECT_EQ(computer.line("idle").level, Readiness::kOk);
 }
 
 TEST(Doctor, TellsWhatElseMayRunBesideTheLoop) {
   Computer computer;
   computer.put("sys/devices/system/cpu/isolated", "");
-  EXPECT_EQ(computer.line("processors").level, Level::kWarn);
-  EXPECT_TRUE(has(computer.line("processors").mend, "isolcpus=3 nohz_full=3 rcu_nocbs=3"));
+  EXPECT_EQ(computer.line("processors").level, Readiness::kWarn);
+  EXPECT_TRUE(has(computer.line("processors").fix, "isolcpus=3 nohz_full=3 rcu_nocbs=3"));
   computer.put("sys/devices/system/cpu/online", "0");
-  EXPECT_EQ(computer.line("processors").level, Level::kBad);
+  EXPECT_EQ(computer.line("processors").level, Readiness::kBad);
   computer.put("proc/77/comm", "irqbalance");
-  EXPECT_EQ(computer.line("interrupts").level, Level::kWarn);
+  EXPECT_EQ(computer.line("interrupts").level, Readiness::kWarn);
   computer.put("proc/swaps", "Filename Type\n/dev/sda2 partition\n");
-  EXPECT_EQ(computer.line("swap").level, Level::kOk);  // memory may be locked
+  EXPECT_EQ(computer.line("swap").level, Readiness::kOk);  // memory may be locked
   computer.limits("95", "8388608");
-  EXPECT_EQ(computer.line("swap").level, Level::kWarn);
-  EXPECT_EQ(computer.line("swap").mend, "sudo swapoff -a");
+  EXPECT_EQ(computer.line("swap").level, Readiness::kWarn);
+  EXPECT_EQ(computer.line("swap").fix, "sudo swapoff -a");
 }
 
 TEST(Doctor, TellsClockMachineAndThrottling) {
   Computer computer;
   computer.put("sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet");
-  EXPECT_EQ(computer.line("clock").level, Level::kWarn);
-  EXPECT_TRUE(has(computer.line("clock").mend, "echo tsc"));
+  EXPECT_EQ(computer.line("clock").level, Readiness::kWarn);
+  EXPECT_TRUE(has(computer.line("clock").fix, "echo tsc"));
   computer.put("sys/devices/system/clocksource/clocksource0/available_clocksource", "hpet");
-  EXPECT_TRUE(has(computer.line("clock").mend, "dmesg"));
+  EXPECT_TRUE(has(computer.line("clock").fix, "dmesg"));
   computer.put("proc/cpuinfo", "flags : fpu hypervisor nx\n");
-  EXPECT_EQ(computer.line("machine").level, Level::kWarn);
+  EXPECT_EQ(computer.line("machine").level, Readiness::kWarn);
   computer.put("proc/sys/kernel/sched_rt_runtime_us", "0");
-  EXPECT_EQ(computer.line("throttling").level, Level::kBad);
+  EXPECT_EQ(computer.line("throttling").level, Readiness::kBad);
 }
 
 TEST(Doctor, SurvivesAComputerThatTellsNothing) {
   const TemporaryFolder empty;
-  const std::vector<Line> lines = judge(read(empty.path()));
+  const std::vector<Assessment> lines = assess(read(empty.path()));
   EXPECT_EQ(exit_code(lines), 1);  // nobody may be real time there
 }
 
@@ -187,15 +187,15 @@ Jitter jitter(double rate_Hz, int priority, double late_us) {
 TEST(Doctor, JudgesJitterByThePeriod) {
   const Jitter ordinary = jitter(1000.0, 0, 800.0);
   const auto level = [&](int priority, double late_us, bool must_hold) {
-    return judge(ordinary, jitter(1000.0, priority, late_us), must_hold).level;
+    return assess(ordinary, jitter(1000.0, priority, late_us), must_hold).level;
   };
-  EXPECT_EQ(level(80, 90.0, true), Level::kOk);
-  EXPECT_EQ(level(80, 110.0, true), Level::kWarn);
-  EXPECT_EQ(level(80, 510.0, true), Level::kBad);
-  EXPECT_EQ(level(80, 510.0, false), Level::kWarn);
-  EXPECT_EQ(level(0, 90.0, true), Level::kWarn);  // luck
-  EXPECT_EQ(judge(ordinary, jitter(10000.0, 80, 60.0), false).level, Level::kWarn);
-  const Line line = judge(ordinary, jitter(1000.0, 80, 90.0), true);
+  EXPECT_EQ(level(80, 90.0, true), Readiness::kOk);
+  EXPECT_EQ(level(80, 110.0, true), Readiness::kWarn);
+  EXPECT_EQ(level(80, 510.0, true), Readiness::kBad);
+  EXPECT_EQ(level(80, 510.0, false), Readiness::kWarn);
+  EXPECT_EQ(level(0, 90.0, true), Readiness::kWarn);  // luck
+  EXPECT_EQ(assess(ordinary, jitter(10000.0, 80, 60.0), false).level, Readiness::kWarn);
+  const Assessment line = assess(ordinary, jitter(1000.0, 80, 90.0), true);
   EXPECT_EQ(line.item, "1 kHz");
   EXPECT_TRUE(has(line.found,
                   "priority 80: median 3 us late, 99.9 % 3 us, max 90 us; ordinary "

@@ -59,7 +59,7 @@ class Machine final : public Station {
       safety.operator_enable = act == Act::kHoldSwitch;
     }
   }
-  void tell(const std::string& words) override { told += words + "\n"; }
+  void report(const std::string& words) override { told += words + "\n"; }
 
   double time_s() const { return seen_.time_s; }
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "hg/controller/safety/collision/distance.h"
-#include "hg/controller/safety/collision/levers.h"
+#include "hg/controller/safety/collision/reach_bounds.h"
 
 namespace hg::collision {
 namespace {
@@ -107,7 +107,7 @@ void search(const std::vector<Shape>& shapes, const std::vector<Interval>& range
 Pairs choose_pairs(const std::vector<Shape>& shapes, model::Chain chain,
                    const std::vector<Interval>& range, double near) {
   Pairs pairs;
-  const Levers levers(chain, range);
+  const ReachBounds reach_bounds(chain, range);
   std::vector<Candidate> candidates;
   for (int i = 0; i < static_cast<int>(shapes.size()); ++i) {
     for (int k = i + 1; k < static_cast<int>(shapes.size()); ++k) {
@@ -123,7 +123,7 @@ Pairs choose_pairs(const std::vector<Shape>& shapes, model::Chain chain,
         continue;
       }
       candidates.push_back(
-          {.pair = {a, b, levers.of(outer, inner.body)}, .distance = {inner, outer}});
+          {.pair = {a, b, reach_bounds.of(outer, inner.body)}, .distance = {inner, outer}});
     }
   }
 

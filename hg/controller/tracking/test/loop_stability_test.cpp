@@ -56,33 +56,33 @@ TEST(LoopStability, GainsThatKnowTheLatencyAreStableWithIt) {
 
 // Gains for `believed` meet an arm whose latency is `latency` and whose rotors have `rotor` times
 // the inertia that the controller knows.
-double worst_radius_in_reality(double believed, double latency, double rotor) {
+double worst_radius_of_plant(double believed, double latency, double rotor) {
   const Loop loop = reference_loop();
-  Reality reality = {loop.config.actuators, loop.config.loop};
-  reality.loop.latency = latency;
-  for (ActuatorModel& actuator : reality.actuators) actuator.rotor_inertia *= rotor;
+  TruePlant plant = {loop.config.actuators, loop.config.loop};
+  plant.loop.latency = latency;
+  for (ActuatorModel& actuator : plant.actuators) actuator.rotor_inertia *= rotor;
   double worst = 0.0;
   for (const Eigen::VectorXd& q : usual_postures()) {
-    worst = std::max(worst, spectral_radius(loop, q, believed, reality));
+    worst = std::max(worst, spectral_radius(loop, q, believed, plant));
   }
   return worst;
 }
 
 // [C] 1: with w0 = 200 a latency of 2 ms oscillates, with w0 = 140 or less it does not
 TEST(LoopStability, GainsForOneMillisecondAreTooHighForThree) {
-  EXPECT_LT(worst_radius_in_reality(1e-3, 1e-3, 1.0), 1.0);
-  EXPECT_LT(worst_radius_in_reality(1e-3, 1.5e-3, 1.0), 1.0);
-  EXPECT_GT(worst_radius_in_reality(1e-3, 2.5e-3, 1.0), 1.0);
-  EXPECT_GT(worst_radius_in_reality(1e-3, 3e-3, 1.0), 1.0);
-  EXPECT_LT(worst_radius_in_reality(2.5e-3, 2.5e-3, 1.0), 1.0);
-  EXPECT_LT(worst_radius_in_reality(3e-3, 1e-3, 1.0), 1.0);  // caution does no harm
+  EXPECT_LT(worst_radius_of_plant(1e-3, 1e-3, 1.0), 1.0);
+  EXPECT_LT(worst_radius_of_plant(1e-3, 1.5e-3, 1.0), 1.0);
+  EXPECT_GT(worst_radius_of_plant(1e-3, 2.5e-3, 1.0), 1.0);
+  EXPECT_GT(worst_radius_of_plant(1e-3, 3e-3, 1.0), 1.0);
+  EXPECT_LT(worst_radius_of_plant(2.5e-3, 2.5e-3, 1.0), 1.0);
+  EXPECT_LT(worst_radius_of_plant(3e-3, 1e-3, 1.0), 1.0);  // caution does no harm
 }
 
 // [C] 1: 0.5x is unstable, 0.7 to 1.5x is fine
 TEST(LoopStability, RotorsMustBeKnownToThirtyPercent) {
-  EXPECT_GT(worst_radius_in_reality(1e-3, 1e-3, 0.5), 1.0);
+  EXPECT_GT(worst_radius_of_plant(1e-3, 1e-3, 0.5), 1.0);
   for (const double rotor : {0.7, 1.0, 1.5}) {
-    EXPECT_LT(worst_radius_in_reality(1e-3, 1e-3, rotor), 1.0) << rotor;
+    EXPECT_LT(worst_radius_of_plant(1e-3, 1e-3, rotor), 1.0) << rotor;
   }
 }
 
@@ -106,24 +106,24 @@ std::vector<Eigen::VectorXd> dense_postures(std::size_t count) {
 // friction.
 TEST(LoopStability, EveryPostureToleratesAQuarterOfErrorInMassesAndSpringsAndHalfMoreLatency) {
   const Loop loop = reference_loop();
-  const Reality believed = {loop.config.actuators, loop.config.loop};
+  const TruePlant believed = {loop.config.actuators, loop.config.loop};
   const auto with = [&](auto change) {
-    Reality reality = believed;
-    change(reality);
-    return reality;
+    TruePlant plant = believed;
+    change(plant);
+    return plant;
   };
   const auto rotors = [](double factor) {
-    return [factor](Reality& r) {
+    return [factor](TruePlant& r) {
       for (ActuatorModel& actuator : r.actuators) actuator.rotor_inertia *= factor;
     };
   };
   const auto springs = [](double factor) {
-    return [factor](Reality& r) {
+    return [factor](TruePlant& r) {
       for (ActuatorModel& actuator : r.actuators) actuator.stiffness *= factor;
     };
   };
-  const auto links = [](double factor) { return [factor](Reality& r) { r.link_mass = factor; }; };
-  const std::vector<std::pair<std::string, Reality>> realities = {
+  const auto links = [](double factor) { return [factor](TruePlant& r) { r.link_mass = factor; }; };
+  const std::vector<std::pair<std::string, TruePlant>> plants = {
       {"as believed", believed},
       {"rotors x 0.75", with(rotors(0.75))},
       {"rotors x 1.25", with(rotors(1.25))},
@@ -131,12 +131,12 @@ TEST(LoopStability, EveryPostureToleratesAQuarterOfErrorInMassesAndSpringsAndHal
       {"springs x 1.25", with(springs(1.25))},
       {"links x 0.75", with(links(0.75))},
       {"links x 1.25", with(links(1.25))},
-      {"latency x 1.5", with([](Reality& r) { r.loop.latency *= 1.5; })}};
+      {"latency x 1.5", with([](TruePlant& r) { r.loop.latency *= 1.5; })}};
   const std::vector<Eigen::VectorXd> dense = dense_postures(150);
-  for (const auto& [what, reality] : realities) {
+  for (const auto& [what, plant] : plants) {
     double worst = 0.0;
     for (const Eigen::VectorXd& q : dense) {
-      worst = std::max(worst, spectral_radius(loop, q, 1e-3, reality));
+      worst = std::max(worst, spectral_radius(loop, q, 1e-3, plant));
     }
     EXPECT_LT(worst, 0.995) << what;
   }

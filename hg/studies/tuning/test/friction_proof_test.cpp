@@ -33,13 +33,13 @@ VectorM bristles(const Device& device, double share) {
 // `fed` times as stiff as believed.
 double worst(Device device, double real, double fed, int postures) {
   device.loop.config.friction_share = fed;
-  const tracking::Reality reality = {device.loop.config.actuators, device.loop.config.loop, 1.0,
+  const tracking::TruePlant plant = {device.loop.config.actuators, device.loop.config.loop, 1.0,
                                      bristles(device, real)};
   double largest = 0.0;
   for (const Eigen::VectorXd& q : scenario::random_postures(reference().model, postures, 1)) {
     for (const Grasp& grasp : grasps({})) {
       largest =
-          std::max(largest, spectral_radius(linearise(device, reality, {}, grasp.hand, {}, q).A));
+          std::max(largest, spectral_radius(linearise(device, plant, {}, grasp.hand, {}, q).A));
     }
   }
   return largest;
@@ -72,17 +72,17 @@ TEST(FrictionProof, DoesNotHoldFarFromThat) {
 TEST(FrictionProof, WithoutPreslidingSmallMotionsAreNotStableByThemselves) {
   Device device = device_of(reference());
   const tracking::Config& config = device.loop.config;
-  const tracking::Reality reality = {config.actuators, config.loop};
+  const tracking::TruePlant plant = {config.actuators, config.loop};
   for (ActuatorModel& actuator : device.loop.config.actuators) {
     actuator.viscous_friction +=
         actuator.coulomb_friction * actuator.stiction / config.friction_speed;
   }
   const Eigen::VectorXd q = scenario::random_postures(reference().model, 1, 1).front();
-  EXPECT_GT(spectral_radius(linearise(device, reality, {}, grasps({}).back().hand, {}, q).A), 1.01);
+  EXPECT_GT(spectral_radius(linearise(device, plant, {}, grasps({}).back().hand, {}, q).A), 1.01);
 }
 
 TEST(FrictionProof, AsksNothingOfADeviceWithoutPresliding) {
-  EXPECT_TRUE(doubts_in_friction(device_of(reference()).loop.config).empty());
+  EXPECT_TRUE(deviations_in_friction(device_of(reference()).loop.config).empty());
 }
 
 // what is linearised does not slip, however small its presliding

@@ -12,19 +12,19 @@
 namespace hg::tuning {
 namespace {
 
-Problem problem_of(int postures) {
+TuningProblem problem_of(int postures) {
   const config::Device device = config::load_device("models/haptic_giant/device.yaml");
-  Problem problem = {.device = device_of(device),
-                     .noise = noise_of(device),
-                     .reality = simulated(device),
-                     .friction = unexpected_friction(device),
-                     .postures = scenario::random_postures(device.model, postures, 1),
-                     .felt_postures = 1};
+  TuningProblem problem = {.device = device_of(device),
+                           .noise = noise_of(device),
+                           .plant = simulated(device),
+                           .friction = unexpected_friction(device),
+                           .postures = scenario::random_postures(device.model, postures, 1),
+                           .felt_postures = 1};
   problem.friction_most_N = figures_of(problem, problem.device).friction_N;
   return problem;
 }
 
-Values with(const Problem& problem, std::string_view key, double value) {
+Values with(const TuningProblem& problem, std::string_view key, double value) {
   Values values = values_of(problem.device);
   for (std::size_t i = 0; i < knobs().size(); ++i) {
     if (knobs()[i].key == key) values[static_cast<Eigen::Index>(i)] = value;
@@ -40,14 +40,14 @@ TEST(Knobs, GiveBackWhatTheyTook) {
 
 // a low-pass of 0 is none: nothing that the search proposes, but what the device has
 TEST(Search, JudgesThePresentLoopAsItIs) {
-  Problem problem = problem_of(1);
+  TuningProblem problem = problem_of(1);
   problem.device.loop.config.stiff_low_pass_Hz = 0.0;
   const Figures as_it_is = figures_of(problem, problem.device);
   const Figures within_range =
       figures_of(problem, with_values(problem.device, values_of(problem.device)));
   EXPECT_GT(std::abs(as_it_is.vibration / within_range.vibration - 1.0), 0.05);
   problem.most_rounds = 1;
-  const Result result = search(problem, {1.0}, {});
+  const TuningResult result = search(problem, {1.0}, {});
   EXPECT_EQ(result.before.figures.vibration, as_it_is.vibration);
   EXPECT_NEAR(values_at(place_of(values_of(problem.device)))[5], knobs()[5].most, 1e-9);
 }
@@ -60,7 +60,7 @@ TEST(Knobs, TakeALoopThatIsSlowerThanTheirRange) {
 }
 
 TEST(Knobs, TakeNoMoreThanLatencyAndRateAllow) {
-  const Problem problem = problem_of(1);
+  const TuningProblem problem = problem_of(1);
   const Device fast = with_values(problem.device, with(problem, "rotor_pole_rad_per_s", 1000.0));
   EXPECT_LT(fast.loop.config.poles.w0, 0.2651 / 1.5e-3);
   const Device wild = with_values(problem.device, with(problem, "flatness_Hz", 1e6));
@@ -69,7 +69,7 @@ TEST(Knobs, TakeNoMoreThanLatencyAndRateAllow) {
 
 // docs/concepts/control.md: what the notes had was unstable with light rotors
 TEST(Demands, RefuseTheDampingOfTheNotes) {
-  const Problem problem = problem_of(30);
+  const TuningProblem problem = problem_of(30);
   const Demands demands = demands_of(problem);
   const auto failures = [&](const Device& device) {
     int count = 0;
@@ -86,24 +86,24 @@ TEST(Demands, RefuseTheDampingOfTheNotes) {
 
 // the body that is shipped, in hands up to 2000 N/m and with 1.5 times the latency
 TEST(Demands, EveryHandHoldsTheShippedBodyInEveryPosture) {
-  const Problem problem = problem_of(20);
-  for (const Doubt& doubt : doubts_in_hand(problem.device.loop.config)) {
+  const TuningProblem problem = problem_of(20);
+  for (const Deviation& deviation : deviations_in_hand(problem.device.loop.config)) {
     for (const Grasp& grasp : grasps(problem.body)) {
       Device device = problem.device;
-      device.loop.config.flatness_Hz *= doubt.follower;
+      device.loop.config.flatness_Hz *= deviation.follower;
       double worst = 0.0;
       for (const Eigen::VectorXd& q : problem.postures) {
         worst = std::max(
             worst,
-            spectral_radius(linearise(device, doubt.reality, problem.body, grasp.hand, {}, q).A));
+            spectral_radius(linearise(device, deviation.plant, problem.body, grasp.hand, {}, q).A));
       }
-      EXPECT_LT(worst, kHandRadius) << grasp.what << ", " << doubt.what;
+      EXPECT_LT(worst, kHandRadius) << grasp.what << ", " << deviation.what;
     }
   }
 }
 
 TEST(Demands, KnowALighterBodyIsHarderToHold) {
-  const Problem problem = problem_of(1);
+  const TuningProblem problem = problem_of(1);
   const auto worst = [&](double mass) {
     const Demands demands(problem.device.loop.config, {.mass = mass}, problem.postures);
     double largest = 0.0;
@@ -117,12 +117,12 @@ TEST(Demands, KnowALighterBodyIsHarderToHold) {
 
 // From a loop that is late to one that is not.
 TEST(Search, FindsWhatWasTakenAway) {
-  Problem problem = problem_of(3);
+  TuningProblem problem = problem_of(3);
   problem.device = with_values(problem.device, with(problem, "motor_low_pass_Hz", 400.0));
   problem.device = with_values(problem.device, with(problem, "wrench_lead_s", 0.0));
   problem.most_rounds = 15;
   const double limit = 0.04;
-  const Result result = search(problem, {limit}, {});
+  const TuningResult result = search(problem, {limit}, {});
   const Candidate& found = result.front.front();
   EXPECT_TRUE(result.proofs.front().holds());
   EXPECT_LT(found.figures.vibration, 1.01 * limit);

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "hg/controller/safety/collision/levers.h"
+#include "hg/controller/safety/collision/reach_bounds.h"
 #include "hg/controller/safety/collision/test/devices.h"
 #include "hg/core/allocation_counter.h"
 
@@ -259,14 +259,14 @@ TEST(Guard, AllocatesNothing) {
   EXPECT_EQ(allocations.count(), 0U);
 }
 
-TEST(Levers, BoundEveryPointInEveryPosture) {
+TEST(ReachBounds, BoundEveryPointInEveryPosture) {
   const TestDevice device = device_of(folding_urdf());
-  const Levers levers(device.chain, device.range);
+  const ReachBounds reach_bounds(device.chain, device.range);
   model::Chain chain = device.chain;
   Wanderer wanderer(device, 15);
   std::vector<double> largest(8, 0.0);
   const Shape& hand = *std::ranges::find(device.config.shapes, "hand", &Shape::name);
-  const VectorPM lever = levers.of(hand, 0);
+  const VectorPM lever = reach_bounds.of(hand, 0);
   const VectorPM none = VectorPM::Zero(8);
   for (int n = 0; n < 5000; ++n) {
     wanderer.jump();

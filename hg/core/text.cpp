@@ -1,0 +1,36 @@
+#include "hg/core/text.h"
+
+#include <array>
+#include <charconv>
+
+namespace hg {
+
+std::string in_quotes(std::string_view text) {
+  std::string result = "'";
+  result += text;
+  return result += "'";
+}
+
+std::string to_text(double value) {
+  std::array<char, 32> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), result.ptr};
+}
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else if (c == '>') {
+      result += "&gt;";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+}  // namespace hg

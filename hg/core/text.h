@@ -1,0 +1,18 @@
+/// Small pieces of text for messages and files. Set-up code: allocates.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace hg {
+
+/// The text in single quotes.
+std::string in_quotes(std::string_view text);
+
+/// The shortest decimal number that reads back to the same value.
+std::string to_text(double value);
+
+/// The text with the characters &, < and > escaped, for XML and HTML outside of attributes.
+std::string escaped(std::string_view text);
+
+}  // namespace hg

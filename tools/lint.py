@@ -1,0 +1,115 @@
+"""Runs clang-tidy with the checks of .clang-tidy on all sources but tests, and on their headers.
+
+    lint.py BUILD [--jobs N] [FOLDER...]
+
+To be quick, sources of one folder that do not define the same names are read as one, so that what
+they include is parsed once: clang-tidy needs seconds for Eigen and the standard library, and
+milliseconds for a file of ours. Defines and include folders come from BUILD/compile_commands.json.
+Exits with 1 and a line per finding.
+"""
+
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+FOLDERS = ["hg", "apps", "bench", "python/src"]
+MOST_TOGETHER = 16  # sources read as one; more need more memory than they save time
+FINDING = re.compile(r"(\S+?):(\d+):(\d+): (?:warning|error): (.*)")
+
+
+def flags_of(command):
+    """What clang needs of the build's compile command."""
+    words = shlex.split(command)
+    flags = ["-std=c++20", "-w", *(word for word in words if word.startswith("-march"))]
+    for word, following in zip(words, words[1:]):
+        if word == "-isystem":
+            flags += [word, following]
+        elif word.startswith("-I") or (word.startswith("-D") and "FORTIFY" not in word):
+            flags.append(word)
+    return tuple(flags)
+
+
+def own_names(source):
+    """Names that stand in an unnamed namespace of the source, or look like it."""
+    text = source.read_text()
+    names = set(re.findall(r"^(?:struct|class|enum class|enum) (\w+)", text, re.MULTILINE))
+    names |= set(re.findall(r"^(?:constexpr|const|using|inline|static)\b.*?\b(\w+)(?:\[.*\])? ?(?:=|\{)",
+                            text, re.MULTILINE))
+    names |= set(re.findall(r"^(?:[\w:<>,*&\[\]]+ )+[*&]?(\w+)\([^;]*?\)[^;(]*\{", text, re.MULTILINE))
+    return names
+
+
+def grouped(sources):
+    """Lists of sources that can be read as one, with their flags."""
+    groups = []  # flags, folder, names, sources
+    for source, flags in sources:
+        names = own_names(source)
+        for group in groups:
+            if (group[0] == flags and group[1] == source.parent and not group[2] & names
+                    and len(group[3]) < MOST_TOGETHER):
+                group[2].update(names)
+                group[3].append(source)
+                break
+        else:
+            groups.append((flags, source.parent, set(names), [source]))
+    return [(flags, members) for flags, _, _, members in groups]
+
+
+def tidy(flags, sources, work):
+    """Findings as (file, line, column, words), and whether the sources could be parsed."""
+    unit = sources[0]
+    if len(sources) > 1:
+        unit = work / (str(sources[0].relative_to(ROOT)).replace("/", "_"))
+        unit.write_text("".join(f'#include "{source}"\n' for source in sources))
+    result = subprocess.run(
+        ["clang-tidy", "--quiet", f"--config-file={ROOT}/.clang-tidy", str(unit), "--", *flags],
+        capture_output=True, text=True, cwd=ROOT)
+    findings = {(match[1], int(match[2]), int(match[3]), match[4])
+                for match in map(FINDING.match, result.stdout.splitlines()) if match}
+    return findings, not any("clang-diagnostic" in words for *_, words in findings)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("folders", nargs="*", default=FOLDERS)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    arguments = parser.parse_args()
+    work = arguments.build.resolve() / "lint"
+    work.mkdir(exist_ok=True)
+    sources = {}
+    for entry in json.loads((arguments.build / "compile_commands.json").read_text()):
+        source = pathlib.Path(entry["file"])
+        if not source.is_relative_to(ROOT):
+            continue
+        name = source.relative_to(ROOT)
+        if "test" not in name.parts and any(name.is_relative_to(f) for f in arguments.folders):
+            sources.setdefault(source, flags_of(entry["command"]))
+
+    def findings_of(group):
+        flags, members = group
+        findings, is_parsed = tidy(flags, members, work)
+        if is_parsed or len(members) == 1:
+            return findings
+        print(f"lint: one by one, with {members[0].relative_to(ROOT)}", file=sys.stderr)
+        return set().union(*(tidy(flags, [member], work)[0] for member in members))
+
+    groups = sorted(grouped(sorted(sources.items())), key=lambda group: -len(group[1]))
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        findings = set().union(*pool.map(findings_of, groups))
+    for file, line, column, words in sorted(findings):
+        print(f"{os.path.relpath(file, ROOT)}:{line}:{column}: {words}")
+    if findings:
+        sys.exit(1)
+    print(f"lint: {len(sources)} sources in {len(groups)} readings without findings")
+
+
+if __name__ == "__main__":
+    main()
