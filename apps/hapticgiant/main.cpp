@@ -487,7 +487,7 @@ void add_experiment(CLI::App& app, hg::apps::ExperimentArguments& arguments,
   CLI::App* command =
       app.add_subcommand("experiment",
                          "The paper's experiments, and what the simulated device is like to hold "
-                         "(docs/experiments, docs/concepts/simulator.md).");
+                         "(docs/experiments, docs/reports/simulated_machine.md).");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n"

@@ -229,10 +229,10 @@ std::string to_markdown(const Campaign& campaign) {
   text += line(rule);
   for (const Cells& cells : table_of(campaign)) text += line(cells);
   return fmt::format(
-      "# What became of {} cases of faults on purpose\n\n"
-      "Written by `hapticgiant faults --markdown`; [safety.md](../concepts/safety.md) says what "
-      "the columns "
-      "mean.\n"
+      "# Results of {} cases with injected faults\n\n"
+      "Written by `hapticgiant faults --markdown`; "
+      "[safety.md](../concepts/safety.md#injected-faults) "
+      "explains the columns.\n"
       "Seed {}; {}: {}.\n\n{}\n"
       "## The faults\n\n"
       "For `faults` of a scenario and the drawn sizes of this campaign; a torque of the force "

@@ -22,7 +22,8 @@ struct StiffnessLimits {
   double acceleration = kInfinity;  ///< a, along the worst axis of B, m/s^2
 
   /// Frequency up to which T_d shifts the phase of an oscillation by 16.5 degrees at most.
-  /// Measured: 6 kg and 3 kg on surfaces come to rest at 8.2 Hz but not at 11.6 Hz with 6 ms.
+  /// Measured: 6 kg and 3 kg on surfaces come to rest at 8.2 Hz but not at 11.6 Hz, which with 4 ms
+  /// are 12 and 16.7 degrees.
   double frequency_Hz() const noexcept;
   /// Stiffness limit by frequency: m (2 pi f)^2, N/m.
   double by_frequency() const noexcept;
