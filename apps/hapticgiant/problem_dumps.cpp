@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kPatience(2);  // for one file, at the end
 
-std::string ended(const hqp::KeptProblem& kept) {
+std::string ended(const hqp::CapturedProblem& kept) {
   const std::string time =
       kept.cycle_time_us > 0.0 ? fmt::format(", cycle took {:.0f} us", kept.cycle_time_us) : "";
   return fmt::format("{} after {} active set{}{}", hqp::to_string(kept.status), kept.iterations,
                      kept.iterations == 1 ? "" : "s", time);
 }
 
-std::string text_of(const hqp::KeptProblem& kept, const std::string& name) {
+std::string text_of(const hqp::CapturedProblem& kept, const std::string& name) {
   std::ostringstream out;
   hqp::write_problem(
       out, {.problem = kept.problem, .options = kept.options, .guess = kept.guess, .name = name});
@@ -62,11 +62,11 @@ ProblemDumps::ProblemDumps(Place place) : ProblemDumps(std::move(place), write_f
 ProblemDumps::ProblemDumps(Place place, Write write)
     : place_(std::move(place)), write_(std::move(write)) {}
 
-bool ProblemDumps::has_next(const hqp::KeptProblems& problems) const {
+bool ProblemDumps::has_next(const hqp::ProblemCapture& problems) const {
   return !place_.folder.empty() && !has_failed_ && next_ < problems.size();
 }
 
-std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
+std::string ProblemDumps::look_at(const hqp::ProblemCapture& problems) {
   std::string text;
   if (writing_.valid()) {
     if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
@@ -109,7 +109,7 @@ std::string ProblemDumps::look_at(const hqp::KeptProblems& problems) {
   return text;
 }
 
-std::string ProblemDumps::finish(const hqp::KeptProblems& problems) {
+std::string ProblemDumps::finish(const hqp::ProblemCapture& problems) {
   std::string texts;
   while (writing_.valid() || has_next(problems)) {
     if (writing_.valid() && writing_.wait_for(kPatience) != std::future_status::ready) {
@@ -128,7 +128,7 @@ std::string ProblemDumps::finish(const hqp::KeptProblems& problems) {
   return texts;
 }
 
-std::string ProblemDumps::summary(const hqp::KeptProblems& problems) const {
+std::string ProblemDumps::summary(const hqp::ProblemCapture& problems) const {
   if (problems.count() == 0) return {};
   std::string text = fmt::format("  problems     in {} cycle{} the solver failed or took long, ",
                                  problems.count(), problems.count() == 1 ? "" : "s");

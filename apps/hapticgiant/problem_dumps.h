@@ -8,7 +8,7 @@
 #include <future>
 #include <string>
 
-#include "hg/hqp/kept_problems.h"
+#include "hg/hqp/problem_capture.h"
 
 namespace hg::apps {
 
@@ -32,13 +32,13 @@ class ProblemDumps {
   /// Writes the next one of `problems`, if any, on a separate thread. Returns a message for the
   /// user: how to view the first file, or that a file cannot be written, after which writing stops;
   /// else empty.
-  std::string look_at(const hqp::KeptProblems& problems);
+  std::string look_at(const hqp::ProblemCapture& problems);
   /// Writes all remaining problems; gives up when one takes more than two seconds (a network disk
   /// that hangs) and then reports how many are lost.
-  std::string finish(const hqp::KeptProblems& problems);
+  std::string finish(const hqp::ProblemCapture& problems);
 
   /// Number of problems as text for the end of a run; empty without problems.
-  std::string summary(const hqp::KeptProblems& problems) const;
+  std::string summary(const hqp::ProblemCapture& problems) const;
 
  private:
   struct Written {
@@ -47,7 +47,7 @@ class ProblemDumps {
     std::string ended;  ///< end of the solve, as text
     bool is_whole;
   };
-  bool has_next(const hqp::KeptProblems& problems) const;
+  bool has_next(const hqp::ProblemCapture& problems) const;
 
   Place place_;
   Write write_;

@@ -110,7 +110,7 @@ class Cycle {
   const hqp::Problem& problem() const noexcept { return rendering_.problem(); }
   /// Problems of failed or slow solves, see Rendering::kept_problems(). May be read by one other
   /// thread.
-  const hqp::KeptProblems& kept_problems() const noexcept { return rendering_.kept_problems(); }
+  const hqp::ProblemCapture& kept_problems() const noexcept { return rendering_.kept_problems(); }
   /// Keeps the last solve of the last step, too, with the cycle's duration; no effect if the step
   /// had no solve because sensor values were not finite.
   void keep_problem(double cycle_time_us) noexcept {

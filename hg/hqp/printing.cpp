@@ -128,7 +128,7 @@ std::string to_string(const Problem& problem, int row) {
                  "): ", content_of(problem, row)});
 }
 
-std::string to_string(const Options& options) {
+std::string to_string(const SolverOptions& options) {
   return joined({"rank_tolerance ", number(options.rank_tolerance), ", feasibility_tolerance ",
                  number(options.feasibility_tolerance), ", max_iterations ",
                  std::to_string(options.max_iterations),

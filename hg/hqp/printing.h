@@ -19,7 +19,7 @@ const char* to_string(RowState state) noexcept;
 std::string to_string(const Problem& problem, int row);
 
 /// Tolerances and limits, one line.
-std::string to_string(const Options& options);
+std::string to_string(const SolverOptions& options);
 
 /// Report on the solve of `problem`, several lines: how the solve ended; a line per level with the
 /// number of its rows, equalities that are met, rows held at a bound and violated ones, its

@@ -18,7 +18,7 @@ const char* to_string(Status status) noexcept {
   return "unknown";
 }
 
-void check(const Options& options) {
+void check(const SolverOptions& options) {
   const auto require = [](bool ok, const char* text) {
     if (!ok) throw SetupError(text);
   };

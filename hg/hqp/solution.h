@@ -44,7 +44,7 @@ struct ActiveSet {
   std::array<RowState, kMaxRows> before{};
 };
 
-struct Options {
+struct SolverOptions {
   /// A row that is a combination of others, up to this fraction of its own norm, is dependent.
   double rank_tolerance = 1e-9;
   /// A bound counts as met up to this fraction of |bound| + norm(row) |x|.
@@ -60,7 +60,7 @@ struct Options {
 
 /// Throws SetupError, naming the field, unless 0 < tolerances <= 1e-3 max_iterations > 0 and
 /// budget >= 0.
-void check(const Options& options);
+void check(const SolverOptions& options);
 
 struct LevelResult {
   double slack_squared;  ///< sum of (weight * slack)^2 over the level's rows

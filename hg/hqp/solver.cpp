@@ -46,7 +46,7 @@ int find_bad_row(const Problem& problem) noexcept {
 }
 
 // Whether the point tried last violates more rows than the one that has become active since.
-bool misses_rows(const Problem& problem, const Options& options, int levels,
+bool misses_rows(const Problem& problem, const SolverOptions& options, int levels,
                  const Workspace& work) noexcept {
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
@@ -71,7 +71,7 @@ bool repeats_mistake(const Problem& problem, int levels, const std::vector<RowSt
 
 // Tries the guess in work.iterate.state and its corrections until one is proven, or `max_effort` is
 // spent, or `iterations` reaches `max_iterations`.
-bool try_guesses(const Problem& problem, const Options& options, int levels, int max_effort,
+bool try_guesses(const Problem& problem, const SolverOptions& options, int levels, int max_effort,
                  int max_iterations, int& iterations, Workspace& work) noexcept {
   int effort = 0;
   while (effort < max_effort && iterations < max_iterations) {
@@ -85,7 +85,7 @@ bool try_guesses(const Problem& problem, const Options& options, int levels, int
 }
 
 // The guesses of `active`, then that of the dual method, then the method from zero.
-bool solve_by_guesses(const Problem& problem, const Options& options, const ActiveSet& active,
+bool solve_by_guesses(const Problem& problem, const SolverOptions& options, const ActiveSet& active,
                       int levels, int& iterations, Workspace& work) noexcept {
   std::vector<RowState>& guess = work.iterate.state;
   const int effort_from_zero = kEffort + kEffortPerVariable * problem.variables();
@@ -138,8 +138,8 @@ bool solve_by_guesses(const Problem& problem, const Options& options, const Acti
 
 // Level by level, and the proof of what that finds. `levels` becomes the number of levels that are
 // optimal.
-Status complete_levels(const Problem& problem, const Options& options, int all_levels, int& levels,
-                       int& iterations, Workspace& work) noexcept {
+Status complete_levels(const Problem& problem, const SolverOptions& options, int all_levels,
+                       int& levels, int& iterations, Workspace& work) noexcept {
   const LevelOutcome outcome =
       solve_level_by_level(problem, options, all_levels, iterations, levels, work);
   if (outcome == LevelOutcome::kIterationLimit) return Status::kIterationLimit;
@@ -173,12 +173,12 @@ Status complete_levels(const Problem& problem, const Options& options, int all_l
 }
 
 // Leaves the result in work; `levels` becomes the number of levels that are optimal.
-Status solve_levels(const Problem& problem, const Options& options, const ActiveSet& active,
+Status solve_levels(const Problem& problem, const SolverOptions& options, const ActiveSet& active,
                     int& levels, int& iterations, Workspace& work) noexcept {
   const int all_levels = levels;
   if (solve_by_guesses(problem, options, active, levels, iterations, work)) return Status::kSolved;
 
-  Options limited = options;
+  SolverOptions limited = options;
   if (options.budget > 0) {
     if (work.outcome.is_last_guess) {
       levels = choose_better_point(problem, options, all_levels, work);
@@ -240,7 +240,7 @@ Solver::~Solver() = default;
 Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 
-Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& active,
+Status Solver::solve(const Problem& problem, const SolverOptions& options, ActiveSet& active,
                      Solution& solution) noexcept {
   Workspace& work = *workspace_;
   require(problem.variables() <= work.iterate.x.size() &&
@@ -280,8 +280,8 @@ Status Solver::solve(const Problem& problem, const Options& options, ActiveSet& 
 
 std::uint64_t Solver::budgets_spent() const noexcept { return workspace_->budgets_spent; }
 
-double Solver::multipliers(const Problem& problem, const Options& options, const Solution& solution,
-                           int level, std::span<double> mu) noexcept {
+double Solver::multipliers(const Problem& problem, const SolverOptions& options,
+                           const Solution& solution, int level, std::span<double> mu) noexcept {
   require(level >= 0 && level < problem.levels(), "no such level to have multipliers");
   require(static_cast<int>(mu.size()) == problem.rows(), "multipliers need a number per row");
   Workspace& work = *workspace_;

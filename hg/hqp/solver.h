@@ -33,7 +33,7 @@ class Solver {
   /// Solves `problem`, starting from the guess `active`, which receives the final active set.
   /// `solution` is always filled and usable, whatever the status; aborts when solver or solution
   /// have less capacity than the problem needs.
-  Status solve(const Problem& problem, const Options& options, ActiveSet& active,
+  Status solve(const Problem& problem, const SolverOptions& options, ActiveSet& active,
                Solution& solution) noexcept;
 
   /// Number of solves since construction that the budget ended before proof of optimality.
@@ -47,7 +47,7 @@ class Solver {
   /// the level itself receive their share of the gradient, weight^2 * (c x - nearest bound), so
   /// that the sum over all rows is zero. Duplicates: the one of highest priority takes all. Returns
   /// the norm of the remaining sum: near 0 exactly if the level is optimal.
-  double multipliers(const Problem& problem, const Options& options, const Solution& solution,
+  double multipliers(const Problem& problem, const SolverOptions& options, const Solution& solution,
                      int level, std::span<double> mu) noexcept;
 
  private:

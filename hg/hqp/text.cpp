@@ -25,8 +25,8 @@ constexpr std::string_view kStateLetters = ".lu=<>";  // in the order of RowStat
 
 // options by the name of their member
 constexpr std::array kTolerances = {
-    std::pair{"rank_tolerance", &Options::rank_tolerance},
-    std::pair{"feasibility_tolerance", &Options::feasibility_tolerance}};
+    std::pair{"rank_tolerance", &SolverOptions::rank_tolerance},
+    std::pair{"feasibility_tolerance", &SolverOptions::feasibility_tolerance}};
 
 // A name of several lines, or with other control characters, would not be read back.
 std::string in_one_line(std::string name) {
@@ -198,8 +198,8 @@ int single_variable(std::span<const double> coefficients) {
   return variable;
 }
 
-Options parse_options(Reader& reader) {
-  Options options;
+SolverOptions parse_options(Reader& reader) {
+  SolverOptions options;
   std::vector<std::string> names = {"max_iterations", "budget", "minimum_norm"};
   for (const auto& [name, member] : kTolerances) names.emplace_back(name);
   names.emplace_back();
@@ -291,7 +291,7 @@ RecordedProblem parse_recorded(Reader& reader) {
   reader.need_end_of_line();
 
   std::string name;
-  Options options;
+  SolverOptions options;
   const std::vector<std::string> keywords = {"name", "options", "level"};
   while (true) {
     reader.need_line("'level'");
@@ -357,8 +357,8 @@ void write_name(std::ostream& out, const std::string& name) {
   if (!line.empty()) out << "name " << line << '\n';
 }
 
-void write_options(std::ostream& out, const Options& options) {
-  const Options standard;
+void write_options(std::ostream& out, const SolverOptions& options) {
+  const SolverOptions standard;
   std::string text;
   if (options.max_iterations != standard.max_iterations) {
     text += " max_iterations " + std::to_string(options.max_iterations);

@@ -3,7 +3,7 @@
 /// One problem after another, in a plain or gzipped file; numbers in full precision, `inf` allowed:
 ///   hqp <n> <levels>
 ///   name <text>                                     where it comes from     (optional)
-///   options <member of Options> <value> ...         those not at default    (optional)
+///   options <member of SolverOptions> <value> ...         those not at default    (optional)
 ///   level <m_eq> <m_iq>
 ///   <m_eq lines: n coefficients, then b>
 ///   <m_iq lines: n coefficients, then lb, then ub>
@@ -34,7 +34,7 @@ namespace hg::hqp {
 /// A problem with all inputs of its solve: gives the same bits again.
 struct RecordedProblem {
   Problem problem;
-  Options options = {};
+  SolverOptions options = {};
   std::optional<ActiveSet> guess = {};  ///< initial guess of the solve; none = nothing is known
   std::string name = {};                ///< origin of the problem, one line
 };
@@ -56,8 +56,8 @@ Capacity capacity_for(std::span<const RecordedProblem> problems);
 
 /// Writes one problem so that the same one is read back, bit for bit. Ids stay the same, so
 /// equalities that do not come first in their level are written as lb = ub. Line breaks and other
-/// control characters of a name become blanks. Throws SetupError, see check(Options), and then
-/// writes nothing.
+/// control characters of a name become blanks. Throws SetupError, see check(SolverOptions), and
+/// then writes nothing.
 void write_problem(std::ostream& out, const RecordedProblem& recorded);
 void write_problem(std::ostream& out, const Problem& problem);
 

@@ -96,7 +96,7 @@ class Runtime {
   /// Takes the next sample; false if there is none yet. One observer thread only.
   bool pop(Sample& sample) noexcept { return samples_.pop(sample); }
   /// Problems of failed or slow solves. One observer thread only.
-  const hqp::KeptProblems& kept_problems() const noexcept { return cycle_.kept_problems(); }
+  const hqp::ProblemCapture& kept_problems() const noexcept { return cycle_.kept_problems(); }
   /// Sets the target of a simulated hand from the next cycle on. One operator thread only.
   void set_hand_target(const HandTarget& target) noexcept { hand_targets_.push(target); }
   /// Queues a parameter change of the twin for one of the next cycles, after due changes of

@@ -31,7 +31,7 @@ using hqp::Solution;
 // a solution, its problem, and its final active set
 struct SolutionOut {
   Problem problem;
-  hqp::Options options;
+  hqp::SolverOptions options;
   Solution solution;
   ActiveSet active_set;
 };
@@ -114,7 +114,8 @@ std::vector<int> add_bounds(Problem& problem, const ArrayIn& lb, const ArrayIn& 
   return ids;
 }
 
-SolutionOut solve(const Problem& problem, const ActiveSet* active, const hqp::Options& options) {
+SolutionOut solve(const Problem& problem, const ActiveSet* active,
+                  const hqp::SolverOptions& options) {
   hqp::check(options);
   hqp::Solver solver(problem.capacity());
   SolutionOut out{problem, options, Solution(problem.capacity()), active ? *active : ActiveSet{}};
@@ -143,7 +144,7 @@ std::string explain(const SolutionOut& out, std::optional<int> level) {
 }
 
 void write_problem(const std::string& file, const Problem& problem, const ActiveSet* active,
-                   const hqp::Options& options, const std::string& name) {
+                   const hqp::SolverOptions& options, const std::string& name) {
   hqp::check(options);  // before the file is touched
   std::optional<ActiveSet> guess;
   if (active != nullptr) guess = *active;
@@ -247,14 +248,14 @@ void bind_options(nb::module_& module) {
                         "Guess of the row states; the default is a cold start. A wrong guess costs "
                         "time, never correctness.")
       .def(nb::init<>());
-  nb::class_<hqp::Options>(module, "Options", "Tolerances of the solver.")
+  nb::class_<hqp::SolverOptions>(module, "Options", "Tolerances of the solver.")
       .def(nb::init<>())
-      .def_rw("rank_tolerance", &hqp::Options::rank_tolerance)
-      .def_rw("feasibility_tolerance", &hqp::Options::feasibility_tolerance)
-      .def_rw("max_iterations", &hqp::Options::max_iterations)
-      .def_rw("budget", &hqp::Options::budget,
+      .def_rw("rank_tolerance", &hqp::SolverOptions::rank_tolerance)
+      .def_rw("feasibility_tolerance", &hqp::SolverOptions::feasibility_tolerance)
+      .def_rw("max_iterations", &hqp::SolverOptions::max_iterations)
+      .def_rw("budget", &hqp::SolverOptions::budget,
               "active sets before the solve is brought to an end, 0: no such limit")
-      .def_rw("minimum_norm", &hqp::Options::minimum_norm,
+      .def_rw("minimum_norm", &hqp::SolverOptions::minimum_norm,
               "freedom left by the last level goes to the smallest |x|");
 
   nb::class_<hqp::RecordedProblem>(module, "RecordedProblem",
@@ -315,7 +316,7 @@ void bind_hqp(nb::module_& module) {
   bind_options(module);
   bind_solution(module);
   module.def("solve", &solve, nb::arg("problem"), nb::arg("active_set") = nb::none(),
-             nb::arg("options") = hqp::Options{},
+             nb::arg("options") = hqp::SolverOptions{},
              "Minimises the violations of every level, in the order of the levels. Raises "
              "ValueError with the first row that is not right: not finite, lb > ub, weight <= 0; "
              "SetupError for options that are not.");
@@ -324,7 +325,7 @@ void bind_hqp(nb::module_& module) {
   module.def("read_recorded_problems", &hqp::read_recorded_problems, nb::arg("file"),
              "The same with how each is to be solved.");
   module.def("write_problem", &write_problem, nb::arg("file"), nb::arg("problem"),
-             nb::arg("active_set") = nb::none(), nb::arg("options") = hqp::Options{},
+             nb::arg("active_set") = nb::none(), nb::arg("options") = hqp::SolverOptions{},
              nb::arg("name") = "", "Writes a file that reads back to the same bits.");
 }
 

@@ -5,7 +5,7 @@
 #include <future>
 #include <string>
 
-#include "hg/hqp/kept_problems.h"
+#include "hg/hqp/problem_capture.h"
 #include "hg/hqp/text.h"
 
 namespace hg::apps {
@@ -14,9 +14,9 @@ namespace {
 TEST(ProblemDumps, ADiskThatHangsCostsProblemsNotTheRun) {
   const hqp::Problem problem = hqp::parse_problems("hqp 1 1\nlevel 1 0\n1 2\nend\n", "one")[0];
   const hqp::Capacity capacity = hqp::capacity_for(std::vector<hqp::Problem>{problem});
-  hqp::KeptProblems kept(capacity);
+  hqp::ProblemCapture kept(capacity);
   hqp::Solution solution(capacity);
-  for (const std::uint64_t cycle : {1U, 2U, 3U}) kept.put(problem, {}, {}, solution, cycle);
+  for (const std::uint64_t cycle : {1U, 2U, 3U}) kept.capture(problem, {}, {}, solution, cycle);
   ASSERT_EQ(kept.size(), 3U);
 
   std::promise<void> never;

@@ -31,7 +31,7 @@ constexpr double kAligned = 1e-12;  // m and rad
 // A solve that ran out of active sets must keep all limits of the device. One that completed all
 // levels but lacks the proof of optimality is exact to rounding: joints must be kept, conflicting
 // motors and walls cannot be met better.
-SolverStatus solver_status(const Tasks& tasks, const hqp::Options& options,
+SolverStatus solver_status(const Tasks& tasks, const hqp::SolverOptions& options,
                            const hqp::Solution& solution) noexcept {
   if (solution.status == hqp::Status::kSolved) return SolverStatus::kSolved;
   if (solution.status != hqp::Status::kIterationLimit) return SolverStatus::kFailed;
@@ -152,7 +152,7 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
       J_a_(6, twin_.chain.nv()),
       solver_(tasks_.problem().capacity()),
       solution_(tasks_.problem().capacity()),
-      kept_problems_(std::make_unique<hqp::KeptProblems>(tasks_.problem().capacity())) {
+      kept_problems_(std::make_unique<hqp::ProblemCapture>(tasks_.problem().capacity())) {
   if (environment_.has_stops()) check_stops(device_, options_);
   solver_options_.max_iterations =
       std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
@@ -432,7 +432,8 @@ void Rendering::solve(const LawInput& input, State& state, LawResult& result) no
 
 void Rendering::keep_problem(std::uint64_t cycle, double cycle_time_us) noexcept {
   if (solved_cycle_ != cycle) return;
-  kept_problems_->put(tasks_.problem(), solver_options_, guess_, solution_, cycle, cycle_time_us);
+  kept_problems_->capture(tasks_.problem(), solver_options_, guess_, solution_, cycle,
+                          cycle_time_us);
 }
 
 bool Rendering::is_blocked() const noexcept {

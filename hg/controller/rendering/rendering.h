@@ -19,7 +19,7 @@
 #include "hg/controller/rendering/twin_forces.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/core/stage_probe.h"
-#include "hg/hqp/kept_problems.h"
+#include "hg/hqp/problem_capture.h"
 #include "hg/hqp/solver.h"
 #include "hg/signals/state.h"
 
@@ -110,7 +110,7 @@ class Rendering {
   const hqp::Problem& problem() const noexcept { return tasks_.problem(); }
   /// Kept solves: failed, with options.slow_solve active sets or more, or requested by
   /// keep_problem(). One other thread may read them.
-  const hqp::KeptProblems& kept_problems() const noexcept { return *kept_problems_; }
+  const hqp::ProblemCapture& kept_problems() const noexcept { return *kept_problems_; }
   /// Keeps the last solve if it belonged to cycle `cycle`; `cycle_time_us` = 0: not kept because of
   /// the time that the cycle took.
   void keep_problem(std::uint64_t cycle, double cycle_time_us = 0.0) noexcept;
@@ -142,12 +142,12 @@ class Rendering {
   // of this cycle: M_a = L L^T, the Jacobians of handle (gantry first) and end effector
   MatrixA L_;
   model::Jacobian J_H_, J_a_;
-  hqp::Options solver_options_;
+  hqp::SolverOptions solver_options_;
   hqp::Solver solver_;
   hqp::Solution solution_;
   hqp::ActiveSet guess_;                       ///< Active set from which the last solve started
   std::optional<std::uint64_t> solved_cycle_;  ///< Cycle of the last solve
-  std::unique_ptr<hqp::KeptProblems> kept_problems_;
+  std::unique_ptr<hqp::ProblemCapture> kept_problems_;
   StageProbe ended_;
 };
 

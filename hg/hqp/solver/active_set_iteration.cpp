@@ -17,7 +17,8 @@ constexpr double kSameSlack = 1e-9;  // share of 1 + slack up to which two point
 constexpr double kZeroStep = 1e-9;   // share of the step below which it counts as zero
 
 // The smallest |x| is a level below all others.
-bool wants_smallest_norm(const Problem& problem, const Options& options, int levels) noexcept {
+bool wants_smallest_norm(const Problem& problem, const SolverOptions& options,
+                         int levels) noexcept {
   return options.minimum_norm && levels == problem.levels();
 }
 
@@ -38,7 +39,7 @@ void collect_active(const Problem& problem, int level, const std::vector<RowStat
 
 // Computes the point of the guess by Gauss elimination, from the first level on whose guess has
 // changed. Returns false when ranks are in doubt, or when rows leave freedom that no level uses.
-bool eliminate_by_gauss(const Problem& problem, const Options& options, int levels,
+bool eliminate_by_gauss(const Problem& problem, const SolverOptions& options, int levels,
                         Factors& factors, Iterate& iterate,
                         std::vector<TargetRow>& targets) noexcept {
   GaussElimination& gauss = factors.gauss;
@@ -70,7 +71,7 @@ bool eliminate_by_gauss(const Problem& problem, const Options& options, int leve
 }
 
 // Computes the point of the guess by Householder reflections; false when it is not finite.
-bool eliminate_by_householder(const Problem& problem, const Options& options, int levels,
+bool eliminate_by_householder(const Problem& problem, const SolverOptions& options, int levels,
                               Factors& factors, Iterate& iterate, std::vector<TargetRow>& targets,
                               Eigen::VectorXd& direction) noexcept {
   const int n = problem.variables();
@@ -101,8 +102,9 @@ bool is_inequality_pivot(const Factors& factors, const Iterate& iterate, int t) 
 
 // Computes multipliers of the first `rank` pivots that cancel duals.gradient, and writes those from
 // `first_inequality` on into duals.mu. Returns false when they do not cancel it.
-bool find_multipliers(const Problem& problem, const Options& options, const LevelGradient& size,
-                      int rank, int first_inequality, Factors& factors, Duals& duals) noexcept {
+bool find_multipliers(const Problem& problem, const SolverOptions& options,
+                      const LevelGradient& size, int rank, int first_inequality, Factors& factors,
+                      Duals& duals) noexcept {
   const int n = problem.variables();
   double rest = 0.0;
   double small_rest = kSmallRest;
@@ -151,7 +153,7 @@ int check_multipliers(const Problem& problem, const LevelGradient& size, int lev
 }
 
 // Computes the gradient of the quadratic piece of the level that the guessed states stand for.
-LevelGradient guess_gradient(const Problem& problem, const Options& options, int level,
+LevelGradient guess_gradient(const Problem& problem, const SolverOptions& options, int level,
                              const Iterate& iterate, Eigen::VectorXd& gradient) noexcept {
   if (level == problem.levels()) return level_gradient(problem, options, level, iterate, gradient);
   LevelGradient result = {.is_zero = true, .scale = 0.0, .rounding = 0.0};
@@ -177,8 +179,8 @@ void set_guess(const Problem& problem, int row, RowState state, Iterate& iterate
 
 // Activates the first inactive row that blocks the step from the last point to the new one; false
 // when there is none. `length` receives the feasible share of the step.
-bool activate_blocking_row(const Problem& problem, const Options& options, int rows, double& length,
-                           Workspace& work) noexcept {
+bool activate_blocking_row(const Problem& problem, const SolverOptions& options, int rows,
+                           double& length, Workspace& work) noexcept {
   int blocking_row = -1;
   double distance_there = 0.0;
   length = kInfinity;
@@ -204,7 +206,7 @@ bool activate_blocking_row(const Problem& problem, const Options& options, int r
 }
 
 // Returns the state of an active row by its value; kInactive: x is inside its bounds.
-RowState found_state(const Problem& problem, const Options& options, int row,
+RowState found_state(const Problem& problem, const SolverOptions& options, int row,
                      const Iterate& iterate) noexcept {
   const double distance = violation(problem, options, iterate, row);
   if (distance != 0.0) return distance > 0.0 ? RowState::kAbove : RowState::kBelow;
@@ -219,7 +221,7 @@ RowState found_state(const Problem& problem, const Options& options, int row,
 
 // Determines the states of active rows from their values, and releases rows that x is inside of.
 // Returns whether the guess has changed.
-bool release_inner_rows(const Problem& problem, const Options& options, int levels,
+bool release_inner_rows(const Problem& problem, const SolverOptions& options, int levels,
                         Workspace& work) noexcept {
   bool is_changed = false;
   for (int level = 0; level < levels; ++level) {
@@ -246,7 +248,7 @@ bool release_inner_rows(const Problem& problem, const Options& options, int leve
 
 // Checks the signs of the multipliers level by level. At the first level with a negative one, the
 // row with the most negative one is released.
-GuessResult check_levels(const Problem& problem, const Options& options, int levels,
+GuessResult check_levels(const Problem& problem, const SolverOptions& options, int levels,
                          Workspace& work) noexcept {
   const int rank = work.iterate.rank_at_level[index(levels)];
   int first_inequality = 0;
@@ -282,13 +284,13 @@ GuessResult check_levels(const Problem& problem, const Options& options, int lev
   return GuessResult::kProven;
 }
 
-GuessResult check_last_guess(const Problem& problem, const Options& options, int levels,
+GuessResult check_last_guess(const Problem& problem, const SolverOptions& options, int levels,
                              Workspace& work) noexcept;
 
 // One step of the active-set method. The first steps all start at the same point, and release rows
 // before they activate others: where few rows are active, one step per row suffices. This could
 // cycle; so later steps start at the point reached, and the slacks decrease.
-GuessResult check_guess(const Problem& problem, const Options& options, int levels,
+GuessResult check_guess(const Problem& problem, const SolverOptions& options, int levels,
                         Workspace& work) noexcept {
   if (work.outcome.is_last_guess) return check_last_guess(problem, options, levels, work);
   const int rows = rows_of(problem, levels);
@@ -313,7 +315,7 @@ GuessResult check_guess(const Problem& problem, const Options& options, int leve
 
 // Determines the states of all rows from their values: a row at its bound is active where the guess
 // says so.
-void read_states(const Problem& problem, const Options& options, int levels,
+void read_states(const Problem& problem, const SolverOptions& options, int levels,
                  Iterate& iterate) noexcept {
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
@@ -328,7 +330,7 @@ void read_states(const Problem& problem, const Options& options, int levels,
 
 // Checks a guess that no step follows: writes the number of levels that its point is optimal for
 // into work.outcome.proven_levels.
-GuessResult check_last_guess(const Problem& problem, const Options& options, int levels,
+GuessResult check_last_guess(const Problem& problem, const SolverOptions& options, int levels,
                              Workspace& work) noexcept {
   int consistent = levels;
   for (int row = 0; row < rows_of(problem, consistent); ++row) {
@@ -437,7 +439,7 @@ void start_solve(const Problem& problem, Workspace& work) noexcept {
   std::fill_n(work.steps.must_stay_active.begin(), problem.rows(), std::uint8_t{0});
 }
 
-int choose_better_point(const Problem& problem, const Options& options, int levels,
+int choose_better_point(const Problem& problem, const SolverOptions& options, int levels,
                         Workspace& work) noexcept {
   const double* x = work.dual.point().data();
   for (int level = 0; level < levels; ++level) {
@@ -464,7 +466,7 @@ int choose_better_point(const Problem& problem, const Options& options, int leve
   return work.outcome.proven_levels;
 }
 
-int count_optimal_levels(const Problem& problem, const Options& options, int levels,
+int count_optimal_levels(const Problem& problem, const SolverOptions& options, int levels,
                          Workspace& work) noexcept {
   work.iterate.x_norm = work.iterate.x.head(problem.variables()).norm();
   update_values(problem, levels, work.iterate);
@@ -503,7 +505,7 @@ bool has_violated_inequality(const Problem& problem, int level, const IsViolated
   return false;
 }
 
-void expect_violated(const Problem& problem, const Options& options, int levels,
+void expect_violated(const Problem& problem, const SolverOptions& options, int levels,
                      std::span<const RowState> last, Workspace& work) noexcept {
   bool has_any = false;
   for (int level = 0; level < levels; ++level) {
@@ -521,7 +523,7 @@ void expect_violated(const Problem& problem, const Options& options, int levels,
   }
 }
 
-bool expect_violated_now(const Problem& problem, const Options& options, int levels,
+bool expect_violated_now(const Problem& problem, const SolverOptions& options, int levels,
                          Workspace& work) noexcept {
   bool is_new = false;
   for (int level = 0; level < levels; ++level) {
@@ -534,7 +536,7 @@ bool expect_violated_now(const Problem& problem, const Options& options, int lev
   return is_new;
 }
 
-bool start_from_dual(const Problem& problem, const Options& options, int levels,
+bool start_from_dual(const Problem& problem, const SolverOptions& options, int levels,
                      Workspace& work) noexcept {
   int top = 0;  // number of levels that the guesses so far have in common
   while (top < work.factors.gauss_levels && !has_inequality(problem, top)) ++top;
@@ -573,7 +575,7 @@ bool restore_released_row(const Problem& problem, Workspace& work) noexcept {
   return true;
 }
 
-GuessResult solve_guess(const Problem& problem, const Options& options, int levels,
+GuessResult solve_guess(const Problem& problem, const SolverOptions& options, int levels,
                         Workspace& work) noexcept {
   ++work.steps.count;
   work.factors.is_gauss =

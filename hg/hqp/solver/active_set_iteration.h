@@ -41,22 +41,22 @@ void start_solve(const Problem& problem, Workspace& work) noexcept;
 /// Writes the levels expected to have violated inequalities into work.levels.expected_violated:
 /// those of the last solve, whose states are `last`; when it had none, those that the point tried
 /// last violates, but for the first of them, where a row has become active since.
-void expect_violated(const Problem& problem, const Options& options, int levels,
+void expect_violated(const Problem& problem, const SolverOptions& options, int levels,
                      std::span<const RowState> last, Workspace& work) noexcept;
 /// Sets work.levels.expected_violated to the levels violated at the point tried last. Returns
 /// whether it changed.
-bool expect_violated_now(const Problem& problem, const Options& options, int levels,
+bool expect_violated_now(const Problem& problem, const SolverOptions& options, int levels,
                          Workspace& work) noexcept;
 
 /// Writes the guess of the dual method into work.iterate.state; its point becomes the last one.
 /// False if there is none; work.iterate.state is then unchanged. Needs
 /// work.levels.expected_violated.
-bool start_from_dual(const Problem& problem, const Options& options, int levels,
+bool start_from_dual(const Problem& problem, const SolverOptions& options, int levels,
                      Workspace& work) noexcept;
 
 /// Writes the better of two points into the iterate, level by level: that of the last,
 /// unproven guess and that of the dual method. Returns the number of levels that it is optimal for.
-int choose_better_point(const Problem& problem, const Options& options, int levels,
+int choose_better_point(const Problem& problem, const SolverOptions& options, int levels,
                         Workspace& work) noexcept;
 
 /// Number of levels for which the iterate is optimal, by its values alone: by the
@@ -64,7 +64,7 @@ int choose_better_point(const Problem& problem, const Options& options, int leve
 /// work.duals.gradient is that of the first level that is not optimal. Determines the states of all
 /// rows from their values.
 /// levels + 1: |x| is also the smallest, or need not be.
-int count_optimal_levels(const Problem& problem, const Options& options, int levels,
+int count_optimal_levels(const Problem& problem, const SolverOptions& options, int levels,
                          Workspace& work) noexcept;
 
 enum class GuessResult {
@@ -80,7 +80,7 @@ enum class GuessResult {
 /// work.iterate.value. The first work.factors.gauss_levels levels keep their factors. With
 /// work.outcome.is_last_guess, the guess is not corrected, and work.outcome.proven_levels is the
 /// number of levels for which its point is optimal.
-GuessResult solve_guess(const Problem& problem, const Options& options, int levels,
+GuessResult solve_guess(const Problem& problem, const SolverOptions& options, int levels,
                         Workspace& work) noexcept;
 
 }  // namespace hg::hqp::solver

@@ -519,8 +519,8 @@ int DualMethod::expected_level() const noexcept {
   return level;
 }
 
-bool DualMethod::find_guess(const Problem& problem, const Options& options, int levels, int top,
-                            std::span<const std::uint8_t> expected_violated,
+bool DualMethod::find_guess(const Problem& problem, const SolverOptions& options, int levels,
+                            int top, std::span<const std::uint8_t> expected_violated,
                             GaussElimination& direct, std::vector<RowState>& guess) noexcept {
   problem_ = &problem;
   options_ = &options;

@@ -31,7 +31,7 @@ class DualMethod {
   /// equalities of the first `top` levels, which have no other rows; on return it has other pivots
   /// behind these. `expected_violated`, per level: whether violated inequalities are expected
   /// there; such levels are settled one by one at once. False if given up: `guess` is not written.
-  bool find_guess(const Problem& problem, const Options& options, int levels, int top,
+  bool find_guess(const Problem& problem, const SolverOptions& options, int levels, int top,
                   std::span<const std::uint8_t> expected_violated, GaussElimination& direct,
                   std::vector<RowState>& guess) noexcept;
   /// Point of the guess, all variables.
@@ -86,7 +86,7 @@ class DualMethod {
 
   // data of the solve
   const Problem* problem_ = nullptr;
-  const Options* options_ = nullptr;
+  const SolverOptions* options_ = nullptr;
   int levels_ = 0;
   std::span<const std::uint8_t> expected_violated_;
   int first_ = 0;  ///< levels above are settled

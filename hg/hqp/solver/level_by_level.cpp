@@ -27,7 +27,7 @@ std::uint8_t side_of(const RowAtBound& t) noexcept {
 
 class LevelByLevel {
  public:
-  LevelByLevel(const Problem& problem, const Options& options, int levels, int& iterations,
+  LevelByLevel(const Problem& problem, const SolverOptions& options, int levels, int& iterations,
                Workspace& work) noexcept
       : problem_(problem),
         options_(options),
@@ -68,7 +68,7 @@ class LevelByLevel {
   }
 
   const Problem& problem_;
-  const Options& options_;
+  const SolverOptions& options_;
   const int levels_;
   const int n_;
   int& iterations_;
@@ -412,7 +412,7 @@ void LevelByLevel::release_rows_off_bounds() noexcept {
 
 }  // namespace
 
-LevelOutcome solve_level_by_level(const Problem& problem, const Options& options, int levels,
+LevelOutcome solve_level_by_level(const Problem& problem, const SolverOptions& options, int levels,
                                   int& iterations, int& completed, Workspace& work) noexcept {
   return LevelByLevel(problem, options, levels, iterations, work).run(completed);
 }

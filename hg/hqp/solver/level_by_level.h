@@ -12,7 +12,7 @@ enum class LevelOutcome { kOptimal, kIterationLimit, kNotFinite };
 /// along it exactly and never leaves the optimal set of the levels above. Adds to `iterations`,
 /// stops at options.max_iterations; `completed` receives the number of optimal levels.
 /// work.iterate.x and work.iterate.state always hold the last point.
-LevelOutcome solve_level_by_level(const Problem& problem, const Options& options, int levels,
+LevelOutcome solve_level_by_level(const Problem& problem, const SolverOptions& options, int levels,
                                   int& iterations, int& completed, Workspace& work) noexcept;
 
 }  // namespace hg::hqp::solver

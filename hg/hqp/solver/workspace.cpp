@@ -53,12 +53,12 @@ Workspace::Workspace(const Capacity& c)
   working_set.reserve(index(c.variables));
 }
 
-double tolerance(const Problem& problem, const Options& options, const Iterate& iterate, int row,
-                 double bound) noexcept {
+double tolerance(const Problem& problem, const SolverOptions& options, const Iterate& iterate,
+                 int row, double bound) noexcept {
   return options.feasibility_tolerance * magnitude(problem.norm(row), bound, iterate.x_norm);
 }
 
-bool reaches(const Problem& problem, const Options& options, const Iterate& iterate, int row,
+bool reaches(const Problem& problem, const SolverOptions& options, const Iterate& iterate, int row,
              double bound) noexcept {
   return std::isfinite(bound) && std::abs(iterate.value[index(row)] - bound) <=
                                      tolerance(problem, options, iterate, row, bound);
@@ -81,7 +81,7 @@ bool move(const Problem& problem, const Eigen::VectorXd& step, double length,
   return true;
 }
 
-void collect_targets(const Problem& problem, const Options& options, int level,
+void collect_targets(const Problem& problem, const SolverOptions& options, int level,
                      const Iterate& iterate, std::vector<TargetRow>& targets) noexcept {
   targets.clear();
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
@@ -94,7 +94,7 @@ void collect_targets(const Problem& problem, const Options& options, int level,
   }
 }
 
-void collect_rows_at_bounds(const Problem& problem, const Options& options, int level,
+void collect_rows_at_bounds(const Problem& problem, const SolverOptions& options, int level,
                             const Iterate& iterate, std::vector<RowAtBound>& rows) noexcept {
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
     const auto [lb, ub] = problem.bounds(row);
@@ -115,7 +115,7 @@ double add_residual(const Problem& problem, int row, double bound, const Iterate
   return std::abs(distance);
 }
 
-LevelGradient level_gradient(const Problem& problem, const Options& options, int level,
+LevelGradient level_gradient(const Problem& problem, const SolverOptions& options, int level,
                              const Iterate& iterate, Eigen::VectorXd& gradient) noexcept {
   const int n = problem.variables();
   if (level == problem.levels()) {

@@ -160,12 +160,12 @@ inline RowState as_guess(RowState state) noexcept {
 }
 
 /// Distance from the bound up to which the row counts as being at it.
-double tolerance(const Problem& problem, const Options& options, const Iterate& iterate, int row,
-                 double bound) noexcept;
+double tolerance(const Problem& problem, const SolverOptions& options, const Iterate& iterate,
+                 int row, double bound) noexcept;
 
 /// Signed distance of the row's value from its bounds, as excess(); 0 within the tolerance.
-inline double violation(const Problem& problem, const Options& options, const Iterate& iterate,
-                        int row) noexcept {
+inline double violation(const Problem& problem, const SolverOptions& options,
+                        const Iterate& iterate, int row) noexcept {
   const Interval bounds = problem.bounds(row);
   const double distance = excess(bounds, iterate.value[index(row)]);
   if (distance == 0.0) return 0.0;
@@ -174,7 +174,7 @@ inline double violation(const Problem& problem, const Options& options, const It
 }
 
 /// Whether the row's value is at `bound`, within the tolerance.
-bool reaches(const Problem& problem, const Options& options, const Iterate& iterate, int row,
+bool reaches(const Problem& problem, const SolverOptions& options, const Iterate& iterate, int row,
              double bound) noexcept;
 
 /// Computes the values of the rows of the first `levels` levels.
@@ -186,11 +186,11 @@ void update_values(const Problem& problem, int levels, Iterate& iterate) noexcep
 
 /// Writes the level's equality and violated rows into `targets`: the quadratic piece of the level's
 /// objective at x.
-void collect_targets(const Problem& problem, const Options& options, int level,
+void collect_targets(const Problem& problem, const SolverOptions& options, int level,
                      const Iterate& iterate, std::vector<TargetRow>& targets) noexcept;
 
 /// Appends the level's inequality rows that are at a bound to `rows`.
-void collect_rows_at_bounds(const Problem& problem, const Options& options, int level,
+void collect_rows_at_bounds(const Problem& problem, const SolverOptions& options, int level,
                             const Iterate& iterate, std::vector<RowAtBound>& rows) noexcept;
 
 /// Adds the row's term of the gradient, weight^2 c^T (c x - bound), to `gradient` and its size to
@@ -199,7 +199,7 @@ double add_residual(const Problem& problem, int row, double bound, const Iterate
                     Eigen::VectorXd& gradient, LevelGradient& size) noexcept;
 
 /// Writes the gradient of the objective of `level`, or of 1/2 |x|^2 for level == problem.levels().
-LevelGradient level_gradient(const Problem& problem, const Options& options, int level,
+LevelGradient level_gradient(const Problem& problem, const SolverOptions& options, int level,
                              const Iterate& iterate, Eigen::VectorXd& gradient) noexcept;
 
 }  // namespace hg::hqp::solver

@@ -36,11 +36,12 @@ TEST(Allocation, DoesNotHappenAfterConstruction) {
       active.before[r] = static_cast<RowState>(random() % 6);
     }
     const AllocationCounter allocations;
-    solver.solve(problem, Options{}, active, solution);
+    solver.solve(problem, SolverOptions{}, active, solution);
     active = {};
-    solver.solve(problem, Options{}, active, solution);
+    solver.solve(problem, SolverOptions{}, active, solution);
     for (int level = 0; level < problem.levels(); ++level) {
-      solver.multipliers(problem, Options{}, solution, level, {mu.data(), index(problem.rows())});
+      solver.multipliers(problem, SolverOptions{}, solution, level,
+                         {mu.data(), index(problem.rows())});
     }
     for (int row = 0; row < problem.rows(); ++row) {
       problem.set_bounds(row, {-1.0, 1.0});

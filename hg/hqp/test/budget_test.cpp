@@ -47,7 +47,7 @@ struct Ended {
   int solved = 0;
 };
 
-Ended end_all(const Options& options) {
+Ended end_all(const SolverOptions& options) {
   Ended ended;
   for (std::uint32_t seed = 0; seed < 500; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -34,9 +34,9 @@ struct ByteProblem {
   void change(int step) noexcept;
 
   Problem problem;
-  Options options;      ///< minimum_norm and max_iterations vary
-  ActiveSet guess;      ///< to start from, mostly a cold start
-  bool is_tame = true;  ///< no scaled or special number has been used
+  SolverOptions options;  ///< minimum_norm and max_iterations vary
+  ActiveSet guess;        ///< to start from, mostly a cold start
+  bool is_tame = true;    ///< no scaled or special number has been used
 
  private:
   void add_row(std::span<const std::uint8_t> bytes, Numbers numbers);

@@ -178,7 +178,7 @@ std::string fault_of_row(const Problem& problem, const Solution& solution, int r
   return "a state that does not exist";
 }
 
-std::string fault_of_counts(const Problem& problem, const Options& options,
+std::string fault_of_counts(const Problem& problem, const SolverOptions& options,
                             const Solution& solution) {
   const int completed = solution.completed_levels;
   const bool is_bad = solution.status == Status::kBadRow;
@@ -201,7 +201,7 @@ std::string fault_of_counts(const Problem& problem, const Options& options,
 
 }  // namespace
 
-std::string fault_of(const Problem& problem, const Options& options, const Solution& solution,
+std::string fault_of(const Problem& problem, const SolverOptions& options, const Solution& solution,
                      double gap) {
   if (const std::string fault = fault_of_counts(problem, options, solution); !fault.empty()) {
     return fault;

@@ -24,7 +24,7 @@ double largest_gap(const Problem& problem, const std::vector<double>& x, bool mi
 /// contradict each other, states that the values do not bear out, more iterations than allowed, or
 /// a level called complete whose gap is larger than `gap` (infinity: gaps and states are not
 /// judged).
-std::string fault_of(const Problem& problem, const Options& options, const Solution& solution,
+std::string fault_of(const Problem& problem, const SolverOptions& options, const Solution& solution,
                      double gap = 1e-6);
 
 }  // namespace hg::hqp

@@ -42,7 +42,7 @@ class LevelByLevel : public testing::TestWithParam<NamedKind> {
     return outcome;
   }
 
-  Options options_;
+  SolverOptions options_;
   Workspace work_{{.variables = 60, .levels = 20, .rows = 600}};
   Solution solution_{{.variables = 60, .levels = 20, .rows = 600}};
   int iterations_ = 0;

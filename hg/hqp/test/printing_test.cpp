@@ -97,7 +97,7 @@ TEST(Explanation, ShortensRows) {
 
 TEST(Explanation, TellsOptions) {
   EXPECT_EQ(
-      to_string(Options{.max_iterations = 7}),
+      to_string(SolverOptions{.max_iterations = 7}),
       "rank_tolerance 1e-09, feasibility_tolerance 1e-10, max_iterations 7, freedom left goes "
       "to the smallest |x|");
 }

@@ -89,7 +89,8 @@ struct Solved {
   std::string fault;  ///< of the result, empty if none
 };
 
-Solved solve(const Problem& problem, const Options& options = {}, const ActiveSet& guess = {}) {
+Solved solve(const Problem& problem, const SolverOptions& options = {},
+             const ActiveSet& guess = {}) {
   static Solver solver(kCapacity);
   Solved solved;
   solved.active = guess;
@@ -305,7 +306,7 @@ TEST(Property, AStoppedSolveIsUsable) {
     const ByteProblem made(bytes, Numbers::kTame);
     const Solved full = solve(made.problem);
     for (const int cap : {1, 2, 5}) {
-      Options options = made.options;
+      SolverOptions options = made.options;
       options.max_iterations = cap;
       const Solved stopped = solve(made.problem, options, made.guess);
       if (!stopped.fault.empty()) return "cap " + std::to_string(cap) + ": " + stopped.fault;

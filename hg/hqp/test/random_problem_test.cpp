@@ -37,7 +37,7 @@ TEST_P(RandomProblems, AreSolvedToOptimality) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Problem problem = random_problem(seed, GetParam().kind);
     ActiveSet active;
-    ASSERT_EQ(solver_.solve(problem, Options{}, active, solution_), Status::kSolved);
+    ASSERT_EQ(solver_.solve(problem, SolverOptions{}, active, solution_), Status::kSolved);
     ASSERT_EQ(fault_of(problem, {}, solution_, GetParam().gap), "");
   }
 }
@@ -48,12 +48,12 @@ TEST_P(RandomProblems, HaveOneSolutionWhateverTheGuess) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Problem problem = random_problem(seed, GetParam().kind);
     ActiveSet active;
-    solver_.solve(problem, Options{}, active, solution_);
+    solver_.solve(problem, SolverOptions{}, active, solution_);
     const Solution cold = solution_;
 
     // from its own active set, and from a random one
     for (int trial = 0; trial < 2; ++trial) {
-      ASSERT_EQ(solver_.solve(problem, Options{}, active, solution_), Status::kSolved);
+      ASSERT_EQ(solver_.solve(problem, SolverOptions{}, active, solution_), Status::kSolved);
       ASSERT_EQ(fault_of(problem, {}, solution_, GetParam().gap), "");
       double x_norm = 0.0;
       for (const double x : cold.x) x_norm = std::hypot(x_norm, x);

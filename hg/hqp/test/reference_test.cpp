@@ -102,7 +102,7 @@ void expect_set_solved(const std::string& name, bool is_warm, bool is_certified)
     SCOPED_TRACE("problem " + std::to_string(i));
     const int index = static_cast<int>(i);
     if (!is_warm) active = ActiveSet{};
-    ASSERT_EQ(solver.solve(set.problems[i], Options{}, active, solution), Status::kSolved);
+    ASSERT_EQ(solver.solve(set.problems[i], SolverOptions{}, active, solution), Status::kSolved);
     if (set.skipped.count(index) > 0) continue;
     const bool is_x_unique = set.is_recorded_sequence || index % 2 == 0;
     expect_reference(set.problems[i], solution, set.solutions[i], is_x_unique);

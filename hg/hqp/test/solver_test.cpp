@@ -22,7 +22,7 @@ constexpr Capacity kCapacity = {.variables = 60, .levels = 20, .rows = 600};
 struct Bench {
   Solver solver{kCapacity};
   Solution solution{kCapacity};
-  Options options;
+  SolverOptions options;
   ActiveSet active;
 
   Status solve(const Problem& problem, double gap = 1e-6) {

@@ -125,7 +125,7 @@ TEST(ParseProblems, ReadsWhatMayBeSaidBesidesRows) {
   EXPECT_EQ(name, "cycle 7, a test");
   EXPECT_FALSE(options.minimum_norm);
   EXPECT_EQ(options.rank_tolerance, 1e-8);
-  EXPECT_EQ(options.feasibility_tolerance, Options().feasibility_tolerance);
+  EXPECT_EQ(options.feasibility_tolerance, SolverOptions().feasibility_tolerance);
   EXPECT_EQ(problem.weight(0), 0.5);
   EXPECT_EQ(problem.variable(0), 1);
   EXPECT_EQ(problem.variable(1), -1);  // 2 x0 is not x0
@@ -224,14 +224,15 @@ TEST(WriteProblem, ANameStaysOnItsLine) {
 TEST(WriteProblem, RefusesOptionsThatCouldNotBeRead) {
   Problem problem({.variables = 1, .levels = 1, .rows = 1});
   problem.add_level();
-  for (const Options& wrong :
-       {Options{.rank_tolerance = 0.0}, Options{.feasibility_tolerance = std::nan("")},
-        Options{.feasibility_tolerance = 1.0}, Options{.max_iterations = 0}}) {
+  for (const SolverOptions& wrong :
+       {SolverOptions{.rank_tolerance = 0.0}, SolverOptions{.feasibility_tolerance = std::nan("")},
+        SolverOptions{.feasibility_tolerance = 1.0}, SolverOptions{.max_iterations = 0}}) {
     std::ostringstream text;
     EXPECT_THROW(write_problem(text, {.problem = problem, .options = wrong}), SetupError);
     EXPECT_EQ(text.str(), "");
   }
-  const Options most = {.rank_tolerance = 1e-3, .max_iterations = std::numeric_limits<int>::max()};
+  const SolverOptions most = {.rank_tolerance = 1e-3,
+                              .max_iterations = std::numeric_limits<int>::max()};
   const auto read = parse_recorded_problems(to_text({problem, most}), "x.hqp");
   EXPECT_EQ(read[0].options.max_iterations, most.max_iterations);
   EXPECT_EQ(read[0].options.rank_tolerance, most.rank_tolerance);

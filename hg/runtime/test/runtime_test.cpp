@@ -65,7 +65,7 @@ TEST(Runtime, KeepsProblemsOfSlowCyclesOnly) {
     const Report report = runtime.join();
     EXPECT_EQ(report.allocations, 0u);
     EXPECT_EQ(runtime.kept_problems().count(), all_are_slow ? report.cycles : 0u);
-    const std::size_t kept = all_are_slow ? hqp::KeptProblems::kMostSolved : 0u;
+    const std::size_t kept = all_are_slow ? hqp::ProblemCapture::kMostSolved : 0u;
     ASSERT_EQ(runtime.kept_problems().size(), kept);
     for (std::size_t i = 0; i < kept; ++i) {
       EXPECT_EQ(runtime.kept_problems()[i].cycle, i);

@@ -73,7 +73,7 @@ TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
   rendering.step({.robot = robot, .cycle = 77}, state, result);
 
   ASSERT_EQ(rendering.kept_problems().size(), 1U);
-  const hqp::KeptProblem& kept = rendering.kept_problems()[0];
+  const hqp::CapturedProblem& kept = rendering.kept_problems()[0];
   EXPECT_EQ(kept.cycle, 77U);
   EXPECT_EQ(kept.iterations, result.solver_iterations);
   EXPECT_GT(kept.iterations, 1);  // the guess was not yet right

@@ -1,4 +1,4 @@
-#include "hg/hqp/kept_problems.h"
+#include "hg/hqp/problem_capture.h"
 
 #include <gtest/gtest.h>
 
@@ -29,20 +29,20 @@ Problem problem_of(double value) {
   return problem;
 }
 
-TEST(KeptProblems, KeepsTheFirstOnesAndCountsAll) {
-  KeptProblems problems(kCapacity);
+TEST(ProblemCapture, KeepsTheFirstOnesAndCountsAll) {
+  ProblemCapture problems(kCapacity);
   EXPECT_EQ(problems.size(), 0U);
   Solution solution(kCapacity);
   solution.status = Status::kIterationLimit;
   solution.iterations = 9;
   ActiveSet guess;
   guess.state[1] = RowState::kUpper;
-  const Options options = {.max_iterations = 9};
-  problems.put(problem_of(1.0), options, guess, solution, 41);
-  problems.put(problem_of(2.0), {}, {}, solution, 41);  // the same cycle again
-  problems.put(problem_of(3.0), {}, {}, solution, 42);
+  const SolverOptions options = {.max_iterations = 9};
+  problems.capture(problem_of(1.0), options, guess, solution, 41);
+  problems.capture(problem_of(2.0), {}, {}, solution, 41);  // the same cycle again
+  problems.capture(problem_of(3.0), {}, {}, solution, 42);
   ASSERT_EQ(problems.size(), 2U);
-  const KeptProblem& first = problems[0];
+  const CapturedProblem& first = problems[0];
   EXPECT_EQ(first.cycle, 41U);
   EXPECT_EQ(first.problem.coefficients(0)[4], 1.0);
   EXPECT_EQ(first.problem.weight(1), 1.0);
@@ -55,32 +55,32 @@ TEST(KeptProblems, KeepsTheFirstOnesAndCountsAll) {
   EXPECT_EQ(problems[1].cycle, 42U);
   EXPECT_EQ(problems[1].problem.weight(1), 3.0);
   for (std::uint64_t cycle = 43; cycle < 60; ++cycle) {
-    problems.put(problem_of(4.0), {}, {}, solution, cycle);
+    problems.capture(problem_of(4.0), {}, {}, solution, cycle);
   }
-  EXPECT_EQ(problems.size(), KeptProblems::kMost);
-  EXPECT_EQ(problems[KeptProblems::kMost - 1].cycle, 41 + KeptProblems::kMost - 1);
+  EXPECT_EQ(problems.size(), ProblemCapture::kMost);
+  EXPECT_EQ(problems[ProblemCapture::kMost - 1].cycle, 41 + ProblemCapture::kMost - 1);
   EXPECT_EQ(problems.count(), 19U);
 }
 
 // What a run does with a problem that the solver gave up.
-TEST(KeptProblems, ThoseThatFailedFindRoomAfterSlowOnes) {
-  KeptProblems problems(kCapacity);
+TEST(ProblemCapture, ThoseThatFailedFindRoomAfterSlowOnes) {
+  ProblemCapture problems(kCapacity);
   Solution solution(kCapacity);
   std::uint64_t cycle = 0;
-  while (++cycle <= 20) problems.put(problem_of(1.0), {}, {}, solution, cycle);
-  EXPECT_EQ(problems.size(), KeptProblems::kMostSolved);
-  problems.put(problem_of(2.0), {}, {}, solution, cycle);
+  while (++cycle <= 20) problems.capture(problem_of(1.0), {}, {}, solution, cycle);
+  EXPECT_EQ(problems.size(), ProblemCapture::kMostSolved);
+  problems.capture(problem_of(2.0), {}, {}, solution, cycle);
   solution.status = Status::kIterationLimit;
-  problems.put(problem_of(3.0), {}, {}, solution, cycle);  // in the cycle of a slow one
-  ASSERT_EQ(problems.size(), KeptProblems::kMostSolved + 1);
-  EXPECT_EQ(problems[KeptProblems::kMostSolved].problem.weight(1), 3.0);
-  EXPECT_EQ(problems[KeptProblems::kMostSolved].cycle, 21U);
-  while (++cycle <= 40) problems.put(problem_of(4.0), {}, {}, solution, cycle);
-  EXPECT_EQ(problems.size(), KeptProblems::kMost);
+  problems.capture(problem_of(3.0), {}, {}, solution, cycle);  // in the cycle of a slow one
+  ASSERT_EQ(problems.size(), ProblemCapture::kMostSolved + 1);
+  EXPECT_EQ(problems[ProblemCapture::kMostSolved].problem.weight(1), 3.0);
+  EXPECT_EQ(problems[ProblemCapture::kMostSolved].cycle, 21U);
+  while (++cycle <= 40) problems.capture(problem_of(4.0), {}, {}, solution, cycle);
+  EXPECT_EQ(problems.size(), ProblemCapture::kMost);
   EXPECT_EQ(problems.count(), 40U);
 }
 
-TEST(KeptProblems, AFailedSolveIsWrittenReadAndFailsAgainBitForBit) {
+TEST(ProblemCapture, AFailedSolveIsWrittenReadAndFailsAgainBitForBit) {
   const Capacity capacity = {.variables = 60, .levels = 20, .rows = 600};
   Solver solver(capacity);
   Solution failed(capacity), again(capacity);
@@ -88,17 +88,17 @@ TEST(KeptProblems, AFailedSolveIsWrittenReadAndFailsAgainBitForBit) {
   for (std::uint32_t seed = 0; seed < 30; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Problem problem = random_problem(seed, {});
-    const Options options = {.max_iterations = 1 + static_cast<int>(seed % 3)};
+    const SolverOptions options = {.max_iterations = 1 + static_cast<int>(seed % 3)};
     ActiveSet guess;
     guess.state[0] = RowState::kAbove;
     ActiveSet active = guess;
     if (solver.solve(problem, options, active, failed) == Status::kSolved) continue;
     ++failures;
-    KeptProblems problems(problem.capacity());
-    problems.put(problem, options, guess, failed, 7);
+    ProblemCapture problems(problem.capacity());
+    problems.capture(problem, options, guess, failed, 7);
 
     std::ostringstream text;
-    const KeptProblem& kept = problems[0];
+    const CapturedProblem& kept = problems[0];
     write_problem(text, {.problem = kept.problem, .options = kept.options, .guess = kept.guess});
     const auto read = parse_recorded_problems(text.str(), "x.hqp");
     ASSERT_EQ(read.size(), 1U);
@@ -112,29 +112,29 @@ TEST(KeptProblems, AFailedSolveIsWrittenReadAndFailsAgainBitForBit) {
   EXPECT_GT(failures, 10);
 }
 
-TEST(KeptProblems, DoesNotAllocate) {
-  KeptProblems problems(kCapacity);
+TEST(ProblemCapture, DoesNotAllocate) {
+  ProblemCapture problems(kCapacity);
   const Problem problem = problem_of(1.0);
   const Solution solution(kCapacity);
   AllocationCounter allocations;
-  for (std::uint64_t cycle = 0; cycle < 20; ++cycle) problems.put(problem, {}, {}, solution, cycle);
+  for (std::uint64_t cycle = 0; cycle < 20; ++cycle) problems.capture(problem, {}, {}, solution, cycle);
   EXPECT_EQ(allocations.count(), 0U);
 }
 
-TEST(KeptProblems, NeverShowsHalfAProblem) {
+TEST(ProblemCapture, NeverShowsHalfAProblem) {
   for (int repetition = 0; repetition < 100; ++repetition) {
-    KeptProblems problems(kCapacity);
+    ProblemCapture problems(kCapacity);
     std::thread loop([&] {
       Solution solution(kCapacity);
       solution.status = Status::kIterationLimit;
       for (int cycle = 0; cycle < 12; ++cycle) {
-        problems.put(problem_of(1.0 + cycle), {}, {}, solution, static_cast<std::uint64_t>(cycle));
+        problems.capture(problem_of(1.0 + cycle), {}, {}, solution, static_cast<std::uint64_t>(cycle));
       }
     });
     std::size_t seen = 0;
-    while (seen < KeptProblems::kMost) {
+    while (seen < ProblemCapture::kMost) {
       if (problems.size() == seen) continue;
-      const KeptProblem& kept = problems[seen];
+      const CapturedProblem& kept = problems[seen];
       const double value = 1.0 + static_cast<double>(seen++);
       EXPECT_EQ(kept.problem.coefficients(0)[0], value);
       EXPECT_EQ(kept.problem.coefficients(0)[4], value);
