@@ -147,6 +147,7 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
   state_.dq_p = VectorP::Zero(device.n_p);
 }
 
+// supervisor -> estimation -> prepositioning -> rendering -> control -> sanitiser
 void Cycle::step(const SensorFrame& sensors, const OperatorFrame& operator_input,
                  CommandFrame& command, CycleRecord& record) noexcept HG_NONBLOCKING {
   const Supervision supervision = supervise(sensors, operator_input);
@@ -362,18 +363,17 @@ double Cycle::ramp_forces(Motion motion, bool is_held) noexcept {
   return share;
 }
 
-// Accelerations of device and twin, and their causes. While the device stands still, the law runs
-// like in a stop that has ended: its limits and the distance of handle and twin are shown and
-// checked before arming, its active set is the start of the first motion; its accelerations are not
-// used.
+// Accelerations of device and twin, and their causes. The law also runs while the device stands
+// still: limits and the distance of handle and twin are shown, the distance is checked before
+// arming, and the first motion starts with the active set. Its accelerations are then not used.
 const rendering::LawResult& Cycle::render(Motion motion, bool is_held, const RobotState& robot,
                                           const GantryAim& gantry) noexcept {
   if (motion == Motion::kNone) return law_;
   const double share = ramp_forces(motion, is_held);
-  const bool must_brake = motion == Motion::kHold || state_.touch.is_told;
-  const double braking_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
+  const bool is_braked = motion == Motion::kHold || state_.touch.is_told;
+  const double ramped_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
   rendering_.step({.robot = robot,
-                   .braking_rate = must_brake ? kBrakingRate : braking_rate,
+                   .braking_rate = is_braked ? kBrakingRate : ramped_rate,
                    .force_share = share,
                    .handle_speed_max = speed_max() / std::sqrt(3.0),
                    .gantry = gantry.task,

@@ -303,9 +303,9 @@ std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& sc
 }
 
 analysis::Summary make_summary(const config::Scenario& scenario) {
-  auto positions = [device = scenario.device.model](const Truth& truth,
-                                                    std::vector<double>& values) mutable {
-    rendering::limit_positions(device, truth.q_p, truth.q_m, values);
+  auto positions = [limits = rendering::LimitPositions(scenario.device.model)](
+                       const Truth& truth, std::vector<double>& values) mutable {
+    limits.find(truth.q_p, truth.q_m, values);
   };
   const std::vector<ActuatorModel>& actuators = scenario.device.control.actuators;
   VectorM torque_rated(static_cast<Eigen::Index>(actuators.size()));

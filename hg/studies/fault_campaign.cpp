@@ -23,10 +23,10 @@ constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 class TrueLimits {
  public:
   explicit TrueLimits(const config::Scenario& scenario)
-      : device_(scenario.device.model), limits_(scenario.limits) {}
+      : limit_positions_(scenario.device.model), limits_(scenario.limits) {}
 
   double excess(const Truth& truth) {
-    rendering::limit_positions(device_, truth.q_p, truth.q_m, positions_);
+    limit_positions_.find(truth.q_p, truth.q_m, positions_);
     double worst = 0.0;
     for (std::size_t i = 0; i < positions_.size(); ++i) {
       const Interval& range = limits_[i].range;
@@ -37,7 +37,7 @@ class TrueLimits {
   }
 
  private:
-  rendering::DeviceModel device_;
+  rendering::LimitPositions limit_positions_;
   LimitCatalogue limits_;
   std::vector<double> positions_;
 };

@@ -49,16 +49,18 @@ std::vector<std::string> repeated_names(const LimitCatalogue& catalogue) {
   return repeated;
 }
 
-void limit_positions(DeviceModel& device, const VectorP& q_p, const VectorM& q_m,
-                     std::vector<double>& positions) {
+LimitPositions::LimitPositions(const DeviceModel& device)
+    : virtual_joints_(device.virtual_joints), motors_(device.motors.size()), chain_(device.chain) {
+  for (const CartesianLimit& limit : device.cartesian_limits) frames_.push_back(limit.frame);
+}
+
+void LimitPositions::find(const VectorP& q_p, const VectorM& q_m, std::vector<double>& positions) {
   positions.assign(q_m.begin(), q_m.end());
-  for (const VirtualJoint& joint : device.virtual_joints) {
-    positions.push_back(joint.weights.dot(q_m));
-  }
-  positions.resize(positions.size() + device.motors.size(), 0.0);  // have no position
-  device.chain.update_poses(stacked(q_p, q_m));
-  for (const CartesianLimit& limit : device.cartesian_limits) {
-    const Eigen::Vector3d p = device.chain.pose(limit.frame).p;
+  for (const VirtualJoint& joint : virtual_joints_) positions.push_back(joint.weights.dot(q_m));
+  positions.resize(positions.size() + motors_, 0.0);  // have no position
+  chain_.update_poses(stacked(q_p, q_m));
+  for (const int frame : frames_) {
+    const Eigen::Vector3d p = chain_.pose(frame).p;
     positions.insert(positions.end(), p.begin(), p.end());
   }
 }

@@ -19,9 +19,19 @@ LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin);
 /// figures and on the page.
 std::vector<std::string> repeated_names(const LimitCatalogue& catalogue);
 
-/// Computes positions of the device's limits, first in the catalogue, with the gantry at `q_p` and
-/// the manipulator at `q_m`. Updates `device.chain`.
-void limit_positions(DeviceModel& device, const VectorP& q_p, const VectorM& q_m,
-                     std::vector<double>& positions);
+/// Positions of the device's limits, first in the catalogue.
+class LimitPositions {
+ public:
+  explicit LimitPositions(const DeviceModel& device);
+
+  /// Computes them with the gantry at `q_p` and the manipulator at `q_m`.
+  void find(const VectorP& q_p, const VectorM& q_m, std::vector<double>& positions);
+
+ private:
+  std::vector<VirtualJoint> virtual_joints_;
+  std::size_t motors_;
+  std::vector<int> frames_;  ///< Frames with Cartesian limits
+  model::Chain chain_;       ///< Moved by find()
+};
 
 }  // namespace hg::rendering

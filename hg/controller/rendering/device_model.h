@@ -31,11 +31,12 @@ struct CartesianLimit {
 };
 
 struct DeviceModel {
-  model::Chain chain;  ///< Chain: gantry joints first, then the manipulator
-  int n_p = 0;         ///< Number of gantry joints
-  int n_m = 0;         ///< Number of manipulator joints
-  int handle = -1;     ///< Index of frame H
-  int elbow = -1;      ///< Index of the frame shown as the elbow; -1 = none
+  /// Gantry joints first, then the manipulator. Constant: whoever needs a posture copies it.
+  model::Chain chain;
+  int n_p = 0;      ///< Number of gantry joints
+  int n_m = 0;      ///< Number of manipulator joints
+  int handle = -1;  ///< Index of frame H
+  int elbow = -1;   ///< Index of the frame shown as the elbow; -1 = none
   std::vector<limits::JointLimits> joint_limits;  ///< Limits of the manipulator joints
   /// Motors, one per manipulator joint: their torques are limits of the law. Empty: the law does
   /// not know them, and no limit is accelerated beyond its rating.

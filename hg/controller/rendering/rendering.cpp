@@ -142,6 +142,8 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
                      surfaces::Environment environment)
     : device_((check(device, twin, options), std::move(device))),
       twin_(std::move(twin)),
+      device_now_(device_.chain),
+      twin_now_(twin_.chain),
       options_(options),
       environment_(std::move(environment)),
       stop_rating_(stop_rating(device_)),
@@ -181,9 +183,9 @@ ChangeStatus Rendering::change(const ParameterChange& change, State& state) cons
 void Rendering::update_device(const RobotState& robot, const ReferenceState& reference) noexcept {
   const VectorPM q = stacked(robot.q_p, reference.q_m), dq = stacked(robot.dq_p, reference.dq_m);
   if (device_.motors.empty()) {
-    device_.chain.update_kinematics(q, dq);
+    device_now_.update_kinematics(q, dq);
   } else {
-    device_.chain.update(q, dq);
+    device_now_.update(q, dq);
   }
 }
 
@@ -193,10 +195,10 @@ SolverStatus Rendering::step(const LawInput& input, State& state, LawResult& res
   const TwinValues& values = state.inner.parameters.now;
   const model::Loads loads = {values.loads.mass * state.calming.inertia,
                               values.loads.gravity / state.calming.inertia};
-  twin_.chain.update(state.twin.q_a, state.twin.dq_a, loads);
-  factor_mass(twin_.chain.M(), L_);
-  J_H_ = device_.chain.jacobian(device_.handle);
-  J_a_ = twin_.chain.jacobian(twin_.end_effector);
+  twin_now_.update(state.twin.q_a, state.twin.dq_a, loads);
+  factor_mass(twin_now_.M(), L_);
+  J_H_ = device_now_.jacobian(device_.handle);
+  J_a_ = twin_now_.jacobian(twin_.end_effector);
   reactions_.update(J_H_, J_a_);
   advance_locks(twin_, options_.bounds, state.twin.q_a, state.inner);
 
@@ -228,14 +230,14 @@ void Rendering::add_torques(const LawInput& input, bool is_released, State& stat
   if (is_released) {
     state.inner.sticks.fill(false);
     result.tau_a = VectorA::Zero(n_a);
-    budget.spring = -twin_.chain.gravity();
+    budget.spring = -twin_now_.gravity();
     budget.damping = VectorA::Zero(n_a);
     budget.friction = VectorA::Zero(n_a);
     budget.surface = VectorA::Zero(n_a);
   } else {
     result.tau_a = J_a_.transpose() * (share * input.robot.w_H);
     budget.spring = share * spring_torque(twin_, state.twin.q_a, state.inner.parameters);
-    if (share < 1.0) budget.spring -= (1.0 - share) * twin_.chain.gravity();
+    if (share < 1.0) budget.spring -= (1.0 - share) * twin_now_.gravity();
     budget.damping = damping_torque(L_, state.twin.dq_a, options_.dt, values);
     if (state.calming.damping > 0.0) {
       const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
@@ -246,7 +248,7 @@ void Rendering::add_torques(const LawInput& input, bool is_released, State& stat
   }
   if (input.braking_rate > 0.0) {
     const VectorA braking = input.braking_rate * state.twin.dq_a;
-    budget.damping.noalias() += twin_.chain.M() * braking;
+    budget.damping.noalias() += twin_now_.M() * braking;
   }
   if (!state.touch.isZero(0.0)) budget.surface.noalias() -= J_a_.transpose() * state.touch;
 }
@@ -257,7 +259,7 @@ Eigen::Vector3d Rendering::push_of_twin(const Budget& budget) const noexcept {
   const auto factor = L_.triangularView<Eigen::Lower>();
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxTwin, 3> root =
       J_a_.topRows<3>().transpose();
-  VectorA torque = -budget.spring - budget.surface - twin_.chain.gravity();
+  VectorA torque = -budget.spring - budget.surface - twin_now_.gravity();
   if (torque.isZero(0.0)) return Eigen::Vector3d::Zero();
   factor.solveInPlace(root);
   factor.solveInPlace(torque);
@@ -268,7 +270,7 @@ Eigen::Vector3d Rendering::push_of_twin(const Budget& budget) const noexcept {
 
 // Updates the proxy even while no surface is felt.
 void Rendering::feel_surfaces(const LawInput& input, State& state, LawResult& result) noexcept {
-  const Eigen::Vector3d p_E = twin_.chain.pose(twin_.end_effector).p;
+  const Eigen::Vector3d p_E = twin_now_.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
   if (environment_.has_stops()) stops_ = environment_.stops(p_E, v_E, stop_rating_);
   Eigen::Vector3d push = input.robot.w_H.head<3>();
@@ -313,15 +315,15 @@ void Rendering::give_way(const ContactReport& contact, State& state) const noexc
 
 void Rendering::align(const RobotState& robot, State& state) noexcept {
   update_device(robot, state.reference);
-  const Pose T_B_H = device_.chain.pose(device_.handle);
+  const Pose T_B_H = device_now_.pose(device_.handle);
   const VectorA at_rest = VectorA::Zero(twin_.chain.nv());
   for (int iteration = 0; iteration < kAlignIterations; ++iteration) {
-    twin_.chain.update_kinematics(state.twin.q_a, at_rest);
-    const Pose T_B_E = twin_.chain.pose(twin_.end_effector);
+    twin_now_.update_kinematics(state.twin.q_a, at_rest);
+    const Pose T_B_E = twin_now_.pose(twin_.end_effector);
     Vector6 error;
     error << T_B_H.p - T_B_E.p, rotation_between(T_B_E.R, T_B_H.R);
     if (error.norm() < kAligned) return;
-    const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
+    const model::Jacobian J_a = twin_now_.jacobian(twin_.end_effector);
     const VectorA step = shortest_velocity(J_a, error);
     state.twin.q_a = twin_.chain.integrate(state.twin.q_a, step);
     for (std::size_t i = 0; i < twin_.dofs.size(); ++i) {
@@ -345,9 +347,9 @@ bool Rendering::stay_near(const RobotState& robot, double largest, State& state)
   }
   if (!is_far) return false;
   align(robot, state);
-  twin_.chain.update_kinematics(state.twin.q_a, state.twin.dq_a);
-  const Vector6 twist = device_.chain.twist(device_.handle);
-  const model::Jacobian J_a = twin_.chain.jacobian(twin_.end_effector);
+  twin_now_.update_kinematics(state.twin.q_a, state.twin.dq_a);
+  const Vector6 twist = device_now_.twist(device_.handle);
+  const model::Jacobian J_a = twin_now_.jacobian(twin_.end_effector);
   state.twin.dq_a = shortest_velocity(J_a, twist);
   return true;
 }
@@ -363,7 +365,9 @@ void Rendering::solve(const LawInput& input, State& state, LawResult& result) no
     const VectorA tau =
         result.tau_a - budget.damping - budget.friction - budget.spring - budget.surface;
     tasks_.fill(device_, twin_,
-                {.robot = input.robot,
+                {.device_chain = device_now_,
+                 .twin_chain = twin_now_,
+                 .robot = input.robot,
                  .reference = state.reference,
                  .twin = state.twin,
                  .inner = state.inner,
@@ -396,8 +400,8 @@ void Rendering::solve(const LawInput& input, State& state, LawResult& result) no
     const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);
     state.reference.ddq_m = x.head(n_m);
     state.twin.ddq_a = x.tail(n_a);
-    budget.inertia = twin_.chain.c();
-    budget.inertia += twin_.chain.M().lazyProduct(state.twin.ddq_a);
+    budget.inertia = twin_now_.c();
+    budget.inertia += twin_now_.M().lazyProduct(state.twin.ddq_a);
     const VectorA tau_constraint = budget.inertia - tau;
     reactions_.split(tasks_, solution_, tau_constraint);
     ended_(Stage::kReactions);
@@ -449,8 +453,8 @@ void Rendering::gantry_room(VectorP& down, VectorP& up) const noexcept {
   down = up = VectorP::Constant(device_.n_p, kInfinity);
   for (const CartesianLimit& frame : device_.cartesian_limits) {
     if (frame.frame == device_.handle) continue;
-    const model::Jacobian& J = device_.chain.jacobian(frame.frame);
-    const Eigen::Vector3d position = device_.chain.pose(frame.frame).p;
+    const model::Jacobian& J = device_now_.jacobian(frame.frame);
+    const Eigen::Vector3d position = device_now_.pose(frame.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
       const limits::JointLimits& range = frame.axes[static_cast<std::size_t>(axis)];
       const double to_lower = position[axis] - range.q_min, to_upper = range.q_max - position[axis];
@@ -480,12 +484,12 @@ double Rendering::apparent_mass(const State& state) const noexcept {
 }
 
 void Rendering::find_kinematics(const State& state, LawResult& result) const noexcept {
-  result.T_B_H = device_.chain.pose(device_.handle);
-  result.v_H = device_.chain.twist(device_.handle).head<3>();
+  result.T_B_H = device_now_.pose(device_.handle);
+  result.v_H = device_now_.twist(device_.handle).head<3>();
   result.a_H =
-      (J_a_ * state.twin.ddq_a + twin_.chain.bias_acceleration(twin_.end_effector)).head<3>();
-  if (device_.elbow >= 0) result.p_B_elbow = device_.chain.pose(device_.elbow).p;
-  result.T_B_E = twin_.chain.pose(twin_.end_effector);
+      (J_a_ * state.twin.ddq_a + twin_now_.bias_acceleration(twin_.end_effector)).head<3>();
+  if (device_.elbow >= 0) result.p_B_elbow = device_now_.pose(device_.elbow).p;
+  result.T_B_E = twin_now_.pose(twin_.end_effector);
   result.sync_error = (result.T_B_E.p - result.T_B_H.p).norm();
   result.sync_error_angle = angle_between(result.T_B_H.R, result.T_B_E.R);
 }

@@ -57,6 +57,9 @@ class Rendering {
 
   const DeviceModel& device() const noexcept { return device_; }
   const TwinModel& twin() const noexcept { return twin_; }
+  /// Device and twin in the posture of the last step().
+  const model::Chain& device_chain() const noexcept { return device_now_; }
+  const model::Chain& twin_chain() const noexcept { return twin_now_; }
 
   /// State at rest: manipulator at `q_m`, twin at its start.
   State start(const VectorM& q_m) const;
@@ -133,6 +136,7 @@ class Rendering {
 
   DeviceModel device_;
   TwinModel twin_;
+  model::Chain device_now_, twin_now_;  ///< Both in the posture of the last update
   Options options_;
   surfaces::Environment environment_;
   double stop_rating_;

@@ -193,9 +193,9 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   if (knows_torques_) fill_motors(device, input);
   if (joint_braking_) brake_together();
   fill_twin_limits(twin, input);
-  if (stop_count_ > 0) fill_stops(twin, input);
+  if (stop_count_ > 0) fill_stops(input, input.twin_chain.bias_acceleration(twin.end_effector));
 
-  const VectorA tau = input.tau - twin.chain.c();
+  const VectorA tau = input.tau - input.twin_chain.c();
   if (paper_) {
     paper_->fill(input.L, tau, first_limit_row(), input.directions, problem_);
     fill_ranges(input);
@@ -208,10 +208,11 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
 // [HG] (12) with (11): J_m ddq_m - J_a ddq_a = s - J_p ddq_p - dJ dq + dJ_a dq_a
 void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
                           const TaskInput& input) noexcept {
-  const Pose& T_B_H = device.chain.pose(device.handle);
-  const Pose& T_B_E = twin.chain.pose(twin.end_effector);
+  const model::Chain &device_now = input.device_chain, &twin_now = input.twin_chain;
+  const Pose& T_B_H = device_now.pose(device.handle);
+  const Pose& T_B_E = twin_now.pose(twin.end_effector);
   const Vector6 velocity_error =
-      twin.chain.twist(twin.end_effector) - device.chain.twist(device.handle);
+      twin_now.twist(twin.end_effector) - device_now.twist(device.handle);
   s_.head<3>() =
       options_.kP_tran * (T_B_E.p - T_B_H.p) + options_.kD_tran * velocity_error.head<3>();
   s_.tail<3>() = options_.kP_rot * rotation_between(T_B_H.R, T_B_E.R) +
@@ -219,8 +220,8 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
 
   const model::Jacobian& J = input.J_H;
   const Vector6 known = s_ - J.leftCols(device.n_p).lazyProduct(ddq_p_) -
-                        device.chain.bias_acceleration(device.handle) +
-                        twin.chain.bias_acceleration(twin.end_effector);
+                        device_now.bias_acceleration(device.handle) +
+                        twin_now.bias_acceleration(twin.end_effector);
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (int i = 0; i < 6; ++i) {
@@ -282,11 +283,11 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
 
   // [HG] (15)-(16)
   for (const CartesianLimit& frame : device.cartesian_limits) {
-    const model::Jacobian& J = device.chain.jacobian(frame.frame);
-    const Vector6 known =
-        J.leftCols(device.n_p).lazyProduct(ddq_p_) + device.chain.bias_acceleration(frame.frame);
-    const Eigen::Vector3d& position = device.chain.pose(frame.frame).p;
-    const Vector6& twist = device.chain.twist(frame.frame);
+    const model::Jacobian& J = input.device_chain.jacobian(frame.frame);
+    const Vector6 known = J.leftCols(device.n_p).lazyProduct(ddq_p_) +
+                          input.device_chain.bias_acceleration(frame.frame);
+    const Eigen::Vector3d& position = input.device_chain.pose(frame.frame).p;
+    const Vector6& twist = input.device_chain.twist(frame.frame);
     for (int axis = 0; axis < 3; ++axis) {
       row.head(n_m_) = J.row(axis).segment(device.n_p, n_m_);
       row.tail(n_g_) = J.row(axis).head(n_g_);
@@ -303,9 +304,9 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
 // What each motor can give, as an acceleration of its joint: row and bounds are divided by the
 // inertia that the motor moves while all other joints keep their speed.
 void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexcept {
-  const auto M = device.chain.M().bottomRows(n_m_);
+  const auto M = input.device_chain.M().bottomRows(n_m_);
   VectorM& known = known_torque_;
-  known = device.chain.c().tail(n_m_);
+  known = input.device_chain.c().tail(n_m_);
   known.noalias() += M.leftCols(device.n_p) * ddq_p_;
   known.noalias() -= input.J_H.middleCols(device.n_p, n_m_).transpose() * input.robot.w_H;
 
@@ -426,11 +427,10 @@ void Tasks::fill_gantry(const TaskInput& input) noexcept {
 
 // The distance d of E to a plane in front of it, d'' = n^T (J_a ddq_a + dJ_a dq_a): the solid
 // curves away from its plane, so that this is the least.
-void Tasks::fill_stops(const TwinModel& twin, const TaskInput& input) noexcept {
+void Tasks::fill_stops(const TaskInput& input, const Vector6& bias) noexcept {
   const int first = static_cast<int>(limit_rows_.size()) - stop_count_;
   const auto J = input.J_a.topRows<3>();
   const Eigen::Vector3d velocity = J * input.twin.dq_a;
-  const Vector6 bias = twin.chain.bias_acceleration(twin.end_effector);
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (int i = 0; i < stop_count_; ++i) {

@@ -58,8 +58,10 @@ struct LimitRow {
   Interval ddq;              ///< Bounds of the first row in this cycle, without known accelerations
 };
 
-/// Inputs of one cycle besides the chains, which must have been updated.
+/// Inputs of one cycle.
 struct TaskInput {
+  const model::Chain& device_chain;  ///< The device in the posture of this cycle
+  const model::Chain& twin_chain;    ///< The twin in the posture of this cycle
   const RobotState& robot;
   const ReferenceState& reference;
   const TwinState& twin;
@@ -95,8 +97,7 @@ class Tasks {
   Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
         bool has_stops = false);
 
-  /// Writes all rows. `device` and `twin` are the models given to the constructor, with updated
-  /// chains.
+  /// Writes all rows. `device` and `twin` are the models given to the constructor.
   void fill(const DeviceModel& device, const TwinModel& twin, const TaskInput& input) noexcept;
 
   const hqp::Problem& problem() const noexcept { return problem_; }
@@ -155,7 +156,7 @@ class Tasks {
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
   bool keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept;
   void fill_gantry(const TaskInput& input) noexcept;
-  void fill_stops(const TwinModel& twin, const TaskInput& input) noexcept;
+  void fill_stops(const TaskInput& input, const Vector6& bias) noexcept;
   void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;
   void fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept;
   void fill_ranges(const TaskInput& input) noexcept;

@@ -71,7 +71,7 @@ struct ConditionalLimit {
 };
 
 struct TwinModel {
-  model::Chain chain;
+  model::Chain chain;         ///< Constant: whoever needs a posture copies it
   int end_effector = -1;      ///< Index of frame E
   ConfigurationA q_start;     ///< Coordinates at the start
   std::vector<TwinDof> dofs;  ///< Degrees of freedom, one per velocity of the chain

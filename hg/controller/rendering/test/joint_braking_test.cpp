@@ -292,24 +292,25 @@ class Thrown {
   }
   /// The rows of one cycle.
   Tasks tasks(const Options& options) const {
-    DeviceModel moving_device = device;
-    TwinModel moving_twin = twin;
+    model::Chain device_chain = device.chain, twin_chain = twin.chain;
     State state = Rendering(device, twin, options).start(kPosture);
     state.reference.dq_m.setConstant(kSpeed);
     Eigen::VectorXd q(8), dq(8);
     q << kGantryAtHome, kPosture;
     dq << Eigen::Vector2d::Zero(), state.reference.dq_m;
-    moving_device.chain.update(q, dq);
-    moving_twin.chain.update(state.twin.q_a, state.twin.dq_a);
+    device_chain.update(q, dq);
+    twin_chain.update(state.twin.q_a, state.twin.dq_a);
     const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
-    const MatrixA L = Eigen::MatrixXd(moving_twin.chain.M()).llt().matrixL();
-    const model::Jacobian J_H = moving_device.chain.jacobian(device.handle);
-    const model::Jacobian J_a = moving_twin.chain.jacobian(twin.end_effector);
+    const MatrixA L = Eigen::MatrixXd(twin_chain.M()).llt().matrixL();
+    const model::Jacobian J_H = device_chain.jacobian(device.handle);
+    const model::Jacobian J_a = twin_chain.jacobian(twin.end_effector);
     ConstraintDirections directions(device, twin);
     directions.update(J_H, J_a);
-    Tasks result(moving_device, moving_twin, options);
-    result.fill(moving_device, moving_twin,
-                {.robot = robot,
+    Tasks result(device, twin, options);
+    result.fill(device, twin,
+                {.device_chain = device_chain,
+                 .twin_chain = twin_chain,
+                 .robot = robot,
                  .reference = state.reference,
                  .twin = state.twin,
                  .inner = state.inner,

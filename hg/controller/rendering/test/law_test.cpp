@@ -191,7 +191,7 @@ TEST(Laws, DifferWithTwoCoupledLimits) {
       EXPECT_NEAR(result.ddq_a[0], -1.0, 1e-9);
       EXPECT_NEAR(result.ddq_a[1], law == Law::kGauss ? -0.9 : -1.6 / 1.64, 1e-9);
     }
-    const Eigen::Matrix2d M_inverse = inverse(rendering.twin().chain.M());
+    const Eigen::Matrix2d M_inverse = inverse(rendering.twin_chain().M());
     ASSERT_NEAR(M_inverse(0, 1), 0.8, 1e-9);
     ASSERT_NEAR(M_inverse(1, 1), 1.0, 1e-9);
     if (law == Law::kGauss) {
@@ -291,7 +291,7 @@ class Door {
 
   double hinge() const { return state_.twin.q_a[0]; }
   double hinge_speed() const { return state_.twin.dq_a[0]; }
-  double inertia() const { return rendering_.twin().chain.M()(0, 0); }
+  double inertia() const { return rendering_.twin_chain().M()(0, 0); }
   const LimitReport& limit() const { return result.limits[6]; }
   State& state() { return state_; }
 

@@ -46,7 +46,7 @@ struct Playing {
     state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
     robot = robot_with(kGantryAtHome, kPosture, w);
     ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
-    worst_gap = std::max(worst_gap, budget_gap(result, rendering.twin().chain.M()));
+    worst_gap = std::max(worst_gap, budget_gap(result, rendering.twin_chain().M()));
     const VectorA& ddq = state.twin.ddq_a;
     if (last_ddq.size() > 0)
       worst_jump = std::max(worst_jump, (ddq - last_ddq).cwiseAbs().maxCoeff());

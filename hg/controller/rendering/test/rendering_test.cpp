@@ -22,8 +22,8 @@ TwinModel golden_twin() {
 }
 
 // the acceleration that no limit disturbs
-VectorA free_acceleration(const TwinModel& twin, const VectorA& tau) {
-  return LeastSquares(twin.chain.M()).solve(tau);
+VectorA free_acceleration(const model::Chain& twin, const VectorA& tau) {
+  return LeastSquares(twin.M()).solve(tau);
 }
 
 TEST(Rendering, GoldenCaseOfTheHandbookJoint6AtItsUpperLimit) {
@@ -53,7 +53,7 @@ TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonSays) {
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
   LawResult result;
   rendering.step({.robot = robot}, state, result);
-  const VectorA expected = free_acceleration(rendering.twin(), result.tau_a);
+  const VectorA expected = free_acceleration(rendering.twin_chain(), result.tau_a);
   EXPECT_LT((result.ddq_a - expected).norm(), 1e-12);
   EXPECT_NEAR(result.ddq_m[5], 1.16142, 5e-6);  // free value of the golden case
   EXPECT_EQ(result.felt_limit, -1);
@@ -110,8 +110,8 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
     EXPECT_EQ(rendering.step({.robot = robot, .gantry = gantry}, state, result),
               SolverStatus::kSolved);
     ddq_p = state.ddq_p;
-    const VectorA missing = result.ddq_a - free_acceleration(rendering.twin(), result.tau_a);
-    return std::sqrt(missing.dot(rendering.twin().chain.M() * missing));
+    const VectorA missing = result.ddq_a - free_acceleration(rendering.twin_chain(), result.tau_a);
+    return std::sqrt(missing.dot(rendering.twin_chain().M() * missing));
   };
   VectorP ddq_p;
   EXPECT_LT(play(task, ddq_p), 1e-10);
@@ -135,7 +135,7 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   rendering.step({.robot = robot, .gantry = task}, state, result);
   Eigen::VectorXd ddq(8);
   ddq << aim + task.unexplained, result.ddq_m;
-  const Vector6 a_H = rendering.device().chain.jacobian(device.handle) * ddq;
+  const Vector6 a_H = rendering.device_chain().jacobian(device.handle) * ddq;
   EXPECT_LT((a_H.head<3>() - result.a_H).norm(), 1e-9);
 }
 
@@ -236,7 +236,7 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     q_all << kGantryAtHome, q;
     chain.update_kinematics(q_all, Eigen::VectorXd::Zero(8));
     const Eigen::MatrixXd J_m = chain.jacobian(device.handle).rightCols(6);
-    const Eigen::MatrixXd J_a = rendering.twin().chain.jacobian(rendering.twin().end_effector);
+    const Eigen::MatrixXd J_a = rendering.twin_chain().jacobian(rendering.twin().end_effector);
     const Eigen::MatrixXd G = inverse(J_m) * J_a;
     Eigen::VectorXd lb(6), ub(6);
     for (int i = 0; i < 6; ++i) {
@@ -244,8 +244,8 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
       lb[i] = limits.q_min == q[i] ? 0.0 : -kInfinity;
       ub[i] = limits.q_max == q[i] ? 0.0 : kInfinity;
     }
-    const VectorA a_free = free_acceleration(rendering.twin(), result.tau_a);
-    const VectorA expected = box_qp_oracle(rendering.twin().chain.M(), a_free, G, lb, ub);
+    const VectorA a_free = free_acceleration(rendering.twin_chain(), result.tau_a);
+    const VectorA expected = box_qp_oracle(rendering.twin_chain().M(), a_free, G, lb, ub);
     const double scale = 1.0 + a_free.norm();
     ASSERT_LT((result.ddq_a - expected).norm(), 1e-7 * scale) << "trial " << trial;
     int active = 0;
@@ -292,7 +292,7 @@ TEST(Rendering, TheBudgetClosesAndTheBearingsCarryTheRest) {
     ASSERT_LT(budget_gap(result), 1e-9) << "trial " << trial;
 
     // the part called structure moves no joint, the rest reaches all of them
-    const auto J_a = rendering.twin().chain.jacobian(rendering.twin().end_effector);
+    const auto J_a = rendering.twin_chain().jacobian(rendering.twin().end_effector);
     ASSERT_LT((J_a.transpose() * result.budget.structure).norm(), 1e-9);
     const Vector6 rest = robot.w_H - result.budget.structure;
     ASSERT_LT((J_a.transpose() * rest - result.tau_a).norm(), 1e-9);
@@ -319,8 +319,8 @@ TEST(Rendering, AtAHeldLimitTheOtherJointsMoveLikeTheReducedModel) {
   }
   ASSERT_EQ(result.limits[9].state, LimitState::kUpper);
 
-  const Eigen::MatrixXd M = rendering.twin().chain.M();
-  const Eigen::VectorXd c = rendering.twin().chain.c();
+  const Eigen::MatrixXd M = rendering.twin_chain().M();
+  const Eigen::VectorXd c = rendering.twin_chain().c();
   const Eigen::Vector3d expected =
       LeastSquares(M.topLeftCorner<3, 3>()).solve(result.tau_a.head<3>() - c.head<3>());
   EXPECT_LT((result.ddq_a.head<3>() - expected).norm(), 1e-9);

@@ -63,7 +63,7 @@ struct Thrown {
     state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
     const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
     ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
-    ASSERT_LT(budget_gap(result, rendering.twin().chain.M()), 1e-9);
+    ASSERT_LT(budget_gap(result, rendering.twin_chain().M()), 1e-9);
     rendering.integrate(state);
     for_each_facing(solid, position(), 1.0, [&](const surfaces::Facing& facing) {
       inside = std::max(inside, -facing.distance);

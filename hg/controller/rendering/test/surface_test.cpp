@@ -40,7 +40,7 @@ struct Falling {
     ASSERT_EQ(rendering.step({.robot = robot, .braking_rate = braking_rate, .force_share = share},
                              state, result),
               SolverStatus::kSolved);
-    ASSERT_LT(budget_gap(result, rendering.twin().chain.M()), 1e-9);
+    ASSERT_LT(budget_gap(result, rendering.twin_chain().M()), 1e-9);
     rendering.integrate(state);
   }
 };

@@ -39,7 +39,7 @@ TEST(TwinJoint, CoulombFrictionHoldsUpToItsTorqueAndSlipsBeyond) {
   EXPECT_EQ(door.state.twin.q_a[0], 0.5);
   EXPECT_EQ(door.result.limits[6].cause, LimitCause::kFriction);
   door.run(0.2, 0, 5.0);
-  const double inertia = door.rendering.twin().chain.M()(0, 0);
+  const double inertia = door.rendering.twin_chain().M()(0, 0);
   EXPECT_NEAR(door.state.twin.dq_a[0], (5.0 - 4.0) * 0.2 / inertia, 1e-3);
   // let go: it brakes with the friction torque, stops, and stays
   door.run(0.1, 0, 0.0);

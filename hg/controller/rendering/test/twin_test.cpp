@@ -183,9 +183,9 @@ TEST(ReferenceWrench, IsTheOneAtWhichTheTwinRests) {
   EXPECT_LT((playing.result.budget.surface - playing.result.tau_a).norm(), 1e-12);
   Playing alone(twin);
   alone.step(Vector6::Zero());
-  const model::Jacobian J_a = alone.rendering.twin().chain.jacobian(twin.end_effector);
+  const model::Jacobian J_a = alone.rendering.twin_chain().jacobian(twin.end_effector);
   const VectorA push = -J_a.transpose() * twin.w_ref;
-  const VectorA expected = LeastSquares(alone.rendering.twin().chain.M()).solve(push);
+  const VectorA expected = LeastSquares(alone.rendering.twin_chain().M()).solve(push);
   EXPECT_LT((alone.state.twin.ddq_a - expected).norm(), 1e-9);
   EXPECT_LT(alone.worst_gap, 1e-9);
 }
