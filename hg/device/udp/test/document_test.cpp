@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 #include <type_traits>
 
@@ -59,7 +60,7 @@ template <typename Message>
 std::string section(const char* title) {
   Table table(std::same_as<Message, Header> ? 0 : size_of<Header>());
   const Message message{};
-  fields(table, message);
+  layout(table, message);
   if constexpr (std::same_as<Message, Header>) {
     return fmt::format("### Header\n\n{}", table.text);
   } else {
@@ -78,6 +79,35 @@ TEST(Document, ShowsEveryMessageByteByByte) {
         section<Goodbye>("Goodbye")}) {
     EXPECT_NE(document.find(table), std::string::npos) << "should stand there:\n\n" << table;
   }
+}
+
+// What an archive with texts gets of each member that a frame sends.
+struct Texts {
+  std::set<std::string> names;
+  template <typename T>
+  void operator()(const char* name, const T&, const char* note) {
+    EXPECT_TRUE(names.insert(name).second) << name << " is sent twice";
+    EXPECT_STRNE(note, "") << name;
+  }
+  void zeros(const char*) {}
+};
+
+template <typename Frame>
+std::set<std::string> sent_names() {
+  Texts texts;
+  const Frame frame{};
+  layout(texts, frame);
+  return texts.names;
+}
+
+TEST(Document, TakesNamesAndNotesFromTheFieldsOfTheFrames) {
+  const auto sensors = sent_names<SensorFrame>(), command = sent_names<CommandFrame>();
+  EXPECT_EQ(sensors.size(), 20U);
+  EXPECT_TRUE(sensors.contains("safety.override_key"));
+  EXPECT_TRUE(sensors.contains("w_s"));
+  EXPECT_EQ(command.size(), 15U);
+  EXPECT_TRUE(command.contains("hand_target.p_b"));
+  EXPECT_TRUE(command.contains("panel.reset"));
 }
 
 TEST(Document, EveryMessageFitsIntoADatagramThatNoNetworkDivides) {
