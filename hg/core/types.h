@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "hg/core/fields.h"
+
 namespace hg {
 
 static_assert(EIGEN_MAX_ALIGN_BYTES <= 16,
@@ -38,6 +40,12 @@ struct Pose {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
 };
+
+template <typename Archive, Is<Pose> T>
+void fields(Archive& a, T& pose) {
+  a("p", pose.p, "position, m");
+  a("r", pose.R, "rotation matrix, row by row");
+}
 
 Pose operator*(const Pose& a, const Pose& b);
 Pose inverse(const Pose& a);

@@ -21,7 +21,7 @@ class CdrReader {
 
   /// False when the bytes end too early, are not little-endian CDR, or a length exceeds a capacity;
   /// then `message` is only partly filled.
-  template <IsMessage Message>
+  template <HasFields Message>
   [[nodiscard]] bool decode(Message& message) {
     std::array<std::byte, 4> header{};
     take(header.data(), header.size());
@@ -58,7 +58,7 @@ class CdrReader {
     text.pop_back();
   }
 
-  template <IsMessage T>
+  template <HasFields T>
   void get(T& message) {
     fields(*this, message);
   }

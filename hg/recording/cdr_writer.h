@@ -30,7 +30,7 @@ inline constexpr std::array<std::byte, 4> kCdrHeader = {std::byte{0}, std::byte{
 class CdrWriter {
  public:
   /// Encodes a message; the bytes are valid until the next call.
-  template <IsMessage Message>
+  template <HasFields Message>
   std::span<const std::byte> encode(const Message& message) {
     size_ = 0;
     append(kCdrHeader.data(), kCdrHeader.size());
@@ -56,7 +56,7 @@ class CdrWriter {
     append(&value, sizeof(T));
   }
 
-  template <IsMessage T>
+  template <HasFields T>
   void put(const T& message) {
     fields(*this, message);
   }

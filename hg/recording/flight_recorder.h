@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "hg/recording/cdr_writer.h"
+#include "hg/recording/event.h"
 #include "hg/recording/recorder.h"
-#include "hg/recording/sample_fields.h"
 
 namespace hg::recording {
 

@@ -1,30 +1,33 @@
-/// Concept of a recorded message: a name and a function fields(archive, message) that passes its
-/// fields to an archive in the order of the schema.
+/// Recorded messages: structs with a list of fields (hg/core/fields.h), encoded in the order of
+/// that list.
 ///
-/// For each field the function calls archive(name, value, note), or archive.sequence(name, items,
-/// count, note) where only the first `count` items of an array are in use. Values are numbers,
-/// enumerations, strings, Eigen vectors and matrices (matrices row by row; those of variable length
-/// are sequences), other messages and std::vector of these. Names are in lower case because ROS
-/// demands it; notes become comments of the schema.
+/// Values are numbers, enumerations, strings, Eigen vectors and matrices (matrices row by row;
+/// those of variable length are sequences), other messages and std::vector of these.
 #pragma once
 
-#include <concepts>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
+#include "hg/core/fields.h"
+
 namespace hg::recording {
 
-/// Name of a message type in ROS notation inside a definition, for example "std_msgs/Header".
+/// Name of a standard message in ROS notation inside a definition, for example "std_msgs/Header".
+/// Empty for our own messages, which have the name of their struct.
 template <typename Message>
-constexpr std::string_view kMessageName = "";
+constexpr std::string_view kStandardName = "";
 
-template <typename T>
-concept IsMessage = !kMessageName<std::remove_cvref_t<T>>.empty();
-
-/// Matches Message and const Message: reading archives need the former, writing archives the
-/// latter.
-template <typename T, typename Message>
-concept Is = std::same_as<std::remove_const_t<T>, Message>;
+/// Name of a message in ROS notation inside a definition, for example
+/// "hapticgiant_msgs/SensorFrame".
+template <HasFields Message>
+std::string message_name() {
+  if constexpr (kStandardName<Message>.empty()) {
+    return "hapticgiant_msgs/" + std::string(struct_name<Message>());
+  } else {
+    return std::string(kStandardName<Message>);
+  }
+}
 
 template <typename T>
 concept IsScalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;

@@ -16,7 +16,7 @@
 #include "hg/recording/mcap_file.h"
 #include "hg/recording/recording_folder.h"
 #include "hg/recording/ros_messages.h"
-#include "hg/recording/sample_fields.h"
+#include "hg/recording/event.h"
 #include "hg/recording/schema.h"
 #include "hg/recording/tool_messages.h"
 
@@ -98,7 +98,7 @@ KeyValues limit_metadata(const LimitCatalogue& limits) {
   return pairs;
 }
 
-template <IsMessage Message>
+template <HasFields Message>
 std::uint16_t add_topic(McapFile& file, const std::string& topic) {
   return file.add_channel(topic, schema_name<Message>(), schema_text<Message>());
 }

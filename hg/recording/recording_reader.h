@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "hg/recording/event.h"
 #include "hg/recording/recorder.h"
-#include "hg/recording/sample_fields.h"
 
 namespace hg::recording {
 

@@ -60,25 +60,26 @@ struct TransformMessage {
 };
 
 template <>
-inline constexpr std::string_view kMessageName<Time> = "builtin_interfaces/Time";
+inline constexpr std::string_view kStandardName<Time> = "builtin_interfaces/Time";
 template <>
-inline constexpr std::string_view kMessageName<Header> = "std_msgs/Header";
+inline constexpr std::string_view kStandardName<Header> = "std_msgs/Header";
 template <>
-inline constexpr std::string_view kMessageName<JointState> = "sensor_msgs/JointState";
+inline constexpr std::string_view kStandardName<JointState> = "sensor_msgs/JointState";
 template <>
-inline constexpr std::string_view kMessageName<Vector3> = "geometry_msgs/Vector3";
+inline constexpr std::string_view kStandardName<Vector3> = "geometry_msgs/Vector3";
 template <>
-inline constexpr std::string_view kMessageName<Quaternion> = "geometry_msgs/Quaternion";
+inline constexpr std::string_view kStandardName<Quaternion> = "geometry_msgs/Quaternion";
 template <>
-inline constexpr std::string_view kMessageName<Wrench> = "geometry_msgs/Wrench";
+inline constexpr std::string_view kStandardName<Wrench> = "geometry_msgs/Wrench";
 template <>
-inline constexpr std::string_view kMessageName<WrenchStamped> = "geometry_msgs/WrenchStamped";
+inline constexpr std::string_view kStandardName<WrenchStamped> = "geometry_msgs/WrenchStamped";
 template <>
-inline constexpr std::string_view kMessageName<Transform> = "geometry_msgs/Transform";
+inline constexpr std::string_view kStandardName<Transform> = "geometry_msgs/Transform";
 template <>
-inline constexpr std::string_view kMessageName<TransformStamped> = "geometry_msgs/TransformStamped";
+inline constexpr std::string_view kStandardName<TransformStamped> =
+    "geometry_msgs/TransformStamped";
 template <>
-inline constexpr std::string_view kMessageName<TransformMessage> = "tf2_msgs/TFMessage";
+inline constexpr std::string_view kStandardName<TransformMessage> = "tf2_msgs/TFMessage";
 
 template <typename Archive, Is<Time> T>
 void fields(Archive& a, T& time) {

@@ -19,7 +19,7 @@ namespace hg::recording {
 /// The archive that collects definitions. Use schema_text() below.
 class SchemaWriter {
  public:
-  template <IsMessage Message>
+  template <HasFields Message>
   void define() {
     fields(*this, static_cast<const Message&>(Message{}));
   }
@@ -79,9 +79,9 @@ class SchemaWriter {
     return kRows == Eigen::Dynamic ? "float64[]" : "float64[" + std::to_string(kRows * kCols) + "]";
   }
 
-  template <IsMessage T>
+  template <HasFields T>
   std::string type_name(const T*) {
-    const std::string name(kMessageName<T>);
+    const std::string name = message_name<T>();
     for (const Definition& known : inner) {
       if (known.name == name) return name;
     }
@@ -101,7 +101,7 @@ class SchemaWriter {
 };
 
 /// Schema of a message and of everything inside it.
-template <IsMessage Message>
+template <HasFields Message>
 std::string schema_text() {
   SchemaWriter writer;
   writer.define<Message>();
@@ -114,9 +114,9 @@ std::string schema_text() {
 }
 
 /// Name of a message type in schema notation: package/msg/Type.
-template <IsMessage Message>
+template <HasFields Message>
 std::string schema_name() {
-  std::string name(kMessageName<Message>);
+  std::string name = message_name<Message>();
   return name.insert(name.find('/'), "/msg");
 }
 

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "hg/core/fields.h"
+
 namespace hg {
 
 enum class FaultCode : std::uint16_t {
@@ -76,5 +78,13 @@ struct Fault {
   double value = 0.0;       ///< Offending value
   double limit = 0.0;       ///< Limit that the value was compared with
 };
+
+template <typename Archive, Is<Fault> T>
+void fields(Archive& a, T& fault) {
+  a("code", fault.code, "cause, a number of hg/signals/fault.h; 0 = none");
+  a("index", fault.index, "joint, limit or component; -1 = none");
+  a("value", fault.value, "offending value");
+  a("limit", fault.limit, "limit that the value was compared with");
+}
 
 }  // namespace hg

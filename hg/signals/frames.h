@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "hg/core/fields.h"
 #include "hg/core/types.h"
 #include "hg/signals/fault.h"
 
@@ -19,6 +20,15 @@ struct SafetyInputs {
   bool is_field_clear = true;     ///< No person is in the scanner's field
   bool has_disagreement = false;  ///< Channels of one input disagreed longer than allowed
 };
+
+template <typename Archive, Is<SafetyInputs> T>
+void fields(Archive& a, T& safety) {
+  a("emergency_stop", safety.emergency_stop, "stop requested by a safety input");
+  a("operator_enable", safety.operator_enable, "enabling switch is held, or there is none");
+  a("override_key", safety.override_key, "slow motion with a free handle is permitted");
+  a("is_field_clear", safety.is_field_clear, "no person in the scanner's field, or no scanner");
+  a("has_disagreement", safety.has_disagreement, "channels of an input differed for too long");
+}
 
 /// Readings of the inertial units on the links, six numbers each, root to tip: accelerometer, then
 /// gyroscope.
@@ -49,6 +59,33 @@ struct SensorFrame {
   InertialReadings inertial;
 };
 
+template <typename Archive, Is<SensorFrame> T>
+void fields(Archive& a, T& sensors) {
+  a("sequence", sensors.sequence, "sample number, incremented by one per sample");
+  a("time_s", sensors.time_s, "time of the device's clock, s");
+  a("q_m", sensors.q_m,
+    "link-side encoders of the manipulator, rad; unlimited joints in [-pi, pi)");
+  a("dq_m", sensors.dq_m, "link-side velocities of the manipulator, rad/s");
+  a("theta_m", sensors.theta_m, "motor-side encoders at the output of the gear, rad; empty = none");
+  a("tau_m", sensors.tau_m, "joint torque sensors, Nm; empty = none");
+  a("q_p", sensors.q_p, "gantry encoders, m");
+  a("w_s", sensors.w_S, "wrench on the handle at the sensor S, in S: force N, torque Nm");
+  a("a_s", sensors.a_S, "accelerometer in S: acceleration minus gravity, m/s^2");
+  a("omega_s", sensors.omega_S, "gyroscope in S, rad/s");
+  a("answered_sequence", sensors.answered_sequence,
+    "sequence of the newest command in effect; 0 = none yet");
+  a("dead_man", sensors.dead_man, "dead-man switch of the handle is closed");
+  a("safety", sensors.safety, "inputs of the safety controller");
+  a("temperature_m", sensors.temperature_m,
+    "motor temperatures, degrees Celsius; empty = not measured");
+  a("bus_errors", sensors.bus_errors, "fieldbus answers missing in this sample");
+  a("driver_fault", sensors.driver_fault,
+    "fault of the driver, a number of hg/signals/fault.h; 0 = none");
+  a("inertial", sensors.inertial,
+    "inertial units on the links, each in its own axes: accelerometer m/s^2, gyroscope rad/s; "
+    "empty = none");
+}
+
 /// Target of a simulated person's hand. Used by simulated devices only.
 struct HandTarget {
   bool active = false;                            ///< false: the person's script sets the target
@@ -59,6 +96,16 @@ struct HandTarget {
   Eigen::Matrix3d R_B = Eigen::Matrix3d::Identity();
 };
 
+template <typename Archive, Is<HandTarget> T>
+void fields(Archive& a, T& target) {
+  a("active", target.active, "a simulated person follows this target, not its script");
+  a("p_b", target.p_B, "target position of the handle in the base frame, m");
+  a("press", target.press, "how far the hand presses its lever, 0..1");
+  a("turns", target.turns,
+    "the hand turns the handle to r_b; otherwise the handle may rotate freely");
+  a("r_b", target.R_B, "target orientation of the handle, row by row");
+}
+
 /// Buttons and keys of an operator's panel. Used by simulated devices only, except the emergency
 /// stop, which acts on every device.
 struct SafetyPanel {
@@ -68,6 +115,16 @@ struct SafetyPanel {
   bool person_in_field = false;  ///< A person besides the user is in the scanner's field
   bool reset = false;            ///< Reset of the safety controller; acts on its rising edge
 };
+
+template <typename Archive, Is<SafetyPanel> T>
+void fields(Archive& a, T& panel) {
+  a("emergency_stop", panel.emergency_stop, "emergency stop is pressed");
+  a("operator_enable", panel.operator_enable, "enabling switch is held");
+  a("override_key", panel.override_key, "override key is turned");
+  a("person_in_field", panel.person_in_field,
+    "a person besides the user is in the scanner's field");
+  a("reset", panel.reset, "reset of the safety controller; acts on its rising edge");
+}
 
 /// Request of the operator to change the mode. Numbers are recorded and never change meaning.
 enum class ModeRequest : std::uint8_t {
@@ -104,6 +161,13 @@ struct ParameterChange {
   double value = 0.0;
 };
 
+template <typename Archive, Is<ParameterChange> T>
+void fields(Archive& a, T& change) {
+  a("parameter", change.parameter);
+  a("index", change.index, "degree of freedom of the twin, or component of the wrench");
+  a("value", change.value, "new value, SI units");
+}
+
 /// All inputs of a cycle other than sensors.
 struct OperatorFrame {
   ModeRequest request = ModeRequest::kNone;
@@ -112,6 +176,15 @@ struct OperatorFrame {
   ParameterChange change;
   std::uint32_t late_cycles = 0;  ///< Cycles late or left out by this run since the last cycle
 };
+
+template <typename Archive, Is<OperatorFrame> T>
+void fields(Archive& a, T& input) {
+  a("request", input.request);
+  a("hand_target", input.hand_target, "target of a simulated hand");
+  a("panel", input.panel, "panel of a simulated operator");
+  a("change", input.change, "change of a parameter of the twin");
+  a("late_cycles", input.late_cycles, "cycles late or left out since the last cycle");
+}
 
 /// Command to the device until the next sample.
 struct CommandFrame {
@@ -125,5 +198,18 @@ struct CommandFrame {
   HandTarget hand_target;      ///< Passed through to a simulated person
   SafetyPanel panel;           ///< Passed through to a simulated safety controller
 };
+
+template <typename Archive, Is<CommandFrame> T>
+void fields(Archive& a, T& command) {
+  a("sequence", command.sequence, "sequence of the answered sensor frame");
+  a("enable", command.enable, "drives powered; otherwise drives off and brakes closed");
+  a("q_m", command.q_m, "reference positions of the manipulator, rad");
+  a("dq_m", command.dq_m, "reference velocities of the manipulator, rad/s");
+  a("ddq_m", command.ddq_m, "reference accelerations of the manipulator, rad/s^2");
+  a("tau_m", command.tau_m, "motor torques, Nm; empty: the drives follow the reference");
+  a("dq_p", command.dq_p, "gantry velocities, m/s");
+  a("hand_target", command.hand_target, "target of a simulated hand");
+  a("panel", command.panel, "panel for a simulated safety controller");
+}
 
 }  // namespace hg

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 
@@ -64,5 +65,17 @@ struct LimitReport {
   double slack = 0.0;     ///< Acceleration by which a violated row misses its bound
   double reaction = 0.0;  ///< Constraint force or torque in the quantity's own coordinate
 };
+
+template <typename Archive, Is<LimitReport> T>
+void fields(Archive& a, T& report) {
+  a("state", report.state);
+  a("cause", report.cause);
+  a("position", report.position, "position of the limited quantity, rad or m");
+  a("to_lower", report.to_lower, "distance to the lower limit as rendered, rad or m");
+  a("to_upper", report.to_upper, "distance to the upper limit as rendered, rad or m");
+  a("excess", report.excess, "distance outside the configured range, rad or m");
+  a("slack", report.slack, "acceleration by which a violated row misses its bound");
+  a("reaction", report.reaction, "constraint force in the quantity's own coordinate, Nm or N");
+}
 
 }  // namespace hg

@@ -12,11 +12,6 @@
 
 namespace hg::viewer_server {
 
-template <>
-inline constexpr auto kWords<CommandName> = std::to_array<std::string_view>(
-    {"pause", "resume", "step", "speed", "restart", "stop", "scenario", "twin", "law", "person",
-     "set", "seek", "panel", "mode", "emergency_stop", "release_stop"});
-
 struct HandMessage {
   bool active = false;
   Vec3 p_B{};

@@ -24,14 +24,14 @@ struct FrameMessage {
   Quaternion quaternion_B_H{}, quaternion_B_E{};
   std::optional<FeltLimitMessage> felt;
   std::vector<ActiveLimitMessage> active;
-  std::optional<ContactMessage> contact;
+  std::optional<ContactReport> contact;
   std::vector<double> limit_position;
   std::vector<std::optional<double>> limit_distance;
-  BudgetMessage budget;
-  std::optional<SingularityMessage> singularity;
+  HandBudget budget;
+  std::optional<Singularity> singularity;
   double sync_error_mm = 0.0, sync_error_deg = 0.0, cycle_time_us = 0.0, cycle_time_max_us = 0.0;
   HandMessage hand;
-  RunStateMessage run_state;
+  RunState run_state;
   SafetyMessage safety;
   std::uint64_t clients = 0;
   std::optional<GhostMessage> ghost;
@@ -43,20 +43,21 @@ inline constexpr Interface kInterface<FrameMessage> = {"Frame", "program -> page
 template <typename Archive, Is<FrameMessage> T>
 void fields(Archive& a, T& frame) {
   a.type("frame");
-  a("run", frame.run, "Scene.run that this belongs to");
+  a("run", frame.run, "number of the run, as Scene.run");
   a("time_s", frame.time_s);
   a("mode", frame.mode);
-  a("mode_text", frame.mode_text, "the mode and its cause in words");
+  a("mode_text", frame.mode_text, "mode and its cause as text");
   a("fault", frame.fault, "empty = none");
-  a("status", frame.status, "one line from the program");
+  a("status", frame.status, "status in one line");
   a("q_device", frame.q_device, "rad or m: gantry, then reference of the manipulator");
   a("q_measured", frame.q_measured, "rad or m: gantry, then manipulator");
   a("dq_device", frame.dq_device, "rad/s or m/s, as q_device");
   a("dq_measured", frame.dq_measured, "rad/s or m/s, as q_measured; the gantry's speed");
-  a("tau_measured_Nm", frame.tau_measured, "of the manipulator's joints; empty = no sensors");
+  a("tau_measured_Nm", frame.tau_measured,
+    "torque sensors of the manipulator's joints; empty = none");
   a("q_twin", frame.q_twin, "rad or m");
   a("dq_twin", frame.dq_twin, "rad/s or m/s; a floating joint has 6, in its own frame");
-  a("q_gantry_target_m", frame.q_gantry_target, "where prepositioning wants the gantry");
+  a("q_gantry_target_m", frame.q_gantry_target, "gantry target of prepositioning");
   a("tracking_error", frame.tracking_error, "rad or m, reference minus measured, manipulator");
   a("is_clamped", frame.is_clamped, "tracking was lost: the reference waits for the device");
   a("p_B_H_m", frame.p_B_H, "handle, at the reference");
@@ -65,23 +66,24 @@ void fields(Archive& a, T& frame) {
   a("p_B_E_m", frame.p_B_E, "end effector of the twin");
   a("quaternion_B_E", frame.quaternion_B_E);
   a("p_B_elbow_m", frame.p_B_elbow);
-  a("force_N", frame.force, "of the user on the handle, in B");
+  a("force_N", frame.force, "force of the user on the handle, in B");
   a("torque_Nm", frame.torque);
   a("felt", frame.felt);
-  a("active", frame.active, "limits that act");
+  a("active", frame.active, "active limits");
   a("contact", frame.contact, "null = none");
   a("limit_position", frame.limit_position, "rad or m, in the order of Scene.limits");
-  a("limit_distance", frame.limit_distance, "to the nearer end, with margin; null = unbounded");
-  a("budget", frame.budget, "why do I feel this?");
+  a("limit_distance", frame.limit_distance,
+    "distance to the nearer end, with margin; null = unbounded");
+  a("budget", frame.budget, "breakdown of the user's wrench");
   a("singularity", frame.singularity);
-  a("sync_error_mm", frame.sync_error_mm, "between handle and twin");
+  a("sync_error_mm", frame.sync_error_mm, "distance of handle and twin");
   a("sync_error_deg", frame.sync_error_deg);
   a("cycle_time_us", frame.cycle_time_us);
-  a("cycle_time_max_us", frame.cycle_time_max_us, "since the frame before");
+  a("cycle_time_max_us", frame.cycle_time_max_us, "maximum since the last frame");
   a("hand", frame.hand);
   a("run_state", frame.run_state);
   a("safety", frame.safety);
-  a("clients", frame.clients, "pages that are connected");
+  a("clients", frame.clients, "number of connected pages");
   a("ghost", frame.ghost);
 }
 

@@ -74,9 +74,9 @@ class JsonReader {
 
   template <IsWord T>
   static bool take(const nlohmann::json& json, T& value) {
-    for (std::size_t i = 0; i < kWords<T>.size(); ++i) {
-      if (json != kWords<T>[i]) continue;
-      value = static_cast<T>(i);
+    for (std::size_t i = 0; i < words<T>().size(); ++i) {
+      if (json != words<T>()[i]) continue;
+      value = enumerators<T>()[i].value;
       return true;
     }
     return false;

@@ -68,6 +68,8 @@ class JsonWriter {
     list(items);
   }
 
+  void value(const Eigen::Vector3d& v) { list(Vec3{v.x(), v.y(), v.z()}); }
+
   template <typename List>
   void list(const List& items) {
     text += '[';

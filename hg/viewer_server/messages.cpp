@@ -45,8 +45,6 @@ std::optional<double> bounded(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-WrenchMessage wrench(const Vector6& w) { return {vec3(w.head<3>()), vec3(w.tail<3>())}; }
-
 SceneChainMessage chain_message(const SceneChain& chain, std::string_view address) {
   SceneChainMessage message;
   if (!chain.urdf.empty()) message.urdf = address;
@@ -100,7 +98,7 @@ std::optional<FeltLimitMessage> felt_message(const CycleRecord& record,
   if (index < 0 || static_cast<std::size_t>(index) >= limit_count(record, limits)) return {};
   const auto i = static_cast<std::size_t>(index);
   return FeltLimitMessage{index, limits[i].name, limit_text(limits[i], record.limits[i]),
-                          vec3(record.w_felt.head<3>()), vec3(record.w_felt.tail<3>())};
+                          record.w_felt};
 }
 
 void add_limits(const CycleRecord& record, const LimitCatalogue& limits, FrameMessage& frame) {
@@ -109,8 +107,7 @@ void add_limits(const CycleRecord& record, const LimitCatalogue& limits, FrameMe
     frame.limit_position.push_back(report.position);
     frame.limit_distance.push_back(bounded(std::min(report.to_lower, report.to_upper)));
     if (report.state == LimitState::kInactive) continue;
-    frame.active.push_back({static_cast<int>(i), report.state, report.cause, report.reaction,
-                            report.excess, limit_text(limits[i], report)});
+    frame.active.push_back({static_cast<int>(i), report, limit_text(limits[i], report)});
   }
 }
 
@@ -141,19 +138,6 @@ void add_motion(const CycleRecord& record, FrameMessage& frame) {
   frame.torque = vec3(robot.w_H.tail<3>());
   frame.sync_error_mm = 1e3 * record.sync_error;
   frame.sync_error_deg = record.sync_error_angle * 180.0 / M_PI;
-}
-
-BudgetMessage budget_message(const HandBudget& budget) {
-  return {.user = wrench(budget.user),
-          .inertia = wrench(budget.inertia),
-          .damping = wrench(budget.damping),
-          .spring = wrench(budget.spring),
-          .friction = wrench(budget.friction),
-          .surface = wrench(budget.surface),
-          .limits = wrench(budget.limits),
-          .conflict = wrench(budget.conflict),
-          .structure = wrench(budget.structure),
-          .rest = wrench(budget.rest)};
 }
 
 HandTarget hand_target(const HandMessage& hand) {
@@ -248,9 +232,7 @@ SafetyMessage safety_message(const View& view) {
           safety.warning,
           safety.panel.emergency_stop || !safety.stop_pressed_by.empty(),
           safety.stop_pressed_by,
-          safety.panel.operator_enable,
-          safety.panel.override_key,
-          safety.panel.person_in_field};
+          safety.panel};
 }
 
 std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients) {
@@ -265,18 +247,13 @@ std::string encode_frame(const View& view, const LimitCatalogue& limits, std::ui
   add_motion(record, frame);
   frame.felt = felt_message(record, limits);
   add_limits(record, limits, frame);
-  const ContactReport& contact = record.contact;
-  if (contact.surface >= 0) {
-    frame.contact = {contact.surface, vec3(contact.force), vec3(contact.proxy)};
-  }
-  frame.budget = budget_message(view.budget);
-  if (view.singularity) frame.singularity = {view.singularity->measure, view.singularity->limit};
+  if (record.contact.surface >= 0) frame.contact = record.contact;
+  frame.budget = view.budget;
+  frame.singularity = view.singularity;
   frame.cycle_time_us = view.cycle_time_us;
   frame.cycle_time_max_us = view.cycle_time_max_us;
   frame.hand = hand_message(view.hand);
-  const RunState& state = view.run_state;
-  frame.run_state = {state.is_paused, state.speed, state.is_over, state.position_s,
-                     state.recording};
+  frame.run_state = view.run_state;
   frame.safety = safety_message(view);
   frame.clients = clients;
   if (view.ghost) {

@@ -1,7 +1,7 @@
 /// Conversion between the JSON messages of program and page and the program's own types.
 ///
-/// Their fields are described once, in *_message.h; viewer/src/messages.ts is generated from the
-/// same.
+/// Each has one list of fields (hg/core/fields.h), from which viewer/src/messages.ts is generated,
+/// too.
 #pragma once
 
 #include <cstdint>

@@ -11,26 +11,7 @@
 
 namespace hg::viewer_server {
 
-template <>
-inline constexpr auto kWords<JointType> = std::to_array<std::string_view>({"revolute", "prismatic",
-                                                                           "floating"});
-template <>
-inline constexpr auto kWords<LimitKind> =
-    std::to_array<std::string_view>({"manipulator", "virtual", "motor", "cartesian", "twin"});
-template <>
-inline constexpr auto kWords<Environment> = std::to_array<std::string_view>({"room", "door",
-                                                                             "excavator"});
-template <>
-inline constexpr auto kWords<Source> = std::to_array<std::string_view>({"run", "recording"});
-
-template <>
-inline constexpr auto kWords<SurfaceShape> =
-    std::to_array<std::string_view>({"plane", "box", "sphere", "cylinder", "mesh"});
-
 enum class LimitUnit : std::uint8_t { kRad, kM };
-template <>
-inline constexpr auto kWords<LimitUnit> = std::to_array<std::string_view>({"rad", "m"});
-
 struct SceneJointMessage {
   std::string name;
   JointType type = JointType::kRevolute;

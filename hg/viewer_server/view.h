@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/core/fields.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/state.h"
 
@@ -20,10 +21,30 @@ struct HandBudget {
   Vector6 conflict = Vector6::Zero(), structure = Vector6::Zero(), rest = Vector6::Zero();
 };
 
+template <typename Archive, Is<HandBudget> T>
+void fields(Archive& a, T& budget) {
+  a("user", budget.user, "wrench of the user, the sum of all other parts");
+  a("inertia", budget.inertia, "motion and weight of the twin");
+  a("damping", budget.damping, "dampers");
+  a("spring", budget.spring, "springs and closers");
+  a("friction", budget.friction, "friction while slipping; held joints are limits");
+  a("surface", budget.surface, "virtual surfaces and the reference wrench of the twin");
+  a("limits", budget.limits, "active limits");
+  a("conflict", budget.conflict, "limits that could not be met");
+  a("structure", budget.structure, "bearings of the twin");
+  a("rest", budget.rest, "unexplained remainder; 0 while running");
+}
+
 struct Singularity {
   double measure = 0.0;  ///< 0 = singular, 1 = the largest distance from it for this device
   int limit = -1;        ///< catalogue index of the limit that keeps it away; -1 = none
 };
+
+template <typename Archive, Is<Singularity> T>
+void fields(Archive& a, T& singularity) {
+  a("measure", singularity.measure, "0 = singular, 1 = largest distance from it for this device");
+  a("limit", singularity.limit, "index in Scene.limits of the limit that keeps it away; -1 = none");
+}
 
 /// State of the run as set by commands.
 struct RunState {
@@ -33,6 +54,15 @@ struct RunState {
   double position_s = 0.0;  ///< time of the run, also of a recorded one
   std::string recording;    ///< name of the file that is written or played; empty = none
 };
+
+template <typename Archive, Is<RunState> T>
+void fields(Archive& a, T& state) {
+  a("is_paused", state.is_paused);
+  a("speed", state.speed, "simulated or recorded seconds per second");
+  a("is_over", state.is_over, "stopped, a fault, or the end of a recording");
+  a("position_s", state.position_s, "time of the run, also of a recorded one, s");
+  a("recording", state.recording, "name of the file that is written or played; empty = none");
+}
 
 /// Second run, overlaid on the first.
 struct Ghost {

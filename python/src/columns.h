@@ -11,13 +11,14 @@
 #include <type_traits>
 #include <vector>
 
-#include "hg/recording/sample_fields.h"
+#include "hg/recording/message.h"
+#include "hg/signals/state.h"
 
 namespace hg::python {
 
 namespace nb = nanobind;
 
-/// The archive (see hg/recording/message.h) that appends every number of a sample to its column.
+/// The archive (see hg/core/fields.h) that appends every number of a sample to its column.
 ///
 /// A field of a sequence becomes one column with an entry per item; record.time_s is "time_s", and
 /// likewise for all fields of the record. Shorter rows are padded with NaN or 0.
@@ -74,14 +75,14 @@ class Columns {
   void visit(const Sample& sample, Pass pass) {
     pass_ = pass;
     next_ = 0;
-    recording::fields(*this, sample);
+    fields(*this, sample);
   }
 
-  template <recording::IsMessage T>
+  template <HasFields T>
   void put(const char* name, const T& message) {
     const std::size_t length = path_.size();
     if (length > 0 || std::strcmp(name, "record") != 0) path_ += std::string(name) + ".";
-    recording::fields(*this, message);
+    fields(*this, message);
     path_.resize(length);
   }
 

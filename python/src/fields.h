@@ -1,5 +1,5 @@
-/// Binding of a struct by its list of fields for recordings: attribute names, columns of run() and
-/// of a recording are the same, and each is defined once.
+/// Binding of a struct by its list of fields: attribute names, columns of run() and columns of a
+/// recording are the same, and each is defined once.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -9,12 +9,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "hg/recording/sample_fields.h"
+#include "hg/core/fields.h"
+#include "hg/recording/message.h"
 #include "python/src/arrays.h"
 
 namespace hg::python {
 
-/// The archive (see hg/recording/message.h) that adds one property per field of T to its class.
+/// The archive (see hg/core/fields.h) that adds one property per field of T to its class.
 template <typename T>
 class FieldBinder {
  public:
@@ -60,7 +61,7 @@ class FieldBinder {
         [member](T& self, Value value) { member.in(self) = value; }, note);
   }
 
-  template <recording::IsMessage Value>
+  template <HasFields Value>
   void add(const char* name, Offset<Value> member, const char* note) {
     target_.def_prop_rw(
         name, [member](T& self) -> Value& { return member.in(self); },
@@ -82,15 +83,15 @@ class FieldBinder {
   const T& blank_;
 };
 
-/// Binds the class of a struct whose fields are listed in hg/recording.
-template <recording::IsMessage T>
+/// Binds the class of a struct with a list of fields.
+template <HasFields T>
 nb::class_<T> bind_fields(nb::module_& module, const char* name, const char* text) {
   nb::class_<T> target(module, name, text);
   target.def(nb::init<>());
   target.def("__copy__", [](const T& self) { return T(self); });
   T blank{};
   FieldBinder<T> binder(target, blank);
-  recording::fields(binder, blank);
+  fields(binder, blank);
   return target;
 }
 

@@ -15,16 +15,16 @@ namespace {
 
 void bind_enums(nb::module_& module) {
   bind_enum<Mode>(module, "Mode", "Operating state.");
-  bind_enum<ModeRequest>(module, "ModeRequest", "What an operator asks for.");
-  bind_enum<Stop>(module, "Stop", "How the device is being stopped.");
-  bind_enum<TareStatus>(module, "TareStatus", "How the last tare went.");
-  bind_enum<Refusal>(module, "Refusal", "Why a request was not followed.");
-  bind_enum<SolverStatus>(module, "SolverStatus", "How the solver ended.");
-  bind_enum<FaultCode, 512>(module, "FaultCode", "Why the device stopped.");
-  bind_enum<LimitState>(module, "LimitState", "Side on which a limit acts.");
-  bind_enum<LimitCause>(module, "LimitCause", "Which rating of it acts.");
-  bind_enum<Parameter>(module, "Parameter", "What of a twin may change while it runs.");
-  bind_enum<ChangeStatus>(module, "ChangeStatus", "What became of the change of a parameter.");
+  bind_enum<ModeRequest>(module, "ModeRequest", "Request of an operator.");
+  bind_enum<Stop>(module, "Stop", "Kind of a stop.");
+  bind_enum<TareStatus>(module, "TareStatus", "Outcome of the last tare.");
+  bind_enum<Refusal>(module, "Refusal", "Reason for refusing a request.");
+  bind_enum<SolverStatus>(module, "SolverStatus", "Outcome of the solver.");
+  bind_enum<FaultCode, 512>(module, "FaultCode", "Cause of a stop.");
+  bind_enum<LimitState>(module, "LimitState", "Active side of a limit.");
+  bind_enum<LimitCause>(module, "LimitCause", "Active rating of a limit.");
+  bind_enum<Parameter>(module, "Parameter", "Parameter of a twin that may change at run time.");
+  bind_enum<ChangeStatus>(module, "ChangeStatus", "Outcome of a parameter change.");
 }
 
 void bind_limit_info(nb::module_& module) {
@@ -52,28 +52,30 @@ void bind_signals(nb::module_& module) {
           nb::arg("p"), nb::arg("r"), "Position (3, m) and rotation matrix (3, 3).")
       .def("__matmul__", [](const Pose& a, const Pose& b) { return a * b; })
       .def("inverse", [](const Pose& pose) { return inverse(pose); });
-  bind_fields<SafetyInputs>(module, "SafetyInputs", "What the safety controller says.");
+  bind_fields<SafetyInputs>(module, "SafetyInputs", "Inputs of the safety controller.");
   bind_fields<SafetyPanel>(module, "SafetyPanel", "Buttons and keys of a simulated operator.");
-  bind_fields<HandTarget>(module, "HandTarget", "Where a simulated person wants the handle.");
-  bind_fields<ParameterChange>(module, "ParameterChange", "A parameter of the twin and its value.");
-  bind_fields<SensorFrame>(module, "SensorFrame", "What a device measured in one sample.");
-  bind_fields<OperatorFrame>(module, "OperatorFrame", "What else enters a cycle from outside.");
-  bind_fields<CommandFrame>(module, "CommandFrame", "What the device is asked to do.");
-  bind_fields<Fault>(module, "Fault", "What stopped the device.");
-  bind_fields<RobotState>(module, "RobotState", "What estimation knows about the device.");
-  bind_fields<InertialReport>(module, "InertialReport", "What inertial units on links say.");
+  bind_fields<HandTarget>(module, "HandTarget", "Target of a simulated hand.");
+  bind_fields<ParameterChange>(module, "ParameterChange", "New value of a parameter of the twin.");
+  bind_fields<SensorFrame>(module, "SensorFrame", "Sensor values of one sample.");
+  bind_fields<OperatorFrame>(module, "OperatorFrame", "All inputs of a cycle besides sensors.");
+  bind_fields<CommandFrame>(module, "CommandFrame", "Command to the device.");
+  bind_fields<Fault>(module, "Fault", "Fault with the compared values.");
+  bind_fields<RobotState>(module, "RobotState", "Estimated state of the device.");
+  bind_fields<InertialReport>(module, "InertialReport", "Estimates from inertial units on links.");
   bind_fields<ReferenceState>(module, "ReferenceState", "Reference of the manipulator.");
   bind_fields<TwinState>(module, "TwinState", "State of the twin.");
-  bind_fields<TrackingReport>(module, "TrackingReport", "How well the device follows.");
-  bind_fields<BystanderReport>(module, "BystanderReport", "What a simulated bystander bears.");
-  bind_fields<Truth>(module, "Truth", "What is really the case; only a simulation knows.");
-  bind_fields<Budget>(module, "Budget", "Where the user's wrench goes.");
-  bind_fields<LimitReport>(module, "LimitReport", "One limit in one cycle.");
-  bind_fields<CollisionReport>(module, "CollisionReport", "How near the device comes to itself.");
+  bind_fields<TrackingReport>(module, "TrackingReport", "Tracking of the reference by the device.");
+  bind_fields<BystanderReport>(module, "BystanderReport", "Load on a simulated bystander.");
+  bind_fields<Truth>(module, "Truth", "Ground truth of a simulation.");
+  bind_fields<Budget>(module, "Budget", "Breakdown of the user's wrench.");
+  bind_fields<LimitReport>(module, "LimitReport", "State of one limit in one cycle.");
+  bind_fields<CollisionReport>(module, "CollisionReport",
+                               "Distance to a collision if the device brakes now.");
   bind_fields<PassivityReport>(module, "PassivityReport", "Energy and oscillation at the handle.");
-  bind_fields<ContactReport>(module, "ContactReport", "What virtual surfaces do to the twin.");
-  bind_fields<TouchReport>(module, "TouchReport", "What touches the arm beside the handle.");
-  bind_fields<CycleRecord>(module, "CycleRecord", "Everything that a cycle has to say.");
+  bind_fields<ContactReport>(module, "ContactReport", "Contact of the twin with virtual surfaces.");
+  bind_fields<TouchReport>(module, "TouchReport",
+                           "Contact with the arm anywhere but at the handle.");
+  bind_fields<CycleRecord>(module, "CycleRecord", "All results of a cycle.");
 }
 
 }  // namespace hg::python

@@ -157,6 +157,30 @@ class OwnLoop(unittest.TestCase):
             visit(frame)
         self.assertEqual(len(self.record.limits), len(self.door.limits))
 
+    def test_attributes_and_columns_have_the_same_names(self):
+        self.step()
+        record = self.record
+        frames = {"sensors": self.sensors, "operator_input": self.operator,
+                  "command": self.command, "truth": hg.Truth()}
+        seen = set()
+        for column in hg.run("door", duration_s=0.01):
+            if column == "cycle_time_us":  # of the sample, no attribute of a frame
+                continue
+            first, *rest = column.split(".")
+            thing, path = (frames[first], rest) if first in frames else (record, [first, *rest])
+            for name in path:
+                self.assertIn(name, dir(thing), column)
+                seen.add((type(thing).__name__, name))
+                value = getattr(thing, name)
+                thing = value[0] if name == "limits" else value
+        everything = [*frames.values(), record]
+        while everything:
+            thing = everything.pop()
+            for name in (name for name in dir(thing) if not name.startswith("_")):
+                if callable(getattr(thing, name)):
+                    continue
+                self.assertIn((type(thing).__name__, name), seen)
+
     def test_frames_are_set_from_numpy(self):
         sensors = hg.SensorFrame()
         sensors.q_m = np.arange(6)

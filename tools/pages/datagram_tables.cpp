@@ -58,7 +58,7 @@ template <typename Message>
 std::string section(const char* title) {
   Table table(size_of<Header>());
   const Message message{};
-  fields(table, message);
+  layout(table, message);
   return fmt::format("\n### {} (type {}, {} bytes)\n\n{}| {} | u32 | checksum | |\n", title,
                      static_cast<int>(kTypeOf<Message>), table.end() + 4, table.text, table.end());
 }
@@ -68,7 +68,7 @@ std::string section(const char* title) {
 std::string with_datagram_tables(std::string page) {
   Table header(0);
   const Header fields_of_header{};
-  fields(header, fields_of_header);
+  layout(header, fields_of_header);
   replace_marked(page, "messages",
                  "### Header\n\n" + header.text + section<Hello>("Hello") +
                      section<Welcome>("Welcome") + section<Ready>("Ready") +

@@ -1,4 +1,4 @@
-/// Generates the tables of docs/reference/device_protocol.md from hg/device/udp/message_fields.h.
+/// Generates the tables of docs/reference/device_protocol.md from hg/device/udp/layout.h.
 #pragma once
 
 #include <string>

@@ -17,9 +17,9 @@ namespace {
 using namespace viewer_server;
 
 constexpr std::string_view kHead =
-    "// Generated from hg/viewer_server/*_message.h; do not edit. Units are part of the names; B "
-    "is\n"
-    "// the base frame (z up), H the handle. A number that is not finite arrives as null.\n"
+    "// Generated from the lists of fields in hg/viewer_server/ and hg/signals/; do not edit. Units\n"
+    "// stand in the names or in the comments; B is the base frame (z up), H the handle. A number\n"
+    "// that is not finite arrives as null.\n"
     "\n"
     "export type Vec3 = [number, number, number];\n"
     "export type Quaternion = [number, number, number, number]; // x y z w\n";
@@ -32,7 +32,7 @@ requires IsWord<T>
 struct Type<T> {
   static std::string name() {
     std::string text;
-    for (const std::string_view word : kWords<T>) {
+    for (const std::string_view word : words<T>()) {
       ((text += text.empty() ? "\"" : " | \"") += word) += '"';
     }
     return text;
@@ -53,6 +53,11 @@ struct Type<T> {
 template <>
 struct Type<std::string> {
   static std::string name() { return "string"; }
+};
+
+template <>
+struct Type<Eigen::Vector3d> {
+  static std::string name() { return "Vec3"; }
 };
 
 template <>
@@ -101,7 +106,8 @@ class InterfaceWriter {
 template <IsMessage Message>
 void add(std::string& text) {
   InterfaceWriter writer;
-  fields(writer, static_cast<const Message&>(Message{}));
+  static const Message kBlank{};
+  fields(writer, kBlank);
   ((text += "\n// ") += kInterface<Message>.note) += '\n';
   ((text += "export interface ") += kInterface<Message>.name) += " {\n" + writer.text + "}\n";
 }
@@ -117,8 +123,8 @@ std::string typescript_text() {
   std::string text(kHead);
   add_all<SceneMessage, SceneChainMessage, SceneJointMessage, SceneLimitMessage, SceneBoxMessage,
           SceneSurfaceMessage, Choices, Choice, SettingMessage>(text);
-  add_all<FrameMessage, FeltLimitMessage, ActiveLimitMessage, ContactMessage, BudgetMessage,
-          WrenchMessage, SingularityMessage, RunStateMessage, SafetyMessage, GhostMessage>(text);
+  add_all<FrameMessage, FeltLimitMessage, ActiveLimitMessage, ContactReport, HandBudget, Vector6,
+          Singularity, RunState, SafetyMessage, GhostMessage>(text);
   add_all<HandMessage, HoldMessage, CommandMessage, WelcomeMessage, AnswerMessage, ValuesMessage,
           EventMessage>(text);
   return text;

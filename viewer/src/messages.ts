@@ -1,5 +1,6 @@
-// Generated from hg/viewer_server/*_message.h; do not edit. Units are part of the names; B is
-// the base frame (z up), H the handle. A number that is not finite arrives as null.
+// Generated from the lists of fields in hg/viewer_server/ and hg/signals/; do not edit. Units
+// stand in the names or in the comments; B is the base frame (z up), H the handle. A number
+// that is not finite arrives as null.
 
 export type Vec3 = [number, number, number];
 export type Quaternion = [number, number, number, number]; // x y z w
@@ -109,20 +110,20 @@ export interface Setting {
 // program -> page, at update_rate
 export interface Frame {
   type: "frame";
-  run: number; // Scene.run that this belongs to
+  run: number; // number of the run, as Scene.run
   time_s: number;
   mode: "off" | "ready" | "armed" | "running" | "stopping" | "fault";
-  mode_text: string; // the mode and its cause in words
+  mode_text: string; // mode and its cause as text
   fault: string; // empty = none
-  status: string; // one line from the program
+  status: string; // status in one line
   q_device: number[]; // rad or m: gantry, then reference of the manipulator
   q_measured: number[]; // rad or m: gantry, then manipulator
   dq_device: number[]; // rad/s or m/s, as q_device
   dq_measured: number[]; // rad/s or m/s, as q_measured; the gantry's speed
-  tau_measured_Nm: number[]; // of the manipulator's joints; empty = no sensors
+  tau_measured_Nm: number[]; // torque sensors of the manipulator's joints; empty = none
   q_twin: number[]; // rad or m
   dq_twin: number[]; // rad/s or m/s; a floating joint has 6, in its own frame
-  q_gantry_target_m: number[]; // where prepositioning wants the gantry
+  q_gantry_target_m: number[]; // gantry target of prepositioning
   tracking_error: number[]; // rad or m, reference minus measured, manipulator
   is_clamped: boolean; // tracking was lost: the reference waits for the device
   p_B_H_m: Vec3; // handle, at the reference
@@ -131,107 +132,107 @@ export interface Frame {
   p_B_E_m: Vec3; // end effector of the twin
   quaternion_B_E: Quaternion;
   p_B_elbow_m: Vec3;
-  force_N: Vec3; // of the user on the handle, in B
+  force_N: Vec3; // force of the user on the handle, in B
   torque_Nm: Vec3;
   felt: FeltLimit | null;
-  active: ActiveLimit[]; // limits that act
+  active: ActiveLimit[]; // active limits
   contact: Contact | null; // null = none
   limit_position: number[]; // rad or m, in the order of Scene.limits
-  limit_distance: (number | null)[]; // to the nearer end, with margin; null = unbounded
-  budget: Budget; // why do I feel this?
+  limit_distance: (number | null)[]; // distance to the nearer end, with margin; null = unbounded
+  budget: Budget; // breakdown of the user's wrench
   singularity: Singularity | null;
-  sync_error_mm: number; // between handle and twin
+  sync_error_mm: number; // distance of handle and twin
   sync_error_deg: number;
   cycle_time_us: number;
-  cycle_time_max_us: number; // since the frame before
+  cycle_time_max_us: number; // maximum since the last frame
   hand: Hand;
   run_state: RunState;
   safety: Safety;
-  clients: number; // pages that are connected
+  clients: number; // number of connected pages
   ghost: Ghost | null;
 }
 
-// what is felt most
+// limit that the user feels most; no wrench for limits of the twin
 export interface FeltLimit {
-  index: number; // in Scene.limits
+  index: number; // index in Scene.limits
   name: string;
   text: string; // elbow x: upper limit, 23 N
-  force_N: Vec3; // of its reaction on the hand; zero for limits of the twin
+  force_N: Vec3;
   torque_Nm: Vec3;
 }
 
-// a limit that acts
+// active limit
 export interface ActiveLimit {
-  index: number; // in Scene.limits
+  index: number; // index in Scene.limits
   state: "inactive" | "lower" | "upper" | "violated";
   cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction" | "torque";
-  reaction: number; // Nm or N, in its own coordinate
-  excess: number; // outside its range by this, rad or m
+  excess: number; // distance outside the configured range, rad or m
+  reaction: number; // constraint force in the quantity's own coordinate, Nm or N
   text: string;
 }
 
-// with virtual surfaces
+// contact with virtual surfaces
 export interface Contact {
-  surface: number; // in Scene.surfaces, the one that pushes most
-  force_N: Vec3; // of all of them on the handle
-  proxy_m: Vec3; // where the handle would be if they were hard
+  force: Vec3; // force of virtual surfaces on the handle, N
+  proxy: Vec3; // point nearest to the handle outside all surfaces, m
+  surface: number; // surface with the largest force, index in the scenario; -1 = none
 }
 
 // user = inertia + damping + ... + structure + rest
 export interface Budget {
-  user: Wrench; // what the user exerts
-  inertia: Wrench; // what the motion of the twin takes, with its weight
-  damping: Wrench;
+  user: Wrench; // wrench of the user, the sum of all other parts
+  inertia: Wrench; // motion and weight of the twin
+  damping: Wrench; // dampers
   spring: Wrench; // springs and closers
-  friction: Wrench; // while slipping; held joints are limits
+  friction: Wrench; // friction while slipping; held joints are limits
   surface: Wrench; // virtual surfaces and the reference wrench of the twin
-  limits: Wrench; // all limits that act
+  limits: Wrench; // active limits
   conflict: Wrench; // limits that could not be met
-  structure: Wrench; // carried by the bearings of the twin
-  rest: Wrench; // what is left of the sum: 0 while running, else what nothing explains
+  structure: Wrench; // bearings of the twin
+  rest: Wrench; // unexplained remainder; 0 while running
 }
 
-// on the hand, at H, in B
+// wrench on the hand, at H, in B
 export interface Wrench {
   force_N: Vec3;
   torque_Nm: Vec3;
 }
 
-// of the manipulator
+// distance of the manipulator from a singularity
 export interface Singularity {
-  measure: number; // 0 = singular, 1 = as far from it as this device gets
-  limit: number; // in Scene.limits, what keeps it away; -1 = none
+  measure: number; // 0 = singular, 1 = largest distance from it for this device
+  limit: number; // index in Scene.limits of the limit that keeps it away; -1 = none
 }
 
-// what commands have made
+// state of the run as set by commands
 export interface RunState {
   is_paused: boolean;
-  speed: number; // simulated (or recorded) seconds per second
+  speed: number; // simulated or recorded seconds per second
   is_over: boolean; // stopped, a fault, or the end of a recording
-  position_s: number; // of the run, also of a recorded one
+  position_s: number; // time of the run, also of a recorded one, s
   recording: string; // name of the file that is written or played; empty = none
 }
 
-// what stops the device, and the panel of its simulated operator
+// cause of a stop, and the panel of the simulated operator
 export interface Safety {
-  stop: "none" | "SS2" | "SS1" | "STO"; // how it is being stopped, or was
-  is_autonomous: boolean; // runs with nobody at the handle
+  stop: "none" | "SS2" | "SS1" | "STO"; // kind of the present or last stop
+  is_autonomous: boolean; // runs autonomously, with a free handle
   fault: number; // number of the cause; 0 = none
-  cause: string; // with value and limit; empty = none
-  release: string; // what has to happen before a reset
-  warning: string; // the rule nearest to its threshold; empty = all are far from it
-  emergency_stop: boolean; // a button is pressed
-  stop_pressed_by: number[]; // pages, which may be gone; 0 = the script
-  operator_enable: boolean; // the switch is held
-  override_key: boolean; // the key is turned
-  person_in_field: boolean; // besides the user
+  cause: string; // cause with value and limit; empty = none
+  release: string; // conditions for a reset
+  warning: string; // rule nearest to its threshold; empty = all are far from it
+  emergency_stop: boolean; // an emergency stop is pressed
+  stop_pressed_by: number[]; // pages that pressed it, perhaps gone; 0 = script
+  operator_enable: boolean; // enabling switch is held
+  override_key: boolean; // override key is turned
+  person_in_field: boolean; // a person besides the user is in the scanner's field
 }
 
-// a second recording, compared
+// second recording, overlaid for comparison
 export interface Ghost {
-  time_s: number;
-  q_device: number[];
-  q_twin: number[];
+  time_s: number; // time of its run, s
+  q_device: number[]; // gantry, then reference of the manipulator, rad or m
+  q_twin: number[]; // coordinates of the twin, rad or m
   p_B_H_m: Vec3;
   force_N: Vec3;
 }

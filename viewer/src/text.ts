@@ -56,7 +56,7 @@ export function is_pushing(frame: Frame): boolean {
 // `parts`: the largest parts of the budget in words, may be empty.
 /** The virtual surface that pushes: of one whose share is 0 nothing is felt. */
 export function felt_contact({ contact }: Frame): Frame["contact"] {
-  return contact && Math.hypot(...contact.force_N) >= SMALLEST_CONTACT ? contact : null;
+  return contact && Math.hypot(...contact.force) >= SMALLEST_CONTACT ? contact : null;
 }
 
 export function felt_text(scene: Scene, frame: Frame, parts: string): string {
@@ -68,7 +68,7 @@ export function felt_text(scene: Scene, frame: Frame, parts: string): string {
   if (frame.felt) return frame.felt.text;
   const contact = felt_contact(frame);
   if (contact) {
-    const size = Math.hypot(...contact.force_N);
+    const size = Math.hypot(...contact.force);
     const { name } = scene.surfaces[contact.surface]!;
     return `Virtual surface ${name}: ${size.toFixed(size < 9.95 ? 1 : 0)} N.`;
   }

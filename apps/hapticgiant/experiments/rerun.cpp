@@ -14,24 +14,22 @@
 #include "apps/hapticgiant/run_setup.h"
 #include "hg/recording/cdr_writer.h"
 #include "hg/recording/recording_reader.h"
-#include "hg/recording/sample_fields.h"
 #include "hg/scenario/assembly.h"
 
 namespace hg::apps {
 namespace {
 
 using recording::CdrWriter;
-using recording::IsMessage;
 using recording::IsScalar;
 
-/// Names and values of all fields of a message, in their order (hg/recording/message.h).
+/// Names and values of all fields of a message, in their order (hg/core/fields.h).
 class Fields {
  public:
   struct Field {
     std::string name, value;
   };
 
-  template <IsMessage Message>
+  template <HasFields Message>
   static std::vector<Field> of(const std::string& name, const Message& message) {
     Fields fields;
     fields.put(name, message);
@@ -62,10 +60,9 @@ class Fields {
     }
   }
 
-  template <IsMessage T>
+  template <HasFields T>
   void put(const std::string& name, const T& message) {
     const std::string outer = std::exchange(path_, name + ".");
-    using recording::fields;
     fields(*this, message);
     path_ = outer;
   }
@@ -93,7 +90,7 @@ class Fields {
   std::vector<Field> list_;
 };
 
-template <IsMessage Message>
+template <HasFields Message>
 std::string difference(const std::string& name, const Message& recorded, const Message& now) {
   const auto before = Fields::of(name, recorded), after = Fields::of(name, now);
   for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
@@ -106,7 +103,7 @@ std::string difference(const std::string& name, const Message& recorded, const M
   return before.size() == after.size() ? "" : name + " has another number of items";
 }
 
-template <IsMessage Message>
+template <HasFields Message>
 bool is_same(CdrWriter& left, CdrWriter& right, const Message& a, const Message& b) {
   return std::ranges::equal(left.encode(a), right.encode(b));
 }

@@ -12,6 +12,7 @@
 /// [C] 2 has f = 8 Hz; a gantry that shakes at 4-16 Hz asks for up to 40 Hz.
 #pragma once
 
+#include "hg/core/fields.h"
 #include "hg/signals/drive_model.h"
 
 namespace hg::estimation {
@@ -22,6 +23,15 @@ struct GantryObserver {
   double disturbance = 0.0;
   CommandDelay delay;
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<GantryObserver> T>
+void fields(Archive& a, T& axis) {
+  a("q", axis.q);
+  a("dq", axis.dq);
+  a("ddq", axis.ddq);
+  a("disturbance", axis.disturbance);
+}
 
 /// Corrections of q, dq and the disturbance per innovation of the position.
 struct GantryGains {

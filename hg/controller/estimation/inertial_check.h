@@ -10,6 +10,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+
+#include "hg/core/fields.h"
 
 namespace hg::estimation {
 
@@ -36,6 +39,25 @@ struct InertialCheck {
   /// Speed gained by the unit beyond that of the encoders, quickly forgotten, in B, m/s.
   Eigen::Vector3d slip = Eigen::Vector3d::Zero();
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<InertialCheck> T>
+void fields(Archive& a, T& check) {
+  a("flags", std::uint64_t{check.is_started} |
+                 static_cast<std::uint64_t>(check.rest_samples) << 1U |
+                 static_cast<std::uint64_t>(check.gravity_samples) << 32U);
+  a("R_B_S", check.R_B_S);
+  a("bias", check.bias);
+  a("turn", check.turn);
+  a("turned", check.turned);
+  a("up_S", check.up_S);
+  a("offset_S", check.offset_S);
+  a("p_S", check.p_S);
+  a("v_S", check.v_S);
+  a("slip", check.slip);
+  a("turned_in_all", check.turned_in_all);
+  a("offset_at_rest", check.offset_at_rest);
+}
 
 /// Measurement of an inertial unit, with its pose by the encoders.
 struct InertialSample {

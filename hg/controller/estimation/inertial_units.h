@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "hg/controller/estimation/unit_calibration.h"
+#include "hg/core/fields.h"
 #include "hg/core/stacked.h"
 #include "hg/core/types.h"
 #include "hg/model/chain.h"
@@ -44,6 +45,15 @@ struct EncoderSample {
   VectorPM ddq_expected;  ///< Acceleration since the last sample, by reference and drive model
 };
 
+/// Values of the state hash, in its order.
+template <typename Archive, Is<EncoderSample> T>
+void fields(Archive& a, T& sample) {
+  a("measured", sample.measured);
+  a("q", sample.q);
+  a("dq", sample.dq);
+  a("ddq_expected", sample.ddq_expected);
+}
+
 struct InertialUnitsState {
   static constexpr int kPast = 16;  ///< Number of stored periods
 
@@ -67,6 +77,27 @@ struct InertialUnitsState {
   Vector6 bend_rate = Vector6::Zero(), bend = Vector6::Zero();
   double share = 0.0;  ///< Share with which the control uses the units, 0..1
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<InertialUnitsState> T>
+void fields(Archive& a, T& state) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(state.trust.size()); ++i) {
+    a("unit", state.units[i]);
+    a("same", state.same[i]);
+  }
+  a("newest", state.past[state.newest]);
+  a("trust", state.trust);
+  a("found", state.found);
+  a("carried", state.carried);
+  a("unseen", state.unseen);
+  a("q", state.q);
+  a("dq", state.dq);
+  a("variance", state.variance);
+  a("error", state.error);
+  a("bend_rate", state.bend_rate);
+  a("bend", state.bend);
+  a("share", state.share);
+}
 
 class InertialUnits {
  public:

@@ -5,6 +5,9 @@
 /// leans on the handle without a tremble, dead-man open, cannot be distinguished from an offset.
 #pragma once
 
+#include <cstdint>
+
+#include "hg/core/fields.h"
 #include "hg/core/types.h"
 #include "hg/signals/state.h"
 
@@ -34,6 +37,19 @@ struct TareState {
   VectorM q_m;  ///< Joint positions (and gantry's, below) when the tare began
   VectorP q_p;
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<TareState> T>
+void fields(Archive& a, T& tare) {
+  a("flags", static_cast<std::uint64_t>(tare.status) | std::uint64_t{tare.is_valid} << 8U);
+  a("count", tare.count);
+  a("offset", tare.offset);
+  a("mean", tare.mean);
+  a("square", tare.square);
+  a("first_half", tare.first_half);
+  a("q_m", tare.q_m);
+  a("q_p", tare.q_p);
+}
 
 /// Begins a new tare.
 void begin(TareState& tare) noexcept;

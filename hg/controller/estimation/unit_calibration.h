@@ -15,6 +15,8 @@
 
 #include <Eigen/Core>
 
+#include "hg/core/fields.h"
+
 namespace hg::estimation {
 
 /// Motion of a link, resolved in its own axes.
@@ -57,6 +59,18 @@ struct UnitCalibration {
   double variance = 1e6;  ///< Variance of the accelerometer's prediction for the present motion
   double misfit = 0.0;    ///< Mean square of the unexplained reading, below 10 Hz, (m/s^2)^2
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<UnitCalibration> T>
+void fields(Archive& a, T& unit) {
+  a("slower", unit.slower);
+  a("gyroscope", unit.gyroscope);
+  a("accelerometer", unit.accelerometer);
+  a("moved_s", unit.moved_s);
+  a("variance", unit.variance);
+  a("misfit", unit.misfit);
+  a("information", unit.information.trace());
+}
 
 /// Processes a sample, `dt` s after the last.
 void learn(double dt, const LinkMotion& motion, const UnitReading& reading,

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "hg/controller/estimation/tare.h"
+#include "hg/core/fields.h"
 #include "hg/core/types.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/payload.h"
@@ -29,6 +30,15 @@ struct WrenchState {
   Vector6 w_S = Vector6::Zero();                      ///< Wrench of the user, filtered
   TareState tare;
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<WrenchState> T>
+void fields(Archive& a, T& wrench) {
+  a("omega_S", wrench.omega_S);
+  a("alpha_S", wrench.alpha_S);
+  a("w_S", wrench.w_S);
+  a("tare", wrench.tare);
+}
 
 /// Delay of the user's wrench after the sensor's sample, for slow changes, s. The sensor's own
 /// delay adds to it.

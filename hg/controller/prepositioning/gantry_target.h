@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/stacked.h"
 #include "hg/model/chain.h"
@@ -31,6 +32,13 @@ struct TargetState {
   bool is_started = false;
   VectorPM q;  ///< Posture of the target
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<TargetState> T>
+void fields(Archive& a, T& state) {
+  a("is_started", state.is_started);
+  a("q", state.q);
+}
 
 class GantryTarget {
  public:

@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/limits/velocity_bounds.h"
@@ -33,6 +34,13 @@ void check(const Config& config);
 struct Room {
   VectorP down, up;
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<Room> T>
+void fields(Archive& a, T& room) {
+  a("down", room.down);
+  a("up", room.up);
+}
 
 struct Command {
   VectorP q_target;        ///< Target of the gantry, within its limits, m or rad

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "hg/controller/safety/monitor.h"
+#include "hg/core/fields.h"
 #include "hg/signals/fault.h"
 #include "hg/signals/frames.h"
 
@@ -27,6 +28,17 @@ struct BrakeState {
   BrakedAxes may_move;       ///< Allowed distance of each axis from `from`, rad or m
   Fault slip;                ///< Detected slip, kBrakesSlip; latched for the whole run
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<BrakeState> T>
+void fields(Archive& a, T& state) {
+  a("flags", std::uint64_t{state.samples_off} | std::uint64_t{state.was_powered} << 32U |
+                 static_cast<std::uint64_t>(state.slip.code) << 40U);
+  a("broken", state.broken);
+  a("last", state.last);
+  a("from", state.from);
+  a("may_move", state.may_move);
+}
 
 /// Checks the brakes; call once per cycle, even where the sample is otherwise unusable. An axis may
 /// move by its slip tolerance. For the duration of a stop after power-off, an axis that was still

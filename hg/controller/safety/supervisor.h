@@ -5,8 +5,11 @@
 /// cause of a stop is kept until its reset. No allocation, noexcept.
 #pragma once
 
+#include <cstdint>
+
 #include "hg/controller/safety/rules.h"
 #include "hg/controller/safety/transitions.h"
+#include "hg/core/fields.h"
 #include "hg/signals/state.h"
 
 namespace hg::safety {
@@ -23,6 +26,22 @@ struct SupervisorState {
 
   Mode mode() const noexcept { return mode_of(state); }
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<SupervisorState> T>
+void fields(Archive& a, T& state) {
+  a("flags", static_cast<std::uint64_t>(state.state) |
+                 static_cast<std::uint64_t>(state.last_request) << 8U |
+                 static_cast<std::uint64_t>(state.stop) << 16U |
+                 static_cast<std::uint64_t>(state.fault.code) << 32U |
+                 static_cast<std::uint64_t>(state.also.code) << 48U);
+  a("stop_samples", state.stop_samples);
+  for (const Fault* fault : {&state.fault, &state.also}) {
+    a("index", fault->index);
+    a("value", fault->value);
+    a("limit", fault->limit);
+  }
+}
 
 /// Inputs of the supervisor, once per cycle.
 struct SupervisorInput {

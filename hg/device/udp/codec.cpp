@@ -38,7 +38,7 @@ std::uint32_t checksum(std::span<const std::byte> bytes) noexcept {
 Verdict read_header(std::span<const std::byte> datagram, Header& header, const Key& key) noexcept {
   if (datagram.size() < kHeaderSize + kChecksumSize) return Verdict::kTruncated;
   Decoder decoder(datagram.data());
-  fields(decoder, header);
+  layout(decoder, header);
   if (header.magic != kMagic) return Verdict::kForeign;
   if (header.length != datagram.size()) return Verdict::kTruncated;
   std::uint32_t crc = 0;

@@ -15,7 +15,7 @@
 
 #include "hg/core/types.h"
 #include "hg/device/udp/key.h"
-#include "hg/device/udp/message_fields.h"
+#include "hg/device/udp/layout.h"
 
 namespace hg::udp {
 
@@ -30,6 +30,7 @@ struct Datagram {
 /// Appends fields to a buffer; the caller provides enough room.
 class Encoder {
  public:
+  static constexpr bool kIgnoresText = true;
   explicit Encoder(std::byte* to) : begin_(to), at_(to) {}
   std::size_t size() const noexcept { return static_cast<std::size_t>(at_ - begin_); }
 
@@ -70,6 +71,7 @@ class Encoder {
 /// Reads fields in their order; the caller provides enough bytes.
 class Decoder {
  public:
+  static constexpr bool kIgnoresText = true;
   explicit Decoder(const std::byte* from) : begin_(from), at_(from) {}
   std::size_t size() const noexcept { return static_cast<std::size_t>(at_ - begin_); }
   /// Whether every count, truth value and unused field had an allowed value.
@@ -135,7 +137,7 @@ std::size_t size_of() noexcept {
   std::array<std::byte, kLargestDatagram> room;
   Encoder encoder(room.data());
   const Message message{};
-  fields(encoder, message);
+  layout(encoder, message);
   return encoder.size();
 }
 
@@ -165,8 +167,8 @@ void encode(Header header, const Message& message, Datagram& datagram,
   Encoder encoder(datagram.bytes.data());
   header.type = static_cast<std::uint16_t>(kTypeOf<Message>);
   header.length = static_cast<std::uint32_t>(size_of<Header>() + size_of<Message>() + tag_size + 4);
-  fields(encoder, header);
-  fields(encoder, message);
+  layout(encoder, header);
+  layout(encoder, message);
   std::size_t size = encoder.size();
   if (key.is_set()) {
     const Key::Tag tag = key.tag({datagram.bytes.data(), size});
@@ -183,7 +185,7 @@ void encode(Header header, const Message& message, Datagram& datagram,
 template <typename Message>
 [[nodiscard]] bool decode(std::span<const std::byte> datagram, Message& message) noexcept {
   Decoder decoder(datagram.data() + size_of<Header>());
-  fields(decoder, message);
+  layout(decoder, message);
   return decoder.is_good();
 }
 

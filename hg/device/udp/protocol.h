@@ -1,5 +1,5 @@
 /// The messages between a controller and a remote device, one per datagram. Byte layout:
-/// docs/reference/device_protocol.md; the fields are defined only in message_fields.h.
+/// docs/reference/device_protocol.md. The order of frames on the wire: layout.h.
 ///
 /// Little endian, fixed layout. No allocation, noexcept.
 #pragma once
@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "hg/core/fields.h"
 #include "hg/signals/frames.h"
 
 namespace hg::udp {
@@ -67,6 +68,16 @@ struct Description {
   bool is_lock_step = false;  ///< each side waits for the other instead of for a clock
 };
 
+template <typename Archive, Is<Description> T>
+void fields(Archive& a, T& description) {
+  a("device", description.device, "name of the device as in its device.yaml, UTF-8");
+  a("n_p", description.n_p, "gantry axes, 0..2");
+  a("n_m", description.n_m, "joints of the manipulator, 6 or 7");
+  a("rate_Hz", description.rate_Hz, "frames per second");
+  a("interface", description.interface, "1: the drives follow q_m, 2: the drives give tau_m");
+  a("is_lock_step", description.is_lock_step, "0: real time, 1: lock-step");
+}
+
 enum class Refusal : std::uint32_t {
   kNone = 0,
   kBusy = 1,      ///< another client has the device
@@ -92,11 +103,29 @@ struct Header {
   std::uint64_t time_ns = 0;
 };
 
+template <typename Archive, Is<Header> T>
+void fields(Archive& a, T& header) {
+  a("magic", header.magic, "48 47 44 50, \"HGDP\"");
+  a("version", header.version, "version of this protocol: 2");
+  a("type", header.type, "type of the message");
+  a("length", header.length, "length of the datagram with header and checksum");
+  a("session", header.session, "number from the welcome; 0 in a hello and in a refusal");
+  a("number", header.number, "1, 2, 3 .. for the sender's datagrams of this session");
+  a("time_ns", header.time_ns, "time of sending on the sender's clock");
+}
+
 struct Hello {
   std::uint64_t nonce = 0;
   Description expected;
   Text<64> client;
 };
+
+template <typename Archive, Is<Hello> T>
+void fields(Archive& a, T& hello) {
+  a("nonce", hello.nonce, "any number, comes back in the welcome");
+  fields(a, hello.expected);
+  a("client", hello.client, "text for the log, UTF-8");
+}
 
 struct Welcome {
   std::uint64_t nonce = 0;
@@ -108,12 +137,34 @@ struct Welcome {
   Text<192> reason;
 };
 
+template <typename Archive, Is<Welcome> T>
+void fields(Archive& a, T& welcome) {
+  a("nonce", welcome.nonce, "nonce of the answered hello");
+  a("refusal", welcome.refusal, "0 none, 1 busy, 2 version, 3 descriptions do not fit, 4 key");
+  a("is_simulated", welcome.is_simulated, "1: a simulation, where no machine moves");
+  fields(a, welcome.actual);
+  a("command_timeout_s", welcome.command_timeout_s,
+    "time without a command after which the drives are switched off");
+  a("server", welcome.server, "text for the log, UTF-8");
+  a("reason", welcome.reason, "reason of a refusal for people, UTF-8");
+}
+
 struct Ready {};
+
+template <typename Archive, Is<Ready> T>
+void fields(Archive&, T&) {}
 
 struct Goodbye {
   Farewell farewell = Farewell::kDone;
   Text<64> reason;
 };
+
+template <typename Archive, Is<Goodbye> T>
+void fields(Archive& a, T& goodbye) {
+  a("farewell", goodbye.farewell, "1 as planned, 2 the client has a fault, 3 silence");
+  a.zeros("zero");
+  a("reason", goodbye.reason, "reason for people, UTF-8");
+}
 
 /// Message type number of each C++ type.
 template <typename Message>

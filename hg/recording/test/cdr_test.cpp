@@ -9,8 +9,8 @@
 #include "hg/recording/cdr_reader.h"
 #include "hg/recording/cdr_writer.h"
 #include "hg/recording/ros_messages.h"
-#include "hg/recording/sample_fields.h"
 #include "hg/recording/test/random_message.h"
+#include "hg/signals/state.h"
 
 namespace hg::recording {
 namespace {
@@ -119,58 +119,6 @@ TEST(CdrReader, RefusesBigEndian) {
   message[1] = std::byte{0};
   Sample sample;
   EXPECT_FALSE(CdrReader(message).decode(sample));
-}
-
-// Members of an aggregate: how many values of any type it can be made from.
-struct Anything {
-  template <typename T>
-  operator T() const;
-};
-
-template <typename T, typename... Values>
-consteval int member_count() {
-  if constexpr (requires { T{Values{}..., Anything{}}; }) {
-    return member_count<T, Values..., Anything>();
-  } else {
-    return sizeof...(Values);
-  }
-}
-
-struct FieldCounter {
-  int count = 0;
-  template <typename T>
-  void operator()(const char*, const T&, const char* = "") {
-    ++count;
-  }
-  template <typename T, std::size_t kCapacity>
-  void sequence(const char*, const std::array<T, kCapacity>&, int, const char*) {
-    count += 2;  // items and their number are two members
-  }
-};
-
-template <typename Message>
-void expect_all_members_recorded() {
-  FieldCounter counter;
-  fields(counter, static_cast<const Message&>(Message{}));
-  EXPECT_EQ(counter.count, member_count<Message>()) << kMessageName<Message>;
-}
-
-TEST(Fields, NameEveryMemberOfEveryStruct) {
-  expect_all_members_recorded<Pose>();
-  expect_all_members_recorded<SensorFrame>();
-  expect_all_members_recorded<HandTarget>();
-  expect_all_members_recorded<ParameterChange>();
-  expect_all_members_recorded<OperatorFrame>();
-  expect_all_members_recorded<CommandFrame>();
-  expect_all_members_recorded<Fault>();
-  expect_all_members_recorded<RobotState>();
-  expect_all_members_recorded<ReferenceState>();
-  expect_all_members_recorded<TwinState>();
-  expect_all_members_recorded<Budget>();
-  expect_all_members_recorded<LimitReport>();
-  expect_all_members_recorded<InertialReport>();
-  expect_all_members_recorded<CycleRecord>();
-  expect_all_members_recorded<Sample>();
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ class RandomFiller {
  public:
   explicit RandomFiller(std::uint64_t seed) : random_(seed) {}
 
-  template <IsMessage T>
+  template <HasFields T>
   void operator()(const char*, T& message, const char* = "") {
     fields(*this, message);
   }

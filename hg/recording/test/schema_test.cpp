@@ -5,8 +5,9 @@
 #include <regex>
 #include <sstream>
 
+#include "hg/recording/event.h"
 #include "hg/recording/ros_messages.h"
-#include "hg/recording/sample_fields.h"
+#include "hg/signals/state.h"
 
 namespace hg::recording {
 namespace {
@@ -40,11 +41,12 @@ TEST(SchemaText, SpellsTypesAsRosDoes) {
 
 TEST(SchemaText, SaysWhatEveryNumberOfAnEnumMeans) {
   const std::string text = schema_text<Sample>();
-  for (const char* line : {"\nuint8 cause  # 0 none, 1 position, 2 velocity, 3 acceleration, 4 "
-                           "lock, 5 latch, 6 friction, "
-                           "7 contradiction, 8 torque\n",
-                           "\nuint8 change  # of a parameter: 0 none, 1 taken, 2 refused\n",
-                           "14 still moving, 15 twin apart, 16 posture implausible\n"}) {
+  for (const char* line :
+       {"\nuint8 cause  # 0 none, 1 position, 2 velocity, 3 acceleration, 4 "
+        "lock, 5 latch, 6 friction, "
+        "7 contradiction, 8 torque\n",
+        "\nuint8 change  # outcome of a parameter change: 0 none, 1 taken, 2 refused\n",
+        "14 still moving, 15 twin apart, 16 posture implausible\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << line;
   }
 }

@@ -449,10 +449,10 @@ TEST(LimitText, NamesSideCauseAndReaction) {
 template <typename E>
 void expect_all_words() {
   const auto all = enumerators<E>();
-  ASSERT_EQ(kWords<E>.size(), all.size());
+  ASSERT_EQ(words<E>().size(), all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(static_cast<std::size_t>(all[i].value), i);
-    EXPECT_EQ(kWords<E>[i], to_string(all[i].value)) << all[i].name;
+    EXPECT_EQ(words<E>()[i], to_string(all[i].value)) << all[i].name;
   }
 }
 

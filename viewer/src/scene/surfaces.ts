@@ -50,7 +50,7 @@ export class SurfacesView {
       material.opacity = is_touched ? 0.62 : 0.42;
     }
     if (!contact) return;
-    this.proxy.position.set(...contact.proxy_m);
+    this.proxy.position.set(...contact.proxy);
     this.spring.span(new Vector3(...p_B_E), this.proxy.position);
   }
 

@@ -54,7 +54,7 @@ async function touch_table(page, take) {
   const { x, y } = await page.evaluate(() => window.hapticgiant.handle_on_screen);
   await page.mouse.move(x, y - 100);
   for (let i = 0; i < 4; i++) await page.mouse.wheel(0, -120);
-  const presses = (f) => f.contact?.surface === 0 && Math.hypot(...f.contact.force_N) > 10;
+  const presses = (f) => f.contact?.surface === 0 && Math.hypot(...f.contact.force) > 10;
   await take_when(page, presses, take);
 }
 

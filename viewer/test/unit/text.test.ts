@@ -106,12 +106,12 @@ describe("felt_text", () => {
       triangles_m: [],
     } as const;
     const room = { ...scene, surfaces: [{ ...wall, name: "table" }, wall] } as never;
-    const contact = { surface: 1, force_N: [0, 3, 4] as [number, number, number], proxy_m: zero };
+    const contact = { surface: 1, force: [0, 3, 4] as [number, number, number], proxy: zero };
     const touching = { ...frame, felt: null, contact };
     expect(felt_text(room, touching, "mostly damping")).toBe("Virtual surface wall: 5.0 N.");
     const free = { ...touching, force_N: zero, torque_Nm: zero };
     expect(felt_text(room, free, "")).toContain("do not push");
-    const stopped = { ...touching, contact: { ...contact, force_N: zero } };
+    const stopped = { ...touching, contact: { ...contact, force: zero } };
     expect(felt_text(room, stopped, "mostly damping")).toBe("No limit: mostly damping.");
   });
 });

@@ -24,6 +24,7 @@
 
 #include "hg/controller/safety/collision/distance.h"
 #include "hg/controller/safety/collision/pairs.h"
+#include "hg/core/fields.h"
 #include "hg/core/stacked.h"
 #include "hg/signals/state.h"
 
@@ -52,6 +53,18 @@ struct State {
   std::array<double, kMaxPairs> left{};     ///< Lower bound on the distance minus `allowed`, m
   std::array<double, kMaxPairs> allowed{};  ///< Safe distance, less for pairs that began nearer, m
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<State> T>
+void fields(Archive& a, T& state) {
+  a("count", state.count);
+  a("q", state.q);
+  a("stop", state.stop);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(state.count); ++i) {
+    a("left", state.left[i]);
+    a("allowed", state.allowed[i]);
+  }
+}
 
 struct Prediction {
   CollisionReport report;

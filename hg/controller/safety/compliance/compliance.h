@@ -13,6 +13,9 @@
 /// Pure functions of arguments and state: deterministic, no allocation, noexcept.
 #pragma once
 
+#include <cstdint>
+
+#include "hg/core/fields.h"
 #include "hg/core/types.h"
 #include "hg/signals/touch.h"
 
@@ -41,6 +44,18 @@ struct State {
   double quiet_s = 0.0;  ///< Time for which less than half of the thresholds is felt, s
   VectorP away;          ///< Velocity of the gantry, m/s or rad/s; empty: its own aim
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<State> T>
+void fields(Archive& a, T& state) {
+  a("flags", std::uint64_t{state.is_started} | std::uint64_t{state.is_told} << 1U);
+  a("dq", state.dq);
+  a("torque", state.torque);
+  a("variance", state.variance);
+  a("load", state.load);
+  a("quiet_s", state.quiet_s);
+  a("away", state.away);
+}
 
 using JacobianIn = Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>;
 

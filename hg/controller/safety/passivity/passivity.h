@@ -24,6 +24,7 @@
 
 #include <cstdint>
 
+#include "hg/core/fields.h"
 #include "hg/core/turns.h"
 #include "hg/core/types.h"
 #include "hg/signals/state.h"
@@ -65,6 +66,13 @@ struct Calming {
   double inertia = 1.0;  ///< Factor of the twin's inertia, >= 1
 };
 
+/// Values of the state hash, in its order.
+template <typename Archive, Is<Calming> T>
+void fields(Archive& a, T& calming) {
+  a("damping", calming.damping);
+  a("inertia", calming.inertia);
+}
+
 struct State {
   bool is_started = false;
   Eigen::Vector3d x1 = Eigen::Vector3d::Zero(), x2 = Eigen::Vector3d::Zero(),
@@ -82,6 +90,24 @@ struct State {
   double tank = 0.0, energy = 0.0;  ///< Energy of the tank, and energy given to the user, J
   Calming calming;
 };
+
+/// Values of the state hash, in its order.
+template <typename Archive, Is<State> T>
+void fields(Archive& a, T& state) {
+  a("is_started", state.is_started);
+  a("x1", state.x1);
+  a("x2", state.x2);
+  a("x3", state.x3);
+  a("high", state.high);
+  a("low", state.low);
+  a("oscillates_s", state.oscillates_s);
+  a("since_pushed_s", state.since_pushed_s);
+  a("hold_s", state.hold_s);
+  a("restless_s", state.restless_s);
+  a("tank", state.tank);
+  a("energy", state.energy);
+  a("calming", state.calming);
+}
 
 /// Advances by one cycle and returns its report; `state.calming` applies to the twin in the next
 /// one.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <type_traits>
 
@@ -45,11 +46,11 @@ class Alignment {
 TEST(Layout, EveryFieldIsAligned) {
   Alignment header;
   const Header fields_of_header{};
-  fields(header, fields_of_header);
+  layout(header, fields_of_header);
   EXPECT_EQ(header.offset, size_of<Header>());
   const auto expect_aligned = [&](const auto& message) {
     Alignment alignment{header};
-    fields(alignment, message);
+    layout(alignment, message);
     EXPECT_EQ(alignment.offset % 4, 0U);
   };
   expect_aligned(Hello{});
@@ -65,6 +66,35 @@ TEST(Layout, EveryMessageFitsIntoADatagramThatNoNetworkDivides) {
                                  size_of<CommandFrame>(), size_of<Goodbye>()}) {
     EXPECT_LE(size_of<Header>() + size + 4, kLargestDatagram);
   }
+}
+
+// What an archive with texts gets of each member that a frame sends.
+struct Texts {
+  std::set<std::string> names;
+  template <typename T>
+  void operator()(const char* name, const T&, const char* note) {
+    EXPECT_TRUE(names.insert(name).second) << name << " is sent twice";
+    EXPECT_STRNE(note, "") << name;
+  }
+  void zeros(const char*) {}
+};
+
+template <typename Frame>
+std::set<std::string> sent_names() {
+  Texts texts;
+  const Frame frame{};
+  layout(texts, frame);
+  return texts.names;
+}
+
+TEST(Layout, TakesNamesAndNotesFromTheFieldsOfTheFrames) {
+  const auto sensors = sent_names<SensorFrame>(), command = sent_names<CommandFrame>();
+  EXPECT_EQ(sensors.size(), 20U);
+  EXPECT_TRUE(sensors.contains("safety.override_key"));
+  EXPECT_TRUE(sensors.contains("w_s"));
+  EXPECT_EQ(command.size(), 15U);
+  EXPECT_TRUE(command.contains("hand_target.p_b"));
+  EXPECT_TRUE(command.contains("panel.reset"));
 }
 
 }  // namespace
