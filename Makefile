@@ -139,7 +139,7 @@ docs: $(DOCS_VENV)/bin/mkdocs
 	@cmake --build $(BUILD) --target hg_pages _core_stubs
 	@$(BUILD)/hg_pages
 	@cmake --install $(BUILD) --component python --prefix build/docs_python >/dev/null
-	@NO_MKDOCS_2_WARNING=1 $< build --quiet
+	@NO_MKDOCS_2_WARNING=1 $< build >build/docs.log 2>&1 || { grep -v ^INFO build/docs.log; exit 1; }
 	@echo "docs: build/site/index.html"
 
 format:

@@ -34,7 +34,7 @@ LONGEST_VALUE = 12  # lines of a constant's initialiser
 def rooms():
     """Room -> its folders, of those that the C++ package has."""
     lists = (ROOT / "CMakeLists.txt").read_text()
-    package = re.search(r"set\(HG_PACKAGE ([^)]*)\)", (ROOT / "cmake/install.cmake").read_text())
+    package = re.search(r"set\(HG_PACKAGE\s+([^)]*)\)", (ROOT / "cmake/install.cmake").read_text())
     for path, rest in re.findall(r"^hg_module\(([\w/]+)([^)]*)\)", lists, re.MULTILINE):
         if path.split("/")[-1] in package[1].split():
             folders = re.search(r"FOLDERS ([a-z_ ]+)", rest)
@@ -139,7 +139,11 @@ def header_page(path):
     page = [f"## {path.relative_to(ROOT)}\n",
             prose("\n".join(line[4:] for line in head.splitlines() if line.startswith("///")), folder)]
     last = None
-    for comment, code in declarations(body):
+    try:
+        items = list(declarations(body))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+    for comment, code in items:
         name, code = name_of(code), without_bodies(code)
         if name is None:
             continue
