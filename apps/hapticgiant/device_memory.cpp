@@ -98,30 +98,30 @@ std::string start_test_file(const std::string& folder, const config::Device& dev
 
 std::string check_start_test(const RunArguments& arguments, const config::Device& device) {
   const std::string file = start_test_file(arguments.recordings, device, arguments.device_address);
-  start_test::Verdict verdict = {.objection = "there is none"};
+  start_test::Validity validity = {.objection = "there is none"};
   try {
     if (const std::optional<std::string> kept = text_of(file)) {
-      verdict = start_test::judge(*kept, {.device = device.name,
-                                          .address = arguments.device_address,
-                                          .files_sha256 = sha256_of(device),
-                                          .valid_for_s = device.start_test.valid_for_s,
-                                          .now = std::time(nullptr)});
+      validity = start_test::check_validity(*kept, {.device = device.name,
+                                                    .address = arguments.device_address,
+                                                    .files_sha256 = sha256_of(device),
+                                                    .valid_for_s = device.start_test.valid_for_s,
+                                                    .now = std::time(nullptr)});
     }
   } catch (const SetupError& error) {
-    verdict.objection = error.what();
+    validity.objection = error.what();
   }
-  if (verdict.objection.empty()) {
-    return verdict.untested.empty() ? fmt::format("passed {}", verdict.ended)
-                                    : fmt::format("passed {}; not tested: {}", verdict.ended,
-                                                  fmt::join(verdict.untested, ", "));
+  if (validity.objection.empty()) {
+    return validity.untested.empty() ? fmt::format("passed {}", validity.ended)
+                                     : fmt::format("passed {}; not tested: {}", validity.ended,
+                                                   fmt::join(validity.untested, ", "));
   }
   if (arguments.without_start_test) {
-    return fmt::format("BRAKES AND STOP INPUTS ARE NOT TESTED: {}", verdict.objection);
+    return fmt::format("BRAKES AND STOP INPUTS ARE NOT TESTED: {}", validity.objection);
   }
   throw SetupError(fmt::format(
       "{}: no start test of {} that counts: {}; test brakes and stop inputs with 'hapticgiant "
       "start-test --device-address {}' and the same device, or run with --without-start-test",
-      file, device.name, verdict.objection, arguments.device_address));
+      file, device.name, validity.objection, arguments.device_address));
 }
 
 std::string check_posture(const RunArguments& arguments, const config::Device& device,

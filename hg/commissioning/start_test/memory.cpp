@@ -85,48 +85,48 @@ std::string to_json(const Result& result) {
   return text_of(json, 2) + "\n";
 }
 
-Verdict judge(std::string_view text, const Wanted& wanted) {
+Validity check_validity(std::string_view text, const Requirements& required) {
   const Json json = Json::parse(text, nullptr, false);
-  Verdict verdict;
+  Validity validity;
   const auto object = [&](std::string why) {
-    verdict.objection = std::move(why);
-    return verdict;
+    validity.objection = std::move(why);
+    return validity;
   };
   try {
     const Json& time = json.at("ended_unix_s");
     const std::time_t ended = time.is_number_integer() ? time.get<std::int64_t>() : -1;
     if (ended < 0) return object("it cannot be read");
-    if (ended > wanted.now + kClockAhead) {
+    if (ended > required.now + kClockAhead) {
       return object("it is of the future: look at the clock");
     }
-    verdict.ended = date_of(ended);
+    validity.ended = date_of(ended);
     std::string failed;
     for (const Json& item : json.at("items")) {
       const std::string outcome = item.at("outcome"), name = item.at("name");
       if (outcome == to_string(Outcome::kFailed)) failed += (failed.empty() ? "" : ", ") + name;
-      if (outcome == to_string(Outcome::kUntested)) verdict.untested.push_back(name);
+      if (outcome == to_string(Outcome::kUntested)) validity.untested.push_back(name);
     }
-    if (!is_same(json.at("device"), wanted.device)) return object("it is of another device");
-    if (!is_same(json.at("address"), wanted.address)) {
+    if (!is_same(json.at("device"), required.device)) return object("it is of another device");
+    if (!is_same(json.at("address"), required.address)) {
       return object("it is of the device at " + json.at("address").get<std::string>());
     }
     if (json.at("simulated").get<bool>()) return object("it is of a simulation");
     if (!json.at("passed").get<bool>() || !failed.empty()) {
       return object(failed.empty() ? "it did not come to its end" : "failed: " + failed);
     }
-    if (json.at("files_sha256") != wanted.files_sha256) {
+    if (json.at("files_sha256") != required.files_sha256) {
       return object("the files of the device have changed since");
     }
-    const auto age_s = static_cast<double>(wanted.now - ended);
-    if (age_s > wanted.valid_for_s) {
+    const auto age_s = static_cast<double>(required.now - ended);
+    if (age_s > required.valid_for_s) {
       constexpr double kHour = 3600.0;
       return object(fmt::format("it is {:.1f} h old, and counts for {:g} h", age_s / kHour,
-                                wanted.valid_for_s / kHour));
+                                required.valid_for_s / kHour));
     }
   } catch (const Json::exception&) {
     return object("it cannot be read");
   }
-  return verdict;
+  return validity;
 }
 
 std::string posture_to_json(const std::string& device, const std::string& address, std::time_t at,

@@ -35,21 +35,21 @@ std::string file_of(std::string_view folder, std::string_view kind, std::string_
 std::string to_json(const Result& result);
 
 /// Requirements of a run of a machine.
-struct Wanted {
+struct Requirements {
   std::string device, address, files_sha256;
   double valid_for_s = 86400.0;
   std::time_t now = 0;
 };
 
 /// Evaluation of a kept result for a run.
-struct Verdict {
+struct Validity {
   std::string objection;              ///< why the result does not count; empty: it does
   std::string ended;                  ///< "2026-11-23 08:00 UTC"; empty if unknown
   std::vector<std::string> untested;  ///< names of items left out by the test
 };
 
-/// Judges the text of a file made by to_json(); any content is allowed.
-Verdict judge(std::string_view json, const Wanted& wanted);
+/// Checks the text of a file made by to_json(); any content is allowed.
+Validity check_validity(std::string_view json, const Requirements& required);
 
 /// Position of a joint or gantry axis.
 struct Position {

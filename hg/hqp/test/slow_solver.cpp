@@ -25,8 +25,6 @@ constexpr Real kStandstill = 1e-12L;   // step, beside the slack, that ends the 
 constexpr int kMaxSteps = 300;         // of the proximal method
 constexpr Real kNonNegative = 1e-16L;  // cosine that opposes the residual in NNLS
 
-std::size_t index(Eigen::Index i) { return index(i); }
-
 // min |E u - f| over u >= 0, columns of E of length 1; false when the loop does not end.
 bool solve_non_negative(const Matrix& E, const Vector& f, Vector& u) {
   const Eigen::Index m = E.cols();

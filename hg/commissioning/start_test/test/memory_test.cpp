@@ -21,10 +21,11 @@ Result good() {
 }
 
 std::string objection(const Result& result, double later_h = 1.0) {
-  return judge(to_json(result), {.device = "arm",
-                                 .address = "there:1",
-                                 .files_sha256 = "00",
-                                 .now = kThen + static_cast<std::time_t>(3600.0 * later_h)})
+  return check_validity(to_json(result),
+                        {.device = "arm",
+                         .address = "there:1",
+                         .files_sha256 = "00",
+                         .now = kThen + static_cast<std::time_t>(3600.0 * later_h)})
       .objection;
 }
 
@@ -57,20 +58,21 @@ TEST(StartTestResult, CountsForItsDeviceItsFilesAndADay) {
 TEST(StartTestResult, ThatIsDamagedDoesNotCount) {
   const std::string whole = to_json(good());
   for (std::size_t size = 0; size + 2 < whole.size(); ++size) {
-    EXPECT_EQ(judge(whole.substr(0, size), {}).objection, "it cannot be read");
+    EXPECT_EQ(check_validity(whole.substr(0, size), {}).objection, "it cannot be read");
   }
-  EXPECT_EQ(judge("[1]", {}).objection, "it cannot be read");
+  EXPECT_EQ(check_validity("[1]", {}).objection, "it cannot be read");
 
   const std::string number = std::to_string(kThen);
   for (const char* silly : {"-1", "1e300", "1795000000.5", "true", "\"1795000000\"",
                             "-9223372036854775808", "18446744073709551615", "1e9999"}) {
     std::string damaged = whole;
     damaged.replace(damaged.find(number), number.size(), silly);
-    EXPECT_EQ(judge(damaged, {.now = kThen}).objection, "it cannot be read") << silly;
+    EXPECT_EQ(check_validity(damaged, {.now = kThen}).objection, "it cannot be read") << silly;
   }
   std::string late = whole;
   late.replace(late.find(number), number.size(), "9223372036854775807");
-  EXPECT_NE(judge(late, {.now = kThen}).objection.find("of the future"), std::string::npos);
+  EXPECT_NE(check_validity(late, {.now = kThen}).objection.find("of the future"),
+            std::string::npos);
 }
 
 TEST(StartTestResult, OfANameThatIsNoUtf8Counts) {
@@ -78,18 +80,18 @@ TEST(StartTestResult, OfANameThatIsNoUtf8Counts) {
   result.device = "arm \xff";
   result.items[0].name = "brake \xff";
   EXPECT_EQ(objection(result), "it is of another device");
-  const Wanted wanted = {
+  const Requirements required = {
       .device = result.device, .address = "there:1", .files_sha256 = "00", .now = kThen};
-  EXPECT_EQ(judge(to_json(result), wanted).objection, "");
+  EXPECT_EQ(check_validity(to_json(result), required).objection, "");
   const std::vector<Position> stands = {{"m\xff", 0.1, false, false}};
   const std::string kept = posture_to_json("arm \xff", "there:1", kThen, stands);
   EXPECT_TRUE(compare_posture(kept, "there:1", stands, {}).empty());
 }
 
 TEST(StartTestResult, TellsWhatWasLeftOut) {
-  const Verdict verdict = judge(
+  const Validity validity = check_validity(
       to_json(good()), {.device = "arm", .address = "there:1", .files_sha256 = "00", .now = kThen});
-  EXPECT_EQ(verdict.untested, std::vector<std::string>{"brake m6"});
+  EXPECT_EQ(validity.untested, std::vector<std::string>{"brake m6"});
 }
 
 TEST(Sha256, IsThatOfFips180) {
