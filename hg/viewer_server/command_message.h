@@ -52,10 +52,10 @@ struct EventMessage {
 
 template <>
 inline constexpr Interface kInterface<HandMessage> = {
-    "Hand", "page -> program, and what the program made of it (inside a frame)"};
+    "Hand", "page -> program; inside a frame: the target in effect"};
 template <>
 inline constexpr Interface kInterface<HoldMessage> = {
-    "Hold", "page -> program: it is there and holds what it holds, every 30 ms"};
+    "Hold", "page -> program, every 30 ms: the page is alive and keeps its hold"};
 template <>
 inline constexpr Interface kInterface<WelcomeMessage> = {
     "Welcome", "program -> page: the first message of a connection"};
@@ -63,10 +63,10 @@ template <>
 inline constexpr Interface kInterface<CommandMessage> = {"Command", "page -> program"};
 template <>
 inline constexpr Interface kInterface<AnswerMessage> = {
-    "Answer", "program -> page: one for each Command, and for what was refused"};
+    "Answer", "program -> page: one per Command, and per refused message"};
 template <>
 inline constexpr Interface kInterface<ValuesMessage> = {
-    "Values", "program -> page: when it connects and whenever one has changed"};
+    "Values", "program -> page: at the connection and after each change"};
 template <>
 inline constexpr Interface kInterface<EventMessage> = {"Event", "program -> page"};
 
@@ -75,14 +75,15 @@ void fields(Archive& a, T& hand) {
   a.type("hand");
   a("active", hand.active);
   a("p_B_m", hand.p_B);
-  a("quaternion_B_H", hand.quaternion_B_H, "wanted turn of the handle; null = as the hand likes");
-  a("press", hand.press, "of the lever, 0..1");
+  a("quaternion_B_H", hand.quaternion_B_H,
+    "target orientation of the handle; null = the handle may rotate freely");
+  a("press", hand.press, "how far the hand presses its lever, 0..1");
 }
 
 template <typename Archive, Is<HoldMessage> T>
 void fields(Archive& a, T& hold) {
   a.type("hold");
-  a("sequence", hold.sequence, "rises within a connection; others are left out");
+  a("sequence", hold.sequence, "rising number; repeated and older ones are ignored");
 }
 
 template <typename Archive, Is<WelcomeMessage> T>
@@ -94,9 +95,9 @@ void fields(Archive& a, T& welcome) {
 template <typename Archive, Is<CommandMessage> T>
 void fields(Archive& a, T& command) {
   a.type("command");
-  a("id", command.id, "0..2^53, comes back in the answer");
+  a("id", command.id, "any whole number of 0..2^53, comes back in the answer");
   a("command", command.command);
-  a("name", command.name, "of what is chosen or set; else empty");
+  a("name", command.name, "name of the chosen option or setting; else empty");
   a("value", command.value,
     "step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value, release_stop: page");
 }
@@ -104,21 +105,21 @@ void fields(Archive& a, T& command) {
 template <typename Archive, Is<AnswerMessage> T>
 void fields(Archive& a, T& answer) {
   a.type("answer");
-  a("id", answer.id, "of the command; -1 = it could not be read");
-  a("is_accepted", answer.is_accepted, "a mode: the cycle followed it; set, panel: handed over");
-  a("reason", answer.reason, "why not; empty = accepted");
+  a("id", answer.id, "id of the command; -1 = the message could not be read");
+  a("is_accepted", answer.is_accepted, "mode: followed by the cycle; set, panel: passed on");
+  a("reason", answer.reason, "reason of the refusal; empty = accepted");
 }
 
 template <typename Archive, Is<ValuesMessage> T>
 void fields(Archive& a, T& values) {
   a.type("values");
-  a("values", values.values, "in the order of Scene.settings; null = unlimited");
+  a("values", values.values, "values in the order of Scene.settings; null = unlimited");
 }
 
 template <typename Archive, Is<EventMessage> T>
 void fields(Archive& a, T& event) {
   a.type("event");
-  a("run", event.run, "Scene.run that it happened in");
+  a("run", event.run, "number of the run, as Scene.run");
   a("time_s", event.time_s);
   a("name", event.name);
   a("text", event.text);

@@ -49,21 +49,24 @@ void fields(Archive& a, T& frame) {
   a("mode_text", frame.mode_text, "mode and its cause as text");
   a("fault", frame.fault, "empty = none");
   a("status", frame.status, "status in one line");
-  a("q_device", frame.q_device, "rad or m: gantry, then reference of the manipulator");
-  a("q_measured", frame.q_measured, "rad or m: gantry, then manipulator");
-  a("dq_device", frame.dq_device, "rad/s or m/s, as q_device");
-  a("dq_measured", frame.dq_measured, "rad/s or m/s, as q_measured; the gantry's speed");
+  a("q_device", frame.q_device, "gantry, then reference of the manipulator, rad or m");
+  a("q_measured", frame.q_measured, "gantry, then manipulator, rad or m");
+  a("dq_device", frame.dq_device, "velocities of q_device, rad/s or m/s");
+  a("dq_measured", frame.dq_measured, "velocities of q_measured, rad/s or m/s");
   a("tau_measured_Nm", frame.tau_measured,
     "torque sensors of the manipulator's joints; empty = none");
-  a("q_twin", frame.q_twin, "rad or m");
-  a("dq_twin", frame.dq_twin, "rad/s or m/s; a floating joint has 6, in its own frame");
+  a("q_twin", frame.q_twin, "coordinates of the twin, rad or m");
+  a("dq_twin", frame.dq_twin,
+    "velocities of the twin, rad/s or m/s; a floating joint has 6, in its own frame");
   a("q_gantry_target_m", frame.q_gantry_target, "gantry target of prepositioning");
-  a("tracking_error", frame.tracking_error, "rad or m, reference minus measured, manipulator");
-  a("is_clamped", frame.is_clamped, "tracking was lost: the reference waits for the device");
-  a("p_B_H_m", frame.p_B_H, "handle, at the reference");
+  a("tracking_error", frame.tracking_error,
+    "reference minus link side of the manipulator, rad or m");
+  a("is_clamped", frame.is_clamped,
+    "tracking was lost: the reference was moved back to the device");
+  a("p_B_H_m", frame.p_B_H, "position of the handle, at the reference");
   a("quaternion_B_H", frame.quaternion_B_H);
   a("v_H_m_per_s", frame.v_H);
-  a("p_B_E_m", frame.p_B_E, "end effector of the twin");
+  a("p_B_E_m", frame.p_B_E, "position of the twin's end effector");
   a("quaternion_B_E", frame.quaternion_B_E);
   a("p_B_elbow_m", frame.p_B_elbow);
   a("force_N", frame.force, "force of the user on the handle, in B");
@@ -71,7 +74,8 @@ void fields(Archive& a, T& frame) {
   a("felt", frame.felt);
   a("active", frame.active, "active limits");
   a("contact", frame.contact, "null = none");
-  a("limit_position", frame.limit_position, "rad or m, in the order of Scene.limits");
+  a("limit_position", frame.limit_position,
+    "positions of the limited quantities in the order of Scene.limits, rad or m");
   a("limit_distance", frame.limit_distance,
     "distance to the nearer end, with margin; null = unbounded");
   a("budget", frame.budget, "breakdown of the user's wrench");

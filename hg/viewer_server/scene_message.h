@@ -34,27 +34,27 @@ inline constexpr Interface kInterface<SceneMessage> = {"Scene", "GET /scene.json
 
 template <typename Archive, Is<SceneMessage> T>
 void fields(Archive& a, T& scene) {
-  a("run", scene.run, "number of the run; a Frame with another one: fetch this again");
+  a("run", scene.run, "number of the run; fetch the scene again once a Frame has another one");
   a("source", scene.source);
   a("title", scene.title);
   a("description", scene.description);
-  a("rate_hz", scene.rate_hz, "of the control cycle");
-  a("update_rate_hz", scene.update_rate_hz, "of frames");
-  a("begin_s", scene.begin_s, "of a recording, in the time of its run");
-  a("duration_s", scene.duration_s, "of a recording, or planned; 0 = open");
+  a("rate_hz", scene.rate_hz, "rate of the control cycle");
+  a("update_rate_hz", scene.update_rate_hz, "rate of frames");
+  a("begin_s", scene.begin_s, "begin of a recording, in the time of its run");
+  a("duration_s", scene.duration_s, "duration of a recording, or planned; 0 = open");
   a("device", scene.device);
   a("twin", scene.twin);
-  a("gantry_joints", scene.gantry_joints, "so many of the device's joints come first");
+  a("gantry_joints", scene.gantry_joints, "number of gantry joints, the first ones of the device");
   a("limits", scene.limits);
   a("floor_z_m", scene.floor_z);
   a("box", scene.box);
-  a("environment", scene.environment, "of the twin");
+  a("environment", scene.environment, "surroundings of the twin");
   a("surfaces", scene.surfaces);
   a("choices", scene.choices);
   a("settings", scene.settings);
-  a("commands", scene.commands, "that are followed");
-  a("refusal", scene.refusal, "why others are not; empty = all are");
-  a("stopping", scene.stopping, "how long and far a stop takes; empty = not known");
+  a("commands", scene.commands, "accepted commands");
+  a("refusal", scene.refusal, "reason for refusing other commands; empty = all are accepted");
+  a("stopping", scene.stopping, "duration and distance of a stop; empty = unknown");
 }
 
 }  // namespace hg::viewer_server

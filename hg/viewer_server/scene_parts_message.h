@@ -67,24 +67,24 @@ inline constexpr Interface kInterface<SceneBoxMessage> = {"SceneBox",
 template <>
 inline constexpr Interface kInterface<SceneSurfaceMessage> = {"SceneSurface", "a virtual surface"};
 template <>
-inline constexpr Interface kInterface<Choice> = {"Choice", "something to choose"};
+inline constexpr Interface kInterface<Choice> = {"Choice", "one option"};
 template <>
-inline constexpr Interface kInterface<Choices> = {"Choices", "what can be chosen, and is"};
+inline constexpr Interface kInterface<Choices> = {"Choices", "options and the chosen ones"};
 template <>
 inline constexpr Interface kInterface<SettingMessage> = {"Setting",
                                                          "a form field: a value of the twin"};
 
 template <typename Archive, Is<SceneJointMessage> T>
 void fields(Archive& a, T& joint) {
-  a("name", joint.name, "as in the URDF");
+  a("name", joint.name, "name in the URDF");
   a("type", joint.type, "floating: x y z qx qy qz qw");
   a("planar", joint.planar,
-    "joint of the URDF that this is one of three parts of: slide, slide, turn");
-  a("axis", joint.axis, "of such a part, in the frame of the planar joint");
-  a("q_min", joint.q_min, "rad or m; null = unbounded");
-  a("q_max", joint.q_max);
-  a("dq_max", joint.dq_max, "rad/s or m/s");
-  a("tau_max", joint.tau_max, "Nm or N, peak; null = unknown");
+    "planar joint of the URDF with this joint as one of three parts: slide, slide, turn");
+  a("axis", joint.axis, "axis of such a part, in the frame of the planar joint");
+  a("q_min", joint.q_min, "lower limit, rad or m; null = unbounded");
+  a("q_max", joint.q_max, "upper limit, rad or m; null = unbounded");
+  a("dq_max", joint.dq_max, "speed limit, rad/s or m/s; null = unbounded");
+  a("tau_max", joint.tau_max, "peak torque or force, Nm or N; null = unknown");
 }
 
 template <typename Archive, Is<SceneChainMessage> T>
@@ -99,10 +99,11 @@ template <typename Archive, Is<SceneLimitMessage> T>
 void fields(Archive& a, T& limit) {
   a("name", limit.name);
   a("kind", limit.kind);
-  a("unit", limit.unit, "of its position; the reaction of a rad is in Nm, of a m in N");
-  a("min", limit.min, "null = unbounded");
-  a("max", limit.max);
-  a("priority", limit.priority, "1 is the coupling of hand and twin, then 2, 3, ...");
+  a("unit", limit.unit, "unit of the position; its reaction is in Nm for rad, in N for m");
+  a("min", limit.min, "lower end; null = unbounded");
+  a("max", limit.max, "upper end; null = unbounded");
+  a("priority", limit.priority,
+    "level of the law: 1 is the coupling of hand and twin, then 2, 3, ...");
 }
 
 template <typename Archive, Is<SceneBoxMessage> T>
@@ -115,39 +116,40 @@ template <typename Archive, Is<SceneSurfaceMessage> T>
 void fields(Archive& a, T& surface) {
   a("name", surface.name);
   a("shape", surface.shape, "a plane is solid below its z = 0, a cylinder has its axis along z");
-  a("p_B_m", surface.p_B, "of its centre");
+  a("p_B_m", surface.p_B, "position of the centre");
   a("quaternion_B", surface.quaternion_B);
-  a("size_m", surface.size, "of the box around it; zero for a plane");
-  a("triangles_m", surface.triangles, "of a mesh: 9 coordinates each; else empty");
+  a("size_m", surface.size, "size of the bounding box; zero for a plane");
+  a("triangles_m", surface.triangles, "triangles of a mesh, 9 coordinates each; else empty");
 }
 
 template <typename Archive, Is<Choice> T>
 void fields(Archive& a, T& choice) {
-  a("name", choice.name, "what a command carries");
-  a("title", choice.title, "what people read");
+  a("name", choice.name, "name in a command");
+  a("title", choice.title, "name for people");
 }
 
 template <typename Archive, Is<Choices> T>
 void fields(Archive& a, T& choices) {
-  a("scenario", choices.scenario, "name of the chosen one");
+  a("scenario", choices.scenario, "name of the chosen scenario");
   a("scenarios", choices.scenarios);
-  a("twin", choices.twin, "empty: the scenario's own");
+  a("twin", choices.twin, "name of the chosen twin; empty: that of the scenario");
   a("twins", choices.twins);
   a("law", choices.law);
   a("laws", choices.laws);
-  a("person", choices.person, "who holds the handle: a script, mouse, none; empty: the scenario's");
+  a("person", choices.person,
+    "person at the handle: a script, mouse, none; empty: that of the scenario");
   a("people", choices.people);
 }
 
 template <typename Archive, Is<SettingMessage> T>
 void fields(Archive& a, T& setting) {
-  a("name", setting.name, "what the command \"set\" carries");
+  a("name", setting.name, "name in the command \"set\"");
   a("group", setting.group, "joint of the twin, or empty");
   a("label", setting.label);
   a("unit", setting.unit);
-  a("min", setting.min, "of what is accepted");
-  a("max", setting.max);
-  a("value", setting.value, "at the start; then message Values. null = unlimited");
+  a("min", setting.min, "smallest accepted value");
+  a("max", setting.max, "largest accepted value");
+  a("value", setting.value, "initial value, later ones come as Values; null = unlimited");
   a("step", setting.step);
   a("help", setting.help);
 }

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "hg/signals/limit.h"
+#include "hg/signals/state.h"
 #include "python/src/bind.h"
 #include "python/src/bind_enum.h"
 #include "python/src/fields.h"

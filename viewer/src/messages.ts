@@ -7,27 +7,27 @@ export type Quaternion = [number, number, number, number]; // x y z w
 
 // GET /scene.json: fixed in a run
 export interface Scene {
-  run: number; // number of the run; a Frame with another one: fetch this again
+  run: number; // number of the run; fetch the scene again once a Frame has another one
   source: "run" | "recording";
   title: string;
   description: string;
-  rate_hz: number; // of the control cycle
-  update_rate_hz: number; // of frames
-  begin_s: number; // of a recording, in the time of its run
-  duration_s: number; // of a recording, or planned; 0 = open
+  rate_hz: number; // rate of the control cycle
+  update_rate_hz: number; // rate of frames
+  begin_s: number; // begin of a recording, in the time of its run
+  duration_s: number; // duration of a recording, or planned; 0 = open
   device: SceneChain;
   twin: SceneChain;
-  gantry_joints: number; // so many of the device's joints come first
+  gantry_joints: number; // number of gantry joints, the first ones of the device
   limits: SceneLimit[];
   floor_z_m: number;
   box: SceneBox;
-  environment: "room" | "door" | "excavator"; // of the twin
+  environment: "room" | "door" | "excavator"; // surroundings of the twin
   surfaces: SceneSurface[];
   choices: Choices;
   settings: Setting[];
-  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "release_stop")[]; // that are followed
-  refusal: string; // why others are not; empty = all are
-  stopping: string; // how long and far a stop takes; empty = not known
+  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "release_stop")[]; // accepted commands
+  refusal: string; // reason for refusing other commands; empty = all are accepted
+  stopping: string; // duration and distance of a stop; empty = unknown
 }
 
 // a robot or a twin
@@ -40,24 +40,24 @@ export interface SceneChain {
 
 // a joint of a chain
 export interface SceneJoint {
-  name: string; // as in the URDF
+  name: string; // name in the URDF
   type: "revolute" | "prismatic" | "floating"; // floating: x y z qx qy qz qw
-  planar: string; // joint of the URDF that this is one of three parts of: slide, slide, turn
-  axis: Vec3; // of such a part, in the frame of the planar joint
-  q_min: number | null; // rad or m; null = unbounded
-  q_max: number | null;
-  dq_max: number | null; // rad/s or m/s
-  tau_max: number | null; // Nm or N, peak; null = unknown
+  planar: string; // planar joint of the URDF with this joint as one of three parts: slide, slide, turn
+  axis: Vec3; // axis of such a part, in the frame of the planar joint
+  q_min: number | null; // lower limit, rad or m; null = unbounded
+  q_max: number | null; // upper limit, rad or m; null = unbounded
+  dq_max: number | null; // speed limit, rad/s or m/s; null = unbounded
+  tau_max: number | null; // peak torque or force, Nm or N; null = unknown
 }
 
 // a limited quantity
 export interface SceneLimit {
   name: string;
   kind: "manipulator" | "virtual" | "motor" | "cartesian" | "twin";
-  unit: "rad" | "m"; // of its position; the reaction of a rad is in Nm, of a m in N
-  min: number | null; // null = unbounded
-  max: number | null;
-  priority: number; // 1 is the coupling of hand and twin, then 2, 3, ...
+  unit: "rad" | "m"; // unit of the position; its reaction is in Nm for rad, in N for m
+  min: number | null; // lower end; null = unbounded
+  max: number | null; // upper end; null = unbounded
+  priority: number; // level of the law: 1 is the coupling of hand and twin, then 2, 3, ...
 }
 
 // Cartesian limits of the handle in B
@@ -70,39 +70,39 @@ export interface SceneBox {
 export interface SceneSurface {
   name: string;
   shape: "plane" | "box" | "sphere" | "cylinder" | "mesh"; // a plane is solid below its z = 0, a cylinder has its axis along z
-  p_B_m: Vec3; // of its centre
+  p_B_m: Vec3; // position of the centre
   quaternion_B: Quaternion;
-  size_m: Vec3; // of the box around it; zero for a plane
-  triangles_m: number[]; // of a mesh: 9 coordinates each; else empty
+  size_m: Vec3; // size of the bounding box; zero for a plane
+  triangles_m: number[]; // triangles of a mesh, 9 coordinates each; else empty
 }
 
-// what can be chosen, and is
+// options and the chosen ones
 export interface Choices {
-  scenario: string; // name of the chosen one
+  scenario: string; // name of the chosen scenario
   scenarios: Choice[];
-  twin: string; // empty: the scenario's own
+  twin: string; // name of the chosen twin; empty: that of the scenario
   twins: Choice[];
   law: string;
   laws: Choice[];
-  person: string; // who holds the handle: a script, mouse, none; empty: the scenario's
+  person: string; // person at the handle: a script, mouse, none; empty: that of the scenario
   people: Choice[];
 }
 
-// something to choose
+// one option
 export interface Choice {
-  name: string; // what a command carries
-  title: string; // what people read
+  name: string; // name in a command
+  title: string; // name for people
 }
 
 // a form field: a value of the twin
 export interface Setting {
-  name: string; // what the command "set" carries
+  name: string; // name in the command "set"
   group: string; // joint of the twin, or empty
   label: string;
   unit: string;
-  min: number; // of what is accepted
-  max: number;
-  value: number | null; // at the start; then message Values. null = unlimited
+  min: number; // smallest accepted value
+  max: number; // largest accepted value
+  value: number | null; // initial value, later ones come as Values; null = unlimited
   step: number;
   help: string;
 }
@@ -116,20 +116,20 @@ export interface Frame {
   mode_text: string; // mode and its cause as text
   fault: string; // empty = none
   status: string; // status in one line
-  q_device: number[]; // rad or m: gantry, then reference of the manipulator
-  q_measured: number[]; // rad or m: gantry, then manipulator
-  dq_device: number[]; // rad/s or m/s, as q_device
-  dq_measured: number[]; // rad/s or m/s, as q_measured; the gantry's speed
+  q_device: number[]; // gantry, then reference of the manipulator, rad or m
+  q_measured: number[]; // gantry, then manipulator, rad or m
+  dq_device: number[]; // velocities of q_device, rad/s or m/s
+  dq_measured: number[]; // velocities of q_measured, rad/s or m/s
   tau_measured_Nm: number[]; // torque sensors of the manipulator's joints; empty = none
-  q_twin: number[]; // rad or m
-  dq_twin: number[]; // rad/s or m/s; a floating joint has 6, in its own frame
+  q_twin: number[]; // coordinates of the twin, rad or m
+  dq_twin: number[]; // velocities of the twin, rad/s or m/s; a floating joint has 6, in its own frame
   q_gantry_target_m: number[]; // gantry target of prepositioning
-  tracking_error: number[]; // rad or m, reference minus measured, manipulator
-  is_clamped: boolean; // tracking was lost: the reference waits for the device
-  p_B_H_m: Vec3; // handle, at the reference
+  tracking_error: number[]; // reference minus link side of the manipulator, rad or m
+  is_clamped: boolean; // tracking was lost: the reference was moved back to the device
+  p_B_H_m: Vec3; // position of the handle, at the reference
   quaternion_B_H: Quaternion;
   v_H_m_per_s: Vec3;
-  p_B_E_m: Vec3; // end effector of the twin
+  p_B_E_m: Vec3; // position of the twin's end effector
   quaternion_B_E: Quaternion;
   p_B_elbow_m: Vec3;
   force_N: Vec3; // force of the user on the handle, in B
@@ -137,7 +137,7 @@ export interface Frame {
   felt: FeltLimit | null;
   active: ActiveLimit[]; // active limits
   contact: Contact | null; // null = none
-  limit_position: number[]; // rad or m, in the order of Scene.limits
+  limit_position: number[]; // positions of the limited quantities in the order of Scene.limits, rad or m
   limit_distance: (number | null)[]; // distance to the nearer end, with margin; null = unbounded
   budget: Budget; // breakdown of the user's wrench
   singularity: Singularity | null;
@@ -237,27 +237,27 @@ export interface Ghost {
   force_N: Vec3;
 }
 
-// page -> program, and what the program made of it (inside a frame)
+// page -> program; inside a frame: the target in effect
 export interface Hand {
   type: "hand";
   active: boolean;
   p_B_m: Vec3;
-  quaternion_B_H: Quaternion | null; // wanted turn of the handle; null = as the hand likes
-  press: number; // of the lever, 0..1
+  quaternion_B_H: Quaternion | null; // target orientation of the handle; null = the handle may rotate freely
+  press: number; // how far the hand presses its lever, 0..1
 }
 
-// page -> program: it is there and holds what it holds, every 30 ms
+// page -> program, every 30 ms: the page is alive and keeps its hold
 export interface Hold {
   type: "hold";
-  sequence: number; // rises within a connection; others are left out
+  sequence: number; // rising number; repeated and older ones are ignored
 }
 
 // page -> program
 export interface Command {
   type: "command";
-  id: number; // 0..2^53, comes back in the answer
+  id: number; // any whole number of 0..2^53, comes back in the answer
   command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "release_stop";
-  name: string; // of what is chosen or set; else empty
+  name: string; // name of the chosen option or setting; else empty
   value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value, release_stop: page
 }
 
@@ -267,24 +267,24 @@ export interface Welcome {
   page: number; // number of this connection
 }
 
-// program -> page: one for each Command, and for what was refused
+// program -> page: one per Command, and per refused message
 export interface Answer {
   type: "answer";
-  id: number; // of the command; -1 = it could not be read
-  is_accepted: boolean; // a mode: the cycle followed it; set, panel: handed over
-  reason: string; // why not; empty = accepted
+  id: number; // id of the command; -1 = the message could not be read
+  is_accepted: boolean; // mode: followed by the cycle; set, panel: passed on
+  reason: string; // reason of the refusal; empty = accepted
 }
 
-// program -> page: when it connects and whenever one has changed
+// program -> page: at the connection and after each change
 export interface Values {
   type: "values";
-  values: (number | null)[]; // in the order of Scene.settings; null = unlimited
+  values: (number | null)[]; // values in the order of Scene.settings; null = unlimited
 }
 
 // program -> page
 export interface Event {
   type: "event";
-  run: number; // Scene.run that it happened in
+  run: number; // number of the run, as Scene.run
   time_s: number;
   name: string;
   text: string;
