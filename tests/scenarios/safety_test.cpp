@@ -15,7 +15,7 @@
 namespace hg {
 namespace {
 
-config::Scenario scenario(const std::string& name) {
+config::Scenario load(const std::string& name) {
   return config::load_scenario("models/scenarios/" + name + ".yaml");
 }
 
@@ -33,7 +33,7 @@ struct Machine {
   int sanitised = 0;
 
   explicit Machine(config::Scenario s) : scenario(std::move(s)), session(scenario) {}
-  explicit Machine(const std::string& name) : Machine(hg::scenario(name)) {}
+  explicit Machine(const std::string& name) : Machine(load(name)) {}
 
   void step() {
     if (asks) session.request(next());
@@ -92,7 +92,7 @@ TEST(Safety, NoShippedScenarioIsStoppedOrTouchedByARuleWithAllSensorErrors) {
                         {"path", 1000, kStiff, 8},         {"walk", 1000, kNormal, 9},
                         {"walk", 2000, kRelaxed, 10}};
   for (const Case& c : cases) {
-    config::Scenario s = scenario(c.name);
+    config::Scenario s = load(c.name);
     config::set_rate(s.device, c.rate_Hz);
     s.script.hand = person::hand(c.hand);
     s.device.simulation.seed = s.device.simulation.sensors.seed = c.seed;
@@ -170,7 +170,7 @@ TEST(Safety, TheSafetyControllerTakesThePowerAwayWhateverTheProgramDoes) {
 }
 
 config::Scenario without_person() {
-  config::Scenario s = scenario("free_space");
+  config::Scenario s = load("free_space");
   s.person = person::PersonKind::kNone;
   s.script.script.grasp_s = kInfinity;  // nor does anybody close the dead-man switch
   return s;
