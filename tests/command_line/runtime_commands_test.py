@@ -81,14 +81,13 @@ class FlightRecorder(TemporaryFolder):
             self.assertIn("--view", err)
 
     def test_faults_of_machine_and_computer_replay_bit_for_bit(self):
-        _, _, files = self.play("--law", "gauss", scenario="free_space", what="faults:\n"
+        _, _, files = self.play("--duration", 10, scenario="free_space", what="faults:\n"
                                 "  - {at_s: 0, fault: solver_hurried, magnitude: 1}\n"
                                 "  - {at_s: 6.0, fault: cycles_late, magnitude: 1}\n"
                                 "  - {at_s: 7.0, for_s: 0.1, fault: gantry_encoder_drift, of: ppu1, "
                                 "magnitude: 0.01}\n"
                                 "  - {at_s: 9.0, fault: clock_wrong, magnitude: 1.1}\n")
         code, out, _ = run("explain", files[0])
-        self.assertIn("ended before its result was proven", out)
         self.assertIn("cycles that were missed at once", out)
         code, out, err = run("replay", files[0])
         self.assertEqual((code, err), (0, ""), out)
