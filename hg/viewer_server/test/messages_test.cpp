@@ -139,6 +139,43 @@ Json frame_of(const View& view, const LimitCatalogue& limits = make_scene().limi
   return Json::parse(encode_frame(view, limits, 2));
 }
 
+// Names of the fields of a struct.
+struct Names {
+  std::vector<std::string> list;
+  template <typename T>
+  void operator()(const char* name, const T&, const char* = "") {
+    list.emplace_back(name);
+  }
+};
+
+template <typename Struct>
+void expect_all_in_typescript(const std::string& interface) {
+  Names names;
+  fields(names, static_cast<const Struct&>(Struct{}));
+  const Fields in_typescript = read_interfaces()[interface];
+  EXPECT_EQ(in_typescript.size(), names.list.size()) << interface;
+  for (const std::string& name : names.list) {
+    EXPECT_TRUE(in_typescript.contains(name)) << interface << "." << name;
+  }
+}
+
+TEST(MessagesTs, HasAllFieldsOfStructsThatAreSentAsTheyAre) {
+  expect_all_in_typescript<ContactReport>("Contact");
+  expect_all_in_typescript<HandBudget>("Budget");
+  expect_all_in_typescript<Singularity>("Singularity");
+  expect_all_in_typescript<RunState>("RunState");
+}
+
+TEST(MessagesTs, HasTheFieldsThatAreChosenByName) {
+  auto interfaces = read_interfaces();
+  for (const char* name : {"state", "cause", "reaction", "excess"}) {
+    EXPECT_TRUE(interfaces["ActiveLimit"].contains(name)) << name;
+  }
+  for (const char* name : {"operator_enable", "override_key", "person_in_field"}) {
+    EXPECT_TRUE(interfaces["Safety"].contains(name)) << name;
+  }
+}
+
 TEST(EncodeScene, HasTheFieldsOfTheTypeScriptSide) {
   const Json json = Json::parse(encode_scene(make_scene(), 60.0));
   expect_interface(json, "Scene", "scene");
