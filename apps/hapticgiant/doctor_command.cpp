@@ -108,7 +108,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  hapticgiant doctor                       a quarter of a minute\n"
-      "  hapticgiant doctor --seconds 600 --cpu 3 --json arguments->json");
+      "  hapticgiant doctor --seconds 600 --cpu 3 --json doctor.json");
   command->add_option("--seconds", arguments->seconds, "of each of the four measurements")
       ->check(number_that("from 0.1 to 100000", [](double v) { return v >= 0.1 && v <= 1e5; }))
       ->capture_default_str();

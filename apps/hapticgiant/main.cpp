@@ -34,11 +34,9 @@
 
 namespace {
 
-using hg::apps::print_error;
-using hg::apps::print_out;
+namespace apps = hg::apps;
 
-constexpr int kInternalError = 1;
-constexpr int kBadInput = 2;
+constexpr int kInternalError = 1, kBadInput = 2;
 
 // The subcommand of `app` that was missed, and which there are.
 std::string missing_subcommand(const CLI::App& app) {
@@ -60,11 +58,11 @@ int explain(const CLI::App& app, const CLI::ParseError& error) {
     std::ostringstream out;
     std::ostringstream errors;
     const int code = app.exit(error, out, errors);
-    print_out(out.str());
-    print_error(errors.str());
+    apps::print_out(out.str());
+    apps::print_error(errors.str());
     return code == 0 ? 0 : kBadInput;
   }
-  print_error("{}\nRun with --help for more information.\n", missing_subcommand(*last));
+  apps::print_error("{}\nRun with --help for more information.\n", missing_subcommand(*last));
   return kBadInput;
 }
 
@@ -76,10 +74,10 @@ int parse(CLI::App& app, int argc, char** argv, const int& exit_code) {
   } catch (const CLI::ParseError& error) {
     return explain(app, error);
   } catch (const hg::SetupError& error) {
-    print_error("{}\n", error.what());
+    apps::print_error("{}\n", error.what());
     return kBadInput;
   } catch (const std::exception& error) {
-    print_error("internal error: {}\n", error.what());
+    apps::print_error("internal error: {}\n", error.what());
     return kInternalError;
   }
 }
@@ -87,19 +85,18 @@ int parse(CLI::App& app, int argc, char** argv, const int& exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  hg::apps::open_standard_files();
-  if (const std::string lack = hg::apps::provide_stack(); !lack.empty()) {
-    print_error("{}\n", lack);
+  apps::open_standard_files();
+  if (const std::string lack = apps::provide_stack(); !lack.empty()) {
+    apps::print_error("{}\n", lack);
     return kBadInput;
   }
   std::signal(SIGXFSZ, SIG_IGN);  // a file that must not grow is an error of that file
 
   CLI::App app("HapticGiant: feel the digital twin of any serial chain.", "hapticgiant");
-  app.set_version_flag("--version", hg::apps::kVersion);
+  app.set_version_flag("--version", apps::kVersion);
   app.require_subcommand(1);
 
   int exit_code = 0;
-  namespace apps = hg::apps;
   apps::add_run(app, argv[0], exit_code);
   apps::add_doctor(app, exit_code);
   apps::add_replay(app, exit_code);
@@ -118,5 +115,5 @@ int main(int argc, char** argv) {
   apps::add_tune(app, exit_code);
   apps::refuse_empty_values(app);
 
-  return hg::apps::code_after_output(parse(app, argc, argv, exit_code));
+  return apps::code_after_output(parse(app, argc, argv, exit_code));
 }
