@@ -11,9 +11,9 @@
 #include <memory>
 #include <string>
 
-#include "apps/hapticgiant/bench_command.h"
 #include "bench/player.h"
 #include "bench/problem_source.h"
+#include "bench/scenario.h"
 #include "hg/core/error.h"
 #include "hg/hqp/solver.h"
 
@@ -43,7 +43,7 @@ extern "C" [[gnu::noipa]] void counted(const Work& work) {
 namespace {
 
 config::Scenario load(const std::string& name, rendering::Law law, rendering::Bounds bounds) {
-  return bench::with_law(apps::bench_scenario(name), law, bounds);
+  return bench::with_law(bench::bench_scenario(name), law, bounds);
 }
 
 std::size_t run_cycles(const std::string& name) {

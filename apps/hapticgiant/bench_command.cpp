@@ -3,19 +3,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <limits>
+#include <memory>
 #include <utility>
 
-#include "apps/hapticgiant/bench_files.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/paths.h"
-#include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
+#include "bench/bench_files.h"
 #include "bench/machine.h"
-#include "hg/core/error.h"
-#include "hg/scenario/assembly.h"
+#include "bench/scenario.h"
+#include "hg/config/shipped_files.h"
 
 namespace hg::apps {
 namespace {
@@ -71,7 +71,7 @@ bool are_ours_right(const bench::SolverSet& set) {
 
 bool measure_solvers(const std::vector<NamedScenario>& scenarios,
                      std::vector<bench::ProblemSource>& reference, const Effort& effort,
-                     BenchResults& results) {
+                     bench::BenchResults& results) {
   const bench::BaselineSolve baseline = bench::find_baseline();
   show(fmt::format(
       "\nSolver, us per problem: the fastest of {} passes for each problem\n{}\n{}", effort.passes,
@@ -102,7 +102,7 @@ bool measure_solvers(const std::vector<NamedScenario>& scenarios,
 }
 
 void measure_cycles(const std::vector<NamedScenario>& scenarios, const Effort& effort,
-                    BenchResults& results) {
+                    bench::BenchResults& results) {
   show(fmt::format(
       "\nCycle, law gauss, bounds recoverable, us: the fastest of {} plays for each cycle; stages "
       "are measured\nin {} plays of their own and contain a look at the clock each\n{}\n{}",
@@ -118,7 +118,7 @@ void measure_cycles(const std::vector<NamedScenario>& scenarios, const Effort& e
   }
 }
 
-bool measure_growth(const Effort& effort, BenchResults& results) {
+bool measure_growth(const Effort& effort, bench::BenchResults& results) {
   show(
       fmt::format("\nGrowth on random well-posed problems (bench/growth.h, seeds 1 to 5), us: the "
                   "fastest of {} passes\n\n{}",
@@ -138,7 +138,7 @@ bool measure_growth(const Effort& effort, BenchResults& results) {
   return is_solved;
 }
 
-bool play_laws(const std::vector<NamedScenario>& scenarios, BenchResults& results) {
+bool play_laws(const std::vector<NamedScenario>& scenarios, bench::BenchResults& results) {
   show(
       "\nLaws and bounds, each cycle measured once; us: median / 99.9 % / max; change of "
       "acceleration: of the hand per cycle\n\n" +
@@ -162,26 +162,17 @@ bool play_laws(const std::vector<NamedScenario>& scenarios, BenchResults& result
 
 }  // namespace
 
-config::Scenario bench_scenario(const std::string& name) {
-  config::Scenario scenario =
-      make_scenario({.scenario = name, .plant = "ideal", .sensors = "ideal"});
-  if (scenario::planned_duration_s(scenario) == 0.0) {
-    throw SetupError(name + ": bench needs a scenario with a script");
-  }
-  return scenario;
-}
-
 int bench(const BenchArguments& arguments) {
-  BenchResults results;
+  bench::BenchResults results;
   std::vector<NamedScenario> scenarios;
   for (const std::string& name : arguments.scenarios)
-    scenarios.push_back({name, bench_scenario(name)});
+    scenarios.push_back({name, bench::bench_scenario(name)});
   const Effort& effort = arguments.is_quick ? kQuick : kFull;
   std::vector<bench::ProblemSource> reference;
-  for (const auto& file : bench::reference_files(models_root())) {
+  for (const auto& file : bench::reference_files(config::models_root())) {
     reference.emplace_back(file, effort.problems);
   }
-  check_folder(arguments.out);
+  bench::check_folder(arguments.out);
   check_writable(arguments.json, kJson);
 
   results.machine = bench::describe_machine();
@@ -193,15 +184,33 @@ int bench(const BenchArguments& arguments) {
   const bool is_right = measure_solvers(scenarios, reference, effort, results);
   std::vector<NamedScenario> with_large = scenarios;
   if (arguments.scenarios == BenchArguments{}.scenarios) {
-    for (const char* name : kLargeTwins) with_large.push_back({name, bench_scenario(name)});
+    for (const char* name : kLargeTwins) with_large.push_back({name, bench::bench_scenario(name)});
   }
   measure_cycles(with_large, effort, results);
   const bool is_solved = measure_growth(effort, results);
   const bool is_well = play_laws(scenarios, results);
 
   if (!arguments.json.empty()) write_output(arguments.json, to_json(results).dump(2) + "\n");
-  if (!arguments.out.empty()) write_files(arguments.out, results);
+  if (!arguments.out.empty()) bench::write_files(arguments.out, results);
   return is_right && is_solved && is_well ? 0 : 1;
+}
+
+void add_bench(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<BenchArguments>();
+  CLI::App* command = app.add_subcommand(
+      "bench", "How fast and how right solver, cycle and laws are; minutes (docs/reports/benchmarks.md).");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant bench                        everything, on the three scenarios\n"
+      "  hapticgiant bench door --quick           a first look, in seconds\n"
+      "  hapticgiant bench --out results --json results/bench.json");
+  command->add_option("scenarios", arguments->scenarios, "scenario files or names")
+      ->capture_default_str();
+  command->add_flag("--quick", arguments->is_quick, "fewer problems and passes");
+  command->add_option("--json", arguments->json, "write all tables as JSON to this file");
+  command->add_option("--out", arguments->out,
+                      "write tables (CSV) and figures (SVG) to this folder");
+  command->callback([arguments, &exit_code] { exit_code = bench(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -5,13 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+namespace CLI {
+class App;
+}
 
 namespace hg::apps {
-
-/// The scenario `name` as benchmarks play it: solver and law are compared without the effects of an
-/// elastic machine. Throws SetupError, also for a scenario without a script.
-config::Scenario bench_scenario(const std::string& name);
 
 struct BenchArguments {
   std::vector<std::string> scenarios = {"door", "free_space", "excavator"};
@@ -25,5 +23,8 @@ struct BenchArguments {
 /// both kinds of bounds. Exit code 0, or 1 when an expected event is missing, a device was stopped
 /// by a fault, or our solver has failed or was wrong. Throws SetupError for bad input.
 int bench(const BenchArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_bench(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 #include <functional>
 #include <list>
+#include <memory>
 #include <optional>
 
 #include "apps/hapticgiant/check_report.h"
@@ -168,6 +170,27 @@ int run_check(const CheckArguments& arguments) {
   if (!arguments.json.empty()) write_output(arguments.json, to_json(check.report));
   if (!arguments.map.empty()) draw_map(arguments.map, check);
   return count(check.report, checks::Severity::kFault) > 0 ? 2 : 0;
+}
+
+void add_check(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "What is wrong with configuration files, and how to mend it; datasheet of a device.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant check models/scenarios/door.yaml\n"
+      "  hapticgiant check my_device.yaml my_twin.yaml   each, and whether they fit together\n"
+      "  hapticgiant check models/haptic_giant/device.yaml --map capability.svg");
+  command
+      ->add_option("files", arguments->files,
+                   "device, twin, scenario, tool or script files; the kind is told from their keys")
+      ->required();
+  command->add_option("--json", arguments->json,
+                      "write findings and datasheets as JSON to this file");
+  command->add_option("--map", arguments->map,
+                      "draw the force over the workspace of the first device to this SVG file");
+  command->callback([arguments, &exit_code] { exit_code = run_check(*arguments); });
 }
 
 }  // namespace hg::apps

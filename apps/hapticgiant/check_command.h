@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct CheckArguments {
@@ -15,5 +19,8 @@ struct CheckArguments {
 
 /// Prints to stdout. Returns the exit code: 0, warnings or not, or 2 when there is any fault.
 int run_check(const CheckArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_check(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

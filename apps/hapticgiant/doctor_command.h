@@ -3,6 +3,10 @@
 
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct DoctorArguments {
@@ -14,5 +18,8 @@ struct DoctorArguments {
 
 /// Exit code: 0 nothing is bad, 1 something is. Throws SetupError.
 int doctor(const DoctorArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_doctor(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

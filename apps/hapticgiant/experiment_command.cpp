@@ -2,15 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/hapticgiant/experiments/command_line.h"
 #include "apps/hapticgiant/experiments/docs_page.h"
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/config/scenario.h"
 #include "hg/core/error.h"
@@ -29,7 +33,7 @@ namespace {
 
 // With another device or simulation where they are given.
 config::Scenario walk_scenario(const std::string& device = "", const std::string& simulation = "") {
-  return make_scenario({.scenario = "walk", .device = device, .simulation = simulation});
+  return scenario::load({.scenario = "walk", .device = device, .simulation = simulation});
 }
 
 config::Scenario scripted_scenario(const RunArguments& run) {
@@ -148,10 +152,10 @@ int experiment_seeds(const SeedsArguments& arguments) {
       RunArguments run;
       run.world.scenario = scenario;
       run.world.hand = hand == "own" ? "" : hand;
-      run.law = arguments.law;
-      run.bounds = arguments.bounds;
-      run.gantry = arguments.gantry;
-      run.braking = arguments.braking;
+      run.world.law = arguments.law;
+      run.world.bounds = arguments.bounds;
+      run.world.gantry = arguments.gantry;
+      run.world.braking = arguments.braking;
       trials.push_back(
           {.name = name_of(scenario), .hand = run.world.hand, .scenario = scripted_scenario(run)});
     }
@@ -168,6 +172,111 @@ int experiment_seeds(const SeedsArguments& arguments) {
     write_output(arguments.markdown, studies::to_markdown(trials, runs));
   }
   return studies::have_all_held(runs) ? 0 : 1;
+}
+
+namespace {
+
+void add_seeds(CLI::App& experiment, int& exit_code) {
+  const auto arguments = std::make_shared<SeedsArguments>();
+  CLI::App* command = experiment.add_subcommand(
+      "seeds", "what scenarios show over many seeds and hands: limits, faults, events, errors");
+  command->add_option("scenarios", arguments->scenarios, "scenario files or names")
+      ->capture_default_str();
+  command->add_option("--hands", arguments->hands, "own: that of each scenario; or presets")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"own", "relaxed", "normal", "stiff"}))
+      ->capture_default_str();
+  command->add_option("--count", arguments->count, "seeds per scenario and hand")
+      ->check(whole_number(1.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--first", arguments->first, "the first of them")
+      ->check(whole_number(0.0))
+      ->capture_default_str();
+  command->add_option("--law", arguments->law, "gauss or paper; default: the device's")
+      ->check(CLI::IsMember({"gauss", "paper"}));
+  command->add_option("--bounds", arguments->bounds, "recoverable or paper; default: the device's")
+      ->check(CLI::IsMember({"recoverable", "paper"}));
+  command->add_option("--gantry", arguments->gantry, "law or rule; default: the device's")
+      ->check(CLI::IsMember({"law", "rule"}));
+  command->add_option("--braking", arguments->braking, "alone or together; default: the device's")
+      ->check(CLI::IsMember({"alone", "together"}));
+  command->add_option("--json", arguments->json, "write all runs as JSON to this file");
+  command->add_option("--markdown", arguments->markdown,
+                      "write the table as Markdown to this file");
+  command->callback([arguments, &exit_code] { exit_code = experiment_seeds(*arguments); });
+}
+
+void add_contact(CLI::App& experiment, int& exit_code) {
+  const auto arguments = std::make_shared<ContactArguments>();
+  CLI::App* command = experiment.add_subcommand(
+      "contact",
+      "the arm hits somebody in its way: force and pressure, with and without giving way");
+  command->add_option("--seeds", arguments->seeds, "seeds per case, from 1 on")
+      ->check(whole_number(1.0, 1e3))
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "write all figures as JSON to this file");
+  command->add_option("--docs", arguments->docs,
+                      "refresh the page contact.md of this folder (make experiments)");
+  command->callback([arguments, &exit_code] { exit_code = experiment_contact(*arguments); });
+}
+
+void add_inertial(CLI::App& experiment, int& exit_code) {
+  const auto arguments = std::make_shared<InertialArguments>();
+  CLI::App* command = experiment.add_subcommand(
+      "inertial", "what inertial units on the links know that encoders do not");
+  command->add_option("scenarios", arguments->scenarios, "scenario files or names")
+      ->capture_default_str();
+  command->add_option("--simulation", arguments->simulation, kSimulationHelp);
+  command->add_option("--seeds", arguments->seeds, "seeds per case, from 1 on")
+      ->check(whole_number(1.0, 1e3))
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "write all figures as JSON to this file");
+  command->add_flag(
+      "--feel", arguments->feels,
+      "what a hand feels where the control uses them: transparency, light bodies, wall");
+  command->callback([arguments, &exit_code] { exit_code = experiment_inertial(*arguments); });
+}
+
+}  // namespace
+
+void add_experiment(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<ExperimentArguments>();
+  CLI::App* command =
+      app.add_subcommand("experiment",
+                         "The paper's experiments, and what the simulated device is like to hold "
+                         "(docs/experiments, docs/concepts/simulator.md).");
+  command->require_subcommand(1);
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant experiment all               Figs. 6, 8 and 9 of the paper, and its path\n"
+      "  hapticgiant experiment door --law both --out results\n"
+      "  hapticgiant experiment free-space        force and vibration on a slow walk, what makes "
+      "them\n"
+      "  hapticgiant experiment stability-map --svg stability.svg\n"
+      "  hapticgiant experiment impedance --json impedance.json\n"
+      "  hapticgiant experiment contact           the arm hits somebody in its way\n"
+      "  hapticgiant experiment inertial --simulation harder\n"
+      "  hapticgiant experiment seeds free_space --hands own,stiff --count 16");
+  add_paper_experiments(*command, exit_code);
+  const auto add = [&](const char* name, const char* text, int (*run)(const ExperimentArguments&)) {
+    CLI::App* what = command->add_subcommand(name, text);
+    what->add_option("--json", arguments->json, "write all figures as JSON to this file");
+    what->callback([arguments, &exit_code, run] { exit_code = run(*arguments); });
+    return what;
+  };
+  add("free-space", "force and vibration at the handle of a free body, and what makes them",
+      experiment_free_space);
+  CLI::App* map = add("stability-map",
+                      "how stiff a hand may be for how light a body, before contact is unstable",
+                      experiment_stability_map);
+  map->add_option("--svg", arguments->svg, "draw the map to this file");
+  map->add_option("--device", arguments->device, "device.yaml instead of the reference device's");
+  map->add_option("--simulation", arguments->simulation, kSimulationHelp);
+  add("impedance", "how far the handle gives way, by frequency and under a constant push",
+      experiment_impedance);
+  add_contact(*command, exit_code);
+  add_inertial(*command, exit_code);
+  add_seeds(*command, exit_code);
 }
 
 }  // namespace hg::apps

@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct ExperimentArguments {
@@ -49,5 +53,8 @@ int experiment_contact(const ContactArguments& arguments);
 int experiment_inertial(const InertialArguments& arguments);
 /// Runs the seeds. Exit code 1 when a run ended in a fault or left a limit.
 int experiment_seeds(const SeedsArguments& arguments);
+
+/// Adds the subcommands to the program; running it sets `exit_code`.
+void add_experiment(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

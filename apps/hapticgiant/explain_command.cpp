@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -51,7 +52,7 @@ class Reader final : public recording::RecordingListener {
     try {
       const config::Scenario scenario = recorded_scenario(configuration_);
       title_ = scenario.title;
-      return part_names(scenario);
+      return scenario::part_names(scenario);
     } catch (const SetupError& error) {
       const std::string why = error.what();
       title_ = "its configuration is not understood, parts are numbered: " +
@@ -93,6 +94,17 @@ int explain_recording(const std::string& file) {
       entries, [](const analysis::Entry& entry) { return entry.kind == "FAULT"; });
   if (!has_fault) print_out("\nno fault\n");
   return 0;
+}
+
+void add_explain(CLI::App& app, int& exit_code) {
+  const auto file = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("explain", "Tells in words what happened in a recording, in order.");
+  command->footer("Example:\n  hapticgiant explain recordings/latest.mcap");
+  command->add_option("file", *file, "recording, also one that a crash has cut off")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->callback([file, &exit_code] { exit_code = explain_recording(*file); });
 }
 
 }  // namespace hg::apps

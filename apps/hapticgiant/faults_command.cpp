@@ -2,29 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/paths.h"
-#include "apps/hapticgiant/process_faults.h"
 #include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/run_setup.h"
-#include "apps/hapticgiant/scratch_folder.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
+#include "hg/core/scratch_folder.h"
 #include "hg/scenario/assembly.h"
+#include "hg/studies/process_faults.h"
 
 namespace hg::apps {
 namespace {
 
 int process_faults(const FaultsArguments& arguments) {
-  const std::vector<ProcessCase> cases =
-      play_process_faults(arguments.scenarios, arguments.repetitions, arguments.campaign.seed);
+  const std::vector<studies::ProcessCase> cases = studies::play_process_faults(
+      "/proc/self/exe", arguments.scenarios, arguments.repetitions, arguments.campaign.seed);
   print_out(to_text(cases));
   write_json(arguments.json, to_json(cases));
-  return std::ranges::all_of(cases, &ProcessCase::is_good) ? 0 : 1;
+  return std::ranges::all_of(cases, &studies::ProcessCase::is_good) ? 0 : 1;
 }
 
 }  // namespace
@@ -32,7 +35,7 @@ int process_faults(const FaultsArguments& arguments) {
 int faults(const FaultsArguments& arguments) {
   std::vector<config::Scenario> scenarios;
   for (const std::string& name : arguments.scenarios) {
-    scenarios.push_back(config::load_scenario(find_scenario(name)));
+    scenarios.push_back(config::load_scenario(config::find_scenario(name)));
     const Interval times = studies::fault_times(scenarios.back());
     if (times.lb > times.ub) {
       throw SetupError(
@@ -64,6 +67,31 @@ int faults(const FaultsArguments& arguments) {
   }
   write_json(arguments.json, studies::to_json(campaign));
   return studies::is_passed(campaign) ? 0 : 1;
+}
+
+void add_faults(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<FaultsArguments>();
+  CLI::App* command = app.add_subcommand(
+      "faults", "Breaks the simulated machine on purpose, hundreds of times (docs/concepts/safety.md).");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant faults\n"
+      "  hapticgiant faults --cases 60 --seed 7 --scenario door --json faults.json");
+  command->add_option("--cases", arguments->campaign.cases, "number of runs")
+      ->check(whole_number(1.0, 1e9));
+  command->add_option("--seed", arguments->campaign.seed, "of scenarios, times and sizes")
+      ->check(whole_number(0.0));
+  command->add_option("--scenario", arguments->scenarios, "scenarios with a script");
+  CLI::Option* processes = command->add_flag(
+      "--processes", arguments->plays_processes,
+      "faults of the controller's process (terminal, disk, memory, ...) instead, in real time");
+  command->add_option("--repetitions", arguments->repetitions, "of the faults of processes")
+      ->check(whole_number(1.0, 1e6))
+      ->needs(processes);
+  command->add_option("--json", arguments->json, "write all cases as JSON to this file");
+  command->add_option("--markdown", arguments->markdown, "write the table as a page to this file")
+      ->excludes(processes);
+  command->callback([arguments, &exit_code] { exit_code = faults(*arguments); });
 }
 
 }  // namespace hg::apps

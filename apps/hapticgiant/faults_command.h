@@ -6,6 +6,10 @@
 
 #include "hg/studies/fault_campaign.h"
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct FaultsArguments {
@@ -20,5 +24,8 @@ struct FaultsArguments {
 /// Prints a table. Returns the exit code: 1 when a fault was unnoticed or went beyond the bounds;
 /// bad input is thrown as SetupError.
 int faults(const FaultsArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_faults(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

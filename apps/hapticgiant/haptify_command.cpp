@@ -3,15 +3,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 
 #include "apps/hapticgiant/experiments/docs_page.h"
 #include "apps/hapticgiant/haptify_report.h"
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
+#include "hg/scenario/options.h"
 #include "hg/studies/haptify/benchmark.h"
 #include "hg/studies/haptify/goals.h"
 
@@ -44,11 +48,11 @@ std::string command_of(const HaptifyArguments& arguments) {
 
 int write_goals(const HaptifyArguments& arguments) {
   const config::Scenario scenario =
-      make_scenario({.scenario = "walk", .simulation = arguments.simulation});
+      scenario::load({.scenario = "walk", .simulation = arguments.simulation});
   const config::Scenario light =
-      make_scenario({.scenario = "walk",
-                     .twin = arguments.twin.empty() ? "light" : arguments.twin,
-                     .simulation = arguments.simulation});
+      scenario::load({.scenario = "walk",
+                      .twin = arguments.twin.empty() ? "light" : arguments.twin,
+                      .simulation = arguments.simulation});
   const haptify::Benchmark goals = haptify::measure_goals(scenario, light, arguments.options, tell);
   print_out(goals_text(goals));
   const fs::path folder = arguments.out;
@@ -72,7 +76,7 @@ int run_haptify(const HaptifyArguments& arguments) {
       "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
       kVersion));
   if (arguments.only_goals) return write_goals(arguments);
-  const config::Scenario scenario = make_scenario(
+  const config::Scenario scenario = scenario::load(
       {.scenario = "walk", .twin = arguments.twin, .simulation = arguments.simulation});
   const haptify::Benchmark result = haptify::measure(scenario, arguments.options, tell);
   const std::string command = command_of(arguments);
@@ -91,6 +95,37 @@ int run_haptify(const HaptifyArguments& arguments) {
   if (!arguments.docs.empty()) refresh_page(arguments.docs, "haptify", markdown, {});
   print_out(fmt::format("\nreport      {}\n", (folder / "report.html").string()));
   return result.failures.empty() ? 0 : 1;
+}
+
+void add_haptify(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<HaptifyArguments>();
+  CLI::App* command = app.add_subcommand(
+      "haptify",
+      "Table III of the paper on the simulated device: how good it is to hold; minutes.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant haptify                      report in haptify/report.html\n"
+      "  hapticgiant haptify --quick              a look, in seconds\n"
+      "  hapticgiant haptify --seed 7 --repetitions 10 --out results\n"
+      "  hapticgiant haptify --quick --simulation as_published\n"
+      "  hapticgiant haptify --goals --repetitions 16   the worst of seeds, heights and hands");
+  command->add_option("--out", arguments->out, "folder of the report")->capture_default_str();
+  command->add_option("--seed", arguments->options.seed, "of the first repetition")
+      ->check(whole_number(0.0))
+      ->capture_default_str();
+  command->add_option("--repetitions", arguments->options.repetitions, "with other seeds")
+      ->check(whole_number(2.0, 100.0))
+      ->capture_default_str();
+  command->add_flag("--quick", arguments->options.is_quick, "few samples and short runs");
+  command->add_flag("--goals", arguments->only_goals,
+                    "only what the device shall reach, at three heights in three hands");
+  command->add_option(
+      "--twin", arguments->twin,
+      "free body that is held (with --goals: the light one), as a file or a shipped name");
+  command->add_option("--simulation", arguments->simulation, kSimulationHelp);
+  command->add_option("--docs", arguments->docs,
+                      "refresh the page haptify.md of this folder (make experiments)");
+  command->callback([arguments, &exit_code] { exit_code = run_haptify(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -6,6 +6,10 @@
 
 #include "hg/studies/haptify/figures.h"
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct HaptifyArguments {
@@ -20,5 +24,8 @@ struct HaptifyArguments {
 /// Exit code: 0 all measured, 1 a measurement failed: fault, limit exceeded. A missed goal is no
 /// failure: the report explains it. Throws SetupError for bad input.
 int run_haptify(const HaptifyArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_haptify(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <vector>
 
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "hg/core/error.h"
 #include "hg/hqp/printing.h"
@@ -158,6 +161,25 @@ int run_hqp_solve(const HqpSolveArguments& arguments) {
   const bool is_cold_settled = print_times(problems, first, false);
   const bool is_warm_settled = print_times(problems, first, true);
   return is_cold_settled && is_warm_settled ? 0 : 1;
+}
+
+void add_hqp(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<HqpSolveArguments>();
+  CLI::App* hqp = app.add_subcommand("hqp", "The lexicographic QP solver on its own.");
+  hqp->require_subcommand(1);
+  CLI::App* solve = hqp->add_subcommand("solve", "Solve the problems of a file (plain or .gz).");
+  solve->footer(
+      "Examples:\n"
+      "  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --timing\n"
+      "  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --problem 7 --explain");
+  solve->add_option("file", arguments->file, "problem file, format in docs/concepts/hqp.md")->required();
+  solve->add_option("--problem", arguments->problem, "only this problem, counted from 0")
+      ->check(at_least(0));
+  solve->add_flag("--explain", arguments->explains, "levels, rows that act and why, in words");
+  solve->add_option("--level", arguments->level, "as --explain, with the multipliers of this level")
+      ->check(at_least(0));
+  solve->add_flag("--timing", arguments->has_timing, "microseconds, cold and warm");
+  solve->callback([arguments, &exit_code] { exit_code = run_hqp_solve(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -4,6 +4,10 @@
 #include <optional>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct HqpSolveArguments {
@@ -28,5 +32,8 @@ struct HqpSolveArguments {
 /// the file is invalid, when there is no such problem or level, and when times and explanations are
 /// both requested.
 int run_hqp_solve(const HqpSolveArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_hqp(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

@@ -1,12 +1,15 @@
 #include "apps/hapticgiant/identify_command.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <memory>
 
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
-#include "apps/hapticgiant/paths.h"
 #include "hg/commissioning/identification/payload.h"
 #include "hg/commissioning/identification/static_poses.h"
 #include "hg/config/device.h"
+#include "hg/config/shipped_files.h"
 #include "hg/core/open_file.h"
 
 namespace hg::apps {
@@ -63,7 +66,7 @@ void print_yaml(const PayloadEstimate& found) {
 }  // namespace
 
 int identify_payload(const IdentifyArguments& arguments) {
-  const config::Device device = config::load_device(find_device(arguments.device));
+  const config::Device device = config::load_device(config::find_device(arguments.device));
   const bool is_simulated = arguments.files.empty();
   const std::vector<StaticPose> poses =
       is_simulated ? simulated_poses(device, arguments.poses) : poses_of(arguments.files);
@@ -79,6 +82,39 @@ int identify_payload(const IdentifyArguments& arguments) {
   }
   print_yaml(found);
   return 0;
+}
+
+void add_identify(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<IdentifyArguments>();
+  const auto recorded = std::make_shared<IdentifyFrictionArguments>();
+  CLI::App* identify = app.add_subcommand("identify", "Parameters of a device from measurements.");
+  identify->require_subcommand(1);
+  CLI::App* payload = identify->add_subcommand(
+      "payload", "Mass and centre of what hangs beyond the force/torque sensor.");
+  payload->footer(
+      "Examples:\n"
+      "  hapticgiant identify payload             the simulated device takes the poses itself\n"
+      "  hapticgiant identify payload poses.csv   columns a_x a_y a_z f_x f_y f_z n_x n_y n_z "
+      "pose");
+  payload->add_option("files", arguments->files, "CSV files of poses at rest; none: simulate");
+  payload->add_option("--device", arguments->device, "device.yaml")->capture_default_str();
+  payload->add_option("--poses", arguments->poses, "poses of the simulated device")
+      ->check(at_least(1))
+      ->capture_default_str();
+  payload->callback([arguments, &exit_code] { exit_code = identify_payload(*arguments); });
+  CLI::App* friction = identify->add_subcommand(
+      "friction", "Friction of each joint from a recording of its motion (docs/concepts/friction.md).");
+  friction->footer(
+      "Examples:\n"
+      "  hapticgiant run free_space --user friction --fast   moves all joints\n"
+      "  hapticgiant identify friction recordings/latest.mcap");
+  friction->add_option("file", recorded->file, "recording of hapticgiant run")
+      ->required()
+      ->check(CLI::ExistingFile);
+  friction->add_option("--device", recorded->device,
+                       "device.yaml to compare with instead of that of the recording");
+  friction->add_option("--json", recorded->json, "write all figures as JSON to this file");
+  friction->callback([recorded, &exit_code] { exit_code = identify_friction(*recorded); });
 }
 
 }  // namespace hg::apps

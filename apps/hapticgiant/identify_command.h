@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct IdentifyArguments {
@@ -26,5 +30,8 @@ int identify_payload(const IdentifyArguments& arguments);
 /// Identifies friction and prints to stdout. Returns the exit code: 0, or 2 when no joint moved
 /// enough.
 int identify_friction(const IdentifyFrictionArguments& arguments);
+
+/// Adds the subcommands to the program; running it sets `exit_code`.
+void add_identify(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

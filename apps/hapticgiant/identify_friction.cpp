@@ -10,10 +10,10 @@
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "hg/commissioning/identification/friction_traces.h"
 #include "hg/config/device.h"
+#include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
 #include "hg/recording/recording_reader.h"
 
@@ -146,7 +146,8 @@ nlohmann::ordered_json to_json(const std::vector<std::string>& names,
 int identify_friction(const IdentifyFrictionArguments& arguments) {
   check_writable(arguments.json, kJson);
   std::optional<config::Device> device;
-  if (!arguments.device.empty()) device = config::load_device(find_device(arguments.device));
+  if (!arguments.device.empty())
+    device = config::load_device(config::find_device(arguments.device));
   Reader reader(std::move(device));
   const recording::ReadResult read = recording::read_recording(arguments.file, reader);
   print_out(recording::to_text(read.losses));

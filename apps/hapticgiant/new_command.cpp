@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 #include <system_error>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/paths.h"
 #include "hg/commissioning/generator/scaffold.h"
+#include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
 
 namespace hg::apps {
@@ -45,8 +47,9 @@ int new_device(const NewArguments& arguments) {
 int new_twin(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "twin");
   const bool is_own = !arguments.device.empty();
-  const config::Device device = config::load_device(
-      is_own ? fs::path(arguments.device) : models_root() / "models/haptic_giant/device.yaml");
+  const config::Device device =
+      config::load_device(is_own ? fs::path(arguments.device)
+                                 : config::models_root() / "models/haptic_giant/device.yaml");
   check_writable(output.string());
   write_output(output.string(), generator::twin_yaml(arguments.part, output.parent_path(), device));
   const std::string with = is_own ? " --device " + arguments.device : "";
@@ -56,6 +59,34 @@ int new_twin(const NewArguments& arguments) {
       "  hapticgiant run{1} --twin {0}\n",
       output.string(), with, is_own ? arguments.device + " " : "");
   return 0;
+}
+
+void add_new(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<NewArguments>();
+  CLI::App* command =
+      app.add_subcommand("new", "Write a first device.yaml or twin.yaml for a URDF.");
+  command->require_subcommand(1);
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant new device my_arm.urdf\n"
+      "  hapticgiant new twin my_gate.urdf --device my_arm_device.yaml");
+  const auto add = [&](const char* kind, const char* text, int (*run)(const NewArguments&)) {
+    CLI::App* what = command->add_subcommand(kind, text);
+    what->add_option("urdf", arguments->part.urdf, "URDF of the robot or mechanism")
+        ->required()
+        ->check(CLI::ExistingFile);
+    what->add_option("--root-link", arguments->part.root_link,
+                     "first link of the part that is taken");
+    what->add_option("--tip-link", arguments->part.tip_link, "last link of the part that is taken");
+    what->add_option("-o,--output", arguments->output,
+                     "file to write; default: URDF name + _device.yaml or _twin.yaml");
+    what->add_flag("--force", arguments->may_overwrite, "overwrite the file");
+    what->callback([arguments, &exit_code, run] { exit_code = run(*arguments); });
+    return what;
+  };
+  add("device", "the robot whose handle is held", new_device);
+  add("twin", "the mechanism that is felt", new_twin)
+      ->add_option("--device", arguments->device, "device.yaml that the twin is placed for");
 }
 
 }  // namespace hg::apps

@@ -5,6 +5,10 @@
 
 #include "hg/commissioning/generator/chain_part.h"
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct NewArguments {
@@ -18,5 +22,8 @@ struct NewArguments {
 /// cannot be used or the file exists already.
 int new_device(const NewArguments& arguments);
 int new_twin(const NewArguments& arguments);
+
+/// Adds the subcommands to the program; running it sets `exit_code`.
+void add_new(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

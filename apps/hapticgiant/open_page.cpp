@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "apps/hapticgiant/output.h"
-#include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/run_page.h"
+#include "hg/config/shipped_files.h"
 
 namespace hg::apps {
 namespace {
@@ -40,7 +40,7 @@ void open_browser(const std::string& url) {
 }  // namespace
 
 std::string find_page() {
-  const fs::path page = installation_root() / "viewer" / "dist";
+  const fs::path page = config::installation_root() / "viewer" / "dist";
   std::error_code error;
   if (fs::is_regular_file(page / "index.html", error)) return page.string();
   print_out(

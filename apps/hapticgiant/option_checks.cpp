@@ -32,4 +32,19 @@ OptionCheck whole_number(double least, double most) {
                      [=](double v) { return v >= least && v <= most && v == std::floor(v); });
 }
 
+std::string without_brackets(const std::string& text) {
+  const bool has_both = text.size() > 2 && text.starts_with('[') && text.ends_with(']');
+  return has_both ? text.substr(1, text.size() - 2) : text;
+}
+
+void refuse_empty_values(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() > 0) {
+      option->check(
+          [](const std::string& text) { return text.empty() ? "must not be empty" : ""; });
+    }
+  }
+  for (CLI::App* command : app.get_subcommands({})) refuse_empty_values(*command);
+}
+
 }  // namespace hg::apps

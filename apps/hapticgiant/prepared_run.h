@@ -5,12 +5,16 @@
 #include <string>
 
 #include "apps/hapticgiant/run_command.h"
+#include "hg/commissioning/start_test/machine_memory.h"
 #include "hg/config/scenario.h"
 #include "hg/controller/cycle.h"
 #include "hg/device/device.h"
 #include "hg/device/udp/remote_device.h"
 
 namespace hg::apps {
+
+/// Where the data of the machine of a run are stored.
+start_test::MachineMemory machine_memory(const RunArguments& arguments);
 
 struct PreparedRun {
   /// Prepares a run. Throws SetupError.
@@ -23,7 +27,7 @@ struct PreparedRun {
   /// `device` as a remote device; nullptr = simulated here
   udp::RemoteDevice* remote = nullptr;
   bool is_machine = false;  ///< the device is a real machine
-  /// Messages on a machine's start test and posture; see device_memory.h
+  /// Messages on a machine's start test and posture; see machine_memory.h
   std::string start_test, posture;
 };
 

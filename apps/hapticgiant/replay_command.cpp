@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,13 +15,14 @@
 #include <vector>
 
 #include "apps/hapticgiant/experiments/rerun.h"
-#include "apps/hapticgiant/hand_analysis.h"
 #include "apps/hapticgiant/interruption.h"
-#include "apps/hapticgiant/page_scene.h"
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/run_page.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
 #include "hg/core/error.h"
+#include "hg/page/hand_analysis.h"
+#include "hg/page/page_scene.h"
 #include "hg/recording/playback.h"
 #include "hg/recording/recording_reader.h"
 
@@ -47,7 +49,7 @@ class Show {
   explicit Show(const ReplayArguments& arguments)
       : run_(arguments.file, kFrame_s),
         scenario_(scenario_of(run_)),
-        names_(part_names(scenario_)),
+        names_(scenario::part_names(scenario_)),
         playback_(run_.duration_s()),
         sample_(std::make_unique<Sample>()) {
     if (!arguments.compare.empty()) other_.emplace(arguments.compare, kFrame_s);
@@ -60,7 +62,7 @@ class Show {
   void advance(double elapsed_s) { playback_.advance(elapsed_s); }
 
   viewer_server::Scene scene() const {
-    viewer_server::Scene scene = page_scene(scenario_);
+    viewer_server::Scene scene = page::page_scene(scenario_);
     scene.source = viewer_server::Source::kRecording;
     scene.begin_s = run_.begin_s();
     scene.duration_s = run_.duration_s();
@@ -73,7 +75,7 @@ class Show {
   }
 
   // Current view of the page.
-  viewer_server::View view(HandAnalysis& analysis) {
+  viewer_server::View view(page::HandAnalysis& analysis) {
     const std::size_t index = run_.at(playback_.position_s());
     viewer_server::View view;
     if (other_) {
@@ -83,7 +85,7 @@ class Show {
     }
     run_.read(index, *sample_);
     view.record = sample_->record;
-    view.safety = safety_view(*sample_, names_);
+    view.safety = page::safety_view(*sample_, names_);
     view.hand = sample_->operator_input.hand_target;
     view.cycle_time_us = view.cycle_time_max_us = sample_->cycle_time_us;
     view.status_text = scenario_.description;
@@ -166,7 +168,7 @@ void print_content(const Show& show) {
 
 void play(Show& show, viewer_server::ViewerServer& server, const std::atomic<bool>& interrupted) {
   using Clock = std::chrono::steady_clock;
-  HandAnalysis analysis(show.scenario());
+  page::HandAnalysis analysis(show.scenario());
   for (const recording::Event& event : show.run().events()) {
     server.announce_event(event.time_s, event.name, event.text);
   }
@@ -211,6 +213,38 @@ int replay(const ReplayArguments& arguments) {
   print_out("stop        Ctrl-C\n");
   play(show, server, interrupted);
   return 0;
+}
+
+void add_replay(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<ReplayArguments>();
+  CLI::App* command = app.add_subcommand(
+      "replay", "Runs the cycle of a recording again, bit for bit; or look at it again.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant replay recordings/latest.mcap        does the cycle still give the same?\n"
+      "  hapticgiant replay recordings/latest.mcap --view\n"
+      "  hapticgiant replay one.mcap --compare two.mcap --view --speed 0.5");
+  command->add_option("file", arguments->file, "recording of hapticgiant run")
+      ->required()
+      ->check(CLI::ExistingFile);
+  CLI::Option* view = command->add_flag("--view", arguments->has_view,
+                                        "in the page, with play, pause and scrubbing");
+  command
+      ->add_option("--compare", arguments->compare, "a second recording, shown through the first")
+      ->needs(view)
+      ->check(CLI::ExistingFile);
+  command->add_option("--speed", arguments->speed, "recorded seconds per second, 0.1..8")
+      ->needs(view)
+      ->check(number_that("from 0.1 to 8", [](double v) { return v >= 0.1 && v <= 8.0; }));
+  command->add_option("--bind", arguments->address, "as in run")
+      ->needs(view)
+      ->transform(without_brackets)
+      ->capture_default_str();
+  command->add_option("--port", arguments->port, "as in run")
+      ->needs(view)
+      ->check(whole_number(0.0, 65535.0));
+  command->add_flag("!--no-browser", arguments->opens_browser, "as in run");
+  command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -5,6 +5,10 @@
 #include <cstdint>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct ReplayArguments {
@@ -19,5 +23,8 @@ struct ReplayArguments {
 
 /// Exit code: 0 fine, 1 the cycle now gives a different result. Throws SetupError for bad input.
 int replay(const ReplayArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_replay(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

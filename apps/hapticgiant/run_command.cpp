@@ -13,12 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/hapticgiant/device_memory.h"
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/prepared_run.h"
-#include "apps/hapticgiant/problem_dumps.h"
 #include "apps/hapticgiant/run_page.h"
 #include "apps/hapticgiant/run_recording.h"
 #include "apps/hapticgiant/run_setup.h"
@@ -30,6 +28,7 @@
 #include "hg/core/error.h"
 #include "hg/runtime/runtime.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/names.h"
 
 namespace hg::apps {
 namespace {
@@ -49,7 +48,7 @@ struct Observers {
   StatusLine status_line;
   RunPage* page;  ///< page; nullptr = none
   RunRecording recording;
-  ProblemDumps dumps;
+  recording::ProblemDumps dumps;
   bool is_fast = false;
   Clock::time_point last_status = {};
   /// End of the script, to report if the run continues after it; 0 = it does not
@@ -234,7 +233,7 @@ analysis::Timing timing_of(const runtime::Options& options, const runtime::Repor
 // facts of the summary besides the observed ones
 analysis::RunFacts facts_of(const PreparedRun& run, const runtime::Options& options,
                             const runtime::Report& report) {
-  analysis::RunFacts facts = facts_of_scenario(run.scenario);
+  analysis::RunFacts facts = scenario::facts_of_scenario(run.scenario);
   facts.version = kVersion;
   facts.rate_Hz = options.rate_Hz;
   facts.timing = timing_of(options, report);
@@ -285,7 +284,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
       .dumps = std::move(dumps),
       .is_fast = arguments.is_fast,
       .script_end_s = options.duration_s == 0.0 ? scenario::planned_duration_s(scenario) : 0.0,
-      .names = part_names(scenario)};
+      .names = scenario::part_names(scenario)};
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, scenario.title));
   if (run.remote != nullptr && !scenario::notices_frozen_sensors(scenario.device)) {
     print_out(
@@ -307,8 +306,8 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const runtime::Report report = runtime.join();
   std::vector<std::string> about_machine;
   if (run.is_machine) {
-    about_machine =
-        leave_machine(arguments, scenario.device, *run.remote, observers.summary.fault().code);
+    about_machine = start_test::leave_machine(machine_memory(arguments), scenario.device,
+                                              *run.remote, observers.summary.fault().code);
   }
   if (run.remote != nullptr) close_device(*run.remote, observers.summary.fault());
 

@@ -6,25 +6,24 @@
 #include <string>
 #include <vector>
 
-#include "apps/hapticgiant/scenario_arguments.h"
+#include "hg/scenario/options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace hg::apps {
 
 struct RunArguments {
   std::string program = "hapticgiant";  ///< program name as called, for printed commands
-  ScenarioArguments world;
+  scenario::Options world;
   std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
   std::string key_file;        ///< file of the key shared with the device; empty = none
   /// Duration of the run, s; unset = until the script has played; on a terminal with a page until
   /// Ctrl-C.
   std::optional<double> duration_s;
-  bool is_fast = false;   ///< runs as fast as possible, without page
-  std::string law;        ///< law, "gauss" or "paper"; empty = the device's
-  std::string bounds;     ///< bounds, "recoverable" or "paper"; empty = the device's
-  std::string gantry;     ///< guidance of the gantry, "law" or "rule"; empty = the device's
-  std::string braking;    ///< braking, "alone" or "together"; empty = the device's
-  std::string passivity;  ///< passivity reaction, "off", "observe" or "act"; empty = the device's
-  std::string summary;    ///< JSON file; empty = none
+  bool is_fast = false;  ///< runs as fast as possible, without page
+  std::string summary;   ///< JSON file; empty = none
   bool has_viewer = true;
   std::string address = "127.0.0.1";  ///< address at which the page is served
   std::uint16_t port = 0;             ///< port of the page; 0 = any free one
@@ -46,5 +45,8 @@ struct RunArguments {
 /// device, 4 (kNotWritten) recording or summary could not be written. Throws SetupError for bad
 /// input.
 int run(const RunArguments& arguments);
+
+/// Adds the subcommand to the program, which was called as `program`; running it sets `exit_code`.
+void add_run(CLI::App& app, const std::string& program, int& exit_code);
 
 }  // namespace hg::apps

@@ -6,11 +6,11 @@
 #include <chrono>
 #include <utility>
 
-#include "apps/hapticgiant/page_scene.h"
-#include "apps/hapticgiant/run_setup.h"
 #include "hg/core/error.h"
 #include "hg/model/urdf.h"
+#include "hg/page/page_scene.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/names.h"
 
 namespace hg::apps {
 namespace {
@@ -74,12 +74,12 @@ RunPage::RunPage(const viewer_server::Options& options, const PreparedRun& first
       newest_(std::make_unique<Sample>()) {}
 
 viewer_server::Scene RunPage::scene_of(const PreparedRun& run) const {
-  viewer_server::Scene scene = page_scene(run.scenario);
+  viewer_server::Scene scene = page::page_scene(run.scenario);
   scene.run = number_;
   scene.duration_s = scenario::planned_duration_s(run.scenario);
-  scene.choices = page_choices(run.arguments);
+  scene.choices = page::page_choices(run.arguments.world);
   scene.choices.law = rendering::to_string(run.scenario.device.rendering.law);
-  scene.settings = page_settings(form_);
+  scene.settings = page::page_settings(form_);
   scene.commands.assign(std::begin(kAlways), std::end(kAlways));
   scene.refusal = refusal_of_device(run);
   if (scene.refusal.empty()) {
@@ -99,7 +99,7 @@ void RunPage::begin(const PreparedRun& run, const std::string& recording) {
   }
   server_.set_values(values_);
   analysis_.emplace(run.scenario);
-  names_ = part_names(run.scenario);
+  names_ = scenario::part_names(run.scenario);
   view_ = {};
   view_.run = number_;
   view_.run_state.recording = recording;
@@ -157,7 +157,7 @@ void RunPage::publish() {
   view_.budget = analysis_->budget(newest_->record);
   view_.singularity = analysis_->singularity(newest_->record);
   view_.run_state.position_s = newest_->record.time_s;
-  view_.safety = safety_view(*newest_, names_);
+  view_.safety = page::safety_view(*newest_, names_);
   server_.publish(view_);
   view_.cycle_time_max_us = 0.0;
   has_news_ = false;
@@ -284,13 +284,13 @@ std::string RunPage::obey_pace(const Command& command, runtime::Pace& pace, cons
 std::string RunPage::choose(const Command& command) {
   if (is_preparing()) return "another run is being prepared";
   RunArguments arguments = run_->arguments;
-  const viewer_server::Choices choices = page_choices(arguments);
+  const viewer_server::Choices choices = page::page_choices(arguments.world);
   const auto take = [&](const std::vector<viewer_server::Choice>& list, std::string& value) {
-    if (!is_choice(list, command.argument)) return false;
+    if (!page::is_choice(list, command.argument)) return false;
     value = command.argument;
     return true;
   };
-  ScenarioArguments& world = arguments.world;
+  scenario::Options& world = arguments.world;
   bool is_known = true;
   if (command.name == CommandName::kScenario) {
     is_known = take(choices.scenarios, world.scenario);
@@ -301,7 +301,7 @@ std::string RunPage::choose(const Command& command) {
       command.name == CommandName::kScenario || command.name == CommandName::kTwin;
   // a script is made for one twin
   if (is_other_twin && world.user != "mouse" && world.user != "none") world.user.clear();
-  if (command.name == CommandName::kLaw) is_known = take(choices.laws, arguments.law);
+  if (command.name == CommandName::kLaw) is_known = take(choices.laws, arguments.world.law);
   if (command.name == CommandName::kPerson) is_known = take(choices.people, world.user);
   if (!is_known) return "there is no such choice: " + command.argument;
   chosen_ = command;

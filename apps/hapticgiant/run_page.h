@@ -14,10 +14,10 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/hapticgiant/hand_analysis.h"
 #include "apps/hapticgiant/prepared_run.h"
 #include "hg/analysis/fault_figures.h"
 #include "hg/config/twin_form.h"
+#include "hg/page/hand_analysis.h"
 #include "hg/runtime/runtime.h"
 #include "hg/signals/operator_desk.h"
 #include "hg/viewer_server/viewer_server.h"
@@ -98,7 +98,7 @@ class RunPage {
   std::unique_ptr<OperatorDesk> desk_ = std::make_unique<OperatorDesk>();
   viewer_server::ViewerServer server_;
   analysis::Names names_;
-  std::optional<HandAnalysis> analysis_;
+  std::optional<page::HandAnalysis> analysis_;
   viewer_server::View view_;
   std::unique_ptr<Sample> newest_;
   bool has_news_ = false;  ///< there is news not yet shown on any page

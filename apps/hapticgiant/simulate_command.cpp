@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <memory>
@@ -11,12 +12,12 @@
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/remote_setup.h"
-#include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/analysis/summary.h"
 #include "hg/device/udp/device_server.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/remote/remote_setup.h"
 
 namespace hg::apps {
 namespace {
@@ -96,13 +97,13 @@ std::string closing_lines(const udp::SessionReport& report, double rate_Hz) {
 
 int simulate(const SimulateArguments& arguments) {
   check_writable(arguments.capture, kCapture);
-  const config::Scenario scenario = make_scenario(arguments.world);
+  const config::Scenario scenario = scenario::load(arguments.world);
   const simulator::Simulation world = scenario::make_simulation(scenario);
-  const udp::ServerConfig config{.actual = describe(scenario, arguments.is_fast),
+  const udp::ServerConfig config{.actual = scenario::describe(scenario, arguments.is_fast),
                                  .server = std::string("hapticgiant simulate ") + kVersion,
                                  .is_simulated = true,
                                  .capture = arguments.capture,
-                                 .key = key_of(arguments.key_file)};
+                                 .key = scenario::key_of(arguments.key_file)};
   udp::DeviceServer server(udp::parse_address("--listen", arguments.listen), config);
   const std::atomic<bool>& stop = watch_interruption();
   const BackgroundOutput output(stop);
@@ -124,6 +125,30 @@ int simulate(const SimulateArguments& arguments) {
   }
   look_at_capture();
   return lost.empty() ? 0 : kNotWritten;
+}
+
+void add_simulate(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<SimulateArguments>();
+  CLI::App* command = app.add_subcommand(
+      "simulate", "Device and person of a scenario for a controller elsewhere, over UDP.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant simulate door --listen 127.0.0.1:4810     then, in another terminal:\n"
+      "  hapticgiant run door --device-address 127.0.0.1:4810");
+  add_scenario_options(*command, arguments->world);
+  command
+      ->add_option(
+          "--listen", arguments->listen,
+          "HOST:PORT to serve at; whoever can reach it can move the device, or has to have "
+          "the key")
+      ->required();
+  command->add_option("--key-file", arguments->key_file,
+                      "secret that clients must have, too (docs/reference/device_protocol.md)");
+  command->add_flag("--fast", arguments->is_fast,
+                    "lock-step: each side waits for the other (run --fast) instead of real time");
+  command->add_option("--capture", arguments->capture,
+                      "write every datagram to this pcap file (docs/reference/device_protocol.md)");
+  command->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -4,12 +4,16 @@
 
 #include <string>
 
-#include "apps/hapticgiant/scenario_arguments.h"
+#include "hg/scenario/options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace hg::apps {
 
 struct SimulateArguments {
-  ScenarioArguments world;
+  scenario::Options world;
   std::string listen;    ///< address to listen on, HOST:PORT
   std::string key_file;  ///< file of the key that clients must have; empty = none
   bool is_fast = false;  ///< lock-step instead of real time
@@ -19,5 +23,8 @@ struct SimulateArguments {
 /// Serves one client after the other until Ctrl-C, each with a reset world. Exit code 0, or 4
 /// (kNotWritten) if the capture is incomplete. Throws SetupError for bad input.
 int simulate(const SimulateArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_simulate(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

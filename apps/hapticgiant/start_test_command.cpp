@@ -2,20 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <ctime>
 #include <memory>
 #include <utility>
 
-#include "apps/hapticgiant/device_memory.h"
 #include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/run_setup.h"
+#include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/commissioning/start_test/machine_memory.h"
 #include "hg/commissioning/start_test/memory.h"
 #include "hg/commissioning/start_test/procedure.h"
 #include "hg/commissioning/start_test/simulated_operator.h"
@@ -25,6 +27,7 @@
 #include "hg/runtime/control_thread.h"
 #include "hg/runtime/requests.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/remote/remote_setup.h"
 
 namespace hg::apps {
 namespace {
@@ -195,21 +198,22 @@ int start_test(const StartTestArguments& arguments) {
   if (arguments.device_address.empty()) {
     device = scenario::make_simulated_device(scenario);
   } else {
-    auto connected = connect_device(arguments.device_address, key_of(arguments.key_file), scenario,
-                                    arguments.is_fast);
+    auto connected = scenario::connect_device(
+        arguments.device_address, scenario::key_of(arguments.key_file), scenario,
+        std::string("hapticgiant run ") + kVersion, arguments.is_fast);
     remote = connected.get();
     device = std::move(connected);
   }
   const bool is_simulated = remote == nullptr || remote->welcome().is_simulated;
-  const std::string file = start_test_file(arguments.recordings, scenario.device,
-                                           is_simulated ? "" : arguments.device_address);
+  const std::string file = start_test::start_test_file(
+      arguments.recordings, scenario.device, is_simulated ? "" : arguments.device_address);
   check_writable(file);
 
   const auto keep = [&](const std::vector<start_test::Item>& items) {
     const start_test::Result result = {.device = scenario.device.name,
                                        .address = arguments.device_address,
                                        .version = kVersion,
-                                       .files_sha256 = sha256_of(scenario.device),
+                                       .files_sha256 = start_test::sha256_of(scenario.device),
                                        .ended = std::time(nullptr),
                                        .is_simulated = is_simulated,
                                        .has_passed = start_test::has_passed(items),
@@ -245,6 +249,35 @@ int start_test(const StartTestArguments& arguments) {
                         is_simulated ? " (of a simulation: counts for no machine)" : ""));
   if (station.end() != FaultCode::kNone) return 3;
   return has_passed ? 0 : 1;
+}
+
+void add_start_test(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<StartTestArguments>();
+  CLI::App* command = app.add_subcommand(
+      "start-test",
+      "Brakes and stop inputs, step by step, before the first run of a day (docs/reference/start_test.md).");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant start-test                   the simulated device, with a simulated operator\n"
+      "  hapticgiant start-test --device my_arm_device.yaml --device-address 192.168.1.20:4810");
+  add_scenario_options(*command, arguments->world);
+  command->add_option("--device-address", arguments->device_address,
+                      "HOST:PORT of a remote device instead of a simulated one");
+  command
+      ->add_option("--key-file", arguments->key_file,
+                   "secret that the remote device has, too (docs/reference/device_protocol.md)")
+      ->needs("--device-address");
+  command
+      ->add_flag("--fast", arguments->is_fast, "lock-step with a remote device that is simulated")
+      ->needs("--device-address");
+  command
+      ->add_option("--priority", arguments->priority,
+                   "SCHED_FIFO priority with a remote device, 1..99; 0: an ordinary thread")
+      ->check(number_that("from 0 to 99", [](double v) { return v >= 0.0 && v <= 99.0; }))
+      ->capture_default_str();
+  command->add_option("--recordings", arguments->recordings, "folder that keeps the result")
+      ->capture_default_str();
+  command->callback([arguments, &exit_code] { exit_code = start_test(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -3,12 +3,16 @@
 
 #include <string>
 
-#include "apps/hapticgiant/scenario_arguments.h"
+#include "hg/scenario/options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace hg::apps {
 
 struct StartTestArguments {
-  ScenarioArguments world{.scenario = "free_space"};
+  scenario::Options world{.scenario = "free_space"};
   std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
   std::string key_file;        ///< file of the key shared with the device; empty = none
   bool is_fast = false;        ///< lock-step with a remote device
@@ -19,5 +23,8 @@ struct StartTestArguments {
 /// Exit code: 0 passed, 1 something failed or the test was broken off, 3 the device has gone.
 /// Throws SetupError for bad input.
 int start_test(const StartTestArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_start_test(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

@@ -2,16 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 
 #include "apps/hapticgiant/experiments/figure_program.h"
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/tune_report.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/config/device.h"
+#include "hg/config/shipped_files.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/tuning/tuned_device.h"
 
@@ -45,7 +48,7 @@ std::string command_of(const TuneArguments& arguments) {
 }  // namespace
 
 int run_tune(const TuneArguments& arguments) {
-  const config::Device device = config::load_device(find_device(arguments.device));
+  const config::Device device = config::load_device(config::find_device(arguments.device));
   tuning::TuningProblem problem = problem_of(device, arguments);
   const tuning::Figures now = tuning::figures_of(problem, problem.device);
   problem.friction_most_N = now.friction_N;
@@ -102,6 +105,42 @@ int run_tune(const TuneArguments& arguments) {
     return 1;
   }
   return 0;
+}
+
+void add_tune(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<TuneArguments>();
+  CLI::App* command = app.add_subcommand(
+      "tune", "Filters and poles for the torque control of a device, with their proof; minutes.");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant tune models/haptic_giant/device.yaml         report in tune/report.md\n"
+      "  hapticgiant tune device.yaml --vibration 0.03 --front    less vibration, and the trade\n"
+      "  hapticgiant tune device.yaml --check                     the proof of what is there");
+  command->add_option("device", arguments->device, "device.yaml")->capture_default_str();
+  command->add_option("--out", arguments->out, "folder of the report")->capture_default_str();
+  command
+      ->add_option("--vibration", arguments->vibration,
+                   "largest above 20 Hz, m/s^2; without: what the device has now")
+      ->check(number_within(1e-4, 10.0));
+  command->add_option("--mass", arguments->mass, "of the body that is rendered, kg")
+      ->check(number_within(0.1, 100.0))
+      ->capture_default_str();
+  command->add_option("--damping", arguments->damping, "likewise, Ns/m")
+      ->check(number_within(0.0, 1000.0))
+      ->capture_default_str();
+  command->add_option("--postures", arguments->postures, "in which it must hold")
+      ->check(whole_number(1.0, 1000.0))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "of the postures")
+      ->check(whole_number(0.0, 4294967295.0))
+      ->capture_default_str();
+  CLI::Option* front =
+      command->add_flag("--front", arguments->has_front, "also for less and for more vibration");
+  command
+      ->add_flag("--check", arguments->only_checks,
+                 "figures and proof of what the device has now; searches and writes nothing")
+      ->excludes(front);
+  command->callback([arguments, &exit_code] { exit_code = run_tune(*arguments); });
 }
 
 }  // namespace hg::apps

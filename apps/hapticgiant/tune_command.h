@@ -4,6 +4,10 @@
 #include <cstdint>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace hg::apps {
 
 struct TuneArguments {
@@ -22,5 +26,8 @@ struct TuneArguments {
 /// Exit code: 0 proven values found (or already present), 1 no proven values. Throws SetupError for
 /// bad input.
 int run_tune(const TuneArguments& arguments);
+
+/// Adds the subcommand to the program; running it sets `exit_code`.
+void add_tune(CLI::App& app, int& exit_code);
 
 }  // namespace hg::apps

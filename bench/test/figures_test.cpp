@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "apps/hapticgiant/bench_files.h"
+#include "bench/bench_files.h"
 
 namespace hg::bench {
 namespace {
@@ -43,7 +43,7 @@ TEST(Times, OfFewerThanAThousandThereIsNoTail) {
     EXPECT_TRUE(row["p99_9_us"].is_null());
     EXPECT_EQ(row["max_us"], count > 0 ? 2.0 : 0.0);
     const std::string most = count > 0 ? "2.0" : "0.0";
-    EXPECT_EQ(apps::to_csv(nlohmann::ordered_json::array({row})),
+    EXPECT_EQ(to_csv(nlohmann::ordered_json::array({row})),
               "median_us,p99_9_us,max_us\n" + most + ",," + most + "\n");
   }
 }
@@ -95,8 +95,8 @@ TEST(Figure, MarkersTellLinesThatCoincideApart) {
 TEST(Csv, HasOneLineOfKeysAndQuotesWhatNeedsIt) {
   const nlohmann::ordered_json rows = {{{"set", "a, b"}, {"us", 1.5}, {"wrong", nullptr}},
                                        {{"set", "say \"c\""}, {"us", 2}, {"wrong", 3}}};
-  EXPECT_EQ(apps::to_csv(rows), "set,us,wrong\n\"a, b\",1.5,\n\"say \"\"c\"\"\",2,3\n");
-  EXPECT_EQ(apps::to_csv(nlohmann::ordered_json::array()), "");
+  EXPECT_EQ(to_csv(rows), "set,us,wrong\n\"a, b\",1.5,\n\"say \"\"c\"\"\",2,3\n");
+  EXPECT_EQ(to_csv(nlohmann::ordered_json::array()), "");
 }
 
 }  // namespace

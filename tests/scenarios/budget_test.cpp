@@ -19,8 +19,7 @@ class SolverBudget : public ::testing::TestWithParam<Scenario> {
  protected:
   static config::Scenario scenario(int budget) {
     const auto& [name, law] = GetParam();
-    config::Scenario scenario =
-        apps::make_scenario({.world = {.scenario = name}, .law = law, .bounds = {}});
+    config::Scenario scenario = scenario::load({.scenario = name, .law = law});
     scenario.device.rendering.solver_budget = budget;
     return scenario;
   }

@@ -5,19 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "apps/hapticgiant/run_setup.h"
 #include "hg/commissioning/identification/friction_traces.h"
+#include "hg/scenario/options.h"
 #include "hg/studies/player.h"
 
-namespace hg::apps {
+namespace hg {
 namespace {
 
 using identification::FrictionEstimate;
 using identification::FrictionFigure;
 
 std::vector<FrictionEstimate> identified(const std::string& simulation) {
-  const config::Scenario scenario = make_scenario(
-      ScenarioArguments{.scenario = "free_space", .user = "friction", .simulation = simulation});
+  const config::Scenario scenario =
+      scenario::load({.scenario = "free_space", .user = "friction", .simulation = simulation});
   identification::FrictionTraces traces(scenario.device.control);
   studies::Player player(scenario);
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
@@ -76,4 +76,4 @@ TEST(IdentifyFriction, FindsPreslidingOfAnotherSimulation) {
 }
 
 }  // namespace
-}  // namespace hg::apps
+}  // namespace hg

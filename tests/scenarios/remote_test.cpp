@@ -8,9 +8,9 @@
 #include <thread>
 #include <vector>
 
-#include "apps/hapticgiant/remote_setup.h"
 #include "hg/device/udp/device_server.h"
 #include "hg/device/udp/test/bad_link.h"
+#include "hg/scenario/remote/remote_setup.h"
 #include "tests/scenarios/scenario_run.h"
 
 namespace hg {
@@ -55,7 +55,7 @@ class World {
  public:
   explicit World(const config::Scenario& scenario)
       : device_(scenario::make_simulated_device(scenario)),
-        server_({"127.0.0.1", "0"}, {.actual = apps::describe(scenario, true),
+        server_({"127.0.0.1", "0"}, {.actual = scenario::describe(scenario, true),
                                      .server = "test",
                                      .lock_step_timeout_s = 60.0}),
         thread_([this] {
@@ -77,7 +77,7 @@ class World {
 std::unique_ptr<udp::RemoteDevice> connect(const udp::Address& address,
                                            const config::Scenario& scenario) {
   return std::make_unique<udp::RemoteDevice>(
-      address, udp::ClientConfig{.expected = apps::describe(scenario, true),
+      address, udp::ClientConfig{.expected = scenario::describe(scenario, true),
                                  .client = "test",
                                  .answer_timeout_s = 60.0,
                                  .first_timeout_s = 60.0,

@@ -10,21 +10,21 @@
 #include <utility>
 #include <vector>
 
-#include "apps/hapticgiant/run_setup.h"
 #include "hg/analysis/events.h"
 #include "hg/analysis/summary.h"
 #include "hg/core/allocation_counter.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/options.h"
 #include "hg/scenario/session.h"
 
 namespace hg {
 
 /// A scenario that ships with the program, to be played as it is or changed first.
 inline config::Scenario shipped(const std::string& name) {
-  return apps::make_scenario(apps::ScenarioArguments{.scenario = name});
+  return scenario::load({.scenario = name});
 }
 inline config::Scenario shipped(const std::string& name, double rate_Hz) {
-  return apps::make_scenario(apps::ScenarioArguments{.scenario = name, .rate_Hz = rate_Hz});
+  return scenario::load({.scenario = name, .rate_Hz = rate_Hz});
 }
 
 /// Leaves the law alone: drives follow perfectly, sensors have no errors. Only the gantry lags, and

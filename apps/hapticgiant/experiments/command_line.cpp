@@ -1,6 +1,14 @@
 #include "apps/hapticgiant/experiments/command_line.h"
 
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/hapticgiant/experiments/compare_command.h"
+#include "apps/hapticgiant/experiments/paper_experiment_command.h"
 #include "apps/hapticgiant/experiments/paper_experiments.h"
+#include "apps/hapticgiant/experiments/plot_command.h"
 #include "apps/hapticgiant/option_checks.h"
 
 namespace hg::apps {
@@ -26,15 +34,15 @@ void add_options(CLI::App& command, PaperExperimentArguments& arguments) {
 
 }  // namespace
 
-void add_paper_experiments(CLI::App& experiment, PaperExperimentArguments& arguments,
-                           int& exit_code) {
+void add_paper_experiments(CLI::App& experiment, int& exit_code) {
+  const auto arguments = std::make_shared<PaperExperimentArguments>();
   std::vector<std::string> all;
   const auto add = [&](const std::string& name, const std::string& text,
                        const std::vector<std::string>& names) {
     CLI::App* command = experiment.add_subcommand(name, text);
-    add_options(*command, arguments);
+    add_options(*command, *arguments);
     command->callback(
-        [&arguments, &exit_code, names] { exit_code = run_paper_experiments(arguments, names); });
+        [arguments, &exit_code, names] { exit_code = run_paper_experiments(*arguments, names); });
   };
   for (const PaperExperiment& each : paper_experiments()) {
     const std::string name(each.name);
@@ -44,33 +52,35 @@ void add_paper_experiments(CLI::App& experiment, PaperExperimentArguments& argum
   add("all", "these four, one after the other", all);
   CLI::App* timing = experiment.add_subcommand(
       "timing", "computing time of a cycle beside the paper's, section VII-A; minutes");
-  add_options(*timing, arguments);
-  timing->add_option("--rates", arguments.rates_Hz, "control rates, Hz")
+  add_options(*timing, *arguments);
+  timing->add_option("--rates", arguments->rates_Hz, "control rates, Hz")
       ->delimiter(',')
       ->capture_default_str();
-  timing->callback([&arguments, &exit_code] { exit_code = timing_experiment(arguments); });
+  timing->callback([arguments, &exit_code] { exit_code = timing_experiment(*arguments); });
 }
 
-void add_plot_and_compare(CLI::App& app, ExperimentsArguments& arguments, int& exit_code) {
+void add_plot_and_compare(CLI::App& app, int& exit_code) {
+  const auto plotted = std::make_shared<PlotArguments>();
   CLI::App* plot = app.add_subcommand("plot", "Figures of recordings, several over each other.");
   plot->footer(
       "Examples:\n"
       "  hapticgiant plot recordings/latest.mcap\n"
       "  hapticgiant plot one.mcap two.mcap --out figures");
-  plot->add_option("files", arguments.plot.files, "recordings, one to four")
+  plot->add_option("files", plotted->files, "recordings, one to four")
       ->required()
       ->expected(1, 4)
       ->check(CLI::ExistingFile);
-  plot->add_option("--out", arguments.plot.out, "folder for figure.svg, figure.png and signals")
+  plot->add_option("--out", plotted->out, "folder for figure.svg, figure.png and signals")
       ->capture_default_str();
-  plot->callback([&arguments, &exit_code] { exit_code = hg::apps::plot(arguments.plot); });
+  plot->callback([plotted, &exit_code] { exit_code = hg::apps::plot(*plotted); });
 
+  const auto compared = std::make_shared<CompareArguments>();
   CLI::App* compare = app.add_subcommand(
       "compare", "Tells what is different in two recordings: events, forces, limits, timing.");
   compare->footer("Example:\n  hapticgiant compare before.mcap after.mcap");
-  compare->add_option("a", arguments.compare.a, "recording")->required()->check(CLI::ExistingFile);
-  compare->add_option("b", arguments.compare.b, "recording")->required()->check(CLI::ExistingFile);
-  compare->callback([&arguments, &exit_code] { exit_code = hg::apps::compare(arguments.compare); });
+  compare->add_option("a", compared->a, "recording")->required()->check(CLI::ExistingFile);
+  compare->add_option("b", compared->b, "recording")->required()->check(CLI::ExistingFile);
+  compare->callback([compared, &exit_code] { exit_code = hg::apps::compare(*compared); });
 }
 
 }  // namespace hg::apps

@@ -197,7 +197,7 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
   const runtime::Report report = runtime.join();
   if (watcher.recorder) settle(*watcher.recorder, arguments.recordings, result);
 
-  analysis::RunFacts facts = facts_of_scenario(scenario);
+  analysis::RunFacts facts = scenario::facts_of_scenario(scenario);
   facts.version = kVersion;
   facts.rate_Hz = options.rate_Hz;
   facts.allocations_in_loop = report.allocations;

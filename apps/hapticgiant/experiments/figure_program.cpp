@@ -8,7 +8,7 @@
 
 #include <cstdlib>
 
-#include "apps/hapticgiant/paths.h"
+#include "hg/config/shipped_files.h"
 
 namespace hg::apps {
 namespace {
@@ -50,7 +50,7 @@ int run_program(std::vector<std::string> words) {
 }  // namespace
 
 std::string draw_figures(const fs::path& out, const std::vector<fs::path>& folders) {
-  const fs::path home = installation_root();
+  const fs::path home = config::installation_root();
   const fs::path script = home / "python" / "hapticgiant" / "figures.py";
   const std::string python = interpreter(home);
   std::error_code error;

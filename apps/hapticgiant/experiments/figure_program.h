@@ -12,7 +12,7 @@ namespace hg::apps {
 /// how to get them; empty = drawn.
 ///
 /// The interpreter is that of the environment variable HAPTICGIANT_PYTHON, else .venv/bin/python
-/// of the installation (paths.h), else python3.
+/// of the installation (shipped_files.h), else python3.
 std::string draw_figures(const std::filesystem::path& out,
                          const std::vector<std::filesystem::path>& folders);
 

@@ -62,8 +62,8 @@ ReportedRun make_run(const PaperExperiment& experiment, const PaperExperimentArg
   RunArguments run;
   run.world.scenario = experiment.scenario;
   run.world.seed = arguments.seed;
-  run.law = law;
-  run.bounds = arguments.bounds;
+  run.world.law = law;
+  run.world.bounds = arguments.bounds;
   run.duration_s = arguments.duration_s;
   run.is_fast = true;
   run.recordings = folder.string();

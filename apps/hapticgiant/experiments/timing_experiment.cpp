@@ -51,8 +51,8 @@ Row measure(const PaperExperimentArguments& arguments, const std::string& law, d
   run.world.scenario = paper_experiment("cartesian").scenario;
   run.world.seed = arguments.seed;
   run.world.rate_Hz = rate_Hz;
-  run.law = law;
-  run.bounds = arguments.bounds;
+  run.world.law = law;
+  run.world.bounds = arguments.bounds;
   config::Scenario scenario = make_scenario(run);
   if (arguments.duration_s) scenario.duration_s = *arguments.duration_s;
   if (isatty(STDERR_FILENO) != 0) draw_error(fmt::format("law {}, {:.0f} Hz ...", law, rate_Hz));

@@ -5,12 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "apps/hapticgiant/run_command.h"
 #include "hg/commissioning/start_test/memory.h"
 #include "hg/config/device.h"
 #include "hg/device/udp/remote_device.h"
 
-namespace hg::apps {
+namespace hg::start_test {
+
+/// Where the data of a machine are stored, and what its operator says about them.
+struct MachineMemory {
+  std::string folder;               ///< folder of the recordings
+  std::string address;              ///< HOST:PORT of the machine
+  bool without_start_test = false;  ///< untested brakes are allowed
+  /// Joints confirmed to have moved since the last run
+  std::vector<std::string> confirmed_joints;
+};
 
 /// SHA-256 of the files that describe the device.
 std::string sha256_of(const config::Device& device);
@@ -21,19 +29,19 @@ std::string start_test_file(const std::string& folder, const config::Device& dev
                             const std::string& address);
 
 /// Message on whether brakes and stop inputs were tested. Throws SetupError if they were not,
-/// unless `arguments` waive the test.
-std::string check_start_test(const RunArguments& arguments, const config::Device& device);
+/// unless `memory` waives the test.
+std::string check_start_test(const MachineMemory& memory, const config::Device& device);
 
 /// Compares the machine's posture with that at the end of the last run, in a short session with
 /// closed brakes, which it ends. Returns a message; throws SetupError if joints have moved that
-/// `arguments` do not confirm.
-std::string check_posture(const RunArguments& arguments, const config::Device& device,
+/// `memory` does not confirm.
+std::string check_posture(const MachineMemory& memory, const config::Device& device,
                           udp::RemoteDevice& remote);
 
 /// Stores the machine's posture at the end of its session, after a second with closed brakes. If a
 /// brake slips meanwhile, or `fault` reports that one did, its start test becomes invalid. Returns
 /// messages, one line each; empty if all is well.
-std::vector<std::string> leave_machine(const RunArguments& arguments, const config::Device& device,
+std::vector<std::string> leave_machine(const MachineMemory& memory, const config::Device& device,
                                        udp::RemoteDevice& remote, FaultCode fault);
 
-}  // namespace hg::apps
+}  // namespace hg::start_test

@@ -1,4 +1,4 @@
-/// Paths of files shipped with the program: models, the built page, Python code.
+/// Paths of files shipped with the programs: models, the built page, Python code.
 ///
 /// Code (the page, Python, its interpreter) is only ever taken from the installation, never from
 /// the working directory, which may hold untrusted files.
@@ -9,7 +9,7 @@
 
 #include "hg/config/device.h"
 
-namespace hg::apps {
+namespace hg::config {
 
 /// The folder of this program's viewer/, python/, .venv/ and models/: the sources of the build that
 /// contains the program, or share/hapticgiant of the prefix whose bin/ contains it. Empty if
@@ -30,14 +30,14 @@ std::filesystem::path find_script(const std::string& name);
 
 /// A twin file that `reader` has, or the shipped one of this name ("light"). Throws SetupError
 /// naming the nearest one.
-std::filesystem::path find_twin(const std::string& name, const config::SourceReader& reader);
+std::filesystem::path find_twin(const std::string& name, const SourceReader& reader);
 
 /// A device file as given, or among the data that comes with the program.
 std::filesystem::path find_device(const std::string& file);
 
 /// A simulation file, or for NAME the file simulation_NAME.yaml beside that of the device. Throws
 /// SetupError naming the nearest one.
-std::filesystem::path find_simulation(const std::string& name, const config::Device& device,
-                                      const config::SourceReader& reader);
+std::filesystem::path find_simulation(const std::string& name, const Device& device,
+                                      const SourceReader& reader);
 
-}  // namespace hg::apps
+}  // namespace hg::config

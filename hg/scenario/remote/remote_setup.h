@@ -7,7 +7,7 @@
 #include "hg/config/scenario.h"
 #include "hg/device/udp/remote_device.h"
 
-namespace hg::apps {
+namespace hg::scenario {
 
 /// Description of the scenario's device, required or offered.
 udp::Description describe(const config::Scenario& scenario, bool is_lock_step);
@@ -15,10 +15,12 @@ udp::Description describe(const config::Scenario& scenario, bool is_lock_step);
 /// Key of --key-file; none without a file. Throws SetupError.
 udp::Key key_of(const std::string& file);
 
-/// The scenario's device behind `address` (HOST:PORT of --device-address). A device busy with
-/// another client is retried for `busy_patience_s`. Throws SetupError.
+/// The scenario's device behind `address` (HOST:PORT of --device-address). `client` is the name
+/// that the device is given. A device busy with another client is retried for `busy_patience_s`.
+/// Throws SetupError.
 std::unique_ptr<udp::RemoteDevice> connect_device(const std::string& address, const udp::Key& key,
                                                   const config::Scenario& scenario,
-                                                  bool is_lock_step, double busy_patience_s = 0.0);
+                                                  const std::string& client, bool is_lock_step,
+                                                  double busy_patience_s = 0.0);
 
-}  // namespace hg::apps
+}  // namespace hg::scenario

@@ -1,4 +1,4 @@
-#include "apps/hapticgiant/problem_dumps.h"
+#include "hg/recording/problem_dumps.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "hg/hqp/problem_capture.h"
 #include "hg/hqp/text.h"
 
-namespace hg::apps {
+namespace hg::recording {
 namespace {
 
 TEST(ProblemDumps, ADiskThatHangsCostsProblemsNotTheRun) {
@@ -35,4 +35,4 @@ TEST(ProblemDumps, ADiskThatHangsCostsProblemsNotTheRun) {
 }
 
 }  // namespace
-}  // namespace hg::apps
+}  // namespace hg::recording

@@ -1,4 +1,4 @@
-#include "apps/hapticgiant/page_scene.h"
+#include "hg/page/page_scene.h"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/hapticgiant/paths.h"
 #include "hg/commissioning/checks/workspace.h"
 #include "hg/config/law_names.h"
+#include "hg/config/shipped_files.h"
 #include "hg/controller/safety/rules.h"
 #include "hg/scenario/start_posture.h"
 
-namespace hg::apps {
+namespace hg::page {
 namespace {
 
 namespace fs = std::filesystem;
@@ -175,9 +175,9 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   return scene;
 }
 
-viewer_server::Choices page_choices(const RunArguments& arguments) {
+viewer_server::Choices page_choices(const scenario::Options& options) {
   viewer_server::Choices choices;
-  const fs::path models = models_root() / "models";
+  const fs::path models = config::models_root() / "models";
   for (const auto& entry : fs::directory_iterator(models / "scenarios")) {
     const std::string stem = entry.path().stem().string();
     if (entry.path().extension() == ".yaml") choices.scenarios.push_back({stem, title_of(stem)});
@@ -200,9 +200,9 @@ viewer_server::Choices page_choices(const RunArguments& arguments) {
   for (const auto& law : config::kLaws) {
     choices.laws.push_back({std::string(law.name), title_of(std::string(law.name))});
   }
-  choices.scenario = arguments.world.scenario;
-  choices.twin = arguments.world.twin;
-  choices.person = arguments.world.user;
+  choices.scenario = options.scenario;
+  choices.twin = options.twin;
+  choices.person = options.user;
   add_own(choices.scenario, choices.scenarios);
   add_own(choices.twin, choices.twins);
   add_own(choices.person, choices.people);
@@ -238,4 +238,4 @@ viewer_server::SafetyView safety_view(const Sample& sample, const analysis::Name
           .panel = sample.operator_input.panel};
 }
 
-}  // namespace hg::apps
+}  // namespace hg::page

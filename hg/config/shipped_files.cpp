@@ -1,4 +1,4 @@
-#include "apps/hapticgiant/paths.h"
+#include "hg/config/shipped_files.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,11 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/hapticgiant/build_folders.h"
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
 
-namespace hg::apps {
+namespace hg::config {
 namespace fs = std::filesystem;
 
 namespace {
@@ -65,7 +64,7 @@ fs::path installation_root() {
   std::error_code error;
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (error) return {};
-  if (fs::equivalent(folder, kBuildFolder, error)) return kSourceFolder;
+  if (fs::equivalent(folder, HG_BUILD_FOLDER, error)) return HG_SOURCE_FOLDER;
   const fs::path share = folder.parent_path() / "share" / "hapticgiant";
   return folder.filename() == "bin" && fs::is_directory(share, error) ? share : fs::path();
 }
@@ -88,7 +87,7 @@ fs::path find_script(const std::string& name) {
   return find_shipped(name, "script", false, {"mouse", "none"});
 }
 
-fs::path find_twin(const std::string& name, const config::SourceReader& reader) {
+fs::path find_twin(const std::string& name, const SourceReader& reader) {
   return reader.exists(name) ? fs::path(name) : find_shipped(name, "twin", true);
 }
 
@@ -97,8 +96,8 @@ fs::path find_device(const std::string& file) {
   return fs::exists(file, error) ? fs::path(file) : models_root() / file;
 }
 
-fs::path find_simulation(const std::string& name, const config::Device& device,
-                         const config::SourceReader& reader) {
+fs::path find_simulation(const std::string& name, const Device& device,
+                         const SourceReader& reader) {
   constexpr std::string_view kPrefix = "simulation_";
   if (reader.exists(name)) return name;
   const fs::path folder = fs::path(device.sources.front().name).parent_path();
@@ -112,4 +111,4 @@ fs::path find_simulation(const std::string& name, const config::Device& device,
                                fmt::join(names, ", ")));
 }
 
-}  // namespace hg::apps
+}  // namespace hg::config

@@ -10,7 +10,7 @@
 #include "bench/law_table.h"
 #include "bench/solver_table.h"
 
-namespace hg::apps {
+namespace hg::bench {
 
 struct BenchResults {
   nlohmann::ordered_json machine;
@@ -32,4 +32,4 @@ void check_folder(const std::string& folder);
 /// Writes machine.txt, and per table a CSV file and a figure. Throws SetupError.
 void write_files(const std::string& folder, const BenchResults& results);
 
-}  // namespace hg::apps
+}  // namespace hg::bench

@@ -10,7 +10,7 @@
 
 #include "hg/hqp/problem_capture.h"
 
-namespace hg::apps {
+namespace hg::recording {
 
 class ProblemDumps {
  public:
@@ -57,4 +57,4 @@ class ProblemDumps {
   bool has_failed_ = false;
 };
 
-}  // namespace hg::apps
+}  // namespace hg::recording

@@ -3,21 +3,21 @@
 
 #include <vector>
 
-#include "apps/hapticgiant/run_command.h"
 #include "hg/analysis/fault_figures.h"
 #include "hg/config/scenario.h"
 #include "hg/config/twin_form.h"
+#include "hg/scenario/options.h"
 #include "hg/viewer_server/scene.h"
 #include "hg/viewer_server/view.h"
 
-namespace hg::apps {
+namespace hg::page {
 
 /// Scene of a run or of a recording: chains, limits, box and surroundings.
 viewer_server::Scene page_scene(const config::Scenario& scenario);
 
-/// Choices of scenarios, twins, laws and people shipped with the program, and those of `arguments`.
-/// Names are as in RunArguments; empty twin and person stand for the scenario's own.
-viewer_server::Choices page_choices(const RunArguments& arguments);
+/// Choices of scenarios, twins, laws and people shipped with the program, and those of `options`.
+/// Names are as in scenario::Options; empty twin and person stand for the scenario's own.
+viewer_server::Choices page_choices(const scenario::Options& options);
 
 /// True when `name` is one of `choices`.
 bool is_choice(const std::vector<viewer_server::Choice>& choices, const std::string& name);
@@ -27,4 +27,4 @@ std::vector<viewer_server::Setting> page_settings(const std::vector<config::Form
 /// Text on what stops the device at `sample`.
 viewer_server::SafetyView safety_view(const Sample& sample, const analysis::Names& names);
 
-}  // namespace hg::apps
+}  // namespace hg::page

@@ -1,4 +1,4 @@
-#include "apps/hapticgiant/problem_dumps.h"
+#include "hg/recording/problem_dumps.h"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include <thread>
 #include <utility>
 
-#include "apps/hapticgiant/output_file.h"
 #include "hg/core/error.h"
+#include "hg/core/whole_file.h"
 #include "hg/hqp/text.h"
 
-namespace hg::apps {
+namespace hg::recording {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,7 +37,7 @@ std::string text_of(const hqp::CapturedProblem& kept, const std::string& name) {
 
 bool write_file(const fs::path& file, const std::string& text) try {
   make_folder(file.parent_path().string());
-  write_output(file.string(), text);
+  write_whole_file(file.string(), text);
   return true;
 } catch (const SetupError&) {
   return false;
@@ -137,4 +137,4 @@ std::string ProblemDumps::summary(const hqp::ProblemCapture& problems) const {
                             (place_.folder / (place_.stem + "_hqp_*.hqp")).string());
 }
 
-}  // namespace hg::apps
+}  // namespace hg::recording

@@ -9,7 +9,7 @@
 #include "hg/config/scenario.h"
 #include "hg/viewer_server/view.h"
 
-namespace hg::apps {
+namespace hg::page {
 
 class HandAnalysis {
  public:
@@ -30,4 +30,4 @@ class HandAnalysis {
   double best_ = 0.0;  ///< best dexterity of many postures
 };
 
-}  // namespace hg::apps
+}  // namespace hg::page

@@ -1,4 +1,4 @@
-/// `hapticgiant faults --processes`: reaction of a moving device to faults of the controller's
+/// Reaction of a moving device to faults of the controller's
 /// process: terminal, disk, memory, processors, or the process itself.
 ///
 /// The device is served here, in real time, over the network protocol; the controller is a separate
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace hg::apps {
+namespace hg::studies {
 
 enum class ProcessFault : std::uint8_t {
   kNone = 0,             ///< no fault, only the stop
@@ -44,14 +44,16 @@ struct ProcessCase {
   bool is_good = false;        ///< all requirements are met
 };
 
-/// Plays all faults in the scenarios (names or files) in turn, `repetitions` times at random
+/// Plays all faults in the scenarios (names or files) in turn, with `program` (hapticgiant) as the
+/// controller, `repetitions` times at random
 /// moments. The stop is a SIGTERM 0.3 s after the fault; for a controller that is suspended or
 /// killed the fault itself. Throws SetupError.
-std::vector<ProcessCase> play_process_faults(const std::vector<std::string>& scenarios,
+std::vector<ProcessCase> play_process_faults(const std::string& program,
+                                             const std::vector<std::string>& scenarios,
                                              int repetitions, std::uint64_t seed);
 
 /// Table with a row per case, and the verdict.
 std::string to_text(const std::vector<ProcessCase>& cases);
 nlohmann::ordered_json to_json(const std::vector<ProcessCase>& cases);
 
-}  // namespace hg::apps
+}  // namespace hg::studies

@@ -1,4 +1,4 @@
-#include "apps/hapticgiant/device_memory.h"
+#include "hg/commissioning/start_test/machine_memory.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -14,12 +14,12 @@
 #include <string_view>
 #include <system_error>
 
-#include "apps/hapticgiant/output_file.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
+#include "hg/core/whole_file.h"
 #include "hg/device/udp/agreement.h"
 
-namespace hg::apps {
+namespace hg::start_test {
 namespace {
 
 constexpr double kBraked = 0.2;   // s after which brakes have closed and nothing moves any more
@@ -32,14 +32,12 @@ std::optional<std::string> text_of(const std::string& file) {
   return read_file(file, kMost);
 }
 
-std::string posture_file(const RunArguments& arguments, const config::Device& device) {
-  return start_test::file_of(arguments.recordings, "posture", device.name,
-                             arguments.device_address);
+std::string posture_file(const MachineMemory& memory, const config::Device& device) {
+  return file_of(memory.folder, "posture", device.name, memory.address);
 }
 
-std::vector<start_test::Position> posture_of(const config::Device& device,
-                                             const SensorFrame& sensors) {
-  std::vector<start_test::Position> posture;
+std::vector<Position> posture_of(const config::Device& device, const SensorFrame& sensors) {
+  std::vector<Position> posture;
   const std::vector<model::Joint>& joints = device.model.chain.joints();
   for (int i = 0; i < device.model.n_p + device.model.n_m; ++i) {
     const model::Joint& joint = joints[static_cast<std::size_t>(i)];
@@ -53,9 +51,9 @@ std::vector<start_test::Position> posture_of(const config::Device& device,
 }
 
 // Posture with drives off and brakes closed; empty if the connection to the device is lost.
-std::optional<std::vector<start_test::Position>> braked_posture(const config::Device& device,
-                                                                udp::RemoteDevice& remote,
-                                                                double duration_s = kBraked) {
+std::optional<std::vector<Position>> braked_posture(const config::Device& device,
+                                                    udp::RemoteDevice& remote,
+                                                    double duration_s = kBraked) {
   SensorFrame sensors;
   CommandFrame off = udp::off_command(remote.welcome().actual);
   for (double time_s = 0.0; time_s < duration_s; time_s += 1.0 / device.rate_Hz) {
@@ -69,9 +67,8 @@ std::optional<std::vector<start_test::Position>> braked_posture(const config::De
 }
 
 // Names of joints and axes that move although their brakes are closed.
-std::vector<std::string> slipping(const config::Device& device,
-                                  const std::vector<start_test::Position>& from,
-                                  const std::vector<start_test::Position>& to) {
+std::vector<std::string> slipping(const config::Device& device, const std::vector<Position>& from,
+                                  const std::vector<Position>& to) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const double moved = to[i].value - from[i].value;
@@ -87,25 +84,24 @@ std::vector<std::string> slipping(const config::Device& device,
 std::string sha256_of(const config::Device& device) {
   std::vector<std::string_view> texts;
   for (const config::SourceText& source : device.sources) texts.push_back(source.content);
-  return start_test::sha256(texts);
+  return sha256(texts);
 }
 
 std::string start_test_file(const std::string& folder, const config::Device& device,
                             const std::string& address) {
-  return start_test::file_of(folder, "start_test", device.name,
-                             address.empty() ? "simulated" : address);
+  return file_of(folder, "start_test", device.name, address.empty() ? "simulated" : address);
 }
 
-std::string check_start_test(const RunArguments& arguments, const config::Device& device) {
-  const std::string file = start_test_file(arguments.recordings, device, arguments.device_address);
-  start_test::Validity validity = {.objection = "there is none"};
+std::string check_start_test(const MachineMemory& memory, const config::Device& device) {
+  const std::string file = start_test_file(memory.folder, device, memory.address);
+  Validity validity = {.objection = "there is none"};
   try {
     if (const std::optional<std::string> kept = text_of(file)) {
-      validity = start_test::check_validity(*kept, {.device = device.name,
-                                                    .address = arguments.device_address,
-                                                    .files_sha256 = sha256_of(device),
-                                                    .valid_for_s = device.start_test.valid_for_s,
-                                                    .now = std::time(nullptr)});
+      validity = check_validity(*kept, {.device = device.name,
+                                        .address = memory.address,
+                                        .files_sha256 = sha256_of(device),
+                                        .valid_for_s = device.start_test.valid_for_s,
+                                        .now = std::time(nullptr)});
     }
   } catch (const SetupError& error) {
     validity.objection = error.what();
@@ -115,42 +111,41 @@ std::string check_start_test(const RunArguments& arguments, const config::Device
                                      : fmt::format("passed {}; not tested: {}", validity.ended,
                                                    fmt::join(validity.untested, ", "));
   }
-  if (arguments.without_start_test) {
+  if (memory.without_start_test) {
     return fmt::format("BRAKES AND STOP INPUTS ARE NOT TESTED: {}", validity.objection);
   }
   throw SetupError(fmt::format(
       "{}: no start test of {} that counts: {}; test brakes and stop inputs with 'hapticgiant "
       "start-test --device-address {}' and the same device, or run with --without-start-test",
-      file, device.name, validity.objection, arguments.device_address));
+      file, device.name, validity.objection, memory.address));
 }
 
-std::string check_posture(const RunArguments& arguments, const config::Device& device,
+std::string check_posture(const MachineMemory& memory, const config::Device& device,
                           udp::RemoteDevice& remote) {
   const auto now = braked_posture(device, remote);
   const std::string farewell = remote.farewell();
   remote.close(FaultCode::kNone);
   if (!now) {
-    throw SetupError(fmt::format("{}: the device has gone before it was armed {}",
-                                 arguments.device_address, farewell));
+    throw SetupError(
+        fmt::format("{}: the device has gone before it was armed {}", memory.address, farewell));
   }
-  for (const std::string& name : arguments.confirmed_joints) {
-    if (std::ranges::find(*now, name, &start_test::Position::name) != now->end()) continue;
+  for (const std::string& name : memory.confirmed_joints) {
+    if (std::ranges::find(*now, name, &Position::name) != now->end()) continue;
     throw SetupError(fmt::format("--posture-confirmed: {} has no joint '{}'", device.name, name));
   }
-  const std::string file = posture_file(arguments, device);
+  const std::string file = posture_file(memory, device);
   const std::optional<std::string> kept = text_of(file);
   if (!kept) return "nothing is known of the last run: homing was not compared";
-  std::vector<start_test::Moved> moved;
+  std::vector<Moved> moved;
   try {
-    moved = start_test::compare_posture(*kept, arguments.device_address, *now, device.start_test);
+    moved = compare_posture(*kept, memory.address, *now, device.start_test);
   } catch (const SetupError& error) {
     throw SetupError(fmt::format("{}: {}; look where the machine stands, then delete the file",
                                  file, error.what()));
   }
   std::string lines, names;
-  for (const start_test::Moved& joint : moved) {
-    if (std::ranges::find(arguments.confirmed_joints, joint.name) !=
-        arguments.confirmed_joints.end()) {
+  for (const Moved& joint : moved) {
+    if (std::ranges::find(memory.confirmed_joints, joint.name) != memory.confirmed_joints.end()) {
       continue;
     }
     lines += "  " + joint.words + "\n";
@@ -167,7 +162,7 @@ std::string check_posture(const RunArguments& arguments, const config::Device& d
                   file, device.name, lines, names));
 }
 
-std::vector<std::string> leave_machine(const RunArguments& arguments, const config::Device& device,
+std::vector<std::string> leave_machine(const MachineMemory& memory, const config::Device& device,
                                        udp::RemoteDevice& remote, FaultCode fault) {
   std::vector<std::string> lines;
   const auto braked = braked_posture(device, remote);
@@ -180,8 +175,7 @@ std::vector<std::string> leave_machine(const RunArguments& arguments, const conf
   }
   if (!names.empty() || fault == FaultCode::kBrakesSlip) {
     std::error_code ignored;  // there may be none
-    std::filesystem::remove(start_test_file(arguments.recordings, device, arguments.device_address),
-                            ignored);
+    std::filesystem::remove(start_test_file(memory.folder, device, memory.address), ignored);
     lines.push_back("start test   counts no more, because a brake did not hold");
   }
   if (!now) {
@@ -191,14 +185,13 @@ std::vector<std::string> leave_machine(const RunArguments& arguments, const conf
     return lines;
   }
   try {
-    make_folder(arguments.recordings);
-    write_output(posture_file(arguments, device),
-                 start_test::posture_to_json(device.name, arguments.device_address,
-                                             std::time(nullptr), *now));
+    make_folder(memory.folder);
+    write_whole_file(posture_file(memory, device),
+                     posture_to_json(device.name, memory.address, std::time(nullptr), *now));
   } catch (const std::exception& error) {
     lines.push_back(fmt::format("posture      not kept: {}", error.what()));
   }
   return lines;
 }
 
-}  // namespace hg::apps
+}  // namespace hg::start_test

@@ -1,8 +1,6 @@
-#include "apps/hapticgiant/remote_setup.h"
+#include "hg/scenario/remote/remote_setup.h"
 
-#include "apps/hapticgiant/version.h"
-
-namespace hg::apps {
+namespace hg::scenario {
 
 udp::Description describe(const config::Scenario& scenario, bool is_lock_step) {
   const config::Device& device = scenario.device;
@@ -21,13 +19,14 @@ udp::Key key_of(const std::string& file) {
 
 std::unique_ptr<udp::RemoteDevice> connect_device(const std::string& address, const udp::Key& key,
                                                   const config::Scenario& scenario,
-                                                  bool is_lock_step, double busy_patience_s) {
+                                                  const std::string& client, bool is_lock_step,
+                                                  double busy_patience_s) {
   const udp::ClientConfig config{.expected = describe(scenario, is_lock_step),
-                                 .client = std::string("hapticgiant run ") + kVersion,
+                                 .client = client,
                                  .busy_patience_s = busy_patience_s,
                                  .key = key};
   return std::make_unique<udp::RemoteDevice>(udp::parse_address("--device-address", address),
                                              config);
 }
 
-}  // namespace hg::apps
+}  // namespace hg::scenario

@@ -1,4 +1,4 @@
-#include "apps/hapticgiant/hand_analysis.h"
+#include "hg/page/hand_analysis.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 #include "hg/core/linear_algebra.h"
 #include "hg/model/joint_range.h"
 
-namespace hg::apps {
+namespace hg::page {
 namespace {
 
 constexpr int kPostures = 2000;
@@ -81,4 +81,4 @@ std::optional<viewer_server::Singularity> HandAnalysis::singularity(const CycleR
   return singularity;
 }
 
-}  // namespace hg::apps
+}  // namespace hg::page

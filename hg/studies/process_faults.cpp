@@ -1,4 +1,4 @@
-#include "apps/hapticgiant/process_faults.h"
+#include "hg/studies/process_faults.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -20,18 +20,18 @@
 #include <random>
 #include <thread>
 
-#include "apps/hapticgiant/paths.h"
-#include "apps/hapticgiant/remote_setup.h"
-#include "apps/hapticgiant/scratch_folder.h"
+#include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
+#include "hg/core/scratch_folder.h"
 #include "hg/device/udp/device_server.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/remote/remote_setup.h"
 #include "hg/studies/fault_campaign.h"
 
 extern char** environ;
 
-namespace hg::apps {
+namespace hg::studies {
 namespace {
 
 using std::chrono::duration;
@@ -104,7 +104,7 @@ class Witness final : public device::Device {
     energy_ -= dt * truth.w_H.dot(truth.twist);
     most_energy = std::max(most_energy, energy_);
     watched_s_ += dt;
-    if (!studies::stands_still(truth)) {
+    if (!stands_still(truth)) {
       rest_s = std::numeric_limits<double>::quiet_NaN();
     } else if (std::isnan(rest_s)) {
       rest_s = watched_s_;
@@ -141,7 +141,8 @@ void serve(udp::DeviceServer& server, Witness& witness, double dt, const std::at
 // Program and terminal of a controller.
 class Controller {
  public:
-  Controller(const std::string& scenario, const std::string& address, const std::string& folder) {
+  Controller(const std::string& program, const std::string& scenario, const std::string& address,
+             const std::string& folder) {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) throw SetupError("no pipe for the controller");
     terminal_ = ends[0];
@@ -158,7 +159,7 @@ class Controller {
     posix_spawn_file_actions_adddup2(&actions, program_end_, 1);
     posix_spawn_file_actions_adddup2(&actions, program_end_, 2);
     const int failed =
-        posix_spawn(&pid_, "/proc/self/exe", &actions, nullptr, arguments.data(), environ);
+        posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     if (failed != 0) throw SetupError("the controller cannot be started");
     reader_ = std::thread([this] { read(); });
@@ -314,7 +315,7 @@ std::uint64_t samples_in(const std::filesystem::path& folder) {
 bool has_done_well(const ProcessCase& result) {
   const Description& expected = description_of(result.fault);
   return result.has_run && !std::isnan(result.rest_s) && result.travel_share <= 1.0 &&
-         result.energy <= studies::CampaignConfig{}.energy_bound &&
+         result.energy <= CampaignConfig{}.energy_bound &&
          (expected.may_die || (result.has_ended && result.exit_code >= 0)) &&
          (!expected.is_told || result.exit_code != 0) &&
          (!expected.is_recorded || result.recorded + kUnwritten >= result.periods);
@@ -332,17 +333,18 @@ class GivesUp {
   std::atomic<bool>& flag_;
 };
 
-ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& random) {
+ProcessCase play(const std::string& program, const std::string& name, ProcessFault fault,
+                 std::mt19937_64& random) {
   ProcessCase result = {.fault = fault, .scenario = name};
-  const config::Scenario scenario = config::load_scenario(find_scenario(name));
-  const Interval times = studies::fault_times(scenario);
+  const config::Scenario scenario = config::load_scenario(config::find_scenario(name));
+  const Interval times = fault_times(scenario);
   const double at_s = std::uniform_real_distribution<double>(times.lb, times.ub)(random);
   const double dt = scenario.device.rendering.dt;
   const ScratchFolder scratch;
   const std::string folder = scratch.path() + "/recordings";
 
   udp::DeviceServer server(udp::parse_address("--listen", "127.0.0.1:0"),
-                           {.actual = hg::apps::describe(scenario, false),
+                           {.actual = scenario::describe(scenario, false),
                             .server = "hapticgiant faults",
                             .is_simulated = true});
   Witness witness(scenario);
@@ -354,7 +356,7 @@ ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& r
     });
     const GivesUp at_last(gives_up);
     Load load;
-    Controller controller(name, server.address(), folder);
+    Controller controller(program, name, server.address(), folder);
     result.has_run =
         wait_for(kUntilRunning,
                  [&] {
@@ -390,7 +392,8 @@ ProcessCase play(const std::string& name, ProcessFault fault, std::mt19937_64& r
 
 }  // namespace
 
-std::vector<ProcessCase> play_process_faults(const std::vector<std::string>& scenarios,
+std::vector<ProcessCase> play_process_faults(const std::string& program,
+                                             const std::vector<std::string>& scenarios,
                                              int repetitions, std::uint64_t seed) {
   std::vector<ProcessCase> cases;
   std::mt19937_64 random(seed);
@@ -400,7 +403,7 @@ std::vector<ProcessCase> play_process_faults(const std::vector<std::string>& sce
       ProcessCase result;
       // a computer that is busy with other things may stop the run before its fault begins
       for (int tries = 0; tries < 3 && !result.has_run; ++tries) {
-        result = play(scenario, description.fault, random);
+        result = play(program, scenario, description.fault, random);
       }
       cases.push_back(std::move(result));
     }
@@ -453,4 +456,4 @@ nlohmann::ordered_json to_json(const std::vector<ProcessCase>& cases) {
   return json;
 }
 
-}  // namespace hg::apps
+}  // namespace hg::studies

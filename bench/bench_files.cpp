@@ -1,4 +1,4 @@
-#include "apps/hapticgiant/bench_files.h"
+#include "bench/bench_files.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <map>
 #include <string_view>
 
-#include "apps/hapticgiant/output_file.h"
 #include "bench/figures.h"
+#include "hg/core/whole_file.h"
 
-namespace hg::apps {
+namespace hg::bench {
 namespace {
 
 using nlohmann::ordered_json;
@@ -178,7 +178,7 @@ void check_folder(const std::string& folder) {
 
 void write_files(const std::string& folder, const BenchResults& results) {
   const auto write = [&](const char* name, const std::string& text) {
-    write_output((std::filesystem::path(folder) / name).string(), text);
+    write_whole_file((std::filesystem::path(folder) / name).string(), text);
   };
   std::string machine;
   for (const auto& [key, value] : results.machine.items()) {
@@ -197,4 +197,4 @@ void write_files(const std::string& folder, const BenchResults& results) {
   write("laws.csv", to_csv(flat_rows(rows_of(results.laws))));
 }
 
-}  // namespace hg::apps
+}  // namespace hg::bench

@@ -14,17 +14,17 @@
 #include <string>
 #include <thread>
 
-#include "apps/hapticgiant/device_memory.h"
-#include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/prepared_run.h"
-#include "apps/hapticgiant/remote_setup.h"
 #include "apps/hapticgiant/run_command.h"
-#include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/start_test_command.h"
+#include "hg/commissioning/start_test/machine_memory.h"
 #include "hg/commissioning/start_test/memory.h"
 #include "hg/core/error.h"
+#include "hg/core/whole_file.h"
 #include "hg/device/udp/device_server.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/options.h"
+#include "hg/scenario/remote/remote_setup.h"
 #include "hg/simulator/simulated_device.h"
 
 namespace hg {
@@ -58,7 +58,7 @@ class Machine {
  public:
   explicit Machine(const config::Scenario& scenario, bool is_simulated = false)
       : world_(scenario::make_simulation(scenario)),
-        server_({"127.0.0.1", "0"}, {.actual = apps::describe(scenario, true),
+        server_({"127.0.0.1", "0"}, {.actual = scenario::describe(scenario, true),
                                      .server = "test",
                                      .is_simulated = is_simulated,
                                      .lock_step_timeout_s = 60.0}),
@@ -101,11 +101,12 @@ class MachineTest : public ::testing::Test {
     start_test::Result result = {.device = device.name,
                                  .address = arguments_.device_address,
                                  .version = "test",
-                                 .files_sha256 = apps::sha256_of(device),
+                                 .files_sha256 = start_test::sha256_of(device),
                                  .ended = std::time(nullptr),
                                  .has_passed = has_passed};
-    apps::write_output(apps::start_test_file(folder_.string(), device, arguments_.device_address),
-                       to_json(result));
+    write_whole_file(
+        start_test::start_test_file(folder_.string(), device, arguments_.device_address),
+        to_json(result));
   }
   std::filesystem::path posture_file() const {
     return start_test::file_of(folder_.string(), "posture", "HapticGiant",
@@ -129,7 +130,7 @@ void expect_part(const std::string& text, const std::string& part) {
 }
 
 TEST_F(MachineTest, RunsOnlyWithAStartTestThatCounts) {
-  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  const config::Scenario scenario = scenario::load(arguments_.world);
   const Machine machine(scenario);
   arguments_.device_address = machine.address();
   expect_part(refusal(), "no start test of HapticGiant that counts: there is none");
@@ -145,7 +146,7 @@ TEST_F(MachineTest, RunsOnlyWithAStartTestThatCounts) {
 }
 
 TEST_F(MachineTest, GoesWithoutAStartTestWhereThatIsSaid) {
-  const Machine machine(apps::make_scenario(arguments_.world));
+  const Machine machine(scenario::load(arguments_.world));
   arguments_.device_address = machine.address();
   arguments_.without_start_test = true;
   const apps::PreparedRun run(arguments_);
@@ -153,7 +154,7 @@ TEST_F(MachineTest, GoesWithoutAStartTestWhereThatIsSaid) {
 }
 
 TEST_F(MachineTest, ASimulationIsAskedForNothing) {
-  const Machine machine(apps::make_scenario(arguments_.world), true);
+  const Machine machine(scenario::load(arguments_.world), true);
   arguments_.device_address = machine.address();
   const apps::PreparedRun run(arguments_);
   EXPECT_FALSE(run.is_machine);
@@ -161,7 +162,7 @@ TEST_F(MachineTest, ASimulationIsAskedForNothing) {
 }
 
 TEST_F(MachineTest, AGantryThatWasHomedThirtyCentimetresOffIsRefusedByName) {
-  Machine machine(apps::make_scenario(arguments_.world));
+  Machine machine(scenario::load(arguments_.world));
   arguments_.device_address = machine.address();
   arguments_.without_start_test = true;
   EXPECT_EQ(apps::run(arguments_), 1);  // too short for its events
@@ -186,7 +187,7 @@ TEST_F(MachineTest, AGantryThatWasHomedThirtyCentimetresOffIsRefusedByName) {
 }
 
 TEST_F(MachineTest, AfterABrakeThatDidNotHoldTheStartTestCountsNoMore) {
-  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  const config::Scenario scenario = scenario::load(arguments_.world);
   Machine machine(scenario);
   arguments_.device_address = machine.address();
   keep_result(scenario.device);
@@ -202,11 +203,11 @@ TEST_F(MachineTest, AfterABrakeThatDidNotHoldTheStartTestCountsNoMore) {
 }
 
 TEST_F(MachineTest, AFileThatCannotBeReadIsNotTakenForNone) {
-  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  const config::Scenario scenario = scenario::load(arguments_.world);
   const Machine machine(scenario);
   arguments_.device_address = machine.address();
   const std::filesystem::path result =
-      apps::start_test_file(folder_.string(), scenario.device, machine.address());
+      start_test::start_test_file(folder_.string(), scenario.device, machine.address());
   ASSERT_EQ(mkfifo(result.c_str(), 0600), 0);  // nobody writes there
   expect_part(refusal(), "expected a file, got a named pipe");
   arguments_.without_start_test = true;
@@ -222,22 +223,22 @@ TEST_F(MachineTest, AFileThatCannotBeReadIsNotTakenForNone) {
 }
 
 TEST_F(MachineTest, AStartTestOfAnotherMachineOfTheSameNameDoesNotCount) {
-  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  const config::Scenario scenario = scenario::load(arguments_.world);
   const Machine machine(scenario), other(scenario);
   arguments_.device_address = other.address();
   keep_result(scenario.device);
   EXPECT_EQ(refusal(), "");
   const std::string kept =
-      apps::start_test_file(folder_.string(), scenario.device, other.address());
+      start_test::start_test_file(folder_.string(), scenario.device, other.address());
   arguments_.device_address = machine.address();
   expect_part(refusal(), "there is none");
   std::filesystem::rename(
-      kept, apps::start_test_file(folder_.string(), scenario.device, machine.address()));
+      kept, start_test::start_test_file(folder_.string(), scenario.device, machine.address()));
   expect_part(refusal(), "it is of the device at " + other.address());
 }
 
 TEST_F(MachineTest, ADemoLeavesTheResultOfAMachine) {
-  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  const config::Scenario scenario = scenario::load(arguments_.world);
   Machine machine(scenario), demo(scenario, true);
   arguments_.device_address = machine.address();
   keep_result(scenario.device);
@@ -254,17 +255,17 @@ TEST_F(MachineTest, ADemoLeavesTheResultOfAMachine) {
 }
 
 TEST_F(MachineTest, AServerThatStillHasTheSessionBeforeIsAskedAgain) {
-  const config::Scenario scenario = apps::make_scenario(arguments_.world);
+  const config::Scenario scenario = scenario::load(arguments_.world);
   const Machine machine(scenario);
   arguments_.device_address = machine.address();
-  auto before = apps::connect_device(machine.address(), {}, scenario, true);
+  auto before = scenario::connect_device(machine.address(), {}, scenario, "test", true);
   SensorFrame sensors;
   before->read(sensors);  // it has the device
   std::thread goes([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     before.reset();
   });
-  EXPECT_NE(apps::connect_device(machine.address(), {}, scenario, true, 60.0), nullptr);
+  EXPECT_NE(scenario::connect_device(machine.address(), {}, scenario, "test", true, 60.0), nullptr);
   goes.join();
 }
 

@@ -9,7 +9,7 @@
 
 #include "hg/core/error.h"
 
-namespace hg::apps {
+namespace hg {
 
 /// A folder among the temporary files, removed with all that is in it.
 class ScratchFolder {
@@ -34,4 +34,4 @@ class ScratchFolder {
   std::string path_;
 };
 
-}  // namespace hg::apps
+}  // namespace hg

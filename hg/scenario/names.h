@@ -1,0 +1,25 @@
+/// Names in a scenario, for messages and summaries.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hg/analysis/fault_figures.h"
+#include "hg/analysis/summary.h"
+#include "hg/config/scenario.h"
+
+namespace hg::scenario {
+
+/// Names of the gantry's axes, from the base on.
+std::vector<std::string> gantry_joints(const config::Device& device);
+
+/// Names of the manipulator's joints, from the gantry on.
+std::vector<std::string> manipulator_joints(const config::Device& device);
+
+/// Names of the parts of the device for messages.
+analysis::Names part_names(const config::Scenario& scenario);
+
+/// Summary facts of a run given by its scenario: title, and the actual law, not the requested one.
+analysis::RunFacts facts_of_scenario(const config::Scenario& scenario);
+
+}  // namespace hg::scenario

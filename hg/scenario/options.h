@@ -1,0 +1,46 @@
+/// Loads a scenario, by name or from a recording, with what stands in it replaced by options.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hg/config/scenario.h"
+
+namespace hg::scenario {
+
+/// What replaces parts of a scenario: device, person, twin, simulation and law.
+struct Options {
+  std::string scenario = "door";  ///< file, or name of a shipped one
+  std::string device;             ///< device.yaml instead of the scenario's; empty = its own
+  std::string twin;               ///< twin.yaml instead of the scenario's; empty = its own
+  /// User: see config::find_script(), or "mouse" or "none"; empty = the scenario's
+  std::string user;
+  std::optional<double> rate_Hz;  ///< rate; unset = the device's
+  std::string plant;              ///< plant, "elastic" or "ideal"; empty = as the device is
+  /// Simulation, see config::find_simulation(); empty = that of the device
+  std::string simulation;
+  std::string sensors;  ///< sensors, "real" or "ideal"; empty = as the device's simulation
+  std::string hand;     ///< hand, "relaxed", "normal" or "stiff"; empty = the script's
+  std::optional<std::uint64_t> seed;  ///< seed of the simulation
+  std::optional<double> step_s;       ///< largest step of the plant
+  std::string law;                    ///< law, "gauss" or "paper"; empty = the device's
+  std::string bounds;                 ///< bounds, "recoverable" or "paper"; empty = the device's
+  std::string gantry;     ///< guidance of the gantry, "law" or "rule"; empty = the device's
+  std::string braking;    ///< braking, "alone" or "together"; empty = the device's
+  std::string passivity;  ///< passivity reaction, "off", "observe" or "act"; empty = the device's
+};
+
+/// Loads the scenario and applies the options. Throws SetupError, which names an option as the
+/// command line does: "--plant elastic: ...".
+config::Scenario load(const Options& options);
+
+/// The options that change what the scenario says, one per line, for load_recorded().
+std::string to_text(const Options& options);
+
+/// The scenario from the files that a recording holds, and the text of its options; the disk is not
+/// touched. Throws SetupError.
+config::Scenario load_recorded(std::vector<config::SourceText> sources, const std::string& options);
+
+}  // namespace hg::scenario
