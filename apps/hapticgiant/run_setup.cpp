@@ -12,7 +12,7 @@
 
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/config/describe_script.h"
+#include "hg/config/script_schema.h"
 #include "hg/config/law_names.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"
