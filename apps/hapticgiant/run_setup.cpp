@@ -12,8 +12,8 @@
 
 #include "apps/hapticgiant/paths.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/config/script_schema.h"
 #include "hg/config/law_names.h"
+#include "hg/config/script_schema.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"
 #include "hg/recording/recording_folder.h"
