@@ -7,7 +7,7 @@ set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning
 # folders and headers that only their own module includes; Eigen or YAML show in them
 set(HG_PRIVATE_FOLDERS hg/hqp/solver)
 set(HG_PRIVATE_HEADERS
-  "/config/(describe_.*|loader|range|read_chain)[.]h$")
+  "/config/(.*schema|loader)[.]h$")
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)

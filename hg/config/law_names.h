@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "hg/config/range.h"
+#include "hg/config/schema.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/safety/passivity/passivity.h"
 

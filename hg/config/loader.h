@@ -1,23 +1,24 @@
-/// Visitor that reads a described thing from one map of a YAML file.
+/// Visitor that reads a described thing from one map of a YAML file, and chains from the URDFs that
+/// these files name.
 ///
-/// A description (describe_*.h) calls one function per key: key, field, allowed values, and one
-/// line of text for the reference page. The field keeps its value, the default, unless the key is
-/// given and valid. Every function returns whether it was. Faults are collected in Faults.
+/// The field keeps its value, the default, unless the key is given and valid. Every function
+/// returns whether it was. Faults are collected in Faults. Without a chain the fault is reported,
+/// and the rest of the file is read without the names of joints and links: LoaderFile::knows_names.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
-
 #include <Eigen/Core>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "hg/config/faults.h"
-#include "hg/config/range.h"
+#include "hg/config/schema.h"
 #include "hg/config/sources.h"
+#include "hg/model/chain.h"
 
 namespace hg::config {
 
@@ -154,5 +155,26 @@ std::vector<std::string> read_keys(LoaderFile& file);
 
 /// Reads the file and lets `read` visit its top map. Throws SetupError with all faults at once.
 void load_file(LoaderFile& file, const std::function<void(Loader&)>& read);
+
+/// A URDF that could be read link by link and joint by joint.
+struct UrdfText {
+  std::filesystem::path file;
+  std::string text;
+  std::vector<std::string> link_names;
+};
+
+/// Reads a URDF. Empty, with a fault reported, if it cannot be read; an empty path was reported
+/// before.
+std::optional<UrdfText> read_urdf(LoaderFile& file, const std::filesystem::path& urdf);
+
+/// Records that there is no chain, for a reason already reported.
+std::optional<model::Chain> no_chain(LoaderFile& file);
+
+/// Name with this index; empty for -1.
+std::string name_of(const std::vector<std::string>& names, int index);
+
+/// Builds a chain from the URDF. Empty, with a fault reported, if the URDF holds no such chain.
+std::optional<model::Chain> read_chain(LoaderFile& file, const UrdfText& urdf,
+                                       const model::ChainOptions& options);
 
 }  // namespace hg::config

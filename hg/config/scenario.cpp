@@ -1,21 +1,18 @@
 #include "hg/config/scenario.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
-#include "hg/config/describe_bystander.h"
-#include "hg/config/describe_changes.h"
-#include "hg/config/describe_injections.h"
-#include "hg/config/describe_panel.h"
-#include "hg/config/describe_scenario.h"
-#include "hg/config/describe_surfaces.h"
 #include "hg/config/loader.h"
+#include "hg/config/scenario_schema.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/controller/rendering/surfaces/cast.h"
 #include "hg/core/error.h"
 
 namespace hg::config {
+
 namespace {
 
 // What load() returns; its faults join those of the scenario.
@@ -174,6 +171,30 @@ void settle_law(Scenario& scenario) {
       condition.index = static_cast<int>(limit - scenario.limits.begin());
     }
   }
+}
+
+surfaces::Surface surface_of(const SurfaceDraft& draft, SourceReader& reader) {
+  surfaces::Surface surface = draft.surface;
+  surface.pose = pose_of(draft.placement);
+  if (!std::isnan(draft.damping)) surface.damping = draft.damping;
+  switch (draft.shape) {
+    case SurfaceShape::kPlane:
+      break;
+    case SurfaceShape::kBox:
+      surface.shape = surfaces::Box{draft.size};
+      break;
+    case SurfaceShape::kSphere:
+      surface.shape = surfaces::Sphere{draft.radius};
+      break;
+    case SurfaceShape::kCylinder:
+      surface.shape = surfaces::Cylinder{draft.radius, draft.length};
+      break;
+    case SurfaceShape::kMesh:
+      surface.shape =
+          surfaces::read_stl(reader.read(draft.mesh), draft.mesh.generic_string(), draft.scale);
+      break;
+  }
+  return surface;
 }
 
 }  // namespace hg::config

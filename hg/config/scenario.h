@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "hg/config/device.h"
-#include "hg/config/faults.h"
 #include "hg/config/script.h"
 #include "hg/config/sources.h"
 #include "hg/config/twin.h"

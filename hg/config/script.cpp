@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "hg/config/describe_script.h"
 #include "hg/config/loader.h"
+#include "hg/config/script_schema.h"
 
 namespace hg::config {
 namespace {

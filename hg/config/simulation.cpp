@@ -5,9 +5,8 @@
 #include <numbers>
 #include <utility>
 
-#include "hg/config/describe_simulation.h"
 #include "hg/config/loader.h"
-#include "hg/config/read_chain.h"
+#include "hg/config/simulation_schema.h"
 #include "hg/core/error.h"
 
 namespace hg::config {

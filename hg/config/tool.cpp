@@ -1,7 +1,7 @@
 #include "hg/config/tool.h"
 
-#include "hg/config/describe_tool.h"
 #include "hg/config/loader.h"
+#include "hg/config/tool_schema.h"
 #include "hg/core/error.h"
 
 namespace hg::config {

@@ -6,10 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "hg/config/describe_twin.h"
-#include "hg/config/describe_twin_joints.h"
 #include "hg/config/loader.h"
-#include "hg/config/read_chain.h"
+#include "hg/config/twin_schema.h"
 #include "hg/core/error.h"
 #include "hg/model/haptic_giant.h"
 
@@ -95,8 +93,12 @@ void add_dofs(const TwinJoint& joint, std::vector<rendering::TwinDof>& dofs) {
     rendering::TwinDof dof;
     dof.name = joint.dof.name + " " + kDirections[i];
     dof.is_angle = i >= 3;
-    dof.damping = dof.is_angle ? joint.floating.angular_damping : joint.floating.damping;
-    dof.friction = dof.is_angle ? joint.floating.angular_friction : joint.floating.friction;
+    for (std::size_t k = 0; k < kFloatingParameters.size(); ++k) {
+      const FloatingParameter& key = kFloatingParameters[k];
+      if ((key.first_dof == 3) != dof.is_angle) continue;
+      (key.parameter == Parameter::kDamping ? dof.damping : dof.friction) =
+          joint.floating.values[k];
+    }
     dofs.push_back(dof);
   }
 }

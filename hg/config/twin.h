@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/faults.h"
 #include "hg/config/sources.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/core/types.h"

@@ -2,91 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <string>
 #include <utility>
 
-#include "hg/config/describe_changes.h"
-#include "hg/config/scenario.h"
+#include "hg/config/twin_schema.h"
+#include "hg/signals/twin_parameter.h"
 
 namespace hg::config {
 namespace {
 
-constexpr double kMark = 1.0;  // any value that all ranges allow
 constexpr int kFineSteps = 200;
-
-// Visitor that lists the keys of a change and sets the one with the number `wanted`.
-class KeyLister {
- public:
-  struct Key {
-    std::string name;
-    std::string_view unit, text;
-    Range range;
-    bool is_flag = false;
-  };
-
-  KeyLister(int joint, int wanted) : joint_(joint), wanted_(wanted) {}
-
-  std::vector<Key> keys;
-
-  bool number(std::string_view key, double& value, const Range& range, std::string_view text,
-              Need need = Need::kOptional) {
-    if (need == Need::kRequired) return false;  // when, not what
-    return add({prefix_ + std::string(key), unit_of(key), text, range}, value);
-  }
-  bool joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,
-                    std::string_view text) {
-    return number(key.of(unit), value, range, text);
-  }
-  bool vector(std::string_view key, Eigen::Vector3d& value, const Range& range,
-              std::string_view text) {
-    for (int i = 0; i < 3; ++i) {
-      std::string name = prefix_ + std::string(key) + '.';
-      name.push_back("xyz"[i]);
-      add({name, unit_of(key), text, range}, value[i]);
-    }
-    return true;
-  }
-  bool flag(std::string_view key, bool& value, std::string_view text) {
-    double number = 0.0;
-    value = add({prefix_ + std::string(key), "", text, {0.0, 1.0}, true}, number);
-    return value;
-  }
-  bool name(std::string_view, int& index, const std::vector<std::string>&, std::string_view,
-            std::string_view) {
-    index = std::max(joint_, 0);
-    return true;
-  }
-  bool group(std::string_view key, const std::function<void(KeyLister&)>& read, std::string_view) {
-    prefix_.assign(key).push_back('.');
-    read(*this);
-    prefix_.clear();
-    return true;
-  }
-  void rule(bool, std::string_view, std::string_view, std::string_view = {}) {}
-  bool is_given(std::string_view) const { return joint_ >= 0; }
-  bool covers(bool applies) const { return applies; }
-
- private:
-  bool add(const Key& key, double& value) {
-    const bool is_wanted = static_cast<int>(keys.size()) == wanted_;
-    keys.push_back(key);
-    if (is_wanted) value = kMark;
-    return is_wanted;
-  }
-
-  int joint_, wanted_;
-  std::string prefix_;
-};
-
-// Keys of a change of `joint` (-1: of the whole twin) and what the wanted one sets.
-std::pair<std::vector<KeyLister::Key>, std::vector<ParameterChange>> list(ChangesDraft draft,
-                                                                          int joint, int wanted) {
-  KeyLister lister(joint, wanted);
-  describe(lister, draft);
-  std::vector<ParameterChange> changes;
-  for (const TimedChange& timed : draft.changes) changes.push_back(timed.change);
-  return {std::move(lister.keys), std::move(changes)};
-}
 
 double value_of(const rendering::TwinModel& twin, const ParameterChange& change) {
   const auto index = static_cast<std::size_t>(std::max<int>(change.index, 0));
@@ -143,72 +68,83 @@ double round_step(double value) {
   return power;
 }
 
-void fill_range(const KeyLister::Key& key, FormField& field) {
+void fill_range(const ParameterFacts& facts, FormField& field) {
+  const bool is_flag = facts.parameter == Parameter::kGravity;
   const double size = std::isfinite(field.value) ? 10.0 * std::abs(field.value) : 0.0;
   const double largest = std::max(size, usual_largest(field.unit));
-  field.max = std::isfinite(key.range.ub) ? key.range.ub : largest;
-  field.min = std::isfinite(key.range.lb) ? key.range.lb : -largest;
-  field.step = key.is_flag ? 1.0 : round_step((field.max - field.min) / kFineSteps);
-  if (key.range.excludes_lb) field.min = field.step;
+  field.max = std::isfinite(facts.range.ub) ? facts.range.ub : largest;
+  field.min = std::isfinite(facts.range.lb) ? facts.range.lb : -largest;
+  field.step = is_flag ? 1.0 : round_step((field.max - field.min) / kFineSteps);
+  if (facts.excludes_lb) field.min = field.step;
 }
 
-// "damping" of "damping_Nms_per_rad", "force x" of "reference_wrench.force_N.x"
-std::string label_of(std::string_view key) {
-  std::string_view component;
-  if (key.size() > 2 && key[key.size() - 2] == '.') {
-    component = key.substr(key.size() - 1);
-    key.remove_suffix(2);
+// Words and unit of a field; value and range follow from the model.
+struct FieldText {
+  std::string group, key, label, help;
+};
+
+// A field that sets `count` parameters of the same kind from `index` on, all to one value.
+FormField make_field(const rendering::TwinModel& twin, const FieldText& text, Parameter parameter,
+                     int index, int count = 1) {
+  FormField field;
+  field.name = text.group.empty() ? text.key : text.group + '.' + text.key;
+  field.group = text.group;
+  field.label = text.label;
+  field.help = text.help;
+  // a component such as ".x" is no part of the unit
+  field.unit = unit_of(std::string_view(text.key).substr(0, text.key.rfind('.')));
+  for (int i = 0; i < count; ++i) {
+    field.changes.push_back({parameter, static_cast<std::int16_t>(index + i), 0.0});
   }
-  key.remove_prefix(key.find('.') + 1);  // removes the group; npos + 1 is 0
-  for (const std::string_view suffix :
-       {"_Nms2_per_rad2", "_Ns2_per_m2", "_Nms_per_rad", "_Ns_per_m", "_Nm_per_rad", "_N_per_m",
-        "_rad_per_s", "_m_per_s", "_Nm", "_N", "_rad", "_m"}) {
-    if (!key.ends_with(suffix)) continue;
-    key.remove_suffix(suffix.size());
-    break;
-  }
-  for (const auto& [symbol, words] :
-       {std::pair("q_min", "lowest position"), std::pair("q_max", "highest position"),
-        std::pair("dq_max", "largest speed")}) {
-    if (key == symbol) return words;
-  }
-  std::string label(key);
-  std::replace(label.begin(), label.end(), '_', ' ');
-  if (!component.empty()) label += ' ';
-  return label.append(component);
+  field.value = value_of(twin, field.changes.front());
+  fill_range(facts_of(parameter), field);
+  return field;
 }
 
-void add_fields(const rendering::TwinModel& twin, const ChangesDraft& draft, int joint,
-                std::vector<FormField>& form) {
-  const auto [keys, nothing] = list(draft, joint, -1);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    FormField field;
-    field.changes = list(draft, joint, static_cast<int>(i)).second;
-    const ParameterChange& first = field.changes.front();
-    // a joint's list ends with what belongs to the whole twin
-    const bool is_of_twin = first.parameter == Parameter::kReferenceWrench || first.index < 0;
-    if (is_of_twin != (joint < 0)) continue;
-    if (joint >= 0) field.group = field.name = draft.joint_names[static_cast<std::size_t>(joint)];
-    if (joint >= 0) field.name += '.';
-    field.name += keys[i].name;
-    field.label = label_of(keys[i].name);
-    field.unit = keys[i].unit;
-    field.help = keys[i].text;
-    field.value = value_of(twin, first);
-    fill_range(keys[i], field);
-    form.push_back(std::move(field));
+void add_joint(const rendering::TwinModel& twin, const model::Joint& joint,
+               std::vector<FormField>& form) {
+  if (joint.type == model::JointType::kFloating) {
+    for (const FloatingParameter& key : kFloatingParameters) {
+      form.push_back(make_field(
+          twin, {joint.name, std::string(key.key), std::string(key.label), std::string(key.help)},
+          key.parameter, joint.v_index + key.first_dof, 3));
+    }
+    return;
+  }
+  for (const ParameterFacts& facts : kParameters) {
+    if (facts.owner != ParameterOwner::kDof && facts.owner != ParameterOwner::kJoint) continue;
+    const std::string key(key_of(facts).of(unit_of(joint.type)));
+    form.push_back(make_field(twin,
+                              {joint.name, key, std::string(facts.label), std::string(facts.help)},
+                              facts.parameter, joint.v_index));
+  }
+}
+
+void add_reference_wrench(const rendering::TwinModel& twin, std::vector<FormField>& form) {
+  const std::string group(facts_of(Parameter::kReferenceWrench).key);
+  for (const WrenchParameter& part : kWrenchParameters) {
+    for (int i = 0; i < 3; ++i) {
+      const std::string axis(1, "xyz"[i]);
+      form.push_back(make_field(twin,
+                                {"", group + '.' + std::string(part.key) + '.' + axis,
+                                 std::string(part.label) + ' ' + axis, std::string(part.help)},
+                                Parameter::kReferenceWrench, part.first_component + i));
+    }
   }
 }
 
 }  // namespace
 
 std::vector<FormField> twin_form(const rendering::TwinModel& twin) {
-  const ChangesDraft draft = changes_of(twin);
   std::vector<FormField> form;
-  for (int joint = 0; joint < static_cast<int>(draft.joints.size()); ++joint) {
-    add_fields(twin, draft, joint, form);
+  for (const model::Joint& joint : twin.chain.joints()) add_joint(twin, joint, form);
+  add_reference_wrench(twin, form);
+  for (const ParameterFacts& facts : kParameters) {
+    if (facts.owner != ParameterOwner::kTwin) continue;
+    form.push_back(make_field(
+        twin, {"", std::string(facts.key), std::string(facts.label), std::string(facts.help)},
+        facts.parameter, -1));
   }
-  add_fields(twin, draft, -1, form);
   return form;
 }
 

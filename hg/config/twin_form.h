@@ -1,5 +1,5 @@
 /// The values of a twin that may change while it runs, as the fields of a form: made from the same
-/// description as the list `changes` of scenario.yaml.
+/// table, hg/signals/twin_parameter.h, as the list `changes` of scenario.yaml.
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hg/config/range.h"
+#include "hg/config/schema.h"
 
 namespace hg::pages {
 

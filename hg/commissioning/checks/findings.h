@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "hg/config/faults.h"
 #include "hg/config/sources.h"
 
 namespace hg::checks {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/signals/twin_parameter.h"
+
 namespace hg::rendering {
 namespace {
 
@@ -67,56 +69,22 @@ double* place_of(Parameter parameter, std::size_t index, TwinValues& values) noe
 // whether the twin has such a parameter
 bool is_index(const TwinModel& twin, const ParameterChange& change) noexcept {
   const int count = static_cast<int>(twin.dofs.size());
-  switch (change.parameter) {
-    case Parameter::kDamping:
-    case Parameter::kQuadraticDamping:
-    case Parameter::kFriction:
-      return change.index >= 0 && change.index < count;
-    case Parameter::kStiffness:
-    case Parameter::kRest:
-    case Parameter::kPreload:
-    case Parameter::kLowerLimit:
-    case Parameter::kUpperLimit:
-    case Parameter::kSpeedLimit:  // floating joints have neither springs nor limits
-      return change.index >= 0 && change.index < count &&
-             twin.dofs[static_cast<std::size_t>(change.index)].q_index >= 0;
-    case Parameter::kReferenceWrench:
+  const bool is_dof = change.index >= 0 && change.index < count;
+  switch (facts_of(change.parameter).owner) {
+    case ParameterOwner::kDof:
+      return is_dof;
+    case ParameterOwner::kJoint:
+      return is_dof && twin.dofs[static_cast<std::size_t>(change.index)].q_index >= 0;
+    case ParameterOwner::kWrench:
       return change.index >= 0 && change.index < 6;
-    case Parameter::kGravity:
-    case Parameter::kMassScale:
+    case ParameterOwner::kTwin:
       return true;
-    case Parameter::kNone:
-      return false;
   }
   return false;
 }
 
 bool is_value(Parameter parameter, double value) noexcept {
-  const bool is_number = std::abs(value) <= kLargest;  // false for NaN
-  switch (parameter) {
-    case Parameter::kStiffness:
-    case Parameter::kDamping:
-    case Parameter::kQuadraticDamping:
-    case Parameter::kFriction:
-      return is_number && value >= 0.0;
-    case Parameter::kRest:
-    case Parameter::kPreload:
-    case Parameter::kReferenceWrench:
-      return is_number;
-    case Parameter::kLowerLimit:
-      return is_number || value == -kInfinity;
-    case Parameter::kUpperLimit:
-      return is_number || value == kInfinity;
-    case Parameter::kSpeedLimit:
-      return value > 0.0 && (is_number || value == kInfinity);
-    case Parameter::kGravity:
-      return value >= 0.0 && value <= 1.0;
-    case Parameter::kMassScale:
-      return kMassScale.contains(value);
-    case Parameter::kNone:
-      return false;
-  }
-  return false;
+  return allows(facts_of(parameter), value) && (std::isinf(value) || std::abs(value) <= kLargest);
 }
 
 // the range of a joint and of the conditional limits that hold
@@ -166,7 +134,8 @@ TwinParameters initial_parameters(const TwinModel& twin) {
 ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
                    TwinParameters& parameters) noexcept {
   if (change.parameter == Parameter::kNone) return ChangeStatus::kNone;
-  if (!is_index(twin, change) || !is_value(change.parameter, change.value)) {
+  const bool is_known = static_cast<std::size_t>(change.parameter) <= kParameters.size();
+  if (!is_known || !is_index(twin, change) || !is_value(change.parameter, change.value)) {
     return ChangeStatus::kRefused;
   }
   const auto index = static_cast<std::size_t>(std::max<int>(change.index, 0));

@@ -8,10 +8,187 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/describe_sensors.h"
+#include "hg/config/schema.h"
 #include "hg/config/simulation.h"
+#include "hg/simulator/sensors/sensors.h"
 
 namespace hg::config {
+
+// ---- sensors of joints ----
+
+template <class V>
+void describe_joint_encoder(V& v, simulator::EncoderConfig& encoder) {
+  v.number("resolution_rad", encoder.resolution, kNotNegative,
+           "one step on its own shaft; of a prismatic joint in m, as all that follows");
+  v.number("offset_rad", encoder.offset, kNotNegative,
+           "standard deviation of what is left of the mounting offset, at the joint");
+  v.number("error_1_rad", encoder.error_1, kNotNegative,
+           "amplitude of the error once per turn of its shaft, at the joint");
+  v.number("error_2_rad", encoder.error_2, kNotNegative,
+           "the same twice per turn; of a motor also the kinematic error of its gear");
+}
+
+template <class V>
+void describe_gantry_encoder(V& v, simulator::EncoderConfig& encoder) {
+  v.number("resolution_m", encoder.resolution, kNotNegative,
+           "one step; of a revolute axis in rad, as all that follows");
+  v.number("offset_m", encoder.offset, kNotNegative, "standard deviation of the offset");
+  v.number("error_1_m", encoder.error_1, kNotNegative, "amplitude of the error once per period");
+  v.number("error_2_m", encoder.error_2, kNotNegative, "the same twice per period");
+  v.number("period_m", encoder.period, kPositive, "length over which these errors repeat");
+}
+
+template <class V>
+void describe(V& v, simulator::TorqueSensorConfig& sensor) {
+  v.number("noise", sensor.noise, kShare,
+           "standard deviation of a sample, like all here a share of the full scale, which is the "
+           "peak torque of the joint");
+  v.number("gain_error", sensor.gain_error, kShare, "standard deviation");
+  v.number("offset", sensor.offset, kShare, "standard deviation");
+  v.number("ripple", sensor.ripple, kShare,
+           "amplitude of the ripple of the gear, twice per turn of the motor");
+  v.number("range", sensor.range, kShareOrNone, "where the reading ends");
+  v.number("resolution", sensor.resolution, kShare, "one step");
+}
+
+// ---- other sensors ----
+
+/// Keys of corresponding values of gyroscope and accelerometer.
+struct InertialKeys {
+  const char *noise, *bias_instability, *random_walk, *bias, *temperature_drift, *range,
+      *resolution;
+};
+
+inline constexpr InertialKeys kGyroscopeKeys = {"noise_rad_per_s_per_sqrt_Hz",
+                                                "bias_instability_rad_per_s",
+                                                "random_walk_rad_per_s2_per_sqrt_Hz",
+                                                "bias_rad_per_s",
+                                                "temperature_drift_rad_per_s_per_K",
+                                                "range_rad_per_s",
+                                                "resolution_rad_per_s"};
+inline constexpr InertialKeys kAccelerometerKeys = {"noise_m_per_s2_per_sqrt_Hz",
+                                                    "bias_instability_m_per_s2",
+                                                    "random_walk_m_per_s3_per_sqrt_Hz",
+                                                    "bias_m_per_s2",
+                                                    "temperature_drift_m_per_s2_per_K",
+                                                    "range_m_per_s2",
+                                                    "resolution_m_per_s2"};
+
+template <class V>
+void describe(V& v, simulator::SensorFilterConfig& filter) {
+  v.number("average_s", filter.average, kNotNegative, "window of the mean");
+  v.number("delay_s", filter.delay, kNotNegative, "further delay, in steps of the plant");
+}
+
+template <class V>
+void describe(V& v, simulator::WrenchSensorConfig& sensor) {
+  Eigen::Vector3d force = sensor.full_scale.head<3>(), torque = sensor.full_scale.tail<3>();
+  v.vector("force_N", force, kPositive, "full scale of the axes of S");
+  v.vector("torque_Nm", torque, kPositive, "full scale of the axes of S");
+  sensor.full_scale << force, torque;
+  v.number("noise_N_per_sqrt_Hz", sensor.force_noise, kNotNegative,
+           "random-walk coefficient: after a mean over T the deviation is noise / sqrt(T)");
+  v.number("noise_Nm_per_sqrt_Hz", sensor.torque_noise, kNotNegative, "the same of torques");
+  v.number("gain_error", sensor.gain_error, kShare, "standard deviation");
+  v.number("shunt", sensor.shunt, {.lb = 0.0, .ub = 0.9},
+           "share of every wrench that a cable or cover carries past the sensor");
+  v.number("cross_talk", sensor.cross_talk, kShare,
+           "standard deviation, full scale of one axis on full scale of another");
+  v.number("bias", sensor.bias, kShare,
+           "when switched on: standard deviation, share of full scale");
+  v.number("bias_walk_1_per_sqrt_s", sensor.bias_walk, kNotNegative, "share of full scale");
+  v.number("temperature_drift_1_per_K", sensor.temperature_drift, kNotNegative,
+           "standard deviation, share of full scale");
+  v.number("range", sensor.range, kShareOrNone, "where an axis ends, share of full scale");
+  v.number("resolution", sensor.resolution, kShare, "one step, share of full scale");
+  v.group(
+      "filter", [&](auto& child) { describe(child, sensor.filter); }, "of the digital output");
+}
+
+template <class V>
+void describe(V& v, simulator::InertialSensorConfig& sensor, const InertialKeys& keys) {
+  v.number(keys.noise, sensor.noise, kNotNegative,
+           "random-walk coefficient: after a mean over T the deviation is noise / sqrt(T)");
+  v.number(keys.bias_instability, sensor.bias_instability, kNotNegative,
+           "flicker: the floor of the Allan deviation is 0.664 of it");
+  v.number(keys.random_walk, sensor.random_walk, kNotNegative,
+           "rate random walk: its Allan deviation after T is this times sqrt(T / 3)");
+  v.number(keys.bias, sensor.bias, kNotNegative, "when switched on: standard deviation");
+  v.number(keys.temperature_drift, sensor.temperature_drift, kNotNegative, "standard deviation");
+  v.number("scale_error", sensor.scale_error, kShare, "standard deviation");
+  v.number("misalignment_rad", sensor.misalignment, kNotNegative,
+           "standard deviation of the mounting about each axis");
+  v.number(keys.range, sensor.range, kPositiveOrNone, "where an axis ends");
+  v.number(keys.resolution, sensor.resolution, kNotNegative, "one step");
+}
+
+template <class V>
+void describe(V& v, simulator::LinkUnitConfig& unit) {
+  v.number("place_m", unit.place, kNotNegative,
+           "standard deviation of each coordinate of a unit in its link");
+  v.flag("turned", unit.is_turned, "true: anyhow; false: its axes are those of the link");
+  v.group(
+      "accelerometer",
+      [&](auto& child) { describe(child, unit.accelerometer, kAccelerometerKeys); }, "of a unit");
+  v.group(
+      "gyroscope", [&](auto& child) { describe(child, unit.gyroscope, kGyroscopeKeys); },
+      "of a unit");
+  v.group(
+      "filter", [&](auto& child) { describe(child, unit.filter); }, "of its digital output");
+}
+
+template <class V>
+void describe(V& v, simulator::TemperatureConfig& temperature) {
+  v.number("environment_K", temperature.environment, kAnyNumber,
+           "room minus temperature of the calibration");
+  v.number("self_heating_K", temperature.self_heating, kNotNegative, "in the long run");
+  v.number("time_constant_s", temperature.time_constant, kPositive, "of warming up");
+  v.number("fluctuation_K_per_sqrt_s", temperature.fluctuation, kNotNegative, "random");
+  v.number("time_on_s", temperature.time_on, kNotNegative,
+           "for how long the sensor has been on when the run starts");
+}
+
+template <class V>
+void describe(V& v, simulator::SensorsConfig& sensors) {
+  bool is_ideal = false;
+  v.flag("ideal", is_ideal, "true: no error, noise or delay but those given below");
+  if (is_ideal) sensors = simulator::ideal_sensors();
+  v.group(
+      "link_encoder", [&](auto& child) { describe_joint_encoder(child, sensors.link_encoder); },
+      "of each joint, behind the gear");
+  v.flag("differenced_velocity", sensors.has_differenced_velocity,
+         "true: the drives report the difference of the link encoder; false: the true velocity");
+  v.group(
+      "motor_encoder", [&](auto& child) { describe_joint_encoder(child, sensors.motor_encoder); },
+      "of each motor, before the gear");
+  v.group(
+      "gantry_encoder",
+      [&](auto& child) { describe_gantry_encoder(child, sensors.gantry_encoder); },
+      "of each axis of the gantry");
+  v.group(
+      "torque_sensor", [&](auto& child) { describe(child, sensors.torque); }, "of each joint");
+  v.group(
+      "wrench_sensor", [&](auto& child) { describe(child, sensors.wrench); },
+      "force/torque sensor at S");
+  v.group(
+      "accelerometer",
+      [&](auto& child) { describe(child, sensors.accelerometer, kAccelerometerKeys); },
+      "in the force/torque sensor");
+  v.group(
+      "gyroscope", [&](auto& child) { describe(child, sensors.gyroscope, kGyroscopeKeys); },
+      "in the force/torque sensor");
+  v.group(
+      "imu_filter", [&](auto& child) { describe(child, sensors.imu_filter); },
+      "of accelerometer and gyroscope; best the same as that of the wrench");
+  v.group(
+      "inertial_unit", [&](auto& child) { describe(child, sensors.link_unit); },
+      "on each link that device.yaml names in estimation.inertial_units");
+  v.group(
+      "temperature", [&](auto& child) { describe(child, sensors.temperature); },
+      "of the force/torque sensor");
+}
+
+// ---- plant ----
 
 inline constexpr Range kShareOfOne = {.lb = 0.0, .ub = 1.0};
 inline constexpr Range kPeriods = {.lb = 0.0, .ub = 1e4};

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/range.h"
+#include "hg/config/schema.h"
 #include "hg/simulator/person/person.h"
 
 namespace hg::config {

@@ -1,4 +1,4 @@
-#include "hg/config/range.h"
+#include "hg/config/schema.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "hg/config/describe_common.h"
+#include "hg/config/schema.h"
 #include "hg/core/types.h"
 
 namespace hg::config {

@@ -1,0 +1,294 @@
+/// Description of twin.yaml.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hg/config/schema.h"
+#include "hg/config/twin.h"
+#include "hg/model/chain.h"
+#include "hg/signals/twin_parameter.h"
+
+namespace hg::config {
+
+inline constexpr std::array<Choice<Surroundings>, 3> kSurroundings = {
+    {{"room", Surroundings::kRoom},
+     {"door", Surroundings::kDoor},
+     {"excavator", Surroundings::kExcavator}}};
+
+/// Damping and friction of a floating joint, the same in all directions, and its start.
+struct FloatingPart {
+  std::array<double, kFloatingParameters.size()> values{};  ///< as kFloatingParameters
+  HandPose start;
+};
+
+struct TwinJoint {
+  model::JointType type = model::JointType::kRevolute;
+  int v_index = 0;
+  JointUnit unit = JointUnit::kEither;
+  rendering::TwinDof dof;
+  double start = kNoDefault;
+  FloatingPart floating;
+};
+
+/// Content of twin.yaml, before it becomes a Twin.
+struct TwinDraft {
+  std::string name;
+  std::filesystem::path urdf;
+  Surroundings surroundings = Surroundings::kRoom;
+  bool is_free_body = false;
+  model::FreeBody body;
+  Eigen::Vector3d principal_inertia = Eigen::Vector3d::Constant(0.08);
+  Placement placement;
+  bool gravity = false;
+  bool floating_root = false;
+  ChainPart part;
+  Eigen::Vector3d force_ref = Eigen::Vector3d::Zero(), torque_ref = Eigen::Vector3d::Zero();
+  double mass_scale = 1.0;
+  std::vector<std::string> joint_names, frame_names;
+  std::vector<TwinJoint> joints;
+  std::vector<std::string> scalar_names;  ///< names of the joints that are not floating
+  std::vector<int> scalar_joints;         ///< indices of these in `joints`
+  int end_effector = -1;
+  std::vector<rendering::Lock> locks;
+  std::vector<rendering::ConditionalLimit> conditional_limits;
+
+  const TwinJoint& scalar_joint(int index) const {
+    return joints[static_cast<std::size_t>(scalar_joints[static_cast<std::size_t>(index)])];
+  }
+};
+
+template <class V>
+void describe_chain(V& v, TwinDraft& d) {
+  v.words("name", d.name, "name of the twin", Need::kRequired);
+  v.path("urdf", d.urdf,
+         "kinematics and inertia, with limits that are the defaults of joints; "
+         "together with free_body only what is drawn");
+  v.choice("surroundings", d.surroundings, kSurroundings,
+           "what the page draws around it, for the eye only: rings on the floor, the wall of "
+           "models/twins/door, or a building site");
+  d.is_free_body = v.group(
+      "free_body",
+      [&](auto& child) {
+        child.number("mass_kg", d.body.mass, kPositive, "mass");
+        child.vector("inertia_kg_m2", d.principal_inertia, kPositive,
+                     "moments of inertia about the axes of the handle, at the centre of mass");
+        child.vector("centre_of_mass_m", d.body.p_handle_com, kAnyNumber, "in the handle frame");
+      },
+      "a single rigid body: joint 'root', frame 'handle'");
+  v.rule(d.is_free_body || v.is_given("urdf"), "", "a twin needs 'urdf' or 'free_body'");
+  v.group(
+      "placement", [&](auto& child) { describe(child, d.placement); }, "of the root link in B");
+  v.flag(facts_of(Parameter::kGravity).key, d.gravity, facts_of(Parameter::kGravity).help);
+  v.flag("floating_root", d.floating_root,
+         "whether the root link of the URDF moves freely, by a joint 'root'");
+}
+
+/// Range of a parameter in the terms of the descriptions.
+constexpr Range range_of(const ParameterFacts& facts) {
+  return {.lb = facts.range.lb,
+          .ub = facts.range.ub,
+          .excludes_lb = facts.excludes_lb,
+          .allows_infinity = facts.no_limit != 0.0};
+}
+
+constexpr JointKey key_of(const ParameterFacts& facts) { return {facts.key, facts.length_key}; }
+
+/// A changeable parameter of a scalar joint.
+template <class V>
+void describe_parameter(V& v, Parameter parameter, double& value, JointUnit unit) {
+  const ParameterFacts& facts = facts_of(parameter);
+  v.joint_number(key_of(facts), unit, value, range_of(facts), facts.help);
+}
+
+template <class V>
+void describe_reference_wrench(V& v, Eigen::Vector3d& force, Eigen::Vector3d& torque) {
+  const ParameterFacts& facts = facts_of(Parameter::kReferenceWrench);
+  v.group(
+      facts.key,
+      [&](auto& child) {
+        for (const WrenchParameter& part : kWrenchParameters) {
+          child.vector(part.key, part.first_component == 0 ? force : torque, range_of(facts),
+                       part.help);
+        }
+      },
+      facts.help);
+}
+
+template <class V>
+void describe_mass_scale(V& v, double& mass_scale) {
+  const ParameterFacts& facts = facts_of(Parameter::kMassScale);
+  v.number(facts.key, mass_scale, range_of(facts), facts.help);
+}
+
+// ---- conditional limits and locks ----
+
+inline constexpr JointKey kLockPosition = {"position_rad", "position_m"};
+
+/// Ranges of joints that must all hold.
+template <class V>
+void describe_conditions(V& v, const char* key, const TwinDraft& d,
+                         std::vector<rendering::JointCondition>& conditions, const char* text) {
+  v.groups_by_name(
+      key, d.scalar_names, "a joint of the twin",
+      [&](auto& child, int index) {
+        const TwinJoint& joint = d.scalar_joint(index);
+        Interval range;
+        child.joint_number({"above_rad", "above_m"}, joint.unit, range.lb, kAnyNumber, "lower end");
+        child.joint_number({"below_rad", "below_m"}, joint.unit, range.ub, kAnyNumber, "upper end");
+        child.rule(range.bounded() && !range.empty(), "",
+                   "the condition needs 'above' or 'below', and something between them");
+        conditions.push_back({.dof = joint.v_index, .range = range});
+      },
+      text);
+}
+
+/// Name and joint of a lock or conditional limit; returns the joint.
+template <class V, class Item>
+const TwinJoint& describe_head(V& v, Item& item, const TwinDraft& d, const char* name_text,
+                               const char* joint_text) {
+  v.words("name", item.name, name_text, Need::kRequired);
+  int index = 0;
+  v.name("joint", index, d.scalar_names, "a joint of the twin", joint_text, Need::kRequired);
+  const TwinJoint& joint = d.scalar_joint(index);
+  item.dof = joint.v_index;
+  return joint;
+}
+
+template <class V>
+void describe(V& v, rendering::Lock& lock, const TwinDraft& d) {
+  const TwinJoint& joint =
+      describe_head(v, lock, d, "shown while it holds", "the joint that is held");
+  v.joint_number(kLockPosition, joint.unit, lock.position, kAnyNumber, "where it is held");
+  v.rule(joint.dof.limits.q_min <= lock.position && lock.position <= joint.dof.limits.q_max,
+         kLockPosition.of(joint.unit), "must be within the limits of the joint",
+         model::to_text(lock.position));
+  describe_conditions(v, "engaged_while", d, lock.engaged_while,
+                      "the lock holds while each of these joints is in its range; without it, "
+                      "always");
+}
+
+inline constexpr std::array<Choice<rendering::Moving>, 3> kMoving = {
+    {{"either_way", rendering::Moving::kEitherWay},
+     {"lower", rendering::Moving::kLower},
+     {"upper", rendering::Moving::kUpper}}};
+
+template <class V>
+void describe(V& v, rendering::ConditionalLimit& limit, const TwinDraft& d) {
+  const TwinJoint& joint = describe_head(v, limit, d, "for people", "the joint that is limited");
+  describe_positions(v, limit.limits, joint.unit);
+  describe_ratings(v, limit.limits, joint.unit, Need::kOptional);
+  v.choice("moving", limit.moving, kMoving, "towards which end the largest speed holds");
+  describe_conditions(v, "while", d, limit.conditions,
+                      "it holds while each of these joints is in its range; without it, always");
+  const limits::JointLimits& l = limit.limits;
+  const bool has_speed = l.dq_max < kInfinity;
+  v.rule(has_speed || l.ddq_max < kInfinity || Interval{l.q_min, l.q_max}.bounded(), "",
+         "a conditional limit needs a position, a speed or an acceleration");
+  v.rule(limit.moving == rendering::Moving::kEitherWay || has_speed, "moving",
+         "is about the largest speed, which is not given");
+  const limits::JointLimits& own = joint.dof.limits;
+  v.rule(l.q_min <= own.q_max && own.q_min <= l.q_max, "",
+         "the positions must have something in common with the limits of the joint");
+}
+
+// ---- joints ----
+
+inline constexpr JointKey kStart = {"start_rad", "start_m"};
+
+/// Spring, dampers and friction of a scalar joint.
+template <class V>
+void describe_forces(V& v, rendering::TwinDof& dof, JointUnit unit) {
+  describe_parameter(v, Parameter::kStiffness, dof.stiffness, unit);
+  describe_parameter(v, Parameter::kRest, dof.rest, unit);
+  describe_parameter(v, Parameter::kPreload, dof.preload, unit);
+  describe_parameter(v, Parameter::kDamping, dof.damping, unit);
+  describe_parameter(v, Parameter::kQuadraticDamping, dof.quadratic_damping, unit);
+  describe_parameter(v, Parameter::kFriction, dof.friction, unit);
+}
+
+template <class V>
+void describe(V& v, rendering::Closer& closer, const limits::JointLimits& limits, JointUnit unit) {
+  v.joint_number({"torque_Nm", "force_N"}, unit, closer.torque, kNotNegative,
+                 "pull at the lower limit");
+  v.joint_number({"stiffness_Nm_per_rad", "stiffness_N_per_m"}, unit, closer.stiffness,
+                 kNotNegative, "how much more it pulls away from there");
+  v.joint_number({"speed_rad_per_s", "speed_m_per_s"}, unit, closer.speed, kPositiveOrNone,
+                 "largest speed towards the lower limit");
+  v.rule(std::isfinite(limits.q_min), "", "a closer needs a joint with a lower limit");
+}
+
+/// Damping and friction of a floating joint.
+template <class V>
+void describe_forces(V& v, FloatingPart& part) {
+  for (std::size_t i = 0; i < kFloatingParameters.size(); ++i) {
+    const FloatingParameter& key = kFloatingParameters[i];
+    v.number(key.key, part.values[i], range_of(facts_of(key.parameter)), key.help);
+  }
+}
+
+template <class V>
+void describe(V& v, FloatingPart& part) {
+  describe_forces(v, part);
+  v.group(
+      "start",
+      [&](auto& child) {
+        child.number("x_m", part.start.p.x(), kAnyNumber, "in B");
+        child.number("y_m", part.start.p.y(), kAnyNumber, "in B");
+        child.number("z_m", part.start.p.z(), kAnyNumber, "in B");
+        child.number("azimuth_rad", part.start.azimuth, kAnyNumber, "about z of B, last");
+        child.number("pitch_rad", part.start.pitch, kAnyNumber, "0 = hand axis down, pi = up");
+        child.number("roll_rad", part.start.roll, kAnyNumber, "about the hand axis, first");
+      },
+      "floating joint, pose of the end effector at the start: Rz(azimuth) Ry(pi - pitch) "
+      "Rz(pi + roll)");
+}
+
+template <class V>
+void describe(V& v, TwinJoint& joint) {
+  rendering::TwinDof& dof = joint.dof;
+  const bool is_floating = joint.type == model::JointType::kFloating;
+  if (v.covers(!is_floating)) {
+    describe_positions(v, dof.limits, joint.unit);
+    describe_ratings(v, dof.limits, joint.unit, Need::kOptional);
+    describe_forces(v, dof, joint.unit);
+    v.group(
+        "closer", [&](auto& child) { describe(child, dof.closer, dof.limits, joint.unit); },
+        "pulls the joint towards its lower limit, and lets it close slowly");
+    v.joint_number(kStart, joint.unit, joint.start, kAnyNumber,
+                   "position at the start; without it the allowed one nearest to 0");
+    v.rule(std::isnan(joint.start) ||
+               (dof.limits.q_min <= joint.start && joint.start <= dof.limits.q_max),
+           kStart.of(joint.unit), "the start must be within the limits",
+           model::to_text(joint.start));
+  }
+  if (v.covers(is_floating)) describe(v, joint.floating);
+}
+
+template <class V>
+void describe_joints(V& v, TwinDraft& d) {
+  v.name("end_effector", d.end_effector, d.frame_names, "a link of the URDF",
+         "frame E, held by the user", Need::kRequired);
+  v.groups_by_name(
+      "joints", d.joint_names, "a joint of the twin",
+      [&](auto& child, int index) { describe(child, d.joints[static_cast<std::size_t>(index)]); },
+      "limits, forces and start; limits that are not given are taken from the URDF");
+  describe_reference_wrench(v, d.force_ref, d.torque_ref);
+  describe_mass_scale(v, d.mass_scale);
+  if (!v.covers(!d.scalar_joints.empty())) return;
+  v.list(
+      "conditional_limits",
+      [&](auto& child) { describe(child, d.conditional_limits.emplace_back(), d); },
+      "limits that hold under conditions, in addition to those of the joint; at most 4");
+  v.rule(d.conditional_limits.size() <= rendering::kMaxConditionalLimits, "conditional_limits",
+         "at most 4 are possible");
+  v.list(
+      "locks", [&](auto& child) { describe(child, d.locks.emplace_back(), d); },
+      "joints that are held under conditions; at most 4");
+  v.rule(d.locks.size() <= rendering::kMaxLocks, "locks", "at most 4 are possible");
+}
+
+}  // namespace hg::config
