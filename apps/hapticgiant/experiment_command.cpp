@@ -19,10 +19,12 @@
 #include "hg/config/scenario.h"
 #include "hg/core/error.h"
 #include "hg/scenario/assembly.h"
+#include "hg/studies/changes.h"
 #include "hg/studies/contact.h"
-#include "hg/studies/free_space.h"
+#include "hg/studies/haptify/figures.h"
+#include "hg/studies/haptify/free_space_variants.h"
 #include "hg/studies/haptify/hand_figures.h"
-#include "hg/studies/impedance.h"
+#include "hg/studies/haptify/impedance.h"
 #include "hg/studies/inertial.h"
 #include "hg/studies/seed_ranges.h"
 #include "hg/studies/stability_map.h"
@@ -30,6 +32,9 @@
 
 namespace hg::apps {
 namespace {
+
+// of the first repetition of `hapticgiant haptify`, whose numbers are repeated
+constexpr std::uint64_t kSeed = haptify::Options{}.seed;
 
 // With another device or simulation where they are given.
 config::Scenario walk_scenario(const std::string& device = "", const std::string& simulation = "") {
@@ -75,10 +80,15 @@ std::vector<std::pair<std::string, haptify::HandFigures>> felt_with_units(
 }  // namespace
 
 int experiment_free_space(const ExperimentArguments& arguments) {
-  begin(arguments, "Free space: a hand walks a free body round a circle of 0.7 m at 0.25 m/s\n");
-  const auto runs = studies::measure_free_space(walk_scenario(), progress_of("walks"));
-  print_out(studies::to_text(runs));
-  write_json(arguments.json, studies::to_json(runs));
+  const haptify::FreeSpaceConfig config;
+  begin(arguments,
+        fmt::format("Free space: a hand leads a free body on random strokes for {:g} s, seed {}, "
+                    "as in `hapticgiant haptify`\n\n",
+                    config.duration_s, kSeed));
+  const auto runs =
+      haptify::measure_variants(walk_scenario(), config, kSeed, progress_of("variants"));
+  print_out(haptify::to_text(runs));
+  write_json(arguments.json, haptify::to_json(runs));
   return 0;
 }
 
@@ -96,13 +106,15 @@ int experiment_stability_map(const ExperimentArguments& arguments) {
 }
 
 int experiment_impedance(const ExperimentArguments& arguments) {
-  const studies::ImpedanceConfig config;
-  begin(arguments,
-        fmt::format("Impedance at the handle, pushed to and fro with {:g} N\n\n", config.force));
-  const studies::ImpedanceReport report =
-      studies::measure_impedance(walk_scenario(), config, progress_of("pushes"));
-  print_out(studies::to_text(report));
-  write_json(arguments.json, studies::to_json(report));
+  const haptify::ImpedanceConfig config;
+  begin(arguments, fmt::format("Impedance at the handle, pushed to and fro with {:g} N, as in "
+                               "`hapticgiant haptify`\n\n",
+                               config.response.force));
+  const config::Scenario scenario = walk_scenario();
+  const studies::FreeTwin twin = studies::free_twin_of(scenario);
+  const auto runs = haptify::measure_impedance(scenario, config, kSeed, progress_of("pushes"));
+  print_out(haptify::to_text(runs, config, twin));
+  write_json(arguments.json, haptify::to_json(runs, twin));
   return 0;
 }
 

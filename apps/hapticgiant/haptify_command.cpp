@@ -6,8 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
-#include "apps/hapticgiant/experiments/docs_page.h"
+#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/haptify_report.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
@@ -46,6 +47,15 @@ std::string command_of(const HaptifyArguments& arguments) {
   return command + (options.is_quick ? " --quick" : "");
 }
 
+// writes results.json and what is made of it; the user is told of `page`
+void report(const HaptifyArguments& arguments, const nlohmann::ordered_json& results,
+            const std::string& page) {
+  const fs::path folder = arguments.out;
+  write_output((folder / "results.json").string(), results.dump() + "\n");
+  write_report(folder, arguments.docs);
+  print_out(fmt::format("\nreport      {}\n", (folder / page).string()));
+}
+
 int write_goals(const HaptifyArguments& arguments) {
   const config::Scenario scenario =
       scenario::load({.scenario = "walk", .simulation = arguments.simulation});
@@ -55,13 +65,7 @@ int write_goals(const HaptifyArguments& arguments) {
                       .simulation = arguments.simulation});
   const haptify::Benchmark goals = haptify::measure_goals(scenario, light, arguments.options, tell);
   print_out(goals_text(goals));
-  const fs::path folder = arguments.out;
-  const std::string markdown = goals_markdown(goals, command_of(arguments));
-  write_output((folder / "goals.md").string(), "# Goals\n\n" + markdown);
-  write_output((folder / "goals.csv").string(), table_csv(haptify::goals_table(goals)));
-  write_output((folder / "goals_runs.csv").string(), repetitions_csv(goals));
-  if (!arguments.docs.empty()) refresh_page(arguments.docs, "goals", markdown, {});
-  print_out(fmt::format("\nreport      {}\n", (folder / "goals.md").string()));
+  report(arguments, results_json(goals, "goals", command_of(arguments)), "goals.md");
   return goals.failures.empty() ? 0 : 1;
 }
 
@@ -72,6 +76,7 @@ int run_haptify(const HaptifyArguments& arguments) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());
+  check_report_program();  // before minutes of measurements
   print_out(fmt::format(
       "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
       kVersion));
@@ -79,21 +84,8 @@ int run_haptify(const HaptifyArguments& arguments) {
   const config::Scenario scenario = scenario::load(
       {.scenario = "walk", .twin = arguments.twin, .simulation = arguments.simulation});
   const haptify::Benchmark result = haptify::measure(scenario, arguments.options, tell);
-  const std::string command = command_of(arguments);
-
   print_out(haptify_text(result));
-  const auto write = [&](const std::string& name, const std::string& text) {
-    write_output((folder / name).string(), text);
-  };
-  write("report.html", haptify_html(result, command));
-  const std::string markdown = haptify_markdown(result, command);
-  write("report.md", "# Haptify\n\n" + markdown);
-  write("table.tex", haptify_latex(result));
-  write("haptify.csv", haptify_csv(result));
-  write("repetitions.csv", repetitions_csv(result));
-  for (const haptify::Table& table : result.tables) write(table.id + ".csv", table_csv(table));
-  if (!arguments.docs.empty()) refresh_page(arguments.docs, "haptify", markdown, {});
-  print_out(fmt::format("\nreport      {}\n", (folder / "report.html").string()));
+  report(arguments, results_json(result, "haptify", command_of(arguments)), "report.html");
   return result.failures.empty() ? 0 : 1;
 }
 

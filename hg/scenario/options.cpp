@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "hg/config/describe_script.h"
+#include "hg/config/script_schema.h"
 #include "hg/config/law_names.h"
 #include "hg/config/shipped_files.h"
 #include "hg/controller/rendering/catalogue.h"

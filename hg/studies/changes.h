@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hg/config/scenario.h"
-#include "hg/studies/motion_analysis.h"
+#include "hg/studies/free_twin.h"
 
 namespace hg::studies {
 

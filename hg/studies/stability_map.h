@@ -10,7 +10,7 @@
 #include "hg/config/scenario.h"
 #include "hg/controller/safety/passivity/passivity.h"
 #include "hg/simulator/person/hand.h"
-#include "hg/studies/motion_analysis.h"
+#include "hg/studies/decay.h"
 #include "hg/studies/workers.h"
 
 namespace hg::studies {

@@ -19,6 +19,7 @@ except ImportError:
 
 NO_MATPLOTLIB = 3
 WIDTH = 7.2  # inches: both columns of a paper
+LEGEND_ROW = 0.17  # inches, of the height that a row adds to a panel
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c564b")
 STYLES = ("-", (0, (4, 1.5)), (0, (1, 1)), (0, (5, 1, 1, 1)))
 SETTINGS = {
@@ -99,9 +100,33 @@ def make_room(panel, share):
     panel.set_ylim(low, high + share * (high - low))
 
 
+def columns_that_fit(labels, width, most=6):
+    """Columns of a legend with these labels that fit into a width in inches, at least one."""
+    from matplotlib import rcParams
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextPath
+    size = FontProperties(size=rcParams["legend.fontsize"]).get_size_in_points()
+    font = FontProperties(family=rcParams["font.family"], size=size)
+    text = max((TextPath((0, 0), label, prop=font).get_extents().width for label in labels if label),
+               default=0.0)
+    each = text + size * (rcParams["legend.handlelength"] + rcParams["legend.handletextpad"]
+                          + rcParams["legend.columnspacing"])
+    return int(np.clip(72.0 * width // each, 1, min(most, max(len(labels), 1))))
+
+
 def legend(panel, columns, **options):
-    make_room(panel, 0.24)
-    panel.legend(loc="upper left", ncol=columns, **options)
+    """A legend above the curves, in a band that they do not reach, as wide as the panel at most."""
+    handles, labels = panel.get_legend_handles_labels()
+    if not handles:
+        return
+    figure = panel.figure
+    width = panel.get_position().width * figure.get_figwidth()
+    made = panel.legend(handles, labels, loc="upper left",
+                        ncol=columns_that_fit(labels, width, columns), **options)
+    height = made.get_window_extent(figure.canvas.get_renderer()).height
+    height /= panel.get_window_extent().height
+    share = min(height + 0.06, 0.8)
+    make_room(panel, share / (1.0 - share))
 
 
 def draw_signals(panel, runs, entries, label, legend_columns=6):
@@ -181,7 +206,10 @@ def draw_top_view(panel, runs, from_s=-np.inf, to_s=np.inf):
     panel.set_aspect("equal", adjustable="box", anchor="N")
     panel.set_xlabel("x in m")
     panel.set_ylabel("y in m")
-    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncol=3, columnspacing=0.9)
+    from matplotlib.transforms import ScaledTranslation
+    below = ScaledTranslation(0.0, -0.36, panel.figure.dpi_scale_trans)  # label and ticks of x
+    panel.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=3, columnspacing=0.9,
+                 bbox_transform=panel.transAxes + below)
 
 
 def mark_places(panel, run, places):
@@ -263,7 +291,7 @@ def finish_time_panels(figure, panels, runs):
 def beside_top_view(figure, heights):
     """Panels over each other at the left, one over their whole height at the right."""
     grid = figure.add_gridspec(len(heights), 2, width_ratios=(1.75, 1), height_ratios=heights,
-                               hspace=0.12, wspace=0.32)
+                               hspace=0.12, wspace=0.42)
     left = [figure.add_subplot(grid[row, 0]) for row in range(len(heights))]
     return left, figure.add_subplot(grid[:, 1])
 
@@ -330,8 +358,14 @@ def any_run(figure, runs):
                                  for run in runs)]
     if "twin" in names:
         names.append("torques")
-    figure.set_size_inches(WIDTH, max(3.2, 1.25 * len(names) + 0.8))
-    panels, top = beside_top_view(figure, [1.6 if name == "manipulator" else 1 for name in names])
+    width = 0.42 * WIDTH  # of the panels at the left
+    heights = []
+    for name in names:
+        labels = [entry["name"] for entry in facts.get("twin" if name == "torques" else name, [])]
+        rows = -(-len(labels) // columns_that_fit(labels, width))
+        heights.append((2.0 if name == "manipulator" else 1.25) + LEGEND_ROW * max(rows - 1, 0))
+    figure.set_size_inches(WIDTH, max(3.2, sum(heights) + 0.8))
+    panels, top = beside_top_view(figure, heights)
     for name, panel in zip(names, panels):
         if name == "wrench":
             draw_wrench(panel, runs)

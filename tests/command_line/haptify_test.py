@@ -4,9 +4,11 @@ Usage: haptify_test.py PROGRAM   (from the repository root)
 """
 
 import csv
+import os
+import subprocess
 import unittest
 
-from program import TemporaryFolder, run
+from program import PROGRAM, TemporaryFolder, run
 
 TABLE = ["workspace_volume", "free_space_force", "free_space_vibration", "free_space_centroid",
          "frictionless_surface", "stiffness_accuracy", "stiffness_peak_force"]
@@ -31,7 +33,7 @@ class Haptify(TemporaryFolder):
         two, _ = self.measure("two")
         names = sorted(file.name for file in one.iterdir())
         self.assertEqual(names, sorted(file.name for file in two.iterdir()))
-        self.assertLessEqual({"report.html", "report.md", "table.tex", "haptify.csv",
+        self.assertLessEqual({"results.json", "report.html", "report.md", "table.tex", "haptify.csv",
                               "repetitions.csv", "transparency.csv", "z_width.csv", "impacts.csv",
                               "felt_mass.csv", "rotation.csv", "springs.csv"}, set(names))
         for name in names:
@@ -52,6 +54,21 @@ class Haptify(TemporaryFolder):
             self.assertNotIn("nan", text.split(), name)
         self.assertIn("ours, simulated", out)
         self.check_that_forms_agree(one, rows)
+        self.check_pictures((one / "report.html").read_text())
+
+    def check_pictures(self, html):
+        self.assertIn("at a glance", html)
+        self.assertEqual(html.count("<svg"), 11)
+        for outside in ("<script", "<link", "src="):
+            self.assertNotIn(outside, html)
+
+    def test_without_python_nothing_is_measured(self):
+        environment = {**os.environ, "HAPTICGIANT_PYTHON": "/bin/false-no-such-python"}
+        done = subprocess.run([PROGRAM, "haptify", "--quick", "--out", self.folder / "no"],
+                              capture_output=True, text=True, timeout=60, env=environment)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertIn("needs matplotlib and jinja2; tools/setup.sh build", done.stderr)
+        self.assertNotIn("runs", done.stderr)
 
     def check_that_forms_agree(self, folder, rows):
         markdown = (folder / "report.md").read_text()

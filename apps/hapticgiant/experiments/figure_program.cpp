@@ -9,13 +9,14 @@
 #include <cstdlib>
 
 #include "hg/config/shipped_files.h"
+#include "hg/core/error.h"
 
 namespace hg::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNoMatplotlib = 3;  // exit code of figures.py
+constexpr int kNoMatplotlib = 3;  // exit code of figures.py and of report
 
 std::string interpreter(const fs::path& root) {
   if (const char* chosen = std::getenv("HAPTICGIANT_PYTHON")) {
@@ -47,30 +48,58 @@ int run_program(std::vector<std::string> words) {
   return WEXITSTATUS(status);
 }
 
-}  // namespace
-
-std::string draw_figures(const fs::path& out, const std::vector<fs::path>& folders) {
+// Words that start `name`, a file or folder of python/hapticgiant, or its module where the package
+// is installed.
+std::vector<std::string> program_of(const std::string& name, const std::string& module) {
   const fs::path home = config::installation_root();
-  const fs::path script = home / "python" / "hapticgiant" / "figures.py";
-  const std::string python = interpreter(home);
+  const fs::path script = home / "python" / "hapticgiant" / name;
   std::error_code error;
-  std::vector<std::string> words = {python, "-B"};
+  std::vector<std::string> words = {interpreter(home), "-B"};
   if (!home.empty() && fs::exists(script, error)) {
     words.push_back(script.string());
   } else {
-    words.insert(words.end(), {"-m", "hapticgiant.figures"});
+    words.insert(words.end(), {"-m", module});
   }
+  return words;
+}
+
+bool is_incomplete(int code) { return code == 127 || code == kNoMatplotlib; }
+
+}  // namespace
+
+std::string draw_figures(const fs::path& out, const std::vector<fs::path>& folders) {
+  std::vector<std::string> words = program_of("figures.py", "hapticgiant.figures");
   words.push_back(fs::absolute(out).string());
   for (const fs::path& folder : folders) words.push_back(fs::absolute(folder).string());
   const int code = run_program(words);
   if (code == 0) return {};
-  if (code == 127 || code == kNoMatplotlib) {
+  if (is_incomplete(code)) {
     return fmt::format(
         "no figures: {} has no matplotlib; tools/setup.sh build, or pip install "
         "matplotlib, then the same command again",
-        python);
+        words[0]);
   }
   return fmt::format("no figures: {} ended with {}", words[2], code);
+}
+
+void check_report_program() {
+  std::vector<std::string> words = program_of("report", "hapticgiant.report");
+  words.emplace_back("--check");
+  if (run_program(words) == 0) return;
+  throw SetupError(fmt::format(
+      "{} cannot write the report: it needs matplotlib and jinja2; tools/setup.sh build, or pip "
+      "install matplotlib jinja2, then the same command again",
+      words[0]));
+}
+
+void write_report(const fs::path& folder, const std::string& docs) {
+  std::vector<std::string> words = program_of("report", "hapticgiant.report");
+  words.push_back(fs::absolute(folder).string());
+  if (!docs.empty()) words.insert(words.end(), {"--docs", fs::absolute(docs).string()});
+  const int code = run_program(words);
+  if (code == 0) return;
+  throw SetupError(fmt::format("{}: no report: {} ended with {}; the results are kept",
+                               (folder / "results.json").string(), words[2], code));
 }
 
 }  // namespace hg::apps

@@ -1,4 +1,4 @@
-/// Draws figures with the installed Python, if available.
+/// Draws figures and writes reports with the installed Python.
 #pragma once
 
 #include <filesystem>
@@ -15,5 +15,12 @@ namespace hg::apps {
 /// of the installation (shipped_files.h), else python3.
 std::string draw_figures(const std::filesystem::path& out,
                          const std::vector<std::filesystem::path>& folders);
+
+/// Throws SetupError, with what to install, unless write_report() can work.
+void check_report_program();
+
+/// Writes report and tables beside results.json in `folder` (python/hapticgiant/report), and
+/// refreshes the figures in the page of this report in `docs`; empty = none. Throws SetupError.
+void write_report(const std::filesystem::path& folder, const std::string& docs);
 
 }  // namespace hg::apps

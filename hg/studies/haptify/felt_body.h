@@ -9,7 +9,7 @@
 
 #include "hg/config/scenario.h"
 #include "hg/simulator/person/hand.h"
-#include "hg/studies/motion_analysis.h"
+#include "hg/studies/decay.h"
 
 namespace hg::haptify {
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,24 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// A measured curve, for pictures.
+struct Curve {
+  std::string id;       ///< what is drawn over x: "transparency"
+  std::string name;     ///< name among the curves of this id: "x"
+  std::string x_label;  ///< with its unit
+  std::vector<double> x;
+  std::map<std::string, std::vector<double>> y;  ///< columns over x, as many values each
+};
+
+/// A cloud of points seen along one axis: the number of points in each cell of a plane.
+struct View {
+  int across = 0, up = 1;              ///< axes 0..2 of B that are drawn
+  double left = 0.0, bottom = 0.0;     ///< corner of the first cell, m
+  double cell = 0.0;                   ///< edge of a cell, m
+  std::vector<std::vector<int>> rows;  ///< number of points, from the bottom up
+  std::vector<double> box;             ///< limits: left, right, bottom, top, m; empty = none
+};
+
 struct Options {
   std::uint64_t seed = 1;  ///< seed of the first repetition; the others follow
   int repetitions = 5;
@@ -59,6 +78,8 @@ struct Benchmark {
   std::vector<Figure> table;   ///< figures of Table III
   std::vector<Figure> beyond;  ///< figures beyond Table III
   std::vector<Table> tables;
+  std::vector<Curve> curves;
+  std::vector<View> workspace;        ///< the workspace from above and from two sides
   std::vector<std::string> failures;  ///< measurements that failed, in words; empty = none
 
   const Figure* find(const std::string& id) const;

@@ -6,7 +6,6 @@
 
 #include "hg/commissioning/checks/survey.h"
 #include "hg/studies/changes.h"
-#include "hg/studies/motion_analysis.h"
 #include "hg/studies/player.h"
 
 namespace hg::haptify {
@@ -45,7 +44,7 @@ person::Script exploration(const FreeSpaceConfig& config, const config::HandPose
 }
 
 FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceConfig& config,
-                             std::uint64_t seed) {
+                             std::uint64_t seed, const Disturbance& disturbance) {
   const studies::FreeTwin twin = studies::free_twin_of(scenario);
   const Pose start = scenario.twin.T_B_root;
   const auto& q = scenario.twin.model.q_start;
@@ -55,25 +54,26 @@ FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceCo
   config::Scenario led = with_script(scenario, exploration(config, hand, seed));
   studies::set_seed(led, seed);
 
-  const Played played = play(led);
+  const Played played = play(led, disturbance);
   const double rate_Hz = led.device.rate_Hz;
-  std::vector<studies::HandleSample> motion;
+  std::vector<HandleSample> motion;
   std::vector<Eigen::Vector3d> acceleration;
   FreeSpace result = {.failure = played.failure};
   double squares = 0.0, limited = 0.0, apart = 0.0;
   for (const Instant& now : played.instants) {
-    motion.push_back(
-        {now.T_B_H.p, now.twist.head<3>(), now.acceleration.head<3>(), now.w_H.head<3>()});
+    motion.push_back({now.twist.head<3>(), now.acceleration.head<3>(), now.w_H.head<3>()});
     if (now.time_s < config.settling_s) continue;
     acceleration.push_back(now.acceleration.head<3>());
     squares += now.twist.head<3>().squaredNorm();
     result.path += now.twist.head<3>().norm() / rate_Hz;
     limited += now.is_limited ? 1.0 : 0.0;
     apart += (now.T_B_H.p - now.p_B_E).squaredNorm();
+    result.joint_error = std::max(result.joint_error, now.joint_error);
+    result.torque_share = std::max(result.torque_share, now.torque_share);
   }
   if (acceleration.empty()) return result;
   const auto count = static_cast<double>(acceleration.size());
-  const studies::Feel feel = studies::feel(motion, twin, rate_Hz, config.settling_s);
+  const Feel feel = haptify::feel(motion, twin, rate_Hz, config.settling_s);
   const Vibration shaking = vibration(acceleration, rate_Hz);
   result.force = feel.force;
   result.own_share = feel.own_share;
@@ -82,6 +82,8 @@ FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceCo
   result.vibration_rms = shaking.rms;
   result.centroid_Hz = shaking.centroid_Hz;
   result.band_rms = shaking.band_rms;
+  result.acceleration_5Hz = feel.acceleration_5Hz;
+  result.spectrum = shaking.spectrum;
   const double density = led.device.simulation.sensors.accelerometer.noise;
   const Vibration seen = vibration(with_noise(acceleration, density, rate_Hz, seed), rate_Hz);
   result.seen_rms = seen.rms;

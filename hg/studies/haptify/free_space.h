@@ -1,5 +1,6 @@
 /// Global free-space forces and vibrations: a hand leads a free body slowly through the workspace.
 ///
+/// The one definition of force, added force, vibration and centroid in free space.
 /// Source: [HANDBOOK] 7. Measures the true force of the person and the true acceleration of the
 /// handle.
 #pragma once
@@ -36,18 +37,22 @@ struct FreeSpace {
   double vibration_rms = 0.0;  ///< m/s^2
   double centroid_Hz = 0.0;
   std::array<double, kBandEdges.size() - 1> band_rms{};  ///< m/s^2
+  double acceleration_5Hz = 0.0;  ///< rms of the acceleration above 5 Hz, m/s^2
+  Spectrum spectrum;              ///< spectrum of the vibration, m/s^2/sqrt(Hz)
   /// Rms vibration as measured by an accelerometer like the device's own, m/s^2
   double seen_rms = 0.0;
   double seen_centroid_Hz = 0.0;
   double limited_share = 0.0;  ///< share of the time in which a limit was felt
   double path = 0.0;           ///< length of the path, m
   double distance_rms = 0.0;   ///< rms distance of the true handle from the twin, m
+  double joint_error = 0.0;    ///< largest difference of reference and true link, rad or m
+  double torque_share = 0.0;   ///< largest motor torque over its peak
   std::string failure;
 };
 
 /// Measures free-space forces and vibrations. Throws SetupError unless the twin of `scenario` is a
 /// free body.
 FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceConfig& config,
-                             std::uint64_t seed);
+                             std::uint64_t seed, const Disturbance& disturbance = {});
 
 }  // namespace hg::haptify

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "hg/config/scenario.h"
+#include "hg/studies/free_twin.h"
 #include "hg/studies/haptify/benchmark.h"
 #include "hg/studies/haptify/figures.h"
-#include "hg/studies/motion_analysis.h"
+#include "hg/studies/haptify/free_space.h"
 #include "hg/studies/workers.h"
 
 namespace hg::haptify {
@@ -41,6 +42,9 @@ struct Group {
     return false;
   }
 };
+
+/// The spectrum of a vibration as a curve, from kVibrationBand to 500 Hz.
+Curve vibration_curve(const std::string& id, const std::string& name, const FreeSpace& measured);
 
 void add_workspace(const Group& group);
 void add_free_space(const Group& group);

@@ -4,7 +4,7 @@
 
 #include "hg/simulator/person/hand.h"
 #include "hg/studies/changes.h"
-#include "hg/studies/free_space.h"
+#include "hg/studies/haptify/free_space.h"
 #include "hg/studies/haptify/response.h"
 #include "hg/studies/haptify/surface.h"
 #include "hg/studies/stability_map.h"
@@ -35,14 +35,13 @@ studies::Verdict wall(config::Scenario scenario, double mass) {
 
 HandFigures measure_hand_figures(const config::Scenario& scenario) {
   const std::uint64_t seed = scenario.device.simulation.seed;
-  const studies::FreeSpaceRun walk =
-      studies::walk(scenario, studies::free_space_variants().front());
+  const FreeSpace walk = measure_free_space(scenario, FreeSpaceConfig{}, seed);
   const Latency latency = measure_latency(scenario, ResponseConfig{}, 0, seed);
   return {.transparency_Hz = transparency(scenario, seed),
           .latency_s = latency.failure.empty() ? latency.motion_s : 0.0,
-          .extra_force = walk.feel.extra,
-          .vibration = walk.feel.vibration_20,
-          .centroid_Hz = walk.feel.centroid_Hz,
+          .extra_force = walk.extra,
+          .vibration = walk.vibration_rms,
+          .centroid_Hz = walk.centroid_Hz,
           .joint_error = walk.joint_error,
           .light_normal = after_kick(scenario, person::HandPreset::kNormal, 0.3),
           .light_stiff = after_kick(scenario, person::HandPreset::kStiff, 0.4),

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hg/config/scenario.h"
-#include "hg/studies/motion_analysis.h"
+#include "hg/studies/decay.h"
 
 namespace hg::haptify {
 
@@ -16,17 +16,17 @@ struct HandFigures {
   /// Frequency up to which felt over body is within 3 dB, 10 N; 0 = a fault
   double transparency_Hz = 0.0;
   double latency_s = 0.0;     ///< latency of the handle behind an ideal twin, 10 N; 0 = a fault
-  double extra_force = 0.0;   ///< extra force on a slow walk, N
-  double vibration = 0.0;     ///< vibration on the walk, above 20 Hz, m/s^2
+  double extra_force = 0.0;   ///< force that the device adds in free space, N
+  double vibration = 0.0;     ///< vibration in free space, above 20 Hz, m/s^2
   double centroid_Hz = 0.0;   ///< centroid of the vibration
-  double joint_error = 0.0;   ///< largest reference minus true link on the walk, rad
+  double joint_error = 0.0;   ///< largest reference minus true link in free space, rad
   double light_normal = 0.0;  ///< speed of 0.3 kg in a normal hand, seconds after a kick, m/s
   double light_stiff = 0.0;   ///< speed of 0.4 kg in a stiff hand, likewise, m/s
   std::array<studies::Verdict, 2>
       wall{};  ///< wall of 20 kN/m against 6 kg and 3 kg, in a normal hand
 };
 
-/// Measures the key figures. `scenario`: a slow walk with a free twin.
+/// Measures the key figures. The twin of `scenario` is a free body.
 HandFigures measure_hand_figures(const config::Scenario& scenario);
 
 /// Table with a row for each set of figures.

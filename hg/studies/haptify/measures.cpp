@@ -9,12 +9,41 @@
 #include "hg/analysis/truth_summary.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/simulator/random_stream.h"
-#include "hg/studies/motion_analysis.h"
 
 namespace hg::haptify {
 namespace {
 
 using Signal = std::vector<Eigen::Vector3d>;
+constexpr double kPi = std::numbers::pi;
+
+// Second-order Butterworth low-pass.
+class LowPass {
+ public:
+  LowPass(double cutoff_Hz, double rate_Hz) noexcept {
+    const double k = std::tan(kPi * cutoff_Hz / rate_Hz);
+    const double norm = 1.0 / (1.0 + std::numbers::sqrt2 * k + k * k);
+    b_ = k * k * norm;
+    a1_ = 2.0 * (k * k - 1.0) * norm;
+    a2_ = (1.0 - std::numbers::sqrt2 * k + k * k) * norm;
+  }
+
+  Eigen::Vector3d step(const Eigen::Vector3d& x) noexcept {
+    const Eigen::Vector3d y = b_ * (x + 2.0 * x1_ + x2_) - a1_ * y1_ - a2_ * y2_;
+    x2_ = x1_;
+    x1_ = x;
+    y2_ = y1_;
+    y1_ = y;
+    return y;
+  }
+
+ private:
+  double b_, a1_, a2_;
+  Eigen::Vector3d x1_ = Eigen::Vector3d::Zero(), x2_ = x1_, y1_ = x1_, y2_ = x1_;
+};
+
+std::size_t count_of(double seconds, double rate_Hz) {
+  return static_cast<std::size_t>(std::llround(seconds * rate_Hz));
+}
 
 // Forwards and backwards: fourth order, no phase.
 Signal above_band(std::span<const Eigen::Vector3d> input, double rate_Hz) {
@@ -61,6 +90,85 @@ std::array<double, kBandEdges.size() - 1> band_rms(const std::vector<double>& si
 
 }  // namespace
 
+Feel feel(std::span<const HandleSample> motion, const studies::FreeTwin& twin, double rate_Hz,
+          double settling) {
+  const std::size_t first = count_of(settling, rate_Hz);
+  if (motion.size() <= first) return {};
+  LowPass own_share(kForceBand, rate_Hz), extra(kForceBand, rate_Hz);
+  analysis::HighPass above_5(5.0, rate_Hz);
+  Feel sum;
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    const HandleSample& now = motion[i];
+    const Eigen::Vector3d own = twin.mass * now.a + twin.damping * now.v;
+    const double own_now = own_share.step(own).norm();
+    const double extra_now = extra.step(now.f - own).norm();
+    const double squares_5 = above_5.step(now.a).squaredNorm();
+    if (i < first) continue;
+    sum.force += now.f.norm();
+    sum.own_share += own_now;
+    sum.extra += extra_now;
+    sum.acceleration_5Hz += squares_5;
+  }
+  const auto count = static_cast<double>(motion.size() - first);
+  return {.force = sum.force / count,
+          .own_share = sum.own_share / count,
+          .extra = sum.extra / count,
+          .acceleration_5Hz = std::sqrt(sum.acceleration_5Hz / count)};
+}
+
+Spectrum spectrum(std::span<const Eigen::Vector3d> signal, double rate_Hz) {
+  constexpr double kWindow = 0.5;  // s
+  const std::size_t length = count_of(kWindow, rate_Hz);
+  if (length == 0 || signal.size() < length) return {};
+  std::vector<double> hann(length), part(length);
+  double weight = 0.0;
+  for (std::size_t i = 0; i < length; ++i) {
+    hann[i] =
+        0.5 - 0.5 * std::cos(2.0 * kPi * static_cast<double>(i) / static_cast<double>(length));
+    weight += hann[i] * hann[i];
+  }
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> bins;
+  Spectrum result = {.step_Hz = rate_Hz / static_cast<double>(length),
+                     .magnitude = std::vector<double>(length / 2 + 1, 0.0)};
+  double windows = 0.0;
+  for (std::size_t begin = 0; begin + length <= signal.size(); begin += length / 2) {
+    windows += 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < length; ++i) part[i] = hann[i] * signal[begin + i][axis];
+      fft.fwd(bins, part);
+      for (std::size_t i = 0; i < result.magnitude.size(); ++i) {
+        result.magnitude[i] += std::norm(bins[i]);
+      }
+    }
+  }
+  for (double& value : result.magnitude) {
+    value = std::sqrt(2.0 * value / (windows * weight * rate_Hz));
+  }
+  return result;
+}
+
+double spectral_centroid(const Spectrum& spectrum) {
+  constexpr double kLowest = 20.0, kHighest = 500.0;  // Hz
+  double weights = 0.0, moments = 0.0;
+  for (std::size_t i = 0; i < spectrum.magnitude.size(); ++i) {
+    const double frequency = static_cast<double>(i) * spectrum.step_Hz;
+    if (frequency < kLowest || frequency > kHighest) continue;
+    weights += spectrum.magnitude[i];
+    moments += spectrum.magnitude[i] * frequency;
+  }
+  return weights > 0.0 ? moments / weights : 0.0;
+}
+
+std::complex<double> phasor(std::span<const double> x, double frequency_Hz, double rate_Hz) {
+  std::complex<double> sum = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double angle = 2.0 * kPi * frequency_Hz * static_cast<double>(i) / rate_Hz;
+    sum += x[i] * std::polar(1.0, -angle);
+  }
+  return x.empty() ? sum : 2.0 * sum / static_cast<double>(x.size());
+}
+
 Signal with_noise(std::span<const Eigen::Vector3d> signal, double density, double rate_Hz,
                   std::uint64_t seed) {
   const double sigma = density * std::sqrt(rate_Hz);
@@ -104,14 +212,16 @@ Vibration vibration(std::span<const Eigen::Vector3d> acceleration, double rate_H
   const std::vector<double> reduced =
       dft321(std::span(filtered).subspan(margin, fast_count(filtered.size() - 2 * margin)));
   double squares = 0.0;
-  std::vector<studies::HandleSample> motion(reduced.size());
+  Signal along_x(reduced.size(), Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < reduced.size(); ++i) {
     squares += reduced[i] * reduced[i];
-    motion[i].a.x() = reduced[i];
+    along_x[i].x() = reduced[i];
   }
-  return {.rms = std::sqrt(squares / static_cast<double>(reduced.size())),
-          .centroid_Hz = studies::spectral_centroid(motion, rate_Hz),
-          .band_rms = band_rms(reduced, rate_Hz)};
+  Vibration result = {.rms = std::sqrt(squares / static_cast<double>(reduced.size())),
+                      .band_rms = band_rms(reduced, rate_Hz),
+                      .spectrum = spectrum(along_x, rate_Hz)};
+  result.centroid_Hz = spectral_centroid(result.spectrum);
+  return result;
 }
 
 DynamicFit fit_dynamics(std::span<const double> f, std::span<const double> v,
@@ -150,7 +260,7 @@ std::complex<double> amplitude(std::span<const double> x, double frequency_Hz, d
   for (std::size_t i = 0; i < x.size(); ++i) {
     weighted[i] *= 1.0 - std::cos(step * static_cast<double>(i));
   }
-  return studies::phasor(weighted, frequency_Hz, rate_Hz);
+  return phasor(weighted, frequency_Hz, rate_Hz);
 }
 
 double bandwidth(std::span<const double> frequency_Hz, std::span<const double> ratio,

@@ -11,12 +11,53 @@
 #include <span>
 #include <vector>
 
+#include "hg/studies/free_twin.h"
+
 namespace hg::haptify {
 
 /// Lowest frequency that counts as vibration, Hz; [HANDBOOK] 7.
 inline constexpr double kVibrationBand = 20.0;
 /// Ratio of two magnitudes that are 3 dB apart.
 inline constexpr double kWithin3dB = 1.4125;
+
+/// Upper end of what counts as force, Hz. [HANDBOOK] 7; with it the figures of [C] 4, which gives
+/// none, fit each other: 6 kg times its acceleration between 5 and 20 Hz is its extra force.
+inline constexpr double kForceBand = 20.0;
+
+/// One sample of the handle, everything in B.
+struct HandleSample {
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< velocity, m/s
+  Eigen::Vector3d a = Eigen::Vector3d::Zero();  ///< acceleration, m/s^2
+  Eigen::Vector3d f = Eigen::Vector3d::Zero();  ///< force of the person, N
+};
+
+/// Force that a hand feels while it moves a free body; vibration() has what it feels above 20 Hz.
+struct Feel {
+  double force = 0.0;             ///< mean |f|, N
+  double own_share = 0.0;         ///< mean |m a + b v| of the true motion, below kForceBand, N
+  double extra = 0.0;             ///< mean |f - (m a + b v)|, below kForceBand, N
+  double acceleration_5Hz = 0.0;  ///< rms of the acceleration above 5 Hz, m/s^2
+};
+
+/// Evaluates a motion; the first `settling` seconds serve only the filters.
+Feel feel(std::span<const HandleSample> motion, const studies::FreeTwin& twin, double rate_Hz,
+          double settling);
+
+/// Magnitude of a signal over frequency, by Welch's method with Hann windows of 0.5 s ([HANDBOOK]
+/// 7): root of the power density summed over the axes, from 0 Hz in steps of step_Hz, in units of
+/// the signal per sqrt(Hz). Empty for less than one window.
+struct Spectrum {
+  double step_Hz = 0.0;
+  std::vector<double> magnitude;
+};
+Spectrum spectrum(std::span<const Eigen::Vector3d> signal, double rate_Hz);
+
+/// Mean frequency of a spectrum between 20 and 500 Hz, weighted with its magnitude ([HANDBOOK] 7);
+/// 0 for less than one window of spectrum().
+double spectral_centroid(const Spectrum& spectrum);
+
+/// Complex amplitude of x(t) at a frequency; `x` should last a whole number of its periods.
+std::complex<double> phasor(std::span<const double> x, double frequency_Hz, double rate_Hz);
 
 /// One signal with the energy of three at every frequency: |A|^2 = sum |A_i|^2, and the phase of
 /// their sum.
@@ -29,6 +70,7 @@ struct Vibration {
   double rms = 0.0;          ///< m/s^2
   double centroid_Hz = 0.0;  ///< mean frequency weighted with the magnitude, up to 500 Hz
   std::array<double, kBandEdges.size() - 1> band_rms{};  ///< rms of each band, m/s^2
+  Spectrum spectrum;                                     ///< m/s^2/sqrt(Hz)
 };
 
 /// Adds the white noise of a sensor to a signal: sigma = density sqrt(rate) along each axis

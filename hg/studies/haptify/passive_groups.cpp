@@ -110,6 +110,7 @@ void add_workspace(const Group& group) {
   }
   shape.rows.push_back(
       {"mean edge", "cube of the same volume", fmt::format("{:.2f}", std::cbrt(first.volume))});
+  group.out.workspace = workspace_views(group.scenario.device, config, group.seed(0));
   group.out.table.push_back(volume);
   group.out.beyond.push_back(nominal);
   group.out.tables.push_back(shape);
@@ -156,6 +157,14 @@ void add_free_space(const Group& group) {
            mean_value(values_of(shipped, &FreeSpace::extra)), kLightBody.mass, kLightBody.damping,
            mean_value(values_of(lighter, &FreeSpace::force)))});
   add_vibration(group, shipped, lighter);
+  if (!shipped.empty()) {
+    group.out.curves.push_back(
+        vibration_curve("free_space", fmt::format("body of {:g} kg", twin.mass), shipped.front()));
+  }
+  if (!lighter.empty()) {
+    group.out.curves.push_back(vibration_curve(
+        "free_space", fmt::format("body of {:g} kg", kLightBody.mass), lighter.front()));
+  }
 }
 
 void add_dynamics(const Group& group) {

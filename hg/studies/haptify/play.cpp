@@ -26,6 +26,10 @@ double contact_power(const CycleRecord& record, double period) {
   return std::clamp(force - taken, 0.0, force) * along.dot(dq.head<3>());
 }
 
+double torque_share(const VectorM& of_joints) {
+  return of_joints.size() > 0 ? of_joints.maxCoeff() : 0.0;
+}
+
 }  // namespace
 
 config::Scenario with_script(config::Scenario scenario, const person::Script& script) {
@@ -35,7 +39,7 @@ config::Scenario with_script(config::Scenario scenario, const person::Script& sc
   return scenario;
 }
 
-Played play(const config::Scenario& scenario) {
+Played play(const config::Scenario& scenario, const Disturbance& disturbance) {
   studies::Player player(scenario);
   analysis::Summary summary = scenario::make_summary(scenario);
   const double grasp_s = scenario.script.script.grasp_s;
@@ -43,6 +47,9 @@ Played play(const config::Scenario& scenario) {
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
     player.begin();
     player.run();
+    if (disturbance && player.is_running()) {
+      disturbance(player.record().time_s, player.command().dq_p);
+    }
     const Sample& sample = player.judged_sample();
     summary.add(sample);
     const CycleRecord& record = sample.record;
@@ -62,7 +69,9 @@ Played play(const config::Scenario& scenario) {
          .dq_p = truth.dq_p,
          .q_m = truth.q_m,
          .dq_m = truth.dq_m,
-         .is_limited = record.felt_limit >= 0});
+         .is_limited = record.felt_limit >= 0,
+         .joint_error = (record.reference.q_m - truth.q_m).cwiseAbs().maxCoeff(),
+         .torque_share = torque_share(record.tracking.torque_share)});
   }
   const Fault& fault = player.record().fault;
   if (fault.code != FaultCode::kNone) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,11 @@ struct Instant {
   Eigen::Vector3d surface = Eigen::Vector3d::Zero();  ///< force of virtual surfaces on the twin, N
   /// Power of that force on the twin, without the share taken by limits, W
   double contact_power = 0.0;
-  VectorP q_p, dq_p;        ///< position and velocity of the gantry
-  VectorM q_m, dq_m;        ///< position and velocity of the manipulator's links
-  bool is_limited = false;  ///< a limit of the device is felt
+  VectorP q_p, dq_p;          ///< position and velocity of the gantry
+  VectorM q_m, dq_m;          ///< position and velocity of the manipulator's links
+  bool is_limited = false;    ///< a limit of the device is felt
+  double joint_error = 0.0;   ///< largest difference of reference and true link, rad or m
+  double torque_share = 0.0;  ///< largest motor torque over its peak
 };
 
 struct Played {
@@ -36,7 +39,11 @@ struct Played {
 /// The scenario with another script for the person, who holds the handle; its events are cleared.
 config::Scenario with_script(config::Scenario scenario, const person::Script& script);
 
-/// Plays the scenario once from start to end, as fast as possible.
-Played play(const config::Scenario& scenario);
+/// Changes the drive commands of the gantry at a time, as an imperfection of the drives.
+using Disturbance = std::function<void(double time_s, VectorP& dq_p)>;
+
+/// Plays the scenario once from start to end, as fast as possible. `disturbance` acts while the
+/// device runs.
+Played play(const config::Scenario& scenario, const Disturbance& disturbance = {});
 
 }  // namespace hg::haptify

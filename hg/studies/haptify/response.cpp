@@ -81,16 +81,16 @@ person::Script pushes(const ResponseConfig& config, const Sweep& plan, int axis)
   return script;
 }
 
-config::Scenario prepared(const config::Scenario& scenario, const ResponseConfig& config,
-                          const person::Script& script, std::uint64_t seed) {
+}  // namespace
+
+config::Scenario instrument(const config::Scenario& scenario, const ResponseConfig& config,
+                            const person::Script& script, std::uint64_t seed) {
   config::Scenario result = with_script(scenario, script);
   result.twin.model.q_start.head<3>() = config.position;
-  result.script.hand.tremor_rms = 0.0;  // an instrument pushes
+  result.script.hand.tremor_rms = 0.0;
   studies::set_seed(result, seed);
   return result;
 }
-
-}  // namespace
 
 double transparency_Hz(const Response& response) {
   std::vector<double> frequency, ratio;
@@ -105,7 +105,7 @@ Response measure_response(const config::Scenario& scenario, const ResponseConfig
                           std::uint64_t seed) {
   const studies::FreeTwin twin = studies::free_twin_of(scenario);
   const Sweep plan = sweep(config);
-  const config::Scenario pushed = prepared(scenario, config, pushes(config, plan, axis), seed);
+  const config::Scenario pushed = instrument(scenario, config, pushes(config, plan, axis), seed);
   const Played played = play(pushed);
   Response result = {.failure = played.failure};
   if (!played.failure.empty() || played.instants.empty()) return result;
@@ -170,7 +170,7 @@ ForceResponse measure_force_response(const config::Scenario& scenario, const Res
   const Sweep plan = sweep(config);
   person::Script script;
   script.duration_s = plan.end_s;
-  config::Scenario driven = prepared(scenario, config, script, seed);
+  config::Scenario driven = instrument(scenario, config, script, seed);
   driven.script.hand = person::hand(person::HandPreset::kStiff);
   driven.script.hand.tremor_rms = 0.0;
   const double rate_Hz = driven.device.rate_Hz;
@@ -212,7 +212,7 @@ Latency measure_latency(const config::Scenario& scenario, const ResponseConfig& 
                              .channel = person::kWrenchChannel + axis,
                              .value = config.step_force});
   script.duration_s = kPause + 0.5 + config.watched_s;
-  const config::Scenario pushed = prepared(scenario, config, script, seed);
+  const config::Scenario pushed = instrument(scenario, config, script, seed);
   const double rate_Hz = pushed.device.rate_Hz;
   const Played played = play(pushed);
   Latency result = {.failure = played.failure};

@@ -1,7 +1,9 @@
 /// Response of the handle to a hand, by frequency and in time: transparency, bandwidths, latency.
 ///
-/// A person pushes along one axis of H to and fro, as in experiments/impedance.h; here compared
-/// with the motion of the twin itself. Amplitudes are those at the frequency itself. SI units.
+/// An instrument pushes along one axis of H to and fro; the motion of the handle is compared with
+/// that of the twin. Amplitudes are those at the frequency itself. SI units.
+///
+/// The one definition of felt impedance.
 #pragma once
 
 #include <complex>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "hg/config/scenario.h"
+#include "hg/simulator/person/script.h"
 
 namespace hg::haptify {
 
@@ -22,6 +25,10 @@ struct ResponseConfig {
   double step_force = 10.0;                    ///< height of the force step for the latency, N
   double watched_s = 0.15;                     ///< time observed after the step, s
 };
+
+/// The scenario with the handle in the middle, played by an instrument: a script without tremor.
+config::Scenario instrument(const config::Scenario& scenario, const ResponseConfig& config,
+                            const person::Script& script, std::uint64_t seed);
 
 /// Response at one frequency, along one axis of H.
 struct Answer {

@@ -72,10 +72,17 @@ void add_transparency(const Group& group) {
       continue;
     }
     std::vector<double> frequency, following;
+    Curve curve = {.id = "transparency", .name = name, .x_label = "frequency in Hz"};
     for (const Answer& answer : axes[axis].answers) {
       const std::complex<double> relative = answer.impedance / answer.twin;
       frequency.push_back(answer.frequency_Hz);
       following.push_back(std::abs(answer.following));
+      curve.y["ratio"].push_back(std::abs(relative));
+      curve.y["phase_deg"].push_back(degrees(relative));
+      curve.y["felt_Ns_per_m"].push_back(std::abs(answer.impedance));
+      curve.y["body_Ns_per_m"].push_back(std::abs(answer.twin));
+      curve.y["following"].push_back(following.back());
+      curve.y["following_phase_deg"].push_back(degrees(answer.following));
       table.rows.push_back(
           {name, amount(answer.frequency_Hz), amount(std::abs(answer.impedance)),
            amount(std::abs(answer.twin)), fmt::format("{:.3f}", std::abs(relative)),
@@ -83,6 +90,8 @@ void add_transparency(const Group& group) {
            fmt::format("{:.1f}", degrees(answer.following))});
     }
     if (frequency.empty()) continue;
+    curve.x = frequency;
+    group.out.curves.push_back(curve);
     keep_lowest(transparency_Hz(axes[axis]), felt);
     keep_lowest(bandwidth(frequency, following, kWithin3dB), position);
   }
@@ -128,10 +137,15 @@ void add_force_response(const Group& group) {
       continue;
     }
     std::vector<double> frequency, ratio, rendered;
+    Curve curve = {.id = "force_response", .name = name, .x_label = "frequency in Hz"};
     for (const ForceAnswer& answer : axes[axis].answers) {
       frequency.push_back(answer.frequency_Hz);
       ratio.push_back(std::abs(answer.rendered / answer.ideal));
       rendered.push_back(std::abs(answer.rendered));
+      curve.y["rendered"].push_back(rendered.back());
+      curve.y["rendered_phase_deg"].push_back(degrees(answer.rendered));
+      curve.y["ideal"].push_back(std::abs(answer.ideal));
+      curve.y["ideal_phase_deg"].push_back(degrees(answer.ideal));
       table.rows.push_back({name, amount(answer.frequency_Hz),
                             fmt::format("{:.3f}", std::abs(answer.rendered)),
                             fmt::format("{:.1f}", degrees(answer.rendered)),
@@ -139,6 +153,8 @@ void add_force_response(const Group& group) {
                             fmt::format("{:.1f}", degrees(answer.ideal))});
     }
     if (frequency.empty()) continue;
+    curve.x = frequency;
+    group.out.curves.push_back(curve);
     keep_lowest(bandwidth(frequency, ratio, kWithin3dB), figure);
     keep_lowest(bandwidth(frequency, rendered, kWithin3dB), absolute);
   }

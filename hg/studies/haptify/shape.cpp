@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "hg/controller/rendering/device_model.h"
@@ -74,6 +75,36 @@ checks::Workspace measure_shape(const config::Device& device, const ShapeConfig&
   survey.options.seed = seed;
   survey.cloud = checks::cloud(device, config.postures, true, random);
   return checks::workspace(device, survey);
+}
+
+std::vector<View> workspace_views(const config::Device& device, const ShapeConfig& config,
+                                  std::uint64_t seed) {
+  constexpr double kCell = 0.05;  // m
+  checks::Random random(seed);
+  const checks::Cloud cloud = checks::cloud(device, config.postures, true, random);
+  Eigen::AlignedBox3d bounds;
+  for (const auto& position : cloud.positions) bounds.extend(position.p);
+  if (cloud.positions.empty()) return {};
+  const Eigen::AlignedBox3d limits = checks::handle_box(device.model);
+  std::vector<View> views;
+  for (const auto& [across, up] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
+    View view = {.across = across,
+                 .up = up,
+                 .left = bounds.min()[across],
+                 .bottom = bounds.min()[up],
+                 .cell = kCell};
+    const auto cells = [&](int axis, double value) {
+      return static_cast<std::size_t>((value - bounds.min()[axis]) / kCell);
+    };
+    view.rows.assign(cells(up, bounds.max()[up]) + 1,
+                     std::vector<int>(cells(across, bounds.max()[across]) + 1, 0));
+    for (const auto& position : cloud.positions) {
+      view.rows[cells(up, position.p[up])][cells(across, position.p[across])] += 1;
+    }
+    view.box = {limits.min()[across], limits.max()[across], limits.min()[up], limits.max()[up]};
+    views.push_back(std::move(view));
+  }
+  return views;
 }
 
 std::string unreached_sides(const config::Device& device, const checks::Workspace& shape,

@@ -6,6 +6,7 @@
 
 #include "hg/commissioning/checks/workspace.h"
 #include "hg/config/device.h"
+#include "hg/studies/haptify/figures.h"
 
 namespace hg::haptify {
 
@@ -19,6 +20,10 @@ struct ShapeConfig {
 /// not run.
 checks::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
                                 std::uint64_t seed);
+
+/// The positions of the handle from above, from the front and from the side.
+std::vector<View> workspace_views(const config::Device& device, const ShapeConfig& config,
+                                  std::uint64_t seed);
 
 /// Sides of the handle's box that the handle misses by more than 2 mm, with the joints at a limit
 /// where it comes nearest; empty = none.

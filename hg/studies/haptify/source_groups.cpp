@@ -7,8 +7,7 @@
 #include <ranges>
 #include <span>
 
-#include "hg/studies/free_space.h"
-#include "hg/studies/haptify/free_space.h"
+#include "hg/studies/haptify/free_space_variants.h"
 #include "hg/studies/haptify/groups.h"
 
 namespace hg::haptify {
@@ -29,7 +28,7 @@ void stiffen_softest(double factor, tracking::Config& control) {
 }
 
 // Variants of the transmission between a source and the handle.
-std::vector<studies::FreeSpaceVariant> changed_ways() {
+std::vector<FreeSpaceVariant> changed_ways() {
   using config::Scenario;
   return {{.name = "measured wrench not low-passed",
            .change = [](Scenario& s) { s.device.estimation.wrench.low_pass_Hz = 0.0; }},
@@ -71,21 +70,33 @@ std::string why_centroid(const std::vector<Source>& sources, std::size_t ways, d
 
 }  // namespace
 
+Curve vibration_curve(const std::string& id, const std::string& name, const FreeSpace& measured) {
+  Curve curve = {.id = id, .name = name, .x_label = "frequency in Hz"};
+  std::vector<double> magnitude;
+  for (std::size_t i = 0; i < measured.spectrum.magnitude.size(); ++i) {
+    const double frequency = static_cast<double>(i) * measured.spectrum.step_Hz;
+    if (frequency < kVibrationBand || frequency > kBandEdges.back()) continue;
+    curve.x.push_back(frequency);
+    magnitude.push_back(measured.spectrum.magnitude[i]);
+  }
+  curve.y["m/s^2/sqrt(Hz)"] = std::move(magnitude);
+  return curve;
+}
+
 void add_sources(const Group& group) {
   FreeSpaceConfig config;
   if (group.options.is_quick) config.duration_s = 4.0;
-  std::vector<studies::FreeSpaceVariant> variants = studies::free_space_variants();
-  std::erase_if(variants, [&](const studies::FreeSpaceVariant& variant) {
+  std::vector<FreeSpaceVariant> variants = free_space_variants();
+  std::erase_if(variants, [&](const FreeSpaceVariant& variant) {
     return &variant != &variants.front() && !variant.takes_away;
   });
   if (group.options.is_quick) variants.resize(2);
-  const std::vector<studies::FreeSpaceVariant> ways = changed_ways();
+  const std::vector<FreeSpaceVariant> ways = changed_ways();
   variants.insert(variants.end(), ways.begin(), ways.end());
   const auto sources =
       group.measure_all("sources of vibration", variants.size(), [&](std::size_t i) {
-        config::Scenario changed = group.scenario;
-        if (variants[i].change) variants[i].change(changed);
-        return Source{variants[i].name, measure_free_space(changed, config, group.seed(0))};
+        return Source{variants[i].name,
+                      measure_variant(group.scenario, variants[i], config, group.seed(0))};
       });
   Table table = {.id = "vibration_sources",
                  .title = "What vibration comes from",
@@ -105,6 +116,7 @@ void add_sources(const Group& group) {
     table.rows.push_back({source.name, fmt::format("{:.4f}", it.vibration_rms),
                           fmt::format("{:.1f}", it.centroid_Hz), fmt::format("{:.3f}", it.force),
                           fmt::format("{:.3f}", it.extra)});
+    group.out.curves.push_back(vibration_curve("vibration_sources", source.name, it));
     for (const double rms : it.band_rms) {
       table.rows.back().push_back(fmt::format("{:.2f}", 1e3 * rms));
     }

@@ -9,8 +9,8 @@
 
 #include "hg/config/scenario.h"
 #include "hg/simulator/person/hand.h"
+#include "hg/studies/decay.h"
 #include "hg/studies/haptify/play.h"
-#include "hg/studies/motion_analysis.h"
 
 namespace hg::haptify {
 

@@ -11,8 +11,6 @@
 #include "hg/core/error.h"
 #include "hg/signals/drive_model.h"
 #include "hg/studies/changes.h"
-#include "hg/studies/free_space.h"
-#include "hg/studies/impedance.h"
 #include "hg/studies/player.h"
 #include "hg/studies/stability_map.h"
 
@@ -195,92 +193,6 @@ TEST(StabilityMap, JsonAndDrawingHaveEveryCell) {
   EXPECT_EQ(count(">h</text>"), 2);
   EXPECT_EQ(count(">none</text>"), 1);
   EXPECT_EQ(count("</svg>"), 1);
-}
-
-TEST(Walk, OfTheShippedDeviceNeedsLittleMoreThanTheTwin) {
-  config::Scenario scenario = walk_scenario();
-  scenario.duration_s = 4.0;
-  const std::vector<FreeSpaceVariant> variants = free_space_variants();
-  const FreeSpaceRun run = walk(scenario, variants.front());
-  EXPECT_EQ(run.name, "as shipped");
-  EXPECT_NEAR(run.judged_s, 2.0, 0.01);
-  EXPECT_GT(run.feel.own_share, 0.9);  // 6 kg, 4 Ns/m at 0.25 m/s on 0.7 m: 1.13 N
-  EXPECT_LT(run.feel.own_share, 1.5);
-  EXPECT_LT(run.feel.extra, 0.6);
-  EXPECT_GT(run.feel.extra, 0.02);
-  EXPECT_LT(run.joint_error, 4e-3);
-  EXPECT_GT(run.torque_share, 0.05);
-}
-
-TEST(Walk, AVibratingGantryIsFelt) {
-  config::Scenario scenario = walk_scenario();
-  scenario.duration_s = 3.0;
-  const std::vector<FreeSpaceVariant> variants = free_space_variants();
-  const FreeSpaceRun run = walk(scenario, variants.back());
-  EXPECT_GT(run.feel.vibration_5, 0.2);
-  EXPECT_GT(run.feel.extra, 1.0);
-}
-
-TEST(Shake, GivesDrivesOfThatLagTheWantedAcceleration) {
-  constexpr GantryVibration kVibration = {.acceleration = 0.24, .frequency_Hz = 12.0};
-  constexpr double kLag = 0.08, kStep = 1e-5;
-  Eigen::Vector2d dq = Eigen::Vector2d::Zero(), a = dq;
-  double smallest = 1.0, largest = 0.0;
-  for (int i = 0; i < 100'000; ++i) {
-    VectorP command = VectorP::Zero(2);
-    shake(kVibration, kLag, i * kStep, command);
-    a = (command - dq) / kLag;
-    dq += kStep * a;
-    if (i * kStep < 0.6) continue;
-    smallest = std::min(smallest, a.norm());  // the axes are 90 degrees apart
-    largest = std::max(largest, a.norm());
-  }
-  EXPECT_NEAR(smallest, 0.24, 0.002);
-  EXPECT_NEAR(largest, 0.24, 0.002);
-}
-
-TEST(FreeSpaceText, SaysWhatDominates) {
-  FreeSpaceRun shipped = {.name = "as shipped", .judged_s = 1.0};
-  shipped.feel = {.force = 1.2, .extra = 0.3, .vibration_5 = 0.1, .vibration_20 = 0.05};
-  FreeSpaceRun quiet = {.name = "quiet", .takes_away = true, .judged_s = 1.0};
-  quiet.feel = {.force = 1.2, .extra = 0.2, .vibration_5 = 0.02, .vibration_20 = 0.06};
-  FreeSpaceRun smooth = quiet;
-  smooth.name = "smooth";
-  smooth.feel.extra = 0.1;
-  smooth.feel.vibration_5 = 0.05;
-  FreeSpaceRun other = {.name = "another twin", .judged_s = 1.0};  // takes nothing away
-  FreeSpaceRun failed = {.name = "failed", .takes_away = true};
-  const std::string text = to_text({shipped, quiet, smooth, other, failed});
-  EXPECT_NE(text.find("most by 'smooth': 0.100 instead of 0.300 N"), std::string::npos) << text;
-  EXPECT_NE(text.find("most by 'quiet': 0.020 instead of 0.100 m/s^2"), std::string::npos) << text;
-  EXPECT_NE(text.find("nothing that was taken away"), std::string::npos) << text;
-  EXPECT_NE(text.find("did not run"), std::string::npos) << text;
-}
-
-TEST(Push, RendersTheTwinAndHoldsWhatDoesNotMove) {
-  config::Scenario scenario = walk_scenario();
-  scenario.device.simulation.factors = {};
-  scenario.device.simulation.sensors = simulator::ideal_sensors();
-  ImpedanceConfig config;
-  config.frequency_Hz = {2.0};
-  config.periods = 3;
-  config.held = 0.4;
-  constexpr int kZ = 2;
-  const ImpedanceRun free =
-      push(scenario, config, {.name = "free", .has_friction = false, .is_rigid = false}, kZ);
-  ASSERT_EQ(free.mobility.size(), 1u);
-  const std::complex<double> wanted = {4.0, 2.0 * 3.14159265 * 2.0 * 6.0};  // 6 kg, 4 Ns/m
-  EXPECT_NEAR(std::abs(free.mobility[0] * wanted - 1.0), 0.0, 0.1);
-  EXPECT_EQ(free.static_peak, 0.0);
-
-  const ImpedanceRun held = push(scenario, config, {.name = "held", .has_friction = false}, kZ);
-  const ImpedanceRun blind =
-      push(scenario, config, {.name = "blind", .has_friction = false, .is_blind = true}, kZ);
-  EXPECT_LT(std::abs(held.mobility[0]), 0.02 * std::abs(free.mobility[0]));
-  EXPECT_GT(std::abs(blind.mobility[0]), 3.0 * std::abs(held.mobility[0]));
-  EXPECT_GT(blind.static_peak, held.static_peak);
-  EXPECT_GT(blind.static_peak, 5e-4);
-  EXPECT_LT(blind.static_peak, 2e-2);
 }
 
 }  // namespace

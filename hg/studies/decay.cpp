@@ -1,0 +1,57 @@
+#include "hg/studies/decay.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hg::studies {
+namespace {
+
+std::size_t count_of(double seconds, double rate_Hz) {
+  return static_cast<std::size_t>(std::llround(seconds * rate_Hz));
+}
+
+}  // namespace
+
+char symbol(Verdict verdict) noexcept {
+  switch (verdict) {
+    case Verdict::kStable:
+      return '.';
+    case Verdict::kSlow:
+      return 'r';
+    case Verdict::kHunts:
+      return 'h';
+    case Verdict::kSustained:
+      return 'U';
+    case Verdict::kDiverges:
+      return 'X';
+  }
+  return '?';
+}
+
+std::string_view to_string(Verdict verdict) noexcept {
+  switch (verdict) {
+    case Verdict::kStable:
+      return "stable";
+    case Verdict::kSlow:
+      return "slow decay";
+    case Verdict::kHunts:
+      return "hunts";
+    case Verdict::kSustained:
+      return "sustained";
+    case Verdict::kDiverges:
+      return "diverges";
+  }
+  return "unknown";
+}
+
+Verdict judge_decay(std::span<const double> speed, const CalmRule& rule, double rate_Hz) {
+  const std::size_t window = count_of(rule.window, rate_Hz);
+  const auto largest = [](std::span<const double> part) { return *std::ranges::max_element(part); };
+  const double before = largest(speed.subspan(window, window));
+  const double last = largest(speed.last(window));
+  if (last <= rule.calm_speed) return Verdict::kStable;
+  if (last > rule.growing * before) return Verdict::kDiverges;
+  return last > rule.sustained * before ? Verdict::kSustained : Verdict::kSlow;
+}
+
+}  // namespace hg::studies

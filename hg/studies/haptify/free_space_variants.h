@@ -1,0 +1,56 @@
+/// Free space with parts of the machine changed or switched off, to show their contribution.
+/// Source: [C] 4. The measure is that of free_space.h.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "hg/config/scenario.h"
+#include "hg/studies/haptify/free_space.h"
+#include "hg/studies/workers.h"
+
+namespace hg::haptify {
+
+/// Gantry vibration unknown to the observer: added to the drive commands, so that the acceleration
+/// rotates with this magnitude.
+struct GantryVibration {
+  double acceleration = 0.0;  ///< m/s^2; 0 = none
+  double frequency_Hz = 12.0;
+};
+
+/// Adds the vibration to the commands of drives with this lag, so that the wanted acceleration
+/// results.
+void shake(const GantryVibration& vibration, double lag, double time_s, VectorP& dq_p) noexcept;
+
+struct FreeSpaceVariant {
+  std::string name;
+  std::function<void(config::Scenario&)> change;
+  bool takes_away = false;         ///< an imperfection is removed: the improvement is its share
+  GantryVibration vibration = {};  ///< added vibration of the gantry
+};
+
+/// Variants to play; the first one is the unchanged scenario.
+std::vector<FreeSpaceVariant> free_space_variants();
+
+/// Measures free space with one change.
+FreeSpace measure_variant(const config::Scenario& scenario, const FreeSpaceVariant& variant,
+                          const FreeSpaceConfig& config, std::uint64_t seed);
+
+struct FreeSpaceRun {
+  std::string name;
+  bool takes_away = false;
+  FreeSpace measured;
+};
+
+/// Measures all variants, on all cores.
+std::vector<FreeSpaceRun> measure_variants(const config::Scenario& scenario,
+                                           const FreeSpaceConfig& config, std::uint64_t seed,
+                                           const studies::Progress& progress);
+
+/// Table of all variants, and the dominating contribution.
+std::string to_text(const std::vector<FreeSpaceRun>& runs);
+nlohmann::ordered_json to_json(const std::vector<FreeSpaceRun>& runs);
+
+}  // namespace hg::haptify

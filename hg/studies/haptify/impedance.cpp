@@ -1,0 +1,186 @@
+#include "hg/studies/haptify/impedance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "hg/studies/changes.h"
+#include "hg/studies/haptify/play.h"
+
+namespace hg::haptify {
+namespace {
+
+constexpr double kPause = 1.0;  // s, before a static force
+
+config::Scenario prepared(const config::Scenario& scenario, const ImpedanceConfig& config,
+                          const ImpedanceCase& what) {
+  config::Scenario pushed = scenario;
+  if (what.is_rigid) studies::set_free_twin(pushed, config.rigid);
+  config::Device& device = pushed.device;
+  device.control.method = what.is_modal ? tracking::Method::kModal : tracking::Method::kMotorPd;
+  if (!what.has_friction) studies::take_friction(device.control);
+  if (what.is_rigid) device.control.error_max = kInfinity;  // the deflection is what is measured
+  if (what.is_blind) {
+    // Nor the contradiction of a blind sensor and torques
+    device.monitor.unexplained_tolerance = kInfinity;
+    device.monitor.frozen_samples = 0.0;            // a zero reading is intended
+    device.simulation.sensors.wrench.range = 1e-9;  // of full scale
+    device.estimation.wrench.has_imu = false;       // would add a wrench of its own
+  }
+  return pushed;
+}
+
+Give measure_give(const config::Scenario& scenario, const ImpedanceConfig& config, int axis,
+                  std::uint64_t seed) {
+  person::Script script;
+  const auto ramp = [&](double at_s, double force) {
+    script.segments.push_back({.start_s = at_s,
+                               .duration_s = config.ramp,
+                               .channel = person::kWrenchChannel + axis,
+                               .value = force});
+  };
+  const double end_s = kPause + config.ramp + config.held;
+  ramp(kPause, config.static_force);
+  ramp(end_s, 0.0);
+  script.duration_s = end_s + config.ramp + 0.1;
+  const Played played = play(instrument(scenario, config.response, script, seed));
+  Give give = {.failure = played.failure};
+  if (!played.failure.empty()) return give;
+  const Instant* first = nullptr;
+  for (const Instant& now : played.instants) {
+    if (now.time_s < kPause || now.time_s > end_s) continue;
+    if (first == nullptr) first = &now;
+    give.end = (now.T_B_H.p - first->T_B_H.p).norm();
+    give.peak = std::max(give.peak, give.end);
+  }
+  return give;
+}
+
+// Deflection over force, m/N.
+double compliance(const Answer& answer) {
+  return 1.0 / (2.0 * std::numbers::pi * answer.frequency_Hz * std::abs(answer.impedance));
+}
+
+std::string heading(const std::vector<double>& frequency_Hz, const std::string& what) {
+  std::string text = fmt::format("{:<40}", what);
+  for (const double frequency : frequency_Hz) {
+    text += fmt::format("{:>7}", fmt::format("{:g} Hz", frequency));
+  }
+  return text;
+}
+
+std::string failure_text(const std::string& failure) {
+  return failure.empty() ? "" : "  failed: " + failure;
+}
+
+ResponseConfig response_of(const ImpedanceConfig& config, bool is_rigid) {
+  ResponseConfig response = config.response;
+  if (is_rigid) {
+    std::erase_if(response.frequency_Hz,
+                  [&](double frequency) { return frequency < config.rigid_from_Hz; });
+  }
+  return response;
+}
+
+}  // namespace
+
+ImpedanceRun measure_case(const config::Scenario& scenario, const ImpedanceConfig& config,
+                          const ImpedanceCase& what, int axis, std::uint64_t seed) {
+  const config::Scenario pushed = prepared(scenario, config, what);
+  ImpedanceRun run = {.name = what.name, .is_rigid = what.is_rigid, .axis = "xyz"[axis]};
+  run.response = measure_response(pushed, response_of(config, what.is_rigid), axis, seed);
+  if (what.is_rigid) run.give = measure_give(pushed, config, axis, seed);
+  return run;
+}
+
+std::vector<ImpedanceRun> measure_impedance(const config::Scenario& scenario,
+                                            const ImpedanceConfig& config, std::uint64_t seed,
+                                            const studies::Progress& progress) {
+  const std::array<ImpedanceCase, 8> cases = {
+      {{.name = "modal", .is_rigid = false},
+       {.name = "motor PD", .is_modal = false, .is_rigid = false},
+       {.name = "modal"},
+       {.name = "modal, no friction", .has_friction = false},
+       {.name = "modal, blind", .is_blind = true},
+       {.name = "modal, blind, no friction", .has_friction = false, .is_blind = true},
+       {.name = "motor PD", .is_modal = false},
+       {.name = "motor PD, blind, no friction",
+        .is_modal = false,
+        .has_friction = false,
+        .is_blind = true}}};
+  studies::free_twin_of(scenario);
+  std::vector<ImpedanceRun> runs(3 * cases.size());
+  studies::do_all(
+      runs.size(),
+      [&](std::size_t i) {
+        runs[i] = measure_case(scenario, config, cases[i / 3], static_cast<int>(i % 3), seed);
+      },
+      progress);
+  return runs;
+}
+
+std::string to_text(const std::vector<ImpedanceRun>& runs, const ImpedanceConfig& config,
+                    const studies::FreeTwin& twin) {
+  std::string text =
+      heading(response_of(config, true).frequency_Hz, "twin does not move: um per N") +
+      fmt::format("   {:g} N: peak, after {:g} s\n", config.static_force,
+                  config.ramp + config.held);
+  for (const ImpedanceRun& run : runs) {
+    if (!run.is_rigid) continue;
+    text += fmt::format("{:<40}", fmt::format("{}, along {}", run.name, run.axis));
+    for (const Answer& answer : run.response.answers) {
+      text += fmt::format("{:>7.1f}", 1e6 * compliance(answer));
+    }
+    if (run.give.failure.empty()) {
+      text += fmt::format("{:>10.2f} {:>8.2f} mm", 1e3 * run.give.peak, 1e3 * run.give.end);
+    }
+    text += failure_text(run.response.failure) + "\n";
+  }
+  text += "blind: the force/torque sensor shows nothing, so nothing is fed forward\n\n";
+  text +=
+      heading(config.response.frequency_Hz,
+              fmt::format("twin of {:g} kg, {:g} Ns/m: felt / rendered", twin.mass, twin.damping)) +
+      "\n";
+  for (const ImpedanceRun& run : runs) {
+    if (run.is_rigid) continue;
+    text += fmt::format("{:<40}", fmt::format("{}, along {}", run.name, run.axis));
+    for (const Answer& answer : run.response.answers) {
+      text += fmt::format("{:>7.2f}", std::abs(answer.impedance / answer.twin));
+    }
+    text += failure_text(run.response.failure) + "\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json to_json(const std::vector<ImpedanceRun>& runs,
+                               const studies::FreeTwin& twin) {
+  nlohmann::ordered_json json;
+  json["experiment"] = "impedance";
+  json["twin"] = {{"mass_kg", twin.mass}, {"damping_Ns_per_m", twin.damping}};
+  json["runs"] = nlohmann::ordered_json::array();
+  for (const ImpedanceRun& run : runs) {
+    nlohmann::ordered_json entry;
+    entry["name"] = run.name;
+    entry["is_rigid"] = run.is_rigid;
+    entry["axis"] = std::string(1, run.axis);
+    entry["frequency_Hz"] = entry["mobility_m_per_Ns"] = nlohmann::ordered_json::array();
+    for (const Answer& answer : run.response.answers) {
+      const std::complex<double> mobility = 1.0 / answer.impedance;
+      entry["frequency_Hz"].push_back(answer.frequency_Hz);
+      entry["mobility_m_per_Ns"].push_back({mobility.real(), mobility.imag()});
+    }
+    if (run.is_rigid && run.give.failure.empty()) {
+      entry["static_peak_m"] = run.give.peak;
+      entry["static_end_m"] = run.give.end;
+    }
+    if (!run.response.failure.empty()) entry["failure"] = run.response.failure;
+    json["runs"].push_back(entry);
+  }
+  return json;
+}
+
+}  // namespace hg::haptify

@@ -1,0 +1,7 @@
+"""Reports of `hapticgiant haptify`: a page with pictures, Markdown, LaTeX and CSV.
+
+    python report FOLDER [--docs DOCS]      also: python -m hapticgiant.report FOLDER [--docs DOCS]
+
+FOLDER holds results.json, which the program writes; the report is written beside it. The same
+results give the same files. Needs matplotlib and jinja2, not the compiled part of the package.
+"""

@@ -1,0 +1,192 @@
+"""The report of `hapticgiant haptify` and of `hapticgiant haptify --goals`."""
+
+import json
+
+import jinja2
+
+from . import pictures, tables
+
+BEGIN, END = "<!-- figures: begin -->\n", "<!-- figures: end -->"
+
+METHOD = (
+    "Instruments: Haptify has a force plate, motion capture and an instrumented handle; here the "
+    "true motion of the handle and the true wrench of the hand are read from the simulation, "
+    "without an error of their own. What the device's own sensors get wrong is in the figures: it "
+    "is controlled with them.",
+    "Person: Haptify's user holds and leads the handle by hand; here a scripted hand of "
+    "docs/concepts/person.md (arm, grip, tremor) does.",
+    "Corner frequencies, speeds and durations of Haptify's protocol are not in the paper: vibration "
+    "counts above 20 Hz, and speeds are ours. Forces of free motion depend on them, because a "
+    "rendered body is led.",
+    "Haptify takes an alpha shape of the positions that a user's hand explored; here postures are "
+    "drawn at random with the real kinematics, and the volume is that of the voxels with a position "
+    "in them (those at the edge count half). The control loop does not run.",
+    "Free motion is that of a rendered free body, which a device under admittance control cannot do "
+    "without; Touch and Touch X under impedance control are only switched off.",
+)
+# the figures that tell most, for the first page: identifier and a short name
+KEY_FIGURES = (
+    ("workspace_volume", "workspace"), ("free_space_force", "force in free space"),
+    ("free_space_extra", "of it, added by the device"), ("free_space_vibration", "vibration"),
+    ("frictionless_surface", "force on a smooth surface"),
+    ("stiffness_accuracy", "stiffness accuracy"), ("stiffness_peak_force", "peak force"),
+    ("transparency_bandwidth", "transparent up to"), ("latency", "latency"),
+    ("z_width", "stiffest calm surface"), ("felt_mass_20", "felt mass under 20 N"),
+    ("impact_depth", "impact depth over allowed"),
+)
+
+
+class Results:
+    """results.json, with what all forms of the report say."""
+
+    def __init__(self, facts):
+        self.facts = facts
+        self.figures = {figure["id"]: figure for figure in facts["table"] + facts["beyond"]}
+
+    def __getitem__(self, name):
+        return self.facts[name]
+
+    def command_line(self):
+        return f"`{self['command']}`, version {self['version']}, simulated {self['device']}."
+
+    def main_rows(self):
+        head = ["", "unit", "ours, simulated", "HapticGiant, paper, real", "Touch, real",
+                "Touch X, real", "goal", "met"]
+        return [head] + [[it["name"], it["unit"], it["measured"], *map(given, others(it)), it["goal"],
+                          it["met"]] for it in self["table"]]
+
+    def beyond_rows(self):
+        return [["", "unit", "ours, simulated", "conditions"]] + [
+            [it["name"], it["unit"], it["measured"], it["note"]] for it in self["beyond"]]
+
+    def missed(self):
+        """A sentence or more per figure of Table III that was measured and misses its goal."""
+        return [f"{it['name']}: {it['measured']} instead of {it['goal']} {it['unit']}. "
+                + (it["why"] or "The reason is not known.")
+                for it in self["table"] if it["values"] and it["met"] == "no"]
+
+    def method(self):
+        return [f"{it['name']}: {it['note']}." for it in self["table"] if it["note"]] + list(METHOD)
+
+    def key_figures(self):
+        return [(name, self.figures[key]) for key, name in KEY_FIGURES
+                if key in self.figures and self.figures[key]["mean"] is not None]
+
+
+def others(figure):
+    return figure["paper"], figure["touch"], figure["touch_x"]
+
+
+def given(value):
+    return "-" if value is None else f"{value:g}"
+
+
+def rows_of(table):
+    return [table["columns"], *table["rows"]]
+
+
+def failures(results):
+    return "".join(f"**Failed: {failure}**\n\n" for failure in results["failures"])
+
+
+def markdown(results):
+    """Without a title."""
+    parts = [f"{results.command_line()}\n\n**{results['real_and_simulated']}**\n\n",
+             failures(results), tables.markdown(results.main_rows()),
+             "\nMean and half width of the 95 % confidence interval.\n",
+             "\n## Goals that are missed\n\n",
+             "".join(f"- {sentence}\n" for sentence in results.missed()) or "None.\n",
+             "\n## Beyond the paper\n\n", tables.markdown(results.beyond_rows())]
+    for table in results["tables"]:
+        parts.append(f"\n## {table['title']}\n\n{table['note']}\n\n{tables.markdown(rows_of(table))}")
+    parts.append("\n## How it is measured, and what differs from the real protocol\n\n")
+    parts += [f"- {sentence}\n" for sentence in results.method()]
+    return "".join(parts)
+
+
+def goals_markdown(results):
+    return (f"{results.command_line()}\n\n{failures(results)}"
+            + tables.markdown(rows_of(results["tables"][0])))
+
+
+def latex(results):
+    """Table III with our column: a tabular for the package booktabs."""
+    units = {"m^3": "m$^3$", "m/s^2": "m\\,s$^{-2}$", "%": "\\%"}
+
+    def value(text):
+        return text if text in ("-", "not measured") else f"${text.replace('+-', chr(92) + 'pm')}$"
+
+    rows = [" & ".join([it["name"], units.get(it["unit"], it["unit"]), value(it["measured"]),
+                        *(value(given(other)) for other in others(it))]) + " \\\\\n"
+            for it in results["table"]]
+    return (f"% {results['real_and_simulated']}\n% needs the package booktabs\n"
+            "\\begin{tabular}{llrrrr}\n\\toprule\n"
+            "Metric & Unit & Ours (simulated) & HapticGiant (real) & Touch (real) & Touch X (real) "
+            "\\\\\n\\midrule\n" + "".join(rows) + "\\bottomrule\n\\end{tabular}\n")
+
+
+def figures_csv(results):
+    rows = [["id", "name", "unit", "mean", "half_width_95", "repetitions", "paper", "touch",
+             "touch_x", "goal_min", "goal_max"]]
+    for it in results["table"] + results["beyond"]:
+        rows.append([it["id"], it["name"], it["unit"], tables.number(it["mean"]),
+                     tables.number(it["half_width_95"]), str(len(it["values"])),
+                     *map(tables.number, others(it)), tables.number(it["goal_min"]),
+                     tables.number(it["goal_max"])])
+    return tables.as_csv(rows)
+
+
+def repetitions_csv(results):
+    rows = [["id", "unit", "repetition", "value"]]
+    for it in results["table"] + results["beyond"]:
+        rows += [[it["id"], it["unit"], str(number), tables.number(value)]
+                 for number, value in enumerate(it["values"], 1)]
+    return tables.as_csv(rows)
+
+
+def html(results):
+    """One self-contained page, at a glance first."""
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pictures.HERE), autoescape=True,
+                                     trim_blocks=True, lstrip_blocks=True)
+    drawn = pictures.draw_all(results)
+    sections = []
+    for table in results["tables"]:
+        sections.append({"title": table["title"], "note": table["note"], "rows": rows_of(table),
+                         "picture": drawn.pop(table["id"], "")})
+    return environment.get_template("haptify.html.jinja").render(
+        results=results, glance=drawn.pop("glance", ""), spectra=drawn.pop("free_space", ""),
+        sections=sections)
+
+
+def refresh(page, text):
+    """Replaces what stands between the two marks of a page."""
+    content = page.read_text(encoding="utf-8")
+    before, begin, rest = content.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise SystemExit(f"{page}: must have the lines '{BEGIN.strip()}' and '{END}'")
+    save(page, f"{before}{begin}\n{text}\n{end}{after}")
+
+
+def save(file, text):
+    file.write_text(text, encoding="utf-8")
+
+
+def write(folder, docs=None):
+    """Writes the report beside results.json, and into the pages of `docs`."""
+    results = Results(json.loads((folder / "results.json").read_text(encoding="utf-8")))
+    if results["kind"] == "goals":
+        name, text = "goals", goals_markdown(results)
+        save(folder / "goals.md", "# Goals\n\n" + text)
+        save(folder / "goals_runs.csv", repetitions_csv(results))
+    else:
+        name, text = "haptify", markdown(results)
+        save(folder / "report.html", html(results))
+        save(folder / "report.md", "# Haptify\n\n" + text)
+        save(folder / "table.tex", latex(results))
+        save(folder / "haptify.csv", figures_csv(results))
+        save(folder / "repetitions.csv", repetitions_csv(results))
+    for table in results["tables"]:
+        save(folder / f"{table['id']}.csv", tables.as_csv(rows_of(table)))
+    if docs:
+        refresh(docs / f"{name}.md", text)

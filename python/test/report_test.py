@@ -1,0 +1,208 @@
+"""Pictures whose legends and labels lie over nothing, whatever the names.
+
+Usage: report_test.py   (from anywhere; needs matplotlib and jinja2, no compiled part)
+"""
+
+import csv
+import json
+import pathlib
+import sys
+import tempfile
+import types
+import unittest
+
+import matplotlib
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "hapticgiant"
+if "hapticgiant" not in sys.modules:  # its own __init__ would need its compiled part
+    sys.modules["hapticgiant"] = types.ModuleType("hapticgiant")
+    sys.modules["hapticgiant"].__path__ = [str(PACKAGE)]
+from hapticgiant import figures  # noqa: E402
+from hapticgiant.report import haptify, pictures  # noqa: E402
+
+JOINTS = [f"left_shoulder_elevation_{number}" for number in range(8)]  # 25 characters
+
+
+def tick_labels_outside(figure):
+    """Labels of ticks that matplotlib keeps but does not draw."""
+    hidden = set()
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            drawn = {label for tick in axis._update_ticks() for label in (tick.label1, tick.label2)}
+            for tick in [*axis.majorTicks, *axis.minorTicks]:
+                for label in (tick.label1, tick.label2):
+                    if label not in drawn or not low <= tick.get_loc() <= high:
+                        hidden.add(label)
+    return hidden
+
+
+def overlapping(figure):
+    """Pairs of texts that lie over each other, and legends that lie over curves."""
+    FigureCanvasAgg(figure)
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()
+    hidden = tick_labels_outside(figure)
+    boxes = [(text.get_text(), text.get_window_extent(renderer))
+             for text in figure.findobj(matplotlib.text.Text)
+             if text not in hidden and text.get_visible() and text.get_text().strip()]
+    boxes = [(name, box) for name, box in boxes if min(box.width, box.height) > 1]
+    found = []
+    for number, (name, box) in enumerate(boxes):
+        for other, other_box in boxes[:number]:
+            width = min(box.x1, other_box.x1) - max(box.x0, other_box.x0)
+            height = min(box.y1, other_box.y1) - max(box.y0, other_box.y0)
+            if min(width, height) > 1.0:
+                found.append((other, name))
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        if legend is None:
+            continue
+        box = legend.get_window_extent(renderer)
+        for line in axes.get_lines():
+            if line.get_transform() != axes.transData:
+                continue
+            points = axes.transData.transform(line.get_xydata())
+            if any(box.contains(*point) for point in points):
+                found.append(("legend", line.get_label()))
+        inside = axes.get_window_extent(renderer)
+        if box.width > inside.width + 2 and box.y0 < inside.y1:
+            found.append(("legend", "wider than its panel"))
+    return found
+
+
+def run_folder(folder, names):
+    """A run of a device with these joints, as `hapticgiant plot` leaves it."""
+    time = np.linspace(0.0, 10.0, 200)
+    columns = {"time_s": time, "force_N": 5 + np.sin(time), "torque_Nm": 1 + np.cos(time),
+               "running": np.ones_like(time), "hand_x_m": np.sin(time), "hand_y_m": np.cos(time)}
+    joints = []
+    for number, name in enumerate(names):
+        column = f"{name}_rad"
+        columns[column] = (1 + number) * np.sin(time + number)
+        columns[f"{name}_Nm"] = np.cos(time + number)
+        columns[f"{name}_rad_per_s"] = np.cos(time)
+        joints.append({"name": name, "column": column, "unit": "rad", "lower": -3.0, "upper": 9.0,
+                       "torque_column": f"{name}_Nm", "torque_unit": "Nm",
+                       "speed_column": f"{name}_rad_per_s", "speed_max": 2.0})
+    with open(folder / "signals.csv", "w") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(columns)
+        writer.writerows(np.column_stack(list(columns.values())))
+    facts = {"kind": "run", "events": [], "locked": [], "manipulator": joints, "virtual": [],
+             "gantry": [], "twin": joints, "has_elbow": False, "poses": [], "checkpoints": [],
+             "box": {"x": [-2, 2], "y": [-2, 2]}}
+    (folder / "run.json").write_text(json.dumps(facts))
+    return figures.Run(folder)
+
+
+class Figures(unittest.TestCase):
+    def check_run(self, names):
+        with tempfile.TemporaryDirectory() as name, matplotlib.rc_context(figures.SETTINGS):
+            run = run_folder(pathlib.Path(name), names)
+            figure = Figure(dpi=100)
+            FigureCanvasAgg(figure)
+            figures.any_run(figure, [run])
+            self.assertEqual(overlapping(figure), [])
+
+    def test_short_names(self):
+        self.check_run([f"m{number}" for number in range(1, 8)])
+
+    def test_eight_joints_with_long_names(self):
+        self.assertEqual(len(JOINTS[0]), 25)
+        self.check_run(JOINTS)
+
+    def test_an_overlap_is_found(self):
+        figure = Figure(dpi=100)
+        panel = figure.subplots()
+        panel.plot([0, 1], [0, 1], label="a")
+        panel.text(0.5, 0.5, "one text")
+        panel.text(0.51, 0.5, "another")
+        panel.legend(loc="upper right")
+        self.assertEqual(overlapping(figure), [("one text", "another"), ("legend", "a")])
+
+
+def figure_of(name, value, **more):
+    return {"id": name, "name": name, "unit": "N", "digits": 2, "mean": value, "half_width_95": 0.1,
+            "values": [value, value], "measured": f"{value} +- 0.1", "paper": 1.0, "touch": None,
+            "touch_x": None, "goal": "<= 1", "goal_min": None, "goal_max": 1.0, "met": "no",
+            "note": "a note", "why": "a reason", **more}
+
+
+def curve(name, label, columns):
+    x = np.geomspace(0.1, 50.0, 12) if name != "free_space" else np.arange(20.0, 500.0, 2.0)
+    return {"id": name, "name": label, "x_label": "", "x": list(x),
+            "y": {column: list(1.0 + 0.5 * np.sin(x / 9.0 + number))
+                  for number, column in enumerate(columns)}}
+
+
+def results():
+    """A benchmark with everything, and long names."""
+    verdicts = ["stable", "hunts", "sustained", "diverges"]
+    tables = {
+        "workspace_shape": (["axis", "reached", "edge m"], [["x", "-1 .. 1 m", "2"]]),
+        "z_width": (["body", "N/m", "Hz", "0 Ns/m", "20 Ns/m", "100 Ns/m", "400 Ns/m"],
+                    [[body, str(k), "1.0", *verdicts]
+                     for body in ("6 kg, 4 Ns/m", "3 kg, 2 Ns/m", "3 kg, 2 Ns/m, prompt")
+                     for k in (1000, 4000, 8000, 16000, 32000, 50000)]),
+        "rotation": (["hand", *(f"{0.001 * 3 ** n:.3f}" for n in range(10))],
+                     [[hand, *(verdicts * 3)[:10]] for hand in ("relaxed", "normal", "stiff")]),
+        "impacts": (["hand", "kg", "N/m", "m/s", "over allowed", "rebound", "rest s"],
+                    [["normal", kg, "2000", "0.5", "0.9", "0.05", "never"]
+                     for kg in ("0.5", "3", "6", "20")]),
+        "felt_mass": (["N", "x kg", "y kg", "z kg"],
+                      [[str(n), "6 +- 0.1", "6.5", "7"] for n in (10, 20, 40, 60)]),
+        "springs": (["Nm/rad", "let go at mm", "ideal Hz", "Hz", "ideal damping ratio",
+                     "damping ratio"],
+                    [[k, mm, "1.0", "0.9 +- 0.01", "0.1", "-0.05"]
+                     for k in ("50", "500", "2000") for mm in ("2", "20")]),
+        "transparency": (["axis"], []), "force_response": (["axis"], []),
+        "vibration_sources": ([""], []),
+    }
+    transparency = ["ratio", "phase_deg", "following", "following_phase_deg"]
+    force = ["rendered", "rendered_phase_deg", "ideal", "ideal_phase_deg"]
+    return haptify.Results({
+        "kind": "haptify", "version": "1", "command": "hapticgiant haptify --seed 1",
+        "device": "Device & <more>", "seed": 1, "repetitions": 2, "is_quick": False,
+        "real_and_simulated": "ours is simulated", "failures": ["one thing"],
+        "table": [figure_of("free_space_force", 1.25)],
+        "beyond": [figure_of("latency", 3.5, met="-", goal="-")],
+        "tables": [{"id": name, "title": name, "note": "a note", "columns": columns, "rows": rows}
+                   for name, (columns, rows) in tables.items()],
+        "curves": [curve("transparency", axis, transparency) for axis in "xyz"]
+        + [curve("force_response", axis, force) for axis in "xyz"]
+        + [curve("free_space", name, ["m"]) for name in ("body of 6 kg", "body of 3 kg")]
+        + [curve("vibration_sources", f"without {name}", ["m"]) for name in JOINTS + ["friction"]],
+        "workspace": [{"across": a, "up": b, "left": -1.6, "bottom": -1.0, "cell": 0.05,
+                       "rows": [[1] * 60] * (40 if b == 1 else 15), "box": [-1.6, 1.4, -1, 1]}
+                      for a, b in ((0, 1), (0, 2), (1, 2))]})
+
+
+class Report(unittest.TestCase):
+    def test_pictures_have_no_overlaps(self):
+        with matplotlib.rc_context(figures.SETTINGS):
+            drawn = pictures.figures_of(results())
+            self.assertEqual(len(drawn), 11)
+            for name, figure in drawn.items():
+                self.assertEqual(overlapping(figure), [], name)
+
+    def test_the_page_is_whole_and_repeats(self):
+        page = haptify.html(results())
+        self.assertEqual(page, haptify.html(results()))
+        self.assertEqual(page.count("<svg"), 11)
+        self.assertIn("Device &amp; &lt;more&gt;", page)
+        self.assertIn("at a glance", page)
+        for outside in ("<script", "<link", "src="):
+            self.assertNotIn(outside, page)
+
+    def test_what_was_not_measured_leaves_no_picture(self):
+        empty = results()
+        empty.facts.update(tables=[], curves=[], workspace=[])
+        self.assertEqual(haptify.html(empty).count("<svg"), 1)  # the first page's, empty
+
+
+if __name__ == "__main__":
+    unittest.main()
