@@ -89,7 +89,7 @@ CapabilityMap capability_map(const config::Device& device) {
     map.sections.push_back(cut.section);
   }
   std::ranges::sort(all);
-  const auto high = index(0.98 * static_cast<double>(all.size()));
+  const auto high = static_cast<std::size_t>(0.98 * static_cast<double>(all.size()));
   if (!all.empty() && all[high] > 0.0) map.force_max = round_number(all[high]);
   return map;
 }

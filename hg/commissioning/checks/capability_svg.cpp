@@ -21,7 +21,7 @@ std::string colour(double value) {
   constexpr std::array<std::array<double, 3>, 5> kStops = {
       {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
   const double at = std::clamp(value, 0.0, 1.0) * (kStops.size() - 1);
-  const auto i = std::min(index(at), kStops.size() - 2);
+  const auto i = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
   const double share = at - static_cast<double>(i);
   std::array<int, 3> rgb{};
   for (std::size_t k = 0; k < 3; ++k) {

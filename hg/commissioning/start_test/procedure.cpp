@@ -100,7 +100,7 @@ class Procedure {
  private:
   using Seen = std::function<bool()>;
 
-  bool has(SafetyInput input) const noexcept { return setup_.config.has_input[index(input)]; }
+  bool has(SafetyInput input) const noexcept { return setup_.config.has_input[static_cast<std::size_t>(input)]; }
 
   void live(Wish wish) {
     seen_ = station_.live(wish);

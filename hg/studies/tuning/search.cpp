@@ -57,7 +57,7 @@ class Search {
   }
 
   // The cheapest known candidate under a new limit.
-  Values nearest(const Result& result, double limit) const {
+  Values nearest(const TuningResult& result, double limit) const {
     Values least = result.before.values;
     double lowest = cost(least, limit);
     for (const Candidate& candidate : result.front) {
