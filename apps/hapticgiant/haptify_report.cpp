@@ -31,14 +31,6 @@ std::string measured(const Figure& figure) {
   return text;
 }
 
-std::string measured(const Figure& figure) {
-  if (!figure.is_measured()) return "not measured";
-  const haptify::Mean mean = figure.mean();
-  std::string text = fmt::format("{:.{}f}", mean.value, figure.digits);
-  if (mean.count > 1) text += fmt::format(" +- {:.{}f}", mean.half_width, figure.digits);
-  return text;
-}
-
 std::string met(const Figure& figure) {
   if (!figure.is_measured() || !figure.goal.bounded()) return "-";
   return figure.meets_goal() ? "yes" : "no";
