@@ -198,7 +198,8 @@ int bench(const BenchArguments& arguments) {
 void add_bench(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command = app.add_subcommand(
-      "bench", "How fast and how right solver, cycle and laws are; minutes (docs/reports/benchmarks.md).");
+      "bench",
+      "How fast and how right solver, cycle and laws are; minutes (docs/reports/benchmarks.md).");
   command->footer(
       "Examples:\n"
       "  hapticgiant bench                        everything, on the three scenarios\n"

@@ -72,7 +72,8 @@ int faults(const FaultsArguments& arguments) {
 void add_faults(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<FaultsArguments>();
   CLI::App* command = app.add_subcommand(
-      "faults", "Breaks the simulated machine on purpose, hundreds of times (docs/concepts/safety.md).");
+      "faults",
+      "Breaks the simulated machine on purpose, hundreds of times (docs/concepts/safety.md).");
   command->footer(
       "Examples:\n"
       "  hapticgiant faults\n"

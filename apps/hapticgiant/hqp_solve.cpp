@@ -172,7 +172,8 @@ void add_hqp(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --timing\n"
       "  hapticgiant hqp solve tests/reference/exc_two.hqp.gz --problem 7 --explain");
-  solve->add_option("file", arguments->file, "problem file, format in docs/concepts/hqp.md")->required();
+  solve->add_option("file", arguments->file, "problem file, format in docs/concepts/hqp.md")
+      ->required();
   solve->add_option("--problem", arguments->problem, "only this problem, counted from 0")
       ->check(at_least(0));
   solve->add_flag("--explain", arguments->explains, "levels, rows that act and why, in words");

@@ -103,7 +103,8 @@ void add_identify(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   payload->callback([arguments, &exit_code] { exit_code = identify_payload(*arguments); });
   CLI::App* friction = identify->add_subcommand(
-      "friction", "Friction of each joint from a recording of its motion (docs/concepts/friction.md).");
+      "friction",
+      "Friction of each joint from a recording of its motion (docs/concepts/friction.md).");
   friction->footer(
       "Examples:\n"
       "  hapticgiant run free_space --user friction --fast   moves all joints\n"

@@ -253,9 +253,9 @@ int start_test(const StartTestArguments& arguments) {
 
 void add_start_test(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<StartTestArguments>();
-  CLI::App* command = app.add_subcommand(
-      "start-test",
-      "Brakes and stop inputs, step by step, before the first run of a day (docs/reference/start_test.md).");
+  CLI::App* command = app.add_subcommand("start-test",
+                                         "Brakes and stop inputs, step by step, before the first "
+                                         "run of a day (docs/reference/start_test.md).");
   command->footer(
       "Examples:\n"
       "  hapticgiant start-test                   the simulated device, with a simulated operator\n"

@@ -1,8 +1,8 @@
 /// Hash of the state after a cycle: runs with equal hashes are identical.
 ///
-/// Over the words of the state, in the order of the fields() beside each state: hash = (rotated hash
-/// ^ word) * odd constant, a bijection of each word, so that a single differing value always changes
-/// the hash. Not cryptographic. About a nanosecond per word. No allocation, noexcept.
+/// Over the words of the state, in the order of the fields() beside each state: hash = (rotated
+/// hash ^ word) * odd constant, a bijection of each word, so that a single differing value always
+/// changes the hash. Not cryptographic. About a nanosecond per word. No allocation, noexcept.
 #pragma once
 
 #include "hg/controller/cycle.h"

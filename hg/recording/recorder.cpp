@@ -13,10 +13,10 @@
 #include "hg/core/error.h"
 #include "hg/core/spsc_ring.h"
 #include "hg/recording/cdr_writer.h"
+#include "hg/recording/event.h"
 #include "hg/recording/mcap_file.h"
 #include "hg/recording/recording_folder.h"
 #include "hg/recording/ros_messages.h"
-#include "hg/recording/event.h"
 #include "hg/recording/schema.h"
 #include "hg/recording/tool_messages.h"
 

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <utility>
 
-#include "hg/config/script_schema.h"
 #include "hg/config/law_names.h"
+#include "hg/config/script_schema.h"
 #include "hg/config/shipped_files.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"

@@ -17,7 +17,8 @@ namespace {
 using namespace viewer_server;
 
 constexpr std::string_view kHead =
-    "// Generated from the lists of fields in hg/viewer_server/ and hg/signals/; do not edit. Units\n"
+    "// Generated from the lists of fields in hg/viewer_server/ and hg/signals/; do not edit. "
+    "Units\n"
     "// stand in the names or in the comments; B is the base frame (z up), H the handle. A number\n"
     "// that is not finite arrives as null.\n"
     "\n"

@@ -100,7 +100,9 @@ class Procedure {
  private:
   using Seen = std::function<bool()>;
 
-  bool has(SafetyInput input) const noexcept { return setup_.config.has_input[static_cast<std::size_t>(input)]; }
+  bool has(SafetyInput input) const noexcept {
+    return setup_.config.has_input[static_cast<std::size_t>(input)];
+  }
 
   void live(Wish wish) {
     seen_ = station_.live(wish);

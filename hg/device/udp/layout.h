@@ -1,6 +1,6 @@
 /// The layout of every message in its datagram: layout(archive, message) passes the fields to an
-/// archive in the order of the wire. Encoding, decoding and the tables of docs/reference/device_protocol.md
-/// are such archives.
+/// archive in the order of the wire. Encoding, decoding and the tables of
+/// docs/reference/device_protocol.md are such archives.
 ///
 /// Messages of the protocol itself are sent as their fields() stand. Of the frames only the members
 /// listed here are sent, in this order: a new member of a frame is recorded at once, and sent from

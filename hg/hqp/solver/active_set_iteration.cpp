@@ -8,8 +8,8 @@ namespace {
 
 // Remainder of a gradient, relative to its terms, up to which Gauss elimination has cancelled it.
 constexpr double kSmallRest = 1e-10;
-// Variables per step from the first point, docs/concepts/hqp.md: more such steps are faster where few rows
-// are active, and slower where many are.
+// Variables per step from the first point, docs/concepts/hqp.md: more such steps are faster where
+// few rows are active, and slower where many are.
 constexpr int kVariablesPerEarlyStep = 6;
 // Remainder of a gradient, relative to its terms, of a level that counts as optimal by its values.
 constexpr double kOptimalRest = 1e-7;

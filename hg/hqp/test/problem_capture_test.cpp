@@ -117,7 +117,8 @@ TEST(ProblemCapture, DoesNotAllocate) {
   const Problem problem = problem_of(1.0);
   const Solution solution(kCapacity);
   AllocationCounter allocations;
-  for (std::uint64_t cycle = 0; cycle < 20; ++cycle) problems.capture(problem, {}, {}, solution, cycle);
+  for (std::uint64_t cycle = 0; cycle < 20; ++cycle)
+    problems.capture(problem, {}, {}, solution, cycle);
   EXPECT_EQ(allocations.count(), 0U);
 }
 
@@ -128,7 +129,8 @@ TEST(ProblemCapture, NeverShowsHalfAProblem) {
       Solution solution(kCapacity);
       solution.status = Status::kIterationLimit;
       for (int cycle = 0; cycle < 12; ++cycle) {
-        problems.capture(problem_of(1.0 + cycle), {}, {}, solution, static_cast<std::uint64_t>(cycle));
+        problems.capture(problem_of(1.0 + cycle), {}, {}, solution,
+                         static_cast<std::uint64_t>(cycle));
       }
     });
     std::size_t seen = 0;
