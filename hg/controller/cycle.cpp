@@ -301,7 +301,9 @@ Motion Cycle::decide(bool is_usable, bool must_brake) const noexcept {
   if (!is_usable) return Motion::kNone;
   const Mode mode = state_.supervisor.mode();
   if (!is_moving(mode)) return Motion::kHold;
-  if (must_brake || state_.motion == Motion::kBrakeJoints) return Motion::kBrakeJoints;
+  const bool has_braked = state_.motion == Motion::kBrakeJoints;
+  if (has_braked && mode == Mode::kRunning) return Motion::kHold;  // one cycle, to realign the twin
+  if (must_brake || has_braked) return Motion::kBrakeJoints;
   return mode == Mode::kStopping ? Motion::kRenderStop : Motion::kRender;
 }
 
@@ -312,7 +314,8 @@ Motion Cycle::decide(bool is_usable, bool must_brake) const noexcept {
 VectorM Cycle::place_reference(Motion motion, const RobotState& robot) noexcept {
   rendering::State& rendering = state_.rendering;
   if (motion == Motion::kHold) {
-    const bool is_armed = state_.supervisor.state == safety::State::kArmed;
+    const bool is_armed =
+        state_.supervisor.state == safety::State::kArmed || is_moving(state_.supervisor.mode());
     if (!is_armed) {
       rendering.reference.q_m = robot.q_m;
       rendering.contact = {};

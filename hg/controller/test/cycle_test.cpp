@@ -306,6 +306,28 @@ TEST(Cycle, TheTwinMeetsTheHandleWhereJointsBrakedByThemselvesInAStopThatEndsArm
   EXPECT_LT((loop.record.T_B_H.p - loop.record.T_B_E.p).norm(), 1e-5);
 }
 
+TEST(Cycle, RunsAgainWhenAskedInTheCycleAfterJointsBrakedOneByOne) {
+  Loop loop;
+  loop.start_running();
+  loop.sensors.w_S[0] = 5.0;
+  loop.run(400);
+  loop.sensors.dead_man = false;
+  loop.run(3);
+  ASSERT_EQ(loop.record.mode, Mode::kStopping);
+  State state = loop.cycle->state();
+  state.motion = Motion::kBrakeJoints;
+  loop.cycle->restore(state);
+  loop.sensors.w_S[0] = 0.0;
+  for (int k = 0; k < 1000 && loop.record.mode == Mode::kStopping; ++k) loop.step();
+  ASSERT_EQ(loop.record.mode, Mode::kArmed);
+  loop.sensors.dead_man = true;
+  loop.sensors.w_S[0] = 5.0;
+  loop.operator_input.request = ModeRequest::kRun;
+  loop.run(400);
+  EXPECT_EQ(loop.record.mode, Mode::kRunning);
+  EXPECT_GT(loop.record.twin.dq_a.norm(), 0.05);
+}
+
 // Of the twin's reference wrench, in the first cycle of a stop.
 double force_while_stopping(bool is_alone) {
   Loop loop;
