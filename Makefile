@@ -84,7 +84,7 @@ experiments: build
 	@$(BUILD)/hapticgiant experiment all --law both --out build/experiments --docs docs/experiments
 	@$(BUILD)/hapticgiant experiment timing --out build/experiments --docs docs/experiments
 	@$(BUILD)/hapticgiant haptify --out build/experiments/haptify --docs docs/experiments
-	@$(BUILD)/hapticgiant haptify --goals --repetitions 4 --out build/experiments/goals --docs docs/experiments
+	@$(BUILD)/hapticgiant haptify --goals --repetitions 16 --out build/experiments/goals --docs docs/experiments
 	@$(BUILD)/hapticgiant experiment contact --docs docs/experiments
 
 bench-instructions:

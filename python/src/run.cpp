@@ -45,10 +45,10 @@ nb::object Columns::array_of(const Column& column) const {
 
 namespace {
 
-constexpr double kLongestStop = 1.0;  // s, as in runtime
 constexpr int kCyclesPerLook = 1000;  // between two looks at Ctrl-C
 
-void run_until(scenario::Session& session, double duration_s, Columns& columns) {
+void run_until(scenario::Session& session, double duration_s, double longest_stop_s,
+               Columns& columns) {
   double stop_since_s = -1.0;
   for (int look = 1; !session.is_over(); ++look) {
     session.advance();
@@ -58,7 +58,7 @@ void run_until(scenario::Session& session, double duration_s, Columns& columns) 
       session.stop();
       stop_since_s = time_s;
     }
-    if (stop_since_s >= 0.0 && time_s > stop_since_s + kLongestStop) return;
+    if (stop_since_s >= 0.0 && time_s > stop_since_s + longest_stop_s) return;
     if (look % kCyclesPerLook == 0) {
       const nb::gil_scoped_acquire gil;
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
@@ -75,7 +75,7 @@ nb::dict run(const config::Scenario& scenario, std::optional<double> duration_s)
   {
     const nb::gil_scoped_release no_gil;
     scenario::Session session(scenario);
-    run_until(session, end_s, columns);
+    run_until(session, end_s, scenario::longest_stop_s(scenario), columns);
   }
   return columns.to_dict();
 }
