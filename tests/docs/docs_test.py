@@ -53,7 +53,7 @@ def run_document(document, program, folder):
 
 def missing_tests(document):
     """What the document calls a test and is none: `Suite.Case` of GoogleTest, or a file."""
-    sources = "".join(path.read_text() for folder in ("hg", "tests")
+    sources = "".join(path.read_text() for folder in ("apps", "hg", "tests")
                       for path in (ROOT / folder).rglob("*_test.cpp"))
     for line in document.read_text().splitlines():
         for name in re.findall(r"`([^`]+)`", line.split("|")[-2] if line.startswith("|") else ""):
