@@ -49,8 +49,8 @@ enum class Motion : std::uint8_t {
   kBrakeJoints,  ///< a stop without a solution or with a collision ahead: joints brake one by one
 };
 
-/// Complete state of a cycle. Copy it for a snapshot, assign it to restore. Members added here or
-/// in nested states must be added to state_hash.cpp, too.
+/// Complete state of a cycle. Copy it for a snapshot, assign it to restore. Members added here must
+/// be added to state_hash.cpp, those of nested states to the fields() beside them.
 struct State {
   std::uint64_t cycle = 0;
   std::uint64_t next_sequence = 0;

@@ -9,9 +9,10 @@
 
 namespace hg::controller {
 
-/// Hash of everything in `state`, except that of the drives' past commands only the last one counts
-/// (earlier hashes cover the others). `rows` is the number of rows of the rendering problem, whose
-/// active set is in the state.
+/// Hash of `state`. Left out are the past commands of the drives but the last one (earlier hashes
+/// cover them), MonitorState::shaking, the filters of passivity::State, and some sums of
+/// InertialUnitsState. `rows` is the number of rows of the rendering problem, whose active set is
+/// in the state.
 std::uint64_t hash_of(const State& state, int rows) noexcept;
 
 }  // namespace hg::controller

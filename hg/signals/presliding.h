@@ -1,5 +1,5 @@
 /// Presliding friction (Maxwell slip): parallel elements, each an elastic bristle that slips at its
-/// share of the torque. Same law as in hg/simulation, without damping.
+/// share of the torque. Same law as in hg/simulator, without damping.
 ///
 /// Element k = 1..N of friction F with presliding x: stiffness F / (x k), slips at 1/N of the
 /// torque. Under F alone it slips after x k / N, the last one after x; load and stiction delay all

@@ -7,7 +7,7 @@
 
 namespace hg {
 
-/// Detected contact with the arm; hg/compliance.
+/// Detected contact with the arm; see compliance/ in hg/controller/safety.
 struct TouchReport {
   VectorM torque;        ///< Joint torques of the contact, Nm; empty: detection is inactive
   double share = 0.0;    ///< Largest ratio of joint torque to its threshold

@@ -18,7 +18,7 @@ constexpr double kGapMemory_s = 2.0;        // time constant of forgetting error
 constexpr double kDriftMemory_s = 60.0;     // the same for slow drift
 constexpr double kDriveError = 0.005;       // allowed drift of a drive, share of its way
 constexpr double kMotorMemory_s = 0.02;     // time constant of the motor torque observer
-constexpr double kShakingPatience_s = 3.0;  // as in hg/passivity
+constexpr double kShakingPatience_s = 3.0;  // as in passivity/
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -343,7 +343,7 @@ void Monitor::look_at_frames(const Rendered& rendered, const Watched& watched) n
 }
 
 // Returns a warning. Oscillations of force, which added damping may end, are stopped by
-// hg/passivity.
+// passivity/.
 Fault Monitor::look_for_shaking(const SensorFrame& sensors, const Rendered& rendered,
                                 const Watched& watched, MonitorState& state) noexcept {
   if (!config_.looks_for_shaking || mode_of(watched.state) != Mode::kRunning) {

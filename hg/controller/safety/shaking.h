@@ -1,7 +1,7 @@
-/// Detects shaking of hand and device that hg/passivity does not cover: torques, forces and torques
+/// Detects shaking of hand and device that passivity/ does not cover: torques, forces and torques
 /// above 30 Hz, and repeated bouncing off virtual surfaces.
 ///
-/// - Torque, 3 to 30 Hz: method of hg/passivity for the user's torque: more than 0.1 Nm
+/// - Torque, 3 to 30 Hz: method of passivity/ for the user's torque: more than 0.1 Nm
 ///   rms, and more than half of what is below 3 Hz and 0.05 Nm, for 0.2 s and three turns.
 /// - Above 30 Hz (as far as the sensor shows; below half of the rate): what the sensor itself
 ///   measures, with the inertia of the handle, since a hand yields to such motion without force.

@@ -37,7 +37,7 @@ inline constexpr double kLatencyAt = 3.0;  ///< frequency at which latency is ev
 std::array<std::complex<double>, 3> felt_over_body(Resolvent& resolvent, const HandleLoop& loop,
                                                    const Body& body, double frequency_Hz);
 
-/// Computes the felt quality after [HANDBOOK] 7, as hg/haptify measures it in simulation.
+/// Computes the felt quality after [HANDBOOK] 7, as studies/haptify measures it in simulation.
 /// `friction` (n): unmodelled friction torques on the motors, Nm.
 Feel feel(const HandleLoop& loop, const Body& body, const Eigen::VectorXd& friction);
 

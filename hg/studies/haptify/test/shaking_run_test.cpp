@@ -1,4 +1,4 @@
-// Shaking that hg/passivity does not look for, on the whole elastic simulation.
+// Shaking that safety/passivity does not look for, on the whole elastic simulation.
 
 #include <gtest/gtest.h>
 

@@ -21,7 +21,7 @@
 namespace hg::tuning {
 namespace {
 
-// The middle of the workspace, where hg/haptify and the stability map measure.
+// The middle of the workspace, where studies/haptify and the stability map measure.
 config::Scenario walk() {
   config::Scenario scenario = config::load_scenario("models/scenarios/walk.yaml");
   scenario.twin.model.q_start.head<3>() = haptify::ResponseConfig{}.position;
