@@ -46,9 +46,6 @@ install(FILES ${PROJECT_BINARY_DIR}/generated/hapticgiantConfig.cmake
   DESTINATION ${package_dir} COMPONENT cpp)
 
 if(HG_TESTS)
-  add_test(NAME package_cpp
-    COMMAND ${PROJECT_SOURCE_DIR}/.venv/bin/python tests/packages/cpp_package_test.py
-      ${PROJECT_BINARY_DIR} ${Eigen3_DIR}
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-  set_tests_properties(package_cpp PROPERTIES TIMEOUT 300)
+  hg_python_test(package_cpp tests/packages/cpp_package_test.py ${PROJECT_BINARY_DIR}
+    ${Eigen3_DIR} TIMEOUT 300)
 endif()

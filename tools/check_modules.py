@@ -1,10 +1,11 @@
-"""Checks that every module includes only what its line in CMakeLists.txt lists.
+"""Checks that every module includes what its line in CMakeLists.txt lists, and nothing else.
 
 A module is a folder of hg/ with its FOLDERS; a file belongs to the deepest module around it. Tests
 of a module may include whatever can be reached from there. Nothing of hg/, bench/ or tests/ includes
 apps/.
 
-Exits with 1 and one line per forbidden include: file:line: what it includes, what it may.
+Exits with 1 and one line per forbidden include (file:line: what it includes, what it may) and per
+listed module that no file includes.
 """
 
 import pathlib
@@ -68,6 +69,7 @@ KNOWN_FOLDERS = ["mcap_sink", "counting_malloc"]  # with targets of their own
 
 def check_includes(modules):
     faults = []
+    included = {name: set() for name in modules}
     files = [path for folder in ("hg", "bench", "tests") for path in (ROOT / folder).rglob("*")]
     for path in sorted(files):
         if path.suffix not in (".h", ".cpp"):
@@ -95,10 +97,14 @@ def check_includes(modules):
                 faults.append(f"{file}:{number}: {target} is not a path from the repository root")
                 continue
             other = module_of(modules, parts[1:]) if parts[0] == "hg" else parts[0]
+            if not is_test:
+                included[module].add(other)
             if other != module and other not in allowed:
                 names = ", ".join(sorted(allowed)) or "nothing"
                 faults.append(f"{file}:{number}: {module} may not include {other}; it may use {names}")
-    return faults
+    return faults + [f"CMakeLists.txt: {name} lists {other}, and includes nothing of it"
+                     for name, (uses, _) in modules.items()
+                     for other in sorted(uses - included[name])]
 
 
 def main():

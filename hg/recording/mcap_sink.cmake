@@ -98,8 +98,6 @@ endif()
 if(cargo)
   add_executable(recording_example hg/recording/test/recording_example.cpp)
   target_link_libraries(recording_example PRIVATE hg_recording)
-  add_test(NAME recording_read
-    COMMAND ${PROJECT_SOURCE_DIR}/.venv/bin/python hg/recording/test/read_recording.py
-      $<TARGET_FILE:recording_example>
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  hg_python_test(recording_read hg/recording/test/read_recording.py
+    $<TARGET_FILE:recording_example>)
 endif()
