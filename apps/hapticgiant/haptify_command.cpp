@@ -62,7 +62,7 @@ haptify::Benchmark measure_all(const HaptifyArguments& arguments) {
   return haptify::measure(scenario, arguments.options, tell);
 }
 
-nlohmann::json plays_json(const HaptifyArguments& arguments, const haptify::Benchmark& measured) {
+nlohmann::json results_json(const HaptifyArguments& arguments, const haptify::Benchmark& measured) {
   const haptify::Options& options = arguments.options;
   return {{"kind", arguments.only_goals ? "goals" : "haptify"},
           {"version", kVersion},
@@ -87,7 +87,7 @@ int run_haptify(const HaptifyArguments& arguments) {
       kVersion));
   const haptify::Benchmark measured =
       arguments.only_goals ? measure_goals(arguments) : measure_all(arguments);
-  write_output((folder / "plays.json").string(), plays_json(arguments, measured).dump() + "\n");
+  write_output((folder / "results.json").string(), results_json(arguments, measured).dump() + "\n");
   write_report(folder, arguments.docs);
   print_out(read_file(folder / "report.txt"));
   print_out(fmt::format("\nreport      {}\n",

@@ -1,4 +1,4 @@
-"""Figures, tables and texts that are made from plays.json.
+"""Figures, tables and texts that are made from results.json.
 
 Usage: benchmark_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
@@ -17,7 +17,7 @@ PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "hapticgiant"
 if "hapticgiant" not in sys.modules:  # its own __init__ would need its compiled part
     sys.modules["hapticgiant"] = types.ModuleType("hapticgiant")
     sys.modules["hapticgiant"].__path__ = [str(PACKAGE)]
-from hapticgiant.report import benchmark, goals, haptify, measures  # noqa: E402
+from hapticgiant.report import benchmark, goals, haptify, measures, surfaces  # noqa: E402
 
 BODY, LIGHT = {"mass": 6.0, "damping": 4.0}, {"mass": 3.0, "damping": 2.0}
 FREE_SPACE = {"force": 0.9, "own_share": 0.8, "extra": 0.13, "speed_rms": 0.2, "path": 12.0,
@@ -116,7 +116,7 @@ def measurements():
     }
 
 
-def plays(measured, kind="haptify"):
+def results_of(measured, kind="haptify"):
     return {"kind": kind, "version": "1", "command": "hapticgiant haptify", "device": "Device",
             "seed": 1, "repetitions": 2, "is_quick": False, "measurements": measured}
 
@@ -164,7 +164,7 @@ class Statistics(unittest.TestCase):
 
 class Benchmark(unittest.TestCase):
     def test_what_has_worked_has_figures_and_reasons(self):
-        found = benchmark.results(plays(measurements()))
+        found = benchmark.figures(results_of(measurements()))
         self.assertEqual(found["failures"], [])
         self.assertEqual([it["id"] for it in found["table"]], list(measures.TABLE_III))
         for it in figures(found).values():
@@ -202,7 +202,7 @@ class Benchmark(unittest.TestCase):
             measured = measurements()
             for run in measured[name]["runs"]:
                 run["failure"] = "fault 9"
-            found = benchmark.results(plays(measured))
+            found = benchmark.figures(results_of(measured))
             it = figures(found).get(key, {"values": [], "measured": "not measured"})
             self.assertEqual(it["values"], [], name)
             self.assertEqual(it["measured"], "not measured")
@@ -211,20 +211,20 @@ class Benchmark(unittest.TestCase):
                             found["failures"])
         measured = measurements()
         measured["strokes"]["runs"][0]["failure"] = "fault 9"
-        found = benchmark.results(plays(measured))
+        found = benchmark.figures(results_of(measured))
         self.assertEqual(found["failures"], ["strokes, x, seed 1: fault 9"])
 
     def test_one_axis_that_fails_hides_the_worst(self):
         measured = measurements()
         measured["transparency"]["runs"][2]["failure"] = "fault 9"
         measured["latency"]["runs"][0]["failure"] = "fault 9"
-        it = figures(benchmark.results(plays(measured)))
+        it = figures(benchmark.figures(results_of(measured)))
         self.assertEqual(it["position_bandwidth"]["values"], [])
         self.assertEqual(len(it["latency"]["values"]), 1)  # of the other repetition
 
     def test_the_stiffest_calm_surface_is_below_the_first_that_is_not(self):
         def of(*verdicts):
-            return benchmark.stiffest_calm([{"stiffness": float(2 ** n), "verdict": verdict}
+            return surfaces.stiffest_calm([{"stiffness": float(2 ** n), "verdict": verdict}
                                             for n, verdict in enumerate(verdicts)])
         self.assertEqual(of("stable", "stable", "stable"), 4.0)
         self.assertEqual(of("stable", "slow decay", "stable"), 1.0)
@@ -234,7 +234,7 @@ class Benchmark(unittest.TestCase):
         measured = measurements()
         measured["impacts"]["runs"][0].update(rest_s=math.nan, energy_out=1.2)
         measured["impacts"]["runs"][1].update(end="fault 9")
-        found = benchmark.results(plays(measured))
+        found = benchmark.figures(results_of(measured))
         rows = rows_of(found, "impacts")
         self.assertEqual([row[-1] for row in rows], ["rest, energy", "fault 9"])
         self.assertEqual(rows[0][12], "never")
@@ -245,12 +245,12 @@ class Benchmark(unittest.TestCase):
     def test_what_ends_a_hard_push_is_a_result(self):
         measured = measurements()
         measured["transparency of hard pushes"]["runs"][1]["end"] = "fault 9"
-        found = benchmark.results(plays(measured))
+        found = benchmark.figures(results_of(measured))
         self.assertEqual([row[-1] for row in rows_of(found, "felt_mass")], ["fault 9", "14.9"])
         self.assertEqual(found["failures"], [])
 
 
-def goal_plays():
+def goal_runs():
     conditions = [{"seed": seed, "height": -0.775, "hand": "normal"} for seed in SEEDS]
     results = {
         "transparency, 10 N": {"transparency_Hz": 15.0}, "transparency, 40 N": {"transparency_Hz": 9},
@@ -266,10 +266,10 @@ def goal_plays():
 
 class Goals(unittest.TestCase):
     def test_rows_say_the_worst(self):
-        measured = goal_plays()
+        measured = goal_runs()
         for number, run in enumerate(measured["transparency, 10 N"]["runs"]):
             run["transparency_Hz"] = 13.0 + number  # 13, 14, 15 and 16, 17, 18
-        found = goals.results(plays(measured, "goals"))
+        found = goals.figures(results_of(measured, "goals"))
         rows = {row[0]: row[1:] for row in found["tables"][0]["rows"]}
         self.assertEqual(list(rows), [it.name for it in measures.GOALS.values()])
         self.assertEqual(rows["Transparency bandwidth, 10 N"][:6],
@@ -279,9 +279,9 @@ class Goals(unittest.TestCase):
         self.assertIn("body of 6 kg, 4 Ns/m", rows["Free-space force"][6])
 
     def test_a_run_that_fails_has_no_value(self):
-        measured = goal_plays()
+        measured = goal_runs()
         measured["latency"]["runs"][4]["failure"] = "fault 9"
-        found = goals.results(plays(measured, "goals"))
+        found = goals.figures(results_of(measured, "goals"))
         self.assertEqual(found["failures"], ["latency, seed 2, -0.775 m, normal hand: fault 9"])
         self.assertEqual(len(figures(found)["latency"]["values"]), 1)
 
@@ -292,17 +292,17 @@ class Files(unittest.TestCase):
         measured["impacts"]["runs"][0]["rest_s"] = None  # as JSON has it
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            (folder / "plays.json").write_text(json.dumps(plays(measured)))
+            (folder / "results.json").write_text(json.dumps(results_of(measured)))
             haptify.write(folder)
             text = (folder / "report.txt").read_text()
             self.assertIn(f"{'Mean free-space force':<40}{'N':<7}{'0.90 +- 0.00':>18}", text)
             self.assertIn("Mean free-space force: 0.90 +- 0.00 instead of <= 0.7 N. 0.80 N of it "
                           "is what a free body of 6 kg, 4 Ns/m needs", text)
             self.assertIn("0.90 +- 0.00", (folder / "report.html").read_text())
-            found = json.loads((folder / "results.json").read_text())
+            found = json.loads((folder / "figures.json").read_text())
             self.assertIsNone(figures(found)["impact_rest"]["mean"])
             self.assertEqual(found["workspace"][0]["box"], [None, 1.0, -1.0, 1.0])
-            (folder / "plays.json").write_text(json.dumps(plays(goal_plays(), "goals")))
+            (folder / "results.json").write_text(json.dumps(results_of(goal_runs(), "goals")))
             haptify.write(folder)
             self.assertIn(f"{'Latency from wrench to motion':<38}{'ms':<7}",
                           (folder / "report.txt").read_text())

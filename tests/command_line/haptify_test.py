@@ -33,8 +33,9 @@ class Haptify(TemporaryFolder):
         two, _ = self.measure("two")
         names = sorted(file.name for file in one.iterdir())
         self.assertEqual(names, sorted(file.name for file in two.iterdir()))
-        self.assertLessEqual({"plays.json", "results.json", "report.txt", "report.html", "report.md", "table.tex", "haptify.csv",
-                              "repetitions.csv", "transparency.csv", "z_width.csv", "impacts.csv",
+        self.assertLessEqual({"results.json", "figures.json", "report.txt", "report.html",
+                              "report.md", "table.tex", "haptify.csv", "repetitions.csv",
+                              "transparency.csv", "z_width.csv", "impacts.csv",
                               "felt_mass.csv", "rotation.csv", "springs.csv"}, set(names))
         for name in names:
             self.assertEqual((one / name).read_bytes(), (two / name).read_bytes(), name)

@@ -99,7 +99,7 @@ void write_report(const fs::path& folder, const std::string& docs) {
   const int code = run_program(words);
   if (code == 0) return;
   throw SetupError(fmt::format("{}: no report: {} ended with {}; the results are kept",
-                               (folder / "plays.json").string(), words[2], code));
+                               (folder / "results.json").string(), words[2], code));
 }
 
 }  // namespace hg::apps

@@ -19,7 +19,7 @@ std::string draw_figures(const std::filesystem::path& out,
 /// Throws SetupError, with what to install, unless write_report() can work.
 void check_report_program();
 
-/// Writes report and tables beside plays.json in `folder` (python/hapticgiant/report), and
+/// Writes report and tables beside results.json in `folder` (python/hapticgiant/report), and
 /// refreshes the figures in the page of this report in `docs`; empty = none. Throws SetupError.
 void write_report(const std::filesystem::path& folder, const std::string& docs);
 

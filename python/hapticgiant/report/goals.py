@@ -1,6 +1,6 @@
-"""Figures of `hapticgiant haptify --goals` from what the program has played; see benchmark.py."""
+"""Figures of `hapticgiant haptify --goals` from the results of all runs; see measured.py."""
 
-from .benchmark import REAL_AND_SIMULATED, column, groups, has_worked, table
+from .measured import REAL_AND_SIMULATED, column, groups, has_worked, table
 from .measures import GOALS, figure, goal_text, mean, within
 
 CONDITION = ("seed", "height", "hand")
@@ -61,15 +61,15 @@ def goals_table(figures):
                  rows)
 
 
-def results(plays):
-    """The content of results.json."""
-    measurements = plays["measurements"]
+def figures(results):
+    """The content of figures.json."""
+    measurements = results["measurements"]
     failures = [f"{name}, seed {run['seed']}, {run['height']:g} m, {run['hand']} hand: "
                 f"{run['failure']}"
                 for name, it in measurements.items() for run in it["runs"] if not has_worked(run)]
-    figures = [figure(GOALS, key, values(measurements[name]["runs"]),
-                      **measurements[name]["settings"]["body"])
-               for key, (name, values) in SOURCES.items()]
-    return {**{key: value for key, value in plays.items() if key != "measurements"},
+    measured = [figure(GOALS, key, values(measurements[name]["runs"]),
+                       **measurements[name]["settings"]["body"])
+                for key, (name, values) in SOURCES.items()]
+    return {**{key: value for key, value in results.items() if key != "measurements"},
             "real_and_simulated": REAL_AND_SIMULATED, "failures": failures, "table": [],
-            "beyond": figures, "tables": [goals_table(figures)], "curves": [], "workspace": []}
+            "beyond": measured, "tables": [goals_table(measured)], "curves": [], "workspace": []}

@@ -38,7 +38,7 @@ KEY_FIGURES = (
 
 
 class Results:
-    """The content of results.json, with what all forms of the report say."""
+    """The content of figures.json, with what all forms of the report say."""
 
     def __init__(self, facts):
         self.facts = facts
@@ -197,19 +197,19 @@ def haptify_text(results):
     return "".join(lines) + failures_text(results)
 
 
-def read_plays(file):
-    """plays.json, with NaN for the null that stands for infinite and undefined results."""
+def read_results(file):
+    """results.json, with NaN for the null that stands for infinite and undefined results."""
     def with_numbers(entry):
         return {key: math.nan if value is None else value for key, value in entry.items()}
     return json.loads(file.read_text(encoding="utf-8"), object_hook=with_numbers)
 
 
 def write(folder, docs=None):
-    """Writes the report beside plays.json, and into the pages of `docs`."""
-    plays = read_plays(folder / "plays.json")
-    name = plays["kind"]
-    results = Results((goals if name == "goals" else benchmark).results(plays))
-    save(folder / "results.json", json.dumps(results.facts, allow_nan=False) + "\n")
+    """Writes the report beside results.json, and into the pages of `docs`."""
+    measured = read_results(folder / "results.json")
+    name = measured["kind"]
+    results = Results((goals if name == "goals" else benchmark).figures(measured))
+    save(folder / "figures.json", json.dumps(results.facts, allow_nan=False) + "\n")
     if name == "goals":
         text = goals_markdown(results)
         save(folder / "report.txt", goals_text(results))

@@ -221,7 +221,7 @@ def mean_text(values, digits):
 
 
 def figure(measures, key, values, identifier=None, **fields):
-    """A figure of results.json: a measure with its values in the order of their repetitions."""
+    """A figure of figures.json: a measure with its values in the order of their repetitions."""
     it = measures[key]
     is_goal = bool(values) and it.goal != (None, None)
     paper, touch, touch_x = it.published
