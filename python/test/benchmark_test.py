@@ -185,7 +185,8 @@ class Benchmark(unittest.TestCase):
 
     def test_a_measurement_that_fails_has_no_figure(self):
         without = {
-            "frictionless surface": ("frictionless_surface", "frictionless surface, lighter body, "),
+            "frictionless surface": ("frictionless_surface",
+                                     "frictionless surface, lighter body, "),
             "stiffness": ("stiffness_accuracy", "stiffness 1000 N/m, seed 1: "),
             "peak force": ("stiffness_peak_force", "peak force, seed 1: "),
             "free space": ("free_space_force", "free space, body of 6 kg, seed 1: "),
@@ -253,8 +254,9 @@ class Benchmark(unittest.TestCase):
 def goal_runs():
     conditions = [{"seed": seed, "height": -0.775, "hand": "normal"} for seed in SEEDS]
     results = {
-        "transparency, 10 N": {"transparency_Hz": 15.0}, "transparency, 40 N": {"transparency_Hz": 9},
-        "latency": {"motion_s": 3e-3}, "free space": FREE_SPACE, "kick, 0.3 kg": {"last_speed": 5e-3},
+        "transparency, 10 N": {"transparency_Hz": 15.0},
+        "transparency, 40 N": {"transparency_Hz": 9.0}, "latency": {"motion_s": 3e-3},
+        "free space": FREE_SPACE, "kick, 0.3 kg": {"last_speed": 5e-3},
         "kick, 0.4 kg": {"last_speed": 7e-3}, "plane of 20 kN/m, 6 kg": {"verdict": "stable"},
         "plane of 20 kN/m, 3 kg": {"verdict": "hunts"}, "stiffness": {"accuracy": 99.5},
         "free space, light body": FREE_SPACE, "frictionless surface": SLIDE}

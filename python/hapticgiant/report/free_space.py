@@ -3,7 +3,7 @@
 import math
 
 from . import measures
-from .measured import (AXES, STROKES, column, curve, groups, has_worked, name_of, table)
+from .measured import AXES, STROKES, column, curve, groups, has_worked, name_of, table
 from .measures import mean
 
 
@@ -95,23 +95,24 @@ def why_centroid(it):
     if len(without) < 2 or not all(map(has_worked, runs)):
         return ""
 
-    def told(run):
+    def vibration_of(run):
         return f"{run['vibration_rms']:.4f} m/s^2 at {run['centroid_Hz']:.1f} Hz"
 
     centroids = column(without, "centroid_Hz")
+    seconds = it.settings("sources of vibration")["duration_s"]
     quietest = min(without, key=lambda run: run["vibration_rms"])
     text = (
-        f"The way to the handle makes it, not a source. On one way of "
-        f"{it.settings('sources of vibration')['duration_s']:.0f} s vibration is {told(shipped)}; "
-        f"with one imperfection taken away at a time the centroid stays between "
-        f"{min(centroids):.1f} and {max(centroids):.1f} Hz, though \"{quietest['name']}\" leaves "
-        f"only {quietest['vibration_rms']:.4f} m/s^2. Above 100 Hz nearly nothing arrives "
+        f"The way to the handle makes it, not a source. On one way of {seconds:.0f} s vibration is "
+        f"{vibration_of(shipped)}; with one imperfection taken away at a time the centroid stays "
+        f"between {min(centroids):.1f} and {max(centroids):.1f} Hz, though "
+        f"\"{quietest['name']}\" leaves only {quietest['vibration_rms']:.4f} m/s^2. Above 100 Hz "
+        f"nearly nothing arrives "
         f"({math.hypot(*shipped['band_rms'][2:]):.4f} m/s^2 of {shipped['vibration_rms']:.4f}): "
         f"the springs of the joints isolate the handle above their resonances, and what noise of "
         f"the wrench asks for is low-passed before. ")
     for run in runs:
         if run["changes_way"]:
-            text += f"With \"{run['name']}\" it is {told(run)}. "
+            text += f"With \"{run['name']}\" it is {vibration_of(run)}. "
     return text + (
         "What shakes a real handle there (teeth, drives, bending links) is not simulated; a higher "
         "figure means another machine or more vibration, not a better feel.")

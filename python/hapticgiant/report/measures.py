@@ -129,7 +129,8 @@ BEYOND = {
         "Energy out of a wall over energy into it, largest", goal=(None, 1.0),
         note="at most 1 is asked for"),
     "impact_misses": Measure(
-        "Impacts that miss one of these bounds", goal=(None, 0.0), note="of {count}, see the table"),
+        "Impacts that miss one of these bounds", goal=(None, 0.0),
+        note="of {count}, see the table"),
     "felt_mass": Measure(
         "Felt mass under {force:g} N", "kg",
         note="of a body of {mass:g} kg, along the worst axis of the handle"),
@@ -227,7 +228,8 @@ def figure(measures, key, values, identifier=None, **fields):
     paper, touch, touch_x = it.published
     return {"id": identifier or key, "name": it.name.format(**fields), "unit": it.unit,
             "digits": it.digits, "mean": finite(mean(values)),
-            "half_width_95": finite(half_width(values)), "values": [finite(value) for value in values],
+            "half_width_95": finite(half_width(values)),
+            "values": [finite(value) for value in values],
             "measured": mean_text(values, it.digits),
             "paper": paper, "touch": touch, "touch_x": touch_x,
             "goal": goal_text(it.goal), "goal_min": it.goal[0], "goal_max": it.goal[1],

@@ -140,9 +140,10 @@ def add_springs(it):
     rows = []
     for (stiffness, deflection), swings in groups(runs, "stiffness", "deflection").items():
         frequency, ideal = mean(column(swings, "frequency_Hz")), swings[0]
-        rows.append([f"{stiffness:g}", f"{1e3 * deflection:g}",
-                     f"{1e3 * settings['radius'] * mean(column(swings, 'amplitude')):.1f}", f"{ideal['ideal_Hz']:.2f}",
-                     f"{frequency:.2f}", f"{frequency / ideal['ideal_Hz']:.2f}",
+        first_mm = 1e3 * settings["radius"] * mean(column(swings, "amplitude"))
+        rows.append([f"{stiffness:g}", f"{1e3 * deflection:g}", f"{first_mm:.1f}",
+                     f"{ideal['ideal_Hz']:.2f}", f"{frequency:.2f}",
+                     f"{frequency / ideal['ideal_Hz']:.2f}",
                      f"{ideal['ideal_damping']:.3f}",
                      f"{mean(column(swings, 'damping_ratio')):.3f}"])
     has_all = len(runs) == len(it.runs("springs"))
