@@ -21,7 +21,7 @@
 #include "hg/scenario/assembly.h"
 #include "hg/studies/changes.h"
 #include "hg/studies/contact.h"
-#include "hg/studies/haptify/figures.h"
+#include "hg/studies/haptify/benchmark.h"
 #include "hg/studies/haptify/free_space_variants.h"
 #include "hg/studies/haptify/hand_figures.h"
 #include "hg/studies/haptify/impedance.h"

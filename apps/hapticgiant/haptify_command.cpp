@@ -9,16 +9,15 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/hapticgiant/experiments/figure_program.h"
-#include "apps/hapticgiant/haptify_report.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/scenario/options.h"
 #include "hg/studies/haptify/benchmark.h"
-#include "hg/studies/haptify/goals.h"
 
 namespace hg::apps {
 namespace {
@@ -47,26 +46,32 @@ std::string command_of(const HaptifyArguments& arguments) {
   return command + (options.is_quick ? " --quick" : "");
 }
 
-// writes results.json and what is made of it; the user is told of `page`
-void report(const HaptifyArguments& arguments, const nlohmann::ordered_json& results,
-            const std::string& page) {
-  const fs::path folder = arguments.out;
-  write_output((folder / "results.json").string(), results.dump() + "\n");
-  write_report(folder, arguments.docs);
-  print_out(fmt::format("\nreport      {}\n", (folder / page).string()));
-}
-
-int write_goals(const HaptifyArguments& arguments) {
+haptify::Benchmark measure_goals(const HaptifyArguments& arguments) {
   const config::Scenario scenario =
       scenario::load({.scenario = "walk", .simulation = arguments.simulation});
   const config::Scenario light =
       scenario::load({.scenario = "walk",
                       .twin = arguments.twin.empty() ? "light" : arguments.twin,
                       .simulation = arguments.simulation});
-  const haptify::Benchmark goals = haptify::measure_goals(scenario, light, arguments.options, tell);
-  print_out(goals_text(goals));
-  report(arguments, results_json(goals, "goals", command_of(arguments)), "goals.md");
-  return goals.failures.empty() ? 0 : 1;
+  return haptify::measure_goals(scenario, light, arguments.options, tell);
+}
+
+haptify::Benchmark measure_all(const HaptifyArguments& arguments) {
+  const config::Scenario scenario = scenario::load(
+      {.scenario = "walk", .twin = arguments.twin, .simulation = arguments.simulation});
+  return haptify::measure(scenario, arguments.options, tell);
+}
+
+nlohmann::json results_json(const HaptifyArguments& arguments, const haptify::Benchmark& measured) {
+  const haptify::Options& options = arguments.options;
+  return {{"kind", arguments.only_goals ? "goals" : "haptify"},
+          {"version", kVersion},
+          {"command", command_of(arguments)},
+          {"device", measured.device},
+          {"seed", options.seed},
+          {"repetitions", options.repetitions},
+          {"is_quick", options.is_quick},
+          {"measurements", measured.measurements}};
 }
 
 }  // namespace
@@ -80,13 +85,14 @@ int run_haptify(const HaptifyArguments& arguments) {
   print_out(fmt::format(
       "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
       kVersion));
-  if (arguments.only_goals) return write_goals(arguments);
-  const config::Scenario scenario = scenario::load(
-      {.scenario = "walk", .twin = arguments.twin, .simulation = arguments.simulation});
-  const haptify::Benchmark result = haptify::measure(scenario, arguments.options, tell);
-  print_out(haptify_text(result));
-  report(arguments, results_json(result, "haptify", command_of(arguments)), "report.html");
-  return result.failures.empty() ? 0 : 1;
+  const haptify::Benchmark measured =
+      arguments.only_goals ? measure_goals(arguments) : measure_all(arguments);
+  write_output((folder / "results.json").string(), results_json(arguments, measured).dump() + "\n");
+  write_report(folder, arguments.docs);
+  print_out(read_file(folder / "report.txt"));
+  print_out(fmt::format("\nreport      {}\n",
+                        (folder / (arguments.only_goals ? "goals.md" : "report.html")).string()));
+  return measured.has_failures ? 1 : 0;
 }
 
 void add_haptify(CLI::App& app, int& exit_code) {

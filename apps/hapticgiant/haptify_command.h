@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "hg/studies/haptify/figures.h"
+#include "hg/studies/haptify/benchmark.h"
 
 namespace CLI {
 class App;

@@ -33,8 +33,9 @@ class Haptify(TemporaryFolder):
         two, _ = self.measure("two")
         names = sorted(file.name for file in one.iterdir())
         self.assertEqual(names, sorted(file.name for file in two.iterdir()))
-        self.assertLessEqual({"results.json", "report.html", "report.md", "table.tex", "haptify.csv",
-                              "repetitions.csv", "transparency.csv", "z_width.csv", "impacts.csv",
+        self.assertLessEqual({"results.json", "figures.json", "report.txt", "report.html",
+                              "report.md", "table.tex", "haptify.csv", "repetitions.csv",
+                              "transparency.csv", "z_width.csv", "impacts.csv",
                               "felt_mass.csv", "rotation.csv", "springs.csv"}, set(names))
         for name in names:
             self.assertEqual((one / name).read_bytes(), (two / name).read_bytes(), name)
@@ -67,7 +68,7 @@ class Haptify(TemporaryFolder):
         done = subprocess.run([PROGRAM, "haptify", "--quick", "--out", self.folder / "no"],
                               capture_output=True, text=True, timeout=60, env=environment)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-        self.assertIn("needs matplotlib and jinja2; tools/setup.sh build", done.stderr)
+        self.assertIn("needs scipy, matplotlib and jinja2; tools/setup.sh build", done.stderr)
         self.assertNotIn("runs", done.stderr)
 
     def check_that_forms_agree(self, folder, rows):

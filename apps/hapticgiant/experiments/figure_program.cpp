@@ -87,8 +87,8 @@ void check_report_program() {
   words.emplace_back("--check");
   if (run_program(words) == 0) return;
   throw SetupError(fmt::format(
-      "{} cannot write the report: it needs matplotlib and jinja2; tools/setup.sh build, or pip "
-      "install matplotlib jinja2, then the same command again",
+      "{} cannot write the report: it needs scipy, matplotlib and jinja2; tools/setup.sh build, or "
+      "pip install scipy matplotlib jinja2, then the same command again",
       words[0]));
 }
 

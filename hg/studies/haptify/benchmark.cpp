@@ -1,11 +1,57 @@
 #include "hg/studies/haptify/benchmark.h"
 
+#include "hg/studies/changes.h"
 #include "hg/studies/haptify/groups.h"
+#include "hg/studies/workers.h"
 
 namespace hg::haptify {
 
+std::vector<std::uint64_t> Group::seeds() const {
+  std::vector<std::uint64_t> all;
+  for (int i = 0; i < options.repetitions; ++i) {
+    all.push_back(options.seed + static_cast<std::uint64_t>(i));
+  }
+  return all;
+}
+
+void Group::do_all(const std::string& what, std::size_t count,
+                   const std::function<void(std::size_t)>& work) const {
+  studies::do_all(count, work, [&](std::size_t done, std::size_t total) {
+    if (told) told(what, done, total);
+  });
+}
+
+void Group::add(const std::string& name, const nlohmann::json& settings,
+                const std::vector<Play>& plays) const {
+  std::vector<nlohmann::json> runs(plays.size());
+  do_all(name, plays.size(), [&](std::size_t i) {
+    runs[i] = plays[i].measure();
+    runs[i].update(plays[i].condition);
+  });
+  for (const nlohmann::json& run : runs) {
+    out.has_failures = out.has_failures || !run.value("failure", "").empty();
+  }
+  out.measurements[name] = {{"settings", settings}, {"runs", runs}};
+}
+
+std::vector<std::pair<std::string, person::HandPreset>> hands(bool is_quick) {
+  if (is_quick) return {{"normal", person::HandPreset::kNormal}};
+  return {{"relaxed", person::HandPreset::kRelaxed},
+          {"normal", person::HandPreset::kNormal},
+          {"stiff", person::HandPreset::kStiff}};
+}
+
+config::Scenario with_body(config::Scenario scenario, const studies::FreeTwin& body) {
+  studies::set_free_twin(scenario, body);
+  return scenario;
+}
+
+nlohmann::json as_json(const studies::FreeTwin& body) {
+  return {{"mass", body.mass}, {"damping", body.damping}};
+}
+
 Benchmark measure(const config::Scenario& scenario, const Options& options, const Told& told) {
-  Benchmark result = {.options = options, .device = scenario.device.name};
+  Benchmark result = {.device = scenario.device.name};
   const Group group = {scenario, options, told, result};
   add_workspace(group);
   add_free_space(group);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -36,5 +37,7 @@ struct Dynamics {
 
 Dynamics measure_dynamics(const config::Scenario& scenario, const DynamicsConfig& config, int axis,
                           std::uint64_t seed);
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Dynamics, fit, mean, largest, failure)
 
 }  // namespace hg::haptify

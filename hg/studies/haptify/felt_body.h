@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -48,5 +49,7 @@ struct Twist {
 /// and judges the decay; motion sustained only by friction does not count as rest.
 Twist twist(const config::Scenario& scenario, const TwistConfig& config,
             const person::HandImpedance& hand, double inertia);
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Pull, mass, acceleration, failure)
 
 }  // namespace hg::haptify

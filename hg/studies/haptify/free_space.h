@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
 #include "hg/config/scenario.h"
 #include "hg/config/twin.h"
@@ -54,5 +55,10 @@ struct FreeSpace {
 /// free body.
 FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceConfig& config,
                              std::uint64_t seed, const Disturbance& disturbance = {});
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FreeSpace, force, own_share, extra, speed_rms, vibration_rms,
+                                   centroid_Hz, band_rms, acceleration_5Hz, spectrum, seen_rms,
+                                   seen_centroid_Hz, limited_share, path, distance_rms, joint_error,
+                                   torque_share, failure)
 
 }  // namespace hg::haptify

@@ -1,20 +1,27 @@
-/// The groups of measurements of benchmark.h; each adds its figures, tables and failures.
+/// The groups of measurements of benchmark.h.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/simulator/person/hand.h"
 #include "hg/studies/free_twin.h"
 #include "hg/studies/haptify/benchmark.h"
-#include "hg/studies/haptify/figures.h"
 #include "hg/studies/haptify/free_space.h"
-#include "hg/studies/workers.h"
 
 namespace hg::haptify {
 
 /// A lighter body than the shipped one, for comparison; [C] 4.
 inline constexpr studies::FreeTwin kLightBody = {.mass = 3.0, .damping = 2.0};
+
+/// One run of a measurement, not yet played.
+struct Play {
+  nlohmann::json condition;                 ///< differs from run to run: seed, axis, body
+  std::function<nlohmann::json()> measure;  ///< plays it and returns the result
+};
 
 struct Group {
   const config::Scenario& scenario;
@@ -22,33 +29,26 @@ struct Group {
   const Told& told;
   Benchmark& out;
 
-  /// Calls measure(i) for every i < count, on all cores.
-  template <typename Measure>
-  auto measure_all(const std::string& what, std::size_t count, const Measure& measure) const {
-    std::vector<decltype(measure(std::size_t{}))> results(count);
-    studies::do_all(
-        count, [&](std::size_t i) { results[i] = measure(i); },
-        [&](std::size_t done, std::size_t total) {
-          if (told) told(what, done, total);
-        });
-    return results;
-  }
-  std::size_t repetitions() const { return static_cast<std::size_t>(options.repetitions); }
-  std::uint64_t seed(std::size_t repetition) const { return options.seed + repetition; }
-  /// False when a measurement has failed; the failure is reported and its numbers are invalid.
-  bool has_worked(const std::string& what, const std::string& failure) const {
-    if (failure.empty()) return true;
-    out.failures.push_back(what + ": " + failure);
-    return false;
-  }
+  /// Seeds of the repetitions.
+  std::vector<std::uint64_t> seeds() const;
+  /// Calls work(i) for every i < count, on all cores, and reports the progress of `what`.
+  void do_all(const std::string& what, std::size_t count,
+              const std::function<void(std::size_t)>& work) const;
+  /// Plays all runs of the measurement `name`, on all cores, and adds them to `out`.
+  void add(const std::string& name, const nlohmann::json& settings,
+           const std::vector<Play>& plays) const;
 };
 
-/// The spectrum of a vibration as a curve, from kVibrationBand to 500 Hz.
-Curve vibration_curve(const std::string& id, const std::string& name, const FreeSpace& measured);
+/// Names and presets of the hands that are compared; of a quick run the normal one.
+std::vector<std::pair<std::string, person::HandPreset>> hands(bool is_quick);
+
+/// The scenario with another free body.
+config::Scenario with_body(config::Scenario scenario, const studies::FreeTwin& body);
+
+nlohmann::json as_json(const studies::FreeTwin& body);
 
 void add_workspace(const Group& group);
 void add_free_space(const Group& group);
-/// Adds the imperfections that cause the vibration; call it after add_free_space().
 void add_sources(const Group& group);
 void add_dynamics(const Group& group);
 void add_sliding(const Group& group);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -31,10 +32,8 @@ struct ImpactConfig {
 /// trials without a wall; the fastest tried if that is not enough.
 double find_way(const config::Scenario& scenario, const ImpactConfig& config, double speed);
 
-// limits of a good impact
-inline constexpr double kDeepestImpact = 1.3;  ///< largest depth over v^2 / (2 a)
-inline constexpr double kMostRebound = 0.1;    ///< largest rebound, share of the speed
-inline constexpr double kLatestRest = 0.5;     ///< latest rest, s after the contact
+/// Largest depth of a good impact over v^2 / (2 a).
+inline constexpr double kDeepestImpact = 1.3;
 
 struct Impact {
   double speed = 0.0;  ///< speed just before the wall, m/s
@@ -64,5 +63,9 @@ struct Impact {
 };
 Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& config,
                       double stiffness, double speed, double way_s, std::uint64_t seed);
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Impact, speed, depth, braking, bound, onset, spring, rebound,
+                                   rest_s, last_speed, energy_in, energy_out, peak_force,
+                                   felt_force, end, failure)
 
 }  // namespace hg::haptify

@@ -8,6 +8,7 @@
 #include <array>
 #include <complex>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
@@ -116,5 +117,8 @@ double bandwidth(std::span<const double> frequency_Hz, std::span<const double> r
 /// `most`; both of the same length.
 double delay(std::span<const double> reference, std::span<const double> signal, double rate_Hz,
              double most);
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Spectrum, step_Hz, magnitude)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DynamicFit, inertia, damping, friction, r2)
 
 }  // namespace hg::haptify

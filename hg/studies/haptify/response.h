@@ -8,6 +8,7 @@
 
 #include <complex>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -79,5 +80,7 @@ struct Latency {
 /// Measures the latency from a step of the person's push.
 Latency measure_latency(const config::Scenario& scenario, const ResponseConfig& config, int axis,
                         std::uint64_t seed);
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Latency, motion_s, sensed_s, failure)
 
 }  // namespace hg::haptify

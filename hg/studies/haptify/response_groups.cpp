@@ -1,26 +1,28 @@
-// Transparency, bandwidths and latency.
+// Transparency, bandwidths and latency, and where the acceleration that the device can give is
+// felt: hard pulls, light rotations, stiff springs.
 
-#include <fmt/format.h>
+#include <complex>
+#include <string>
+#include <vector>
 
-#include <array>
-#include <cmath>
-#include <numbers>
-
+#include "hg/studies/changes.h"
+#include "hg/studies/haptify/felt_body.h"
 #include "hg/studies/haptify/groups.h"
 #include "hg/studies/haptify/measures.h"
 #include "hg/studies/haptify/response.h"
+#include "hg/studies/haptify/swing.h"
 
 namespace hg::haptify {
 namespace {
 
+using nlohmann::json;
+using Values = std::vector<double>;
+
 constexpr int kAxes = 3;
 
-double degrees(const std::complex<double>& value) {
-  return std::arg(value) * 180.0 / std::numbers::pi;
-}
-
-ResponseConfig config_of(const Options& options) {
+ResponseConfig config_of(const Options& options, const Values& frequency_Hz) {
   ResponseConfig config;
+  config.frequency_Hz = frequency_Hz;
   if (!options.is_quick) return config;
   config.frequency_Hz = {1, 5, 20};
   config.periods = 3;
@@ -28,174 +30,155 @@ ResponseConfig config_of(const Options& options) {
   return config;
 }
 
-// of all axes
-void keep_lowest(double value, Figure& figure) {
-  if (figure.values.empty() || value < figure.values[0]) figure.values = {value};
+json complex(const std::complex<double>& value) { return {value.real(), value.imag()}; }
+
+json as_json(const Response& response) {
+  json answers = json::array();
+  Values frequency_Hz, following;
+  for (const Answer& answer : response.answers) {
+    answers.push_back({{"frequency_Hz", answer.frequency_Hz},
+                       {"impedance", complex(answer.impedance)},
+                       {"twin", complex(answer.twin)},
+                       {"following", complex(answer.following)}});
+    frequency_Hz.push_back(answer.frequency_Hz);
+    following.push_back(std::abs(answer.following));
+  }
+  return {{"answers", answers},
+          {"transparency_Hz", transparency_Hz(response)},
+          {"position_Hz", bandwidth(frequency_Hz, following, kWithin3dB)},
+          {"failure", response.failure}};
 }
 
-std::string amount(double value) { return fmt::format("{:.3g}", value); }
+json as_json(const ForceResponse& response) {
+  json answers = json::array();
+  Values frequency_Hz, ratio, rendered;
+  for (const ForceAnswer& answer : response.answers) {
+    answers.push_back({{"frequency_Hz", answer.frequency_Hz},
+                       {"rendered", complex(answer.rendered)},
+                       {"ideal", complex(answer.ideal)}});
+    frequency_Hz.push_back(answer.frequency_Hz);
+    ratio.push_back(std::abs(answer.rendered / answer.ideal));
+    rendered.push_back(std::abs(answer.rendered));
+  }
+  return {{"answers", answers},
+          {"force_Hz", bandwidth(frequency_Hz, ratio, kWithin3dB)},
+          {"absolute_Hz", bandwidth(frequency_Hz, rendered, kWithin3dB)},
+          {"failure", response.failure}};
+}
 
 }  // namespace
 
 void add_transparency(const Group& group) {
-  const ResponseConfig config = config_of(group.options);
-  const auto axes = group.measure_all("transparency", kAxes, [&](std::size_t i) {
-    return measure_response(group.scenario, config, static_cast<int>(i), group.seed(0));
-  });
-  Table table = {.id = "transparency",
-                 .title = "Transparency: impedance at the handle over the rendered body's",
-                 .note =
-                     "The person pushes to and fro along one axis of the handle with 10 N; "
-                     "true force over true velocity. 1 and 0 degrees: the body itself.",
-                 .columns = {"axis", "frequency Hz", "felt Ns/m", "body Ns/m", "ratio", "phase deg",
-                             "handle over twin", "phase deg"}};
-  Figure felt = {
-      .id = "transparency_bandwidth",
-      .name = "Transparency bandwidth",
-      .unit = "Hz",
-      .digits = 1,
-      .note =
-          "up to here the felt impedance is within 3 dB of the body's, along the worst axis of "
-          "the handle"};
-  Figure position = {.id = "position_bandwidth",
-                     .name = "Position bandwidth",
-                     .unit = "Hz",
-                     .digits = 1,
-                     .note = fmt::format("up to here the handle follows the rendered body within 3 "
-                                         "dB, of {:g} Hz at most; along the worst axis",
-                                         config.frequency_Hz.back())};
-  bool has_all = true;
-  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    const std::string name(1, "xyz"[axis]);
-    if (!group.has_worked("transparency along " + name, axes[axis].failure)) {
-      has_all = false;
-      continue;
-    }
-    std::vector<double> frequency, following;
-    Curve curve = {.id = "transparency", .name = name, .x_label = "frequency in Hz"};
-    for (const Answer& answer : axes[axis].answers) {
-      const std::complex<double> relative = answer.impedance / answer.twin;
-      frequency.push_back(answer.frequency_Hz);
-      following.push_back(std::abs(answer.following));
-      curve.y["ratio"].push_back(std::abs(relative));
-      curve.y["phase_deg"].push_back(degrees(relative));
-      curve.y["felt_Ns_per_m"].push_back(std::abs(answer.impedance));
-      curve.y["body_Ns_per_m"].push_back(std::abs(answer.twin));
-      curve.y["following"].push_back(following.back());
-      curve.y["following_phase_deg"].push_back(degrees(answer.following));
-      table.rows.push_back(
-          {name, amount(answer.frequency_Hz), amount(std::abs(answer.impedance)),
-           amount(std::abs(answer.twin)), fmt::format("{:.3f}", std::abs(relative)),
-           fmt::format("{:.1f}", degrees(relative)), fmt::format("{:.3f}", following.back()),
-           fmt::format("{:.1f}", degrees(answer.following))});
-    }
-    if (frequency.empty()) continue;
-    curve.x = frequency;
-    group.out.curves.push_back(curve);
-    keep_lowest(transparency_Hz(axes[axis]), felt);
-    keep_lowest(bandwidth(frequency, following, kWithin3dB), position);
+  const ResponseConfig config = config_of(group.options, ResponseConfig{}.frequency_Hz);
+  std::vector<Play> plays;
+  for (int axis = 0; axis < kAxes; ++axis) {
+    plays.push_back({{{"axis", axis}}, [&, axis] {
+                       return as_json(
+                           measure_response(group.scenario, config, axis, group.options.seed));
+                     }});
   }
-  if (!has_all) felt.values = position.values = {};  // the worst axis may be the one that failed
-  group.out.beyond.push_back(felt);
-  group.out.beyond.push_back(position);
-  group.out.tables.push_back(table);
+  group.add("transparency", {{"highest_Hz", config.frequency_Hz.back()}}, plays);
 }
 
 void add_force_response(const Group& group) {
-  ResponseConfig config = config_of(group.options);
+  ResponseConfig config = config_of(group.options, ResponseConfig{}.frequency_Hz);
   std::erase_if(config.frequency_Hz, [](double frequency) { return frequency < 0.5; });
-  const auto axes = group.measure_all("force response", kAxes, [&](std::size_t i) {
-    return measure_force_response(group.scenario, config, static_cast<int>(i), group.seed(0));
-  });
-  Table table = {
-      .id = "force_response",
-      .title = "Force at a hand that holds still over the commanded force",
-      .note =
-          "Reference wrench of the rendered body to and fro with 10 N along one axis "
-          "of B, the stiff hand. Ideal: the same body in the same hand without a "
-          "device between them.",
-      .columns = {"axis", "frequency Hz", "rendered", "phase deg", "ideal", "phase deg"}};
-  Figure figure = {.id = "force_bandwidth",
-                   .name = "Force bandwidth",
-                   .unit = "Hz",
-                   .digits = 1,
-                   .note =
-                       "up to here the force at a stiff hand is within 3 dB of what the same "
-                       "body without a device gives; along the worst axis of B"};
-  Figure absolute = {.id = "force_bandwidth_absolute",
-                     .name = "Force bandwidth of body and hand",
-                     .unit = "Hz",
-                     .digits = 1,
-                     .note =
-                         "up to here the force at that hand is within 3 dB of the commanded one: "
-                         "the body's mass on the hand's spring swings"};
-  bool has_all = true;
-  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    const std::string name(1, "xyz"[axis]);
-    if (!group.has_worked("force response along " + name, axes[axis].failure)) {
-      has_all = false;
-      continue;
-    }
-    std::vector<double> frequency, ratio, rendered;
-    Curve curve = {.id = "force_response", .name = name, .x_label = "frequency in Hz"};
-    for (const ForceAnswer& answer : axes[axis].answers) {
-      frequency.push_back(answer.frequency_Hz);
-      ratio.push_back(std::abs(answer.rendered / answer.ideal));
-      rendered.push_back(std::abs(answer.rendered));
-      curve.y["rendered"].push_back(rendered.back());
-      curve.y["rendered_phase_deg"].push_back(degrees(answer.rendered));
-      curve.y["ideal"].push_back(std::abs(answer.ideal));
-      curve.y["ideal_phase_deg"].push_back(degrees(answer.ideal));
-      table.rows.push_back({name, amount(answer.frequency_Hz),
-                            fmt::format("{:.3f}", std::abs(answer.rendered)),
-                            fmt::format("{:.1f}", degrees(answer.rendered)),
-                            fmt::format("{:.3f}", std::abs(answer.ideal)),
-                            fmt::format("{:.1f}", degrees(answer.ideal))});
-    }
-    if (frequency.empty()) continue;
-    curve.x = frequency;
-    group.out.curves.push_back(curve);
-    keep_lowest(bandwidth(frequency, ratio, kWithin3dB), figure);
-    keep_lowest(bandwidth(frequency, rendered, kWithin3dB), absolute);
+  std::vector<Play> plays;
+  for (int axis = 0; axis < kAxes; ++axis) {
+    plays.push_back(
+        {{{"axis", axis}}, [&, axis] {
+           return as_json(measure_force_response(group.scenario, config, axis, group.options.seed));
+         }});
   }
-  if (!has_all) figure.values = absolute.values = {};
-  group.out.beyond.push_back(figure);
-  group.out.beyond.push_back(absolute);
-  group.out.tables.push_back(table);
+  group.add("force response", json::object(), plays);
 }
 
 void add_latency(const Group& group) {
-  const ResponseConfig config = config_of(group.options);
-  const std::size_t n = group.repetitions();
-  const auto all = group.measure_all("latency", kAxes * n, [&](std::size_t i) {
-    return measure_latency(group.scenario, config, static_cast<int>(i / n), group.seed(i % n));
-  });
-  Figure motion = {.id = "latency",
-                   .name = "Latency from wrench to motion",
-                   .unit = "ms",
-                   .note =
-                       "by how much the handle's velocity after a step of 10 N is behind that "
-                       "of the body itself; mean of three axes per repetition"};
-  Figure rendered = motion;
-  rendered.id = "latency_rendering";
-  rendered.name = "of it until the rendered body moves";
-  rendered.note = "sensor, its filter and the cycle; the rest is the torque loop";
-  for (std::size_t i = 0; i < n; ++i) {
-    double sum = 0.0, sensed = 0.0;
-    bool has_all = true;
-    for (std::size_t axis = 0; axis < kAxes; ++axis) {
-      const Latency& one = all[axis * n + i];
-      const std::string what = fmt::format("latency, axis {}, seed {}", axis, group.seed(i));
-      has_all = group.has_worked(what, one.failure) && has_all;
-      sum += one.motion_s;
-      sensed += one.sensed_s;
+  const ResponseConfig config;
+  std::vector<Play> plays;
+  for (const std::uint64_t seed : group.seeds()) {
+    for (int axis = 0; axis < kAxes; ++axis) {
+      plays.push_back({{{"axis", axis}, {"seed", seed}}, [&group, &config, axis, seed] {
+                         return json(measure_latency(group.scenario, config, axis, seed));
+                       }});
     }
-    if (!has_all) continue;
-    motion.values.push_back(1e3 * sum / kAxes);
-    rendered.values.push_back(1e3 * sensed / kAxes);
   }
-  group.out.beyond.push_back(motion);
-  group.out.beyond.push_back(rendered);
+  group.add("latency", json::object(), plays);
+}
+
+void add_felt_mass(const Group& group) {
+  const Values forces = group.options.is_quick ? Values{20, 60} : Values{10, 20, 40, 60};
+  std::vector<Play> pulls, pushes;
+  for (const double force : forces) {
+    ResponseConfig config = config_of(group.options, {0.5, 1, 2, 3, 5, 8, 12, 20});
+    config.force = force;
+    for (int axis = 0; axis < kAxes; ++axis) {
+      for (const std::uint64_t seed : group.seeds()) {
+        pulls.push_back({{{"force", force}, {"axis", axis}, {"seed", seed}}, [=, &group] {
+                           return json(
+                               measure_pull(group.scenario, PullConfig(), axis, force, seed));
+                         }});
+      }
+      pushes.push_back(
+          {{{"force", force}, {"axis", axis}}, [=, &group] {
+             const Response found =
+                 measure_response(group.scenario, config, axis, group.options.seed);
+             // what ends a run that is pushed too hard is a result, not a failure
+             return json{{"transparency_Hz", transparency_Hz(found)}, {"end", found.failure}};
+           }});
+    }
+  }
+  group.add("felt mass", {{"mass", studies::free_twin_of(group.scenario).mass}}, pulls);
+  group.add("transparency of hard pushes", json::object(), pushes);
+}
+
+void add_rotation(const Group& group) {
+  const bool is_quick = group.options.is_quick;
+  const Values inertia = is_quick ? Values{0.005, 0.02} : Values{0.001, 0.002, 0.003, 0.005, 0.007,
+                                                                 0.01,  0.015, 0.02,  0.03,  0.05};
+  const TwistConfig config;
+  std::vector<Play> plays;
+  for (const auto& [hand, preset] : hands(is_quick)) {
+    for (const double value : inertia) {
+      plays.push_back(
+          {{{"hand", hand}, {"inertia", value}}, [&, preset = preset, value] {
+             const Twist found = twist(group.scenario, config, person::hand(preset), value);
+             return json{{"verdict", to_string(found.verdict)}, {"failure", found.failure}};
+           }});
+    }
+  }
+  group.add("light rotations",
+            {{"inertia", inertia},
+             {"torque", config.torque},
+             {"duration_s", config.duration},
+             {"calm_speed", config.calm.calm_speed},
+             {"calm_s", 3.5 * config.calm.window}},
+            plays);
+}
+
+void add_springs(const Group& group) {
+  const bool is_quick = group.options.is_quick;
+  const Values stiffness = is_quick ? Values{500} : Values{50, 500, 2000};
+  const Values deflection = is_quick ? Values{0.002} : Values{0.002, 0.02};  // m, of the handle
+  SwingConfig config;
+  if (is_quick) config.watched_s = 3.0;
+  std::vector<Play> plays;
+  for (const double k : stiffness) {
+    for (const double from : deflection) {
+      for (const std::uint64_t seed : group.seeds()) {
+        plays.push_back(
+            {{{"stiffness", k}, {"deflection", from}, {"seed", seed}}, [=, &group] {
+               return json(measure_swing(group.scenario, config, k, from / config.radius, seed));
+             }});
+      }
+    }
+  }
+  group.add("springs",
+            {{"inertia", config.inertia},
+             {"damping", config.damping},
+             {"radius", config.radius},
+             {"swings", config.swings}},
+            plays);
 }
 
 }  // namespace hg::haptify

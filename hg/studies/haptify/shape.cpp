@@ -1,8 +1,5 @@
 #include "hg/studies/haptify/shape.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -14,8 +11,9 @@ namespace {
 
 // Joints and virtual joints of a posture (gantry first) that stand at a limit beyond which the
 // handle would go farther along `axis`, to the side of the sign of `side`.
-std::vector<std::string> binding_limits(const rendering::DeviceModel& model,
-                                        const Eigen::VectorXd& q, int axis, double side) {
+std::vector<std::pair<std::string, double>> binding_limits(const rendering::DeviceModel& model,
+                                                           const Eigen::VectorXd& q, int axis,
+                                                           double side) {
   constexpr double kNear = 0.02;   // rad
   constexpr double kMoves = 1e-3;  // m/rad; what moves it less does not end its way
   model::Chain chain = model.chain;
@@ -23,13 +21,11 @@ std::vector<std::string> binding_limits(const rendering::DeviceModel& model,
   const Eigen::VectorXd gain =
       side * chain.jacobian(model.handle).row(axis).tail(model.n_m).transpose();
   const Eigen::VectorXd arm = q.tail(model.n_m);
-  std::vector<std::string> names;
+  std::vector<std::pair<std::string, double>> found;
   const auto add = [&](const std::string& name, const limits::JointLimits& range, double value,
                        double up, double down) {
-    if (value > range.q_max - kNear && up > kMoves)
-      names.push_back(fmt::format("{} at {:.2f} rad", name, range.q_max));
-    if (value < range.q_min + kNear && down > kMoves)
-      names.push_back(fmt::format("{} at {:.2f} rad", name, range.q_min));
+    if (value > range.q_max - kNear && up > kMoves) found.emplace_back(name, range.q_max);
+    if (value < range.q_min + kNear && down > kMoves) found.emplace_back(name, range.q_min);
   };
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
     const auto joint = static_cast<std::size_t>(model.n_p + i);
@@ -40,7 +36,7 @@ std::vector<std::string> binding_limits(const rendering::DeviceModel& model,
     const Eigen::VectorXd gains = joint.weights.cwiseProduct(gain);
     add(joint.name, joint.limits, joint.weights.dot(arm), gains.maxCoeff(), -gains.minCoeff());
   }
-  return names;
+  return found;
 }
 
 // The posture of those drawn that brings the handle farthest along `axis`, `side` = -1 or 1; empty
@@ -107,12 +103,13 @@ std::vector<View> workspace_views(const config::Device& device, const ShapeConfi
   return views;
 }
 
-std::string unreached_sides(const config::Device& device, const checks::Workspace& shape,
-                            const ShapeConfig& config, std::uint64_t seed) {
+std::vector<UnreachedSide> unreached_sides(const config::Device& device,
+                                           const checks::Workspace& shape,
+                                           const ShapeConfig& config, std::uint64_t seed) {
   constexpr double kReached = 2e-3;  // m
   if (!shape.has_box) return {};
   const Eigen::AlignedBox3d box = checks::handle_box(device.model);
-  std::string text;
+  std::vector<UnreachedSide> sides;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
       const double limit = side < 0.0 ? box.min()[axis] : box.max()[axis];
@@ -120,18 +117,14 @@ std::string unreached_sides(const config::Device& device, const checks::Workspac
       const double short_by = side * (limit - reached);
       if (short_by < kReached) continue;
       const Eigen::VectorXd q = farthest(device, config, seed, axis, side);
-      text += fmt::format(" The side {} = {:.2f} m is missed by {:.0f} mm, {:.2f} m^3 of the box",
-                          "xyz"[axis], limit, 1e3 * short_by,
-                          short_by * box.volume() / box.sizes()[axis]);
-      std::vector<std::string> names;
-      if (q.size() > 0) names = binding_limits(device.model, q, axis, side);
-      if (!names.empty()) {
-        text += fmt::format(": where the handle comes nearest, {}", fmt::join(names, " and "));
-      }
-      text += ".";
+      sides.push_back({.axis = axis,
+                       .limit = limit,
+                       .short_by = short_by,
+                       .volume = short_by * box.volume() / box.sizes()[axis]});
+      if (q.size() > 0) sides.back().at_limit = binding_limits(device.model, q, axis, side);
     }
   }
-  return text;
+  return sides;
 }
 
 }  // namespace hg::haptify

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "hg/config/scenario.h"
@@ -84,8 +84,9 @@ struct Knock {
 Knock knock(const config::Scenario& scenario, const SurfaceConfig& config, double stiffness,
             double damping);
 
-/// Largest of the growing stiffnesses up to which all come to rest, N/m; 0 if the first one does
-/// not.
-double stiffest_calm(std::span<const double> stiffness, std::span<const studies::Verdict> verdicts);
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Slide, force, own_share, inertial, viscous, extra, normal, speed,
+                                   failure)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Press, accuracy, twin_accuracy, force, failure)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Peak, force, end, failure)
 
 }  // namespace hg::haptify

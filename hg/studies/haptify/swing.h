@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
@@ -40,5 +41,8 @@ struct Swing {
 /// device and orientation of the handle.
 Swing measure_swing(const config::Scenario& scenario, const SwingConfig& config, double stiffness,
                     double deflection, std::uint64_t seed);
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Oscillation, frequency_Hz, damping_ratio, amplitude)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Swing, true_handle, ideal_Hz, ideal_damping, failure)
 
 }  // namespace hg::haptify

@@ -15,7 +15,8 @@ def main():
     parser.add_argument("--docs", type=pathlib.Path, help="refresh the page of this folder")
     parser.add_argument("--check", action="store_true", help="only tell whether it would work")
     arguments = parser.parse_args()
-    if not all(importlib.util.find_spec(name) for name in ("numpy", "matplotlib", "jinja2")):
+    needed = ("numpy", "scipy", "matplotlib", "jinja2")
+    if not all(importlib.util.find_spec(name) for name in needed):
         return MISSING
     if arguments.check:
         return 0

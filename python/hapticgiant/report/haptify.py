@@ -1,10 +1,11 @@
 """The report of `hapticgiant haptify` and of `hapticgiant haptify --goals`."""
 
 import json
+import math
 
 import jinja2
 
-from . import pictures, tables
+from . import benchmark, goals, pictures, tables
 
 BEGIN, END = "<!-- figures: begin -->\n", "<!-- figures: end -->"
 
@@ -37,7 +38,7 @@ KEY_FIGURES = (
 
 
 class Results:
-    """results.json, with what all forms of the report say."""
+    """The content of figures.json, with what all forms of the report say."""
 
     def __init__(self, facts):
         self.facts = facts
@@ -172,15 +173,51 @@ def save(file, text):
     file.write_text(text, encoding="utf-8")
 
 
+def failures_text(results):
+    return "".join(f"\nFAILED  {failure}\n" for failure in results["failures"])
+
+
+def goals_text(results):
+    """For a terminal."""
+    lines = [f"{name:<38}{unit:<7}{goal:>10}{median:>9}{least:>9}{largest:>9}{met:>14}\n"
+             for name, unit, goal, median, least, largest, met, _ in rows_of(results["tables"][0])]
+    return "".join(lines) + f"\n{results['real_and_simulated']}\n" + failures_text(results)
+
+
+def haptify_text(results):
+    """For a terminal: both tables of figures, missed goals, failures."""
+    head, *rows = results.main_rows()
+    head[1:6] = "", head[2], "paper", "Touch", "Touch X"
+    lines = [f"{name:<40}{unit:<7}{ours:>18}{paper:>9}{touch:>9}{touch_x:>9}{goal:>12}{met:>5}\n"
+             for name, unit, ours, paper, touch, touch_x, goal, met in [head, *rows]]
+    lines.append("\n")
+    lines += [f"{it['name']:<60}{it['measured']:>18} {it['unit']}\n" for it in results["beyond"]]
+    lines.append(f"\n{results['real_and_simulated']}\n")
+    lines += [f"\n{sentence}\n" for sentence in results.missed()]
+    return "".join(lines) + failures_text(results)
+
+
+def read_results(file):
+    """results.json, with NaN for the null that stands for infinite and undefined results."""
+    def with_numbers(entry):
+        return {key: math.nan if value is None else value for key, value in entry.items()}
+    return json.loads(file.read_text(encoding="utf-8"), object_hook=with_numbers)
+
+
 def write(folder, docs=None):
     """Writes the report beside results.json, and into the pages of `docs`."""
-    results = Results(json.loads((folder / "results.json").read_text(encoding="utf-8")))
-    if results["kind"] == "goals":
-        name, text = "goals", goals_markdown(results)
+    measured = read_results(folder / "results.json")
+    name = measured["kind"]
+    results = Results((goals if name == "goals" else benchmark).figures(measured))
+    save(folder / "figures.json", json.dumps(results.facts, allow_nan=False) + "\n")
+    if name == "goals":
+        text = goals_markdown(results)
+        save(folder / "report.txt", goals_text(results))
         save(folder / "goals.md", "# Goals\n\n" + text)
         save(folder / "goals_runs.csv", repetitions_csv(results))
     else:
-        name, text = "haptify", markdown(results)
+        text = markdown(results)
+        save(folder / "report.txt", haptify_text(results))
         save(folder / "report.html", html(results))
         save(folder / "report.md", "# Haptify\n\n" + text)
         save(folder / "table.tex", latex(results))
