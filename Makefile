@@ -137,7 +137,7 @@ docs: $(DOCS_VENV)/bin/mkdocs
 	@tools/setup.sh test
 	@tools/configure.sh $(PRESET) test
 	@cmake --build $(BUILD) --target hg_pages _core_stubs
-	@$(BUILD)/hg_pages
+	@.venv/bin/python tools/pages/pages.py $(BUILD)/hg_pages
 	@.venv/bin/python tools/draw_rooms.py docs/images/rooms.svg
 	@cmake --install $(BUILD) --component python --prefix build/docs_python >/dev/null
 	@NO_MKDOCS_2_WARNING=1 $< build >build/docs.log 2>&1 || { grep -v ^INFO build/docs.log; exit 1; }

@@ -21,9 +21,4 @@ struct CycleTimes {
 CycleTimes measure_cycle(const std::string& name, const config::Scenario& scenario, int passes,
                          std::size_t most);
 
-std::string cycle_header();
-std::string to_text(const CycleTimes& times);
-/// JSON with a flat row for the whole cycle and for each stage.
-nlohmann::ordered_json to_json(const CycleTimes& times);
-
 }  // namespace hg::bench

@@ -1,12 +1,5 @@
 #include "bench/growth.h"
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-
 #include "hg/hqp/solver.h"
 
 namespace hg::bench {
@@ -115,103 +108,6 @@ GrowthRow measure_growth(int variables, int levels, int passes) {
     row.warm_iterations /= static_cast<double>(index);
   }
   return row;
-}
-
-namespace {
-
-// Slope of log y over log x.
-double slope(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto count = static_cast<double>(x.size());
-  double sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double u = std::log(x[i]), v = std::log(std::max(y[i], 1e-3));
-    sum_x += u;
-    sum_y += v;
-    sum_xx += u * u;
-    sum_xy += u * v;
-  }
-  return (count * sum_xy - sum_x * sum_y) / (count * sum_xx - sum_x * sum_x);
-}
-
-// Over `size` of the rows whose `kept` is `value`; nothing for a single one.
-void add_exponent(std::span<const GrowthRow> rows, int GrowthRow::*size, int GrowthRow::*kept,
-                  int value, GrowthExponent exponent, std::vector<GrowthExponent>& exponents) {
-  std::vector<double> x, cold, warm;
-  for (const GrowthRow& row : rows) {
-    if (row.*kept != value) continue;
-    x.push_back(row.*size);
-    cold.push_back(row.cold.distribution().median);
-    warm.push_back(row.warm.distribution().median);
-  }
-  if (x.size() < 2) return;
-  exponent.cold = slope(x, cold);
-  exponent.warm = slope(x, warm);
-  exponents.push_back(exponent);
-}
-
-constexpr const char* kLine = "{:>5} {:>7} {:>6} {:>11} {:>11} {:>8} {:>11} {:>11} {:>8} {:>7}\n";
-
-}  // namespace
-
-std::vector<GrowthExponent> fit(std::span<const GrowthRow> rows) {
-  std::set<int> levels;
-  int most = 0;
-  for (const GrowthRow& row : rows) {
-    levels.insert(row.levels);
-    most = std::max(most, row.variables);
-  }
-  std::vector<GrowthExponent> exponents;
-  for (const int count : levels) {
-    add_exponent(rows, &GrowthRow::variables, &GrowthRow::levels, count,
-                 {"variables", fmt::format("{} levels", count)}, exponents);
-  }
-  add_exponent(rows, &GrowthRow::levels, &GrowthRow::variables, most,
-               {"levels", fmt::format("{} variables", most)}, exponents);
-  return exponents;
-}
-
-std::string growth_header() {
-  return fmt::format(kLine, "", "", "", "cold", "cold", "cold", "warm", "warm", "warm", "") +
-         fmt::format(kLine, "n", "levels", "rows", "median", "max", "tried", "median", "max",
-                     "tried", "failed");
-}
-
-std::string to_text(const GrowthRow& row) {
-  const analysis::Distribution cold = row.cold.distribution(), warm = row.warm.distribution();
-  return fmt::format(kLine, row.variables, row.levels, row.rows, fmt::format("{:.1f}", cold.median),
-                     fmt::format("{:.1f}", cold.max), fmt::format("{:.1f}", row.cold_iterations),
-                     fmt::format("{:.1f}", warm.median), fmt::format("{:.1f}", warm.max),
-                     fmt::format("{:.1f}", row.warm_iterations), row.failures);
-}
-
-std::string to_text(std::span<const GrowthExponent> exponents) {
-  std::string text;
-  for (const GrowthExponent& e : exponents) {
-    text += fmt::format("median ~ {}^k at {}: k = {:.2f} cold, {:.2f} warm\n", e.with, e.at, e.cold,
-                        e.warm);
-  }
-  return text;
-}
-
-nlohmann::ordered_json to_json(const GrowthRow& row) {
-  const analysis::Distribution cold = row.cold.distribution(), warm = row.warm.distribution();
-  return {{"variables", row.variables},
-          {"levels", row.levels},
-          {"rows", row.rows},
-          {"cold_median_us", cold.median},
-          {"cold_max_us", cold.max},
-          {"cold_active_sets_tried", row.cold_iterations},
-          {"warm_median_us", warm.median},
-          {"warm_max_us", warm.max},
-          {"warm_active_sets_tried", row.warm_iterations},
-          {"failed", row.failures}};
-}
-
-nlohmann::ordered_json to_json(const GrowthExponent& exponent) {
-  return {{"with", exponent.with},
-          {"at", exponent.at},
-          {"cold", exponent.cold},
-          {"warm", exponent.warm}};
 }
 
 }  // namespace hg::bench

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <random>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "bench/times.h"
@@ -59,24 +58,7 @@ struct GrowthRow {
   std::size_t failures = 0;
 };
 
-/// Growth exponent: median time ~ size^exponent, by least squares on logarithms.
-struct GrowthExponent {
-  std::string with;  ///< varied size, "variables" or "levels"
-  std::string at;    ///< fixed size, e.g. "5 levels"
-  double cold = 0.0, warm = 0.0;
-};
-
 /// Times five problems of the size, four steps each after one that is not timed.
 GrowthRow measure_growth(int variables, int levels, int passes);
-
-/// Fits exponents over variables for each number of levels, and over levels for the most variables.
-/// Series with only one size are left out.
-std::vector<GrowthExponent> fit(std::span<const GrowthRow> rows);
-
-std::string growth_header();
-std::string to_text(const GrowthRow& row);
-std::string to_text(std::span<const GrowthExponent> exponents);
-nlohmann::ordered_json to_json(const GrowthRow& row);
-nlohmann::ordered_json to_json(const GrowthExponent& exponent);
 
 }  // namespace hg::bench

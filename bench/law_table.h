@@ -1,10 +1,10 @@
 /// Comparison of both laws with both kinds of bounds on the same scenario.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "bench/times.h"
 #include "hg/analysis/summary.h"
 #include "hg/config/scenario.h"
 
@@ -25,7 +25,7 @@ struct LawRun {
   double worst_violation = 0.0;  ///< rad or m
   bool worst_is_angle = false;
   std::string worst_limit = "none";
-  analysis::Histogram solver_us, cycle_us;
+  Times solver, cycle;  ///< time per rendering cycle
 
   /// Whether no event is missing, no fault occurred and every cycle was solved.
   bool is_well() const;
@@ -34,9 +34,5 @@ struct LawRun {
 /// Plays the scenario once. The solver is timed on the problem of every cycle that renders, from
 /// the active set of the cycle before.
 LawRun play_law(const std::string& name, const config::Scenario& scenario);
-
-std::string law_header();
-std::string to_text(const LawRun& run);
-nlohmann::ordered_json to_json(const LawRun& run);
 
 }  // namespace hg::bench

@@ -1,9 +1,5 @@
 #include "bench/solver_table.h"
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
 #include <memory>
 
 #include "bench/comparison.h"
@@ -135,71 +131,10 @@ class SetTimer {
   SolverRun warm_, cold_, cascade_;
 };
 
-constexpr const char* kLine =
-    "{:<34} {:>4} {:>6} {:>8}  {:<7} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>8}\n";
-
-// How many times as long the cascade takes, by the medians.
-std::optional<double> advantage(const SolverSet& set, const SolverRun& run) {
-  const SolverRun& last = set.runs.back();
-  const double median = run.times.distribution().median;
-  if (last.solver != "cascade" || &run == &last || median <= 0.0) return {};
-  return last.times.distribution().median / median;
-}
-
-double mean_iterations(const SolverSet& set, const SolverRun& run) {
-  return run.iterations / static_cast<double>(std::max<std::size_t>(1, set.problems));
-}
-
 }  // namespace
 
 SolverSet measure_solvers(ProblemSource& source, BaselineSolve baseline, int passes) {
   return SetTimer(source, baseline, passes).measure();
-}
-
-std::string solver_header() {
-  return fmt::format(kLine, "set", "n", "levels", "problems", "solver", "median", "99.9 %", "max",
-                     "tried", "failed", "wrong", "cascade");
-}
-
-std::string to_text(const SolverSet& set) {
-  std::string text;
-  for (const SolverRun& run : set.runs) {
-    const bool is_first = &run == &set.runs.front();
-    const bool is_ours = run.solver != "cascade";
-    const analysis::Distribution d = run.times.distribution();
-    const std::optional<double> factor = advantage(set, run);
-    const auto once = [&](const auto& value) { return is_first ? fmt::to_string(value) : ""; };
-    text += fmt::format(kLine, is_first ? set.name : "", once(set.variables), once(set.levels),
-                        once(set.problems), run.solver, fmt::format("{:.2f}", d.median),
-                        to_text(d.p99_9, 2), fmt::format("{:.2f}", d.max),
-                        is_ours ? fmt::format("{:.2f}", mean_iterations(set, run)) : "",
-                        run.failures, run.wrong ? fmt::to_string(*run.wrong) : "-",
-                        factor ? fmt::format("{:.{}f} x", *factor, *factor < 10.0 ? 1 : 0) : "");
-  }
-  return text;
-}
-
-nlohmann::ordered_json to_json(const SolverSet& set) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const SolverRun& run : set.runs) {
-    nlohmann::ordered_json row = {{"set", set.name},
-                                  {"variables", set.variables},
-                                  {"levels", set.levels},
-                                  {"problems", set.problems},
-                                  {"solver", std::string(run.solver)}};
-    add_to(row, run.times.distribution());
-    row["mean_us"] = run.times.mean();
-    row["active_sets_tried"] = nullptr;
-    if (run.solver != "cascade") row["active_sets_tried"] = mean_iterations(set, run);
-    row["failed"] = run.failures;
-    row["wrong"] = nullptr;
-    if (run.wrong) row["wrong"] = *run.wrong;
-    const std::optional<double> factor = advantage(set, run);
-    row["cascade_takes_times"] = nullptr;
-    if (factor) row["cascade_takes_times"] = *factor;
-    rows.push_back(row);
-  }
-  return rows;
 }
 
 }  // namespace hg::bench

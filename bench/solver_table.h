@@ -39,9 +39,4 @@ struct SolverSet {
 /// is then where the cascade is better.
 SolverSet measure_solvers(ProblemSource& source, BaselineSolve baseline, int passes);
 
-std::string solver_header();
-std::string to_text(const SolverSet& set);
-/// JSON with a flat row per solver.
-nlohmann::ordered_json to_json(const SolverSet& set);
-
 }  // namespace hg::bench

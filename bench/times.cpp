@@ -1,7 +1,6 @@
 #include "bench/times.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -62,16 +61,6 @@ std::vector<Bin> histogram(const Times& times) {
 
 std::string to_text(double us, int decimals) {
   return std::isnan(us) ? "-" : fmt::format("{:.{}f}", us, decimals);
-}
-
-nlohmann::ordered_json to_json(double us) {
-  return std::isnan(us) ? nlohmann::ordered_json() : nlohmann::ordered_json(us);
-}
-
-void add_to(nlohmann::ordered_json& row, const analysis::Distribution& distribution) {
-  row["median_us"] = distribution.median;
-  row["p99_9_us"] = to_json(distribution.p99_9);
-  row["max_us"] = distribution.max;
 }
 
 }  // namespace hg::bench

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -48,10 +47,5 @@ std::vector<Bin> histogram(const Times& times);
 
 /// Time as text; "-" for NaN.
 std::string to_text(double us, int decimals);
-/// Time as JSON; null for NaN.
-nlohmann::ordered_json to_json(double us);
-
-/// Adds the keys median_us, p99_9_us and max_us.
-void add_to(nlohmann::ordered_json& row, const analysis::Distribution& distribution);
 
 }  // namespace hg::bench

@@ -5,17 +5,23 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/version.h"
-#include "bench/bench_files.h"
+#include "bench/bench_results.h"
 #include "bench/machine.h"
 #include "bench/scenario.h"
 #include "hg/config/shipped_files.h"
+#include "hg/core/open_file.h"
+#include "hg/core/scratch_folder.h"
 
 namespace hg::apps {
 namespace {
@@ -50,14 +56,7 @@ struct NamedScenario {
   bool takes(Law law) const { return law != Law::kPaper || scenario.device.model.n_m == 6; }
 };
 
-void show(const std::string& text) { print_out(text); }
-
-// Of what --quick measures, for a heading.
-std::string only_first(std::size_t most, const char* what) {
-  return most == kAll ? "" : fmt::format("--quick: only the first {} {}\n", most, what);
-}
-
-// Shows the current measurement until its rows replace the text.
+// Shows the current measurement until the next one replaces it.
 void announce(const std::string& what) {
   if (isatty(STDERR_FILENO) != 0) draw_error(fmt::format("measuring {} ...", what));
 }
@@ -73,17 +72,11 @@ bool measure_solvers(const std::vector<NamedScenario>& scenarios,
                      std::vector<bench::ProblemSource>& reference, const Effort& effort,
                      bench::BenchResults& results) {
   const bench::BaselineSolve baseline = bench::find_baseline();
-  show(fmt::format(
-      "\nSolver, us per problem: the fastest of {} passes for each problem\n{}\n{}", effort.passes,
-      only_first(effort.problems,
-                 "problems of each set; in those of a scenario usually nothing touches yet"),
-      bench::solver_header()));
   bool all_right = true;
   const auto measure = [&](bench::ProblemSource& source) {
     announce(source.name());
     results.solver.push_back(bench::measure_solvers(source, baseline, effort.passes));
     all_right = all_right && are_ours_right(results.solver.back());
-    show(to_text(results.solver.back()));
   };
   for (const auto& [law, bounds] : {kVariants.front(), kVariants.back()}) {
     for (const NamedScenario& named : scenarios) {
@@ -96,33 +89,26 @@ bool measure_solvers(const std::vector<NamedScenario>& scenarios,
     }
   }
   for (bench::ProblemSource& source : reference) measure(source);
-  if (baseline == nullptr) show(fmt::format("cascade: {}\n", bench::kHowToGetBaseline));
-  if (reference.empty()) show("no reference problems: tests/reference is not there\n");
+  if (baseline == nullptr) {
+    results.remarks.push_back(fmt::format("cascade: {}", bench::kHowToGetBaseline));
+  }
+  if (reference.empty()) {
+    results.remarks.emplace_back("no reference problems: tests/reference is not there");
+  }
   return all_right;
 }
 
 void measure_cycles(const std::vector<NamedScenario>& scenarios, const Effort& effort,
                     bench::BenchResults& results) {
-  show(fmt::format(
-      "\nCycle, law gauss, bounds recoverable, us: the fastest of {} plays for each cycle; stages "
-      "are measured\nin {} plays of their own and contain a look at the clock each\n{}\n{}",
-      effort.passes, effort.passes,
-      only_first(effort.cycles, "cycles that render; usually nothing touches yet"),
-      bench::cycle_header()));
   for (const NamedScenario& named : scenarios) {
     announce(named.name);
     results.cycles.push_back(bench::measure_cycle(
         named.name, bench::with_law(named.scenario, Law::kGauss, Bounds::kRecoverable),
         effort.passes, effort.cycles));
-    show(to_text(results.cycles.back()));
   }
 }
 
 bool measure_growth(const Effort& effort, bench::BenchResults& results) {
-  show(
-      fmt::format("\nGrowth on random well-posed problems (bench/growth.h, seeds 1 to 5), us: the "
-                  "fastest of {} passes\n\n{}",
-                  effort.passes, bench::growth_header()));
   bool is_solved = true;
   for (const int variables : kVariables) {
     for (const int levels : kLevels) {
@@ -130,40 +116,36 @@ bool measure_growth(const Effort& effort, bench::BenchResults& results) {
       announce(fmt::format("n = {}", variables));
       results.growth.push_back(bench::measure_growth(variables, levels, effort.passes));
       is_solved = is_solved && results.growth.back().failures == 0;
-      show(to_text(results.growth.back()));
     }
   }
-  results.exponents = bench::fit(results.growth);
-  show(bench::to_text(results.exponents));
   return is_solved;
 }
 
 bool play_laws(const std::vector<NamedScenario>& scenarios, bench::BenchResults& results) {
-  show(
-      "\nLaws and bounds, each cycle measured once; us: median / 99.9 % / max; change of "
-      "acceleration: of the hand per cycle\n\n" +
-      bench::law_header());
   bool all_well = true;
   for (const NamedScenario& named : scenarios) {
     for (const auto& [law, bounds] : kVariants) {
       if (!named.takes(law)) {
-        show(fmt::format("{:<11} paper  needs six manipulator joints\n", named.name));
+        results.remarks.push_back(named.name + ": law paper needs six manipulator joints");
         continue;
       }
       announce(named.name);
       results.laws.push_back(
           bench::play_law(named.name, bench::with_law(named.scenario, law, bounds)));
       all_well = all_well && results.laws.back().is_well();
-      show(to_text(results.laws.back()));
     }
   }
   return all_well;
 }
 
+// null: no limit
+nlohmann::ordered_json limit_of(std::size_t most) {
+  return most == kAll ? nlohmann::ordered_json() : nlohmann::ordered_json(most);
+}
+
 }  // namespace
 
 int bench(const BenchArguments& arguments) {
-  bench::BenchResults results;
   std::vector<NamedScenario> scenarios;
   for (const std::string& name : arguments.scenarios)
     scenarios.push_back({name, bench::bench_scenario(name)});
@@ -172,15 +154,19 @@ int bench(const BenchArguments& arguments) {
   for (const auto& file : bench::reference_files(config::models_root())) {
     reference.emplace_back(file, effort.problems);
   }
-  bench::check_folder(arguments.out);
   check_writable(arguments.json, kJson);
+  check_report_program();  // before minutes of measurements
+  std::optional<ScratchFolder> scratch;
+  if (arguments.out.empty()) scratch.emplace();
+  const std::filesystem::path folder = scratch ? scratch->path() : arguments.out;
+  make_folder(folder.string());
+  check_writable((folder / "results.json").string());
 
-  results.machine = bench::describe_machine();
+  bench::BenchResults results = {.machine = bench::describe_machine(),
+                                 .passes = effort.passes,
+                                 .most_problems = limit_of(effort.problems),
+                                 .most_cycles = limit_of(effort.cycles)};
   results.machine["version"] = kVersion;
-  for (const auto& [key, value] : results.machine.items()) {
-    show(fmt::format("{:<9} {}\n", key,
-                     value.is_string() ? value.get<std::string>() : value.dump()));
-  }
   const bool is_right = measure_solvers(scenarios, reference, effort, results);
   std::vector<NamedScenario> with_large = scenarios;
   if (arguments.scenarios == BenchArguments{}.scenarios) {
@@ -190,8 +176,9 @@ int bench(const BenchArguments& arguments) {
   const bool is_solved = measure_growth(effort, results);
   const bool is_well = play_laws(scenarios, results);
 
-  if (!arguments.json.empty()) write_output(arguments.json, to_json(results).dump(2) + "\n");
-  if (!arguments.out.empty()) bench::write_files(arguments.out, results);
+  if (isatty(STDERR_FILENO) != 0) draw_error("");
+  print_out(report_text(folder, to_json(results), "README.md"));
+  if (!arguments.json.empty()) write_output(arguments.json, read_file(folder / "bench.json"));
   return is_right && is_solved && is_well ? 0 : 1;
 }
 

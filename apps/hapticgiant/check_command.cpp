@@ -8,10 +8,13 @@
 #include <functional>
 #include <list>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/hapticgiant/check_report.h"
+#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/report.h"
 #include "hg/commissioning/checks/capability_map.h"
 #include "hg/commissioning/checks/datasheet.h"
 #include "hg/commissioning/checks/device_inspection.h"
@@ -26,6 +29,7 @@
 #include "hg/config/tool.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"
+#include "hg/core/scratch_folder.h"
 
 namespace hg::apps {
 namespace {
@@ -136,7 +140,9 @@ void draw_map(const std::string& file, const Check& check) {
   }
   const config::Device& device =
       check.devices.empty() ? check.scenarios.front().device : check.devices.front();
-  write_output(file, to_svg(checks::capability_map(device)));
+  check_report_program();
+  const ScratchFolder scratch;
+  write_output(file, report_text(scratch.path(), checks::capability_map(device), "map.svg"));
 }
 
 void check_twins(Check& check) {

@@ -16,7 +16,6 @@
 #include "hg/analysis/timing.h"
 #include "hg/commissioning/doctor/assessment.h"
 #include "hg/commissioning/doctor/jitter.h"
-#include "hg/commissioning/doctor/readings.h"
 
 namespace hg::apps {
 namespace {
@@ -66,7 +65,7 @@ int doctor(const DoctorArguments& arguments) {
   runtime::check({.priority = arguments.priority, .cpu = arguments.cpu});
   print_out(
       fmt::format("HapticGiant {}: is this computer ready for a control loop?\n\n", kVersion));
-  std::vector<Assessment> lines = doctor::assess(doctor::read());
+  std::vector<Assessment> lines = doctor::assess_computer();
   for (const Assessment& line : lines) print(line);
 
   print_out(

@@ -4,17 +4,21 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/core/scratch_folder.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/process_faults.h"
@@ -22,11 +26,19 @@
 namespace hg::apps {
 namespace {
 
+// Prints the table, which Python makes, and writes the files that were asked for.
+void report(const FaultsArguments& arguments, const nlohmann::ordered_json& json) {
+  write_json(arguments.json, json);
+  const ScratchFolder scratch;
+  print_out(report_text(scratch.path(), json, "report.txt"));
+  if (arguments.markdown.empty()) return;
+  write_output(arguments.markdown, read_file(std::filesystem::path(scratch.path()) / "report.md"));
+}
+
 int process_faults(const FaultsArguments& arguments) {
   const std::vector<studies::ProcessCase> cases = studies::play_process_faults(
       "/proc/self/exe", arguments.scenarios, arguments.repetitions, arguments.campaign.seed);
-  print_out(to_text(cases));
-  write_json(arguments.json, to_json(cases));
+  report(arguments, to_json(cases));
   return std::ranges::all_of(cases, &studies::ProcessCase::is_good) ? 0 : 1;
 }
 
@@ -46,6 +58,7 @@ int faults(const FaultsArguments& arguments) {
   }
   check_writable(arguments.json, kJson);
   check_writable(arguments.markdown, kMarkdown);
+  if (arguments.json.empty()) check_report_program();  // before minutes of runs
   if (arguments.plays_processes) return process_faults(arguments);
   const ScratchFolder scratch;
   std::vector<recording::RecordingInfo> recordings;
@@ -57,15 +70,11 @@ int faults(const FaultsArguments& arguments) {
       recordings.push_back(recording_info(scenarios[i], run));
     }
   }
-  print_out(fmt::format("HapticGiant {}  {} faults on purpose, seed {}\n\n", kVersion,
+  print_out(fmt::format("HapticGiant {}  {} injected faults, seed {}\n\n", kVersion,
                         arguments.campaign.cases, arguments.campaign.seed));
   const studies::Campaign campaign =
       studies::run_campaign(scenarios, arguments.campaign, recordings, progress_of("faults"));
-  print_out(studies::to_text(campaign));
-  if (!arguments.markdown.empty()) {
-    write_output(arguments.markdown, studies::to_markdown(campaign));
-  }
-  write_json(arguments.json, studies::to_json(campaign));
+  report(arguments, to_json(campaign));
   return studies::is_passed(campaign) ? 0 : 1;
 }
 

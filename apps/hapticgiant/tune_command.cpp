@@ -5,16 +5,20 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/tune_report.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
+#include "hg/core/scratch_folder.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/tuning/tuned_device.h"
 
@@ -52,6 +56,7 @@ int run_tune(const TuneArguments& arguments) {
   tuning::TuningProblem problem = problem_of(device, arguments);
   const tuning::Figures now = tuning::figures_of(problem, problem.device);
   problem.friction_most_N = now.friction_N;
+  check_report_program();  // before minutes of search
   if (!arguments.only_checks) make_folder(arguments.out);
   print_out("HapticGiant {}  {} {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
             kVersion, arguments.only_checks ? "checks" : "tunes", device.name,
@@ -72,22 +77,11 @@ int run_tune(const TuneArguments& arguments) {
                              .name = device.name,
                              .command = command_of(arguments)};
 
-  if (arguments.only_checks) {
-    print_out(tune_check_text(report));
-    return result.proof_before.holds() ? 0 : 1;
-  }
-  print_out(tune_text(report));
-  print_out(fmt::format("\nfor device.yaml:\n{}", tune_yaml(report)));
-  const std::filesystem::path folder = arguments.out;
-  const auto write = [&](const char* name, const std::string& text) {
-    write_output((folder / name).string(), text);
-  };
-  write("report.md", tune_markdown(report));
-  write("front.csv", tune_csv(report));
-  write("run.json", tune_figure(report));
-  if (const std::string why = draw_figures(folder, {folder}); !why.empty()) {
-    print_error("{}\n", why);
-  }
+  std::optional<ScratchFolder> scratch;
+  if (arguments.only_checks) scratch.emplace();
+  const std::filesystem::path folder = scratch ? scratch->path() : arguments.out;
+  print_out(report_text(folder, tune_json(report), "report.txt"));
+  if (arguments.only_checks) return result.proof_before.holds() ? 0 : 1;
   print_out(fmt::format("\nreport      {}\n", (folder / "report.md").string()));
   const tuning::Figures& found = result.front.front().figures;
   constexpr double kTolerated = 1.01;  // of limits that the search approaches from both sides

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "bench/comparison.h"
 #include "hg/hqp/solver.h"
 
@@ -77,25 +75,6 @@ TEST(GrowingProblem, TheSameSeedIsTheSameProblem) {
   other.step();
   EXPECT_EQ(one.point(), same.point());
   EXPECT_NE(one.point(), other.point());
-}
-
-GrowthRow row_of(int variables, int levels, double cold_us) {
-  GrowthRow row = {.variables = variables, .levels = levels};
-  row.cold.add(0, cold_us);
-  row.warm.add(0, 2.0);
-  return row;
-}
-
-TEST(Growth, ThePowerOfAPowerLawIsFound) {
-  const std::vector<GrowthRow> rows = {row_of(10, 1, 10.0), row_of(20, 1, 80.0),
-                                       row_of(40, 1, 640.0), row_of(40, 2, 1280.0)};
-  const std::vector<GrowthExponent> exponents = fit(rows);
-  ASSERT_EQ(exponents.size(), 2u);
-  EXPECT_EQ(exponents[0].at, "1 levels");
-  EXPECT_NEAR(exponents[0].cold, 3.0, 1e-9);
-  EXPECT_NEAR(exponents[0].warm, 0.0, 1e-9);
-  EXPECT_EQ(exponents[1].with, "levels");
-  EXPECT_NEAR(exponents[1].cold, 1.0, 1e-9);
 }
 
 TEST(Growth, EverySizeIsMeasuredOverAllItsProblems) {

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"
+#include "hg/core/index.h"
+#include "hg/core/random.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/player.h"
@@ -134,27 +135,26 @@ class CleanRun {
   std::vector<double> peaks_;
 };
 
-faults::Injection draw(const faults::Kind& kind, const config::Scenario& scenario,
-                       std::mt19937_64& random) {
-  const auto uniform = [&](double from, double to) {
-    return std::uniform_real_distribution<double>(from, to)(random);
-  };
+// One of `count` indices.
+std::size_t draw_index(std::size_t count, Random& random) {
+  return static_cast<std::size_t>(random.next() * static_cast<double>(count));
+}
+
+faults::Injection draw(const faults::Kind& kind, const config::Scenario& scenario, Random& random) {
   faults::Injection drawn = {.kind = &kind};
   const rendering::DeviceModel& device = scenario.device.model;
   const int parts = faults::parts_of(kind.part, device.n_m, device.n_p);
-  if (parts > 0) drawn.index = std::uniform_int_distribution<int>(0, parts - 1)(random);
+  drawn.index = static_cast<int>(draw_index(hg::index(parts), random));
   if (!kind.unit.empty()) {
-    drawn.magnitude = std::exp(uniform(std::log(kind.magnitude.lb), std::log(kind.magnitude.ub)));
-    if (kind.has_sign && uniform(-1.0, 1.0) < 0.0) drawn.magnitude *= -1.0;
-    const bool is_count = kind.effect == faults::Effect::kLost ||
-                          kind.effect == faults::Effect::kLate || kind.part == faults::Part::kBus ||
-                          kind.part == faults::Part::kCycles || kind.part == faults::Part::kSolver;
-    if (is_count) drawn.magnitude = std::round(drawn.magnitude);
+    drawn.magnitude =
+        std::exp(random.between(std::log(kind.magnitude.lb), std::log(kind.magnitude.ub)));
+    if (kind.has_sign && random.next() < 0.5) drawn.magnitude *= -1.0;
+    if (faults::is_count(kind)) drawn.magnitude = std::round(drawn.magnitude);
     const bool is_torque = kind.part == faults::Part::kForceSensor && drawn.index >= 3;
     if (is_torque) drawn.magnitude *= 0.1;
   }
   const Interval times = fault_times(scenario);
-  drawn.from_s = uniform(times.lb, times.ub);
+  drawn.from_s = random.between(times.lb, times.ub);
   return drawn;
 }
 
@@ -162,10 +162,7 @@ constexpr std::size_t kPhases = 4;
 constexpr double kStartingWatch = 2.0;  // s longer: the device is to be armed and to run
 constexpr double kFirst = 0.1;  // s: what is wrong from the first sample on is no fault that begins
 
-FaultCase draw_case(std::size_t number, const config::Scenario& scenario, std::mt19937_64& random) {
-  const auto uniform = [&](double from, double to) {
-    return std::uniform_real_distribution<double>(from, to)(random);
-  };
+FaultCase draw_case(std::size_t number, const config::Scenario& scenario, Random& random) {
   const auto kinds = faults::kinds();
   FaultCase drawn = {.phase = static_cast<Phase>(number / kinds.size() % kPhases),
                      .injection = draw(kinds[number % kinds.size()], scenario, random)};
@@ -174,15 +171,15 @@ FaultCase draw_case(std::size_t number, const config::Scenario& scenario, std::m
     case Phase::kRunning:
       break;
     case Phase::kPair:
-      drawn.other = draw(kinds[random() % kinds.size()], scenario, random);
-      drawn.other->from_s = from_s + uniform(0.0, 0.5);
+      drawn.other = draw(kinds[draw_index(kinds.size(), random)], scenario, random);
+      drawn.other->from_s = from_s + random.between(0.0, 0.5);
       break;
     case Phase::kStopping:
       drawn.other = {.kind = faults::find_kind("emergency_stop"), .from_s = from_s};
-      from_s += uniform(-0.05, 0.3);
+      from_s += random.between(-0.05, 0.3);
       break;
     case Phase::kStarting:
-      from_s = uniform(kFirst, scenario.script.script.grasp_s);
+      from_s = random.between(kFirst, scenario.script.script.grasp_s);
       break;
   }
   return drawn;
@@ -318,8 +315,8 @@ Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const Camp
   do_all(
       campaign.cases.size(),
       [&](std::size_t i) {
-        std::mt19937_64 random(config.seed * 1'000'003 + i);
-        const std::size_t which = random() % scenarios.size();
+        Random random(config.seed * 1'000'003 + i);
+        const std::size_t which = draw_index(scenarios.size(), random);
         FaultCase drawn = draw_case(i, scenarios[which], random);
         drawn.scenario = which;
         const double from_s = drawn.injection.from_s;

@@ -100,10 +100,8 @@ Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const Camp
 
 /// Whether every harmful fault was noticed and no bound exceeded.
 bool is_passed(const Campaign& campaign);
-/// Table with a row per kind of fault, and the failures.
-std::string to_text(const Campaign& campaign);
-/// The table of to_text() and its last line, as a Markdown page.
-std::string to_markdown(const Campaign& campaign);
+/// All cases with their verdicts, the bounds, and all kinds of faults;
+/// python/hapticgiant/report/faults.py makes tables of it.
 nlohmann::ordered_json to_json(const Campaign& campaign);
 
 }  // namespace hg::studies

@@ -17,11 +17,11 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <thread>
 
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
+#include "hg/core/random.h"
 #include "hg/core/scratch_folder.h"
 #include "hg/device/udp/device_server.h"
 #include "hg/recording/recording_reader.h"
@@ -334,11 +334,11 @@ class GivesUp {
 };
 
 ProcessCase play(const std::string& program, const std::string& name, ProcessFault fault,
-                 std::mt19937_64& random) {
+                 Random& random) {
   ProcessCase result = {.fault = fault, .scenario = name};
   const config::Scenario scenario = config::load_scenario(config::find_scenario(name));
   const Interval times = fault_times(scenario);
-  const double at_s = std::uniform_real_distribution<double>(times.lb, times.ub)(random);
+  const double at_s = random.between(times.lb, times.ub);
   const double dt = scenario.device.rendering.dt;
   const ScratchFolder scratch;
   const std::string folder = scratch.path() + "/recordings";
@@ -396,7 +396,7 @@ std::vector<ProcessCase> play_process_faults(const std::string& program,
                                              const std::vector<std::string>& scenarios,
                                              int repetitions, std::uint64_t seed) {
   std::vector<ProcessCase> cases;
-  std::mt19937_64 random(seed);
+  Random random(seed);
   for (int k = 0; k < repetitions; ++k) {
     for (const Description& description : kDescriptions) {
       const std::string& scenario = scenarios[cases.size() % scenarios.size()];
@@ -411,37 +411,13 @@ std::vector<ProcessCase> play_process_faults(const std::string& program,
   return cases;
 }
 
-std::string to_text(const std::vector<ProcessCase>& cases) {
-  std::string text =
-      fmt::format("{:17} {:11} {:>10} {:>6} {:>6} {:>5} {:>9} {:>9}  {}\n", "fault", "scenario",
-                  "at rest ms", "way %", "J", "exit", "lived", "recorded", "what goes wrong");
+nlohmann::ordered_json to_json(const std::vector<ProcessCase>& cases) {
+  nlohmann::ordered_json json = {{"kind", "process_faults"},
+                                 {"passed", std::ranges::all_of(cases, &ProcessCase::is_good)}};
   for (const ProcessCase& result : cases) {
     const Description& expected = description_of(result.fault);
-    text += fmt::format("{:17} {:11} {:>10.0f} {:>6.0f} {:>6.1f} {:>5} {:>9} {:>9}  {}{}\n",
-                        expected.name, result.scenario, 1e3 * result.rest_s,
-                        100.0 * result.travel_share, result.energy,
-                        result.exit_code < 0 ? "-" : std::to_string(result.exit_code),
-                        result.periods, result.recorded, expected.what,
-                        result.is_good   ? ""
-                        : result.has_run ? "  BAD"
-                                         : "  BAD: it did not run");
-  }
-  const auto bad = std::ranges::count(cases, false, &ProcessCase::is_good);
-  return text +
-         fmt::format(
-             "\nat rest: from the stop (SIGTERM 0.3 s after the fault; the fault itself where the "
-             "controller is frozen, suspended or killed)\nuntil all axes of the device stood "
-             "still; way: from there on, of the stopping distance; J: given to the person\n\n{} of "
-             "{} "
-             "cases moved an axis farther than its stopping distance, did not come to rest, did "
-             "not end, or lost more of\ntheir recording than its last second\n",
-             bad, cases.size());
-}
-
-nlohmann::ordered_json to_json(const std::vector<ProcessCase>& cases) {
-  nlohmann::ordered_json json = {{"passed", std::ranges::all_of(cases, &ProcessCase::is_good)}};
-  for (const ProcessCase& result : cases) {
-    json["cases"].push_back({{"fault", description_of(result.fault).name},
+    json["cases"].push_back({{"fault", expected.name},
+                             {"what", expected.what},
                              {"scenario", result.scenario},
                              {"passed", result.is_good},
                              {"has_run", result.has_run},

@@ -52,8 +52,7 @@ std::vector<ProcessCase> play_process_faults(const std::string& program,
                                              const std::vector<std::string>& scenarios,
                                              int repetitions, std::uint64_t seed);
 
-/// Table with a row per case, and the verdict.
-std::string to_text(const std::vector<ProcessCase>& cases);
+/// All cases; python/hapticgiant/report/process_faults.py makes a table of it.
 nlohmann::ordered_json to_json(const std::vector<ProcessCase>& cases);
 
 }  // namespace hg::studies

@@ -400,51 +400,6 @@ def timing(figure, tables):
     panel.legend(loc="upper center", bbox_to_anchor=(0.52, 1.0))
 
 
-def tuning(figure, facts):
-    """What is felt before and after, the front, and the margins of all postures."""
-    figure.set_size_inches(WIDTH, 2.6)
-    felt, front, margin = figure.subplots(1, 3, gridspec_kw={"wspace": 0.36})
-    before, after = COLOURS[1], COLOURS[0]
-    for name, colour, label in (("felt_before", before, "now"), ("felt", after, "tuned")):
-        curve = facts[name]
-        felt.fill_between(curve["frequency_Hz"], curve["least"], curve["largest"], color=colour,
-                          alpha=0.35, linewidth=0.8, label=label)
-    felt.axhspan(0.708, 1.413, color="black", alpha=0.07, linewidth=0, label="within 3 dB")
-    felt.set(xscale="log", yscale="log", ylim=(0.1, 10.0), xlabel="frequency in Hz",
-             ylabel="felt over rendered", xlim=(0.5, 60.0))
-    felt.legend(loc="upper left")
-
-    points = [(facts["before"], before)] + [(point, after) for point in facts["front"]]
-    seen = []
-    for point, colour in points:
-        x, y = point["vibration_m_per_s2"], point["transparency_Hz"]
-        front.plot(x, y, "o", color=colour, markersize=4,
-                   fillstyle="full" if point["is_proven"] else "none")
-        if (x, y) not in seen:
-            front.annotate(f"{1e3 * point['latency_s']:.1f} ms", (x, y), (0, 5), fontsize=6.5,
-                           textcoords="offset points", ha="center")
-        seen.append((x, y))
-    front.set(xlabel="vibration in m/s$^2$", ylabel="transparency in Hz",
-              xlim=(0.0, 1.25 * max(x for x, _ in seen)),
-              ylim=(0.0, 1.2 * max(y for _, y in seen)))
-
-    for name, style in (("arm", STYLES[0]), ("hand", STYLES[1])):
-        # in units of what is allowed: 1 = errors fall just as fast as they must
-        for key, colour in (("radii_before", before), ("radii", after)):
-            limit = np.log(facts[f"{name}_limit"])
-            share = np.sort(limit / np.log(np.minimum(facts[key][name], 1.0 - 1e-9)))
-            postures = 100.0 * (np.arange(len(share)) + 1) / len(share)
-            margin.step(share, postures, where="post", color=colour, linestyle=style,
-                        label={"arm": "alone", "hand": "in a hand"}[name]
-                        if key == "radii" else None)
-    margin.axvline(1.0, color="black", linewidth=0.8)
-    margin.set(xscale="log", xlim=(0.03, 20.0), ylim=(0, 103), ylabel="postures in %",
-               xlabel="decay time over allowed")
-    margin.legend(loc="lower right")
-    for panel, text in zip((felt, front, margin), "abc"):
-        panel.set_title(f"({text})", loc="left", fontsize=8, fontweight="bold")
-
-
 KINDS = {"cartesian": cartesian, "excavator": excavator, "door": door, "path": path,
          "any": any_run}
 
@@ -474,8 +429,6 @@ def draw(out, folders):
         table = json.loads((pathlib.Path(folders[0]) / "run.json").read_text())
         if table["kind"] == "timing":
             timing(figure, [table])
-        elif table["kind"] == "tuning":
-            tuning(figure, table)
         else:
             runs = [Run(folder) for folder in folders[:len(STYLES)]]
             KINDS[table["kind"]](figure, runs)

@@ -4,6 +4,7 @@ Usage: check_test.py PROGRAM   (from the repository root)
 """
 
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -11,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import xml.etree.ElementTree
 
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
@@ -130,8 +132,17 @@ class Check(unittest.TestCase):
         texts = " ".join(element.text or "" for element in root.iter())
         for word in ("HapticGiant", "force in N", "x in m", "z in m", "box of the handle"):
             self.assertIn(word, texts)
-        cells = [e for e in root.iter() if e.tag.endswith("rect") and e.get("fill", "#fff") != "#fff"]
+        cells = [e for e in root.iter() if e.tag.endswith("path")]
         self.assertGreater(len(cells), 1000)
+
+    def test_without_python_only_the_map_is_missing(self):
+        file = self.folder / "map.svg"
+        with unittest.mock.patch.dict(os.environ, HAPTICGIANT_PYTHON="/bin/false-no-such-python"):
+            code, out, err = check(DEVICE, "--map", file)
+        self.assertEqual(code, 2)
+        self.assertIn("HapticGiant: datasheet", out)
+        self.assertIn("needs matplotlib and jinja2; tools/setup.sh build", err)
+        self.assertFalse(file.exists())
 
     def test_bad_arguments(self):
         self.assertEqual(check()[0], 2)

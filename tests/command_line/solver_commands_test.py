@@ -37,6 +37,7 @@ class Bench(TemporaryFolder):
         self.assertIn("--quick: only the first 500 problems of each set", out)
         self.assertIn("--quick: only the first 2000 cycles", out)
         told = json.loads(told.read_text())
+        self.assertEqual(out, (self.out / "README.md").read_text())
 
         # both laws play the scenario to its end
         self.assertEqual([(r["law"], r["bounds"]) for r in told["runs"]],
@@ -84,11 +85,18 @@ class Bench(TemporaryFolder):
         self.assertEqual([r["with"] for r in self.rows("growth_exponents")][-1], "levels")
         for name in ("solver_histogram", "cycle_histogram", "growth"):
             figure = xml.etree.ElementTree.parse(self.out / f"{name}.svg").getroot()
-            lines = figure.findall("{http://www.w3.org/2000/svg}polyline")
+            lines = figure.findall(".//{http://www.w3.org/2000/svg}path")
             self.assertGreaterEqual(len(lines), 4, name)
         machine = (self.out / "machine.txt").read_text()
         for key in ("date: 20", "cpu: ", "compiler: ", "flags: ", "commit: "):
             self.assertIn(key, machine)
+
+    def test_without_python_nothing_is_measured(self):
+        with unittest.mock.patch.dict(os.environ, HAPTICGIANT_PYTHON="/bin/false-no-such-python"):
+            code, out, err = run("bench", "door", "--out", self.folder / "none")
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("needs matplotlib and jinja2; tools/setup.sh build", err)
+        self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_a_missing_event_is_1(self):
         text = (MODELS / "scenarios" / "door.yaml").read_text().replace("../", f"{MODELS}/")

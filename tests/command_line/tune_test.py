@@ -5,9 +5,11 @@ Usage: tune_test.py PROGRAM   (from the repository root)
 
 import csv
 import json
+import os
 import re
 import shutil
 import unittest
+import unittest.mock
 
 from program import MODELS, TemporaryFolder, run
 
@@ -48,7 +50,7 @@ class Tune(TemporaryFolder):
         self.assertIn(lines, report)
         self.assertIn("figure.svg", report)
         self.assertIn("<svg", (out / "figure.svg").read_text())
-        facts = json.loads((out / "run.json").read_text())
+        facts = json.loads((out / "results.json").read_text())
         for name in ("radii_before", "radii"):  # one posture
             self.assertEqual([len(facts[name][loop]) for loop in ("arm", "hand")], [1, 1])
         self.assertLess(facts["radii"]["arm"][0], facts["arm_limit"])
@@ -58,6 +60,13 @@ class Tune(TemporaryFolder):
             for k in slow:  # a slow hand feels the body
                 self.assertAlmostEqual(felt["least"][k], 1.0, delta=0.1)
                 self.assertAlmostEqual(felt["largest"][k], 1.0, delta=0.1)
+
+    def test_without_python_nothing_is_searched(self):
+        with unittest.mock.patch.dict(os.environ, HAPTICGIANT_PYTHON="/bin/false-no-such-python"):
+            code, told, err = run("tune", "--out", self.folder / "none")
+        self.assertEqual((code, told), (2, ""))
+        self.assertIn("needs matplotlib and jinja2; tools/setup.sh build", err)
+        self.assertFalse((self.folder / "none").exists())
 
     def test_what_cannot_be_tuned_is_refused_in_one_line(self):
         device = self.folder / "haptic_giant"

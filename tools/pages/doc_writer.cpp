@@ -102,20 +102,10 @@ bool DocWriter::numbers_by_name(std::string_view key, Names, std::string_view ki
   return row(key, "", Need::kOptional, numbers + std::string(kind), text);
 }
 
-std::string DocWriter::table() const {
-  return "| key | default | allowed | meaning |\n| --- | --- | --- | --- |\n" + rows_;
-}
-
 bool DocWriter::row(std::string_view key, std::string_view standard, Need need,
                     std::string_view allowed, std::string_view text) {
-  const auto add = [&](std::string_view cell) { ((rows_ += cell) += " | "); };
-  rows_ += "| `" + prefix_;
-  rows_ += key;
-  rows_ += "` | ";
-  add(need == Need::kRequired ? "**required**" : standard);
-  add(allowed);
-  rows_ += text;
-  rows_ += " |\n";
+  rows_.push_back({"`" + prefix_ + std::string(key) + "`",
+                   need == Need::kRequired ? "**required**" : standard, allowed, text});
   return true;
 }
 

@@ -1,10 +1,11 @@
-/// Visitor that writes a description as rows of a Markdown table. Same functions as Loader; fields
+/// Visitor that lists a description as rows of a table. Same functions as Loader; fields
 /// hold the defaults, and nothing is changed in them.
 #pragma once
 
 #include <Eigen/Core>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -70,8 +71,8 @@ class DocWriter {
   bool covers(bool) const { return true; }
   bool is_given(std::string_view) const { return true; }
 
-  /// A table with one row per key.
-  std::string table() const;
+  /// A row per key: key, default, allowed values, meaning.
+  nlohmann::ordered_json table() const { return rows_; }
 
  private:
   template <class T>
@@ -84,7 +85,7 @@ class DocWriter {
   void inside(std::string_view prefix, const std::function<void(DocWriter&)>& write);
 
   std::string prefix_;
-  std::string rows_;
+  nlohmann::ordered_json rows_ = nlohmann::ordered_json::array();
 };
 
 }  // namespace hg::pages

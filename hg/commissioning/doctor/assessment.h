@@ -3,12 +3,12 @@
 /// Assessed at the rate of the loop with the limits below; reasons: docs/reference/runtime.md.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "hg/commissioning/doctor/jitter.h"
-#include "hg/commissioning/doctor/readings.h"
 
 namespace hg::doctor {
 
@@ -31,10 +31,10 @@ struct Assessment {
 /// Limits of the largest lateness, as a share of the period: a device gets its command within it.
 inline constexpr double kGoodShare = 0.1;  ///< share of the period up to which it is ok
 inline constexpr double kBadShare = 0.5;   ///< share of the period from which on it is bad
-/// Idle wake-up latency above which a warning is given, us.
-inline constexpr double kIdleLatency_us = 50.0;
 
-std::vector<Assessment> assess(const Readings& readings);
+/// Assesses what Linux reports in /proc and /sys below a folder, "/" for this computer. A container
+/// or another kernel need not have all of it.
+std::vector<Assessment> assess_computer(const std::filesystem::path& root = "/");
 
 /// Assesses two measurements at the same rate, `ordinary` and `real_time`. `must_hold`: a lateness
 /// beyond kBadShare is bad, not only a warning.

@@ -1,4 +1,4 @@
-"""Reports of `hapticgiant haptify`: a page with pictures, Markdown, LaTeX and CSV.
+"""Reports of `hapticgiant haptify`, `bench`, `faults`, `tune` and `check --map`: text and pictures.
 
     python report FOLDER [--docs DOCS]      also: python -m hapticgiant.report FOLDER [--docs DOCS]
 

@@ -1,7 +1,9 @@
 """Command line of the reports; see __init__.py. Exit codes: 0 written, 3 a library is missing."""
 
 import argparse
+import importlib
 import importlib.util
+import json
 import pathlib
 import sys
 import types
@@ -25,8 +27,10 @@ def main():
         package = types.ModuleType("hapticgiant")
         package.__path__ = [str(pathlib.Path(__file__).resolve().parents[1])]
         sys.modules["hapticgiant"] = package
-    from hapticgiant.report.haptify import write
-    write(arguments.folder, arguments.docs)
+    kind = json.loads((arguments.folder / "results.json").read_text(encoding="utf-8"))["kind"]
+    module = {"goals": "haptify"}.get(kind, kind)
+    report = importlib.import_module(f"hapticgiant.report.{module}")
+    report.write(arguments.folder, arguments.docs)
     return 0
 
 

@@ -7,7 +7,6 @@
 
 #include "hg/commissioning/doctor/assessment.h"
 #include "hg/commissioning/doctor/jitter.h"
-#include "hg/commissioning/doctor/readings.h"
 #include "hg/core/test/temporary_folder.h"
 
 namespace hg::doctor {
@@ -58,13 +57,13 @@ class Computer {
   void remove(const std::string& file) { fs::remove_all(folder_.path() / file); }
 
   Assessment line(const std::string& item) const {
-    for (const Assessment& line : assess(read(folder_.path()))) {
+    for (const Assessment& line : assess_computer(folder_.path())) {
       if (line.item == item) return line;
     }
     ADD_FAILURE() << "no line " << item;
     return {};
   }
-  std::vector<Assessment> lines() const { return assess(read(folder_.path())); }
+  std::vector<Assessment> lines() const { return assess_computer(folder_.path()); }
 
  private:
   TemporaryFolder folder_;
@@ -164,15 +163,16 @@ TEST(Doctor, TellsClockMachineAndThrottling) {
 
 TEST(Doctor, SurvivesAComputerThatTellsNothing) {
   const TemporaryFolder empty;
-  const std::vector<Assessment> lines = assess(read(empty.path()));
+  const std::vector<Assessment> lines = assess_computer(empty.path());
   EXPECT_EQ(exit_code(lines), 1);  // nobody may be real time there
 }
 
 TEST(Doctor, ReadsThisComputer) {
-  const Readings readings = read();
-  EXPECT_GE(readings.processors, 1);
-  EXPECT_NE(readings.kernel, "");
-  EXPECT_TRUE(readings.priority_max.has_value());
+  const std::vector<Assessment> lines = assess_computer();
+  ASSERT_EQ(lines[0].item, "kernel");
+  EXPECT_FALSE(lines[0].found.starts_with(",")) << "the release is missing";
+  ASSERT_EQ(lines[6].item, "processors");
+  EXPECT_NE(lines[6].found, "not reported");
 }
 
 Jitter jitter(double rate_Hz, int priority, double late_us) {

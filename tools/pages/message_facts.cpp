@@ -1,7 +1,8 @@
-#include "tools/pages/typescript.h"
+#include "tools/pages/message_facts.h"
 
 #include <array>
 #include <concepts>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -16,14 +17,7 @@ namespace {
 
 using namespace viewer_server;
 
-constexpr std::string_view kHead =
-    "// Generated from the lists of fields in hg/viewer_server/ and hg/signals/; do not edit. "
-    "Units\n"
-    "// stand in the names or in the comments; B is the base frame (z up), H the handle. A number\n"
-    "// that is not finite arrives as null.\n"
-    "\n"
-    "export type Vec3 = [number, number, number];\n"
-    "export type Quaternion = [number, number, number, number]; // x y z w\n";
+using Json = nlohmann::ordered_json;
 
 template <typename T>
 struct Type;
@@ -84,51 +78,42 @@ struct Type<std::vector<T>> {
   }
 };
 
-// The archive that writes the fields of one interface.
-class InterfaceWriter {
+// The archive that lists the fields of one interface.
+class Fields {
  public:
-  void type(std::string_view word) { line("type", '"' + std::string(word) + '"', {}); }
+  void type(std::string_view word) { rows.push_back({"type", '"' + std::string(word) + '"', ""}); }
 
   template <typename T>
   void operator()(std::string_view name, const T&, std::string_view note = {}) {
-    line(name, Type<T>::name(), note);
+    rows.push_back({name, Type<T>::name(), note});
   }
 
-  std::string text;
-
- private:
-  void line(std::string_view name, const std::string& type, std::string_view note) {
-    ((text += "  ") += name) += ": " + type + ";";
-    if (!note.empty()) (text += " // ") += note;
-    text += '\n';
-  }
+  Json rows = Json::array();
 };
 
 template <IsMessage Message>
-void add(std::string& text) {
-  InterfaceWriter writer;
+Json facts_of() {
+  Fields list;
   static const Message kBlank{};
-  fields(writer, kBlank);
-  ((text += "\n// ") += kInterface<Message>.note) += '\n';
-  ((text += "export interface ") += kInterface<Message>.name) += " {\n" + writer.text + "}\n";
+  fields(list, kBlank);
+  return {{"name", kInterface<Message>.name},
+          {"note", kInterface<Message>.note},
+          {"fields", list.rows}};
 }
 
 template <IsMessage... Messages>
-void add_all(std::string& text) {
-  (add<Messages>(text), ...);
+Json all() {
+  return {facts_of<Messages>()...};
 }
 
 }  // namespace
 
-std::string typescript_text() {
-  std::string text(kHead);
-  add_all<SceneMessage, SceneChainMessage, SceneJointMessage, SceneLimitMessage, SceneBoxMessage,
-          SceneSurfaceMessage, Choices, Choice, SettingMessage>(text);
-  add_all<FrameMessage, FeltLimitMessage, ActiveLimitMessage, ContactReport, HandBudget, Vector6,
-          Singularity, RunState, SafetyMessage, GhostMessage>(text);
-  add_all<HandMessage, HoldMessage, CommandMessage, WelcomeMessage, AnswerMessage, ValuesMessage,
-          EventMessage>(text);
-  return text;
+Json message_facts() {
+  return all<SceneMessage, SceneChainMessage, SceneJointMessage, SceneLimitMessage, SceneBoxMessage,
+             SceneSurfaceMessage, Choices, Choice, SettingMessage, FrameMessage, FeltLimitMessage,
+             ActiveLimitMessage, ContactReport, HandBudget, Vector6, Singularity, RunState,
+             SafetyMessage, GhostMessage, HandMessage, HoldMessage, CommandMessage, WelcomeMessage,
+             AnswerMessage, ValuesMessage, EventMessage>();
 }
 
 }  // namespace hg::pages

@@ -1,18 +1,20 @@
-#include "tools/pages/datagram_tables.h"
+#include "tools/pages/datagram_facts.h"
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "hg/device/udp/codec.h"
-#include "tools/pages/marks.h"
 
 namespace hg::pages {
 namespace {
 
 using namespace udp;
 
-// The archive that writes one row per field.
+using Json = nlohmann::ordered_json;
+
+// The archive that makes one row per field.
 class Table {
  public:
   explicit Table(std::size_t offset) : offset_(offset) {}
@@ -42,39 +44,43 @@ class Table {
   }
   void zeros(const char* name) { row(4, "u32", name, ""); }
 
-  std::string text = "| offset | type | field | |\n| ---: | --- | --- | --- |\n";
+  Json rows = Json::array();
   std::size_t end() const { return offset_; }
 
  private:
   void row(std::size_t size, const std::string& type, const std::string& name,
            const std::string& note) {
-    text += fmt::format("| {} | {} | {} | {} |\n", offset_, type, name, note);
+    rows.push_back({offset_, type, name, note});
     offset_ += size;
   }
   std::size_t offset_;
 };
 
 template <typename Message>
-std::string section(const char* title) {
+Json message(const char* title) {
   Table table(size_of<Header>());
-  const Message message{};
-  layout(table, message);
-  return fmt::format("\n### {} (type {}, {} bytes)\n\n{}| {} | u32 | checksum | |\n", title,
-                     static_cast<int>(kTypeOf<Message>), table.end() + 4, table.text, table.end());
+  const Message blank{};
+  layout(table, blank);
+  table.rows.push_back({table.end(), "u32", "checksum", ""});
+  return {{"title", title},
+          {"type", static_cast<int>(kTypeOf<Message>)},
+          {"bytes", table.end() + 4},
+          {"rows", table.rows}};
 }
 
 }  // namespace
 
-std::string with_datagram_tables(std::string page) {
+Json datagram_facts() {
   Table header(0);
-  const Header fields_of_header{};
-  layout(header, fields_of_header);
-  replace_marked(page, "messages",
-                 "### Header\n\n" + header.text + section<Hello>("Hello") +
-                     section<Welcome>("Welcome") + section<Ready>("Ready") +
-                     section<SensorFrame>("Sensors") + section<CommandFrame>("Command") +
-                     section<Goodbye>("Goodbye"));
-  return page;
+  const Header blank{};
+  layout(header, blank);
+  return {{{"title", "Header"}, {"rows", header.rows}},
+          message<Hello>("Hello"),
+          message<Welcome>("Welcome"),
+          message<Ready>("Ready"),
+          message<SensorFrame>("Sensors"),
+          message<CommandFrame>("Command"),
+          message<Goodbye>("Goodbye")};
 }
 
 }  // namespace hg::pages

@@ -1,4 +1,6 @@
-#include "tools/pages/configuration_page.h"
+#include "tools/pages/configuration_facts.h"
+
+#include <nlohmann/json.hpp>
 
 #include "hg/config/device_schema.h"
 #include "hg/config/scenario_schema.h"
@@ -13,25 +15,9 @@ namespace {
 
 using namespace config;
 
-constexpr const char* kIntroduction = R"(# Configuration files
+using Json = nlohmann::ordered_json;
 
-<!-- Generated from the descriptions in hg/config: edit those. -->
-
-Six kinds of YAML files set up a run. `models/` has complete examples.
-
-- A key ends in its unit: `q_max_rad`, `stiffness_N_per_m`, `k_ppu_1_per_s`. Values are plain
-  numbers in that unit; `15 deg` is refused. Where the unit depends on the joint, revolute joints
-  take the key with rad and prismatic joints the key with m.
-- Every number has a range: that of its unit, or a narrower one. The tables give it.
-- `.inf` stands for "no limit" where the table says that it may.
-- Unknown keys, keys given twice and everything outside the allowed values are errors. All errors
-  of a file are reported at once, as `file:line:column: key: what is wrong`.
-- Names of files start at the folder of the file that names them.
-- In the tables, `a.b` is key `b` in the map `a`, `a[].b` is key `b` of each element of the list
-  `a`, and `NAME` is the name of a joint.
-)";
-
-std::string device_table() {
+Json device_table() {
   DeviceDraft draft;
   draft.joints.emplace_back();  // stands for every joint
   draft.actuators.emplace_back();
@@ -46,14 +32,14 @@ std::string device_table() {
   return writer.table();
 }
 
-std::string tool_table() {
+Json tool_table() {
   ToolDraft draft;
   DocWriter writer;
   describe(writer, draft);
   return writer.table();
 }
 
-std::string simulation_table() {
+Json simulation_table() {
   SimulationDraft draft;
   draft.joint_units.push_back(JointUnit::kEither);  // stands for every joint
   draft.flexible.emplace_back();
@@ -64,7 +50,7 @@ std::string simulation_table() {
   return writer.table();
 }
 
-std::string twin_table() {
+Json twin_table() {
   TwinDraft draft;
   draft.joints.emplace_back();  // stands for every joint
   draft.scalar_joints.push_back(0);
@@ -75,7 +61,7 @@ std::string twin_table() {
   return writer.table();
 }
 
-std::string script_table() {
+Json script_table() {
   ScriptDraft draft;
   draft.channels = {{"CHANNEL", 0, kJointPosition, "one of the channels below"}};
   DocWriter writer;
@@ -84,7 +70,7 @@ std::string script_table() {
   return writer.table();
 }
 
-std::string channel_table(const std::vector<Channel>& channels) {
+Json channel_table(const std::vector<Channel>& channels) {
   ScriptDraft draft;
   draft.channels = channels;
   DocWriter writer;
@@ -92,7 +78,7 @@ std::string channel_table(const std::vector<Channel>& channels) {
   return writer.table();
 }
 
-std::string scenario_table() {
+Json scenario_table() {
   ScenarioDraft draft;
   draft.names.twin_limits.push_back(0);
   DocWriter writer;
@@ -114,24 +100,16 @@ std::string scenario_table() {
 
 }  // namespace
 
-std::string configuration_page() {
-  std::string page = kIntroduction;
-  const auto section = [&](const std::string& title, const std::string& text) {
-    page += "\n" + title + "\n\n" + text;
-  };
-  section("## Device: device.yaml", device_table());
-  section("## Tool of a device: tool.yaml", tool_table());
-  section("## Simulated device: simulation.yaml", simulation_table());
-  section("## Twin: twin.yaml", twin_table());
-  section("## Script of a hand: script.yaml", script_table());
-  section("### Channels of frame base", channel_table(pose_channels(person::ScriptFrame::kBase)));
-  section("### Channels of frame cylindrical",
-          channel_table(pose_channels(person::ScriptFrame::kCylindrical)));
-  section("### Channels of frame twin_joints",
-          "The names of the twin's joints; values in rad or m.\n");
-  section("### Channels of every frame", channel_table(common_channels()));
-  section("## Scenario: scenario.yaml", scenario_table());
-  return page;
+Json configuration_facts() {
+  return {{"device", device_table()},
+          {"tool", tool_table()},
+          {"simulation", simulation_table()},
+          {"twin", twin_table()},
+          {"script", script_table()},
+          {"channels_base", channel_table(pose_channels(person::ScriptFrame::kBase))},
+          {"channels_cylindrical", channel_table(pose_channels(person::ScriptFrame::kCylindrical))},
+          {"channels", channel_table(common_channels())},
+          {"scenario", scenario_table()}};
 }
 
 }  // namespace hg::pages

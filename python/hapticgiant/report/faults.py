@@ -1,0 +1,116 @@
+"""Tables of `hapticgiant faults`: what the machine did about every kind of injected fault."""
+
+import collections
+import json
+import statistics
+
+from . import columns, tables
+
+HEAD = ["fault", "cases", "noticed", "harmless", "unnoticed", "noticed ms", "at rest ms", "stop",
+        "N", "outside", "way %", "J", "most often"]
+LEGEND = (
+    "noticed and at rest: median / longest of faults alone, in ms after they began and after they "
+    "were noticed;\nN: largest force of the person; outside: furthest true position outside a "
+    "limit of the device, rad or m;\nway: longest motion of an axis without a command, of the "
+    "stopping distance; J: largest energy\ngiven to the person in a stop\n")
+
+
+def range_text(seconds):
+    if not seconds:
+        return "-"
+    ms = [1e3 * value for value in seconds]
+    return f"{statistics.median_high(ms):.0f} / {max(ms):.0f}"
+
+
+def most_frequent(values):
+    return collections.Counter(values).most_common(1)[0][0] if values else ""
+
+
+def row_of(kind, cases):
+    """Cells of the cases of one kind."""
+    outcomes = collections.Counter(case["outcome"] for case in cases)
+    noticed = [case for case in cases if case["outcome"] == "noticed"]
+    alone = [case for case in noticed if "and" not in case]  # the other may have stopped the device
+    codes = [f"{case['code']} {case['code_in_words']}" if case["code"] else "no fault"
+             for case in noticed]
+
+    def worst(key):
+        return max(case[key] for case in cases)
+
+    return [kind, str(len(cases)), *(str(outcomes[it]) for it in ("noticed", "harmless",
+                                                                  "unnoticed")),
+            range_text([case["noticed_s"] for case in alone]),
+            range_text([case["at_rest_after_s"] for case in alone if "at_rest_after_s" in case]),
+            most_frequent([case["stop"] for case in noticed]), f"{worst('peak_force_N'):.0f}",
+            f"{worst('worst_excess'):.4f}", f"{100.0 * worst('travel_share'):.0f}",
+            f"{worst('energy_J'):.1f}", most_frequent(codes)]
+
+
+def table_of(results):
+    rows = [HEAD]
+    for kind in results["kinds"]:
+        cases = [case for case in results["cases"] if case["fault"] == kind["name"]]
+        if cases:
+            rows.append(row_of(kind["name"], cases))
+    return rows
+
+
+def case_text(number, case):
+    other = f" and {case['and']}" if "and" in case else ""
+    lost = "" if case["recording_complete"] else ", its recording has lost cycles"
+    return (f"case {number}: {case['in_words']}{other} in {case['scenario']}, {case['phase']}: "
+            f"{case['outcome']} {case.get('code', 0)}, {case['peak_force_N']:.0f} N, "
+            f"{case['worst_excess']:.3f} outside, {case['worst_distance_m']:.3f} m, way "
+            f"{100.0 * case['travel_share']:.0f} %, {case['energy_J']:.1f} J{lost}\n")
+
+
+def verdict(results):
+    cases = results["cases"]
+    bad = sum(not case["passed"] for case in cases)
+    fallen = sum(case["has_fallen"] for case in cases)
+    text = (f"{bad} of {len(cases)} cases went unnoticed, took the device farther than "
+            f"{results['excess_bound']:g} rad or m outside a limit or an axis farther than its "
+            f"stopping distance, pushed the person with more than {results['force_bound_N']:g} N, "
+            f"gave more than {results['energy_bound_J']:g} J in a stop, or are missing from their "
+            "recording")
+    if fallen:
+        text += (f"; {fallen} of {len(cases)} cases fell because a brake did not hold, which was "
+                 "reported (323): no software holds such an axis")
+    return text
+
+
+def text(results):
+    """For a terminal: the table, and the cases that failed."""
+    failed = [case_text(number, case) for number, case in enumerate(results["cases"])
+              if not case["passed"]]
+    return "".join([columns.aligned(table_of(results), left=(0, 7, 12)), "\n", LEGEND, "\n",
+                    *failed, verdict(results), "\n"])
+
+
+def list_of_kinds(results):
+    rows = [["fault", "what goes wrong", "magnitude"]]
+    for kind in results["kinds"]:
+        sign = "+- " if kind["has_sign"] else ""
+        rows.append([kind["name"], kind["what"],
+                     f"{sign}{kind['least']:g} .. {kind['most']:g} {kind['unit']}"
+                     if kind["unit"] else "-"])
+    return tables.markdown(rows)
+
+
+def page(results):
+    """docs/reports/fault_campaign.md"""
+    return (f"# Results of {len(results['cases'])} cases with injected faults\n\n"
+            "Written by `hapticgiant faults --markdown`; "
+            "[safety.md](../concepts/safety.md#injected-faults) explains the columns.\n"
+            f"Seed {results['seed']}; {', '.join(results['scenarios'])}: {verdict(results)}.\n\n"
+            f"{tables.markdown(table_of(results))}\n## The faults\n\nFor `faults` of a scenario "
+            "and the drawn sizes of this campaign; a torque of the force sensor is in Nm and gets "
+            f"a\ntenth.\n\n{list_of_kinds(results)}")
+
+
+def write(folder, docs=None):
+    """Writes report.txt and report.md beside results.json."""
+    del docs
+    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    (folder / "report.txt").write_text(text(results), encoding="utf-8")
+    (folder / "report.md").write_text(page(results), encoding="utf-8")

@@ -1,0 +1,50 @@
+"""Text of generated pages, from facts that are not the code's.
+
+Usage: pages_test.py   (from anywhere)
+"""
+
+import unittest
+
+import pages
+
+RULE = {"number": 107, "name": "jump", "meaning": "It jumped.", "threshold": "monitor.jump_factor, 3 in a row",
+        "warn_from": 1.0, "samples": 1, "seconds": 0.0, "reaction": "STO", "release": "it is back"}
+
+
+class Pages(unittest.TestCase):
+    def test_only_the_text_between_the_marks_is_replaced(self):
+        page = "a\n<!-- rules -->\nold\n<!-- end -->\nb <!-- end -->\n"
+        self.assertEqual(pages.replace_marked(page, "rules", "new\n"),
+                         "a\n<!-- rules -->\n\nnew\n\n<!-- end -->\nb <!-- end -->\n")
+        for wrong in ("<!-- rules -->\n", "<!-- end -->", "<!-- stops -->\n<!-- end -->"):
+            with self.assertRaises(SystemExit):
+                pages.replace_marked(wrong, "rules", "")
+
+    def test_a_rule_has_keys_as_code_and_its_time(self):
+        self.assertIn("| 107 | jump | `monitor.jump_factor`, 3 in a row | - | at once | STO |\n",
+                      pages.rules_table([RULE]))
+        slow = {**RULE, "warn_from": 0.8, "samples": 4, "seconds": 0.02}
+        self.assertIn("| 80 % | 20 ms | STO |\n", pages.rules_table([slow]))
+        self.assertIn("| 4 samples |", pages.rules_table([{**slow, "seconds": 0.0}]))
+
+    def test_a_threshold_that_is_no_key_ends_the_program(self):
+        pages.check_thresholds([RULE], [["`monitor.jump_factor`", "3", "1 .. 9", "factor"]])
+        with self.assertRaisesRegex(SystemExit, "jump: no key monitor.jump_factor"):
+            pages.check_thresholds([RULE], [["`monitor.other_factor`", "3", "1 .. 9", "factor"]])
+
+    def test_transitions_name_the_next_state(self):
+        text = pages.transitions_table({"states": ["off", "ready"],
+                                        "transitions": [["good sample", "ready", "-"],
+                                                        ["request: run", "refused", "off"]]})
+        self.assertEqual(text, "| event | off | ready |\n| --- | --- | --- |\n"
+                               "| good sample | **ready** | - |\n| request: run | refused | **off** |\n")
+
+    def test_a_message_is_an_interface(self):
+        text = pages.typescript([{"name": "Hand", "note": "where it is",
+                                  "fields": [["p", "Vec3", "in m"], ["is_held", "boolean", ""]]}])
+        self.assertTrue(text.endswith("\n// where it is\nexport interface Hand {\n  p: Vec3; // in m\n"
+                                      "  is_held: boolean;\n}\n"))
+
+
+if __name__ == "__main__":
+    unittest.main()
