@@ -208,6 +208,7 @@ nlohmann::ordered_json to_json(const ContactMeasures& report) {
   nlohmann::ordered_json json;
   json["experiment"] = "contact";
   json["seeds"] = report.config.seeds;
+  json["settled_s"] = report.config.settled;
   json["cases"] = nlohmann::ordered_json::array();
   for (const ContactResult& result : report.results) {
     const Permissible most = permissible(result.what);

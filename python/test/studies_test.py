@@ -61,22 +61,34 @@ class Seeds(Reports):
         self.assertIn("| walk | stiff | 0 of 1 | - |", page)
 
 
+def contact_case(**more):
+    run = {"max_force_N": 100.0, "max_pressure_N_per_cm2": 10.0, "settled_force_N": 20.0,
+           "impulse_Ns": 3.0, "contact_s": 0.1}
+    return {"hit_by": "wrist", "body_part": "upper_arm", "speed_m_per_s": 0.5, "is_clamped": True,
+            "permissible_transient_N": 150.0, "permissible_quasi_static_N": 75.0,
+            "permissible_pressure_N_per_cm2": 60.0, "without": run | {"max_force_N": 151.0},
+            "with": run | {"told_s": 0.012}} | more
+
+
 class Contact(Reports):
+    def test_the_picture_has_no_overlaps(self):
+        cases = [contact_case(hit_by=f"a link with the long name {link}", speed_m_per_s=speed)
+                 for link in range(16) for speed in (0.25, 0.5, 1.0)]
+        with matplotlib.rc_context(figures.SETTINGS):
+            self.assertEqual(overlapping(studies.contact_figure({"settled_s": 0.5, "cases": cases})), [])
+
     def test_what_is_too_much_is_marked_and_counted(self):
-        run = {"max_force_N": 100.0, "max_pressure_N_per_cm2": 10.0, "settled_force_N": 20.0,
-               "impulse_Ns": 3.0, "contact_s": 0.1}
-        case = {"hit_by": "wrist", "body_part": "upper_arm", "speed_m_per_s": 0.5, "is_clamped": True,
-                "permissible_transient_N": 150.0, "permissible_quasi_static_N": 75.0,
-                "permissible_pressure_N_per_cm2": 60.0, "without": run | {"max_force_N": 151.0},
-                "with": run | {"told_s": 0.012}}
+        case = contact_case()
         docs = pathlib.Path(tempfile.mkdtemp())
         (docs / "contact.md").write_text("a\n<!-- figures: begin -->\nb\n<!-- figures: end -->\nc\n")
-        verdict, said, _ = self.report(studies, {"kind": "contact", "seeds": 4, "cases": [case]}, docs)
+        verdict, said, _ = self.report(studies, {"kind": "contact", "seeds": 4, "settled_s": 0.5,
+                                                 "cases": [case]}, docs)
         self.assertEqual(verdict, 0)
         self.assertIn("1 of 1 without compliance, 0 with it", said)
         page = (docs / "contact.md").read_text()
         self.assertIn("| wrist | upper arm, clamped | 0.5 | 151! | 100 | 150 | 10 / 10 | 3.0 / 3.0 | "
                       "100 / 100 | 20 | 20 | 75 | 12 | - / - |", page)
+        self.assertTrue((docs / "contact.svg").read_text().startswith("<svg"))
         self.assertTrue(page.startswith("a\n") and page.endswith("c\n") and "b" not in page.split())
 
 

@@ -49,6 +49,32 @@ def contact_row(case):
             f"{settled:.0f}", time(on, "told_s"), f"{time(off, 'stopped_s')} / {time(on, 'stopped_s')}"]
 
 
+def contact_figure(results):
+    """Forces over their permissible values, a panel per speed."""
+    cases = results["cases"]
+    speeds = sorted({case["speed_m_per_s"] for case in cases})
+    names = list(dict.fromkeys(", ".join(contact_row(case)[:2]) for case in cases))
+    figure = pictures.new_figure(0.8 + 0.19 * len(names))
+    panels = figure.subplots(1, len(speeds), sharey=True, squeeze=False)[0]
+    kinds = (("max_force_N", "permissible_transient_N", "largest force", pictures.COLOURS[0], -0.12),
+             ("settled_force_N", "permissible_quasi_static_N",
+              f"force after {results['settled_s']:g} s", pictures.COLOURS[1], 0.12))
+    for panel, speed in zip(panels, speeds):
+        chosen = [case for case in cases if case["speed_m_per_s"] == speed]
+        places = [names.index(", ".join(contact_row(case)[:2])) for case in chosen]
+        for key, most, name, colour, offset in kinds:
+            for side, fill in (("without", "none"), ("with", "full")):
+                panel.plot([case[side][key] / case[most] for case in chosen],
+                           [place + offset for place in places], "o", color=colour, markersize=3.5,
+                           fillstyle=fill, label=f"{name}, {side} compliance")
+        panel.axvline(1.0, color="black", linewidth=0.8, label="permissible")
+        panel.set(xlabel="force over permissible", xlim=(0.0, None), ylim=(len(names) - 0.4, -0.6))
+        panel.set_title(f"{speed:g} m/s")
+    panels[0].set_yticks(range(len(names)), names)
+    pictures.legend_of(figure, panels[0])
+    return figure
+
+
 def contact(folder, results, docs):
     cases = results["cases"]
     rows = [CONTACT_HEAD, *map(contact_row, cases)]
@@ -60,7 +86,9 @@ def contact(folder, results, docs):
     print(f"{tables.as_text(rows, left=2)}\nw{seeds}; off / on: without and with compliance\n{verdict}",
           end="")
     if docs:
-        pages.refresh(docs / "contact.md", f"{tables.markdown(rows)}\nW{seeds}. {verdict}")
+        with matplotlib.rc_context(SETTINGS):
+            svg = pictures.to_svg(contact_figure(results), "contact")
+        pages.refresh(docs / "contact.md", f"{tables.markdown(rows)}\nW{seeds}. {verdict}", svg)
     return 0
 
 
