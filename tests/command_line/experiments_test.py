@@ -96,8 +96,8 @@ class Experiments(TemporaryFolder):
         self.assertIn("the same in every cycle", out)
 
     def test_a_missing_event_is_1(self):
-        code, out, _ = run("experiment", "door", "--duration", 2, "--law", "paper",
-                                           "--out", self.folder)
+        code, out, _ = run("experiment", "door", "--duration", 2, "--law", "paper", "--out",
+                           self.folder)
         self.assertEqual(code, 1, out)
         self.assertIn("NOT AS EXPECTED: handle pressed did not happen", out)
         events = read(self.folder / "door" / "events.json")["events"]
@@ -134,8 +134,8 @@ class Experiments(TemporaryFolder):
         self.assertIn("| walk | its own | 2 of 2 | 2 of 2 |", table.read_text())
 
     def test_both_laws_stand_side_by_side(self):
-        code, out, _ = run("experiment", "door", "--law", "both", "--duration", 2.5,
-                                           "--out", self.folder)
+        code, out, _ = run("experiment", "door", "--law", "both", "--duration", 2.5, "--out",
+                           self.folder)
         self.assertEqual(code, 1, out)
         for law in ("gauss", "paper"):
             self.assertEqual(read(self.folder / "door" / law / "events.json")["law"], law)
@@ -151,8 +151,8 @@ class Experiments(TemporaryFolder):
 
     def test_units_on_the_links_know_more_than_encoders_and_one_may_die(self):
         file = self.folder / "inertial.json"
-        code, out, err = run("experiment", "inertial", "walk", "--seeds", 1,
-                                             "--json", file)
+        code, out, err = run("experiment", "inertial", "walk", "--seeds", 1, "--json", file,
+                             timeout=300)
         self.assertEqual(code, 0, err)
         self.assertIn("encoders and units", out)
         runs = {one["units"]: one for one in read(file)["runs"]}
@@ -180,8 +180,8 @@ class Pages(TemporaryFolder):
 
     def test_a_run_refreshes_its_page(self):
         shutil.copy(PAGES / "door.md", self.folder)
-        code, out, _ = run("experiment", "door", "--law", "both", "--out",
-                                           self.folder / "out", "--docs", self.folder)
+        code, out, _ = run("experiment", "door", "--law", "both", "--out", self.folder / "out",
+                           "--docs", self.folder, timeout=300)
         self.assertEqual(code, 0, out)
         rows = [re.findall(r"(?m)^\| ([^|]*) \|", (folder / "door.md").read_text())
                 for folder in (self.folder, PAGES)]
