@@ -68,7 +68,10 @@ def contact_figure(results):
                            [place + offset for place in places], "o", color=colour, markersize=3.5,
                            fillstyle=fill, label=f"{name}, {side} compliance")
         panel.axvline(1.0, color="black", linewidth=0.8, label="permissible")
-        panel.set(xlabel="force over permissible", xlim=(0.0, None), ylim=(len(names) - 0.4, -0.6))
+        panel.set_xscale("symlog", linthresh=1.0)
+        panel.set_xticks([0, 1, 10, 100], ["0", "1", "10", "100"])
+        panel.set(xlabel="force over permissible", xlim=(-0.05, None),
+                  ylim=(len(names) - 0.4, -0.6))
         panel.set_title(f"{speed:g} m/s")
     panels[0].set_yticks(range(len(names)), names)
     pictures.legend_of(figure, panels[0])
