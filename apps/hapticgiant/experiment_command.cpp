@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "apps/hapticgiant/experiments/command_line.h"
-#include "apps/hapticgiant/experiments/docs_page.h"
+#include "apps/hapticgiant/experiments/figure_program.h"
+#include "apps/hapticgiant/experiments/paper_experiment_command.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
@@ -18,6 +22,8 @@
 #include "apps/hapticgiant/version.h"
 #include "hg/config/scenario.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
+#include "hg/core/scratch_folder.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/changes.h"
 #include "hg/studies/contact.h"
@@ -32,6 +38,40 @@
 
 namespace hg::apps {
 namespace {
+
+struct ExperimentArguments {
+  std::string json;  ///< file for all figures; empty = none
+  std::string svg;   ///< file for the drawing; empty = none
+  /// Files that replace those of the scenario; empty = those of the scenario
+  std::string device, simulation;
+};
+
+struct ContactArguments {
+  std::string json;  ///< file for all figures; empty = none
+  std::string docs;  ///< folder of documentation to refresh; empty = none
+  int seeds = 4;
+};
+
+struct InertialArguments {
+  std::vector<std::string> scenarios = {"walk", "door"};
+  std::string simulation;  ///< simulation, see find_simulation(); empty = that of the device
+  int seeds = 4;
+  bool feels = false;  ///< also measures what a hand feels
+  std::string json;    ///< file for all figures; empty = none
+};
+
+struct SeedsArguments {
+  std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
+  std::vector<std::string> hands = {"own"};  ///< hands: "own" or presets
+  int count = 16;
+  std::uint64_t first = 1;
+  std::string law;       ///< law, "gauss" or "paper"; empty = the device's
+  std::string bounds;    ///< bounds, "recoverable" or "paper"; empty = the device's
+  std::string gantry;    ///< guidance of the gantry, "law" or "rule"; empty = the device's
+  std::string braking;   ///< braking, "alone" or "together"; empty = the device's
+  std::string json;      ///< file for all runs; empty = none
+  std::string markdown;  ///< file for the table; empty = none
+};
 
 // of the first repetition of `hapticgiant haptify`, whose numbers are repeated
 constexpr std::uint64_t kSeed = haptify::Options{}.seed;
@@ -59,6 +99,32 @@ void begin(const ExperimentArguments& arguments, const std::string& what) {
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, what));
 }
 
+// Refuses at once what would be measured for nothing: no report can be made, and nothing is kept.
+void check_output(const std::string& json) {
+  check_writable(json, kJson);
+  if (json.empty()) check_report_program();
+}
+
+// Writes the results to `json`, prints the report on them and writes its file `name` to `file`;
+// each may be empty. Returns the exit code of the report, or kNotWritten without one.
+int report(nlohmann::ordered_json results, const std::string& kind, const std::string& json,
+           const std::string& docs = "", const char* name = "", const std::string& file = "") {
+  write_json(json, results);
+  results["kind"] = kind;
+  const ScratchFolder scratch;
+  const std::filesystem::path folder = scratch.path();
+  write_output((folder / "results.json").string(), results.dump() + "\n");
+  try {
+    const int code = write_report(folder, docs);
+    if (!file.empty()) write_output(file, read_file(folder / name));
+    return code;
+  } catch (const SetupError& error) {
+    if (json.empty()) throw;
+    print_error("{}\n{} has the results\n", error.what(), json);
+    return kNotWritten;
+  }
+}
+
 // By encoders alone, and with units on all links that the control uses.
 std::vector<std::pair<std::string, haptify::HandFigures>> felt_with_units(
     const config::Scenario& walk) {
@@ -77,8 +143,6 @@ std::vector<std::pair<std::string, haptify::HandFigures>> felt_with_units(
   return felt;
 }
 
-}  // namespace
-
 int experiment_free_space(const ExperimentArguments& arguments) {
   const haptify::FreeSpaceConfig config;
   begin(arguments,
@@ -94,15 +158,14 @@ int experiment_free_space(const ExperimentArguments& arguments) {
 
 int experiment_stability_map(const ExperimentArguments& arguments) {
   const studies::StabilityConfig config;
+  check_output(arguments.json);
   begin(arguments,
         fmt::format("Stability: a kick of {:g} N for {:g} ms on a free body held by a hand\n\n",
                     config.kick.force, 1e3 * config.kick.duration));
   const studies::StabilityMap map = studies::make_stability_map(
       walk_scenario(arguments.device, arguments.simulation), config, progress_of("kicks"));
-  print_out(studies::to_text(map));
-  write_json(arguments.json, studies::to_json(map));
-  if (!arguments.svg.empty()) write_output(arguments.svg, studies::to_svg(map));
-  return 0;
+  return report(studies::to_json(map), "stability-map", arguments.json, "", "map.svg",
+                arguments.svg);
 }
 
 int experiment_impedance(const ExperimentArguments& arguments) {
@@ -121,16 +184,11 @@ int experiment_impedance(const ExperimentArguments& arguments) {
 int experiment_contact(const ContactArguments& arguments) {
   studies::ContactConfig config;
   config.seeds = arguments.seeds;
-  check_writable(arguments.json, kJson);
+  check_output(arguments.json);
   print_out(fmt::format("HapticGiant {}  Contact: the arm hits somebody in its way\n\n", kVersion));
-  const studies::ContactMeasures report =
+  const studies::ContactMeasures measures =
       studies::measure_contact(walk_scenario(), config, progress_of("cases"));
-  print_out(studies::to_text(report));
-  write_json(arguments.json, studies::to_json(report));
-  if (!arguments.docs.empty()) {
-    refresh_page(arguments.docs, "contact", studies::to_markdown(report), {});
-  }
-  return 0;
+  return report(studies::to_json(measures), "contact", arguments.json, arguments.docs);
 }
 
 int experiment_inertial(const InertialArguments& arguments) {
@@ -143,18 +201,17 @@ int experiment_inertial(const InertialArguments& arguments) {
     scenarios.push_back(scripted_scenario(run));
     names.push_back(name_of(scenario));
   }
-  check_writable(arguments.json, kJson);
+  check_output(arguments.json);
   print_out(fmt::format(
       "HapticGiant {}  Inertial units on links: rms errors, median of seeds 1 to {}\n\n", kVersion,
       arguments.seeds));
   const std::vector<studies::InertialRun> runs =
       studies::measure_inertial(scenarios, names, arguments.seeds, progress_of("runs"));
-  print_out(studies::to_text(runs));
-  write_json(arguments.json, studies::to_json(runs));
+  const int code = report(studies::to_json(runs), "inertial", arguments.json);
   if (arguments.feels) {
     print_out("\n" + haptify::to_text(felt_with_units(walk_scenario("", arguments.simulation))));
   }
-  return 0;
+  return code;
 }
 
 int experiment_seeds(const SeedsArguments& arguments) {
@@ -172,21 +229,15 @@ int experiment_seeds(const SeedsArguments& arguments) {
           {.name = name_of(scenario), .hand = run.world.hand, .scenario = scripted_scenario(run)});
     }
   }
-  check_writable(arguments.json, kJson);
+  check_output(arguments.json);
   check_writable(arguments.markdown, kMarkdown);
   print_out(fmt::format("HapticGiant {}  seeds {} to {}\n\n", kVersion, arguments.first,
                         arguments.first + static_cast<std::uint64_t>(arguments.count) - 1));
   const std::vector<studies::SeededRun> runs =
       studies::play_seeds(trials, arguments.first, arguments.count, progress_of("runs"));
-  print_out(studies::to_text(trials, runs));
-  write_json(arguments.json, studies::to_json(trials, runs));
-  if (!arguments.markdown.empty()) {
-    write_output(arguments.markdown, studies::to_markdown(trials, runs));
-  }
-  return studies::have_all_held(runs) ? 0 : 1;
+  return report(studies::to_json(trials, runs), "seeds", arguments.json, "", "seeds.md",
+                arguments.markdown);
 }
-
-namespace {
 
 void add_seeds(CLI::App& experiment, int& exit_code) {
   const auto arguments = std::make_shared<SeedsArguments>();

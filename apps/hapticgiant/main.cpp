@@ -13,7 +13,7 @@
 #include "apps/hapticgiant/check_command.h"
 #include "apps/hapticgiant/doctor_command.h"
 #include "apps/hapticgiant/experiment_command.h"
-#include "apps/hapticgiant/experiments/command_line.h"
+#include "apps/hapticgiant/experiments/recording_commands.h"
 #include "apps/hapticgiant/explain_command.h"
 #include "apps/hapticgiant/faults_command.h"
 #include "apps/hapticgiant/haptify_command.h"

@@ -152,60 +152,6 @@ Permissible permissible(const ContactCase& what) {
   return {part.transient * part.force, part.force, part.transient * part.pressure};
 }
 
-std::string force_text(double force, double most) {
-  return fmt::format("{:.0f}{}", force, force > most ? "!" : "");
-}
-
-std::string time_text(double time) { return time < 0.0 ? "-" : fmt::format("{:.0f}", 1e3 * time); }
-
-std::string words(std::string name) {
-  std::ranges::replace(name, '_', ' ');
-  return name;
-}
-
-// Cells of one result, for text and page alike.
-std::vector<std::string> cells(const ContactResult& result) {
-  const ContactCase& what = result.what;
-  const ContactRun &off = result.stiff, &on = result.yielding;
-  const Permissible most = permissible(what);
-  return {what.point.name,
-          words(what.part) + (what.is_clamped ? ", clamped" : ""),
-          fmt::format("{:g}", what.speed),
-          force_text(off.force, most.transient),
-          force_text(on.force, most.transient),
-          fmt::format("{:.0f}", most.transient),
-          fmt::format("{:.0f} / {:.0f}", off.pressure, on.pressure),
-          fmt::format("{:.1f} / {:.1f}", off.impulse, on.impulse),
-          fmt::format("{:.0f} / {:.0f}", 1e3 * off.contact, 1e3 * on.contact),
-          force_text(off.settled_force, most.settled),
-          force_text(on.settled_force, most.settled),
-          fmt::format("{:.0f}", most.settled),
-          time_text(on.told),
-          fmt::format("{} / {}", time_text(off.stopped), time_text(on.stopped))};
-}
-
-const std::vector<std::string> kHeads = {
-    "by", "on", "m/s",         "N off",      "N on",    "allowed", "N/cm^2",
-    "Ns", "ms", "later N off", "later N on", "allowed", "told ms", "stop ms"};
-
-std::size_t exceeded(const ContactMeasures& report, ContactRun ContactResult::*run) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(report.results, [&](const ContactResult& result) {
-        const Permissible most = permissible(result.what);
-        const ContactRun& with = result.*run;
-        return with.force > most.transient || with.settled_force > most.settled ||
-               with.pressure > most.pressure;
-      }));
-}
-
-std::string verdict(const ContactMeasures& report) {
-  return fmt::format(
-      "! above the permissible value of ISO/TS 15066. Cases above one of them: {} of {} without "
-      "compliance, {} with it.\n",
-      exceeded(report, &ContactResult::stiff), report.results.size(),
-      exceeded(report, &ContactResult::yielding));
-}
-
 nlohmann::ordered_json json_of(const ContactRun& run) {
   nlohmann::ordered_json json = {{"hit_speed_m_per_s", run.hit_speed},
                                  {"max_force_N", run.force},
@@ -258,36 +204,11 @@ ContactMeasures measure_contact(const config::Scenario& scenario, const ContactC
   return report;
 }
 
-std::string to_text(const ContactMeasures& report) {
-  const std::vector<int> width = {7, 20, 6, 7, 7, 9, 11, 17, 14, 13, 12, 9, 9, 12};
-  std::string text;
-  const auto line = [&](const std::vector<std::string>& row) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      text +=
-          i < 2 ? fmt::format("{:<{}}", row[i], width[i]) : fmt::format("{:>{}}", row[i], width[i]);
-    }
-    text += "\n";
-  };
-  line(kHeads);
-  for (const ContactResult& result : report.results) line(cells(result));
-  return text + fmt::format("\nworst of seeds 1 to {}; off / on: without and with compliance\n{}",
-                            report.config.seeds, verdict(report));
-}
-
-std::string to_markdown(const ContactMeasures& report) {
-  std::string text = "| " + fmt::format("{}", fmt::join(kHeads, " | ")) + " |\n|";
-  for (std::size_t i = 0; i < kHeads.size(); ++i) text += " --- |";
-  text += "\n";
-  for (const ContactResult& result : report.results) {
-    text += "| " + fmt::format("{}", fmt::join(cells(result), " | ")) + " |\n";
-  }
-  return text + fmt::format("\nWorst of seeds 1 to {}. {}", report.config.seeds, verdict(report));
-}
-
 nlohmann::ordered_json to_json(const ContactMeasures& report) {
   nlohmann::ordered_json json;
   json["experiment"] = "contact";
   json["seeds"] = report.config.seeds;
+  json["settled_s"] = report.config.settled;
   json["cases"] = nlohmann::ordered_json::array();
   for (const ContactResult& result : report.results) {
     const Permissible most = permissible(result.what);

@@ -71,8 +71,7 @@ ContactRun hit(const config::Scenario& scenario, const ContactConfig& config,
 ContactMeasures measure_contact(const config::Scenario& scenario, const ContactConfig& config,
                                 const Progress& progress);
 
-std::string to_text(const ContactMeasures& report);
-std::string to_markdown(const ContactMeasures& report);
+/// Results for python/hapticgiant/report/studies.py, with the permissible values.
 nlohmann::ordered_json to_json(const ContactMeasures& report);
 
 }  // namespace hg::studies

@@ -12,22 +12,6 @@ std::size_t count_of(double seconds, double rate_Hz) {
 
 }  // namespace
 
-char symbol(Verdict verdict) noexcept {
-  switch (verdict) {
-    case Verdict::kStable:
-      return '.';
-    case Verdict::kSlow:
-      return 'r';
-    case Verdict::kHunts:
-      return 'h';
-    case Verdict::kSustained:
-      return 'U';
-    case Verdict::kDiverges:
-      return 'X';
-  }
-  return '?';
-}
-
 std::string_view to_string(Verdict verdict) noexcept {
   switch (verdict) {
     case Verdict::kStable:

@@ -15,8 +15,6 @@ enum class Verdict {
   kDiverges,   ///< grows, loses the reference, or ends in a fault
 };
 
-/// Symbol of a verdict: '.', 'r', 'h', 'U', 'X'.
-char symbol(Verdict verdict) noexcept;
 std::string_view to_string(Verdict verdict) noexcept;
 /// Whether the motion comes to rest. Continued motion counts as unstable even if only friction
 /// sustains it.

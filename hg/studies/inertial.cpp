@@ -1,7 +1,5 @@
 #include "hg/studies/inertial.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -174,15 +172,6 @@ class Judge {
   std::array<double, kLags> likeness_{};
 };
 
-// Middle of the runs' values.
-template <typename F>
-double median(const std::vector<const InertialRun*>& runs, F&& value) {
-  std::vector<double> values;
-  for (const InertialRun* run : runs) values.push_back(value(*run));
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
 nlohmann::ordered_json to_json(const EstimateErrors& errors) {
   return {{"joint_speed", errors.joint_speed},
           {"joint_acceleration", errors.joint_acceleration},
@@ -285,53 +274,6 @@ std::vector<InertialRun> measure_inertial(const std::vector<config::Scenario>& s
   return runs;
 }
 
-std::string to_text(const std::vector<InertialRun>& runs) {
-  std::string text = fmt::format("{:10} {:24} {:22} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7} {:>6}\n",
-                                 "scenario", "units", "from", "joints", "joints", "gantry",
-                                 "handle", "handle", "late", "bump");
-  text += fmt::format("{:58} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7} {:>6}\n", "", "mrad/s", "rad/s^2",
-                      "m/s^2", "mm/s", "m/s^2", "ms", "rad/s^2");
-  for (std::size_t first = 0; first < runs.size();) {
-    std::vector<const InertialRun*> same;
-    std::size_t next = first;
-    for (; next < runs.size() && runs[next].scenario == runs[first].scenario &&
-           runs[next].units == runs[first].units;
-         ++next) {
-      same.push_back(&runs[next]);
-    }
-    const bool is_first_set = first == 0 || runs[first - 1].scenario != runs[first].scenario;
-    const auto line = [&](const std::string& units, const char* from, auto errors,
-                          const std::string& more) {
-      const auto of = [&](double EstimateErrors::*part) {
-        return median(same, [&](const InertialRun& run) { return errors(run).*part; });
-      };
-      text += fmt::format(
-          "{:10} {:24} {:22} {:9.2f} {:9.3f} {:9.3f} {:9.2f} {:9.3f} {}\n", runs[first].scenario,
-          units, from, 1e3 * of(&EstimateErrors::joint_speed),
-          of(&EstimateErrors::joint_acceleration), of(&EstimateErrors::gantry_acceleration),
-          1e3 * of(&EstimateErrors::handle_speed), of(&EstimateErrors::handle_acceleration), more);
-    };
-    if (is_first_set) {
-      line(
-          "-", "encoders, reference", [](const InertialRun& r) { return r.reference; }, "");
-      line(
-          "-", "encoders, differences", [](const InertialRun& r) { return r.encoders; }, "");
-    }
-    line(
-        runs[first].units, "encoders and units", [](const InertialRun& r) { return r.inertial; },
-        fmt::format("{:7.1f} {:6.1f}",
-                    1e3 * median(same, [](const InertialRun& r) { return r.lateness; }),
-                    median(same, [](const InertialRun& r) { return r.bump; })));
-    first = next;
-  }
-  for (const InertialRun& run : runs) {
-    if (run.fault == FaultCode::kNone) continue;
-    text += fmt::format("{}, {}, seed {}: fault {} {}\n", run.scenario, run.units, run.seed,
-                        static_cast<int>(run.fault), to_string(run.fault));
-  }
-  return text;
-}
-
 nlohmann::ordered_json to_json(const std::vector<InertialRun>& runs) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const InertialRun& run : runs) {
@@ -345,7 +287,8 @@ nlohmann::ordered_json to_json(const std::vector<InertialRun>& runs) {
                    {"lateness_s", run.lateness},
                    {"least_trust", run.trust},
                    {"largest_change", run.bump},
-                   {"fault", static_cast<int>(run.fault)}});
+                   {"fault", static_cast<int>(run.fault)},
+                   {"fault_text", to_string(run.fault)}});
   }
   return {{"runs", all}};
 }

@@ -67,8 +67,7 @@ std::vector<InertialRun> measure_inertial(const std::vector<config::Scenario>& s
                                           const std::vector<std::string>& names, int seeds,
                                           const Progress& progress);
 
-/// A table with medians over the seeds.
-std::string to_text(const std::vector<InertialRun>& runs);
+/// Results for python/hapticgiant/report/studies.py.
 nlohmann::ordered_json to_json(const std::vector<InertialRun>& runs);
 
 }  // namespace hg::studies

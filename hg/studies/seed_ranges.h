@@ -50,9 +50,7 @@ std::vector<SeededRun> play_seeds(const std::vector<Trial>& trials, std::uint64_
 /// Whether no run ended in a fault or left a limit.
 bool have_all_held(const std::vector<SeededRun>& runs);
 
-/// Table with a row per trial with medians and worst values, and the failures.
-std::string to_text(const std::vector<Trial>& trials, const std::vector<SeededRun>& runs);
-std::string to_markdown(const std::vector<Trial>& trials, const std::vector<SeededRun>& runs);
+/// Results for python/hapticgiant/report/studies.py.
 nlohmann::ordered_json to_json(const std::vector<Trial>& trials,
                                const std::vector<SeededRun>& runs);
 

@@ -59,12 +59,6 @@ double stable_from(const StabilityConfig& config, const StabilityRow& row,
   return stable;
 }
 
-std::string mass_text(const StabilityMap& map, double mass) {
-  if (std::isinf(mass)) return "none";
-  if (mass <= map.config.least_mass) return fmt::format("<= {:g}", mass);
-  return fmt::format("{:.2f}", mass);
-}
-
 KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) {
   Player player(kicked);
   const double rate_Hz = kicked.device.rate_Hz;
@@ -190,45 +184,17 @@ StabilityMap make_stability_map(const config::Scenario& scenario, const Stabilit
   return map;
 }
 
-std::string to_text(const StabilityMap& map) {
-  std::string text;
-  double damping = -1.0;
-  for (const StabilityRow& row : map.rows) {
-    if (row.damping != damping) {
-      damping = row.damping;
-      text +=
-          fmt::format("{}twin with {:g} Ns/m\n{:<10}", text.empty() ? "" : "\n", damping, "hand");
-      for (const double mass : map.config.mass) text += fmt::format("{:>5g}", mass);
-      text += "  kg   stable from, kg\n";
-    }
-    text += fmt::format("{:<10}", row.hand);
-    for (const KickOutcome& outcome : row.outcomes) {
-      text += fmt::format("{:>5}", symbol(outcome.verdict));
-    }
-    text += fmt::format("       {}\n", mass_text(map, row.stable_from));
-  }
-  const auto count = [&](Verdict verdict) {
-    std::ptrdiff_t sum = 0;
-    for (const StabilityRow& row : map.rows) {
-      sum += std::ranges::count(row.outcomes, verdict, &KickOutcome::verdict);
-    }
-    return sum;
-  };
-  text += fmt::format("\n{} of {} cells hunt (h), {} swing or diverge without end (U, X)\n",
-                      count(Verdict::kHunts), map.rows.size() * map.config.mass.size(),
-                      count(Verdict::kSustained) + count(Verdict::kDiverges));
-  return text +
-         fmt::format(
-             "\n.  stable        r  calms down, but not within {0:g} s        X  diverges\n"
-             "U  sustained, above {1:g} mm/s        h  the same, but not without friction: the "
-             "joints stick and slip, not stable either\n",
-             map.config.kick.watched, 1e3 * map.config.calm.calm_speed);
-}
-
 nlohmann::ordered_json to_json(const StabilityMap& map) {
   nlohmann::ordered_json json;
   json["experiment"] = "stability-map";
+  json["device"] = map.device;
   json["mass_kg"] = map.config.mass;
+  json["least_mass_kg"] = map.config.least_mass;
+  json["arm_kg"] = map.config.hand.mass;
+  json["kick_N"] = map.config.kick.force;
+  json["kick_s"] = map.config.kick.duration;
+  json["watched_s"] = map.config.kick.watched;
+  json["calm_m_per_s"] = map.config.calm.calm_speed;
   json["rows"] = nlohmann::ordered_json::array();
   for (const StabilityRow& row : map.rows) {
     nlohmann::ordered_json entry;

@@ -88,9 +88,7 @@ KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config
 StabilityMap make_stability_map(const config::Scenario& scenario, const StabilityConfig& config,
                                 const Progress& progress);
 
-/// The map as in [C] 3: one letter per cell.
-std::string to_text(const StabilityMap& map);
+/// Results for python/hapticgiant/report/studies.py.
 nlohmann::ordered_json to_json(const StabilityMap& map);
-std::string to_svg(const StabilityMap& map);
 
 }  // namespace hg::studies

@@ -1,10 +1,10 @@
 """Figures of runs, as the paper draws them.
 
-    python figures.py OUT FOLDER...      also: python -m hapticgiant.figures OUT FOLDER...
+    python -m hapticgiant.figures OUT FOLDER...
 
-Each folder holds run.json and signals.csv, which `hapticgiant experiment` and `hapticgiant plot`
+Each folder holds run.json and signals.npy, which `hapticgiant experiment` and `hapticgiant plot`
 write. Draws OUT/figure.svg and OUT/figure.png; several runs are drawn over each other. The same
-data gives the same files. Needs numpy and matplotlib, and nothing else of this package.
+data gives the same files. Needs numpy and matplotlib, not the compiled part of this package.
 """
 
 import json
@@ -17,7 +17,7 @@ try:
 except ImportError:
     np = None
 
-NO_MATPLOTLIB = 3
+NO_MATPLOTLIB = 69  # exit code
 WIDTH = 7.2  # inches: both columns of a paper
 LEGEND_ROW = 0.17  # inches, of the height that a row adds to a panel
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c564b")
@@ -35,16 +35,17 @@ SETTINGS = {
 
 
 class Run:
-    """One run: signals by the names of their columns, and what run.json says about them."""
+    """One run: signals by the names of their columns, and what is known about them."""
 
-    def __init__(self, folder):
-        folder = pathlib.Path(folder)
-        self.facts = json.loads((folder / "run.json").read_text())
-        with open(folder / "signals.csv") as stream:
-            names = stream.readline().strip().split(",")
-            values = np.loadtxt(stream, delimiter=",", ndmin=2)
-        self.signals = dict(zip(names, values.T))
-        self.time = self.signals["time_s"]
+    def __init__(self, facts, signals):
+        self.facts, self.signals = facts, signals
+        self.time = signals["time_s"]
+
+    @classmethod
+    def load(cls, folder):
+        from .report import runs
+        run = runs.Run(pathlib.Path(folder))
+        return cls(run.figure_facts(), run.figure_signals())
 
     def __getitem__(self, column):
         return self.signals[column]
@@ -82,7 +83,7 @@ def mark_events(axes, run):
             continue
         height = 1 - height if time - last < 0.035 * span else 0
         last = time
-        axes[0].annotate(label, (time, 1.0), (0, 2 + 9 * height), ha="center", va="bottom",
+        axes[0].annotate(label, (time, 1.0), (0, 2 + 11 * height), ha="center", va="bottom",
                          xycoords=("data", "axes fraction"), textcoords="offset points",
                          fontsize=8, annotation_clip=False)
 
@@ -168,12 +169,14 @@ def draw_torques(panel, runs, entries):
 
 
 def draw_speeds(panel, runs, entry):
-    for run, style in zip(runs, STYLES):
-        panel.plot(run.time, run[entry["speed_column"]], color=COLOURS[0], linestyle=style)
+    for number, run in enumerate(runs):
+        panel.plot(run.time, run[entry["speed_column"]], color=COLOURS[0], linestyle=STYLES[number],
+                   label=entry["name"] if number == 0 else None)
     if entry["speed_max"] is not None:
         for sign in (-1, 1):
             panel.axhline(sign * entry["speed_max"], color=COLOURS[0], linestyle=":", linewidth=0.9)
-    panel.set_ylabel(f"{entry['name']} in {entry['unit']}/s")
+    panel.set_ylabel(f"speed in {entry['unit']}/s")
+    legend(panel, 1)
 
 
 def box(panel, x, y, colour):
@@ -380,9 +383,10 @@ def any_run(figure, runs):
     finish_time_panels(figure, panels, runs)
 
 
-def timing(figure, tables):
+def timing(figure, facts):
     """Shares of cycles by computing time, and the paper's figures."""
-    facts = tables[0]
+    labels = [series["name"] for series in facts["series"]]
+    columns = columns_that_fit(labels, 0.75 * WIDTH, 4)
     figure.set_size_inches(WIDTH, 3.2)
     panel = figure.add_subplot()
     for number, series in enumerate(facts["series"]):
@@ -397,7 +401,7 @@ def timing(figure, tables):
                        va="top", fontsize=6.5)
     panel.set(xscale="log", yscale="log", ylim=(1e-3, 100.0),
               xlabel="computing time of a cycle in us", ylabel="cycles in %")
-    panel.legend(loc="upper center", bbox_to_anchor=(0.52, 1.0))
+    panel.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns)
 
 
 KINDS = {"cartesian": cartesian, "excavator": excavator, "door": door, "path": path,
@@ -405,17 +409,27 @@ KINDS = {"cartesian": cartesian, "excavator": excavator, "door": door, "path": p
 
 
 def captions(figure, runs):
-    """With several runs: which line is whose."""
+    """With several runs: which line is whose, above the labels of the events."""
     if len(runs) < 2:
         return
     from matplotlib.lines import Line2D
+    from matplotlib.transforms import ScaledTranslation
     handles = [Line2D([], [], color="black", linestyle=style, label=run.facts["note"])
                for run, style in zip(runs, STYLES)]
-    figure.legend(handles=handles, loc="lower left", ncol=1, bbox_to_anchor=(0.05, 0.935))
+    top = max(panel.get_position().y1 for panel in figure.axes)
+    above = ScaledTranslation(0.0, 0.36, figure.dpi_scale_trans)
+    figure.legend(handles=handles, loc="lower left", ncol=1, bbox_to_anchor=(0.05, top),
+                  bbox_transform=figure.transFigure + above)
 
 
-def draw(out, folders):
-    """Draws the runs of `folders` over each other into `out`."""
+def draw_runs(figure, runs):
+    """Runs over each other, in the panels of the first one's kind."""
+    KINDS[runs[0].facts["kind"]](figure, runs)
+    captions(figure, runs)
+
+
+def save(out, paint):
+    """Saves what `paint` draws into a figure as `out`/figure.svg and figure.png."""
     import matplotlib
     matplotlib.use("svg")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -426,17 +440,21 @@ def draw(out, folders):
     with matplotlib.rc_context(SETTINGS):
         figure = Figure()
         FigureCanvasAgg(figure)
-        table = json.loads((pathlib.Path(folders[0]) / "run.json").read_text())
-        if table["kind"] == "timing":
-            timing(figure, [table])
-        else:
-            runs = [Run(folder) for folder in folders[:len(STYLES)]]
-            KINDS[table["kind"]](figure, runs)
-            captions(figure, runs)
+        paint(figure)
         figure.savefig(out / "figure.svg", metadata={"Date": None, "Creator": None},
                        bbox_inches="tight", pad_inches=0.04)
         figure.savefig(out / "figure.png", dpi=200, metadata={"Software": None},
                        bbox_inches="tight", pad_inches=0.04)
+
+
+def draw(out, folders):
+    """Draws the runs of `folders` over each other into `out`."""
+    facts = json.loads((pathlib.Path(folders[0]) / "run.json").read_text())
+    if facts["kind"] == "tuning":
+        save(out, lambda figure: tuning(figure, facts))
+    else:
+        runs = [Run.load(folder) for folder in folders[:len(STYLES)]]
+        save(out, lambda figure: draw_runs(figure, runs))
 
 
 def main(arguments):

@@ -5,45 +5,68 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "hg/core/error.h"
+#include "hg/recording/columns.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/session.h"
 #include "python/src/bind.h"
-#include "python/src/columns.h"
 
 namespace hg::python {
 
-nb::object Columns::array_of(const Column& column) const {
-  const std::size_t bytes = column.type.bits / 8;
-  std::size_t width = 1;
-  for (const std::size_t count : column.counts) width = std::max(width, count);
+namespace {
 
-  auto* data = new std::vector<std::byte>(rows_ * width * bytes);
+using recording::Column;
+using recording::Columns;
+
+nb::dlpack::dtype type_of(const Column& column) {
+  using Code = nb::dlpack::dtype_code;
+  const Code code = column.kind == 'b'   ? Code::Bool
+                    : column.kind == 'f' ? Code::Float
+                    : column.kind == 'u' ? Code::UInt
+                                         : Code::Int;
+  return {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(8 * column.bytes), 1};
+}
+
+// Array of shape (rows), or (rows, width) where a field has more than one number; shorter rows are
+// padded with NaN or 0.
+nb::object array_of(const Column& column, std::size_t rows) {
+  const std::size_t width = column.width();
+  auto* data = new std::vector<std::byte>(rows * width * column.bytes);
   const nb::capsule owner(data,
                           [](void* p) noexcept { delete static_cast<std::vector<std::byte>*>(p); });
-  if (column.type == nb::dtype<double>()) {
+  if (column.kind == 'f') {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t i = 0; i < rows_ * width; ++i) {
-      std::memcpy(data->data() + i * bytes, &kNan, bytes);
+    for (std::size_t i = 0; i < rows * width; ++i) {
+      std::memcpy(data->data() + i * column.bytes, &kNan, column.bytes);
     }
   }
   const std::byte* from = column.data.data();
   for (std::size_t row = 0; row < column.counts.size(); ++row) {
-    const std::size_t size = column.counts[row] * bytes;
-    std::copy_n(from, size, data->data() + row * width * bytes);
+    const std::size_t size = column.counts[row] * column.bytes;
+    std::copy_n(from, size, data->data() + row * width * column.bytes);
     from += size;
   }
-  const std::size_t shape[] = {rows_, width};
+  const std::size_t shape[] = {rows, width};
   const std::size_t dimensions = column.is_wide ? 2 : 1;
   return nb::cast(
-      nb::ndarray<nb::numpy>(data->data(), dimensions, shape, owner, nullptr, column.type));
+      nb::ndarray<nb::numpy>(data->data(), dimensions, shape, owner, nullptr, type_of(column)));
 }
 
-namespace {
+nb::dict to_dict(const Columns& columns) {
+  nb::dict arrays;
+  for (const Column& column : columns.all()) {
+    arrays[column.name.c_str()] = array_of(column, columns.rows());
+  }
+  return arrays;
+}
 
 constexpr int kCyclesPerLook = 1000;  // between two looks at Ctrl-C
 
@@ -77,7 +100,7 @@ nb::dict run(const config::Scenario& scenario, std::optional<double> duration_s)
     scenario::Session session(scenario);
     run_until(session, end_s, scenario::longest_stop_s(scenario), columns);
   }
-  return columns.to_dict();
+  return to_dict(columns);
 }
 
 }  // namespace
@@ -86,7 +109,7 @@ void bind_run(nb::module_& module) {
   module.def("run_scenario", &run, nb::arg("scenario"), nb::arg("duration_s") = nb::none(),
              "Runs a loaded scenario as fast as it can and returns every cycle as arrays.");
   module.def(
-      "empty_columns", [] { return Columns().to_dict(); },
+      "empty_columns", [] { return to_dict(Columns()); },
       "What run_scenario() returns, without a cycle.");
 }
 

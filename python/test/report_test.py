@@ -3,11 +3,8 @@
 Usage: report_test.py   (from anywhere; needs matplotlib and jinja2, no compiled part)
 """
 
-import csv
-import json
 import pathlib
 import sys
-import tempfile
 import types
 import unittest
 
@@ -32,7 +29,8 @@ def tick_labels_outside(figure):
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
             low, high = sorted(axis.get_view_interval())
-            drawn = {label for tick in axis._update_ticks() for label in (tick.label1, tick.label2)}
+            drawn = {label for tick in axis._update_ticks() for label in (tick.label1, tick.label2)
+                     if axis.get_visible()}
             for tick in [*axis.majorTicks, *axis.minorTicks]:
                 for label in (tick.label1, tick.label2):
                     if label not in drawn or not low <= tick.get_loc() <= high:
@@ -74,11 +72,12 @@ def overlapping(figure):
     return found
 
 
-def run_folder(folder, names):
-    """A run of a device with these joints, as `hapticgiant plot` leaves it."""
+def run_of(names, kind="any", note=""):
+    """A run of a device with these joints, with events close to each other."""
     time = np.linspace(0.0, 10.0, 200)
     columns = {"time_s": time, "force_N": 5 + np.sin(time), "torque_Nm": 1 + np.cos(time),
-               "running": np.ones_like(time), "hand_x_m": np.sin(time), "hand_y_m": np.cos(time)}
+               "running": np.ones_like(time), "hand_x_m": np.sin(time), "hand_y_m": np.cos(time),
+               "elbow_x_m": 0.5 * np.sin(time), "elbow_y_m": 0.5 * np.cos(time)}
     joints = []
     for number, name in enumerate(names):
         column = f"{name}_rad"
@@ -88,32 +87,47 @@ def run_folder(folder, names):
         joints.append({"name": name, "column": column, "unit": "rad", "lower": -3.0, "upper": 9.0,
                        "torque_column": f"{name}_Nm", "torque_unit": "Nm",
                        "speed_column": f"{name}_rad_per_s", "speed_max": 2.0})
-    with open(folder / "signals.csv", "w") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(columns)
-        writer.writerows(np.column_stack(list(columns.values())))
-    facts = {"kind": "run", "events": [], "locked": [], "manipulator": joints, "virtual": [],
-             "gantry": [], "twin": joints, "has_elbow": False, "poses": [], "checkpoints": [],
-             "box": {"x": [-2, 2], "y": [-2, 2]}}
-    (folder / "run.json").write_text(json.dumps(facts))
-    return figures.Run(folder)
+    events = [{"label": f"t_{letter}", "time_s": time_s, "what": "", "points": None}
+              for letter, time_s in (("a", 2.0), ("b", 2.1), ("c", 6.0))]
+    facts = {"kind": kind, "note": note, "events": events, "locked": [], "manipulator": joints,
+             "virtual": joints[:1], "gantry": [], "twin": joints, "has_elbow": True, "poses": [],
+             "checkpoints": [], "box": {"x": [-2, 2], "y": [-2, 2]}}
+    return figures.Run(facts, columns)
 
 
 class Figures(unittest.TestCase):
-    def check_run(self, names):
-        with tempfile.TemporaryDirectory() as name, matplotlib.rc_context(figures.SETTINGS):
-            run = run_folder(pathlib.Path(name), names)
+    def check_runs(self, runs):
+        with matplotlib.rc_context(figures.SETTINGS):
             figure = Figure(dpi=100)
             FigureCanvasAgg(figure)
-            figures.any_run(figure, [run])
+            figures.draw_runs(figure, runs)
             self.assertEqual(overlapping(figure), [])
 
     def test_short_names(self):
-        self.check_run([f"m{number}" for number in range(1, 8)])
+        self.check_runs([run_of([f"m{number}" for number in range(1, 8)])])
 
     def test_eight_joints_with_long_names(self):
         self.assertEqual(len(JOINTS[0]), 25)
-        self.check_run(JOINTS)
+        self.check_runs([run_of(JOINTS)])
+
+    def test_several_runs_of_every_kind(self):
+        for kind in figures.KINDS:
+            for names in (JOINTS[:4], [f"m{number}" for number in range(1, 8)]):
+                with self.subTest(kind=kind, names=names):
+                    self.check_runs([run_of(names, kind, f"run {number} of a long name")
+                                     for number in range(4 if kind == "any" else 2)])
+
+    def test_computing_times(self):
+        edges = list(np.geomspace(5.0, 500.0, 30))
+        series = [{"name": f"law {law}, {rate} kHz", "from_us": edges,
+                   "share_percent": list(np.geomspace(50.0, 1e-3, 30))}
+                  for rate in (1, 2, 5, 10) for law in ("gauss", "paper")]
+        with matplotlib.rc_context(figures.SETTINGS):
+            figure = Figure(dpi=100)
+            FigureCanvasAgg(figure)
+            figures.timing(figure, {"has_two_laws": True, "series": series,
+                                    "paper_us": {"mean": 529.0, "99.9 %": 616.0, "maximum": 707.0}})
+            self.assertEqual(overlapping(figure), [])
 
     def test_an_overlap_is_found(self):
         figure = Figure(dpi=100)

@@ -18,8 +18,7 @@ NO_PYTHON = {**os.environ, "HAPTICGIANT_PYTHON": "/bin/false-no-such-python"}
 PAGES = pathlib.Path("docs/experiments").resolve()
 
 
-def run_without_figures(*arguments):
-    """Like run(), without the seconds that matplotlib takes."""
+def run_without_python(*arguments):
     done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
                           timeout=300, stdin=subprocess.DEVNULL, env=NO_PYTHON)
     return done.returncode, done.stdout, done.stderr
@@ -31,7 +30,7 @@ def read(file):
 
 class Experiments(TemporaryFolder):
     def events(self, name):
-        code, out, err = run_without_figures("experiment", name, "--out", self.folder)
+        code, out, err = run("experiment", name, "--out", self.folder, timeout=300)
         self.assertEqual((code, err), (0, ""), out)
         told = read(self.folder / name / "events.json")
         self.assertEqual(told["experiment"], name)
@@ -76,8 +75,8 @@ class Experiments(TemporaryFolder):
         one, two = (self.folder / name / "door" for name in ("one", "two"))
         names = {file.name for file in one.iterdir()}
         self.assertLessEqual({"recording.mcap", "events.json", "results.json", "timing.json",
-                              "signals.csv", "run.json", "report.html", "figure.svg",
-                              "figure.png"}, names)
+                              "signals.csv", "signals.npy", "run.json", "report.html",
+                              "figure.svg", "figure.png"}, names)
         self.assertNotIn("latest.mcap", names)
         same, different, missing = filecmp.cmpfiles(one, two, names, shallow=False)
         self.assertEqual((set(different) - {"timing.json"}, missing), (set(), []), same)
@@ -85,17 +84,20 @@ class Experiments(TemporaryFolder):
         self.assertEqual([label for label in labels if label.startswith("t_")],
                          ["t_a", "t_b", "t_c", "t_d", "t_e"])
         page = (one / "report.html").read_text()
-        self.assertIn("data:image/svg+xml;base64,", page)
-        self.assertNotRegex(page, r'(src|href)="(?!data:)')  # self-contained
-        self.assertTrue(read(one / "run.json")["locked"])
+        self.assertEqual(page.count("<svg"), 1)
+        self.assertNotRegex(page, r'(src|href)="(?![#])')  # self-contained
+        told = {entry["what"]: entry["ours_simulated"] for entry in
+                read(one / "results.json")["statements"]}
+        self.assertRegex(told["locked"], r"^0.00 \.\. [\d.]+ s, ")
+        self.assertIn("(limit 1.75)", told["t_d: fully open"])
 
         code, out, _ = run("compare", one / "recording.mcap", two / "recording.mcap")
         self.assertEqual(code, 0, out)
         self.assertIn("the same in every cycle", out)
 
     def test_a_missing_event_is_1(self):
-        code, out, _ = run_without_figures("experiment", "door", "--duration", 2, "--law", "paper",
-                                           "--out", self.folder)
+        code, out, _ = run("experiment", "door", "--duration", 2, "--law", "paper", "--out",
+                           self.folder)
         self.assertEqual(code, 1, out)
         self.assertIn("NOT AS EXPECTED: handle pressed did not happen", out)
         events = read(self.folder / "door" / "events.json")["events"]
@@ -103,18 +105,37 @@ class Experiments(TemporaryFolder):
         self.assertIsNone(events[1]["found_s"])
         self.assertIn("MISSING", (self.folder / "door" / "report.html").read_text())
 
-    def test_without_matplotlib_all_but_figures_is_written(self):
-        code, out, _ = run_without_figures("experiment", "door", "--duration", 2, "--out",
-                                           self.folder)
-        self.assertEqual(code, 1, out)
-        self.assertRegex(out, r"(?m)^ *no figures: .* has no matplotlib")
+    def test_without_python_the_data_is_left(self):
+        code, out, err = run_without_python("experiment", "door", "--duration", 2, "--out",
+                                            self.folder)
+        self.assertEqual(code, 4, out)
+        self.assertRegex(err, r"pip install matplotlib jinja2, then the same command again\n.* has the "
+                              "data\n$")
         names = {file.name for file in (self.folder / "door").iterdir()}
-        self.assertLessEqual({"recording.mcap", "events.json", "report.html"}, names)
-        self.assertNotIn("figure.svg", names)
+        self.assertEqual(names, {"recording.mcap", "run.json", "signals.npy", "timing.json"})
+        self.assertEqual(read(self.folder / "door" / "run.json")["events"][0]["name"], "locked")
+
+    def test_without_python_a_study_keeps_its_results_or_is_refused(self):
+        walk = ("experiment", "seeds", "walk", "--count", 1)
+        code, out, err = run_without_python(*walk)
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("pip install matplotlib jinja2", err)
+        code, _, err = run_without_python(*walk, "--json", self.folder / "seeds.json")
+        self.assertEqual(code, 4)
+        self.assertIn("has the results", err)
+        self.assertEqual(len(read(self.folder / "seeds.json")["runs"]), 1)
+
+    def test_seeds_have_a_table(self):
+        table = self.folder / "seeds.md"
+        code, out, err = run("experiment", "seeds", "walk", "--count", 2, "--markdown", table,
+                             "--json", self.folder / "seeds.json")
+        self.assertEqual((code, err), (0, ""), out)
+        self.assertRegex(out, r"walk +its own +2 of 2 +2 of 2 ")
+        self.assertIn("| walk | its own | 2 of 2 | 2 of 2 |", table.read_text())
 
     def test_both_laws_stand_side_by_side(self):
-        code, out, _ = run_without_figures("experiment", "door", "--law", "both", "--duration", 2.5,
-                                           "--out", self.folder)
+        code, out, _ = run("experiment", "door", "--law", "both", "--duration", 2.5, "--out",
+                           self.folder)
         self.assertEqual(code, 1, out)
         for law in ("gauss", "paper"):
             self.assertEqual(read(self.folder / "door" / law / "events.json")["law"], law)
@@ -130,8 +151,8 @@ class Experiments(TemporaryFolder):
 
     def test_units_on_the_links_know_more_than_encoders_and_one_may_die(self):
         file = self.folder / "inertial.json"
-        code, out, err = run_without_figures("experiment", "inertial", "walk", "--seeds", 1,
-                                             "--json", file)
+        code, out, err = run("experiment", "inertial", "walk", "--seeds", 1, "--json", file,
+                             timeout=300)
         self.assertEqual(code, 0, err)
         self.assertIn("encoders and units", out)
         runs = {one["units"]: one for one in read(file)["runs"]}
@@ -159,8 +180,8 @@ class Pages(TemporaryFolder):
 
     def test_a_run_refreshes_its_page(self):
         shutil.copy(PAGES / "door.md", self.folder)
-        code, out, _ = run_without_figures("experiment", "door", "--law", "both", "--out",
-                                           self.folder / "out", "--docs", self.folder)
+        code, out, _ = run("experiment", "door", "--law", "both", "--out", self.folder / "out",
+                           "--docs", self.folder, timeout=300)
         self.assertEqual(code, 0, out)
         rows = [re.findall(r"(?m)^\| ([^|]*) \|", (folder / "door.md").read_text())
                 for folder in (self.folder, PAGES)]
@@ -260,7 +281,7 @@ class Recordings(TemporaryFolder):
             files.append(self.record(name, devices / name / "scenario.yaml", "--duration", 1.5))
             code, out, err = run("plot", files[-1], "--out", self.folder / f"{name}_figures")
             self.assertEqual((code, err), (0, ""), out)
-            for file in ("figure.svg", "figure.png", "signals.csv", "run.json"):
+            for file in ("figure.svg", "figure.png", "signals.csv", "signals.npy", "run.json"):
                 self.assertTrue((self.folder / f"{name}_figures" / file).exists(), file)
         code, out, err = run("plot", *files, "--out", self.folder / "both")
         self.assertEqual((code, err), (0, ""), out)

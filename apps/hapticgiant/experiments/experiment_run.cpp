@@ -1,16 +1,20 @@
 #include "apps/hapticgiant/experiments/experiment_run.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <filesystem>
-#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <thread>
+#include <vector>
 
-#include "apps/hapticgiant/experiments/condition_text.h"
+#include "apps/hapticgiant/experiments/run_data.h"
 #include "apps/hapticgiant/output.h"
+#include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/run_recording.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
@@ -23,32 +27,10 @@ namespace hg::apps {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds kIdle(2);
-
-// keys of a summary that are the same whenever the same run is made again
-constexpr std::array kReproducible = {"scenario",
-                                      "version",
-                                      "law",
-                                      "bounds",
-                                      "gantry",
-                                      "braking",
-                                      "rate_Hz",
-                                      "duration_s",
-                                      "cycles",
-                                      "events",
-                                      "missing_events",
-                                      "limits",
-                                      "limits_held",
-                                      "reality",
-                                      "sync_error",
-                                      "force",
-                                      "solver",
-                                      "acceleration_change_per_cycle",
-                                      "state_hash",
-                                      "allocations_in_loop",
-                                      "fault"};
 
 // The recorder of an experiment, whose file says nothing of the wall clock.
 std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scenario,
@@ -63,112 +45,64 @@ std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scena
   return std::make_unique<recording::Recorder>(info);
 }
 
-// renames the recording to the usual name in its own folder
-void settle(recording::Recorder& recorder, const fs::path& folder, ExperimentResult& result) {
+// Renames the recording to the usual name in its own folder; returns what went wrong.
+std::vector<std::string> settle(recording::Recorder& recorder, const fs::path& folder) {
   const recording::RecordingSummary recorded = recorder.close();
   std::error_code error, ignored;
   const fs::path link = folder / "latest.mcap";
   if (fs::is_symlink(link, ignored)) fs::remove(link, ignored);
   fs::rename(recorded.file, folder / "recording.mcap", error);
+  std::vector<std::string> failures;
   for (const std::string& why : {recorded.error, error ? error.message() : std::string()}) {
-    if (!why.empty()) result.failures.push_back("recording.mcap: " + why);
+    if (!why.empty()) failures.push_back("recording.mcap: " + why);
   }
-}
-
-std::vector<EventResult> expected_events(const PaperExperiment& experiment,
-                                         const config::Scenario& scenario) {
-  std::vector<EventResult> events;
-  const double start_s = scenario.script.script.grasp_s;
-  for (const EventRule& rule : scenario.events) {
-    EventResult& event = events.emplace_back(EventResult{.rule = &rule});
-    for (const EventWindow& window : experiment.windows) {
-      if (window.event != rule.name) continue;
-      event.window = &window;
-      event.window_from_s = start_s + window.from_s;
-      event.window_to_s = start_s + window.to_s;
-    }
-  }
-  return events;
-}
-
-void add_failures(const analysis::Summary& summary, ExperimentResult& result) {
-  for (const EventResult& event : result.events) {
-    if (!event.found_s) {
-      result.failures.push_back(
-          fmt::format("{} did not happen: {}", event.rule->name, event.rule->what));
-    } else if (!event.is_as_expected()) {
-      result.failures.push_back(fmt::format(
-          "{} happened at {:.3f} s, expected {:.1f} .. {:.1f} s: {}", event.rule->name,
-          *event.found_s, event.window_from_s, event.window_to_s, event.window->because));
-    }
-  }
-  if (!summary.limits_held()) result.failures.push_back("a limit was exceeded, see the table");
-  result.has_fault = summary.fault().code != FaultCode::kNone;
-  if (result.has_fault) {
-    result.failures.push_back(fmt::format("fault {}: {}", static_cast<int>(summary.fault().code),
-                                          to_string(summary.fault().code)));
-  }
-}
-
-// parts what a second run repeats from what it does not
-void split(const std::string& summary, ExperimentResult& result) {
-  const Json all = Json::parse(summary);
-  for (const auto& [key, value] : all.items()) {
-    const bool is_same = std::ranges::find(kReproducible, key) != kReproducible.end();
-    (is_same ? result.summary : result.timing)[key] = value;
-  }
-  result.timing.erase("recording");
+  return failures;
 }
 
 /// All observers of the samples of one experiment.
 struct Watcher {
-  ExperimentResult& result;
+  const config::Scenario& scenario;
+  Json events;
   analysis::EventDetector detector;
   analysis::Summary summary;
+  recording::Columns columns;
   std::unique_ptr<recording::Recorder> recorder;
 
   void look_at(Sample& sample) {
     summary.add(sample);
+    columns.append(sample);
     if (const auto event = detector.observe(sample.record)) {
       summary.add(*event);
-      for (EventResult& expected : result.events) {
-        if (expected.rule->name == event->name) expected.found_s = event->time_s;
+      const auto found = std::ranges::find(
+          events, event->name, [](const Json& each) { return each["name"].get<std::string>(); });
+      if (found != events.end()) {
+        (*found)["time_s"] = event->time_s;
+        (*found)["points"] = twin_points(scenario, sample.record);
       }
       if (recorder) recorder->event(event->time_s, event->name, event->what);
     }
-    result.table->add(sample);
     sample.cycle_time_us = 0.0;  // differs from run to run
     if (recorder) recorder->push_waiting(sample);
   }
 };
 
-}  // namespace
-
-std::vector<Mark> ExperimentResult::marks() const {
-  std::vector<Mark> marks;
-  for (const EventResult& event : events) {
-    if (event.found_s)
-      marks.push_back({paper_label(*event.rule), *event.found_s, event.rule->what});
+Json expected_events(const config::Scenario& scenario) {
+  Json events = Json::array();
+  for (const EventRule& rule : scenario.events) {
+    events.push_back(describe(rule, scenario));
+    events.back()["time_s"] = nullptr;
   }
-  return marks;
+  return events;
 }
 
-double ExperimentResult::time_of(std::string_view name) const {
-  for (const EventResult& event : events) {
-    if (event.rule->name == name && event.found_s) return *event.found_s;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
+void show_progress(std::string_view name, double done_s, double total_s) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  draw_error(done_s >= total_s
+                 ? ""
+                 : fmt::format("{}: {:.0f} of {:.0f} s simulated", name, done_s, total_s));
 }
 
-ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArguments& arguments,
-                                const SimulatedTime& progress) {
-  ExperimentResult result;
-  result.experiment = &experiment;
-  result.scenario = std::make_unique<config::Scenario>(make_scenario(arguments));
-  const config::Scenario& scenario = *result.scenario;
-  result.table = std::make_unique<RunTable>(scenario);
-  result.events = expected_events(experiment, scenario);
-
+runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments) {
   runtime::Options options;
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = true;
@@ -177,37 +111,58 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
   options.changes = scenario.changes;
   options.load = faults::loads_of(scenario.faults);
   runtime::check(options);
+  return options;
+}
+
+}  // namespace
+
+void play_experiment(const PaperExperiment& experiment, const RunArguments& arguments,
+                     const std::string& command) {
+  const fs::path folder = arguments.recordings;
+  const config::Scenario scenario = make_scenario(arguments);
+  const runtime::Options options = runtime_options(scenario, arguments);
   controller::Cycle cycle = scenario::make_cycle(scenario);
   const auto device = scenario::make_simulated_device(scenario);
   runtime::Runtime runtime(options, cycle, *device);
-  Watcher watcher{result,
+  Watcher watcher{scenario,
+                  expected_events(scenario),
                   {scenario.events, scenario.limits},
                   scenario::make_summary(scenario),
+                  recording::Columns(signal_names()),
                   make_recorder(scenario, arguments)};
 
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   const auto sample = std::make_unique<Sample>();
   runtime.start();
   for (bool is_finished = false; !is_finished;) {
     is_finished = runtime.is_finished();
     while (runtime.pop(*sample)) watcher.look_at(*sample);
-    progress(sample->record.time_s, options.duration_s);
+    show_progress(experiment.name, sample->record.time_s, options.duration_s);
     if (!is_finished) std::this_thread::sleep_for(kIdle);
   }
   const runtime::Report report = runtime.join();
-  if (watcher.recorder) settle(*watcher.recorder, arguments.recordings, result);
+  show_progress(experiment.name, 1.0, 1.0);
+
+  Json run = describe(scenario);
+  run["kind"] = experiment.name;
+  run["title"] = experiment.title;
+  run["source"] = experiment.source;
+  run["command"] = command;
+  run["version"] = kVersion;
+  run["seed"] = scenario.device.simulation.seed;
+  run["events"] = watcher.events;
+  run["failures"] =
+      watcher.recorder ? settle(*watcher.recorder, folder) : std::vector<std::string>();
+  write_run(folder, run, watcher.columns);
 
   analysis::RunFacts facts = scenario::facts_of_scenario(scenario);
   facts.version = kVersion;
   facts.rate_Hz = options.rate_Hz;
   facts.allocations_in_loop = report.allocations;
   facts.timing.is_fast = true;
-  facts.wall_time_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  split(watcher.summary.to_json(facts, watcher.detector.missing()), result);
-  result.summary["seed"] = scenario.device.simulation.seed;
-  add_failures(watcher.summary, result);
-  return result;
+  facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  write_output((folder / "timing.json").string(),
+               watcher.summary.to_json(facts, watcher.detector.missing()) + "\n");
 }
 
 }  // namespace hg::apps

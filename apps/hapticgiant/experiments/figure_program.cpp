@@ -6,17 +6,26 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 
+#include "apps/hapticgiant/output.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 
 namespace hg::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNoMatplotlib = 3;  // exit code of figures.py and of report
+// exit codes of figures.py and of report: a library is missing; its verdict is this plus 1 or 3
+constexpr int kMissing = 69, kVerdict = 100, kLargestVerdict = 3;
+
+struct Ended {
+  int code = 127;  ///< exit code; 127: it could not be started, -1: a signal
+  std::string said;
+};
 
 std::string interpreter(const fs::path& root) {
   if (const char* chosen = std::getenv("HAPTICGIANT_PYTHON")) {
@@ -28,24 +37,41 @@ std::string interpreter(const fs::path& root) {
   return !root.empty() && fs::exists(own, error) ? own.string() : "python3";
 }
 
-// Exit code; 127: it could not be started. It starts in the root folder: Python would take modules
-// from the working directory.
-int run_program(std::vector<std::string> words) {
+// Everything that comes from a descriptor until it closes.
+std::string read_all(int descriptor) {
+  std::string text;
+  char part[4096];
+  for (;;) {
+    const ssize_t count = read(descriptor, part, sizeof part);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(part, static_cast<std::size_t>(count));
+  }
+}
+
+// It starts in the root folder: Python would take modules from the working directory.
+Ended run_program(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return {};
+  const OpenFile output(ends[0]);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
   posix_spawn_file_actions_addchdir_np(&actions, "/");
   pid_t child = 0;
   const int error =
       posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) return 127;
+  close(ends[1]);
+  if (error != 0) return {};
+  Ended ended = {.code = -1, .said = read_all(output.descriptor())};
   int status = 0;
-  if (waitpid(child, &status, 0) != child || !WIFEXITED(status)) return -1;
-  return WEXITSTATUS(status);
+  if (waitpid(child, &status, 0) == child && WIFEXITED(status)) ended.code = WEXITSTATUS(status);
+  return ended;
 }
 
 // Words that start `name`, a file or folder of python/hapticgiant, or its module where the package
@@ -63,7 +89,14 @@ std::vector<std::string> program_of(const std::string& name, const std::string& 
   return words;
 }
 
-bool is_incomplete(int code) { return code == 127 || code == kNoMatplotlib; }
+bool is_incomplete(int code) { return code == 127 || code == kMissing; }
+
+[[noreturn]] void refuse(const std::string& interpreter) {
+  throw SetupError(fmt::format(
+      "{} cannot write the report: it needs scipy, matplotlib and jinja2; tools/setup.sh build, or "
+      "pip install scipy matplotlib jinja2, then the same command again",
+      interpreter));
+}
 
 }  // namespace
 
@@ -71,7 +104,7 @@ std::string draw_figures(const fs::path& out, const std::vector<fs::path>& folde
   std::vector<std::string> words = program_of("figures.py", "hapticgiant.figures");
   words.push_back(fs::absolute(out).string());
   for (const fs::path& folder : folders) words.push_back(fs::absolute(folder).string());
-  const int code = run_program(words);
+  const int code = run_program(words).code;
   if (code == 0) return {};
   if (is_incomplete(code)) {
     return fmt::format(
@@ -85,21 +118,22 @@ std::string draw_figures(const fs::path& out, const std::vector<fs::path>& folde
 void check_report_program() {
   std::vector<std::string> words = program_of("report", "hapticgiant.report");
   words.emplace_back("--check");
-  if (run_program(words) == 0) return;
-  throw SetupError(fmt::format(
-      "{} cannot write the report: it needs scipy, matplotlib and jinja2; tools/setup.sh build, or "
-      "pip install scipy matplotlib jinja2, then the same command again",
-      words[0]));
+  if (run_program(words).code != 0) refuse(words[0]);
 }
 
-void write_report(const fs::path& folder, const std::string& docs) {
+int write_report(const fs::path& folder, const std::string& docs,
+                 const std::vector<fs::path>& runs) {
   std::vector<std::string> words = program_of("report", "hapticgiant.report");
   words.push_back(fs::absolute(folder).string());
+  for (const fs::path& run : runs) words.push_back(fs::absolute(run).string());
   if (!docs.empty()) words.insert(words.end(), {"--docs", fs::absolute(docs).string()});
-  const int code = run_program(words);
-  if (code == 0) return;
+  const auto [code, said] = run_program(words);
+  if (is_incomplete(code)) refuse(words[0]);
+  print_out(said);
+  if (code == 0) return 0;
+  if (code > kVerdict && code <= kVerdict + kLargestVerdict) return code - kVerdict;
   throw SetupError(fmt::format("{}: no report: {} ended with {}; the results are kept",
-                               (folder / "results.json").string(), words[2], code));
+                               folder.string(), words[2], code));
 }
 
 }  // namespace hg::apps

@@ -1,23 +1,33 @@
 #include "apps/hapticgiant/experiments/paper_experiment_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <string>
+#include <string_view>
 
-#include "apps/hapticgiant/experiments/docs_page.h"
-#include "apps/hapticgiant/experiments/experiment_report.h"
+#include "apps/hapticgiant/experiments/experiment_run.h"
 #include "apps/hapticgiant/experiments/figure_program.h"
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/core/error.h"
 
 namespace hg::apps {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::array<PaperExperiment, 4> kExperiments = {
+    {{"cartesian", "free_space", "Cartesian admittance", "Fig. 6, section VII-A"},
+     {"excavator", "excavator", "Excavator", "Fig. 8, section VII-B"},
+     {"door", "door", "Door", "Fig. 9, section VII-C"},
+     {"path", "path", "Path following", "Section VII-D (the path task)"}}};
 
 // command that repeats the run
 std::string command_of(const PaperExperimentArguments& arguments, std::string_view name) {
@@ -29,115 +39,91 @@ std::string command_of(const PaperExperimentArguments& arguments, std::string_vi
   return command;
 }
 
-// progress shown on a terminal
-SimulatedTime shown_progress(std::string_view name) {
-  if (isatty(STDERR_FILENO) == 0) return [](double, double) {};
-  return [name](double done_s, double total_s) {
-    draw_error(
-        fmt::format("{}: {:.0f} of {:.0f} s simulated", name, std::min(done_s, total_s), total_s));
-  };
-}
-
-void clear_progress() {
-  if (isatty(STDERR_FILENO) != 0) draw_error("");
-}
-
-void print_result(const ReportedRun& run) {
-  for (const EventResult& event : run.result.events) {
-    if (!event.found_s) continue;
-    print_out(
-        fmt::format("{:9.3f} s  {:<18} {}\n", *event.found_s, event.rule->name, event.rule->what));
+int run_one(const PaperExperiment& experiment, const PaperExperimentArguments& arguments) {
+  print_out(fmt::format("\n{} ({})\n", experiment.title, experiment.source));
+  const fs::path folder = fs::path(arguments.out) / experiment.name;
+  std::vector<fs::path> runs;
+  for (const std::string& law : arguments.law == "both" ? std::vector<std::string>{"gauss", "paper"}
+                                                        : std::vector{arguments.law}) {
+    RunArguments run;
+    run.world.scenario = experiment.scenario;
+    run.world.seed = arguments.seed;
+    run.world.law = law;
+    run.world.bounds = arguments.bounds;
+    run.duration_s = arguments.duration_s;
+    run.is_fast = true;
+    runs.push_back(arguments.law == "both" ? folder / law : folder);
+    run.recordings = runs.back().string();
+    make_folder(run.recordings);
+    play_experiment(experiment, run, command_of(arguments, experiment.name));
   }
-  for (const std::string& failure : run.result.failures) {
-    print_out(fmt::format("  NOT AS EXPECTED: {}\n", failure));
-  }
-  if (run.result.failures.empty()) {
-    print_out(fmt::format("  as expected: {} events, limits held\n", run.result.events.size()));
-  }
+  return report_on_folder(folder.string(), arguments.docs, runs);
 }
 
-// runs it, and writes what belongs to this one run into `folder`
-ReportedRun make_run(const PaperExperiment& experiment, const PaperExperimentArguments& arguments,
-                     const std::string& law, const fs::path& folder) {
-  RunArguments run;
-  run.world.scenario = experiment.scenario;
-  run.world.seed = arguments.seed;
-  run.world.law = law;
-  run.world.bounds = arguments.bounds;
-  run.duration_s = arguments.duration_s;
-  run.is_fast = true;
-  run.recordings = folder.string();
-  make_folder(folder);
-  ReportedRun made;
-  made.result = run_experiment(experiment, run, shown_progress(experiment.name));
-  clear_progress();
-  made.law = made.result.summary["law"].get<std::string>();
-  made.statements = measure(made.result);
-
-  const auto write = [&](const char* name, const std::string& text) {
-    write_output((folder / name).string(), text);
-  };
-  const ExperimentResult& result = made.result;
-  write("events.json", events_json(made).dump(2) + "\n");
-  write("results.json", results_json(made).dump(2) + "\n");
-  write("timing.json", result.timing.dump(2) + "\n");
-  write("signals.csv", result.table->to_csv(kFigurePeriod_s));
-  write("run.json", figure_data(*result.scenario, *result.table, result.marks(),
-                                std::string(experiment.name), run_note(result))
-                            .dump(2) +
-                        "\n");
-  print_out(fmt::format("law {}\n", made.law));
-  print_result(made);
-  return made;
-}
-
-int exit_code(const std::vector<ReportedRun>& runs) {
+// The worst code of all.
+int run_paper_experiments(const PaperExperimentArguments& arguments,
+                          const std::vector<PaperExperiment>& experiments) {
+  print_out(
+      fmt::format("HapticGiant {}  the paper's experiments, on a simulated machine\n", kVersion));
   int code = 0;
-  for (const ReportedRun& run : runs) {
-    if (run.result.has_fault) return 3;
-    if (!run.result.failures.empty()) code = 1;
+  for (const PaperExperiment& experiment : experiments) {
+    code = std::max(code, run_one(experiment, arguments));
   }
   return code;
 }
 
-int run_one(const PaperExperiment& experiment, const PaperExperimentArguments& arguments) {
-  print_out(fmt::format("\n{} ({})\n", experiment.title, experiment.source));
-  const fs::path folder = fs::path(arguments.out) / experiment.name;
-  std::vector<ReportedRun> runs;
-  std::vector<fs::path> folders;
-  if (arguments.law == "both") {
-    for (const char* law : {"gauss", "paper"}) folders.push_back(folder / law);
-    runs.push_back(make_run(experiment, arguments, "gauss", folders[0]));
-    runs.push_back(make_run(experiment, arguments, "paper", folders[1]));
-  } else {
-    folders.push_back(folder);
-    runs.push_back(make_run(experiment, arguments, arguments.law, folder));
-  }
-  if (const std::string why = draw_figures(folder, folders); !why.empty()) {
-    print_out("  " + why + "\n");
-  }
-  const std::string command = command_of(arguments, experiment.name);
-  const fs::path report = folder / "report.html";
-  write_output(report.string(), report_html(runs, folder, command));
-  if (!arguments.docs.empty()) {
-    refresh_page(arguments.docs, std::string(experiment.name), report_markdown(runs, command),
-                 folder / "figure.svg");
-  }
-  print_out(fmt::format("report      {}\n", report.string()));
-  return exit_code(runs);
+void add_options(CLI::App& command, PaperExperimentArguments& arguments) {
+  command.add_option("--law", arguments.law, "gauss, paper or both; default: the device's")
+      ->check(CLI::IsMember({"gauss", "paper", "both"}));
+  command.add_option("--bounds", arguments.bounds, "recoverable or paper; default: the device's")
+      ->check(CLI::IsMember({"recoverable", "paper"}));
+  command
+      .add_option("--seed", arguments.seed, "of noise and tremor: the same seed, the same files")
+      ->check(whole_number(0.0));
+  command.add_option("--out", arguments.out, "folder; one per experiment is made in it")
+      ->capture_default_str();
+  command
+      .add_option("--duration", arguments.duration_s,
+                  "seconds, to cut it short; default: until the script has played")
+      ->check(number_that("more than 0", [](double value) { return value > 0.0; }));
+  command.add_option("--docs", arguments.docs,
+                     "refresh the figures in the pages of this folder (make experiments)");
 }
 
 }  // namespace
 
-int run_paper_experiments(const PaperExperimentArguments& arguments,
-                          const std::vector<std::string>& names) {
-  print_out(
-      fmt::format("HapticGiant {}  the paper's experiments, on a simulated machine\n", kVersion));
-  int code = 0;
-  for (const std::string& name : names) {
-    code = std::max(code, run_one(paper_experiment(name), arguments));
+int report_on_folder(const std::string& folder, const std::string& docs,
+                     const std::vector<fs::path>& runs) {
+  try {
+    const int code = write_report(folder, docs, runs);
+    print_out(fmt::format("report      {}\n", (fs::path(folder) / "report.html").string()));
+    return code;
+  } catch (const SetupError& error) {
+    print_error("{}\n{} has the data\n", error.what(), folder);
+    return kNotWritten;
   }
-  return code;
+}
+
+void add_paper_experiments(CLI::App& experiment, int& exit_code) {
+  const auto arguments = std::make_shared<PaperExperimentArguments>();
+  const auto add = [&](std::string_view name, const std::string& text,
+                       const std::vector<PaperExperiment>& played) {
+    CLI::App* command = experiment.add_subcommand(std::string(name), text);
+    add_options(*command, *arguments);
+    command->callback(
+        [arguments, &exit_code, played] { exit_code = run_paper_experiments(*arguments, played); });
+  };
+  for (const PaperExperiment& each : kExperiments) {
+    add(each.name, std::string(each.title) + " of the paper, " + std::string(each.source), {each});
+  }
+  add("all", "these four, one after the other", {kExperiments.begin(), kExperiments.end()});
+  CLI::App* timing = experiment.add_subcommand(
+      "timing", "computing time of a cycle beside the paper's, section VII-A; minutes");
+  add_options(*timing, *arguments);
+  timing->add_option("--rates", arguments->rates_Hz, "control rates, Hz")
+      ->delimiter(',')
+      ->capture_default_str();
+  timing->callback([arguments, &exit_code] { exit_code = timing_experiment(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -1,10 +1,18 @@
 /// `hapticgiant experiment cartesian|excavator|door|path|all|timing`: the paper's experiments.
+///
+/// Exit code: 0 all as expected, 1 an event is missing or out of its window or a limit was
+/// exceeded, 3 a fault, 4 (kNotWritten) no report.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace hg::apps {
 
@@ -19,12 +27,15 @@ struct PaperExperimentArguments {
   std::vector<double> rates_Hz = {1000.0, 2000.0, 5000.0, 10000.0};
 };
 
-/// Exit code: 0 all as expected, 1 an event is missing or out of its window or a limit was
-/// exceeded, 3 a fault. Throws SetupError for bad input.
-int run_paper_experiments(const PaperExperimentArguments& arguments,
-                          const std::vector<std::string>& names);
-
-/// Measures the computation time of a cycle; exit code 0.
+/// Measures the computation time of a cycle; exit code 0, or 4 (kNotWritten) without report.
 int timing_experiment(const PaperExperimentArguments& arguments);
+
+/// The report on what is in `folder`, as write_report(), and a line that says where it is. Without
+/// a report it prints why, and that the data is kept: kNotWritten.
+int report_on_folder(const std::string& folder, const std::string& docs,
+                     const std::vector<std::filesystem::path>& runs = {});
+
+/// Adds cartesian, excavator, door, path, all and timing to the command `experiment`.
+void add_paper_experiments(CLI::App& experiment, int& exit_code);
 
 }  // namespace hg::apps

@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <concepts>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "apps/hapticgiant/run_setup.h"
 #include "hg/recording/cdr_writer.h"
+#include "hg/recording/columns.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
 
@@ -20,87 +19,42 @@ namespace hg::apps {
 namespace {
 
 using recording::CdrWriter;
-using recording::IsScalar;
+using recording::Column;
+using recording::Columns;
 
-/// Names and values of all fields of a message, in their order (hg/core/fields.h).
-class Fields {
- public:
-  struct Field {
-    std::string name, value;
-  };
-
-  template <HasFields Message>
-  static std::vector<Field> of(const std::string& name, const Message& message) {
-    Fields fields;
-    fields.put(name, message);
-    return std::move(fields.list_);
-  }
-
-  template <typename T>
-  void operator()(const char* name, const T& value, const char* = "") {
-    put(path_ + name, value);
-  }
-
-  template <typename T, std::size_t kCapacity>
-  void sequence(const char* name, const std::array<T, kCapacity>& items, int count, const char*) {
-    for (int i = 0; i < count; ++i) {
-      put(fmt::format("{}{}[{}]", path_, name, i), items[static_cast<std::size_t>(i)]);
-    }
-  }
-
- private:
-  template <IsScalar T>
-  void put(const std::string& name, T value) {
-    if constexpr (std::is_enum_v<T>) {
-      list_.push_back({name, fmt::format("{}", static_cast<int>(value))});
-    } else if constexpr (std::floating_point<T>) {
-      list_.push_back({name, fmt::format("{:.17g}", value)});
-    } else {
-      list_.push_back({name, fmt::format("{}", value)});
-    }
-  }
-
-  template <HasFields T>
-  void put(const std::string& name, const T& message) {
-    const std::string outer = std::exchange(path_, name + ".");
-    fields(*this, message);
-    path_ = outer;
-  }
-
-  template <typename T>
-  void put(const std::string& name, const std::vector<T>& items) {
-    for (std::size_t i = 0; i < items.size(); ++i) put(fmt::format("{}[{}]", name, i), items[i]);
-  }
-
-  template <int kRows, int kCols, int kOptions, int kMaxRows, int kMaxCols>
-  void put(const std::string& name,
-           const Eigen::Matrix<double, kRows, kCols, kOptions, kMaxRows, kMaxCols>& matrix) {
-    list_.push_back({name + " (count)", fmt::format("{}", matrix.size())});
-    int i = 0;
-    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-      for (Eigen::Index col = 0; col < matrix.cols(); ++col) {
-        put(fmt::format("{}[{}]", name, i++), matrix(row, col));
+// Numbers of the first row of a column as text.
+std::vector<std::string> numbers_of(const Column& column) {
+  const auto numbers = [&](auto zero) {
+    using T = decltype(zero);
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i * sizeof(T) < column.data.size(); ++i) {
+      T value;
+      std::memcpy(&value, column.data.data() + i * sizeof(T), sizeof(T));
+      if constexpr (std::is_floating_point_v<T>) {
+        texts.push_back(fmt::format("{:.17g}", value));
+      } else {
+        texts.push_back(fmt::format("{}", +value));
       }
     }
+    return texts;
+  };
+  if (column.kind == 'f') return numbers(0.0);
+  const bool is_signed = column.kind == 'i';
+  switch (column.bytes) {
+    case 1:
+      return is_signed ? numbers(std::int8_t{}) : numbers(std::uint8_t{});
+    case 2:
+      return is_signed ? numbers(std::int16_t{}) : numbers(std::uint16_t{});
+    case 4:
+      return is_signed ? numbers(std::int32_t{}) : numbers(std::uint32_t{});
+    default:
+      return is_signed ? numbers(std::int64_t{}) : numbers(std::uint64_t{});
   }
+}
 
-  void put(const std::string& name, const std::string& text) { list_.push_back({name, text}); }
-
-  std::string path_;
-  std::vector<Field> list_;
-};
-
-template <HasFields Message>
-std::string difference(const std::string& name, const Message& recorded, const Message& now) {
-  const auto before = Fields::of(name, recorded), after = Fields::of(name, now);
-  for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
-    if (before[i].name == after[i].name && before[i].value == after[i].value) continue;
-    if (before[i].name != after[i].name) {
-      return fmt::format("{} has another number of items", before[i].name);
-    }
-    return fmt::format("{} was {} and is {}", before[i].name, before[i].value, after[i].value);
-  }
-  return before.size() == after.size() ? "" : name + " has another number of items";
+bool is_output(const Column& column) {
+  return !column.name.starts_with("sensors.") && !column.name.starts_with("operator_input.") &&
+         !column.name.starts_with("truth.") && column.name != "cycle_time_us";
 }
 
 template <HasFields Message>
@@ -161,8 +115,21 @@ class Runner final : public recording::RecordingListener {
 }  // namespace
 
 std::string first_difference(const Sample& recorded, const Sample& now) {
-  const std::string text = difference("command", recorded.command, now.command);
-  return text.empty() ? difference("record", recorded.record, now.record) : text;
+  Columns before, after;
+  before.append(recorded);
+  after.append(now);
+  for (std::size_t i = 0; i < before.all().size(); ++i) {
+    const Column& column = before.all()[i];
+    if (!is_output(column) || column.data == after.all()[i].data) continue;
+    const std::string name = (column.name.starts_with("command.") ? "" : "record.") + column.name;
+    const auto was = numbers_of(column), is = numbers_of(after.all()[i]);
+    if (was.size() != is.size()) return name + " has another number of items";
+    const auto place = static_cast<std::size_t>(std::ranges::mismatch(was, is).in1 - was.begin());
+    if (place == was.size()) return name + " has other bits";  // two kinds of NaN
+    const std::string item = column.is_wide ? fmt::format("[{}]", place) : "";
+    return fmt::format("{}{} was {} and is {}", name, item, was[place], is[place]);
+  }
+  return {};
 }
 
 Rerun rerun(const std::filesystem::path& file) {

@@ -50,12 +50,7 @@ TEST(JudgeDecay, TheKickItselfDoesNotCount) {
   EXPECT_EQ(judge_decay(speed, {}, kRate), Verdict::kSustained);
 }
 
-TEST(Verdict, HasALetterAndAName) {
-  EXPECT_EQ(symbol(Verdict::kStable), '.');
-  EXPECT_EQ(symbol(Verdict::kSlow), 'r');
-  EXPECT_EQ(symbol(Verdict::kSustained), 'U');
-  EXPECT_EQ(symbol(Verdict::kDiverges), 'X');
-  EXPECT_EQ(symbol(Verdict::kHunts), 'h');
+TEST(Verdict, OfAHandleThatComesToRestIsStable) {
   EXPECT_TRUE(is_stable(Verdict::kSlow));
   EXPECT_FALSE(is_stable(Verdict::kHunts));
   EXPECT_FALSE(is_stable(Verdict::kSustained));

@@ -156,43 +156,15 @@ TEST(StabilityMap, HasARowPerHandAndFindsTheSmallestMass) {
   }
 }
 
-StabilityMap drawn_map() {
+TEST(StabilityMap, JsonHasEveryCell) {
   StabilityMap map;
   map.config.mass = {1, 2};
-  map.config.damping = {4};
   map.rows = {{"300 N/m", 4.0, {{Verdict::kDiverges}, {Verdict::kHunts, 0.01}}, 1.25},
-              {"stiff", 4.0, {{Verdict::kSustained}, {Verdict::kSustained}}, kInfinity},
-              {"normal", 4.0, {{Verdict::kStable}, {Verdict::kSlow}}, 0.1}};
-  map.device = "test";
-  return map;
-}
-
-TEST(StabilityMap, TextShowsAllVerdictsAndMasses) {
-  const std::string text = to_text(drawn_map());
-  for (const char* line : {"300 N/m       X    h       1.25", "stiff         U    U       none",
-                           "normal        .    r       <= 0.1"}) {
-    EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
-  }
-}
-
-TEST(StabilityMap, JsonAndDrawingHaveEveryCell) {
-  const nlohmann::ordered_json json = to_json(drawn_map());
+              {"stiff", 4.0, {{Verdict::kSustained}, {Verdict::kSustained}}, kInfinity}};
+  const nlohmann::ordered_json json = to_json(map);
   EXPECT_EQ(json["rows"][0]["cells"][1]["verdict"], "hunts");
   EXPECT_EQ(json["rows"][0]["stable_from_kg"], 1.25);
   EXPECT_TRUE(json["rows"][1]["stable_from_kg"].is_null());
-  const std::string svg = to_svg(drawn_map());
-  const auto count = [&](const std::string& part) {
-    int found = 0;
-    for (std::size_t at = svg.find(part); at != std::string::npos; at = svg.find(part, at + 1)) {
-      ++found;
-    }
-    return found;
-  };
-  EXPECT_EQ(count(">U</text>"), 3);  // two cells and the legend
-  EXPECT_EQ(count(">X</text>"), 2);
-  EXPECT_EQ(count(">h</text>"), 2);
-  EXPECT_EQ(count(">none</text>"), 1);
-  EXPECT_EQ(count("</svg>"), 1);
 }
 
 }  // namespace

@@ -39,8 +39,7 @@ TEST(PlaySeeds, AFaultAndALimitThatIsLeftHaveNotHeld) {
   EXPECT_EQ(runs[0].fault.code, FaultCode::kSensorNotFinite);
   EXPECT_NEAR(runs[0].ended_s, 1.5, 0.01);
   EXPECT_FALSE(have_all_held(runs));
-  EXPECT_NE(to_text({trial}, runs).find("100 measured value is not finite in 1 runs"),
-            std::string::npos);
+  EXPECT_EQ(to_json({trial}, runs)["runs"][0]["fault_text"], "measured value is not finite");
 
   Trial tight = short_walk();
   for (LimitInfo& limit : tight.scenario.limits) {
@@ -63,22 +62,7 @@ TEST(PlaySeeds, TheScenariosOfStressBeginWell) {
   }
   EXPECT_EQ(trials.size(), 11U);
   const std::vector<SeededRun> runs = play_seeds(trials, 1, 1, {});
-  EXPECT_TRUE(have_all_held(runs)) << to_text(trials, runs);
-}
-
-TEST(PlaySeeds, TheTableHasMedianAndWorst) {
-  const std::vector<Trial> trials = {short_walk()};
-  std::vector<SeededRun> runs(3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    runs[i].has_held = true;
-    runs[i].length = {1e-3 * static_cast<double>(i * i), "elbow x"};
-  }
-  EXPECT_TRUE(have_all_held(runs));
-  const std::string page = to_markdown(trials, runs);
-  EXPECT_NE(page.find("| 3 of 3 | 3 of 3 | 0.00 / 0.00 | - | 1.00 / 4.00 | elbow x |"),
-            std::string::npos)
-      << page;
-  EXPECT_EQ(to_json(trials, runs)["runs"].size(), 3U);
+  EXPECT_TRUE(have_all_held(runs)) << to_json(trials, runs).dump(2);
 }
 
 }  // namespace

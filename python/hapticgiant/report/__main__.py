@@ -1,4 +1,8 @@
-"""Command line of the reports; see __init__.py. Exit codes: 0 written, 3 a library is missing."""
+"""Command line of the reports; see __init__.py.
+
+Exit codes: 0 written, 101 written, but not all is as expected, 103 written, but a fault came in
+between, 69 a library is missing.
+"""
 
 import argparse
 import importlib
@@ -8,12 +12,20 @@ import pathlib
 import sys
 import types
 
-MISSING = 3
+MISSING = 69
+VERDICT = 100
+# the module that reports on results.json or, with folders of runs, on run.json of this kind; others
+# have the name of their kind
+MODULES = {"goals": "haptify", "contact": "studies", "inertial": "studies", "seeds": "studies",
+           "stability-map": "studies", "cartesian": "experiments", "excavator": "experiments",
+           "door": "experiments", "path": "experiments", "any": "recordings",
+           "compare": "recordings"}
 
 
 def main():
     parser = argparse.ArgumentParser(prog="hapticgiant.report")
     parser.add_argument("folder", nargs="?", type=pathlib.Path)
+    parser.add_argument("runs", nargs="*", type=pathlib.Path, help="folders with run.json")
     parser.add_argument("--docs", type=pathlib.Path, help="refresh the page of this folder")
     parser.add_argument("--check", action="store_true", help="only tell whether it would work")
     arguments = parser.parse_args()
@@ -27,11 +39,12 @@ def main():
         package = types.ModuleType("hapticgiant")
         package.__path__ = [str(pathlib.Path(__file__).resolve().parents[1])]
         sys.modules["hapticgiant"] = package
-    kind = json.loads((arguments.folder / "results.json").read_text(encoding="utf-8"))["kind"]
-    module = {"goals": "haptify"}.get(kind, kind)
-    report = importlib.import_module(f"hapticgiant.report.{module}")
-    report.write(arguments.folder, arguments.docs)
-    return 0
+    runs = [arguments.runs] if arguments.runs else []
+    file = arguments.runs[0] / "run.json" if runs else arguments.folder / "results.json"
+    kind = json.loads(file.read_text(encoding="utf-8"))["kind"]
+    module = importlib.import_module(f"hapticgiant.report.{MODULES.get(kind, kind)}")
+    verdict = module.write(arguments.folder, *runs, docs=arguments.docs)
+    return VERDICT + verdict if verdict else 0
 
 
 if __name__ == "__main__":

@@ -3,11 +3,8 @@
 import json
 import math
 
-import jinja2
-
 from . import benchmark, goals, pictures, tables
-
-BEGIN, END = "<!-- figures: begin -->\n", "<!-- figures: end -->"
+from .pages import refresh, render, save
 
 METHOD = (
     "Instruments: Haptify has a force plate, motion capture and an instrumented handle; here the "
@@ -147,30 +144,13 @@ def repetitions_csv(results):
 
 def html(results):
     """One self-contained page, at a glance first."""
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pictures.HERE), autoescape=True,
-                                     trim_blocks=True, lstrip_blocks=True)
     drawn = pictures.draw_all(results)
     sections = []
     for table in results["tables"]:
         sections.append({"title": table["title"], "note": table["note"], "rows": rows_of(table),
                          "picture": drawn.pop(table["id"], "")})
-    return environment.get_template("haptify.html.jinja").render(
-        results=results, glance=drawn.pop("glance", ""), spectra=drawn.pop("free_space", ""),
-        sections=sections)
-
-
-def refresh(page, text):
-    """Replaces what stands between the two marks of a page."""
-    content = page.read_text(encoding="utf-8")
-    before, begin, rest = content.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise SystemExit(f"{page}: must have the lines '{BEGIN.strip()}' and '{END}'")
-    save(page, f"{before}{begin}\n{text}\n{end}{after}")
-
-
-def save(file, text):
-    file.write_text(text, encoding="utf-8")
+    return render("haptify.html.jinja", results=results, glance=drawn.pop("glance", ""),
+                  spectra=drawn.pop("free_space", ""), sections=sections)
 
 
 def failures_text(results):

@@ -1,7 +1,6 @@
 """Pictures of the Haptify report, as SVG text for a page. The same results give the same text."""
 
 import io
-import pathlib
 import re
 
 import matplotlib
@@ -11,7 +10,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ..figures import COLOURS, SETTINGS, STYLES, columns_that_fit
 
-HERE = pathlib.Path(__file__).resolve().parent
 WIDTH = 7.2  # inches
 THREE_DB = (1 / 1.4125, 1.4125)
 AXES = "xyz"

@@ -15,6 +15,14 @@ def as_csv(rows):
     return text.getvalue()
 
 
+def as_text(rows, left=1):
+    """Aligned for a terminal; the first `left` columns to the left, the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return "".join("  ".join(cell.ljust(width) if number < left else cell.rjust(width)
+                             for number, (cell, width) in enumerate(zip(row, widths))).rstrip() + "\n"
+                   for row in rows)
+
+
 def number(value):
     """Six digits; empty for what was not measured or not given."""
     return "" if value is None else f"{value:.6g}"

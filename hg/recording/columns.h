@@ -1,0 +1,151 @@
+/// Samples as columns: one per field, named by the path of the field in a recording.
+///
+/// Used by Python's run(), by reports and by the comparison of a replay.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "hg/recording/message.h"
+#include "hg/signals/state.h"
+
+namespace hg::recording {
+
+/// All numbers of one field, row after row.
+struct Column {
+  std::string name;
+  char kind = 'f';        ///< kind of the numbers as numpy writes it: b, i, u, f
+  std::size_t bytes = 0;  ///< bytes of one number
+  bool is_wide = false;   ///< two dimensions even if every row has one number
+  bool is_kept = true;    ///< whether append() adds to it
+  std::vector<std::byte> data;
+  std::vector<std::size_t> counts;  ///< numbers in each row
+
+  /// Numbers of the longest row, at least one.
+  std::size_t width() const {
+    return counts.empty() ? 1 : std::max<std::size_t>(1, *std::ranges::max_element(counts));
+  }
+};
+
+/// The archive (see hg/core/fields.h) that appends every number of a sample to its column.
+///
+/// A field of a sequence becomes one column with an entry per item; record.time_s is "time_s", and
+/// likewise for all fields of the record. Rows of a column may differ in length.
+class Columns {
+ public:
+  /// Keeps the columns with these names; without names all.
+  explicit Columns(const std::vector<std::string>& names = {}) {
+    const Sample blank;
+    visit(blank, Pass::kDefine);
+    for (Column& column : columns_) {
+      column.is_kept = names.empty() || std::ranges::find(names, column.name) != names.end();
+    }
+  }
+
+  void append(const Sample& sample) {
+    ++rows_;
+    visit(sample, Pass::kAppend);
+  }
+
+  std::size_t rows() const noexcept { return rows_; }
+  /// All columns in the order of the fields; those that are not kept have no rows.
+  const std::vector<Column>& all() const noexcept { return columns_; }
+
+  template <typename T>
+  void operator()(const char* name, const T& value, const char* = "") {
+    put(name, value);
+  }
+
+  template <typename T, std::size_t kCapacity>
+  void sequence(const char* name, const std::array<T, kCapacity>& items, int count, const char*) {
+    const std::size_t first = next_;
+    const Pass pass = pass_;
+    if (pass == Pass::kAppend && count == 0) pass_ = Pass::kSkip;
+    is_sequence_ = true;
+    put(name, items[0]);
+    for (int i = 1; i < count && pass == Pass::kAppend; ++i) {
+      next_ = first;
+      put(name, items[static_cast<std::size_t>(i)]);
+    }
+    is_sequence_ = false;
+    pass_ = pass;
+  }
+
+ private:
+  enum class Pass { kDefine, kAppend, kSkip };
+
+  void visit(const Sample& sample, Pass pass) {
+    pass_ = pass;
+    next_ = 0;
+    fields(*this, sample);
+  }
+
+  template <HasFields T>
+  void put(const char* name, const T& message) {
+    const std::size_t length = path_.size();
+    if (length > 0 || std::strcmp(name, "record") != 0) path_ += std::string(name) + ".";
+    fields(*this, message);
+    path_.resize(length);
+  }
+
+  template <IsScalar T>
+  void put(const char* name, const T& value) {
+    if (Column* column = next<T>(name, is_sequence_)) add(*column, &value);
+  }
+
+  template <int kRows, int kCols, int kOptions, int kMaxRows, int kMaxCols>
+  void put(const char* name,
+           const Eigen::Matrix<double, kRows, kCols, kOptions, kMaxRows, kMaxCols>& matrix) {
+    Column* column = next<double>(name, true);
+    if (column == nullptr) return;
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+      for (Eigen::Index col = 0; col < matrix.cols(); ++col) add(*column, &matrix(row, col));
+    }
+  }
+
+  template <typename T>
+  Column* next(const char* name, bool is_wide) {
+    if (pass_ == Pass::kDefine) {
+      columns_.push_back(
+          {.name = path_ + name, .kind = kind_of<T>(), .bytes = sizeof(T), .is_wide = is_wide});
+    }
+    Column& column = columns_[next_++];
+    if (pass_ == Pass::kDefine || !column.is_kept) return nullptr;
+    column.counts.resize(rows_);
+    return pass_ == Pass::kAppend ? &column : nullptr;
+  }
+
+  template <typename T>
+  static constexpr char kind_of() {
+    if constexpr (std::is_same_v<T, bool>) return 'b';
+    if constexpr (std::is_floating_point_v<T>) return 'f';
+    if constexpr (std::is_enum_v<T>) return kind_of<std::underlying_type_t<T>>();
+    return std::is_unsigned_v<T> ? 'u' : 'i';
+  }
+
+  template <typename T>
+  static void add(Column& column, const T* value) {
+    const auto* bytes = reinterpret_cast<const std::byte*>(value);
+    column.data.insert(column.data.end(), bytes, bytes + sizeof(T));
+    ++column.counts.back();
+  }
+
+  Pass pass_ = Pass::kDefine;
+  bool is_sequence_ = false;
+  std::string path_;
+  std::size_t next_ = 0;  ///< column that the next field belongs to
+  std::size_t rows_ = 0;
+  std::vector<Column> columns_;
+};
+
+/// The kept columns as the content of a file that numpy.load() reads: a structured array with a
+/// row per sample and a field per column. Shorter rows are padded with NaN or 0.
+std::string to_npy(const Columns& columns);
+
+}  // namespace hg::recording
