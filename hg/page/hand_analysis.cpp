@@ -40,12 +40,13 @@ viewer_server::HandBudget HandAnalysis::budget(const CycleRecord& record) {
   viewer_server::HandBudget budget;
   budget.user = budget.rest = record.robot.w_H;
   const TwinState& twin = record.twin;
-  if (twin.q_a.size() != twin_.nq() || twin.dq_a.size() != twin_.nv()) return budget;
+  if (twin.q_a.size() != twin_.model().nq() || twin.dq_a.size() != twin_.model().nv())
+    return budget;
   twin_.update_kinematics(twin.q_a, twin.dq_a);
   const Eigen::MatrixXd J_transposed = twin_.jacobian(end_effector_).transpose();
   const LeastSquares decomposition(J_transposed);
   const auto at_hand = [&](const VectorA& tau) -> Vector6 {
-    if (tau.size() != twin_.nv()) return Vector6::Zero();
+    if (tau.size() != twin_.model().nv()) return Vector6::Zero();
     const Vector6 w = decomposition.solve(tau);
     budget.rest -= w;
     return w;
