@@ -20,9 +20,9 @@
 #include "hg/commissioning/checks/twin_inspection.h"
 #include "hg/config/device.h"
 #include "hg/config/file_kind.h"
-#include "hg/config/scenario.h"
-#include "hg/config/script.h"
-#include "hg/config/simulation.h"
+#include "hg/config/simulation/scenario.h"
+#include "hg/config/simulation/script.h"
+#include "hg/config/simulation/simulation.h"
 #include "hg/config/tool.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"
@@ -69,7 +69,7 @@ void load(const std::string& file, Check& check) {
   try_to(file, check, [&] {
     switch (kind) {
       case FileKind::kDevice:
-        check.devices.push_back(config::load_device(file));
+        check.devices.push_back(config::load_simulated_device(file));
         break;
       case FileKind::kTwin:
         check.twins.push_back(config::load_twin(file));
@@ -149,7 +149,7 @@ void check_twins(Check& check) {
     }
   }
   for (const config::Scenario& scenario : check.scenarios) {
-    add(checks::inspect(scenario.twin, scenario.device.rendering.dt), check);
+    add(checks::inspect(scenario.twin, scenario.device.model.dt()), check);
     add(checks::inspect(scenario.device, scenario.twin), check);
     add(checks::inspect_surfaces(scenario), check);
   }

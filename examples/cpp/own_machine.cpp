@@ -52,7 +52,7 @@ hg::rendering::TwinModel free_body_at(const hg::Pose& handle) {
 
 int main(int count, char** arguments) {
   if (count != 2) return 2;
-  hg::rendering::DeviceModel model{.chain = Chain::from_urdf_file(arguments[1])};
+  hg::DeviceModel model{.chain = Chain::from_urdf_file(arguments[1])};
   model.n_m = model.chain.nv();
   model.handle = model.chain.frame("handle");
   hg::controller::Config config;  // drives that follow positions; everything else by default

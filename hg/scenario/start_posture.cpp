@@ -25,7 +25,7 @@ struct Violation {
 
 // The first limit, in the order of the catalogue, that forbids `q` (gantry first); `chain` is the
 // device's.
-std::optional<Violation> find_violation(const rendering::DeviceModel& device, model::Chain& chain,
+std::optional<Violation> find_violation(const DeviceModel& device, model::Chain& chain,
                                         const Eigen::VectorXd& q) {
   const auto is_outside = [](double value, const limits::JointLimits& limits) {
     return value < limits.q_min || value > limits.q_max;
@@ -37,12 +37,12 @@ std::optional<Violation> find_violation(const rendering::DeviceModel& device, mo
       return Violation{"joint " + device.manipulator_joint(i), q_m[i], limits};
     }
   }
-  for (const rendering::VirtualJoint& joint : device.virtual_joints) {
+  for (const VirtualJoint& joint : device.virtual_joints) {
     const double sum = joint.weights.dot(q_m);
     if (is_outside(sum, joint.limits)) return Violation{joint.name, sum, joint.limits};
   }
   chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.nv()));
-  for (const rendering::CartesianLimit& limit : device.cartesian_limits) {
+  for (const CartesianLimit& limit : device.cartesian_limits) {
     const Eigen::Vector3d p = chain.pose(limit.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
       const limits::JointLimits& limits = limit.axes[static_cast<std::size_t>(axis)];
@@ -65,8 +65,7 @@ void check_limits(const config::Scenario& scenario, const Start& start) {
       "or turn the twin's placement, or change its start{}",
       scenario.twin.name, violation->item, violation->value, violation->limits.q_min,
       violation->limits.q_max,
-      scenario.device.kinematics == config::Kinematics::kGeneric ? " or the device's posture"
-                                                                 : ""));
+      !scenario.device.model.has_closed_form ? " or the device's posture" : ""));
 }
 
 // throws SetupError when the handle or a part of the device would be in the floor at `start`: the
@@ -113,7 +112,7 @@ Start closed_form_start(const config::Scenario& scenario) {
   require_solved(model::haptic_giant::inverse_at_target(start.T_B_H, q_p, q_m),
                  "the device cannot reach");
   for (int i = 0; i < 2; ++i) {
-    const Interval range = scenario.device.prepositioning.q_limits[static_cast<std::size_t>(i)];
+    const Interval range = scenario.device.model.gantry_range[static_cast<std::size_t>(i)];
     q_p[i] = std::clamp(q_p[i], range.lb, range.ub);
   }
   require_solved(model::haptic_giant::inverse(start.T_B_H, q_p, {}, q_m),
@@ -138,7 +137,7 @@ std::string joints_at_limits(const model::Chain& chain, const model::InverseProb
 }
 
 Start numeric_start(const config::Scenario& scenario) {
-  const rendering::DeviceModel& device = scenario.device.model;
+  const DeviceModel& device = scenario.device.model;
   const int n_p = device.n_p, n = device.chain.nv();
   Start start;
   start.T_B_H = handle_start(scenario.twin.model);
@@ -149,9 +148,9 @@ Start numeric_start(const config::Scenario& scenario) {
       .q_max = Eigen::VectorXd(n),
       .goal = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN())};
   for (int i = 0; i < n; ++i) {
-    const Interval range =
-        i < n_p ? scenario.device.prepositioning.q_limits[static_cast<std::size_t>(i)]
-                : range_of(device.joint_limits[static_cast<std::size_t>(i - n_p)]);
+    const Interval range = i < n_p
+                               ? scenario.device.model.gantry_range[static_cast<std::size_t>(i)]
+                               : range_of(device.joint_limits[static_cast<std::size_t>(i - n_p)]);
     problem.q_min[i] = range.lb;
     problem.q_max[i] = range.ub;
   }
@@ -184,9 +183,8 @@ Pose handle_start(const rendering::TwinModel& twin) {
 }
 
 Start find_start(const config::Scenario& scenario) {
-  Start start = scenario.device.kinematics == config::Kinematics::kHapticGiant
-                    ? closed_form_start(scenario)
-                    : numeric_start(scenario);
+  Start start =
+      scenario.device.model.has_closed_form ? closed_form_start(scenario) : numeric_start(scenario);
   check_limits(scenario, start);
   check_floor(scenario, start);
   return start;

@@ -1,7 +1,7 @@
 /// Start of a run: the twin at its start, the device with its handle there.
 #pragma once
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/core/types.h"
 

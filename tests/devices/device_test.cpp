@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/error.h"
 #include "hg/model/test/models.h"
 #include "hg/scenario/start_posture.h"

@@ -8,7 +8,7 @@
 
 #include "hg/config/device.h"
 #include "hg/config/file_kind.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/config/tool.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"

@@ -6,7 +6,7 @@
 
 #include "hg/commissioning/checks/findings.h"
 #include "hg/config/device.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/config/twin.h"
 
 namespace hg::checks {

@@ -31,9 +31,9 @@ JointRanges joint_ranges(const config::Device& device);
 using hg::Random;
 
 /// Whether the virtual joints of the device permit `q` (gantry first).
-bool permits_virtual_joints(const rendering::DeviceModel& model, const Eigen::VectorXd& q);
+bool permits_virtual_joints(const DeviceModel& model, const Eigen::VectorXd& q);
 /// Whether all Cartesian limits permit the posture to which the chain has been updated.
-bool permits_boxes(const rendering::DeviceModel& model, const model::Chain& chain);
+bool permits_boxes(const DeviceModel& model, const model::Chain& chain);
 
 /// Draws a posture uniformly in the joint ranges, respecting virtual joints. With `at_limits` every
 /// joint stands at one of its limits with a chance of 1/5, so that the edges of the workspace are
@@ -87,7 +87,6 @@ struct Survey {
 Survey survey(const config::Device& device, const SurveyOptions& options = {});
 
 /// Manipulator columns of the Jacobian of `frame`.
-MatrixJ manipulator_jacobian(const rendering::DeviceModel& model, const model::Chain& chain,
-                             int frame);
+MatrixJ manipulator_jacobian(const DeviceModel& model, const model::Chain& chain, int frame);
 
 }  // namespace hg::checks

@@ -190,7 +190,7 @@ struct TipRatings {
 
 TipRatings tip_ratings(const config::Device& device) {
   limits::JointLimits hand{.dq_max = 1.5, .ddq_max = 5.0};
-  for (const limits::JointLimits& axis : rendering::handle_limits(device.model)) {
+  for (const limits::JointLimits& axis : handle_limits(device.model)) {
     hand.dq_max = std::min(hand.dq_max, axis.dq_max);
     hand.ddq_max = std::min(hand.ddq_max, axis.ddq_max);
   }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/twin_model.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/limit.h"
 
 namespace hg::rendering {

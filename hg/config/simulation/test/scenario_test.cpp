@@ -1,4 +1,4 @@
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ std::vector<std::string> names_of(const std::vector<EventRule>& events) {
 }
 
 TEST(Device, HasTheLimitsOfTheHandbook) {
-  const rendering::DeviceModel& model = door().device.model;
+  const DeviceModel& model = door().device.model;
   ASSERT_EQ(model.n_p, 2);
   ASSERT_EQ(model.n_m, 6);
   // accelerations of m1..m4: what their torques can do, see device.yaml
@@ -71,10 +71,10 @@ TEST(Device, LimitsTheSumOfJointsFourAndFive) {
 }
 
 TEST(Device, KeepsHandAndElbowInTheBox) {
-  const rendering::DeviceModel& model = door().device.model;
+  const DeviceModel& model = door().device.model;
   ASSERT_EQ(model.cartesian_limits.size(), 2u);
-  const rendering::CartesianLimit& hand = model.cartesian_limits[0];
-  const rendering::CartesianLimit& elbow = model.cartesian_limits[1];
+  const CartesianLimit& hand = model.cartesian_limits[0];
+  const CartesianLimit& elbow = model.cartesian_limits[1];
   EXPECT_EQ(hand.name, "hand");
   EXPECT_EQ(hand.frame, model.handle);
   EXPECT_EQ(elbow.frame, model.elbow);
@@ -375,7 +375,7 @@ TEST(Scenario, WhoseLawDoesNotKnowTheMotorsHasNoLimitsOfThemAndTheSameEvents) {
   const Scenario before = scenario;
   scenario.device.rendering.law = rendering::Law::kPaper;
   settle_law(scenario);
-  EXPECT_TRUE(scenario.device.model.motors.empty());
+  EXPECT_TRUE(scenario.device.model.motors().empty());
   EXPECT_EQ(scenario.limits.size() + 6, before.limits.size());
   const auto hinge = [](const Scenario& of) {
     return of.limits[static_cast<std::size_t>(of.events[0].all_of[0].index)].name;
