@@ -36,7 +36,7 @@ using config::FileKind;
 // Everything that could be loaded, and what was found on the way.
 struct Check {
   CheckReport report;
-  std::list<config::Device> devices;
+  std::list<config::SimulatedDevice> devices;
   std::list<config::Twin> twins;
   std::list<config::Scenario> scenarios;
   std::vector<std::string> scripts;
@@ -141,10 +141,10 @@ void draw_map(const std::string& file, const Check& check) {
 
 void check_twins(Check& check) {
   constexpr double kUsualPeriod = 1e-3;  // s, where no device is given
-  const double dt = check.devices.empty() ? kUsualPeriod : check.devices.front().rendering.dt;
+  const double dt = check.devices.empty() ? kUsualPeriod : check.devices.front().model.dt();
   for (const config::Twin& twin : check.twins) {
     add(checks::inspect(twin, dt), check);
-    for (const config::Device& device : check.devices) {
+    for (const config::SimulatedDevice& device : check.devices) {
       add(checks::inspect(device, twin), check);
     }
   }

@@ -18,7 +18,7 @@ namespace {
 using identification::PayloadEstimate;
 using identification::StaticPose;
 
-std::vector<StaticPose> simulated_poses(const config::Device& device, int count) {
+std::vector<StaticPose> simulated_poses(const config::SimulatedDevice& device, int count) {
   std::vector<StaticPose> poses;
   for (const VectorM& q_m : identification::static_postures(device, count)) {
     poses.push_back(identification::measure_simulated(device, q_m));

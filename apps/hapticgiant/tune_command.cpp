@@ -22,7 +22,8 @@
 namespace hg::apps {
 namespace {
 
-tuning::TuningProblem problem_of(const config::Device& device, const TuneArguments& arguments) {
+tuning::TuningProblem problem_of(const config::SimulatedDevice& device,
+                                 const TuneArguments& arguments) {
   return {.device = tuning::device_of(device),
           .noise = tuning::noise_of(device),
           .plant = tuning::simulated(device),

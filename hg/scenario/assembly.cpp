@@ -184,7 +184,7 @@ person::Person make_person(const config::Scenario& scenario, const Start& start)
 }
 
 simulator::Simulation make_simulation(const config::Scenario& scenario) {
-  const Start start = find_start(scenario);
+  const Start start = find_start(scenario.device, scenario.twin);
   return simulation_of(scenario.device, start, make_person(scenario, start), scenario.bystander);
 }
 

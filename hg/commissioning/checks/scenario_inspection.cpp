@@ -136,7 +136,7 @@ void inspect_work(const config::Device& device, const config::Twin& twin, Collec
 }  // namespace
 
 Match match(const config::Device& device, const config::Twin& twin) {
-  config::Scenario pair = {.device = device, .twin = twin};
+  config::Twin moved = twin;
   const std::vector<ConfigurationA> postures = twin_postures(twin, kPostures, kSeed);
   const std::array<limits::JointLimits, 3> hand = handle_limits(device.model);
   model::Chain twin_chain = twin.model.chain, device_chain = device.model.chain;
@@ -149,9 +149,9 @@ Match match(const config::Device& device, const config::Twin& twin) {
     ++result.postures;
     twin_chain.update_kinematics(q, zero_a);
     Meeting meeting = {twin_chain.jacobian(twin.model.end_effector), {}};
-    pair.twin.model.q_start = q;
+    moved.model.q_start = q;
     try {
-      const scenario::Start start = scenario::find_start(pair);
+      const scenario::Start start = scenario::find_start(device, moved);
       ++result.reached;
       device_chain.update_kinematics(stacked(start.q_p, start.q_m), zero);
       const MatrixJ J_m = manipulator_jacobian(device.model, device_chain, device.model.handle);
@@ -174,10 +174,10 @@ Match match(const config::Device& device, const config::Twin& twin) {
   return result;
 }
 
-Findings inspect(const config::Device& device, const config::Twin& twin) {
+Findings inspect(const config::SimulatedDevice& device, const config::Twin& twin) {
   Collector out(twin.sources, twin.places);
   try {
-    scenario::find_start({.device = device, .twin = twin});
+    scenario::find_start(device, twin);
   } catch (const SetupError& error) {
     out.add(Severity::kFault, "placement", error.what(), "");
   }

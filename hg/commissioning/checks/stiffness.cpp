@@ -36,11 +36,11 @@ double delay_of(const config::SimulatedDevice& device) {
 
 // The least along the axes of B, at the start; where the device does not get there it says so
 // itself.
-double braking_of(const config::SimulatedDevice& device, const config::Twin& twin) {
+double braking_of(const config::Device& device, const config::Twin& twin) {
   rendering::Motion motion = {.dq_p = VectorP::Zero(device.model.n_p),
                               .dq_m = VectorM::Zero(device.model.n_m)};
   try {
-    const scenario::Start start = scenario::find_start({.device = device, .twin = twin});
+    const scenario::Start start = scenario::find_start(device, twin);
     motion.q_p = start.q_p;
     motion.q_m = start.q_m;
   } catch (const SetupError&) {
@@ -162,7 +162,7 @@ double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
   return acceleration * std::sqrt(mass / stiffness);
 }
 
-StiffnessLimits stiffness_limits(const config::Device& device, const config::Twin& twin) {
+StiffnessLimits stiffness_limits(const config::SimulatedDevice& device, const config::Twin& twin) {
   const auto [mass, dq] = rendering::felt_mass(twin.model);
   StiffnessLimits limits = {.mass = mass.lb,
                             .period = device.model.dt(),
@@ -175,7 +175,8 @@ StiffnessLimits stiffness_limits(const config::Device& device, const config::Twi
   return limits;
 }
 
-void inspect_stiffness(const config::Device& device, const config::Twin& twin, Collector& out) {
+void inspect_stiffness(const config::SimulatedDevice& device, const config::Twin& twin,
+                       Collector& out) {
   const StiffnessLimits limits = stiffness_limits(device, twin);
   out.add(Severity::kNote, "end_effector",
           fmt::format(

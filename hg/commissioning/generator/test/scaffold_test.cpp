@@ -81,7 +81,7 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
         .changes = {},
         .sources = {},
         .places = {}};
-    EXPECT_NO_THROW(scenario::find_start(scenario)) << device;
+    EXPECT_NO_THROW(scenario::find_start(scenario.device, scenario.twin)) << device;
     EXPECT_EQ(scenario.twin.model.dofs[0].limits.q_max, 1.2);
     EXPECT_GT(scenario.twin.model.dofs[0].damping, 0.0);
 

@@ -12,14 +12,14 @@
 namespace hg::identification {
 namespace {
 
-const config::Device& reference_device() {
+const config::SimulatedDevice& reference_device() {
   static const config::SimulatedDevice device =
       config::load_simulated_device("models/haptic_giant/device.yaml");
   return device;
 }
 
 TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
-  const config::Device& device = reference_device();
+  const config::SimulatedDevice& device = reference_device();
   const std::vector<VectorM> postures = static_postures(device, 12);
   ASSERT_EQ(postures.size(), 12u);
   std::vector<StaticPose> poses;
@@ -48,7 +48,7 @@ TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
 }
 
 TEST(SimulatedPoses, ShowThePayloadOfTheDevice) {
-  const config::Device& device = reference_device();
+  const config::SimulatedDevice& device = reference_device();
   const Payload& told = device.estimation.wrench.payload;
   ASSERT_GT(told.mass, 0.0);
   std::vector<StaticPose> poses;

@@ -29,7 +29,7 @@ config::Scenario walk() {
 }
 
 Eigen::VectorXd posture_of(const config::Scenario& scenario) {
-  const scenario::Start start = scenario::find_start(scenario);
+  const scenario::Start start = scenario::find_start(scenario.device, scenario.twin);
   Eigen::VectorXd q(start.q_p.size() + start.q_m.size());
   q << start.q_p, start.q_m;
   return q;
@@ -139,7 +139,7 @@ TEST(HandleLoop, NoiseComesFromWhatIsNoisyAndNothingElse) {
 TEST(HandleLoop, HasTheNoiseOfTheWrenchAtOtherRates) {
   const config::Scenario scenario = walk();
   const auto vibration = [&](double rate_Hz) {
-    config::Device device = scenario.device;
+    config::SimulatedDevice device = scenario.device;
     device.control.flatness_Hz = 40.0;
     device.model.rate_Hz = rate_Hz;
     return feel(linearise(device_of(device), simulated(device), {}, person::HandImpedance{},
