@@ -52,7 +52,7 @@ class Reader final : public recording::RecordingListener {
                         error.what()));
       }
     }
-    traces_.emplace(device_->control);
+    traces_.emplace(device_->model, device_->control.loop.current_lag);
   }
 
   std::optional<config::Device> device_;

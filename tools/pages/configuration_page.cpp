@@ -47,9 +47,9 @@ std::string device_table() {
 }
 
 std::string tool_table() {
-  ToolDraft draft;
+  Tool tool;
   DocWriter writer;
-  describe(writer, draft);
+  describe(writer, tool);
   return writer.table();
 }
 

@@ -95,24 +95,32 @@ TEST(Device, KeepsHandAndElbowInTheBox) {
   EXPECT_EQ(elbow.axes[2].dq_max, kInfinity);
 }
 
-TEST(Device, GivesEveryPartThePeriodAndTheDrive) {
+TEST(Device, HasItsFactsInItsModel) {
   const Device& device = door().device;
-  EXPECT_EQ(device.rendering.dt, 1e-3);
-  EXPECT_EQ(device.estimation.dt, 1e-3);
-  EXPECT_EQ(device.estimation.drive.lag, 40e-3);
-  EXPECT_EQ(device.prepositioning.n_p, 2);
+  EXPECT_EQ(device.model.rate_Hz, 1000.0);
+  EXPECT_EQ(device.model.drive.lag, 40e-3);
   EXPECT_EQ(device.prepositioning.k_ppu, 4.0);
   EXPECT_EQ(device.prepositioning.dq_max, 1.5);
-  EXPECT_EQ(device.prepositioning.q_limits[0].ub, 1.40);
-  EXPECT_EQ(device.prepositioning.q_limits[1].lb, -1.60);
-  EXPECT_NEAR(device.prepositioning.drive.tau, 45e-3, kRounding);
-  EXPECT_EQ(device.prepositioning.drive.ddq_max, 2.0);
-  EXPECT_EQ(device.monitor.gantry_speed_max, 1.5);
-  ASSERT_EQ(device.monitor.joint_range.size(), 6u);
-  EXPECT_EQ(device.monitor.joint_range[3].ub, 2.45);
-  EXPECT_EQ(device.monitor.joint_speed_max[5], 3.5);
-  EXPECT_EQ(device.T_H_S.p, Eigen::Vector3d(0, 0, -0.0375));
-  EXPECT_EQ(device.estimation.T_H_S.p, device.T_H_S.p);
+  EXPECT_EQ(device.prepositioning.ddq_max, 2.0);
+  ASSERT_EQ(device.model.gantry_range.size(), 2u);
+  EXPECT_EQ(device.model.gantry_range[0].ub, 1.40);
+  EXPECT_EQ(device.model.gantry_range[1].lb, -1.60);
+  EXPECT_EQ(device.model.T_H_S.p, Eigen::Vector3d(0, 0, -0.0375));
+  EXPECT_TRUE(device.model.has_closed_form);
+  EXPECT_EQ(device.model.actuators.size(), 6u);
+  EXPECT_TRUE(device.model.has_torque_limits);
+}
+
+// what a program for the real machine loads
+TEST(Device, IsLoadedWithoutItsSimulation) {
+  const auto reads_simulation = [](const Device& device) {
+    return std::ranges::any_of(device.sources, [](const SourceText& source) {
+      return source.name.ends_with("simulation.yaml");
+    });
+  };
+  const std::string file = "models/haptic_giant/device.yaml";
+  EXPECT_FALSE(reads_simulation(load_device(file)));
+  EXPECT_TRUE(reads_simulation(load_simulated_device(file)));
 }
 
 TEST(Twin, DoorHasCloserSpringAndBolt) {
