@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hg/analysis/summary.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 namespace hg::bench {
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kPostures = 2000;
 
-double best_dexterity(rendering::DeviceModel& device) {
+double best_dexterity(DeviceModel& device) {
   std::vector<Interval> ranges = generator::joint_ranges(device.chain);
   for (int i = 0; i < device.n_m; ++i) {
     const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];

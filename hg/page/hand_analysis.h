@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/model/chain_data.h"
 #include "hg/viewer_server/view.h"
 
@@ -27,7 +27,7 @@ class HandAnalysis {
  private:
   model::ChainData twin_;
   int end_effector_;
-  rendering::DeviceModel device_;
+  DeviceModel device_;
   double best_ = 0.0;  ///< best dexterity of many postures
 };
 

@@ -59,8 +59,8 @@ void play_script(config::Scenario& scenario, const person::Script& script) {
   scenario.duration_s = 0.0;
 }
 
-void take_friction(tracking::Config& control) {
-  for (ActuatorModel& actuator : control.actuators) {
+void take_friction(DeviceModel& device) {
+  for (ActuatorModel& actuator : device.actuators) {
     actuator.coulomb_friction = actuator.viscous_friction = actuator.load_friction = 0.0;
   }
 }

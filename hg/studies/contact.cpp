@@ -98,7 +98,7 @@ config::Scenario with(config::Scenario walk, const simulator::BystanderConfig& b
 ContactRun play(const config::Scenario& walk, const ContactConfig& config) {
   Player player(walk);
   Tracker tracker(walk, walk.bystander->hit_by);
-  const double dt = 1.0 / walk.device.rate_Hz;
+  const double dt = 1.0 / walk.device.model.rate_Hz;
   const double end_s = scenario::planned_duration_s(walk) + config.watched;
   ContactRun run;
   double hit_s = -1.0;

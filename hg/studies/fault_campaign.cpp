@@ -55,7 +55,7 @@ class Travel {
 
   // One period from the begin of the fault on.
   void add(const Truth& truth, const Sample& sample, bool has_reacted) {
-    const double dt = device_.rendering.dt;
+    const double dt = device_.model.dt();
     if (!has_begun_) {
       has_begun_ = true;
       from_m_ = truth.q_m;
@@ -68,7 +68,7 @@ class Travel {
       for (Eigen::Index i = 0; i < plan_p_.size(); ++i) {
         const double command = sample.command.enable ? sample.command.dq_p[i] : 0.0;
         plan_p_[i] += dt * speed_p_[i];
-        speed_p_[i] += dt * drive_acceleration(device_.drive, speed_p_[i], command);
+        speed_p_[i] += dt * drive_acceleration(device_.model.drive, speed_p_[i], command);
       }
       at_stop_m_ = truth.q_m;
       at_stop_p_ = truth.q_p;
@@ -140,7 +140,7 @@ faults::Injection draw(const faults::Kind& kind, const config::Scenario& scenari
     return std::uniform_real_distribution<double>(from, to)(random);
   };
   faults::Injection drawn = {.kind = &kind};
-  const rendering::DeviceModel& device = scenario.device.model;
+  const DeviceModel& device = scenario.device.model;
   const int parts = faults::parts_of(kind.part, device.n_m, device.n_p);
   if (parts > 0) drawn.index = std::uniform_int_distribution<int>(0, parts - 1)(random);
   if (!kind.unit.empty()) {

@@ -71,8 +71,7 @@ class Judge {
  public:
   Judge(const config::Device& device, const UnitSet& units)
       : model_(device.model),
-        chain_(model_.chain),
-        dt_(device.rendering.dt),
+        dt_(device.model.dt()),
         root_(frames_of(device, units.links).front()) {}
 
   // The truth of the sample before is known when the next one is there.
@@ -164,8 +163,7 @@ class Judge {
     return static_cast<double>(best) + 0.5 * (left - right) / curvature;
   }
 
-  rendering::DeviceModel model_;
-  model::ChainData chain_;
+  DeviceModel model_;
   double dt_;
   int root_;
   Moment before_, last_;

@@ -1,9 +1,9 @@
 #include "tools/pages/configuration_page.h"
 
 #include "hg/config/device_schema.h"
-#include "hg/config/scenario_schema.h"
-#include "hg/config/script_schema.h"
-#include "hg/config/simulation_schema.h"
+#include "hg/config/simulation/scenario_schema.h"
+#include "hg/config/simulation/script_schema.h"
+#include "hg/config/simulation/simulation_schema.h"
 #include "hg/config/tool_schema.h"
 #include "hg/config/twin_schema.h"
 #include "tools/pages/doc_writer.h"
@@ -47,9 +47,9 @@ std::string device_table() {
 }
 
 std::string tool_table() {
-  ToolDraft draft;
+  Tool tool;
   DocWriter writer;
-  describe(writer, draft);
+  describe(writer, tool);
   return writer.table();
 }
 

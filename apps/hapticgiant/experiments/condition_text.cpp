@@ -42,7 +42,7 @@ const char* kind_name(ConditionKind kind) {
 // name of the limit or joint of the condition; empty = none
 std::string subject(const Condition& condition, const config::Scenario& scenario) {
   const auto i = static_cast<std::size_t>(condition.index);
-  const rendering::DeviceModel& device = scenario.device.model;
+  const DeviceModel& device = scenario.device.model;
   switch (condition.kind) {
     case ConditionKind::kLimit:
     case ConditionKind::kSpeedLimit:

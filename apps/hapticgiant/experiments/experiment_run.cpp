@@ -170,7 +170,6 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
   result.events = expected_events(experiment, scenario);
 
   runtime::Options options;
-  options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = true;
   options.duration_s = arguments.duration_s.value_or(scenario::planned_duration_s(scenario));
   options.longest_stop_s = scenario::longest_stop_s(scenario);
@@ -199,7 +198,7 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
 
   analysis::RunFacts facts = scenario::facts_of_scenario(scenario);
   facts.version = kVersion;
-  facts.rate_Hz = options.rate_Hz;
+  facts.rate_Hz = scenario.device.model.rate_Hz;
   facts.allocations_in_loop = report.allocations;
   facts.timing.is_fast = true;
   facts.wall_time_s =

@@ -12,7 +12,7 @@
 #include "apps/hapticgiant/experiments/paper_experiments.h"
 #include "apps/hapticgiant/experiments/run_table.h"
 #include "apps/hapticgiant/run_command.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 namespace hg::apps {
 

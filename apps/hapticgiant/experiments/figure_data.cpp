@@ -20,7 +20,7 @@ Json signal(const std::string& name, const std::string& unit, double lower, doub
           {"upper", number_or_null(upper)}};
 }
 
-void add_device(const rendering::DeviceModel& device, Json& json) {
+void add_device(const DeviceModel& device, Json& json) {
   for (const char* group : {"manipulator", "virtual", "gantry"}) json[group] = Json::array();
   for (int i = 0; i < device.n_m; ++i) {
     const limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
@@ -28,7 +28,7 @@ void add_device(const rendering::DeviceModel& device, Json& json) {
     json["manipulator"].push_back(
         signal(joint.name, is_angle(joint) ? "rad" : "m", limits.q_min, limits.q_max));
   }
-  for (const rendering::VirtualJoint& joint : device.virtual_joints) {
+  for (const VirtualJoint& joint : device.virtual_joints) {
     json["virtual"].push_back(signal(joint.name, "rad", joint.limits.q_min, joint.limits.q_max));
   }
   for (int i = 0; i < device.n_p; ++i) {
@@ -36,7 +36,7 @@ void add_device(const rendering::DeviceModel& device, Json& json) {
     json["gantry"].push_back(
         signal(joint.name, is_angle(joint) ? "rad" : "m", joint.position.lb, joint.position.ub));
   }
-  const auto box = rendering::handle_limits(device);
+  const auto box = handle_limits(device);
   json["box"] = {{"x", {number_or_null(box[0].q_min), number_or_null(box[0].q_max)}},
                  {"y", {number_or_null(box[1].q_min), number_or_null(box[1].q_max)}}};
   json["has_elbow"] = device.elbow >= 0;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/hapticgiant/experiments/run_table.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 namespace hg::apps {
 

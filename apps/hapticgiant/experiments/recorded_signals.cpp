@@ -38,7 +38,7 @@ class Reader final : public recording::RecordingListener {
           {is_expected ? paper_label(*rule) : event.name, event.time_s, event.text});
     }
     analysis::RunFacts facts = scenario::facts_of_scenario(scenario);
-    facts.rate_Hz = scenario.device.rate_Hz;
+    facts.rate_Hz = scenario.device.model.rate_Hz;
     signals_.summary = nlohmann::ordered_json::parse(summary_->to_json(facts, {}));
   }
 

@@ -10,7 +10,7 @@
 
 #include "apps/hapticgiant/experiments/figure_data.h"
 #include "apps/hapticgiant/experiments/run_table.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/recording/recording_reader.h"
 
 namespace hg::apps {
@@ -30,7 +30,7 @@ struct RecordedSignals {
   recording::ReadResult read;  ///< result of reading the file
   std::vector<recording::NamedText> configuration;
 
-  double rate_Hz() const { return scenario->device.rate_Hz; }
+  double rate_Hz() const { return scenario->device.model.rate_Hz; }
 };
 
 /// Reads a recording with one row of signals per `period_s`. Throws SetupError.

@@ -46,7 +46,7 @@ void RunTable::add_column(std::string name, std::function<double(const Sample&)>
 }
 
 void RunTable::add_device_columns(const config::Scenario& scenario) {
-  const rendering::DeviceModel& device = scenario.device.model;
+  const DeviceModel& device = scenario.device.model;
   for (int i = 0; i < device.n_m; ++i) {
     const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(device.n_p + i)];
     const std::string position = joint.name + (is_angle(joint) ? "_rad" : "_m");
@@ -54,7 +54,7 @@ void RunTable::add_device_columns(const config::Scenario& scenario) {
     add_column(position + "_per_s",
                [i](const Sample& s) { return at(s.record.reference.dq_m, i); });
   }
-  for (const rendering::VirtualJoint& joint : device.virtual_joints) {
+  for (const VirtualJoint& joint : device.virtual_joints) {
     add_column(joint.name + "_rad", [weights = joint.weights](const Sample& s) {
       const VectorM& q = s.record.reference.q_m;
       return q.size() == weights.size() ? weights.dot(q) : kNone;

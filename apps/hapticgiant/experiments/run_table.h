@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/signals/state.h"
 
 namespace hg::apps {

@@ -31,13 +31,9 @@ struct Scene {
 };
 
 Scene make_scene(const config::Device& device) {
-  const rendering::DeviceModel& model = device.model;
-  Scene scene = {device,
-                 joint_ranges(device),
-                 model::ChainData(model.chain),
-                 Eigen::VectorXd::Zero(model.chain.nv()),
-                 {},
-                 {}};
+  const DeviceModel& model = device.model;
+  Scene scene = {
+      device, joint_ranges(device), model.chain, Eigen::VectorXd::Zero(model.chain.nv()), {}, {}};
   scene.effort.resize(model.chain.nv());
   for (int i = 0; i < model.chain.nv(); ++i) {
     scene.effort[i] = model.chain.joints()[index(i)].effort_max;
@@ -60,7 +56,7 @@ bool has_paper_wrench(const MatrixJ& J, const Eigen::VectorXd& available) {
 
 // scene.chain: after update() at q
 Posture examine(const Scene& scene, const Eigen::VectorXd& q, double length) {
-  const rendering::DeviceModel& model = scene.device.model;
+  const DeviceModel& model = scene.device.model;
   const MatrixJ J = scene.chain.jacobian(model.handle);
   const MatrixJ J_m = J.rightCols(model.n_m);
   const Eigen::VectorXd available = scene.effort - scene.chain.gravity().cwiseAbs();
@@ -77,7 +73,7 @@ Posture examine(const Scene& scene, const Eigen::VectorXd& q, double length) {
 
 double characteristic_length(Scene& scene, Random& random) {
   constexpr int kPostures = 200;
-  const rendering::DeviceModel& model = scene.device.model;
+  const DeviceModel& model = scene.device.model;
   double sum = 0.0;
   for (int i = 0; i < kPostures; ++i) {
     const auto q = draw(scene.device, scene.ranges, false, random);
@@ -106,14 +102,14 @@ void survey_postures(Scene& scene, Random& random, Survey& result) {
 }
 
 // A gantry of prismatic joints shifts everything by J_p q_p: positions without further kinematics.
-bool gantry_only_shifts(const rendering::DeviceModel& model) {
+bool gantry_only_shifts(const DeviceModel& model) {
   const std::span joints(model.chain.joints().data(), index(model.n_p));
   return model.n_p > 0 && std::ranges::all_of(joints, [](const model::Joint& joint) {
            return joint.type == model::JointType::kPrismatic;
          });
 }
 
-bool is_inside(const rendering::CartesianLimit& limit, const Eigen::Vector3d& p) {
+bool is_inside(const CartesianLimit& limit, const Eigen::Vector3d& p) {
   for (int axis = 0; axis < 3; ++axis) {
     const limits::JointLimits& range = limit.axes[index(axis)];
     if (p[axis] < range.q_min || p[axis] > range.q_max) return false;
@@ -125,7 +121,7 @@ bool is_inside(const rendering::CartesianLimit& limit, const Eigen::Vector3d& p)
 // scene.chain: after update() at q.
 void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, bool at_limits,
                    Random& random, Cloud& cloud) {
-  const rendering::DeviceModel& model = scene.device.model;
+  const DeviceModel& model = scene.device.model;
   const auto n_p = static_cast<Eigen::Index>(model.n_p);
   const Eigen::Matrix3Xd J = scene.chain.jacobian(model.handle).topRows<3>();
   const Eigen::VectorXd available = scene.effort - scene.chain.gravity().cwiseAbs();
@@ -138,7 +134,7 @@ void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, boo
     }
     bool is_permitted = true;
     for (std::size_t k = 0; k < model.cartesian_limits.size(); ++k) {
-      const rendering::CartesianLimit& limit = model.cartesian_limits[k];
+      const CartesianLimit& limit = model.cartesian_limits[k];
       const Eigen::Vector3d p = scene.chain.pose(limit.frame).p + shift;
       cloud.frames[k].extend(p);
       is_permitted = is_permitted && is_inside(limit, p);
@@ -151,7 +147,7 @@ void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, boo
 // does.
 Posture descend(Scene& scene, const Posture& from, double length) {
   constexpr int kRounds = 100;
-  const rendering::DeviceModel& model = scene.device.model;
+  const DeviceModel& model = scene.device.model;
   const auto smallest = [&](const Eigen::VectorXd& q) {
     scene.chain.update_kinematics(q, scene.zero);
     return conditioning(manipulator_jacobian(model, scene.chain, model.handle), length).smallest;
@@ -198,14 +194,14 @@ void find_most_singular(Scene& scene, Survey& result) {
 }  // namespace
 
 JointRanges joint_ranges(const config::Device& device) {
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   const int n = model.chain.nv();
   JointRanges ranges = {Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (int i = 0; i < n; ++i) {
     const model::Joint& joint = model.chain.joints()[index(i)];
     Interval range = joint.position;
     if (i < model.n_p) {
-      range = device.prepositioning.q_limits[index(i)];
+      range = device.model.gantry_range[index(i)];
     } else {
       const auto& limits = model.joint_limits[index(i - model.n_p)];
       range = {limits.q_min, limits.q_max};
@@ -217,15 +213,15 @@ JointRanges joint_ranges(const config::Device& device) {
   return ranges;
 }
 
-bool permits_virtual_joints(const rendering::DeviceModel& model, const Eigen::VectorXd& q) {
-  return std::ranges::all_of(model.virtual_joints, [&](const rendering::VirtualJoint& joint) {
+bool permits_virtual_joints(const DeviceModel& model, const Eigen::VectorXd& q) {
+  return std::ranges::all_of(model.virtual_joints, [&](const VirtualJoint& joint) {
     const double sum = joint.weights.dot(q.tail(model.n_m));
     return sum >= joint.limits.q_min && sum <= joint.limits.q_max;
   });
 }
 
-bool permits_boxes(const rendering::DeviceModel& model, const model::ChainData& chain) {
-  return std::ranges::all_of(model.cartesian_limits, [&](const rendering::CartesianLimit& limit) {
+bool permits_boxes(const DeviceModel& model, const model::ChainData& chain) {
+  return std::ranges::all_of(model.cartesian_limits, [&](const CartesianLimit& limit) {
     return is_inside(limit, chain.pose(limit.frame).p);
   });
 }
@@ -245,7 +241,7 @@ std::optional<Eigen::VectorXd> draw(const config::Device& device, const JointRan
 Cloud cloud(const config::Device& device, int postures, bool at_limits, Random& random,
             const Adjust& adjust) {
   constexpr int kCopies = 8;  // gantry positions per posture of the arm
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   Scene scene = make_scene(device);
   const int copies = gantry_only_shifts(model) ? kCopies : 1;
   const model::Joint& first = model.chain.joints()[index(model.n_p)];
@@ -277,8 +273,7 @@ Survey survey(const config::Device& device, const SurveyOptions& options) {
   return result;
 }
 
-MatrixJ manipulator_jacobian(const rendering::DeviceModel& model, const model::ChainData& chain,
-                             int frame) {
+MatrixJ manipulator_jacobian(const DeviceModel& model, const model::ChainData& chain, int frame) {
   return chain.jacobian(frame).rightCols(model.n_m);
 }
 

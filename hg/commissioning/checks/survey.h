@@ -32,9 +32,9 @@ JointRanges joint_ranges(const config::Device& device);
 using hg::Random;
 
 /// Whether the virtual joints of the device permit `q` (gantry first).
-bool permits_virtual_joints(const rendering::DeviceModel& model, const Eigen::VectorXd& q);
+bool permits_virtual_joints(const DeviceModel& model, const Eigen::VectorXd& q);
 /// Whether all Cartesian limits permit the posture of `chain`, after update_poses().
-bool permits_boxes(const rendering::DeviceModel& model, const model::ChainData& chain);
+bool permits_boxes(const DeviceModel& model, const model::ChainData& chain);
 
 /// Draws a posture uniformly in the joint ranges, respecting virtual joints. With `at_limits` every
 /// joint stands at one of its limits with a chance of 1/5, so that the edges of the workspace are
@@ -88,7 +88,6 @@ struct Survey {
 Survey survey(const config::Device& device, const SurveyOptions& options = {});
 
 /// Manipulator columns of the Jacobian of `frame`; `chain`: after update_kinematics().
-MatrixJ manipulator_jacobian(const rendering::DeviceModel& model, const model::ChainData& chain,
-                             int frame);
+MatrixJ manipulator_jacobian(const DeviceModel& model, const model::ChainData& chain, int frame);
 
 }  // namespace hg::checks

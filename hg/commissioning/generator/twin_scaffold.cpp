@@ -73,29 +73,18 @@ Pose tip(TwinDraft& d, const Eigen::VectorXd& q) {
 class Reach {
  public:
   explicit Reach(const config::Device& device)
-      : scenario_{.title = {},
-                  .description = {},
-                  .device = device,
-                  .twin = {.name = "draft",
-                           .urdf = {},
-                           .T_B_root = {},
-                           .model = {.chain = model::ChainModel::free_body({}),
-                                     .end_effector = 0,
-                                     .q_start = ConfigurationA::Zero(7),
-                                     .dofs = {},
-                                     .locks = {}},
-                           .sources = {}},
-                  .script = {},
-                  .limits = {},
-                  .events = {},
-                  .sources = {}} {}
+      : device_(device),
+        twin_{.name = "draft",
+              .model = {.chain = model::ChainModel::free_body({}),
+                        .end_effector = 0,
+                        .q_start = ConfigurationA::Zero(7)}} {}
 
   bool contains(const Pose& T_B_H) {
-    ConfigurationA& q = scenario_.twin.model.q_start;
+    ConfigurationA& q = twin_.model.q_start;
     q.head<3>() = T_B_H.p;
     q.segment<4>(3) = Eigen::Quaterniond(T_B_H.R).normalized().coeffs();
     try {
-      scenario::find_start(scenario_);
+      scenario::find_start(device_, twin_);
       return true;
     } catch (const SetupError&) {
       return false;
@@ -103,7 +92,8 @@ class Reach {
   }
 
  private:
-  config::Scenario scenario_;
+  const config::Device& device_;
+  config::Twin twin_;
 };
 
 // the handle with every joint of the device at its goal or in the middle of its range
@@ -191,7 +181,7 @@ struct TipRatings {
 
 TipRatings tip_ratings(const config::Device& device) {
   limits::JointLimits hand{.dq_max = 1.5, .ddq_max = 5.0};
-  for (const limits::JointLimits& axis : rendering::handle_limits(device.model)) {
+  for (const limits::JointLimits& axis : handle_limits(device.model)) {
     hand.dq_max = std::min(hand.dq_max, axis.dq_max);
     hand.ddq_max = std::min(hand.ddq_max, axis.ddq_max);
   }

@@ -29,7 +29,7 @@ double rating(const DeviceModel& device, const Eigen::Vector3d& direction) {
 
 double largest_acceleration(const DeviceModel& device, const Motion& motion,
                             const Eigen::Vector3d& direction) {
-  if (device.motors.empty()) return rating(device, direction);
+  if (device.motors().empty()) return rating(device, direction);
   const int n_p = device.n_p, n_m = device.n_m;
   model::ChainData chain(device.chain);
   chain.update(stacked(motion.q_p, motion.q_m), stacked(motion.dq_p, motion.dq_m));
@@ -49,7 +49,7 @@ double largest_acceleration(const DeviceModel& device, const Motion& motion,
   }
   problem.add_level();
   for (int i = 0; i < n_m; ++i) {
-    const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
+    const ActuatorModel& motor = device.motors()[static_cast<std::size_t>(i)];
     row << chain.M().row(n_p + i).tail(n_m).transpose(), 0.0;
     row[i] += motor.rotor_inertia;
     const Interval torque = allowed_torque(motor, motion.dq_m[i]);

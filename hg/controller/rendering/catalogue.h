@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/limit.h"
 
 namespace hg::rendering {

@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/law_result.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/reactions.h"
@@ -22,6 +21,7 @@
 #include "hg/hqp/problem_capture.h"
 #include "hg/hqp/solver.h"
 #include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::rendering {
@@ -142,6 +142,7 @@ class Rendering {
   TwinModel twin_;
   model::ChainData device_now_, twin_now_;  ///< Both in the posture of the last update
   Options options_;
+  double dt_;  ///< Period, s
   surfaces::Environment environment_;
   double stop_rating_;
   Tasks tasks_;

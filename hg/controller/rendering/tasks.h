@@ -23,7 +23,6 @@
 #include <optional>
 #include <vector>
 
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/joint_braking.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/paper_law.h"
@@ -34,6 +33,7 @@
 #include "hg/hqp/solution.h"
 #include "hg/limits/acceleration_bounds.h"
 #include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/gantry_task.h"
 #include "hg/signals/state.h"
 
@@ -168,6 +168,7 @@ class Tasks {
   void hold(int limit, double ddq) noexcept;
 
   Options options_;
+  double dt_;  ///< Period, s
   int n_m_, n_a_;
   int n_g_;  ///< Gantry axes that the law leads
   int stop_count_;

@@ -23,8 +23,7 @@ struct LoopFilters {
 struct Loop {
   Config config;
   LoopFilters filters;
-  model::ChainModel chain;  ///< Gantry joints first
-  int n_p = 0, n_m = 0, handle = 0;
+  DeviceModel device;
 };
 
 /// True plant, independent of the model that the controller uses.

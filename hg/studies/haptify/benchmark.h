@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/haptify/figures.h"
 
 namespace hg::haptify {

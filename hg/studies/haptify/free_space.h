@@ -8,7 +8,7 @@
 #include <array>
 #include <cstdint>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/config/twin.h"
 #include "hg/studies/haptify/measures.h"
 #include "hg/studies/haptify/play.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/script_schema.h"
+#include "hg/config/simulation/script_schema.h"
 #include "hg/studies/changes.h"
 #include "hg/studies/haptify/free_space.h"
 #include "hg/studies/haptify/groups.h"

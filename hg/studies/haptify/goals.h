@@ -2,7 +2,7 @@
 /// the middle of the workspace, this for the worst case.
 #pragma once
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/haptify/benchmark.h"
 #include "hg/studies/haptify/figures.h"
 

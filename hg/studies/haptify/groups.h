@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/free_twin.h"
 #include "hg/studies/haptify/benchmark.h"
 #include "hg/studies/haptify/figures.h"

@@ -7,16 +7,16 @@
 #include <utility>
 #include <vector>
 
-#include "hg/controller/rendering/device_model.h"
 #include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 
 namespace hg::haptify {
 namespace {
 
 // Joints and virtual joints of a posture (gantry first) that stand at a limit beyond which the
 // handle would go farther along `axis`, to the side of the sign of `side`.
-std::vector<std::string> binding_limits(const rendering::DeviceModel& model,
-                                        const Eigen::VectorXd& q, int axis, double side) {
+std::vector<std::string> binding_limits(const DeviceModel& model, const Eigen::VectorXd& q,
+                                        int axis, double side) {
   constexpr double kNear = 0.02;   // rad
   constexpr double kMoves = 1e-3;  // m/rad; what moves it less does not end its way
   model::ChainData chain(model.chain);
@@ -37,7 +37,7 @@ std::vector<std::string> binding_limits(const rendering::DeviceModel& model,
     add(model.chain.joints()[joint].name, model.joint_limits[static_cast<std::size_t>(i)], arm[i],
         gain[i], -gain[i]);
   }
-  for (const rendering::VirtualJoint& joint : model.virtual_joints) {
+  for (const VirtualJoint& joint : model.virtual_joints) {
     const Eigen::VectorXd gains = joint.weights.cwiseProduct(gain);
     add(joint.name, joint.limits, joint.weights.dot(arm), gains.maxCoeff(), -gains.minCoeff());
   }

@@ -19,10 +19,10 @@ struct Source {
 };
 
 // Every joint of the least stiffness is so many times as stiff; the controller knows it.
-void stiffen_softest(double factor, tracking::Config& control) {
+void stiffen_softest(double factor, DeviceModel& device) {
   double softest = kInfinity;
-  for (const ActuatorModel& it : control.actuators) softest = std::min(softest, it.stiffness);
-  for (ActuatorModel& it : control.actuators) {
+  for (const ActuatorModel& it : device.actuators) softest = std::min(softest, it.stiffness);
+  for (ActuatorModel& it : device.actuators) {
     if (it.stiffness == softest) it.stiffness *= factor;
   }
 }
@@ -33,7 +33,7 @@ std::vector<FreeSpaceVariant> changed_ways() {
   return {{.name = "measured wrench not low-passed",
            .change = [](Scenario& s) { s.device.estimation.wrench.low_pass_Hz = 0.0; }},
           {.name = "softest joints four times as stiff",
-           .change = [](Scenario& s) { stiffen_softest(4.0, s.device.control); }}};
+           .change = [](Scenario& s) { stiffen_softest(4.0, s.device.model); }}};
 }
 
 // "0.018 m/s^2 at 69.3 Hz"

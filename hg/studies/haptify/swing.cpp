@@ -90,7 +90,7 @@ Swing measure_swing(const config::Scenario& scenario, const SwingConfig& config,
     angle.push_back(std::atan2(arm.y(), arm.x()));
   }
   const double omega = std::sqrt(stiffness / config.inertia);
-  return {.true_handle = oscillation_of(angle, config.swings, swung.device.rate_Hz),
+  return {.true_handle = oscillation_of(angle, config.swings, swung.device.model.rate_Hz),
           .ideal_Hz = omega / (2.0 * kPi),
           .ideal_damping = config.damping / (2.0 * omega * config.inertia),
           .failure = played.failure};

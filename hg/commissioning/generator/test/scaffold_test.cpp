@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hg/commissioning/generator/postures.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/test/message_of.h"
 #include "hg/core/test/temporary_folder.h"
 #include "hg/scenario/start_posture.h"
@@ -72,7 +72,7 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
     config::Scenario scenario{
         .title = {},
         .description = {},
-        .device = config::load_device(device),
+        .device = config::load_simulated_device(device),
         .twin = config::load_twin(folder.write(
             "gate.yaml", twin_yaml(kGate, folder.path(), config::load_device(device)))),
         .script = {},
@@ -81,7 +81,7 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
         .changes = {},
         .sources = {},
         .places = {}};
-    EXPECT_NO_THROW(scenario::find_start(scenario)) << device;
+    EXPECT_NO_THROW(scenario::find_start(scenario.device, scenario.twin)) << device;
     EXPECT_EQ(scenario.twin.model.dofs[0].limits.q_max, 1.2);
     EXPECT_GT(scenario.twin.model.dofs[0].damping, 0.0);
 

@@ -287,8 +287,9 @@ class Thrown {
     }
     for (ActuatorModel motor : reference_actuators()) {
       motor.torque_max *= 0.5;
-      device.motors.push_back(motor);
+      device.actuators.push_back(motor);
     }
+    device.has_torque_limits = true;
   }
   /// The rows of one cycle.
   Tasks tasks(const Options& options) const {
@@ -373,7 +374,7 @@ TEST(BrakingTogether, BeginsEarlierWhereMotorsAreWeakerThanRatings) {
 
 TEST(BrakingTogether, IsNoOtherThanAloneWhereTheLawDoesNotKnowTheMotors) {
   Thrown thrown;
-  thrown.device.motors.clear();
+  thrown.device.has_torque_limits = false;
   const Options together = {.braking = Braking::kTogether};
   EXPECT_FALSE(brakes_together(thrown.device, together));
   expect_same_bounds(thrown.tasks(together), thrown.tasks({}));

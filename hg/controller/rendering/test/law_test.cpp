@@ -179,7 +179,7 @@ TEST(Laws, DifferWithTwoCoupledLimits) {
     const Options options = with(law, Bounds::kRecoverable);
     Rendering rendering(unlimited_device(), twin, options);
     State state = rendering.start(kPosture);
-    state.twin.dq_a << 1.0 + 1.0 * options.dt, 1.0 + 0.9 * options.dt;
+    state.twin.dq_a << 1.0 + 1.0e-3, 1.0 + 0.9e-3;
     int changes = 0;
     for (int cycle = 0; cycle < 12; ++cycle) {
       const TouchedEnds before = state.touched;
@@ -453,7 +453,7 @@ TEST(Laws, RefuseWhatTheyCannotRender) {
       unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
   Options options;
   options.bounds = Bounds::kPaper;
-  options.T_C = 0.5 * options.dt;
+  options.T_C = 0.5 * unlimited_device().dt();
   EXPECT_THROW(Rendering(unlimited_device(), twin, options), SetupError);
   DeviceModel device = unlimited_device();
   device.posture = posture({0, 0, 0});

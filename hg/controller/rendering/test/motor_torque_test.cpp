@@ -69,7 +69,8 @@ struct Pulled {
     for (limits::JointLimits& joint : device.joint_limits) {
       joint = {.q_min = -6.0, .q_max = 6.0, .dq_max = 3.0, .ddq_max = 5.0};
     }
-    if (knows_motors) device.motors.assign(6, kMotor);
+    device.actuators.assign(6, kMotor);
+    device.has_torque_limits = knows_motors;
     return device;
   }
   static TwinModel body(const DeviceModel& device) {

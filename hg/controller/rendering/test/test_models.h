@@ -16,6 +16,7 @@ inline DeviceModel unlimited_device() {
       .n_m = 6};
   device.handle = device.chain.frame("handle");
   device.elbow = device.chain.frame("elbow");
+  device.gantry_range.resize(2);
   device.joint_limits.assign(6, {});
   return device;
 }

@@ -1,4 +1,4 @@
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ std::vector<std::string> names_of(const std::vector<EventRule>& events) {
 }
 
 TEST(Device, HasTheLimitsOfTheHandbook) {
-  const rendering::DeviceModel& model = door().device.model;
+  const DeviceModel& model = door().device.model;
   ASSERT_EQ(model.n_p, 2);
   ASSERT_EQ(model.n_m, 6);
   // accelerations of m1..m4: what their torques can do, see device.yaml
@@ -71,10 +71,10 @@ TEST(Device, LimitsTheSumOfJointsFourAndFive) {
 }
 
 TEST(Device, KeepsHandAndElbowInTheBox) {
-  const rendering::DeviceModel& model = door().device.model;
+  const DeviceModel& model = door().device.model;
   ASSERT_EQ(model.cartesian_limits.size(), 2u);
-  const rendering::CartesianLimit& hand = model.cartesian_limits[0];
-  const rendering::CartesianLimit& elbow = model.cartesian_limits[1];
+  const CartesianLimit& hand = model.cartesian_limits[0];
+  const CartesianLimit& elbow = model.cartesian_limits[1];
   EXPECT_EQ(hand.name, "hand");
   EXPECT_EQ(hand.frame, model.handle);
   EXPECT_EQ(elbow.frame, model.elbow);
@@ -95,24 +95,32 @@ TEST(Device, KeepsHandAndElbowInTheBox) {
   EXPECT_EQ(elbow.axes[2].dq_max, kInfinity);
 }
 
-TEST(Device, GivesEveryPartThePeriodAndTheDrive) {
+TEST(Device, HasItsFactsInItsModel) {
   const Device& device = door().device;
-  EXPECT_EQ(device.rendering.dt, 1e-3);
-  EXPECT_EQ(device.estimation.dt, 1e-3);
-  EXPECT_EQ(device.estimation.drive.lag, 40e-3);
-  EXPECT_EQ(device.prepositioning.n_p, 2);
+  EXPECT_EQ(device.model.rate_Hz, 1000.0);
+  EXPECT_EQ(device.model.drive.lag, 40e-3);
   EXPECT_EQ(device.prepositioning.k_ppu, 4.0);
   EXPECT_EQ(device.prepositioning.dq_max, 1.5);
-  EXPECT_EQ(device.prepositioning.q_limits[0].ub, 1.40);
-  EXPECT_EQ(device.prepositioning.q_limits[1].lb, -1.60);
-  EXPECT_NEAR(device.prepositioning.drive.tau, 45e-3, kRounding);
-  EXPECT_EQ(device.prepositioning.drive.ddq_max, 2.0);
-  EXPECT_EQ(device.monitor.gantry_speed_max, 1.5);
-  ASSERT_EQ(device.monitor.joint_range.size(), 6u);
-  EXPECT_EQ(device.monitor.joint_range[3].ub, 2.45);
-  EXPECT_EQ(device.monitor.joint_speed_max[5], 3.5);
-  EXPECT_EQ(device.T_H_S.p, Eigen::Vector3d(0, 0, -0.0375));
-  EXPECT_EQ(device.estimation.T_H_S.p, device.T_H_S.p);
+  EXPECT_EQ(device.prepositioning.ddq_max, 2.0);
+  ASSERT_EQ(device.model.gantry_range.size(), 2u);
+  EXPECT_EQ(device.model.gantry_range[0].ub, 1.40);
+  EXPECT_EQ(device.model.gantry_range[1].lb, -1.60);
+  EXPECT_EQ(device.model.T_H_S.p, Eigen::Vector3d(0, 0, -0.0375));
+  EXPECT_TRUE(device.model.has_closed_form);
+  EXPECT_EQ(device.model.actuators.size(), 6u);
+  EXPECT_TRUE(device.model.has_torque_limits);
+}
+
+// what a program for the real machine loads
+TEST(Device, IsLoadedWithoutItsSimulation) {
+  const auto reads_simulation = [](const Device& device) {
+    return std::ranges::any_of(device.sources, [](const SourceText& source) {
+      return source.name.ends_with("simulation.yaml");
+    });
+  };
+  const std::string file = "models/haptic_giant/device.yaml";
+  EXPECT_FALSE(reads_simulation(load_device(file)));
+  EXPECT_TRUE(reads_simulation(load_simulated_device(file)));
 }
 
 TEST(Twin, DoorHasCloserSpringAndBolt) {
@@ -377,7 +385,7 @@ TEST(Scenario, WhoseLawDoesNotKnowTheMotorsHasNoLimitsOfThemAndTheSameEvents) {
   const Scenario before = scenario;
   scenario.device.rendering.law = rendering::Law::kPaper;
   settle_law(scenario);
-  EXPECT_TRUE(scenario.device.model.motors.empty());
+  EXPECT_TRUE(scenario.device.model.motors().empty());
   EXPECT_EQ(scenario.limits.size() + 6, before.limits.size());
   const auto hinge = [](const Scenario& of) {
     return of.limits[static_cast<std::size_t>(of.events[0].all_of[0].index)].name;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/config/device.h"
 #include "hg/config/sources.h"
 #include "hg/core/types.h"
 #include "hg/model/chain_model.h"
@@ -84,7 +85,7 @@ struct Simulation {
 };
 
 /// The device that a simulation file belongs to. Without joint names, names are not checked.
-struct SimulatedDevice {
+struct SimulationTarget {
   std::vector<std::string> gantry, manipulator;  ///< joint names
   std::string handle;                            ///< name of the frame H
   model::ChainOptions chain;                     ///< options with which its URDF was read
@@ -93,6 +94,21 @@ struct SimulatedDevice {
 
 /// Loads a simulation. Throws SetupError with all faults of the file, one per line.
 Simulation load_simulation(const std::filesystem::path& file, SourceReader& reader,
-                           const SimulatedDevice& device);
+                           const SimulationTarget& target);
+
+/// A device with its simulation: ideal sensors, and nothing differs, where its file names none.
+struct SimulatedDevice : Device {
+  Simulation simulation;
+};
+
+/// Loads a device with its simulation. Throws SetupError with all faults of the device's file or
+/// else of the simulation's, one per line.
+SimulatedDevice load_simulated_device(const std::filesystem::path& file);
+SimulatedDevice load_simulated_device(const std::filesystem::path& file, SourceReader& reader);
+
+/// Replaces the device's simulation by that of this file; its texts join those of the device.
+/// Throws SetupError as load_simulation() does.
+void take_simulation(SimulatedDevice& device, const std::filesystem::path& file,
+                     SourceReader& reader);
 
 }  // namespace hg::config
