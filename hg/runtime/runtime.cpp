@@ -61,8 +61,7 @@ Runtime::Runtime(const Options& options, controller::Cycle& cycle, device::Devic
     : options_((check(options), options)),
       cycle_(cycle),
       device_(device),
-      session_(cycle, device,
-               {.rate_Hz = options.rate_Hz, .changes = options.changes, .load = options.load}),
+      session_(cycle, device, {.changes = options.changes, .load = options.load}),
       samples_(options.ring),
       hand_targets_(256),
       parameter_changes_(256),
@@ -207,8 +206,7 @@ void Runtime::operate(bool is_stopping) noexcept {
     is_operated_ = true;
     request_stops_ = next.stops;
   }
-  const double time_s = static_cast<double>(report_.cycles) / options_.rate_Hz;
-  if (const TimedPanel* due = timed_panels_.due(time_s)) {
+  if (const TimedPanel* due = timed_panels_.due(cycle_.time_s())) {
     play_script(*due);
     if (due->request != ModeRequest::kNone) {
       next.request = due->request;

@@ -19,10 +19,9 @@ namespace hg::runtime {
 
 /// What happens in a session at given times; set-up data.
 struct SessionPlan {
-  double rate_Hz = 1000.0;           ///< Cycles per second, Hz
   double duration_s = 0.0;           ///< Duration, s; 0 = until a fault or a stop
   std::vector<TimedChange> changes;  ///< Changes of the twin, in the order of their times
-  std::vector<TimedLoad> load;       ///< Load on the computer, for tests
+  std::vector<TimedLoad> load;       ///< Late cycles, for tests
 };
 
 /// A cycle, its device and an operator.
@@ -70,13 +69,12 @@ class Session {
  private:
   controller::Cycle& cycle_;
   device::Device& device_;
-  double rate_Hz_, duration_s_;
+  double duration_s_;
   TimedChanges changes_;
   TimedLoads loads_;
   OperatorFrame next_;
   bool is_operated_ = false;  ///< Requests come from the caller
   bool is_stopping_ = false;
-  std::uint64_t cycles_ = 0;  ///< Periods so far
   std::unique_ptr<Sample> sample_ = std::make_unique<Sample>();
 };
 

@@ -268,7 +268,8 @@ controller::Cycle make_cycle(const config::Scenario& scenario) {
                             .collision = device.collision,
                             .passivity = device.passivity,
                             .compliance = compliance_of(device),
-                            .surfaces = scenario.surfaces},
+                            .surfaces = scenario.surfaces,
+                            .solver_caps = faults::solver_caps_of(scenario.faults)},
                            device.model, scenario.twin.model);
 }
 

@@ -330,6 +330,7 @@ void Monitor::look_at_frames(const Rendered& rendered, const Watched& watched) n
   const Mode mode = mode_of(watched.state);
   if (mode != Mode::kRunning && mode != Mode::kStopping) return;
   for (int i = n_m_; i < config_.end_cartesian; ++i) {
+    // sums of joints, then motors, which have no range and so no excess, then frames
     const bool is_sum = i < config_.first_cartesian;
     look<FaultCode::kLimitExceeded>(
         i, rendered.limits[at(i)].excess,
