@@ -104,11 +104,25 @@ class InterfaceWriter {
   }
 };
 
+// A message of a view that is not there.
+template <IsMessage Message>
+Message blank() {
+  static const View view{};
+  static const LimitCatalogue limits{};
+  if constexpr (std::same_as<Message, FrameMessage>) {
+    return {view, limits};
+  } else if constexpr (std::same_as<Message, SafetyMessage>) {
+    return {view};
+  } else {
+    return Message{};
+  }
+}
+
 template <IsMessage Message>
 void add(std::string& text) {
   InterfaceWriter writer;
-  static const Message kBlank{};
-  fields(writer, kBlank);
+  const Message message = blank<Message>();
+  fields(writer, message);
   ((text += "\n// ") += kInterface<Message>.note) += '\n';
   ((text += "export interface ") += kInterface<Message>.name) += " {\n" + writer.text + "}\n";
 }
@@ -122,10 +136,10 @@ void add_all(std::string& text) {
 
 std::string typescript_text() {
   std::string text(kHead);
-  add_all<SceneMessage, SceneChainMessage, SceneJointMessage, SceneLimitMessage, SceneBoxMessage,
-          SceneSurfaceMessage, Choices, Choice, SettingMessage>(text);
+  add_all<Scene, SceneChain, SceneJoint, SceneLimitMessage, Eigen::AlignedBox3d, SceneSurface,
+          Choices, Choice, Setting>(text);
   add_all<FrameMessage, FeltLimitMessage, ActiveLimitMessage, ContactReport, HandBudget, Vector6,
-          Singularity, RunState, SafetyMessage, GhostMessage>(text);
+          Singularity, RunState, SafetyMessage, Ghost>(text);
   add_all<HandMessage, HoldMessage, CommandMessage, WelcomeMessage, AnswerMessage, ValuesMessage,
           EventMessage>(text);
   return text;
