@@ -1,4 +1,4 @@
-#include "apps/hapticgiant/run_page.h"
+#include "hg/page/run_page.h"
 
 #include <fmt/format.h>
 
@@ -7,14 +7,18 @@
 #include <utility>
 
 #include "hg/core/error.h"
-#include "hg/model/urdf.h"
+#include "hg/core/index.h"
+#include "hg/core/text.h"
 #include "hg/page/page_scene.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/names.h"
 
-namespace hg::apps {
+namespace hg::page {
 namespace {
 
+using scenario::Options;
+using viewer_server::Choice;
+using viewer_server::Choices;
 using viewer_server::Command;
 using viewer_server::CommandName;
 
@@ -24,16 +28,8 @@ std::vector<double> values_of(const std::vector<config::FormField>& form) {
   return values;
 }
 
-// commands that a run follows whatever its device is
-constexpr CommandName kAlways[] = {CommandName::kStop, CommandName::kSet, CommandName::kMode,
-                                   CommandName::kEmergencyStop, CommandName::kReleaseStop};
-// and those that need a simulated device, which waits and can be reset
-constexpr CommandName kSimulated[] = {
-    CommandName::kPause,   CommandName::kResume,   CommandName::kStep, CommandName::kSpeed,
-    CommandName::kRestart, CommandName::kScenario, CommandName::kTwin, CommandName::kLaw,
-    CommandName::kPerson,  CommandName::kPanel};
-
 constexpr std::string_view kRunIsOver = "the run is over: start it again";
+constexpr std::string_view kStopped = "a stop came after it";
 constexpr std::uint32_t kMostSamples = 10'000;  // in which a request must be seen
 
 struct NamedRequest {
@@ -45,17 +41,16 @@ constexpr NamedRequest kRequests[] = {{"arm", ModeRequest::kArm},
                                       {"run_alone", ModeRequest::kAutonomous},
                                       {"reset", ModeRequest::kReset}};
 
-std::string refusal_of_device(const PreparedRun& run) {
-  if (run.remote == nullptr) return {};
-  return "the device at " + run.arguments.device_address + " keeps its own time";
-}
-
-constexpr std::string_view kStopped = "a stop came after it";
-
-bool is_choice_of_run(CommandName name) {
-  return name == CommandName::kRestart || name == CommandName::kScenario ||
-         name == CommandName::kTwin || name == CommandName::kLaw || name == CommandName::kPerson;
-}
+/// What a page may choose for the next run: from which list, and which option it replaces.
+struct Chooser {
+  CommandName command;
+  std::vector<Choice> Choices::*list;
+  std::string Options::*option;
+};
+constexpr Chooser kChoosers[] = {{CommandName::kScenario, &Choices::scenarios, &Options::scenario},
+                                 {CommandName::kTwin, &Choices::twins, &Options::twin},
+                                 {CommandName::kLaw, &Choices::laws, &Options::law},
+                                 {CommandName::kPerson, &Choices::people, &Options::user}};
 
 viewer_server::Options with(OperatorDesk* desk, viewer_server::Options options) {
   options.desk = desk;
@@ -64,42 +59,92 @@ viewer_server::Options with(OperatorDesk* desk, viewer_server::Options options) 
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+std::string text_of_done(const Command& command) {
+  const std::string page = fmt::format("page {}", command.page);
+  switch (command.name) {
+    case CommandName::kEmergencyStop:
+      return "pressed by " + page;
+    case CommandName::kReleaseStop:
+      return fmt::format(
+          "of {} by {}",
+          command.value == 0.0 ? "the script" : fmt::format("page {}", command.value), page);
+    case CommandName::kPanel:
+      return fmt::format("{} by {}", command.value != 0.0 ? "on" : "off", page);
+    default:
+      return "asked for in the page";
+  }
+}
+
+std::string_view name_of_done(const Command& command) {
+  if (command.name == CommandName::kEmergencyStop) return "emergency_stop";
+  return command.name == CommandName::kReleaseStop ? "release_stop"
+                                                   : std::string_view(command.argument);
+}
+
 }  // namespace
 
-RunPage::RunPage(const viewer_server::Options& options, const PreparedRun& first)
-    : run_(&first),
-      form_(config::twin_form(first.scenario.twin.model)),
+struct RunPage::Order {
+  CommandName name;
+  bool needs_simulation;  ///< the device has to wait, or to start anew
+  /// How it is executed; nullptr = by the server, at the operator's desk
+  std::string (RunPage::*obey)(const Command&, runtime::Runtime*, const Note&);
+
+  bool is_choice() const { return obey == &RunPage::choose; }
+};
+
+std::span<const RunPage::Order> RunPage::orders() {
+  static constexpr Order kOrders[] = {{CommandName::kStop, false, &RunPage::stop},
+                                      {CommandName::kSet, false, &RunPage::set},
+                                      {CommandName::kMode, false, &RunPage::request_mode},
+                                      {CommandName::kEmergencyStop, false, nullptr},
+                                      {CommandName::kReleaseStop, false, nullptr},
+                                      {CommandName::kPause, true, &RunPage::set_pace},
+                                      {CommandName::kResume, true, &RunPage::set_pace},
+                                      {CommandName::kStep, true, &RunPage::set_pace},
+                                      {CommandName::kSpeed, true, &RunPage::set_pace},
+                                      {CommandName::kRestart, true, &RunPage::choose},
+                                      {CommandName::kScenario, true, &RunPage::choose},
+                                      {CommandName::kTwin, true, &RunPage::choose},
+                                      {CommandName::kLaw, true, &RunPage::choose},
+                                      {CommandName::kPerson, true, &RunPage::choose},
+                                      {CommandName::kPanel, true, nullptr}};
+  return kOrders;
+}
+
+RunPage::RunPage(const viewer_server::Options& options, const ShownRun& first, Prepare prepare)
+    : run_(first),
+      prepare_(std::move(prepare)),
+      form_(config::twin_form(first.scenario->twin.model)),
       values_(values_of(form_)),
       server_(with(desk_.get(), options), scene_of(first)),
       newest_(std::make_unique<Sample>()) {}
 
-viewer_server::Scene RunPage::scene_of(const PreparedRun& run) const {
-  viewer_server::Scene scene = page::page_scene(run.scenario);
+viewer_server::Scene RunPage::scene_of(const ShownRun& run) const {
+  viewer_server::Scene scene = page_scene(*run.scenario);
   scene.run = number_;
-  scene.duration_s = scenario::planned_duration_s(run.scenario);
-  scene.choices = page::page_choices(run.arguments.world);
-  scene.choices.law = rendering::to_string(run.scenario.device.rendering.law);
-  scene.settings = page::page_settings(form_);
-  scene.commands.assign(std::begin(kAlways), std::end(kAlways));
-  scene.refusal = refusal_of_device(run);
-  if (scene.refusal.empty()) {
-    scene.commands.insert(scene.commands.end(), std::begin(kSimulated), std::end(kSimulated));
+  scene.duration_s = scenario::planned_duration_s(*run.scenario);
+  scene.choices = page_choices(*run.options);
+  scene.choices.law = rendering::to_string(run.scenario->device.rendering.law);
+  scene.settings = page_settings(form_);
+  scene.refusal = run.refusal;
+  for (const Order& order : orders()) {
+    if (run.refusal.empty() || !order.needs_simulation) scene.commands.push_back(order.name);
   }
   return scene;
 }
 
-void RunPage::begin(const PreparedRun& run, const std::string& recording) {
+void RunPage::begin(const ShownRun& run, const std::string& recording) {
   const bool is_first = !analysis_;
+  run_ = run;
   if (!is_first) {
-    run_ = &run;
     ++number_;
-    form_ = config::twin_form(run.scenario.twin.model);
+    form_ = config::twin_form(run.scenario->twin.model);
     values_ = values_of(form_);
     server_.set_scene(scene_of(run));
   }
   server_.set_values(values_);
-  analysis_.emplace(run.scenario);
-  names_ = scenario::part_names(run.scenario);
+  analysis_.emplace(*run.scenario);
+  names_ = scenario::part_names(*run.scenario);
   view_ = {};
   view_.run = number_;
   view_.run_state.recording = recording;
@@ -134,11 +179,10 @@ void RunPage::observe(const Sample& sample, const Note& note) {
   if (sample.record.change == ChangeStatus::kNone) return;
   const int field = config::field_of(form_, sample.operator_input.change);
   if (field < 0) return;
-  const auto index = static_cast<std::size_t>(field);
   if (sample.record.change == ChangeStatus::kRefused) {
-    note("refused", form_[index].name + " stays as it is");
+    note("refused", form_[index(field)].name + " stays as it is");
   } else {
-    values_[index] = sample.operator_input.change.value;
+    values_[index(field)] = sample.operator_input.change.value;
   }
   server_.set_values(values_);
 }
@@ -153,11 +197,11 @@ void RunPage::publish() {
   view_.record = newest_->record;
   view_.hand = newest_->operator_input.hand_target;
   view_.cycle_time_us = newest_->cycle_time_us;
-  view_.status_text = run_->scenario.description;
+  view_.status_text = run_.scenario->description;
   view_.budget = analysis_->budget(newest_->record);
   view_.singularity = analysis_->singularity(newest_->record);
   view_.run_state.position_s = newest_->record.time_s;
-  view_.safety = page::safety_view(*newest_, names_);
+  view_.safety = safety_view(*newest_, names_);
   server_.publish(view_);
   view_.cycle_time_max_us = 0.0;
   has_news_ = false;
@@ -166,16 +210,7 @@ void RunPage::publish() {
 void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
   HandTarget target;
   if (server_.take_hand_target(target) && runtime != nullptr) runtime->set_hand_target(target);
-  for (const Command& command : server_.take_commands()) {
-    has_news_ = true;
-    if (command.is_done) {
-      tell_done(command, note);
-      continue;
-    }
-    const std::string why_not = obey(command, runtime, note);
-    const bool is_asked = command.name == CommandName::kMode || is_choice_of_run(command.name);
-    if (!is_asked || !why_not.empty()) server_.answer(command, why_not);
-  }
+  for (const Command& command : server_.take_commands()) take(command, runtime, note);
   while (!asked_.empty() && asked_.front().command.stops != desk_->stops()) {
     server_.answer(asked_.front().command, kStopped);
     asked_.pop_front();
@@ -183,79 +218,69 @@ void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
   if (runtime == nullptr) refuse_asked(kRunIsOver);
   take_prepared(note);
   drop_overtaken(note);
-  const std::uint32_t lost = desk_->take_lost();
-  if ((lost & 1u) != 0) note("operator_enable", "let go: its page is gone or silent");
-  if ((lost & 2u) != 0) note("override_key", "turned off: its page is gone or silent");
-  viewer_server::RunState& state = view_.run_state;
-  const bool is_paused = runtime != nullptr && runtime->pace().is_paused();
-  const double speed = runtime != nullptr ? runtime->pace().speed() : state.speed;
-  const bool is_over = runtime == nullptr;
-  has_news_ =
-      has_news_ || is_paused != state.is_paused || speed != state.speed || is_over != state.is_over;
-  state.is_paused = is_paused;
-  state.speed = speed;
-  state.is_over = is_over;
+  note_lost(note);
+  viewer_server::RunState state = view_.run_state;
+  state.is_over = runtime == nullptr;
+  state.is_paused = runtime != nullptr && runtime->pace().is_paused();
+  if (runtime != nullptr) state.speed = runtime->pace().speed();
+  has_news_ = has_news_ || state != view_.run_state;
+  view_.run_state = state;
   if (has_news_ && server_.is_due()) publish();
 }
 
-void RunPage::tell_done(const Command& command, const Note& note) const {
-  const std::string page = fmt::format("page {}", command.page);
-  const std::string_view on_off = command.value != 0.0 ? "on" : "off";
-  switch (command.name) {
-    case CommandName::kEmergencyStop:
-      return note("emergency_stop", "pressed by " + page);
-    case CommandName::kReleaseStop:
-      return note("release_stop",
-                  fmt::format("of {} by {}",
-                              command.value == 0.0 ? std::string("the script")
-                                                   : fmt::format("page {}", command.value),
-                              page));
-    case CommandName::kPanel:
-      return note(command.argument, fmt::format("{} by {}", on_off, page));
-    default:
-      return note(command.argument, "asked for in the page");
+void RunPage::take(const Command& command, runtime::Runtime* runtime, const Note& note) {
+  has_news_ = true;
+  if (command.is_done) return note(name_of_done(command), text_of_done(command));
+  const auto order = std::ranges::find(orders(), command.name, &Order::name);
+  const bool is_known = order != orders().end() && order->obey != nullptr;
+  std::string why_not;
+  if (!is_known) {
+    why_not = "this is a run, not a recording";
+  } else if (order->needs_simulation && !run_.refusal.empty()) {
+    why_not = run_.refusal;
+  } else if (runtime == nullptr && !order->is_choice()) {
+    why_not = kRunIsOver;
+  } else {
+    why_not = (this->*order->obey)(command, runtime, note);
+    // answered by the cycle, or when it is prepared
+    const bool is_under_way = command.name == CommandName::kMode || order->is_choice();
+    if (is_under_way && why_not.empty()) return;
   }
+  server_.answer(command, why_not);
 }
 
-// reason for a refusal; empty = executed, or another run is being prepared
-std::string RunPage::obey(const Command& command, runtime::Runtime* runtime, const Note& note) {
-  const std::string refusal = refusal_of_device(*run_);
-  const bool needs_simulation =
-      std::find(std::begin(kSimulated), std::end(kSimulated), command.name) != std::end(kSimulated);
-  if (needs_simulation && !refusal.empty()) return refusal;
-  if (is_choice_of_run(command.name)) return choose(command);
-  if (command.name == CommandName::kSeek) return "this is a run, not a recording";
-  if (runtime == nullptr) return std::string(kRunIsOver);
-  if (command.name == CommandName::kSet) return set(command, *runtime, note);
-  if (command.name == CommandName::kMode) return obey_mode(command, *runtime, note);
-  if (command.name == CommandName::kStop) {
-    runtime->request_stop();
-    stop_was_asked_ = true;
-    next_.reset();  // discards the previous choice
-    note("stop", "asked for in the page");
-    return {};
-  }
-  return obey_pace(command, runtime->pace(), note);
+void RunPage::note_lost(const Note& note) {
+  const std::uint32_t lost = desk_->take_lost();
+  if ((lost & 1u) != 0) note("operator_enable", "let go: its page is gone or silent");
+  if ((lost & 2u) != 0) note("override_key", "turned off: its page is gone or silent");
 }
 
-std::string RunPage::obey_mode(const Command& command, runtime::Runtime& runtime,
-                               const Note& note) {
-  const auto named = std::find_if(std::begin(kRequests), std::end(kRequests),
-                                  [&](const auto& r) { return r.name == command.argument; });
+std::string RunPage::stop(const Command&, runtime::Runtime* runtime, const Note& note) {
+  runtime->request_stop();
+  stop_was_asked_ = true;
+  has_next_ = false;  // discards the previous choice
+  note("stop", "asked for in the page");
+  return {};
+}
+
+std::string RunPage::request_mode(const Command& command, runtime::Runtime* runtime,
+                                  const Note& note) {
+  const auto named = std::ranges::find(kRequests, command.argument, &NamedRequest::name);
   if (named == std::end(kRequests)) return "there is no such mode: " + command.argument;
   if (command.stops != desk_->stops()) return std::string(kStopped);
   // one button resets the safety controller as well, and first
-  if (named->request == ModeRequest::kReset) runtime.press_reset();
-  const bool is_taken = runtime.request(ModeRequest::kNone, command.stops) &&
-                        runtime.request(ModeRequest::kNone, command.stops) &&
-                        runtime.request(named->request, command.stops);
+  if (named->request == ModeRequest::kReset) runtime->press_reset();
+  const bool is_taken = runtime->request(ModeRequest::kNone, command.stops) &&
+                        runtime->request(ModeRequest::kNone, command.stops) &&
+                        runtime->request(named->request, command.stops);
   if (!is_taken) return "too many commands are waiting";
   note(command.argument, "asked for in the page");
   asked_.push_back({command, named->request});
   return {};
 }
 
-std::string RunPage::obey_pace(const Command& command, runtime::Pace& pace, const Note& note) {
+std::string RunPage::set_pace(const Command& command, runtime::Runtime* runtime, const Note& note) {
+  runtime::Pace& pace = runtime->pace();
   switch (command.name) {
     case CommandName::kPause:
       pace.pause();
@@ -281,35 +306,28 @@ std::string RunPage::obey_pace(const Command& command, runtime::Pace& pace, cons
 }
 
 // prepares the next run; the present one continues meanwhile, and also if that fails
-std::string RunPage::choose(const Command& command) {
-  if (is_preparing()) return "another run is being prepared";
-  RunArguments arguments = run_->arguments;
-  const viewer_server::Choices choices = page::page_choices(arguments.world);
-  const auto take = [&](const std::vector<viewer_server::Choice>& list, std::string& value) {
-    if (!page::is_choice(list, command.argument)) return false;
-    value = command.argument;
-    return true;
-  };
-  scenario::Options& world = arguments.world;
-  bool is_known = true;
-  if (command.name == CommandName::kScenario) {
-    is_known = take(choices.scenarios, world.scenario);
-    world.twin.clear();
+std::string RunPage::choose(const Command& command, runtime::Runtime*, const Note&) {
+  if (is_preparing() || has_next_) return "another run is being prepared";
+  Options options = *run_.options;
+  const auto* chooser = std::ranges::find(kChoosers, command.name, &Chooser::command);
+  if (chooser != std::end(kChoosers)) {
+    if (!is_choice(page_choices(options).*chooser->list, command.argument)) {
+      return "there is no such choice: " + command.argument;
+    }
+    options.*chooser->option = command.argument;
   }
-  if (command.name == CommandName::kTwin) is_known = take(choices.twins, world.twin);
-  const bool is_other_twin =
-      command.name == CommandName::kScenario || command.name == CommandName::kTwin;
+  const bool is_other_scenario = command.name == CommandName::kScenario;
+  if (is_other_scenario) options.twin.clear();
   // a script is made for one twin
-  if (is_other_twin && world.user != "mouse" && world.user != "none") world.user.clear();
-  if (command.name == CommandName::kLaw) is_known = take(choices.laws, arguments.world.law);
-  if (command.name == CommandName::kPerson) is_known = take(choices.people, world.user);
-  if (!is_known) return "there is no such choice: " + command.argument;
+  const bool is_other_twin = is_other_scenario || command.name == CommandName::kTwin;
+  if (is_other_twin && options.user != "mouse" && options.user != "none") options.user.clear();
   chosen_ = command;
-  prepared_ = std::async(std::launch::async, [arguments]() -> Prepared {
+  prepared_ = std::async(std::launch::async, [this, options]() -> std::string {
     try {
-      return {std::make_unique<PreparedRun>(arguments), {}};
+      prepare_(options);
+      return {};
     } catch (const SetupError& error) {
-      return {nullptr, first_line(error.what())};
+      return first_line(error.what());
     }
   });
   return {};
@@ -319,42 +337,37 @@ void RunPage::take_prepared(const Note& note) {
   if (!is_preparing() || prepared_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
     return;
   }
-  auto [run, refusal] = prepared_.get();
+  std::string refusal = prepared_.get();
   if (refusal.empty() && chosen_.stops != desk_->stops()) refusal = kStopped;
-  if (refusal.empty()) {
-    next_ = std::move(run);
-    note("restart", chosen_.argument.empty() ? "again" : chosen_.argument);
-  }
+  has_next_ = refusal.empty();
+  if (has_next_) note("restart", chosen_.argument.empty() ? "again" : chosen_.argument);
   server_.answer(chosen_, refusal);
 }
 
 // A stop that came after a run was chosen is one for that run as well.
 void RunPage::drop_overtaken(const Note& note) {
-  if (!next_ || chosen_.stops == desk_->stops()) return;
-  next_.reset();
+  if (!has_next_ || chosen_.stops == desk_->stops()) return;
+  has_next_ = false;
   stop_was_asked_ = true;
   note("restart", "left out: a stop came after it");
 }
 
-std::unique_ptr<PreparedRun> RunPage::take_next() {
-  if (chosen_.stops != desk_->stops()) next_.reset();
-  return std::move(next_);
+bool RunPage::take_next() {
+  return std::exchange(has_next_, false) && chosen_.stops == desk_->stops();
 }
 
-std::string RunPage::set(const Command& command, runtime::Runtime& runtime, const Note& note) {
-  const auto field = std::find_if(
-      form_.begin(), form_.end(),
-      [&](const config::FormField& candidate) { return candidate.name == command.argument; });
+std::string RunPage::set(const Command& command, runtime::Runtime* runtime, const Note& note) {
+  const auto field = std::ranges::find(form_, command.argument, &config::FormField::name);
   if (field == form_.end()) return "there is no such setting: " + command.argument;
-  const auto index = static_cast<int>(field - form_.begin());
-  std::string why_not = config::refusal(form_, index, command.value, values_);
+  const auto number = static_cast<int>(field - form_.begin());
+  std::string why_not = config::refusal(form_, number, command.value, values_);
   if (!why_not.empty()) return why_not;
   for (ParameterChange change : field->changes) {
     change.value = command.value;
-    if (!runtime.change(change)) return "too many changes are waiting";
+    if (!runtime->change(change)) return "too many changes are waiting";
   }
-  note("set", fmt::format("{} = {} {}", field->name, model::to_text(command.value), field->unit));
+  note("set", fmt::format("{} = {} {}", field->name, to_text(command.value), field->unit));
   return {};
 }
 
-}  // namespace hg::apps
+}  // namespace hg::page

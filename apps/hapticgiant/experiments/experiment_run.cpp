@@ -11,7 +11,6 @@
 
 #include "apps/hapticgiant/experiments/condition_text.h"
 #include "apps/hapticgiant/output.h"
-#include "apps/hapticgiant/run_recording.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/analysis/summary.h"
