@@ -232,12 +232,12 @@ void RunPage::take(const Command& command, runtime::Runtime* runtime, const Note
   has_news_ = true;
   if (command.is_done) return note(name_of_done(command), text_of_done(command));
   const auto order = std::ranges::find(orders(), command.name, &Order::name);
-  const bool is_known = order != orders().end() && order->obey != nullptr;
+  const bool is_known = order != orders().end();
   std::string why_not;
-  if (!is_known) {
-    why_not = "this is a run, not a recording";
-  } else if (order->needs_simulation && !run_.refusal.empty()) {
+  if (is_known && order->needs_simulation && !run_.refusal.empty()) {
     why_not = run_.refusal;
+  } else if (!is_known || order->obey == nullptr) {
+    why_not = "this is a run, not a recording";
   } else if (runtime == nullptr && !order->is_choice()) {
     why_not = kRunIsOver;
   } else {

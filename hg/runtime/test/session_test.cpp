@@ -68,7 +68,7 @@ TEST(Session, AChangeWaitsWhileAPlannedOneIsDue) {
 
 TEST(Session, AllThatIsPlannedForATimeActsInOneCycle) {
   for (int cycle = 1; cycle < 120; ++cycle) {
-    const double at_s = cycle / 1000.0;  // some lie above, some below cycle * 0.001
+    const double at_s = cycle * 1e-3;  // for some of them greater than cycle / 1000
     Parts parts;
     Session session(*parts.cycle, parts.device,
                     {.changes = {{.at_s = at_s, .change = {Parameter::kReferenceWrench, 0, 1.0}}},
