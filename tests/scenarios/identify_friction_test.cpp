@@ -1,4 +1,4 @@
-// What `hapticgiant identify friction` finds of simulated machines, which know the truth.
+// What `hapticgiant identify friction` finds of simulated machines, whose truth is known.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ std::vector<FrictionEstimate> identified(const std::string& simulation) {
       scenario::load({.scenario = "free_space", .user = "friction", .simulation = simulation});
   identification::FrictionTraces traces(scenario.device.control);
   studies::Player player(scenario);
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool is_running = true; is_running; is_running = player.end()) {
     player.begin();
     player.run();
     traces.add(player.sample());

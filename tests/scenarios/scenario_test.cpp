@@ -17,7 +17,7 @@ constexpr double kSyncMaxUnknownLag = 3e-3;  // m
 
 void set_plant_lag(config::Scenario& scenario, double lag_s) { scenario.device.drive.lag = lag_s; }
 
-// the observer and the braking distance know the lag, too
+// the observer and the braking distance include the lag, too
 void set_known_lag(config::Scenario& scenario, double lag_s) {
   scenario.device.prepositioning.drive.tau += lag_s - scenario.device.drive.lag;
   scenario.device.estimation.drive.lag = lag_s;
@@ -25,7 +25,7 @@ void set_known_lag(config::Scenario& scenario, double lag_s) {
 }
 
 // One thing varies at a time: a tremor decides which rows collide for a cycle, and so how hard.
-config::Scenario calm(const std::string& name) {
+config::Scenario undisturbed(const std::string& name) {
   config::Scenario scenario = law_alone(name, 500.0);
   scenario.script.hand.tremor_rms = 0.0;
   return scenario;
@@ -57,7 +57,7 @@ TEST_P(EveryScenario, ShowsTheSameEventsAtHalfAndTwiceTheRate) {
 TEST_P(EveryScenario, ShowsItsEventsWithAGantryFasterOrSlowerThanThought) {
   for (const double lag_s : {0.02, 0.08}) {
     SCOPED_TRACE(lag_s);
-    config::Scenario scenario = calm(GetParam());
+    config::Scenario scenario = undisturbed(GetParam());
     set_plant_lag(scenario, lag_s);
     ScenarioRun run(scenario);
     run.play();
@@ -65,10 +65,10 @@ TEST_P(EveryScenario, ShowsItsEventsWithAGantryFasterOrSlowerThanThought) {
   }
 }
 
-TEST_P(EveryScenario, ShowsItsEventsWithAGantryThatIsKnownToBeFasterOrSlower) {
+TEST_P(EveryScenario, ShowsItsEventsWithAGantryConfiguredFasterOrSlower) {
   for (const double lag_s : {0.02, 0.08}) {
     SCOPED_TRACE(lag_s);
-    config::Scenario scenario = calm(GetParam());
+    config::Scenario scenario = undisturbed(GetParam());
     set_known_lag(scenario, lag_s);
     ScenarioRun run(scenario);
     run.play();
@@ -79,7 +79,7 @@ TEST_P(EveryScenario, ShowsItsEventsWithAGantryThatIsKnownToBeFasterOrSlower) {
 TEST_P(EveryScenario, ShowsItsEventsWithASofterOrStifferHand) {
   for (const double factor : {0.9, 1.1}) {
     SCOPED_TRACE(factor);
-    config::Scenario scenario = calm(GetParam());
+    config::Scenario scenario = undisturbed(GetParam());
     scenario.script.hand.stiffness *= factor;
     scenario.script.hand.angular_stiffness *= factor;
     ScenarioRun run(scenario);

@@ -52,7 +52,7 @@ TEST(StateHash, SeesEveryValueOfTheState) {
       [](State& s) { s.rendering.contact.is_started = true; },
       [](State& s) { s.gantry_target.is_started = true; },
       [](State& s) { s.gantry_target.q[7] = 0.0; }, [](State& s) { s.collision.count = 1; },
-      [](State& s) { s.passivity.tank = 1.0; }, [](State& s) { s.passivity.calming.inertia = 2.0; },
+      [](State& s) { s.passivity.tank = 1.0; }, [](State& s) { s.passivity.added.inertia = 2.0; },
       [](State& s) { s.dq_p[1] = 0.0; }, [](State& s) { s.is_blocked = true; },
       [](State& s) { s.force_share = 0.5; }, [](State& s) { s.next_sequence = 7; },
       [](State& s) { s.supervisor.state = safety::State::kAutonomous; },
@@ -64,10 +64,9 @@ TEST(StateHash, SeesEveryValueOfTheState) {
       [](State& s) { s.is_coasting = true; }, [](State& s) { s.is_apart = true; },
       [](State& s) { s.was_alone = true; }, [](State& s) { s.estimation.is_started = true; },
       [](State& s) { s.estimation.wrench.is_started = true; },
-      [](State& s) { s.rendering.calming.damping = 1.0; },
-      [](State& s) { s.rendering.calming.inertia = 2.0; },
-      [](State& s) { s.monitor.broken[1] = 1; }, [](State& s) { s.monitor.broken[0] = 3; },
-      [](State& s) { s.supervisor.stop_samples = 1; },
+      [](State& s) { s.rendering.added.damping = 1.0; },
+      [](State& s) { s.rendering.added.inertia = 2.0; }, [](State& s) { s.monitor.broken[1] = 1; },
+      [](State& s) { s.monitor.broken[0] = 3; }, [](State& s) { s.supervisor.stop_samples = 1; },
       [](State& s) { s.motion = Motion::kBrakeJoints; }, [](State& s) { s.was_on = true; },
       [](State& s) { s.w_H[2] = 1.0; },
       [](State& s) { s.monitor.gantry_gap = VectorP::Constant(1, 0.4); },
@@ -102,7 +101,7 @@ TEST(StateHash, SeesEveryValueOfTheState) {
       [](State& s) { s.touch.dq = VectorM::Ones(1); },
       [](State& s) {
         s.touch.dq = VectorM::Ones(1);
-        s.touch.is_told = true;
+        s.touch.is_reported = true;
       },
       [](State& s) {
         s.touch.dq = VectorM::Ones(1);

@@ -137,7 +137,7 @@ TEST(IdentifyFriction, NamesTheDirectionThatIsMissing) {
       << found.missing[0];
 }
 
-TEST(IdentifyFriction, SaysThatItIsTooShort) {
+TEST(IdentifyFriction, ReportsThatItIsTooShort) {
   const FrictionEstimate found = identify_friction(move(actuator(), {}, rich, 6.0), believed());
   EXPECT_FALSE(found.coulomb.is_found);
   ASSERT_EQ(found.missing.size(), 1u);

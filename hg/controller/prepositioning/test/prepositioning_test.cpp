@@ -92,7 +92,7 @@ TEST(Prepositioning, StandsStillWhileTheDeviceIsBlocked) {
   EXPECT_EQ(step(config(), robot, target, true).dq.norm(), 0.0);
 }
 
-TEST(Prepositioning, StopsByItselfBeforeItCarriesAFrameOverItsLimit) {
+TEST(Prepositioning, StopsBeforeItCarriesAFrameOverItsLimit) {
   const Config gantry = config();
   RobotState robot;
   robot.q_p = Eigen::Vector2d(0.0, 0.0);
@@ -160,7 +160,7 @@ struct LedGantry {
   }
 };
 
-TEST(Prepositioning, TheDrivesDoWhatTheLawAsksFor) {
+TEST(Prepositioning, TheDrivesFollowTheLaw) {
   const VectorP wanted = Eigen::Vector2d(1.0, -1.5);
   LedGantry gantry;
   for (int k = 0; k < 300; ++k) {

@@ -41,21 +41,21 @@ double worst_radius(const Loop& loop, double latency) {
   return worst;
 }
 
-// not faster than asked for, and not much slower: they die out within 50 ms
+// not faster than requested, and not much slower: they die out within 50 ms
 TEST(LoopStability, AtOneMillisecondErrorsDieOutAboutAsFastAsThePolesSay) {
   const double radius = worst_radius(reference_loop(), 1e-3);
   EXPECT_LT(radius, std::exp(-20.0 * 1e-3));
   EXPECT_GT(radius, std::exp(-65.0 * 1e-3));
 }
 
-TEST(LoopStability, GainsThatKnowTheLatencyAreStableWithIt) {
+TEST(LoopStability, GainsChosenForTheLatencyAreStableWithIt) {
   for (const double latency : {0.5e-3, 1e-3, 1.5e-3, 2e-3, 3e-3}) {
     EXPECT_LT(worst_radius(reference_loop(), latency), 1.0) << latency;
   }
 }
 
 // Gains for `believed` meet an arm whose latency is `latency` and whose rotors have `rotor` times
-// the inertia that the controller knows.
+// the inertia in the controller's model.
 double worst_radius_of_plant(double believed, double latency, double rotor) {
   const Loop loop = reference_loop();
   TruePlant plant = {loop.config.actuators, loop.config.loop};
@@ -102,9 +102,9 @@ std::vector<Eigen::VectorXd> dense_postures(std::size_t count) {
   return all;
 }
 
-// Gains must hold for an arm that nobody knows exactly, wherever it stands, without the help of
+// Gains must hold for an arm that is not known exactly, wherever it stands, without the help of
 // friction.
-TEST(LoopStability, EveryPostureToleratesAQuarterOfErrorInMassesAndSpringsAndHalfMoreLatency) {
+TEST(LoopStability, EveryPostureIsStableWithWrongMassesSpringsAndLatency) {
   const Loop loop = reference_loop();
   const TruePlant believed = {loop.config.actuators, loop.config.loop};
   const auto with = [&](auto change) {

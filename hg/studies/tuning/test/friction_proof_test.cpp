@@ -69,7 +69,7 @@ TEST(FrictionProof, DoesNotHoldFarFromThat) {
 }
 
 // friction that changes its sign with the speed is a negative damper in small motions
-TEST(FrictionProof, WithoutPreslidingSmallMotionsAreNotStableByThemselves) {
+TEST(FrictionProof, WithoutPreslidingSmallMotionsAreNotStableAlone) {
   Device device = device_of(reference());
   const tracking::Config& config = device.loop.config;
   const tracking::TruePlant plant = {config.actuators, config.loop};
@@ -81,7 +81,7 @@ TEST(FrictionProof, WithoutPreslidingSmallMotionsAreNotStableByThemselves) {
   EXPECT_GT(spectral_radius(linearise(device, plant, {}, grasps({}).back().hand, {}, q).A), 1.01);
 }
 
-TEST(FrictionProof, AsksNothingOfADeviceWithoutPresliding) {
+TEST(FrictionProof, RequiresNothingOfADeviceWithoutPresliding) {
   EXPECT_TRUE(deviations_in_friction(device_of(reference()).loop.config).empty());
 }
 

@@ -53,7 +53,7 @@ TEST(ReadStl, TakesTextAndBinaryFiles) {
   }
 }
 
-TEST(ReadStl, SaysWhatIsWrong) {
+TEST(ReadStl, ReportsWhatIsWrong) {
   const auto message = [](const std::string& content) {
     return message_of([&] { read_stl(content, "plate.stl", 1.0); });
   };
@@ -87,7 +87,7 @@ TEST(ReadStl, SurvivesDamagedFiles) {
   }
 }
 
-TEST(Mesh, KnowsWhetherItIsClosedAndWhatIsInside) {
+TEST(Mesh, DetectsWhetherItIsClosedAndWhatIsInside) {
   const Mesh box = box_mesh({0.2, 0.1, 0.3});
   EXPECT_TRUE(box.is_closed());
   EXPECT_TRUE(box.encloses({0.09, -0.04, 0.14}));

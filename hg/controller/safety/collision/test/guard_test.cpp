@@ -112,7 +112,7 @@ class Wanderer {
   VectorPM goal_;
 };
 
-TEST(Guard, SaysFreeOnlyWhereBrakingStaysFree) {
+TEST(Guard, ReportsFreeOnlyWhereBrakingStaysFree) {
   const TestDevice device = device_of(folding_urdf());
   Guard guard(device.config, device.chain);
   Judge judge(device);
