@@ -89,7 +89,7 @@ void tell_fault(Observers& observers, const Sample& sample) {
 // reports the begin of a contact with the arm
 void tell_touch(Observers& observers, const CycleRecord& record) {
   const TouchReport& touch = record.touch;
-  if (std::exchange(observers.told_touch, touch.is_told) || !touch.is_told) return;
+  if (std::exchange(observers.told_touch, touch.is_reported) || !touch.is_reported) return;
   const auto joint = static_cast<std::size_t>(touch.joint);  // -1: very large
   const std::vector<std::string>& joints = observers.names.joints;
   const std::string where = joint < joints.size() ? " beyond joint " + joints[joint] : "";
@@ -142,7 +142,7 @@ void tell_problems(Observers& observers, const std::string& text) {
 void look_at_recording(Observers& observers, double time_s) {
   const std::string why = observers.recording.news();
   if (!why.empty()) {
-    tell(observers, time_s, "recording", "has ended early, the run goes on: " + why);
+    tell(observers, time_s, "recording", "has ended early, the run continues: " + why);
   }
 }
 
@@ -177,7 +177,7 @@ void close_device(udp::RemoteDevice& device, const Fault& fault) {
   }
 }
 
-// `goes_on`: after the script, until Ctrl-C
+// `goes_on`: continues after the script, until Ctrl-C
 runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments,
                                  bool goes_on, const std::atomic<bool>& interrupted) {
   runtime::Options options;
@@ -296,7 +296,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
     tell(observers, 0.0, "start test", run.start_test);
     tell(observers, 0.0, "posture", run.posture);
   } else if (run.remote != nullptr) {
-    print_out("note        the device says that it is a simulation: no start test is asked for\n");
+    print_out("note        the device says that it is a simulation: no start test is required\n");
   }
 
   runtime::Runtime runtime(options, run.cycle, *run.device);

@@ -213,7 +213,7 @@ void RunPage::tell_done(const Command& command, const Note& note) const {
     case CommandName::kPanel:
       return note(command.argument, fmt::format("{} by {}", on_off, page));
     default:
-      return note(command.argument, "asked for in the page");
+      return note(command.argument, "requested in the page");
   }
 }
 
@@ -232,7 +232,7 @@ std::string RunPage::obey(const Command& command, runtime::Runtime* runtime, con
     runtime->request_stop();
     stop_was_asked_ = true;
     next_.reset();  // discards the previous choice
-    note("stop", "asked for in the page");
+    note("stop", "requested in the page");
     return {};
   }
   return obey_pace(command, runtime->pace(), note);
@@ -250,7 +250,7 @@ std::string RunPage::obey_mode(const Command& command, runtime::Runtime& runtime
                         runtime.request(ModeRequest::kNone, command.stops) &&
                         runtime.request(named->request, command.stops);
   if (!is_taken) return "too many commands are waiting";
-  note(command.argument, "asked for in the page");
+  note(command.argument, "requested in the page");
   asked_.push_back({command, named->request});
   return {};
 }
@@ -263,7 +263,7 @@ std::string RunPage::obey_pace(const Command& command, runtime::Pace& pace, cons
       return {};
     case CommandName::kResume:
       pace.resume();
-      note("resume", "simulated time goes on");
+      note("resume", "simulated time continues");
       return {};
     case CommandName::kStep:
       if (!pace.step(command.value)) {

@@ -68,9 +68,9 @@ class DeviceStation final : public start_test::Station {
     return seen;
   }
 
-  void ask(start_test::Act act, const std::string& words) override {
+  void prompt(start_test::Act act, const std::string& words) override {
     print_out(fmt::format("{:8.1f} s  -> {}\n", sample_.sensors.time_s, words));
-    operator_.ask(act);
+    operator_.prompt(act);
   }
   void report(const std::string& words) override {
     print_out(fmt::format("{:8.1f} s  {}\n", sample_.sensors.time_s, words));

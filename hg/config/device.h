@@ -56,8 +56,8 @@ struct Device {
   Places places;                           ///< places of the keys of the YAML file
 };
 
-/// Sets the values that follow from law, bounds and control method: whether the law knows the motor
-/// torques. For a scenario, see settle_law() in scenario.h.
+/// Sets the values that follow from law, bounds and control method: whether the law models the
+/// motor torques. For a scenario, see settle_law() in scenario.h.
 void settle_law(Device& device);
 
 /// Sets the rate and all values that follow from it. Throws SetupError when the drive's dead time

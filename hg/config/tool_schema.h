@@ -33,8 +33,8 @@ void describe(V& v, ToolDraft& d) {
       "sensor", [&](auto& child) { describe(child, d.sensor); },
       "force/torque sensor S in the handle frame H");
   v.flag("dead_man", d.has_dead_man,
-         "whether the handle has a dead-man switch. Without one nobody notices a hand that lets "
-         "go: the device runs on until it is told to stop");
+         "whether the handle has a dead-man switch. Without one a hand that lets go is not "
+         "detected: the device runs until it is stopped");
 }
 
 }  // namespace hg::config

@@ -176,7 +176,7 @@ class Cycle {
   // parts of these stages
   Fault check(const SensorFrame& sensors) noexcept;
   Refusal refusal_to_arm() const noexcept;
-  void begin_anew() noexcept;
+  void reset_controllers() noexcept;
   double speed_max() const noexcept;
   double ramp_forces(Motion motion, bool is_held) noexcept;
   Motion accept(Motion motion, const rendering::LawResult& law) noexcept;

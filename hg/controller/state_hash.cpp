@@ -103,7 +103,7 @@ void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
   hash.mix_packed(state.active_set.state.data(), static_cast<std::size_t>(rows));
   hash.mix_packed(state.active_set.before.data(), static_cast<std::size_t>(rows));
   hash.mix(state.touched.lower, state.touched.upper);
-  hash.mix(state.calming.damping, state.calming.inertia);
+  hash.mix(state.added.damping, state.added.inertia);
   hash.mix(state.contact.proxy, state.contact.is_started, state.contact.dent, state.contact.taken);
   hash.mix(state.motor_torque, state.ddq_p);
 }

@@ -12,7 +12,7 @@
 ///   end
 /// A row is what it says: with one coefficient, of value 1, it is a bound on that variable. After
 /// its numbers there may be
-///   weight <w>   of its slack, 1 where nothing is said
+///   weight <w>   of its slack, default 1
 ///   dense        a row of add_row() all the same, although it has only one coefficient, of value 1
 ///   bad          deliberately invalid content that the solver refuses; an error without this word
 /// Guesses have a letter per row: .lu=<> in the order of RowState; `before` may be left out.

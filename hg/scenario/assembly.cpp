@@ -135,7 +135,7 @@ void place(const config::BystanderInTheWay& bystander, const model::Chain& chain
   auto* plant = std::get_if<simulator::PlantConfig>(&simulation.plant);
   if (plant == nullptr) {
     throw SetupError(
-        "bystander: only elastic joints can hit somebody, here the drives follow positions: leave "
+        "bystander: only elastic joints can hit a person, here the drives follow positions: leave "
         "it out, or run with --plant elastic");
   }
   plant->bystander = bystander.config;
@@ -250,8 +250,8 @@ controller::Cycle make_cycle(const config::Scenario& scenario) {
   const config::Device& device = scenario.device;
   safety::MonitorConfig monitor = device.monitor;
   if (!notices_frozen_sensors(device)) monitor.frozen_samples = 0.0;
-  // the paper's bounds ask for more than any rating where they contradict each other, and where the
-  // law knows torques they are what limits accelerations
+  // the paper's bounds demand more than any rating where they contradict each other, and where the
+  // law models torques they are what limits accelerations
   if (device.rendering.bounds == rendering::Bounds::kPaper || !device.model.motors.empty()) {
     monitor.acceleration_tolerance = kInfinity;
   }

@@ -116,7 +116,7 @@ bool is_inside(const rendering::CartesianLimit& limit, const Eigen::Vector3d& p)
   return true;
 }
 
-// Adds what one posture of the arm, to which the chain has been updated, reaches by itself and
+// Adds what one posture of the arm, to which the chain has been updated, reaches alone and
 // with other positions of the gantry.
 void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, bool at_limits,
                    Random& random, Cloud& cloud) {

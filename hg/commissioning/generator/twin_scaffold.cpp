@@ -68,7 +68,7 @@ Pose tip(TwinDraft& d, const Eigen::VectorXd& q) {
   return d.chain.pose(d.end_effector);
 }
 
-// asks whether the device can hold its handle at a pose
+// tests whether the device can hold its handle at a pose
 class Reach {
  public:
   explicit Reach(const config::Device& device)

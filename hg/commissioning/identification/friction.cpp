@@ -192,7 +192,7 @@ class Decision {
     improve();
     found.missing.push_back(fmt::format(
         "Stribeck speed: slide slowly, from 0.2 to 3 times {:g} rad/s, both ways; Coulomb friction "
-        "holds for what is believed of it",
+        "assumes the configured one",
         believed_.stribeck_speed));
     if (is_sure()) return;
     keep(kStiction);

@@ -70,7 +70,7 @@ class Station {
   /// Advances by one period. Throws Ended.
   virtual Observation live(Wish wish) = 0;
   /// Asks the operator of the device to act.
-  virtual void ask(Act act, const std::string& words) = 0;
+  virtual void prompt(Act act, const std::string& words) = 0;
   /// Reports a result.
   virtual void report(const std::string& words) = 0;
 };

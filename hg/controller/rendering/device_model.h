@@ -39,7 +39,7 @@ struct DeviceModel {
   int elbow = -1;   ///< Index of the frame shown as the elbow; -1 = none
   std::vector<limits::JointLimits> joint_limits;  ///< Limits of the manipulator joints
   /// Motors, one per manipulator joint: their torques are limits of the law. Empty: the law does
-  /// not know them, and no limit is accelerated beyond its rating.
+  /// not model them, and no limit is accelerated beyond its rating.
   std::vector<ActuatorModel> motors;
   std::vector<VirtualJoint> virtual_joints;
   std::vector<CartesianLimit> cartesian_limits;  ///< Cartesian limits, highest priority first

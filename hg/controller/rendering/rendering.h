@@ -26,7 +26,7 @@
 namespace hg::rendering {
 
 /// Additional damping and inertia of the twin; see hg/controller/safety/passivity.
-struct Calming {
+struct AddedImpedance {
   double damping = 0.0;  ///< Damping of the end effector in all directions, Ns/m
   double inertia = 1.0;  ///< Factor of the twin's inertia, without more weight
 };
@@ -36,7 +36,7 @@ struct State {
   ReferenceState reference;
   TwinState twin;
   TwinInnerState inner;
-  Calming calming;  ///< Additional damping and inertia in the next step
+  AddedImpedance added;  ///< Additional damping and inertia in the next step
   /// Wrench on the handle that stands for a contact of the arm, in the next step.
   Vector6 touch = Vector6::Zero();
   hqp::ActiveSet active_set;
@@ -82,7 +82,7 @@ class Rendering {
   /// Keeps the reference within `largest` (rad or m) of the measured joints; [C] 6. Where the
   /// device lags behind, reference and twin are moved back to it, so that the error cannot build up
   /// and release suddenly. True when they were moved.
-  bool stay_near(const RobotState& robot, double largest, State& state) noexcept;
+  bool clamp_reference(const RobotState& robot, double largest, State& state) noexcept;
 
   /// Whether in the last step a joint or virtual joint of the device could not be kept within its
   /// limits: the motion of the gantry at a held twin has priority over them.

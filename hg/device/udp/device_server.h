@@ -112,7 +112,7 @@ class DeviceServer {
   std::unique_ptr<Capture> capture_;
   /// Secret for session numbers: a client that answers with its number was welcomed at its address.
   std::array<unsigned char, crypto_shorthash_KEYBYTES> secret_{};
-  std::uint64_t sessions_ = 0;         ///< sessions begun: a number is valid for one only
+  std::uint64_t sessions_ = 0;         ///< number of sessions; a number is valid for one only
   std::vector<Candidate> candidates_;  ///< oldest first, one per address
   bool has_client_ = false;
   Peer client_;

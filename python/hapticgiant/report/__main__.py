@@ -13,7 +13,7 @@ def main():
     parser = argparse.ArgumentParser(prog="hapticgiant.report")
     parser.add_argument("folder", nargs="?", type=pathlib.Path)
     parser.add_argument("--docs", type=pathlib.Path, help="refresh the page of this folder")
-    parser.add_argument("--check", action="store_true", help="only tell whether it would work")
+    parser.add_argument("--check", action="store_true", help="only check whether it would work")
     arguments = parser.parse_args()
     if not all(importlib.util.find_spec(name) for name in ("numpy", "matplotlib", "jinja2")):
         return MISSING

@@ -40,7 +40,7 @@ struct State {
   VectorM torque;    ///< Joint torques of the contact, low-passed, Nm
   VectorM variance;  ///< Variance of `torque` without contact, Nm^2
   VectorM load;      ///< Torques that have just moved the joints, Nm
-  bool is_told = false;
+  bool is_reported = false;
   double quiet_s = 0.0;  ///< Time for which less than half of the thresholds is felt, s
   VectorP away;          ///< Velocity of the gantry, m/s or rad/s; empty: its own aim
 };
@@ -48,7 +48,7 @@ struct State {
 /// Values of the state hash, in its order.
 template <typename Archive, Is<State> T>
 void fields(Archive& a, T& state) {
-  a("flags", std::uint64_t{state.is_started} | std::uint64_t{state.is_told} << 1U);
+  a("flags", std::uint64_t{state.is_started} | std::uint64_t{state.is_reported} << 1U);
   a("dq", state.dq);
   a("torque", state.torque);
   a("variance", state.variance);

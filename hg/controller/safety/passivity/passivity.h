@@ -61,16 +61,16 @@ struct Input {
 };
 
 /// Damping and inertia added to the twin.
-struct Calming {
+struct AddedImpedance {
   double damping = 0.0;  ///< Damping at the end effector, in all directions, Ns/m
   double inertia = 1.0;  ///< Factor of the twin's inertia, >= 1
 };
 
 /// Values of the state hash, in its order.
-template <typename Archive, Is<Calming> T>
-void fields(Archive& a, T& calming) {
-  a("damping", calming.damping);
-  a("inertia", calming.inertia);
+template <typename Archive, Is<AddedImpedance> T>
+void fields(Archive& a, T& added) {
+  a("damping", added.damping);
+  a("inertia", added.inertia);
 }
 
 struct State {
@@ -88,7 +88,7 @@ struct State {
   double hold_s = 0.0;              ///< Time until the added damping ends, s
   double restless_s = 0.0;          ///< Duration of oscillation at full damping, s
   double tank = 0.0, energy = 0.0;  ///< Energy of the tank, and energy given to the user, J
-  Calming calming;
+  AddedImpedance added;
 };
 
 /// Values of the state hash, in its order.
@@ -106,10 +106,10 @@ void fields(Archive& a, T& state) {
   a("restless_s", state.restless_s);
   a("tank", state.tank);
   a("energy", state.energy);
-  a("calming", state.calming);
+  a("added", state.added);
 }
 
-/// Advances by one cycle and returns its report; `state.calming` applies to the twin in the next
+/// Advances by one cycle and returns its report; `state.added` applies to the twin in the next
 /// one.
 PassivityReport step(const Config& config, const Input& input, State& state) noexcept;
 
