@@ -64,43 +64,43 @@ class Reader final : public recording::RecordingListener {
 struct Line {
   const char* key;
   FrictionFigure found;
-  double believed;
+  double nominal;
 };
 
-std::vector<Line> lines_of(const FrictionEstimate& found, const ActuatorModel& believed) {
-  return {{"coulomb_friction_Nm", found.coulomb, believed.coulomb_friction},
-          {"viscous_friction_Nms_per_rad", found.viscous, believed.viscous_friction},
-          {"load_friction", found.load, believed.load_friction},
-          {"stiction", found.stiction, believed.stiction},
-          {"stribeck_rad_per_s", found.stribeck_speed, believed.stribeck_speed},
-          {"presliding_rad", found.presliding, believed.presliding}};
+std::vector<Line> lines_of(const FrictionEstimate& found, const ActuatorModel& nominal) {
+  return {{"coulomb_friction_Nm", found.coulomb, nominal.coulomb_friction},
+          {"viscous_friction_Nms_per_rad", found.viscous, nominal.viscous_friction},
+          {"load_friction", found.load, nominal.load_friction},
+          {"stiction", found.stiction, nominal.stiction},
+          {"stribeck_rad_per_s", found.stribeck_speed, nominal.stribeck_speed},
+          {"presliding_rad", found.presliding, nominal.presliding}};
 }
 
 std::string number(double value) { return fmt::format("{:.3g}", value); }
 
 void print_joint(const std::string& name, const FrictionEstimate& found,
-                 const ActuatorModel& believed) {
+                 const ActuatorModel& nominal) {
   print_out(
       "\n{}  slid {:.0f} s forward, {:.0f} s backward, {} reversals, up to {:.2f} rad/s; {:.2f} Nm "
       "rms unexplained\n",
       name, found.forward_s, found.backward_s, found.reversals, found.speed, found.residual);
-  for (const Line& line : lines_of(found, believed)) {
+  for (const Line& line : lines_of(found, nominal)) {
     print_out("  {:<30}{:>9} {:<12}  device file {}\n", line.key,
               line.found.is_found ? number(line.found.value) : "-",
               line.found.is_found ? fmt::format("+- {}", number(line.found.deviation)) : "",
-              number(line.believed));
+              number(line.nominal));
   }
   for (const std::string& missing : found.missing) print_out("  not found: {}\n", missing);
 }
 
 void print_yaml(const std::vector<std::string>& names,
                 const std::vector<FrictionEstimate>& estimates,
-                const std::vector<ActuatorModel>& believed) {
+                const std::vector<ActuatorModel>& nominal) {
   print_out("\nfor device.yaml, into the entry of each joint:\nactuators:\n");
   for (std::size_t i = 0; i < names.size(); ++i) {
     print_out("  {}:\n", names[i]);
     if (!estimates[i].coulomb.is_found) print_out("    # nothing was found\n");
-    for (const Line& line : lines_of(estimates[i], believed[i])) {
+    for (const Line& line : lines_of(estimates[i], nominal[i])) {
       if (!line.found.is_found) continue;
       print_out("    {}: {}  # +- {}\n", line.key, number(line.found.value),
                 number(line.found.deviation));
@@ -113,7 +113,7 @@ void print_yaml(const std::vector<std::string>& names,
 
 nlohmann::ordered_json to_json(const std::vector<std::string>& names,
                                const std::vector<FrictionEstimate>& estimates,
-                               const std::vector<ActuatorModel>& believed) {
+                               const std::vector<ActuatorModel>& nominal) {
   nlohmann::ordered_json json;
   json["identified"] = "friction";
   json["joints"] = nlohmann::ordered_json::array();
@@ -121,14 +121,14 @@ nlohmann::ordered_json to_json(const std::vector<std::string>& names,
     const FrictionEstimate& found = estimates[i];
     nlohmann::ordered_json joint;
     joint["name"] = names[i];
-    for (const Line& line : lines_of(found, believed[i])) {
+    for (const Line& line : lines_of(found, nominal[i])) {
       nlohmann::ordered_json& entry = joint[line.key];
       entry["is_found"] = line.found.is_found;
       if (line.found.is_found) {
         entry["value"] = line.found.value;
         entry["deviation"] = line.found.deviation;
       }
-      entry["device_file"] = line.believed;
+      entry["device_file"] = line.nominal;
     }
     if (found.presliding_elements > 0) joint["presliding_elements"] = found.presliding_elements;
     joint["residual_Nm"] = found.residual;

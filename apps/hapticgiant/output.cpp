@@ -145,7 +145,7 @@ class BackgroundOutput::Queue {
   std::deque<Text> texts_;
   Text under_way_ = {};  // text being written, without its content
   std::size_t waiting_bytes_ = 0;
-  std::uint64_t left_out_ = 0;  // texts, since that was last said
+  std::uint64_t left_out_ = 0;  // texts, since the last report
   bool is_ending_ = false, has_ended_ = false;
 };
 

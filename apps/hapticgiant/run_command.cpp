@@ -173,7 +173,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
 void close_device(udp::RemoteDevice& device, const Fault& fault) {
   device.close(fault.code);
   if (!device.farewell().empty()) {
-    print_out(fmt::format("the remote device says: {}\n", device.farewell()));
+    print_out(fmt::format("message of the remote device: {}\n", device.farewell()));
   }
 }
 

@@ -49,7 +49,7 @@ class DeviceStation final : public start_test::Station {
         is_simulated_(is_simulated),
         interrupted_(interrupted) {}
 
-  Observation live(Wish wish) override {
+  Observation advance(Wish wish) override {
     device_.read(sample_.sensors);
     sample_.operator_input.request = request(wish);
     cycle_.step(sample_.sensors, sample_.operator_input, sample_.command, sample_.record);
@@ -98,7 +98,7 @@ class DeviceStation final : public start_test::Station {
     sample_.command.dq_p.setZero();
   }
 
-  // By what the last cycle said; requests act on their edge. Nothing resets what was armed.
+  // By the record of the last cycle; requests act on their edge. Nothing resets what was armed.
   ModeRequest request(Wish wish) const {
     const CycleRecord& record = sample_.record;
     const bool is_pause = record.cycle / kResetEdge % 2 == 0;

@@ -192,7 +192,7 @@ class Client:
         self.socket.send(encode(kind, self.session, self.number, *values, key=self.key))
 
     def sensors(self, timeout_s=1.0):
-        """The next frame; says the last message again when nothing comes."""
+        """The next frame; repeats the last message when nothing comes."""
         self.socket.settimeout(0.02)
         for _ in range(int(timeout_s / 0.02)):
             try:

@@ -296,7 +296,7 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "by how much the handle may get faster than the encoders say, within half a second");
   v.number(
       "tilt_tolerance_rad", monitor.tilt_tolerance, kPositive,
-      "by how much gravity may point elsewhere than the posture says when the device is armed");
+      "largest angle between measured gravity and gravity by the posture when the device is armed");
   v.number("jump_factor", monitor.jump_factor, kFromOne,
            "times what the largest speed allows in a sample, of a measured position");
   v.number("frozen_samples", monitor.frozen_samples, kCount,

@@ -321,8 +321,7 @@ void describe(V& v, FlexibleDraft& joint) {
 
 template <class V>
 void describe_base(V& v, SimulationDraft& draft) {
-  v.path("base", draft.base,
-         "another simulation file: what this one does not say is as that one says");
+  v.path("base", draft.base, "another simulation file, with the values that are not given here");
 }
 
 /// The first part, which defines the joint names that the second uses.

@@ -336,7 +336,7 @@ double Cycle::speed_max() const noexcept {
   return is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
 }
 
-// The motion of the gantry that the arm wants, and the range in which the law may lead it.
+// Desired motion of the gantry, and the range in which the law may lead it.
 Cycle::GantryAim Cycle::preposition(Motion motion, const RobotState& robot) noexcept {
   if (!is_moving(motion)) return {};
   const VectorP q_p_target =

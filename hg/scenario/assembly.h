@@ -19,7 +19,7 @@ namespace hg::scenario {
 /// The control cycle of the scenario's device and twin. Throws SetupError.
 controller::Cycle make_cycle(const config::Scenario& scenario);
 
-/// The torque loop of a device with elastic joints, as its controller believes it to be.
+/// The torque loop of a device with elastic joints, as modelled by its controller.
 tracking::Loop torque_loop(const config::Device& device);
 
 /// `count` postures (gantry at 0 first) all over the limits of the joints; a joint without limits

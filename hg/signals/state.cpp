@@ -105,7 +105,7 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "not armed: the twin cannot be where the handle is; bring the handle back (a remote "
              "device: is it of the same scenario?)";
     case Refusal::kPostureImplausible:
-      return "not armed: the accelerometer says another posture than the encoders; is every joint "
+      return "not armed: accelerometer and encoders give different postures; is every joint "
              "homed?";
   }
   return "unknown";

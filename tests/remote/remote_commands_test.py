@@ -161,7 +161,7 @@ class Commands(unittest.TestCase):
             server.close()
             said = process.communicate(timeout=100)[0]
             self.assertEqual(process.returncode, 3, said)
-            self.assertIn("the remote device says: the server was stopped", said)
+            self.assertIn("message of the remote device: the server was stopped", said)
             self.assertIn("104 remote device has ended the session", said)
 
     def test_what_does_not_fit_is_one_clear_sentence(self):

@@ -14,7 +14,7 @@ namespace hg::doctor {
 struct Readings {
   std::string kernel;                  ///< release
   std::string version;                 ///< build version: contains PREEMPT_RT, PREEMPT_DYNAMIC, ...
-  bool is_realtime_kernel = false;     ///< as reported by the kernel
+  bool is_realtime_kernel = false;     ///< the kernel reports PREEMPT_RT
   std::string user;                    ///< user of this process
   bool may_set_priority = false;       ///< a capability that overrides the limit below
   std::optional<long> priority_max;    ///< RLIMIT_RTPRIO; unlimited = 99
@@ -30,7 +30,7 @@ struct Readings {
   std::vector<std::string> swaps;      ///< active swap areas
   std::string clock_source, clock_sources;  ///< current, available
   bool is_virtual = false;                  ///< running under a hypervisor
-  std::string hypervisor;                   ///< its name, where known
+  std::string hypervisor;                   ///< name of the hypervisor; empty = none known
   std::optional<double> idle_latency_us;  ///< wake-up latency of the deepest idle state in use, us
 };
 

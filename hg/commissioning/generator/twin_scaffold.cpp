@@ -32,7 +32,7 @@ struct TwinDraft {
 struct Placement {
   Pose T_B_root;
   double yaw = 0.0;
-  double share = -1.0;  ///< of the postures that the device can follow
+  double share = -1.0;  ///< share of the postures that the device can follow
   bool is_upright = true;
 };
 

@@ -30,8 +30,8 @@ constexpr const char* kOneWire = "only one of its two channels did: a wire or co
 struct Operation {
   SafetyInput input;
   Act act, undo;
-  const char* words;  ///< for act
-  const char* undo_words;
+  const char* words;       ///< instruction for `act`
+  const char* undo_words;  ///< instruction for `undo`
 };
 
 constexpr Operation kOperations[] = {
@@ -104,8 +104,8 @@ class Procedure {
     return setup_.config.has_input[static_cast<std::size_t>(input)];
   }
 
-  void live(Wish wish) {
-    seen_ = station_.live(wish);
+  void advance(Wish wish) {
+    seen_ = station_.advance(wish);
     if (seen_.is_powered) powered_ = seen_;
     has_disagreed_ = has_disagreed_ || seen_.safety.has_disagreement;
     if (!watches_) return;
@@ -120,7 +120,7 @@ class Procedure {
     const double begin_s = seen_.time_s;
     while (!until()) {
       if (seen_.time_s - begin_s > at_most_s) return false;
-      live(wish);
+      advance(wish);
     }
     return true;
   }
@@ -199,7 +199,7 @@ class Procedure {
   }
 
   bool rest(Item& item) {
-    live(Wish::kTare);
+    advance(Wish::kTare);
     watch_brakes();
     stay(Wish::kTare, kRest);
     watches_ = false;
@@ -349,7 +349,7 @@ class Procedure {
     const std::string why = seen_.fault == FaultCode::kNone && refusal != Refusal::kNone
                                 ? std::string(to_string(refusal))
                                 : why_off();
-    live(Wish::kOff);
+    advance(Wish::kOff);
     return fail(item, fmt::format("the device could not be armed for it: {}", why));
   }
 
@@ -366,7 +366,7 @@ class Procedure {
   }
 
   void lean() {
-    live(Wish::kOff);
+    advance(Wish::kOff);
     prompt(Act::kLean,
            "push, pull and twist the handle hard, in all directions; the drives are off", kLeaning);
     watch_brakes();

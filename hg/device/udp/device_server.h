@@ -123,7 +123,7 @@ class DeviceServer {
   SensorFrame frame_;
   CommandFrame arrived_, command_;  ///< `command_` is in effect
   bool has_command_ = false;        ///< a command has arrived in this session
-  bool has_left_ = false;           ///< the client has said goodbye
+  bool has_left_ = false;           ///< the client has sent a goodbye
   std::int64_t frame_ns_ = 0, heard_ns_ = 0;
   std::int64_t answers_ = 0, answers_ns_ = 0, longest_answer_ns_ = 0;
   std::uint64_t refused_ = 0, late_ = 0, malformed_ = 0, foreign_ = 0, from_others_ = 0;

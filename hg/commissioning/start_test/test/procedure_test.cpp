@@ -20,7 +20,7 @@ class Machine final : public Station {
     seen_.q_p = seen_.load_p = VectorP::Zero(1);
   }
 
-  Observation live(Wish wish) override {
+  Observation advance(Wish wish) override {
     seen_.time_s += kPeriod;
     if (seen_.time_s > ends_s) throw Ended{"remote device is silent"};
     if (pressed_s_ > 0.0 && seen_.time_s >= pressed_s_) {
@@ -282,7 +282,7 @@ TEST(StartTest, WhatTheDrivesHoldIsNoLoadAndNoMotionOfABrake) {
   const std::vector<Item> items = run(setup(), machine);
   EXPECT_GT(q, 0.01);
   EXPECT_EQ(item(items, "brake slide").found,
-            "not loaded: it carried 0.0 N at most, and 20.0 N for 1 s says something");
+            "not loaded: it carried 0.0 N at most, 20.0 N for 1 s are needed");
 }
 
 TEST(StartTest, ABrakeThatGivesWayIsNamedAndNothingIsArmedAfterIt) {

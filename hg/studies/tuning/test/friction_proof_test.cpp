@@ -30,7 +30,7 @@ VectorM bristles(const Device& device, double share) {
 }
 
 // Largest radius with a body of 6 kg in all hands, bristles `real` times and friction fed forward
-// `fed` times as stiff as believed.
+// `fed` times as stiff as nominal.
 double worst(Device device, double real, double fed, int postures) {
   device.loop.config.friction_share = fed;
   const tracking::TruePlant plant = {device.loop.config.actuators, device.loop.config.loop, 1.0,
