@@ -10,6 +10,7 @@
 #include "hg/config/scenario.h"
 #include "hg/controller/safety/rules.h"
 #include "hg/runtime/requests.h"
+#include "hg/scenario/assembly.h"
 #include "hg/scenario/session.h"
 
 namespace hg {
