@@ -36,7 +36,7 @@ using config::FileKind;
 // Everything that could be loaded, and what was found on the way.
 struct Check {
   CheckReport report;
-  std::list<config::Device> devices;
+  std::list<config::DeviceConfig> devices;
   std::list<config::Twin> twins;
   std::list<config::Scenario> scenarios;
   std::vector<std::string> scripts;
@@ -119,14 +119,14 @@ void check_scripts(Check& check) {
 }
 
 void check_devices(Check& check) {
-  const auto inspect = [&](const config::Device& device, bool has_datasheet) {
+  const auto inspect = [&](const config::DeviceConfig& device, bool has_datasheet) {
     const checks::Survey survey = checks::survey(device);
     add(checks::inspect(device, survey), check);
     if (has_datasheet) {
       check.report.datasheets.push_back(checks::make_datasheet(device, survey));
     }
   };
-  for (const config::Device& device : check.devices) inspect(device, true);
+  for (const config::DeviceConfig& device : check.devices) inspect(device, true);
   for (const config::Scenario& scenario : check.scenarios) inspect(scenario.device, false);
 }
 
@@ -134,7 +134,7 @@ void draw_map(const std::string& file, const Check& check) {
   if (check.devices.empty() && check.scenarios.empty()) {
     throw SetupError("--map: needs a device that could be read");
   }
-  const config::Device& device =
+  const config::DeviceConfig& device =
       check.devices.empty() ? check.scenarios.front().device : check.devices.front();
   write_output(file, to_svg(checks::capability_map(device)));
 }
@@ -144,7 +144,7 @@ void check_twins(Check& check) {
   const double dt = check.devices.empty() ? kUsualPeriod : check.devices.front().rendering.dt;
   for (const config::Twin& twin : check.twins) {
     add(checks::inspect(twin, dt), check);
-    for (const config::Device& device : check.devices) {
+    for (const config::DeviceConfig& device : check.devices) {
       add(checks::inspect(device, twin), check);
     }
   }

@@ -36,9 +36,9 @@ void tell(const std::string& what, std::size_t done, std::size_t total) {
 }
 
 std::string command_of(const HaptifyArguments& arguments) {
-  const haptify::Options& options = arguments.options;
+  const haptify::HaptifyOptions& options = arguments.options;
   std::string command = fmt::format("hapticgiant haptify --seed {}", options.seed);
-  if (options.repetitions != haptify::Options{}.repetitions) {
+  if (options.repetitions != haptify::HaptifyOptions{}.repetitions) {
     command += fmt::format(" --repetitions {}", options.repetitions);
   }
   if (!arguments.simulation.empty()) command += " --simulation " + arguments.simulation;

@@ -27,7 +27,7 @@ using identification::FrictionTraces;
 // Hands the samples on, with the device that the recording was made with unless another is given.
 class Reader final : public recording::RecordingListener {
  public:
-  explicit Reader(std::optional<config::Device> device) : device_(std::move(device)) {}
+  explicit Reader(std::optional<config::DeviceConfig> device) : device_(std::move(device)) {}
 
   void configuration(const recording::NamedText& text) override {
     if (!traces_) configuration_.push_back(text);
@@ -38,7 +38,7 @@ class Reader final : public recording::RecordingListener {
     traces_->add(sample);
   }
 
-  const config::Device& device() const { return *device_; }
+  const config::DeviceConfig& device() const { return *device_; }
   const FrictionTraces& traces() const { return *traces_; }
 
  private:
@@ -55,7 +55,7 @@ class Reader final : public recording::RecordingListener {
     traces_.emplace(device_->control);
   }
 
-  std::optional<config::Device> device_;
+  std::optional<config::DeviceConfig> device_;
   std::optional<FrictionTraces> traces_;
   std::vector<recording::NamedText> configuration_;
 };
@@ -145,14 +145,14 @@ nlohmann::ordered_json to_json(const std::vector<std::string>& names,
 
 int identify_friction(const IdentifyFrictionArguments& arguments) {
   check_writable(arguments.json, kJson);
-  std::optional<config::Device> device;
+  std::optional<config::DeviceConfig> device;
   if (!arguments.device.empty())
     device = config::load_device(config::find_device(arguments.device));
   Reader reader(std::move(device));
   const recording::ReadResult read = recording::read_recording(arguments.file, reader);
   print_out(recording::to_text(read.losses));
   const FrictionTraces& traces = reader.traces();
-  const tracking::Config& control = reader.device().control;
+  const tracking::ControlConfig& control = reader.device().control;
   if (traces.used() == 0) {
     throw SetupError(fmt::format(
         "{}: none of its {} samples has drives that are on, motor encoders, joint torques and the "

@@ -63,7 +63,7 @@ std::unique_ptr<RunPage> open_page(const PreparedRun& run) {
   if (!arguments.has_viewer || arguments.is_fast) return nullptr;
   const std::string page = find_page();
   if (page.empty()) return nullptr;
-  viewer_server::Options options;
+  viewer_server::ServerOptions options;
   options.address = arguments.address;
   options.port = arguments.port;
   options.page = page;

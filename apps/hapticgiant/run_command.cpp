@@ -178,9 +178,10 @@ void close_device(udp::RemoteDevice& device, const Fault& fault) {
 }
 
 // `goes_on`: after the script, until Ctrl-C
-runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments,
-                                 bool goes_on, const std::atomic<bool>& interrupted) {
-  runtime::Options options;
+runtime::RuntimeOptions runtime_options(const config::Scenario& scenario,
+                                        const RunArguments& arguments, bool goes_on,
+                                        const std::atomic<bool>& interrupted) {
+  runtime::RuntimeOptions options;
   options.stop = &interrupted;
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = arguments.is_fast;
@@ -197,7 +198,7 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
   if (arguments.is_fast && options.duration_s == 0.0) {
     throw SetupError("run: --fast without a script needs --duration S");
   }
-  runtime::check(options);
+  runtime::check_runtime_options(options);
   return options;
 }
 
@@ -208,7 +209,8 @@ int exit_code(const analysis::Summary& summary, const std::vector<std::string>& 
   return missing.empty() && summary.limits_held() && !summary.has_shaken() ? 0 : 1;
 }
 
-analysis::Timing timing_of(const runtime::Options& options, const runtime::Report& report) {
+analysis::Timing timing_of(const runtime::RuntimeOptions& options,
+                           const runtime::RuntimeReport& report) {
   const runtime::ThreadReport& thread = report.thread;
   const auto text_of = [](int error) { return error == 0 ? "" : std::strerror(error); };
   analysis::Timing timing = {.is_fast = options.is_fast,
@@ -231,8 +233,8 @@ analysis::Timing timing_of(const runtime::Options& options, const runtime::Repor
 }
 
 // facts of the summary besides the observed ones
-analysis::RunFacts facts_of(const PreparedRun& run, const runtime::Options& options,
-                            const runtime::Report& report) {
+analysis::RunFacts facts_of(const PreparedRun& run, const runtime::RuntimeOptions& options,
+                            const runtime::RuntimeReport& report) {
   analysis::RunFacts facts = scenario::facts_of_scenario(run.scenario);
   facts.version = kVersion;
   facts.rate_Hz = options.rate_Hz;
@@ -265,7 +267,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const config::Scenario& scenario = run.scenario;
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && page != nullptr;
-  runtime::Options options = runtime_options(scenario, arguments, goes_on, interrupted);
+  runtime::RuntimeOptions options = runtime_options(scenario, arguments, goes_on, interrupted);
   const auto is_reset = [](const TimedPanel& p) { return p.request == ModeRequest::kReset; };
   if (page != nullptr) options.desk = &page->desk();
   options.stays_in_fault = page != nullptr || std::ranges::any_of(scenario.panel, is_reset);
@@ -303,7 +305,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const auto begin = Clock::now();
   runtime.start();
   watch(runtime, observers);
-  const runtime::Report report = runtime.join();
+  const runtime::RuntimeReport report = runtime.join();
   std::vector<std::string> about_machine;
   if (run.is_machine) {
     about_machine = start_test::leave_machine(machine_memory(arguments), scenario.device,

@@ -57,7 +57,7 @@ bool is_choice_of_run(CommandName name) {
          name == CommandName::kTwin || name == CommandName::kLaw || name == CommandName::kPerson;
 }
 
-viewer_server::Options with(OperatorDesk* desk, viewer_server::Options options) {
+viewer_server::ServerOptions with(OperatorDesk* desk, viewer_server::ServerOptions options) {
   options.desk = desk;
   return options;
 }
@@ -66,7 +66,7 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 }  // namespace
 
-RunPage::RunPage(const viewer_server::Options& options, const PreparedRun& first)
+RunPage::RunPage(const viewer_server::ServerOptions& options, const PreparedRun& first)
     : run_(&first),
       form_(config::twin_form(first.scenario.twin.model)),
       values_(values_of(form_)),
@@ -290,7 +290,7 @@ std::string RunPage::choose(const Command& command) {
     value = command.argument;
     return true;
   };
-  scenario::Options& world = arguments.world;
+  scenario::ScenarioOptions& world = arguments.world;
   bool is_known = true;
   if (command.name == CommandName::kScenario) {
     is_known = take(choices.scenarios, world.scenario);

@@ -29,7 +29,7 @@ class RunPage {
   /// Callback for every change by a command: name, and description in words.
   using Note = std::function<void(std::string_view name, const std::string& text)>;
 
-  RunPage(const viewer_server::Options& options, const PreparedRun& first);
+  RunPage(const viewer_server::ServerOptions& options, const PreparedRun& first);
 
   std::string url() const { return server_.url(); }
   /// Number of pages connected.

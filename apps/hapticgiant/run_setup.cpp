@@ -17,7 +17,7 @@ namespace {
 constexpr char kArguments[] = "arguments";  // attachment of a recording
 
 // a remote device has its own seed, step, hand and sensors
-void refuse_what_is_simulated(const scenario::Options& world) {
+void refuse_what_is_simulated(const scenario::ScenarioOptions& world) {
   std::vector<std::string> given;
   if (world.seed) given.push_back("--seed");
   if (world.step_s) given.push_back("--step");

@@ -6,7 +6,7 @@
 
 namespace hg::apps {
 
-void add_scenario_options(CLI::App& command, scenario::Options& world) {
+void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world) {
   command
       .add_option("scenario", world.scenario,
                   "scenario file, or door, excavator, free_space, path, walk, surfaces")

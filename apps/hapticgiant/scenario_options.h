@@ -16,6 +16,6 @@ inline constexpr char kSimulationHelp[] =
 
 /// Adds scenario, device, twin, person and what is simulated; not the law. `world` must outlive
 /// parsing.
-void add_scenario_options(CLI::App& command, scenario::Options& world);
+void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world);
 
 }  // namespace hg::apps

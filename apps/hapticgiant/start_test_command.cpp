@@ -159,7 +159,7 @@ class DeviceStation final : public start_test::Station {
 };
 
 // A brake that holds less than twice the friction of its joint proves nothing.
-start_test::Setup setup_of(const config::Device& device, bool is_simulated) {
+start_test::Setup setup_of(const config::DeviceConfig& device, bool is_simulated) {
   constexpr double kOverFriction = 2.0;
   constexpr double kTorque = 1.0, kForce = 10.0;  // where friction is unknown
   constexpr double kGantryTorque = 5.0, kGantryForce = 20.0;
@@ -190,7 +190,7 @@ int start_test(const StartTestArguments& arguments) {
   run.device_address = arguments.device_address;
   run.recordings = arguments.recordings;
   const config::Scenario scenario = make_scenario(run);
-  runtime::check({.priority = arguments.priority});
+  runtime::check_thread_options({.priority = arguments.priority});
   make_folder(arguments.recordings);
 
   std::unique_ptr<device::Device> device;
@@ -210,14 +210,15 @@ int start_test(const StartTestArguments& arguments) {
   check_writable(file);
 
   const auto keep = [&](const std::vector<start_test::Item>& items) {
-    const start_test::Result result = {.device = scenario.device.name,
-                                       .address = arguments.device_address,
-                                       .version = kVersion,
-                                       .files_sha256 = start_test::sha256_of(scenario.device),
-                                       .ended = std::time(nullptr),
-                                       .is_simulated = is_simulated,
-                                       .has_passed = start_test::has_passed(items),
-                                       .items = items};
+    const start_test::StartTestResult result = {
+        .device = scenario.device.name,
+        .address = arguments.device_address,
+        .version = kVersion,
+        .files_sha256 = start_test::sha256_of(scenario.device),
+        .ended = std::time(nullptr),
+        .is_simulated = is_simulated,
+        .has_passed = start_test::has_passed(items),
+        .items = items};
     write_output(file, to_json(result));
   };
   keep({});  // whatever ends this program: an older result counts no more

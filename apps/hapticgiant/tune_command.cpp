@@ -21,7 +21,8 @@
 namespace hg::apps {
 namespace {
 
-tuning::TuningProblem problem_of(const config::Device& device, const TuneArguments& arguments) {
+tuning::TuningProblem problem_of(const config::DeviceConfig& device,
+                                 const TuneArguments& arguments) {
   return {.device = tuning::device_of(device),
           .noise = tuning::noise_of(device),
           .plant = tuning::simulated(device),
@@ -48,7 +49,7 @@ std::string command_of(const TuneArguments& arguments) {
 }  // namespace
 
 int run_tune(const TuneArguments& arguments) {
-  const config::Device device = config::load_device(config::find_device(arguments.device));
+  const config::DeviceConfig device = config::load_device(config::find_device(arguments.device));
   tuning::TuningProblem problem = problem_of(device, arguments);
   const tuning::Figures now = tuning::figures_of(problem, problem.device);
   problem.friction_most_N = now.friction_N;

@@ -190,7 +190,7 @@ Json point_of(const Candidate& candidate, const Proof& proof) {
 }
 
 // Felt over rendered impedance, largest and least over the axes and postures evaluated for feel.
-Json felt_of(const tuning::TuningProblem& problem, const tuning::Device& device) {
+Json felt_of(const tuning::TuningProblem& problem, const tuning::TunedDevice& device) {
   constexpr double kFrom_Hz = 0.5, kTo_Hz = 60.0, kPerDecade = 24.0;
   std::vector<double> frequencies;
   for (double f = kFrom_Hz; f <= kTo_Hz; f *= std::pow(10.0, 1.0 / kPerDecade)) {
@@ -230,7 +230,7 @@ std::string tune_figure(const TuneReport& report) {
   for (std::size_t i = 0; i < result.front.size(); ++i) {
     front.push_back(point_of(result.front[i], result.proofs[i]));
   }
-  const tuning::Device tuned =
+  const tuning::TunedDevice tuned =
       tuning::with_values(report.problem.device, result.front.front().values);
   const Json json = {{"kind", "tuning"},
                      {"device", report.name},

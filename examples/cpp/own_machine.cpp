@@ -55,7 +55,7 @@ int main(int count, char** arguments) {
   hg::rendering::DeviceModel model{.chain = Chain::from_urdf_file(arguments[1])};
   model.n_m = model.chain.nv();
   model.handle = model.chain.frame("handle");
-  hg::controller::Config config;  // drives that follow positions; everything else by default
+  hg::controller::CycleConfig config;  // drives that follow positions; everything else by default
   config.estimation.wrench.has_imu = false;
   for (const hg::model::Joint& joint : model.chain.joints()) {
     model.joint_limits.push_back({.q_min = joint.position.lb,
@@ -73,7 +73,7 @@ int main(int count, char** arguments) {
   hg::controller::Cycle cycle(config, model, free_body_at(model.chain.pose(model.handle)));
   hg::runtime::Runtime runtime({.rate_Hz = 1.0 / kPeriod, .duration_s = 2.0}, cycle, robot);
   runtime.start();
-  const hg::runtime::Report report = runtime.join();
+  const hg::runtime::RuntimeReport report = runtime.join();
 
   const Eigen::Vector3d after = cycle.state().rendering.twin.q_a.head<3>();
   std::printf("the handle has moved by %.2f m in %d cycles\n", (after - before).norm(),

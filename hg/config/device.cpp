@@ -151,8 +151,8 @@ SimulatedDevice simulated_device(const DeviceDraft& draft, const model::ChainOpt
   return device;
 }
 
-std::optional<Simulation> read_simulation(LoaderFile& file, const SimulatedDevice& device,
-                                          const std::filesystem::path& path) {
+std::optional<SimulationConfig> read_simulation(LoaderFile& file, const SimulatedDevice& device,
+                                                const std::filesystem::path& path) {
   try {
     return load_simulation(path, file.sources, device);
   } catch (const SetupError& error) {
@@ -203,15 +203,15 @@ rendering::DeviceModel make_model(model::Chain chain, const DeviceDraft& draft) 
   return model;
 }
 
-Simulation ideal_simulation(const DeviceDraft& draft) {
-  Simulation simulation;
+SimulationConfig ideal_simulation(const DeviceDraft& draft) {
+  SimulationConfig simulation;
   simulation.sensors = simulator::ideal_sensors();
   simulation.gear_ratio = per_joint(draft.manipulator.size(), 1.0);
   return simulation;
 }
 
 // Stopping distances that device.yaml does not give, from the ratings.
-void state_stopping(Device& device) {
+void state_stopping(DeviceConfig& device) {
   constexpr double kSpare = 1.25;
   safety::MonitorConfig& monitor = device.monitor;
   std::array<double, 2> need{};  // of revolute and prismatic joints
@@ -232,7 +232,7 @@ void state_stopping(Device& device) {
 
 // Fills the collision model from the collision elements of the URDF.
 void watch_collisions(const UrdfText& urdf, const model::ChainOptions& options,
-                      const DeviceDraft& draft, Device& device) {
+                      const DeviceDraft& draft, DeviceConfig& device) {
   const model::Chain& chain = device.model.chain;
   collision::Geometry geometry = collision::read_geometry(
       model::serial_part(model::read_urdf_text(urdf.text, urdf.file.generic_string()),
@@ -242,7 +242,7 @@ void watch_collisions(const UrdfText& urdf, const model::ChainOptions& options,
   if (options.tool) device.unknown_links.push_back(options.tool->handle);
   if (geometry.shapes.empty()) return;
 
-  collision::Config& collision = device.collision;
+  collision::CollisionConfig& collision = device.collision;
   collision.shapes = std::move(geometry.shapes);
   if (draft.has_floor) collision.shapes.push_back(collision::floor_at(device.floor_z));
   std::vector<Interval> range(device.prepositioning.q_limits.begin(),
@@ -255,11 +255,11 @@ void watch_collisions(const UrdfText& urdf, const model::ChainOptions& options,
 }
 
 // Sets what the collision guard assumes of reaction and deceleration of each joint.
-void set_reaction(Device& device, double dt) {
+void set_reaction(DeviceConfig& device, double dt) {
   constexpr double kDrive = 0.010;  // s, [HANDBOOK] 6.4
   const int n_p = device.model.n_p;
   const int n = n_p + device.model.n_m;
-  collision::Config& collision = device.collision;
+  collision::CollisionConfig& collision = device.collision;
   collision.reaction = VectorPM::Constant(n, 2.0 * dt + kDrive);
   collision.deceleration.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -274,7 +274,7 @@ void set_reaction(Device& device, double dt) {
 }
 
 // What follows from other values: periods, the drive in all its roles, monitored ranges.
-void derive(Device& device, const DeviceDraft& draft) {
+void derive(DeviceConfig& device, const DeviceDraft& draft) {
   if (device.control.method != tracking::Method::kDrives) {
     for (int i : draft.manipulator) {
       device.control.actuators.push_back(*draft.actuators[static_cast<std::size_t>(i)]);
@@ -314,7 +314,7 @@ void derive(Device& device, const DeviceDraft& draft) {
 
 }  // namespace
 
-void settle_law(Device& device) {
+void settle_law(DeviceConfig& device) {
   const bool knows_torques = device.control.method != tracking::Method::kDrives &&
                              device.rendering.law == rendering::Law::kGauss &&
                              device.rendering.bounds == rendering::Bounds::kRecoverable;
@@ -325,16 +325,16 @@ void settle_law(Device& device) {
   device.monitor.end_cartesian = model.limit_count();
 }
 
-void set_rate(Device& device, double rate_Hz) {
+void set_rate(DeviceConfig& device, double rate_Hz) {
   const double dt = 1.0 / rate_Hz;
   if (std::lround(device.drive.dead_time / dt) > CommandDelay::kMaxPeriods) {
     throw SetupError("drive.dead_time_s: at most " + std::to_string(CommandDelay::kMaxPeriods) +
                      " periods, got " + model::to_text(device.drive.dead_time) + " s at " +
                      model::to_text(rate_Hz) + " Hz");
   }
-  tracking::Config control = device.control;
+  tracking::ControlConfig control = device.control;
   control.dt = dt;
-  tracking::check(control);
+  tracking::check_control_config(control);
   device.rate_Hz = rate_Hz;
   device.rendering.dt = dt;
   device.estimation.dt = dt;
@@ -344,19 +344,20 @@ void set_rate(Device& device, double rate_Hz) {
   set_reaction(device, dt);
 }
 
-void take_simulation(Device& device, const std::filesystem::path& file, SourceReader& reader) {
+void take_simulation(DeviceConfig& device, const std::filesystem::path& file,
+                     SourceReader& reader) {
   const std::size_t first_source = reader.texts().size();
   device.simulation = load_simulation(file, reader, device.simulated);
   const std::vector<SourceText> sources = reader.since(first_source);
   device.sources.insert(device.sources.end(), sources.begin(), sources.end());
 }
 
-Device load_device(const std::filesystem::path& file) {
+DeviceConfig load_device(const std::filesystem::path& file) {
   SourceReader reader;
   return load_device(file, reader);
 }
 
-Device load_device(const std::filesystem::path& path, SourceReader& reader) {
+DeviceConfig load_device(const std::filesystem::path& path, SourceReader& reader) {
   const std::size_t first_source = reader.texts().size();
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   DeviceDraft draft;
@@ -364,7 +365,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
   std::optional<Tool> tool;
   std::optional<UrdfText> urdf;
   model::ChainOptions options;
-  std::optional<Simulation> simulation;
+  std::optional<SimulationConfig> simulation;
   load_file(file, [&](Loader& loader) {
     describe_chain(loader, draft);
     urdf = read_urdf(file, draft.urdf);
@@ -393,30 +394,30 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
     check_actuators(file, draft);
   });
 
-  Device device = {.name = draft.name,
-                   .urdf = draft.urdf,
-                   .rate_Hz = draft.rate_Hz,
-                   .floor_z = draft.floor_z,
-                   .has_floor = draft.has_floor,
-                   .kinematics = draft.kinematics,
-                   .drive = draft.drive,
-                   .control = draft.control,
-                   .T_H_S = pose_of(draft.sensor),
-                   .model = make_model(std::move(*chain), draft),
-                   .rendering = draft.rendering,
-                   .prepositioning = draft.prepositioning,
-                   .estimation = draft.estimation,
-                   .monitor = draft.monitor,
-                   .sanitiser = draft.sanitiser,
-                   .passivity = draft.passivity,
-                   .compliance = draft.compliance,
-                   .start_test = draft.start_test,
-                   .collision = {.safe_distance = draft.safe_distance},
-                   .unknown_links = {},
-                   .simulation = simulation.value_or(ideal_simulation(draft)),
-                   .simulated = simulated_device(draft, options),
-                   .sources = reader.since(first_source),
-                   .places = std::move(file.places)};
+  DeviceConfig device = {.name = draft.name,
+                         .urdf = draft.urdf,
+                         .rate_Hz = draft.rate_Hz,
+                         .floor_z = draft.floor_z,
+                         .has_floor = draft.has_floor,
+                         .kinematics = draft.kinematics,
+                         .drive = draft.drive,
+                         .control = draft.control,
+                         .T_H_S = pose_of(draft.sensor),
+                         .model = make_model(std::move(*chain), draft),
+                         .rendering = draft.rendering,
+                         .prepositioning = draft.prepositioning,
+                         .estimation = draft.estimation,
+                         .monitor = draft.monitor,
+                         .sanitiser = draft.sanitiser,
+                         .passivity = draft.passivity,
+                         .compliance = draft.compliance,
+                         .start_test = draft.start_test,
+                         .collision = {.safe_distance = draft.safe_distance},
+                         .unknown_links = {},
+                         .simulation = simulation.value_or(ideal_simulation(draft)),
+                         .simulated = simulated_device(draft, options),
+                         .sources = reader.since(first_source),
+                         .places = std::move(file.places)};
   if (tool) {
     device.T_H_S = tool->T_H_S;
     device.monitor.has_dead_man = tool->has_dead_man;

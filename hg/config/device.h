@@ -29,7 +29,7 @@ enum class Kinematics {
   kGeneric,      ///< numerically, for any device
 };
 
-struct Device {
+struct DeviceConfig {
   std::string name;
   std::filesystem::path urdf;
   double rate_Hz = 1000.0;
@@ -37,20 +37,21 @@ struct Device {
   bool has_floor = false;  ///< collisions with the floor are watched; false = it is only drawn
   Kinematics kinematics = Kinematics::kGeneric;
   DriveModel drive;
-  tracking::Config control;  ///< control, with method kDrives for a device without actuators
-  Pose T_H_S;                ///< force/torque sensor S in the handle frame H
+  tracking::ControlConfig control;  ///< control, with method kDrives for a device without actuators
+  Pose T_H_S;                       ///< force/torque sensor S in the handle frame H
   rendering::DeviceModel model;
-  rendering::Options rendering;
-  prepositioning::Config prepositioning;
-  estimation::Config estimation;
+  rendering::RenderingOptions rendering;
+  prepositioning::PrepositioningConfig prepositioning;
+  estimation::EstimationConfig estimation;
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
-  passivity::Config passivity;
-  compliance::Config compliance;  ///< compliance, without period and joint torques
+  passivity::PassivityConfig passivity;
+  compliance::ComplianceConfig compliance;  ///< compliance, without period and joint torques
   StartTestConfig start_test;
-  collision::Config collision;  ///< collision model; without shapes collisions are not watched
+  /// Collision model; without shapes collisions are not watched
+  collision::CollisionConfig collision;
   std::vector<std::string> unknown_links;  ///< moving links of unknown shape
-  Simulation simulation;                   ///< simulation of this device; defaults without a file
+  SimulationConfig simulation;             ///< simulation of this device; defaults without a file
   SimulatedDevice simulated;               ///< properties that a simulation file has to fit
   std::vector<SourceText> sources;         ///< source texts, the YAML file first
   Places places;                           ///< places of the keys of the YAML file
@@ -58,18 +59,18 @@ struct Device {
 
 /// Sets the values that follow from law, bounds and control method: whether the law knows the motor
 /// torques. For a scenario, see settle_law() in scenario.h.
-void settle_law(Device& device);
+void settle_law(DeviceConfig& device);
 
 /// Sets the rate and all values that follow from it. Throws SetupError when the drive's dead time
 /// would span too many periods.
-void set_rate(Device& device, double rate_Hz);
+void set_rate(DeviceConfig& device, double rate_Hz);
 
 /// Replaces the device's simulation by that of this file; its texts join those of the device.
 /// Throws SetupError as load_simulation() does.
-void take_simulation(Device& device, const std::filesystem::path& file, SourceReader& reader);
+void take_simulation(DeviceConfig& device, const std::filesystem::path& file, SourceReader& reader);
 
 /// Loads a device. Throws SetupError with all faults of the file, one per line.
-Device load_device(const std::filesystem::path& file);
-Device load_device(const std::filesystem::path& file, SourceReader& reader);
+DeviceConfig load_device(const std::filesystem::path& file);
+DeviceConfig load_device(const std::filesystem::path& file, SourceReader& reader);
 
 }  // namespace hg::config

@@ -21,7 +21,7 @@ struct DeviceJoint {
   limits::JointLimits limits;
 };
 
-/// Content of device.yaml, before it becomes a Device.
+/// Content of device.yaml, before it becomes a DeviceConfig.
 struct DeviceDraft {
   std::string name;
   std::filesystem::path urdf, tool, simulation;
@@ -44,19 +44,19 @@ struct DeviceDraft {
   std::vector<rendering::CartesianLimit> cartesian_limits;
   DriveModel drive;
   std::vector<std::optional<ActuatorModel>> actuators;  ///< actuator per joint, where given
-  tracking::Config control;
-  rendering::Options rendering;
-  prepositioning::Config prepositioning;
-  estimation::Config estimation;
+  tracking::ControlConfig control;
+  rendering::RenderingOptions rendering;
+  prepositioning::PrepositioningConfig prepositioning;
+  estimation::EstimationConfig estimation;
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
-  passivity::Config passivity;
-  compliance::Config compliance;
+  passivity::PassivityConfig passivity;
+  compliance::ComplianceConfig compliance;
   StartTestConfig start_test;
   std::vector<std::string> input_names{kSafetyInputNames.begin(), kSafetyInputNames.end()};
   bool watches_collisions = true;
   bool has_floor = false;
-  double safe_distance = collision::Config{}.safe_distance;
+  double safe_distance = collision::CollisionConfig{}.safe_distance;
 };
 
 inline constexpr std::array<Choice<Kinematics>, 2> kKinematics = {
@@ -381,7 +381,7 @@ void describe(V& v, StartTestConfig& test, const std::vector<std::string>& input
 }
 
 template <class V>
-void describe(V& v, rendering::Options& options, std::size_t manipulator_joints) {
+void describe(V& v, rendering::RenderingOptions& options, std::size_t manipulator_joints) {
   v.choice("law", options.law, kLaws, "how limits become forces; paper needs six joints");
   v.choice("bounds", options.bounds, kBounds, "how limits become bounds on accelerations");
   v.choice("gantry", options.gantry, kGantries,
@@ -548,7 +548,7 @@ void describe(V& v, ActuatorModel& actuator) {
 }
 
 template <class V>
-void describe(V& v, tracking::Config& config) {
+void describe(V& v, tracking::ControlConfig& config) {
   v.choice("method", config.method, kMethods,
            "modal: all states of the arm in its modes; motor_pd: each motor for itself");
   v.number("latency_s", config.loop.latency, {.lb = 0.0, .ub = 0.64},

@@ -28,7 +28,7 @@ auto part(LoaderFile& file, const std::filesystem::path& path, Load load)
   }
 }
 
-EventNames names_of(const Device& device, const Twin& twin, const LimitCatalogue& catalogue) {
+EventNames names_of(const DeviceConfig& device, const Twin& twin, const LimitCatalogue& catalogue) {
   EventNames names;
   for (const LimitInfo& limit : catalogue) names.limits.push_back(limit.name);
   const std::size_t first_twin_limit = catalogue.size() - twin.model.dofs.size();
@@ -69,7 +69,7 @@ std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
                 "'" + draft.surface.name + "' around it");
   }
   try {
-    surfaces::check(surfaces);
+    surfaces::check_surfaces(surfaces);
   } catch (const SetupError& error) {
     loader.rule(false, "surfaces", error.what());
   }
@@ -89,7 +89,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   BystanderDraft bystander;
   std::vector<surfaces::Surface> surfaces;
   std::vector<TimedPanel> panel;
-  std::optional<Device> device;
+  std::optional<DeviceConfig> device;
   std::optional<Twin> twin;
   std::optional<Script> script = Script{};
   LimitCatalogue catalogue;

@@ -42,7 +42,7 @@ std::vector<int> find_joints(Loader& loader, const std::vector<std::string>& wan
 // Every joint of the plant is driven or flexible.
 void take_plant(Loader& loader, const SimulatedDevice& device, SimulationDraft& draft,
                 const model::Chain& chain) {
-  Simulation& simulation = draft.simulation;
+  SimulationConfig& simulation = draft.simulation;
   simulation.gantry = find_joints(loader, device.gantry, draft);
   simulation.manipulator = find_joints(loader, device.manipulator, draft);
   std::vector<int> driven = simulation.gantry;
@@ -104,7 +104,7 @@ void yield(Loader& loader, LoaderFile& file, const SimulatedDevice& device,
   }
 }
 
-void check_filters(Loader& loader, const Simulation& simulation) {
+void check_filters(Loader& loader, const SimulationConfig& simulation) {
   const double longest = simulator::kMaxFilterSteps * simulation.step_s;
   for (const simulator::SensorFilterConfig& filter :
        {simulation.sensors.wrench.filter, simulation.sensors.imu_filter,
@@ -204,8 +204,8 @@ void load(const std::filesystem::path& path, SourceReader& reader, const Simulat
 
 }  // namespace
 
-Simulation load_simulation(const std::filesystem::path& path, SourceReader& reader,
-                           const SimulatedDevice& device) {
+SimulationConfig load_simulation(const std::filesystem::path& path, SourceReader& reader,
+                                 const SimulatedDevice& device) {
   SimulationDraft draft;
   load(path, reader, device, false, draft);
   draft.simulation.is_from_file = true;

@@ -61,7 +61,7 @@ TorqueLoop actual(TorqueLoop told, const RealityFactors& factors);
 DriveModel actual(DriveModel told, const RealityFactors& factors);
 Payload actual(Payload told, const RealityFactors& factors);
 
-struct Simulation {
+struct SimulationConfig {
   bool is_from_file = false;  ///< false: no simulation file, the device file is exact
   double step_s = 0.25e-3;    ///< largest step of the plant; a period is a whole number of steps
   std::uint64_t seed = 1;
@@ -92,7 +92,7 @@ struct SimulatedDevice {
 };
 
 /// Loads a simulation. Throws SetupError with all faults of the file, one per line.
-Simulation load_simulation(const std::filesystem::path& file, SourceReader& reader,
-                           const SimulatedDevice& device);
+SimulationConfig load_simulation(const std::filesystem::path& file, SourceReader& reader,
+                                 const SimulatedDevice& device);
 
 }  // namespace hg::config

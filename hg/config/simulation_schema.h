@@ -204,9 +204,9 @@ struct StructureDraft {
   bool has_axis = false;
 };
 
-/// Content of simulation.yaml, before it becomes a Simulation.
+/// Content of simulation.yaml, before it becomes a SimulationConfig.
 struct SimulationDraft {
-  Simulation simulation;
+  SimulationConfig simulation;
   double seed = 1.0;
   std::filesystem::path base, urdf;
   /// Structure per joint of the device, where given
@@ -233,7 +233,7 @@ void describe(V& v, RealityFactors& factors) {
 }
 
 template <class V>
-void describe_end_stops(V& v, Simulation& simulation) {
+void describe_end_stops(V& v, SimulationConfig& simulation) {
   v.number("beyond_rad", simulation.stop_distance_angle, kNotNegative,
            "beyond the limits of revolute joints");
   v.number("beyond_m", simulation.stop_distance_length, kNotNegative,

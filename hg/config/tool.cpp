@@ -17,7 +17,7 @@ Tool load_tool(const std::filesystem::path& path, SourceReader& reader) {
       return;
     }
     try {
-      model::check({draft.mass, draft.centre_of_mass, draft.inertia}, "tool");
+      model::check_inertial({draft.mass, draft.centre_of_mass, draft.inertia}, "tool");
     } catch (const SetupError& error) {
       loader.rule(false, "inertia_kg_m2", error.what());
     }

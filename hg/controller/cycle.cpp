@@ -42,20 +42,20 @@ VectorM braking_of(const rendering::DeviceModel& device) {
   constexpr double kWithoutRating = 10.0;  // rad/s^2 or m/s^2
   VectorM ddq(device.n_m);
   for (int i = 0; i < device.n_m; ++i) {
-    const double rating = device.joint_limits[static_cast<std::size_t>(i)].ddq_max;
+    const double rating = device.joint_limits[index(i)].ddq_max;
     ddq[i] = std::isfinite(rating) ? rating : kWithoutRating;
   }
   return ddq;
 }
 
-safety::MonitorConfig monitor_config(const Config& config) {
+safety::MonitorConfig monitor_config(const CycleConfig& config) {
   safety::MonitorConfig monitor = config.monitor;
   monitor.has_imu = config.estimation.wrench.has_imu;
   monitor.dt = config.rendering.dt;
   return monitor;
 }
 
-prepositioning::TargetConfig target_of(const prepositioning::Config& gantry,
+prepositioning::TargetConfig target_of(const prepositioning::PrepositioningConfig& gantry,
                                        const rendering::DeviceModel& device) {
   prepositioning::TargetConfig target = {.has_closed_form = gantry.has_closed_form,
                                          .n_p = device.n_p,
@@ -99,7 +99,7 @@ bool is_pushed_back(const rendering::LawResult& law) noexcept {
   constexpr double kPush = 0.5;   // N, or Nm of a limit
   constexpr double kNear = 0.05;  // m or rad
   for (int i = 0; i < law.limit_count; ++i) {
-    const LimitReport& limit = law.limits[static_cast<std::size_t>(i)];
+    const LimitReport& limit = law.limits[index(i)];
     const double left = std::min(limit.to_lower, limit.to_upper);
     if (left < kNear && std::abs(limit.reaction) > kPush) return true;
   }
@@ -127,7 +127,7 @@ void copy(const rendering::LawResult& law, CycleRecord& record) noexcept {
 
 }  // namespace
 
-Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
+Cycle::Cycle(const CycleConfig& config, const rendering::DeviceModel& device,
              const rendering::TwinModel& twin)
     : config_(config),
       estimation_(config.estimation, device.chain, device.n_p, device.n_m, device.handle),
@@ -141,7 +141,7 @@ Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
       sanitiser_(config.sanitiser, monitor_.config()) {
   ddq_max_ = braking_of(device);
   longest_stop_ = static_cast<int>(std::lround(config.monitor.stop_time / config.rendering.dt));
-  prepositioning::check(config_.prepositioning);
+  prepositioning::check_prepositioning(config_.prepositioning);
   state_.rendering = rendering_.start(VectorM::Zero(device.n_m));
   state_.control = control_.start();
   state_.dq_p = VectorP::Zero(device.n_p);
@@ -204,7 +204,7 @@ Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
   SafetyInputs safety = sensors.safety;
   safety.emergency_stop = safety.emergency_stop || operator_input.panel.emergency_stop;
   const bool is_new = request != supervisor.last_request;
-  const bool was_fault = supervisor.state == safety::State::kFault;
+  const bool was_fault = supervisor.state == safety::SafetyState::kFault;
   const bool is_arming = is_new && request == ModeRequest::kArm;
   const Fault fault = check(sensors);
   safety::SupervisorInput input = {
@@ -218,7 +218,7 @@ Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
       .reaction = fault.code != FaultCode::kNone ? Stop::kSto : Stop::kNone};
   if (input.fault.code == FaultCode::kNone) input.fault = fault;
   result.refusal = safety::advance(input, supervisor);
-  if (was_fault && supervisor.state != safety::State::kFault) begin_anew();
+  if (was_fault && supervisor.state != safety::SafetyState::kFault) begin_anew();
 
   estimation_.tare(is_new && request == ModeRequest::kTare, !is_moving(supervisor.mode()),
                    state_.estimation);
@@ -281,7 +281,7 @@ RobotState Cycle::estimate(const SensorFrame& sensors) noexcept {
 collision::Prediction Cycle::look_ahead(const SensorFrame& sensors,
                                         const RobotState& robot) noexcept {
   if (robot.q_m.size() == 0 || monitor_.has_jumped(sensors, state_.monitor)) return {};
-  const safety::State state = state_.supervisor.state;
+  const safety::SafetyState state = state_.supervisor.state;
   const collision::Prediction ahead =
       guard_.step(stacked(robot.q_p, robot.q_m), stacked(robot.dq_p, robot.dq_m),
                   safety::is_powered(state), state_.collision);
@@ -312,10 +312,10 @@ Motion Cycle::decide(bool is_usable, bool must_brake) const noexcept {
 // handle. In motion: both are moved back to a device that lags behind. Returns by how much the
 // reference was moved back; empty = not at all.
 VectorM Cycle::place_reference(Motion motion, const RobotState& robot) noexcept {
-  rendering::State& rendering = state_.rendering;
+  rendering::RenderingState& rendering = state_.rendering;
   if (motion == Motion::kHold) {
-    const bool is_armed =
-        state_.supervisor.state == safety::State::kArmed || is_moving(state_.supervisor.mode());
+    const bool is_armed = state_.supervisor.state == safety::SafetyState::kArmed ||
+                          is_moving(state_.supervisor.mode());
     if (!is_armed) {
       rendering.reference.q_m = robot.q_m;
       rendering.contact = {};
@@ -332,7 +332,7 @@ VectorM Cycle::place_reference(Motion motion, const RobotState& robot) noexcept 
 
 // Largest speed of handle and gantry, m/s.
 double Cycle::speed_max() const noexcept {
-  const bool is_alone = state_.supervisor.state == safety::State::kAutonomous;
+  const bool is_alone = state_.supervisor.state == safety::SafetyState::kAutonomous;
   return is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
 }
 
@@ -341,9 +341,9 @@ Cycle::GantryAim Cycle::preposition(Motion motion, const RobotState& robot) noex
   if (!is_moving(motion)) return {};
   const VectorP q_p_target =
       gantry_target_.step(robot, state_.rendering.reference.q_m, state_.gantry_target);
-  GantryAim aim = {.command = prepositioning::step(config_.prepositioning, robot, q_p_target,
-                                                   state_.is_blocked, speed_max() / std::sqrt(2.0),
-                                                   state_.room, state_.touch.away)};
+  GantryAim aim = {.command = prepositioning::command_gantry(
+                       config_.prepositioning, robot, q_p_target, state_.is_blocked,
+                       speed_max() / std::sqrt(2.0), state_.room, state_.touch.away)};
   if (rendering_.leads_gantry() && motion == Motion::kRender) {
     aim.task = prepositioning::accelerations(aim.command, config_.estimation.drive, robot,
                                              state_.rendering.ddq_p, config_.rendering.dt);
@@ -356,9 +356,9 @@ Cycle::GantryAim Cycle::preposition(Motion motion, const RobotState& robot) noex
 // forces down if the handle is held; all other stops drop them at once.
 double Cycle::ramp_forces(Motion motion, bool is_held) noexcept {
   if (!is_moving(motion)) return state_.force_share = 0.0;
-  const safety::State state = state_.supervisor.state;
-  if (!is_stopping(motion)) state_.was_alone = state == safety::State::kAutonomous;
-  const bool is_gentle = is_held && !state_.was_alone && state == safety::State::kToArmed;
+  const safety::SafetyState state = state_.supervisor.state;
+  if (!is_stopping(motion)) state_.was_alone = state == safety::SafetyState::kAutonomous;
+  const bool is_gentle = is_held && !state_.was_alone && state == safety::SafetyState::kToArmed;
   const double share = is_stopping(motion) && !is_gentle ? 0.0 : state_.force_share;
   const double step =
       is_stopping(motion) ? -config_.rendering.dt / kRampOut : config_.rendering.dt / kRampIn;
@@ -393,7 +393,7 @@ const rendering::LawResult& Cycle::render(Motion motion, bool is_held, const Rob
 // Monitors energy and oscillation at the handle; added damping and inertia act from the next cycle.
 PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
                                     const rendering::LawResult& law) noexcept {
-  rendering::State& rendering = state_.rendering;
+  rendering::RenderingState& rendering = state_.rendering;
   if (motion == Motion::kHold) {
     state_.passivity = {};
     rendering.calming = {};
@@ -403,7 +403,7 @@ PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
   }
   const Vector6 twist_E = rendering_.end_effector_twist(rendering);
   const Vector6& w = robot.w_H;
-  const PassivityReport report = passivity::step(
+  const PassivityReport report = passivity::observe_energy(
       config_.passivity,
       {.f = w.head<3>(),
        .power_measured = w.dot(rendering_.handle_twist(robot)),
@@ -415,7 +415,7 @@ PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
       state_.passivity);
   const passivity::Calming& calming = state_.passivity.calming;
   rendering.calming = {calming.damping, calming.inertia};
-  const Fault fault = passivity::check(config_.passivity, report, state_.passivity);
+  const Fault fault = passivity::passivity_fault(config_.passivity, report, state_.passivity);
   if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
   return report;
 }
@@ -434,7 +434,7 @@ Cycle::Moved Cycle::advance(Motion motion, const RobotState& robot, const Gantry
                             const rendering::LawResult& law) noexcept {
   Moved moved = {.dq_p = VectorP::Zero(state_.dq_p.size())};
   if (motion == Motion::kNone) return moved;
-  rendering::State& rendering = state_.rendering;
+  rendering::RenderingState& rendering = state_.rendering;
   motion = accept(motion, law);
   state_.motion = motion;
   if (motion == Motion::kHold) {
@@ -459,7 +459,7 @@ Cycle::Moved Cycle::advance(Motion motion, const RobotState& robot, const Gantry
 // do not follow. [HANDBOOK] 6.2 has a ramp of 50 ms, which exceeds the motor torques of a stretched
 // arm.
 void Cycle::brake_joints() noexcept {
-  rendering::State& rendering = state_.rendering;
+  rendering::RenderingState& rendering = state_.rendering;
   const double rate = 1.0 / config_.rendering.dt;
   rendering.reference.ddq_m =
       (-rate * rendering.reference.dq_m).cwiseMin(ddq_max_).cwiseMax(-ddq_max_);
@@ -481,7 +481,7 @@ void Cycle::time_stop(Motion motion, const RobotState& robot, const Moved& moved
 // Returns the warning of this cycle.
 Fault Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
                      const Results& results) noexcept {
-  safety::Verdict verdict;
+  safety::MonitorResult verdict;
   if (results.motion == Motion::kNone) {
     safety::Monitor::forget(state_.monitor);
   } else {
@@ -551,7 +551,7 @@ TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
   }
   const bool gives_way =
       share > 0.0 && is_moving(supervisor.mode()) && state_.motion != Motion::kBrakeJoints;
-  compliance::State& touch = state_.touch;
+  compliance::ComplianceState& touch = state_.touch;
   const VectorM& dq = robot.dq_m;
   const bool is_known = config_.compliance.torque_max.size() == dq.size() && dq.size() > 0;
   if (!config_.compliance.is_on || !is_on || !gives_way || !is_known) {
@@ -563,12 +563,12 @@ TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
   if (touch.dq.size() == dq.size()) {
     const tracking::JointControl::JointTorques torques =
         control_.joint_torques(robot, (dq - touch.dq) / config_.rendering.dt);
-    report = compliance::step(config_.compliance,
-                              {.torque = torques.external,
-                               .load = torques.motion,
-                               .J = rendering_.handle_jacobian(),
-                               .n_p = static_cast<int>(robot.q_p.size())},
-                              touch);
+    report = compliance::react_to_contact(config_.compliance,
+                                          {.torque = torques.external,
+                                           .load = torques.motion,
+                                           .J = rendering_.handle_jacobian(),
+                                           .n_p = static_cast<int>(robot.q_p.size())},
+                                          touch);
   }
   touch.dq = dq;
   state_.rendering.touch = share * report.wrench;
@@ -607,7 +607,7 @@ void Cycle::fill(const Results& results, const Fault& warning, const TrackingRep
   // supervisor, after all rules of this cycle
   const safety::SupervisorState& supervisor = state_.supervisor;
   record.mode = supervisor.mode();
-  record.is_autonomous = supervisor.state == safety::State::kAutonomous;
+  record.is_autonomous = supervisor.state == safety::SafetyState::kAutonomous;
   record.stop = supervisor.stop;
   record.fault = supervisor.fault;
   record.warning = supervisor.also.code != FaultCode::kNone ? supervisor.also : warning;

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "hg/core/fields.h"
+#include "hg/core/index.h"
 
 namespace hg {
 

@@ -218,7 +218,7 @@ SolverOptions parse_options(Reader& reader) {
     }
   }
   try {
-    check(options);
+    check_solver_options(options);
   } catch (const SetupError& error) {
     reader.fail(error.what());
   }
@@ -377,7 +377,7 @@ void write_options(std::ostream& out, const SolverOptions& options) {
 std::string letters_of(const States& states, int rows) {
   std::string letters;
   for (int row = 0; row < rows; ++row) {
-    letters += kStateLetters[static_cast<std::size_t>(states[static_cast<std::size_t>(row)])];
+    letters += kStateLetters[static_cast<std::size_t>(states[index(row)])];
   }
   return letters;
 }
@@ -456,7 +456,7 @@ Capacity capacity_for(std::span<const RecordedProblem> problems) {
 }
 
 void write_problem(std::ostream& out, const RecordedProblem& recorded) {
-  check(recorded.options);
+  check_solver_options(recorded.options);
   const Problem& problem = recorded.problem;
   out << "hqp " << problem.variables() << ' ' << problem.levels() << '\n';
   write_name(out, recorded.name);

@@ -309,7 +309,7 @@ Assembly build(const Urdf& urdf, const ChainOptions& options) {
 
 Assembly build(const FreeBody& body, const ChainOptions& options) {
   const Inertial inertial = {body.mass, body.p_handle_com, body.inertia};
-  check(inertial, "free body");
+  check_inertial(inertial, "free body");
   Assembly chain;
   chain.name = "free_body";
   const pinocchio::JointIndex root = chain.add_floating_root(options.T_B_root);

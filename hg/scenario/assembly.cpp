@@ -46,16 +46,16 @@ void fill_in_start(const config::Scenario& scenario, const Start& start, person:
 }
 
 // Ends of travel of a joint with these limits.
-Interval end_stops(const config::Simulation& reality, const model::Joint& joint, double q_min,
+Interval end_stops(const config::SimulationConfig& reality, const model::Joint& joint, double q_min,
                    double q_max) {
   const bool is_slide = joint.type == model::JointType::kPrismatic;
   const double beyond = is_slide ? reality.stop_distance_length : reality.stop_distance_angle;
   return {q_min - beyond, q_max + beyond};
 }
 
-simulator::PlantConfig elastic_plant(const config::Device& device, const Start& start,
+simulator::PlantConfig elastic_plant(const config::DeviceConfig& device, const Start& start,
                                      double step) {
-  const config::Simulation& reality = device.simulation;
+  const config::SimulationConfig& reality = device.simulation;
   simulator::PlantConfig plant = {
       .step = step,
       .gantry = reality.gantry,
@@ -91,12 +91,13 @@ simulator::PlantConfig elastic_plant(const config::Device& device, const Start& 
 }
 
 // The machine of a device: elastic joints where its joints have actuators.
-simulator::Config device_simulation(const config::Device& device, const Start& start) {
-  const config::Simulation& reality = device.simulation;
+simulator::SimulatorConfig device_simulation(const config::DeviceConfig& device,
+                                             const Start& start) {
+  const config::SimulationConfig& reality = device.simulation;
   const double period = device.rendering.dt;
   const bool is_elastic = device.control.method != tracking::Method::kDrives;
-  simulator::Config config = {.sensors = reality.sensors,
-                              .has_dead_man = device.monitor.has_dead_man};
+  simulator::SimulatorConfig config = {.sensors = reality.sensors,
+                                       .has_dead_man = device.monitor.has_dead_man};
   if (is_elastic) {
     config.steps = static_cast<int>(std::ceil(period / reality.step_s - 1e-9));
     config.latency = actual(device.control.loop, reality.factors).latency;
@@ -131,7 +132,7 @@ simulator::Config device_simulation(const config::Device& device, const Start& s
 
 // Places the bystander. Throws SetupError where the arm cannot hit anyone.
 void place(const config::BystanderInTheWay& bystander, const model::Chain& chain,
-           simulator::Config& simulation) {
+           simulator::SimulatorConfig& simulation) {
   auto* plant = std::get_if<simulator::PlantConfig>(&simulation.plant);
   if (plant == nullptr) {
     throw SetupError(
@@ -143,14 +144,14 @@ void place(const config::BystanderInTheWay& bystander, const model::Chain& chain
 }
 
 simulator::Simulation simulation_of(
-    const config::Device& device, const Start& start, person::Person person,
+    const config::DeviceConfig& device, const Start& start, person::Person person,
     const std::optional<config::BystanderInTheWay>& bystander = {}) {
   const bool is_elastic = device.control.method != tracking::Method::kDrives;
   const model::Chain& chain =
       device.simulation.chain && is_elastic ? *device.simulation.chain : device.model.chain;
   const std::string& handle =
       device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
-  simulator::Config config = device_simulation(device, start);
+  simulator::SimulatorConfig config = device_simulation(device, start);
   for (const int frame : device.estimation.units.frames) {
     const auto index = static_cast<std::size_t>(frame);
     config.link_units.push_back(chain.frame(device.model.chain.frame_names()[index]));
@@ -171,8 +172,8 @@ constexpr int kMostDraws = 1'000'000;  // of a posture; takes less than a second
 constexpr int kFurtherLatency = 4;     // periods beyond what is expected
 
 // Elastic joints: until which latency the gains that follow from it are stable.
-tracking::Config checked_control(const config::Device& device) {
-  tracking::Config control = device.control;
+tracking::ControlConfig checked_control(const config::DeviceConfig& device) {
+  tracking::ControlConfig control = device.control;
   if (control.method == tracking::Method::kDrives) return control;
   const tracking::Loop loop = torque_loop(device);
   const int expected =
@@ -190,8 +191,8 @@ tracking::Config checked_control(const config::Device& device) {
   return control;
 }
 
-compliance::Config compliance_of(const config::Device& device) {
-  compliance::Config compliance = device.compliance;
+compliance::ComplianceConfig compliance_of(const config::DeviceConfig& device) {
+  compliance::ComplianceConfig compliance = device.compliance;
   compliance.dt = device.rendering.dt;
   if (device.control.method == tracking::Method::kDrives) return compliance;
   compliance.torque_max.resize(device.model.n_m);
@@ -231,7 +232,7 @@ std::vector<Eigen::VectorXd> random_postures(const rendering::DeviceModel& devic
       postures.size(), kMostDraws, count));
 }
 
-tracking::Loop torque_loop(const config::Device& device) {
+tracking::Loop torque_loop(const config::DeviceConfig& device) {
   return {.config = device.control,
           .filters = {.link_pole_Hz = device.estimation.link_pole_Hz,
                       .motor_low_pass_Hz = device.estimation.motor_low_pass_Hz},
@@ -241,13 +242,13 @@ tracking::Loop torque_loop(const config::Device& device) {
           .handle = device.model.handle};
 }
 
-bool notices_frozen_sensors(const config::Device& device) {
+bool notices_frozen_sensors(const config::DeviceConfig& device) {
   const bool is_noisy = !device.simulation.is_from_file || has_noise(device.simulation.sensors);
   return is_noisy && device.monitor.frozen_samples > 0.0;
 }
 
 controller::Cycle make_cycle(const config::Scenario& scenario) {
-  const config::Device& device = scenario.device;
+  const config::DeviceConfig& device = scenario.device;
   safety::MonitorConfig monitor = device.monitor;
   if (!notices_frozen_sensors(device)) monitor.frozen_samples = 0.0;
   // the paper's bounds ask for more than any rating where they contradict each other, and where the
@@ -273,8 +274,8 @@ controller::Cycle make_cycle(const config::Scenario& scenario) {
 }
 
 person::Person make_person(const config::Scenario& scenario, const Start& start) {
-  person::Config person{scenario.person, scenario.script.hand, scenario.script.script,
-                        scenario.device.simulation.seed};
+  person::PersonConfig person{scenario.person, scenario.script.hand, scenario.script.script,
+                              scenario.device.simulation.seed};
   if (scenario.person == person::PersonKind::kScript) fill_in_start(scenario, start, person.script);
   return person::Person(person, scenario.twin.model.chain, scenario.twin.model.end_effector,
                         scenario.twin.T_B_root);
@@ -285,7 +286,8 @@ simulator::Simulation make_simulation(const config::Scenario& scenario) {
   return simulation_of(scenario.device, start, make_person(scenario, start), scenario.bystander);
 }
 
-simulator::Simulation make_unheld_simulation(const config::Device& device, const Start& start) {
+simulator::Simulation make_unheld_simulation(const config::DeviceConfig& device,
+                                             const Start& start) {
   return simulation_of(
       device, start,
       person::Person({.kind = person::PersonKind::kNone}, model::Chain::free_body({}), 0, Pose{}));

@@ -72,7 +72,7 @@ void check_limits(const config::Scenario& scenario, const Start& start) {
 // throws SetupError when the handle or a part of the device would be in the floor at `start`: the
 // guard accepts a device in its present posture, so no other check reports it
 void check_floor(const config::Scenario& scenario, const Start& start) {
-  const config::Device& device = scenario.device;
+  const config::DeviceConfig& device = scenario.device;
   if (!device.has_floor) return;
   const auto refuse = [&](const std::string& what) {
     throw SetupError(

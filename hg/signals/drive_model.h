@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "hg/core/index.h"
+
 namespace hg {
 
 /// Response of a velocity-controlled drive, [HANDBOOK] 1.5. Set-up data.
@@ -29,10 +31,10 @@ class CommandDelay {
   /// Stores the command of this period and returns the one from `periods` (0..kMaxPeriods) periods
   /// ago; 0 before the first.
   double shift(double command, int periods) noexcept {
-    values_[static_cast<std::size_t>(next_)] = command;
+    values_[index(next_)] = command;
     const int delayed = (next_ - periods + kCapacity) % kCapacity;
     next_ = (next_ + 1) % kCapacity;
-    return values_[static_cast<std::size_t>(delayed)];
+    return values_[index(delayed)];
   }
 
  private:

@@ -57,7 +57,7 @@ void play_script(config::Scenario& scenario, const person::Script& script) {
   scenario.duration_s = 0.0;
 }
 
-void take_friction(tracking::Config& control) {
+void take_friction(tracking::ControlConfig& control) {
   for (ActuatorModel& actuator : control.actuators) {
     actuator.coulomb_friction = actuator.viscous_friction = actuator.load_friction = 0.0;
   }

@@ -21,6 +21,6 @@ FreeTwin free_twin_of(const config::Scenario& scenario);
 void play_script(config::Scenario& scenario, const person::Script& script);
 
 /// Removes the joint friction, from the true device and from the controller's model.
-void take_friction(tracking::Config& control);
+void take_friction(tracking::ControlConfig& control);
 
 }  // namespace hg::studies

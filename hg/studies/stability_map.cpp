@@ -44,7 +44,7 @@ void set_kick(const Kick& kick, config::Scenario& scenario) {
 
 // From the first stable mass of the ladder downwards.
 double stable_from(const StabilityConfig& config, const StabilityRow& row,
-                   const std::function<Verdict(double)>& verdict_at) {
+                   const std::function<DecayClass(double)>& verdict_at) {
   const auto first = std::ranges::find_if(
       row.outcomes, [](const KickOutcome& outcome) { return is_stable(outcome.verdict); });
   if (first == row.outcomes.end()) return kInfinity;
@@ -83,13 +83,13 @@ KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) 
   outcome.fault = player.record().fault.code;
   if (!player.is_running()) {
     outcome.was_lost = true;
-    outcome.verdict = Verdict::kDiverges;
+    outcome.verdict = DecayClass::kDiverges;
     return outcome;
   }
   const auto window = std::llround(config.calm.window * rate_Hz);
   outcome.last_speed = *std::max_element(speed.end() - window, speed.end());
   outcome.was_lost = was_lost;
-  outcome.verdict = was_lost ? Verdict::kDiverges : judge_decay(speed, config.calm, rate_Hz);
+  outcome.verdict = was_lost ? DecayClass::kDiverges : judge_decay(speed, config.calm, rate_Hz);
   return outcome;
 }
 
@@ -141,7 +141,7 @@ KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config
   KickOutcome outcome = play(played, config);
   if (!is_stable(outcome.verdict) && !outcome.was_lost) {
     take_friction(played.device.control);
-    if (is_stable(play(played, config).verdict)) outcome.verdict = Verdict::kHunts;
+    if (is_stable(play(played, config).verdict)) outcome.verdict = DecayClass::kHunts;
   }
   return outcome;
 }
@@ -207,7 +207,7 @@ std::string to_text(const StabilityMap& map) {
     }
     text += fmt::format("       {}\n", mass_text(map, row.stable_from));
   }
-  const auto count = [&](Verdict verdict) {
+  const auto count = [&](DecayClass verdict) {
     std::ptrdiff_t sum = 0;
     for (const StabilityRow& row : map.rows) {
       sum += std::ranges::count(row.outcomes, verdict, &KickOutcome::verdict);
@@ -215,8 +215,8 @@ std::string to_text(const StabilityMap& map) {
     return sum;
   };
   text += fmt::format("\n{} of {} cells hunt (h), {} swing or diverge without end (U, X)\n",
-                      count(Verdict::kHunts), map.rows.size() * map.config.mass.size(),
-                      count(Verdict::kSustained) + count(Verdict::kDiverges));
+                      count(DecayClass::kHunts), map.rows.size() * map.config.mass.size(),
+                      count(DecayClass::kSustained) + count(DecayClass::kDiverges));
   return text +
          fmt::format(
              "\n.  stable        r  calms down, but not within {0:g} s        X  diverges\n"

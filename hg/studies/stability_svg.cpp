@@ -12,17 +12,17 @@ namespace {
 constexpr double kLeft = 110.0, kTop = 92.0, kCell = 34.0, kGap = 110.0, kLegend = 96.0;
 
 // distinguishable with colour vision deficiency (Okabe, Ito)
-const char* colour(Verdict verdict) {
+const char* colour(DecayClass verdict) {
   switch (verdict) {
-    case Verdict::kStable:
+    case DecayClass::kStable:
       return "#dff0e8";
-    case Verdict::kSlow:
+    case DecayClass::kSlow:
       return "#a6d5f0";
-    case Verdict::kHunts:
+    case DecayClass::kHunts:
       return "#f0e442";
-    case Verdict::kSustained:
+    case DecayClass::kSustained:
       return "#e69f00";
-    case Verdict::kDiverges:
+    case DecayClass::kDiverges:
       return "#d55e00";
   }
   return "#fff";
@@ -35,12 +35,12 @@ void draw_text(double x, double y, const char* anchor, const std::string& text, 
                  anchor, text);
 }
 
-void draw_cell(double x, double y, Verdict verdict, Out out) {
+void draw_cell(double x, double y, DecayClass verdict, Out out) {
   fmt::format_to(out,
                  "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" "
                  "fill=\"{}\"/>\n",
                  x + 1.0, y + 1.0, kCell - 2.0, kCell - 2.0, colour(verdict));
-  if (verdict == Verdict::kStable) return;
+  if (verdict == DecayClass::kStable) return;
   draw_text(x + 0.5 * kCell, y + 0.5 * kCell + 4.0, "middle", std::string(1, symbol(verdict)), out);
 }
 
@@ -73,12 +73,12 @@ void draw_panel(const StabilityMap& map, double left, std::size_t first, std::si
 }
 
 void draw_legend(double top, const CalmRule& calm, double watched, Out out) {
-  const std::array<std::pair<Verdict, std::string>, 5> entries = {
-      {{Verdict::kStable, "stable"},
-       {Verdict::kSlow, fmt::format("calms down, not within {:g} s", watched)},
-       {Verdict::kHunts, "hunts, by friction only"},
-       {Verdict::kSustained, fmt::format("sustained, above {:g} mm/s", 1e3 * calm.calm_speed)},
-       {Verdict::kDiverges, "diverges"}}};
+  const std::array<std::pair<DecayClass, std::string>, 5> entries = {
+      {{DecayClass::kStable, "stable"},
+       {DecayClass::kSlow, fmt::format("calms down, not within {:g} s", watched)},
+       {DecayClass::kHunts, "hunts, by friction only"},
+       {DecayClass::kSustained, fmt::format("sustained, above {:g} mm/s", 1e3 * calm.calm_speed)},
+       {DecayClass::kDiverges, "diverges"}}};
   double x = kLeft;
   for (const auto& [verdict, text] : entries) {
     draw_cell(x, top, verdict, out);

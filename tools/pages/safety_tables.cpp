@@ -25,7 +25,7 @@ std::string number(double value) {
   return text.data();
 }
 
-void add_cell(std::string& text, const Transition& transition, State state) {
+void add_cell(std::string& text, const Transition& transition, SafetyState state) {
   if (transition.refusal != Refusal::kNone) {
     add(text, {" refused |"});
   } else if (transition.next == state) {
@@ -39,15 +39,15 @@ std::string transitions_table() {
   std::string text = "| event |";
   std::string line = "| --- |";
   for (std::size_t s = 0; s < kStateCount; ++s) {
-    add(text, {" ", to_string(static_cast<State>(s)), " |"});
+    add(text, {" ", to_string(static_cast<SafetyState>(s)), " |"});
     add(line, {" --- |"});
   }
   add(text, {"\n", line, "\n"});
   for (std::size_t e = 0; e < kEventCount; ++e) {
-    const auto event = static_cast<Event>(e);
+    const auto event = static_cast<SafetyEvent>(e);
     add(text, {"| ", to_string(event), " |"});
     for (std::size_t s = 0; s < kStateCount; ++s) {
-      const auto state = static_cast<State>(s);
+      const auto state = static_cast<SafetyState>(s);
       add_cell(text, transition(state, event), state);
     }
     add(text, {"\n"});

@@ -169,14 +169,14 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
   result.table = std::make_unique<RunTable>(scenario);
   result.events = expected_events(experiment, scenario);
 
-  runtime::Options options;
+  runtime::RuntimeOptions options;
   options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = true;
   options.duration_s = arguments.duration_s.value_or(scenario::planned_duration_s(scenario));
   options.longest_stop_s = scenario::longest_stop_s(scenario);
   options.changes = scenario.changes;
   options.load = faults::loads_of(scenario.faults);
-  runtime::check(options);
+  runtime::check_runtime_options(options);
   controller::Cycle cycle = scenario::make_cycle(scenario);
   const auto device = scenario::make_simulated_device(scenario);
   runtime::Runtime runtime(options, cycle, *device);
@@ -194,7 +194,7 @@ ExperimentResult run_experiment(const PaperExperiment& experiment, const RunArgu
     progress(sample->record.time_s, options.duration_s);
     if (!is_finished) std::this_thread::sleep_for(kIdle);
   }
-  const runtime::Report report = runtime.join();
+  const runtime::RuntimeReport report = runtime.join();
   if (watcher.recorder) settle(*watcher.recorder, arguments.recordings, result);
 
   analysis::RunFacts facts = scenario::facts_of_scenario(scenario);

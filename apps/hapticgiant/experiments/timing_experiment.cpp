@@ -151,7 +151,7 @@ std::string report(const std::vector<Row>& rows, const fs::path& folder, const J
   return html_page("Computing time of a cycle", body + html_table(facts));
 }
 
-void check(const std::vector<double>& rates_Hz) {
+void check_rates(const std::vector<double>& rates_Hz) {
   for (const double rate_Hz : rates_Hz) {
     if (rate_Hz >= 100.0 && rate_Hz <= 20000.0) continue;
     throw SetupError(fmt::format("--rates: must be from 100 to 20000, got {:g}", rate_Hz));
@@ -161,7 +161,7 @@ void check(const std::vector<double>& rates_Hz) {
 }  // namespace
 
 int timing_experiment(const PaperExperimentArguments& arguments) {
-  check(arguments.rates_Hz);
+  check_rates(arguments.rates_Hz);
   const fs::path folder = fs::path(arguments.out) / "timing";
   make_folder(folder.string());
   print_out(fmt::format("HapticGiant {}  computing time of a cycle\n\n", kVersion));

@@ -69,7 +69,7 @@ void add(const Position& position, Cut& cut) {
 
 }  // namespace
 
-CapabilityMap capability_map(const config::Device& device) {
+CapabilityMap capability_map(const config::DeviceConfig& device) {
   CapabilityMap map;
   map.title = device.name + ": force that the handle bears in the worst direction";
   Random random(1);

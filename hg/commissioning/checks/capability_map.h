@@ -30,7 +30,7 @@ struct CapabilityMap {
   double force_max = 0.0;         ///< upper end of the force scale, N
 };
 
-CapabilityMap capability_map(const config::Device& device);
+CapabilityMap capability_map(const config::DeviceConfig& device);
 
 std::string to_svg(const CapabilityMap& map);
 

@@ -118,7 +118,7 @@ void inspect_demand(const rendering::TwinDof& dof, const Demand& demand, Collect
 // The work of a cycle grows with the cube of the twin's degrees of freedom at most. Measured, 99.9
 // % of the cycles (docs/reports/benchmarks.md): gauss 38 us with 20 and 79 us with 30, paper 1.2 ms
 // with 30.
-void inspect_work(const config::Device& device, const config::Twin& twin, Collector& out) {
+void inspect_work(const config::DeviceConfig& device, const config::Twin& twin, Collector& out) {
   const bool is_paper = device.rendering.law == rendering::Law::kPaper;
   const double most =
       std::floor((is_paper ? 20.0 : 40.0) * std::cbrt(1000.0 / device.rate_Hz) + 1e-9);
@@ -135,7 +135,7 @@ void inspect_work(const config::Device& device, const config::Twin& twin, Collec
 
 }  // namespace
 
-Match match(const config::Device& device, const config::Twin& twin) {
+Match match(const config::DeviceConfig& device, const config::Twin& twin) {
   config::Scenario pair = {.device = device, .twin = twin};
   const std::vector<ConfigurationA> postures = twin_postures(twin, kPostures, kSeed);
   const std::array<limits::JointLimits, 3> hand = rendering::handle_limits(device.model);
@@ -174,7 +174,7 @@ Match match(const config::Device& device, const config::Twin& twin) {
   return result;
 }
 
-Findings inspect(const config::Device& device, const config::Twin& twin) {
+Findings inspect(const config::DeviceConfig& device, const config::Twin& twin) {
   Collector out(twin.sources, twin.places);
   try {
     scenario::find_start({.device = device, .twin = twin});

@@ -33,9 +33,9 @@ struct Match {
   std::vector<Demand> demands;  ///< demand per scalar joint of the twin, over the reached postures
 };
 
-Match match(const config::Device& device, const config::Twin& twin);
+Match match(const config::DeviceConfig& device, const config::Twin& twin);
 
 /// All findings about the pair; they stand at keys of the twin.
-Findings inspect(const config::Device& device, const config::Twin& twin);
+Findings inspect(const config::DeviceConfig& device, const config::Twin& twin);
 
 }  // namespace hg::checks

@@ -23,7 +23,7 @@ constexpr double kPhase_deg = 16.5;  // see frequency_Hz()
 constexpr double kLeastWay = 0.01;   // m at the handle, over which a spring should be followed
 
 // Mean delay between a wrench and the reaction of the motors.
-double delay_of(const config::Device& device) {
+double delay_of(const config::DeviceConfig& device) {
   double delay = device.control.loop.latency;
   if (device.estimation.wrench.low_pass_Hz > 0.0) {
     delay += 1.0 / (kTurn * device.estimation.wrench.low_pass_Hz);
@@ -36,9 +36,9 @@ double delay_of(const config::Device& device) {
 
 // The least along the axes of B, at the start; where the device does not get there it says so
 // itself.
-double braking_of(const config::Device& device, const config::Twin& twin) {
-  rendering::Motion motion = {.dq_p = VectorP::Zero(device.model.n_p),
-                              .dq_m = VectorM::Zero(device.model.n_m)};
+double braking_of(const config::DeviceConfig& device, const config::Twin& twin) {
+  rendering::DeviceMotion motion = {.dq_p = VectorP::Zero(device.model.n_p),
+                                    .dq_m = VectorM::Zero(device.model.n_m)};
   try {
     const scenario::Start start = scenario::find_start({.device = device, .twin = twin});
     motion.q_p = start.q_p;
@@ -162,7 +162,7 @@ double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
   return acceleration * std::sqrt(mass / stiffness);
 }
 
-StiffnessLimits stiffness_limits(const config::Device& device, const config::Twin& twin) {
+StiffnessLimits stiffness_limits(const config::DeviceConfig& device, const config::Twin& twin) {
   const auto [mass, dq] = rendering::felt_mass(twin.model);
   StiffnessLimits limits = {.mass = mass.lb,
                             .period = device.rendering.dt,
@@ -175,7 +175,8 @@ StiffnessLimits stiffness_limits(const config::Device& device, const config::Twi
   return limits;
 }
 
-void inspect_stiffness(const config::Device& device, const config::Twin& twin, Collector& out) {
+void inspect_stiffness(const config::DeviceConfig& device, const config::Twin& twin,
+                       Collector& out) {
   const StiffnessLimits limits = stiffness_limits(device, twin);
   out.add(Severity::kNote, "end_effector",
           fmt::format(

@@ -15,7 +15,7 @@ constexpr double kSettling_s = 0.3;       // after the drives came on: brakes op
 
 }  // namespace
 
-FrictionTraces::FrictionTraces(const tracking::Config& control)
+FrictionTraces::FrictionTraces(const tracking::ControlConfig& control)
     : current_share_(control.loop.current_lag > 0.0
                          ? -std::expm1(-control.dt / control.loop.current_lag)
                          : 1.0),

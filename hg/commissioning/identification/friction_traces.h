@@ -15,7 +15,7 @@ namespace hg::identification {
 class FrictionTraces {
  public:
   /// Throws SetupError for a device whose drives follow positions.
-  explicit FrictionTraces(const tracking::Config& control);
+  explicit FrictionTraces(const tracking::ControlConfig& control);
 
   /// Adds the next sample. Samples with drives off, shortly after they came on, without motor
   /// encoders or without a known active command are left out.

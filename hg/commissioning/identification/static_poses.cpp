@@ -52,7 +52,7 @@ struct Candidate {
   Eigen::Vector3d up_S;
 };
 
-std::vector<Candidate> candidates(const config::Device& device) {
+std::vector<Candidate> candidates(const config::DeviceConfig& device) {
   const rendering::DeviceModel& model = device.model;
   model::Chain chain = model.chain;
   std::vector<Candidate> usable;
@@ -127,7 +127,7 @@ std::array<int, 10> find_columns(const std::vector<std::string>& header, const s
 
 }  // namespace
 
-std::vector<VectorM> static_postures(const config::Device& device, int count) {
+std::vector<VectorM> static_postures(const config::DeviceConfig& device, int count) {
   const std::vector<Candidate> all = candidates(device);
   std::vector<Candidate> chosen;
   while (!all.empty() && static_cast<int>(chosen.size()) < count) {
@@ -148,7 +148,7 @@ std::vector<VectorM> static_postures(const config::Device& device, int count) {
   return postures;
 }
 
-StaticPose measure_simulated(const config::Device& device, const VectorM& q_m) {
+StaticPose measure_simulated(const config::DeviceConfig& device, const VectorM& q_m) {
   const scenario::Start start = {.T_B_H = {}, .q_p = VectorP::Zero(device.model.n_p), .q_m = q_m};
   simulator::Simulation simulation = scenario::make_unheld_simulation(device, start);
   CommandFrame brakes_closed;

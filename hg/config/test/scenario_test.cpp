@@ -96,7 +96,7 @@ TEST(Device, KeepsHandAndElbowInTheBox) {
 }
 
 TEST(Device, GivesEveryPartThePeriodAndTheDrive) {
-  const Device& device = door().device;
+  const DeviceConfig& device = door().device;
   EXPECT_EQ(device.rendering.dt, 1e-3);
   EXPECT_EQ(device.estimation.dt, 1e-3);
   EXPECT_EQ(device.estimation.drive.lag, 40e-3);

@@ -7,7 +7,7 @@
 
 namespace hg::estimation {
 
-Estimation::Estimation(const Config& config, const model::Chain& chain, int n_p, int n_m,
+Estimation::Estimation(const EstimationConfig& config, const model::Chain& chain, int n_p, int n_m,
                        int handle)
     : config_(config),
       chain_(chain),
@@ -21,14 +21,14 @@ Estimation::Estimation(const Config& config, const model::Chain& chain, int n_p,
       units_(config.units, config.dt, config.link_pole_Hz, config.observer_pole_Hz, chain, n_p) {}
 
 bool Estimation::turns_without_end(int joint) const noexcept {
-  return chain_.joints()[static_cast<std::size_t>(joint)].type == model::JointType::kContinuous;
+  return chain_.joints()[index(joint)].type == model::JointType::kContinuous;
 }
 
 double Estimation::unwrapped(int joint, double measured, double last) const noexcept {
   return turns_without_end(joint) ? model::haptic_giant::nearest_turn(measured, last) : measured;
 }
 
-void Estimation::tare(bool is_asked_for, bool is_at_rest, State& state) const noexcept {
+void Estimation::tare(bool is_asked_for, bool is_at_rest, EstimationState& state) const noexcept {
   TareState& tare = state.wrench.tare;
   if (is_asked_for) begin(tare);
   if (tare.status == TareStatus::kUnderWay && !is_at_rest) {
@@ -36,7 +36,8 @@ void Estimation::tare(bool is_asked_for, bool is_at_rest, State& state) const no
   }
 }
 
-void Estimation::check_motion(const SensorFrame& sensors, bool is_on, State& state) const noexcept {
+void Estimation::check_motion(const SensorFrame& sensors, bool is_on,
+                              EstimationState& state) const noexcept {
   if (!config_.wrench.has_imu) return;
   const Pose T_B_S = chain_.pose(handle_) * config_.T_H_S;
   advance(config_.dt,
@@ -45,7 +46,7 @@ void Estimation::check_motion(const SensorFrame& sensors, bool is_on, State& sta
 }
 
 RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
-                            const VectorM& ddq_m_reference, State& state) noexcept {
+                            const VectorM& ddq_m_reference, EstimationState& state) noexcept {
   if (!state.is_started) start(sensors, state);
   RobotState robot;
   const VectorM q_m = observe_joints(sensors, ddq_m_reference, state, robot);
@@ -63,22 +64,22 @@ RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
   return robot;
 }
 
-void Estimation::start(const SensorFrame& sensors, State& state) const noexcept {
+void Estimation::start(const SensorFrame& sensors, EstimationState& state) const noexcept {
   state.q_m = sensors.q_m;
   for (int i = 0; i < n_m_; ++i) {
-    const auto joint = static_cast<std::size_t>(i);
+    const auto joint = index(i);
     state.link[joint].q = sensors.q_m[i];
     if (sensors.theta_m.size() == n_m_) {
       state.motor[joint].theta = unwrapped(n_p_ + i, sensors.theta_m[i], sensors.q_m[i]);
     }
   }
-  for (int i = 0; i < n_p_; ++i) state.gantry[static_cast<std::size_t>(i)].q = sensors.q_p[i];
+  for (int i = 0; i < n_p_; ++i) state.gantry[index(i)].q = sensors.q_p[i];
   state.is_started = true;
 }
 
 // Returns what the encoders show, unwrapped.
 VectorM Estimation::observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference,
-                                   State& state, RobotState& robot) const noexcept {
+                                   EstimationState& state, RobotState& robot) const noexcept {
   VectorM measured(n_m_);
   robot.q_m = sensors.q_m;
   robot.dq_m = sensors.dq_m;
@@ -86,7 +87,7 @@ VectorM Estimation::observe_joints(const SensorFrame& sensors, const VectorM& dd
   const bool has_motor_encoders = sensors.theta_m.size() == n_m_;
   if (has_motor_encoders) robot.theta_m = robot.dtheta_m = sensors.theta_m;
   for (int i = 0; i < n_m_; ++i) {
-    const auto joint = static_cast<std::size_t>(i);
+    const auto joint = index(i);
     robot.q_m[i] = measured[i] = unwrapped(n_p_ + i, sensors.q_m[i], state.q_m[i]);
     if (!has_motor_encoders) continue;
 
@@ -107,13 +108,13 @@ VectorM Estimation::observe_joints(const SensorFrame& sensors, const VectorM& dd
 
 // Observes the gantry. Returns what its encoders show, unwrapped.
 VectorP Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd,
-                                   State& state, RobotState& robot) const noexcept {
+                                   EstimationState& state, RobotState& robot) const noexcept {
   VectorP measured(n_p_);
   robot.q_p.resize(n_p_);
   robot.dq_p.resize(n_p_);
   robot.ddq_p.resize(n_p_);
   for (int i = 0; i < n_p_; ++i) {
-    GantryObserver& axis = state.gantry[static_cast<std::size_t>(i)];
+    GantryObserver& axis = state.gantry[index(i)];
     measured[i] = unwrapped(i, sensors.q_p[i], axis.q);
     observe(config_.drive, gantry_gains_, config_.dt, measured[i],
             axis.delay.shift(dq_p_cmd[i], dead_periods_), axis);
@@ -124,13 +125,13 @@ VectorP Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq
   return measured;
 }
 
-VectorP Estimation::gantry_disturbance(const State& state) const noexcept {
+VectorP Estimation::gantry_disturbance(const EstimationState& state) const noexcept {
   VectorP ddq(n_p_);
-  for (int i = 0; i < n_p_; ++i) ddq[i] = state.gantry[static_cast<std::size_t>(i)].disturbance;
+  for (int i = 0; i < n_p_; ++i) ddq[i] = state.gantry[index(i)].disturbance;
   return ddq;
 }
 
-void Estimation::observe_wrench(const SensorFrame& sensors, State& state,
+void Estimation::observe_wrench(const SensorFrame& sensors, EstimationState& state,
                                 RobotState& robot) noexcept {
   chain_.update_poses(stacked(robot.q_p, robot.q_m));
   const Eigen::Matrix3d& R_B_H = chain_.pose(handle_).R;

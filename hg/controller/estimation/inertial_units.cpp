@@ -54,8 +54,7 @@ InertialUnits::InertialUnits(const InertialUnitsConfig& config, double dt, doubl
   slow_Hz_ = fast_Hz_.cwiseMin(kSlow_Hz);
   variance_.resize(n_ + 6);
   for (int i = 0; i < n_; ++i) {
-    const bool is_slide =
-        chain_.joints()[static_cast<std::size_t>(i)].type == model::JointType::kPrismatic;
+    const bool is_slide = chain_.joints()[index(i)].type == model::JointType::kPrismatic;
     variance_[i] = is_slide ? kGantry * kGantry : kJoint * kJoint;
   }
   variance_.segment<3>(n_).setConstant(kBendShift * kBendShift);
@@ -65,7 +64,7 @@ InertialUnits::InertialUnits(const InertialUnitsConfig& config, double dt, doubl
 const EncoderSample& InertialUnits::ago(int periods,
                                         const InertialUnitsState& state) const noexcept {
   constexpr std::size_t kPast = InertialUnitsState::kPast;
-  return state.past[(state.newest + kPast - static_cast<std::size_t>(periods)) % kPast];
+  return state.past[(state.newest + kPast - index(periods)) % kPast];
 }
 
 // At the posture and speed of the last update of the chain.
@@ -151,7 +150,7 @@ void InertialUnits::learn_deviations(const Unknowns& found, const Unknowns& left
   for (Eigen::Index j = 0; j < state.trust.size(); ++j) {
     if (state.trust[j] < 1.0) continue;
     double& error = state.error[j];
-    error += share * (rests[static_cast<std::size_t>(j)].squaredNorm() / 3.0 - error);
+    error += share * (rests[index(j)].squaredNorm() / 3.0 - error);
     error = std::max(error, kLeastReading * kLeastReading);
   }
 }

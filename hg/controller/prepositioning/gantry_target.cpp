@@ -30,7 +30,7 @@ GantryTarget::GantryTarget(const TargetConfig& config, const model::Chain& chain
   };
   require(!config.has_closed_form || (config.n_p == 2 && config.n_m == 6),
           "the closed-form target needs two gantry joints and six manipulator joints");
-  require(n == chain.nv() && config.range.size() == static_cast<std::size_t>(n),
+  require(n == chain.nv() && std::ssize(config.range) == n,
           "one range per joint of the chain is needed");
   require(config.goal.size() == 0 || config.goal.size() == config.n_m,
           "one goal per manipulator joint is needed, or none");
@@ -81,8 +81,7 @@ double GantryTarget::improve(const Pose& T_B_H, VectorPM& q) noexcept {
     if (std::isnan(goal_[i])) continue;
     const double missing = goal_[i] - q[i];
     H(i, i) += 1.0;
-    g[i] += is_free_[static_cast<std::size_t>(i)] ? std::remainder(missing, 2.0 * std::numbers::pi)
-                                                  : missing;
+    g[i] += is_free_[index(i)] ? std::remainder(missing, 2.0 * std::numbers::pi) : missing;
   }
   q += limited_step(H, g, q);
   return error.norm();
@@ -92,7 +91,7 @@ double GantryTarget::improve(const Pose& T_B_H, VectorPM& q) noexcept {
 // it.
 VectorPM GantryTarget::limited_step(MatrixPM H, VectorPM g, const VectorPM& q) const noexcept {
   const auto limited = [&](int i, double step) {
-    const Interval range = config_.range[static_cast<std::size_t>(i)];
+    const Interval range = config_.range[index(i)];
     return std::clamp(q[i] + step, range.lb, range.ub) - q[i];
   };
   VectorPM step = H.ldlt().solve(g);
@@ -106,7 +105,7 @@ VectorPM GantryTarget::limited_step(MatrixPM H, VectorPM g, const VectorPM& q) c
   for (int pass = 0; pass < q.size(); ++pass) {
     bool is_new = false;
     for (int i = 0; i < q.size(); ++i) {
-      bool& held = is_held[static_cast<std::size_t>(i)];
+      bool& held = is_held[index(i)];
       const double end = limited(i, step[i]);
       if (held || std::abs(end - step[i]) < kRounding) continue;
       held = is_new = true;

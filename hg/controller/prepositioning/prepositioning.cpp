@@ -21,7 +21,7 @@ VectorP speed_then(const DriveModel& drive, const RobotState& robot) noexcept {
 
 }  // namespace
 
-void check(const Config& config) {
+void check_prepositioning(const PrepositioningConfig& config) {
   const auto require = [](bool ok, const char* rule) {
     if (!ok) throw SetupError(std::string("prepositioning: ") + rule);
   };
@@ -29,18 +29,19 @@ void check(const Config& config) {
   require(std::isfinite(config.k_ppu) && config.k_ppu > 0.0, "k_ppu must be positive");
   require(config.dq_max > 0.0, "dq_max must be positive");
   for (int i = 0; i < config.n_p; ++i) {
-    require(!config.q_limits[static_cast<std::size_t>(i)].empty(), "limits must not be reversed");
+    require(!config.q_limits[index(i)].empty(), "limits must not be reversed");
   }
-  limits::check(config.drive, "prepositioning");
+  limits::check_drive_response(config.drive, "prepositioning");
 }
 
-Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked, double dq_max, const Room& room, const VectorP& away) noexcept {
+GantryCommand command_gantry(const PrepositioningConfig& config, const RobotState& robot,
+                             const VectorP& q_target, bool device_blocked, double dq_max,
+                             const Room& room, const VectorP& away) noexcept {
   const double fastest = std::min(config.dq_max, dq_max);
-  Command command = {q_target, VectorP::Zero(config.n_p), VectorP::Zero(config.n_p),
-                     VectorP::Zero(config.n_p)};
+  GantryCommand command = {q_target, VectorP::Zero(config.n_p), VectorP::Zero(config.n_p),
+                           VectorP::Zero(config.n_p)};
   for (int i = 0; i < config.n_p; ++i) {
-    const Interval q_limits = config.q_limits[static_cast<std::size_t>(i)];
+    const Interval q_limits = config.q_limits[index(i)];
     command.q_target[i] = std::clamp(command.q_target[i], q_limits.lb, q_limits.ub);
     Interval bounds = limits::braking_velocity_bounds(q_limits, config.drive, robot.q_p[i]);
     if (room.up.size() > 0) {
@@ -59,8 +60,8 @@ Command step(const Config& config, const RobotState& robot, const VectorP& q_tar
   return command;
 }
 
-GantryTask accelerations(const Command& command, const DriveModel& drive, const RobotState& robot,
-                         const VectorP& last, double dt) noexcept {
+GantryTask accelerations(const GantryCommand& command, const DriveModel& drive,
+                         const RobotState& robot, const VectorP& last, double dt) noexcept {
   const VectorP dq = speed_then(drive, robot);
   const VectorP& before = last.size() > 0 ? last : robot.ddq_p;
   const double change = drive.ddq_max * dt / onset(drive);
@@ -77,7 +78,7 @@ GantryTask accelerations(const Command& command, const DriveModel& drive, const 
   return task;
 }
 
-VectorP velocity_for(const VectorP& ddq, const Command& command, const DriveModel& drive,
+VectorP velocity_for(const VectorP& ddq, const GantryCommand& command, const DriveModel& drive,
                      const RobotState& robot) noexcept {
   const VectorP dq = speed_then(drive, robot) + drive.lag * ddq;
   return dq.cwiseMax(command.dq_min).cwiseMin(command.dq_max);

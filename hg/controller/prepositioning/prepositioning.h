@@ -16,7 +16,7 @@
 namespace hg::prepositioning {
 
 /// Set-up data. Arrays are indexed by gantry joint.
-struct Config {
+struct PrepositioningConfig {
   int n_p = 0;
   bool has_closed_form = false;  ///< Target in closed form: the device is a HapticGiant
   std::array<Interval, kMaxGantry> q_limits;  ///< Position limits, m or rad
@@ -26,7 +26,7 @@ struct Config {
 };
 
 /// Throws SetupError naming the field that is out of range.
-void check(const Config& config);
+void check_prepositioning(const PrepositioningConfig& config);
 
 /// Distance that each axis may move, the arm held stiff, before it carries a frame of the device
 /// over a limit; negative beyond one, m or rad. Empty: there are no such limits.
@@ -40,7 +40,7 @@ void hashed(auto& hash, const Room& room) {
   hash.mix(down, up);
 }
 
-struct Command {
+struct GantryCommand {
   VectorP q_target;        ///< Target of the gantry, within its limits, m or rad
   VectorP dq;              ///< Velocity command, m/s or rad/s
   VectorP dq_min, dq_max;  ///< Bounds of the velocity command, m/s or rad/s
@@ -51,19 +51,20 @@ struct Command {
 /// is faster than `dq_max`, nor more than 0.25 m/s (rad/s) faster than lets it stop within its
 /// `room`: an arm at its limits compensates no more. `away` replaces the motion to the target: the
 /// velocity with which the gantry leaves a contact of the arm; empty: no contact.
-Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked, double dq_max = kInfinity, const Room& room = {},
-             const VectorP& away = {}) noexcept;
+GantryCommand command_gantry(const PrepositioningConfig& config, const RobotState& robot,
+                             const VectorP& q_target, bool device_blocked,
+                             double dq_max = kInfinity, const Room& room = {},
+                             const VectorP& away = {}) noexcept;
 
 /// Range in which the law may lead the gantry instead of `command`, which is its aim: 0.1 m/s
 /// (rad/s) beside it within the bounds of the command. Steps from `last` reach the full
 /// acceleration of the drives within the larger of 60 ms and 15 dead times. `last` (n_p, or empty)
 /// is the acceleration that the law demanded a period of `dt` (s) before.
-GantryTask accelerations(const Command& command, const DriveModel& drive, const RobotState& robot,
-                         const VectorP& last, double dt) noexcept;
+GantryTask accelerations(const GantryCommand& command, const DriveModel& drive,
+                         const RobotState& robot, const VectorP& last, double dt) noexcept;
 
 /// Velocity command that makes the drives accelerate by `ddq`, within the bounds of `command`.
-VectorP velocity_for(const VectorP& ddq, const Command& command, const DriveModel& drive,
+VectorP velocity_for(const VectorP& ddq, const GantryCommand& command, const DriveModel& drive,
                      const RobotState& robot) noexcept;
 
 }  // namespace hg::prepositioning

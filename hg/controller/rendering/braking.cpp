@@ -26,7 +26,7 @@ double rating(const DeviceModel& device, const Eigen::Vector3d& direction) {
 
 }  // namespace
 
-double largest_acceleration(const DeviceModel& device, const Motion& motion,
+double largest_acceleration(const DeviceModel& device, const DeviceMotion& motion,
                             const Eigen::Vector3d& direction) {
   if (device.motors.empty()) return rating(device, direction);
   const int n_p = device.n_p, n_m = device.n_m;
@@ -40,7 +40,7 @@ double largest_acceleration(const DeviceModel& device, const Motion& motion,
   hqp::Problem problem({.variables = n_m + 1, .levels = 3, .rows = 6 + n_m + 1});
   problem.clear(n_m + 1);
   Eigen::VectorXd row(n_m + 1);
-  const std::span<const double> coefficients(row.data(), static_cast<std::size_t>(row.size()));
+  const std::span<const double> coefficients(row.data(), index(row.size()));
   problem.add_level();
   for (int i = 0; i < 6; ++i) {
     row << J.row(i).transpose(), i < 3 ? -direction[i] : 0.0;
@@ -48,7 +48,7 @@ double largest_acceleration(const DeviceModel& device, const Motion& motion,
   }
   problem.add_level();
   for (int i = 0; i < n_m; ++i) {
-    const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
+    const ActuatorModel& motor = device.motors[index(i)];
     row << chain.M().row(n_p + i).tail(n_m).transpose(), 0.0;
     row[i] += motor.rotor_inertia;
     const Interval torque = allowed_torque(motor, motion.dq_m[i]);
@@ -60,9 +60,9 @@ double largest_acceleration(const DeviceModel& device, const Motion& motion,
   hqp::Solution solution(problem.capacity());
   hqp::ActiveSet active;
   solver.solve(problem, {}, active, solution);
-  const bool holds = std::ranges::none_of(
-      std::span(solution.state).subspan(6, static_cast<std::size_t>(n_m)), hqp::is_violated);
-  return holds ? std::max(0.0, solution.x[static_cast<std::size_t>(n_m)]) : 0.0;
+  const bool holds =
+      std::ranges::none_of(std::span(solution.state).subspan(6, index(n_m)), hqp::is_violated);
+  return holds ? std::max(0.0, solution.x[index(n_m)]) : 0.0;
 }
 
 }  // namespace hg::rendering

@@ -52,9 +52,7 @@ struct DeviceModel {
     return n_m +
            static_cast<int>(virtual_joints.size() + motors.size() + 3 * cartesian_limits.size());
   }
-  const std::string& manipulator_joint(int i) const {
-    return chain.joints()[static_cast<std::size_t>(n_p + i)].name;
-  }
+  const std::string& manipulator_joint(int i) const { return chain.joints()[index(n_p + i)].name; }
 };
 
 /// All Cartesian limits of the handle combined, along x, y, z of B; infinite where there are none.

@@ -45,8 +45,8 @@ SolverStatus solver_status(const Tasks& tasks, const hqp::SolverOptions& options
 VectorA slip_torque(const VectorA& dq_a, TwinInnerState& inner) noexcept {
   VectorA torque = VectorA::Zero(dq_a.size());
   for (int i = 0; i < dq_a.size(); ++i) {
-    const double friction = inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction;
-    bool& sticks = inner.sticks[static_cast<std::size_t>(i)];
+    const double friction = inner.parameters.now.dofs[index(i)].friction;
+    bool& sticks = inner.sticks[index(i)];
     if (friction <= 0.0) continue;
     if (std::abs(dq_a[i]) <= kStandstill) sticks = true;
     if (!sticks) torque[i] = std::copysign(friction, dq_a[i]);
@@ -57,9 +57,9 @@ VectorA slip_torque(const VectorA& dq_a, TwinInnerState& inner) noexcept {
 // a slipping joint that would turn round within the sample sticks from the next one on
 void catch_reversals(const TwinState& state, double dt, TwinInnerState& inner) noexcept {
   for (int i = 0; i < state.dq_a.size(); ++i) {
-    if (inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction <= 0.0) continue;
+    if (inner.parameters.now.dofs[index(i)].friction <= 0.0) continue;
     if (state.dq_a[i] * (state.dq_a[i] + dt * state.ddq_a[i]) < 0.0) {
-      inner.sticks[static_cast<std::size_t>(i)] = true;
+      inner.sticks[index(i)] = true;
     }
   }
 }
@@ -75,7 +75,7 @@ void copy(const RowStates& from, int rows, RowStates& to) noexcept {
 int changed_rows(const RowStates& a, const RowStates& b, int first, int count) noexcept {
   int changes = 0;
   for (int i = first; i < first + count; ++i) {
-    const auto row = static_cast<std::size_t>(i);
+    const auto row = index(i);
     const bool acted = a[row] != hqp::RowState::kInactive;
     if (acted != (b[row] != hqp::RowState::kInactive)) ++changes;
   }
@@ -84,7 +84,8 @@ int changed_rows(const RowStates& a, const RowStates& b, int first, int count) n
 
 }  // namespace
 
-void check(const DeviceModel& device, const TwinModel& twin, const Options& options) {
+void check_rendering(const DeviceModel& device, const TwinModel& twin,
+                     const RenderingOptions& options) {
   const auto require = [](bool ok, const std::string& text) {
     if (!ok) throw SetupError(text);
   };
@@ -92,7 +93,7 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
   require(options.slow_solve > 0, "rendering: slow_solve must be positive");
   require(options.solver_budget >= 0, "rendering: solver_budget must not be negative");
   const bool is_paper = options.law == Law::kPaper;
-  require(device.motors.empty() || device.motors.size() == static_cast<std::size_t>(device.n_m),
+  require(device.motors.empty() || std::ssize(device.motors) == device.n_m,
           "device: one motor per manipulator joint is needed, or none");
   require(!is_paper || device.n_m == 6, "device: law paper needs six manipulator joints, got " +
                                             std::to_string(device.n_m) +
@@ -106,26 +107,26 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
   require(device.n_p + device.n_m == device.chain.nv(),
           "device: gantry and manipulator must be all joints of the chain");
   require(device.handle >= 0, "device: a handle frame is needed");
-  require(device.joint_limits.size() == static_cast<std::size_t>(device.n_m),
+  require(std::ssize(device.joint_limits) == device.n_m,
           "device: one limit per manipulator joint is needed");
   for (int i = 0; i < device.n_m; ++i) {
-    limits::check(device.joint_limits[static_cast<std::size_t>(i)],
-                  "joint " + device.manipulator_joint(i));
+    limits::check_joint_limits(device.joint_limits[index(i)],
+                               "joint " + device.manipulator_joint(i));
   }
   for (const VirtualJoint& joint : device.virtual_joints) {
     require(joint.weights.size() == device.n_m, joint.name + ": one weight per manipulator joint");
-    limits::check(joint.limits, joint.name);
+    limits::check_joint_limits(joint.limits, joint.name);
   }
   for (const CartesianLimit& frame : device.cartesian_limits) {
-    for (const limits::JointLimits& axis : frame.axes) limits::check(axis, frame.name);
+    for (const limits::JointLimits& axis : frame.axes) limits::check_joint_limits(axis, frame.name);
   }
 
-  check(twin);
+  check_twin_model(twin);
 }
 
 namespace {
 
-void check_stops(const DeviceModel& device, const Options& options) {
+void check_stops(const DeviceModel& device, const RenderingOptions& options) {
   if (options.law != Law::kGauss || options.bounds != Bounds::kRecoverable) {
     throw SetupError("surfaces with 'contact: stop' need law gauss with bounds recoverable");
   }
@@ -138,9 +139,9 @@ void check_stops(const DeviceModel& device, const Options& options) {
 
 }  // namespace
 
-Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
+Rendering::Rendering(DeviceModel device, TwinModel twin, const RenderingOptions& options,
                      surfaces::Environment environment)
-    : device_((check(device, twin, options), std::move(device))),
+    : device_((check_rendering(device, twin, options), std::move(device))),
       twin_(std::move(twin)),
       device_now_(device_.chain),
       twin_now_(twin_.chain),
@@ -167,8 +168,8 @@ void Rendering::limit_solver(std::uint32_t most_active_sets) noexcept {
   solver_options_.budget = usual == 0 || most == 0 ? std::max(usual, most) : std::min(usual, most);
 }
 
-State Rendering::start(const VectorM& q_m) const {
-  State state;
+RenderingState Rendering::start(const VectorM& q_m) const {
+  RenderingState state;
   state.reference = {q_m, VectorM::Zero(q_m.size()), VectorM::Zero(q_m.size())};
   const int n_a = twin_.chain.nv();
   state.twin = {twin_.q_start, VectorA::Zero(n_a), VectorA::Zero(n_a)};
@@ -176,7 +177,8 @@ State Rendering::start(const VectorM& q_m) const {
   return state;
 }
 
-ChangeStatus Rendering::change(const ParameterChange& change, State& state) const noexcept {
+ChangeStatus Rendering::change(const ParameterChange& change,
+                               RenderingState& state) const noexcept {
   return apply(twin_, change, state.inner.parameters);
 }
 
@@ -189,7 +191,8 @@ void Rendering::update_device(const RobotState& robot, const ReferenceState& ref
   }
 }
 
-SolverStatus Rendering::step(const LawInput& input, State& state, LawResult& result) noexcept {
+SolverStatus Rendering::step(const LawInput& input, RenderingState& state,
+                             LawResult& result) noexcept {
   update_device(input.robot, state.reference);
   advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
@@ -221,7 +224,7 @@ SolverStatus Rendering::step(const LawInput& input, State& state, LawResult& res
 
 // Torques on the twin that are no constraints: the user's, and the parts of the budget that balance
 // it.
-void Rendering::add_torques(const LawInput& input, bool is_released, State& state,
+void Rendering::add_torques(const LawInput& input, bool is_released, RenderingState& state,
                             LawResult& result) const noexcept {
   const int n_a = twin_.chain.nv();
   const double share = input.force_share;
@@ -269,7 +272,8 @@ Eigen::Vector3d Rendering::push_of_twin(const Budget& budget) const noexcept {
 }
 
 // Updates the proxy even while no surface is felt.
-void Rendering::feel_surfaces(const LawInput& input, State& state, LawResult& result) noexcept {
+void Rendering::feel_surfaces(const LawInput& input, RenderingState& state,
+                              LawResult& result) noexcept {
   const Eigen::Vector3d p_E = twin_now_.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
   if (environment_.has_stops()) stops_ = environment_.stops(p_E, v_E, stop_rating_);
@@ -288,7 +292,7 @@ void Rendering::add_stops(ContactReport& contact) const noexcept {
   const int first = device_.limit_count() + twin_.chain.nv();
   double most = contact.force.norm();
   for (int i = 0; i < tasks_.stop_count(); ++i) {
-    const surfaces::Facing& stop = stops_[static_cast<std::size_t>(i)];
+    const surfaces::Facing& stop = stops_[index(i)];
     const double force = reactions_.of(first + i);
     if (stop.surface < 0 || force == 0.0) continue;
     contact.force += force * stop.normal;
@@ -299,7 +303,7 @@ void Rendering::add_stops(ContactReport& contact) const noexcept {
 }
 
 // A surface does not push with the part of its force that limits of the device take.
-void Rendering::give_way(const ContactReport& contact, State& state) const noexcept {
+void Rendering::give_way(const ContactReport& contact, RenderingState& state) const noexcept {
   const double force = contact.force.norm();
   if (contact.surface < 0 || force == 0.0) return;
   const auto factor = L_.triangularView<Eigen::Lower>();
@@ -313,7 +317,7 @@ void Rendering::give_way(const ContactReport& contact, State& state) const noexc
   environment_.give_way(contact, std::clamp(missing, 0.0, force), v_E, state.contact);
 }
 
-void Rendering::align(const RobotState& robot, State& state) noexcept {
+void Rendering::align(const RobotState& robot, RenderingState& state) noexcept {
   update_device(robot, state.reference);
   const Pose T_B_H = device_now_.pose(device_.handle);
   const VectorA at_rest = VectorA::Zero(twin_.chain.nv());
@@ -335,7 +339,7 @@ void Rendering::align(const RobotState& robot, State& state) noexcept {
   }
 }
 
-bool Rendering::stay_near(const RobotState& robot, double largest, State& state) noexcept {
+bool Rendering::stay_near(const RobotState& robot, double largest, RenderingState& state) noexcept {
   bool is_far = false;
   for (int i = 0; i < device_.n_m; ++i) {
     double& q = state.reference.q_m[i];
@@ -355,7 +359,7 @@ bool Rendering::stay_near(const RobotState& robot, double largest, State& state)
 }
 
 // Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
-void Rendering::solve(const LawInput& input, State& state, LawResult& result) noexcept {
+void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& result) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
   const int first_twin_limit = device_.limit_count();
   result.solver_iterations = 0;
@@ -408,10 +412,10 @@ void Rendering::solve(const LawInput& input, State& state, LawResult& result) no
 
     bool released = false;
     for (int i = 0; i < n_a; ++i) {
-      bool& sticks = state.inner.sticks[static_cast<std::size_t>(i)];
-      const auto limit = static_cast<std::size_t>(first_twin_limit + i);
+      bool& sticks = state.inner.sticks[index(i)];
+      const auto limit = index(first_twin_limit + i);
       const double holding = reactions_.of(first_twin_limit + i);
-      const double most = state.inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction;
+      const double most = state.inner.parameters.now.dofs[index(i)].friction;
       if (!sticks || std::abs(holding) <= most) continue;
       sticks = false;
       budget.friction[i] = -std::copysign(most, holding);
@@ -443,7 +447,7 @@ void Rendering::keep_problem(std::uint64_t cycle, double cycle_time_us) noexcept
 bool Rendering::is_blocked() const noexcept {
   const int count = device_.n_m + static_cast<int>(device_.virtual_joints.size());
   for (int i = 0; i < count; ++i) {
-    const auto row = static_cast<std::size_t>(tasks_.first_limit_row() + i);
+    const auto row = index(tasks_.first_limit_row() + i);
     if (hqp::is_violated(solution_.state[row])) return true;
   }
   return false;
@@ -456,7 +460,7 @@ void Rendering::gantry_room(VectorP& down, VectorP& up) const noexcept {
     const model::Jacobian& J = device_now_.jacobian(frame.frame);
     const Eigen::Vector3d position = device_now_.pose(frame.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
-      const limits::JointLimits& range = frame.axes[static_cast<std::size_t>(axis)];
+      const limits::JointLimits& range = frame.axes[index(axis)];
       const double to_lower = position[axis] - range.q_min, to_upper = range.q_max - position[axis];
       for (int i = 0; i < device_.n_p; ++i) {
         const double per = J(axis, i);  // of the frame, per motion of the gantry
@@ -472,18 +476,18 @@ Vector6 Rendering::handle_twist(const RobotState& robot) const noexcept {
   return J_H_.lazyProduct(stacked(robot.dq_p, robot.dq_m));
 }
 
-Vector6 Rendering::end_effector_twist(const State& state) const noexcept {
+Vector6 Rendering::end_effector_twist(const RenderingState& state) const noexcept {
   return J_a_.lazyProduct(state.twin.dq_a);
 }
 
-double Rendering::apparent_mass(const State& state) const noexcept {
+double Rendering::apparent_mass(const RenderingState& state) const noexcept {
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxTwin, 3> root =
       J_a_.topRows<3>().transpose();
   L_.triangularView<Eigen::Lower>().solveInPlace(root);
   return 1.0 / (state.calming.inertia * root.colwise().squaredNorm().maxCoeff());
 }
 
-void Rendering::find_kinematics(const State& state, LawResult& result) const noexcept {
+void Rendering::find_kinematics(const RenderingState& state, LawResult& result) const noexcept {
   result.T_B_H = device_now_.pose(device_.handle);
   result.v_H = device_now_.twist(device_.handle).head<3>();
   result.a_H =
@@ -494,7 +498,7 @@ void Rendering::find_kinematics(const State& state, LawResult& result) const noe
   result.sync_error_angle = angle_between(result.T_B_H.R, result.T_B_E.R);
 }
 
-void Rendering::integrate(State& state) const noexcept {
+void Rendering::integrate(RenderingState& state) const noexcept {
   rendering::integrate(state.reference, options_.dt);
   rendering::integrate(twin_.chain, state.twin, options_.dt);
 }

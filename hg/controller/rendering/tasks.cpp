@@ -15,12 +15,12 @@ constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its
 constexpr double kJumped = 1.5;              // times the speed of a motor without load
 constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
 
-int led_axes(const DeviceModel& device, const Options& options) noexcept {
+int led_axes(const DeviceModel& device, const RenderingOptions& options) noexcept {
   return leads_gantry(device, options) ? device.n_p : 0;
 }
 
-hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin, const Options& options,
-                          int stops) {
+hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
+                          const RenderingOptions& options, int stops) {
   const int n_m = device.n_m, n_a = twin.chain.nv();
   const int limits = device.limit_count() + n_a + stops;
   const int frames = static_cast<int>(device.cartesian_limits.size());
@@ -66,16 +66,16 @@ double stop_rating(const DeviceModel& device) {
   return rating;
 }
 
-bool leads_gantry(const DeviceModel& device, const Options& options) noexcept {
+bool leads_gantry(const DeviceModel& device, const RenderingOptions& options) noexcept {
   return options.gantry == Gantry::kLaw && options.law == Law::kGauss && device.n_p > 0;
 }
 
-bool brakes_together(const DeviceModel& device, const Options& options) noexcept {
+bool brakes_together(const DeviceModel& device, const RenderingOptions& options) noexcept {
   return options.braking == Braking::kTogether && options.law == Law::kGauss &&
          options.bounds == Bounds::kRecoverable && !device.motors.empty();
 }
 
-Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
+Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOptions& options,
              bool has_stops)
     : options_(options),
       n_m_(device.n_m),
@@ -85,7 +85,7 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
       knows_torques_(!device.motors.empty()),
       first_motor_(n_m_ + static_cast<int>(device.virtual_joints.size())),
       problem_(capacity_of(device, twin, options, stop_count_)),
-      coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0) {
+      coefficients_(index(problem_.capacity().variables), 0.0) {
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
   problem_.clear(problem_.capacity().variables);
   add_levels(device, twin);
@@ -102,7 +102,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   const double margin = knows_torques_ ? kTrackingMargin : 0.0;
   problem_.add_level();
   for (int i = 0; i < n_m_; ++i) {
-    add_limit(device.joint_limits[static_cast<std::size_t>(i)], i, margin);
+    add_limit(device.joint_limits[index(i)], i, margin);
   }
   problem_.add_level();
   for (const VirtualJoint& joint : device.virtual_joints) {
@@ -111,7 +111,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   if (knows_torques_) {
     problem_.add_level();
     for (int i = 0; i < n_m_; ++i) {
-      add_limit({.ddq_max = device.joint_limits[static_cast<std::size_t>(i)].ddq_max}, -1, 0.0);
+      add_limit({.ddq_max = device.joint_limits[index(i)].ddq_max}, -1, 0.0);
       limit_rows_.back().is_motor = true;
     }
   }
@@ -127,7 +127,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   }
   problem_.add_level();
   for (int i = 0; i < n_a_; ++i) {
-    add_limit(twin.dofs[static_cast<std::size_t>(i)].limits, n_m_ + i, 0.0);
+    add_limit(twin.dofs[index(i)].limits, n_m_ + i, 0.0);
   }
   for (int i = 0; i < stop_count_; ++i) {
     add_limit({.q_min = 0.0, .ddq_max = stop_rating(device)}, -1, 0.0);
@@ -145,8 +145,8 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
     const int limits = device.limit_count();
     lasting_.resize(device.motors.size());
     joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_);
-    approaches_.resize(static_cast<std::size_t>(limits));
-    known_.resize(static_cast<std::size_t>(limits));
+    approaches_.resize(index(limits));
+    known_.resize(index(limits));
   }
 
   if (paper_) {
@@ -180,7 +180,7 @@ void Tasks::add_limit(const limits::JointLimits& limits, int variable, double ma
 }
 
 void Tasks::add_rating(int limit, int variable) {
-  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  LimitRow& row = limit_rows_[index(limit)];
   row.rating_row = problem_.add_bound(variable, {}, weight_of(row));
 }
 
@@ -235,7 +235,7 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
 
 void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, double dq,
                       double known_acceleration) noexcept {
-  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  LimitRow& row = limit_rows_[index(limit)];
   row.limits = limits;
   row.q = q;
   row.dq = dq;
@@ -255,7 +255,7 @@ void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, do
 
 // a joint that is held by a lock or by friction
 void Tasks::hold(int limit, double ddq) noexcept {
-  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  LimitRow& row = limit_rows_[index(limit)];
   row.ddq = {ddq, ddq};
   problem_.set_bounds(first_limit_row() + limit, row.ddq);
   if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, row.ddq);
@@ -265,8 +265,8 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   const ReferenceState& reference = input.reference;
   int limit = 0;
   for (; limit < n_m_; ++limit) {
-    set_limit(limit, limit_rows_[static_cast<std::size_t>(limit)].limits, reference.q_m[limit],
-              reference.dq_m[limit], 0.0);
+    set_limit(limit, limit_rows_[index(limit)].limits, reference.q_m[limit], reference.dq_m[limit],
+              0.0);
   }
 
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
@@ -274,8 +274,8 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   for (const VirtualJoint& joint : device.virtual_joints) {
     row.head(n_m_) = joint.weights;
     problem_.set_row(first_limit_row() + limit, coefficients_);
-    set_limit(limit, limit_rows_[static_cast<std::size_t>(limit)].limits,
-              joint.weights.dot(reference.q_m), joint.weights.dot(reference.dq_m), 0.0);
+    set_limit(limit, limit_rows_[index(limit)].limits, joint.weights.dot(reference.q_m),
+              joint.weights.dot(reference.dq_m), 0.0);
     ++limit;
   }
 
@@ -292,8 +292,8 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
       row.head(n_m_) = J.row(axis).segment(device.n_p, n_m_);
       row.tail(n_g_) = J.row(axis).head(n_g_);
       problem_.set_row(first_limit_row() + limit, coefficients_);
-      limits::JointLimits limits = limit_rows_[static_cast<std::size_t>(limit)].limits;
-      limits.dq_max = frame.axes[static_cast<std::size_t>(axis)].dq_max;
+      limits::JointLimits limits = limit_rows_[index(limit)].limits;
+      limits.dq_max = frame.axes[index(axis)].dq_max;
       if (frame.frame == device.handle) limits.dq_max = std::min(limits.dq_max, input.handle_speed);
       set_limit(limit, limits, position[axis], twist[axis], known[axis]);
       ++limit;
@@ -313,7 +313,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
   // a joint faster than any motor has jumped: its torques are unknown
   are_torques_known_ = known.allFinite();
   for (int i = 0; i < n_m_; ++i) {
-    const double fastest = kJumped * device.motors[static_cast<std::size_t>(i)].speed_no_load;
+    const double fastest = kJumped * device.motors[index(i)].speed_no_load;
     if (std::abs(input.reference.dq_m[i]) > fastest) are_torques_known_ = false;
   }
 
@@ -324,7 +324,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
       problem_.set_bounds(first_limit_row() + first_motor_ + i, {});
       continue;
     }
-    const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
+    const ActuatorModel& motor = device.motors[index(i)];
     const double dq = input.reference.dq_m[i];
     const double inertia = M(i, device.n_p + i) + motor.rotor_inertia;
     row.head(n_m_) = M.row(i).segment(device.n_p, n_m_) / inertia;
@@ -333,13 +333,12 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     problem_.set_row(first_limit_row() + first_motor_ + i, coefficients_);
     Interval torque = allowed_torque(motor, dq);
     if (joint_braking_) {
-      lasting_[static_cast<std::size_t>(i)] = {(torque.lb - known[i]) / inertia,
-                                               (torque.ub - known[i]) / inertia};
+      lasting_[index(i)] = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     }
     if (input.motor_torque.size() > 0) {
       torque = reached_torque(torque, input.motor_torque[i], options_.dt);
     }
-    LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
+    LimitRow& limit = limit_rows_[index(first_motor_ + i)];
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     limit.inertia = inertia;
@@ -373,23 +372,23 @@ void Tasks::brake_together() noexcept {
 void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept {
   const int first = static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_;
   for (int i = 0; i < n_a_; ++i) {
-    const TwinDof& dof = twin.dofs[static_cast<std::size_t>(i)];
+    const TwinDof& dof = twin.dofs[index(i)];
     const double q = dof.q_index >= 0 ? input.twin.q_a[dof.q_index] : 0.0;
     const double dq = input.twin.dq_a[i];
     EffectiveLimits effective = effective_limits(twin, i, dq, input.inner);
-    LimitRow& row = limit_rows_[static_cast<std::size_t>(first + i)];
+    LimitRow& row = limit_rows_[index(first + i)];
     row.held_by = effective.held_by;
     const bool is_locked = row.held_by.upper == LimitCause::kLock;
     if (is_locked && options_.bounds == Bounds::kPaper) {
       effective.limits.q_min = effective.limits.q_max = q;
     }
-    row.range = input.inner.parameters.moving[static_cast<std::size_t>(i)].q;
+    row.range = input.inner.parameters.moving[index(i)].q;
     row.options = limits::recoverable_options(effective.limits, options_.dt, options_.dt);
     if (knows_torques_) row.options.tau_onset = kTwinBrakingOnset;
     const bool is_held =
         row.held_by.lower != LimitCause::kNone || row.held_by.upper != LimitCause::kNone;
     row.is_recoverable = options_.bounds == Bounds::kRecoverable || is_held ||
-                         input.inner.parameters.may_be_overrun[static_cast<std::size_t>(i)];
+                         input.inner.parameters.may_be_overrun[index(i)];
     set_limit(first + i, effective.limits, q, dq, 0.0);
 
     // [HG] (31): a lock of bounds paper stops the joint, as fast as its rating allows
@@ -404,7 +403,7 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
     }
 
     // stick: the joint stands still at the end of the sample, as far as its limits allow
-    if (input.inner.sticks[static_cast<std::size_t>(i)] && !is_locked) {
+    if (input.inner.sticks[index(i)] && !is_locked) {
       hold(first + i, std::clamp(ddq_stop, row.ddq.lb, row.ddq.ub));
       row.held_by = {LimitCause::kFriction, LimitCause::kFriction};
     }
@@ -434,15 +433,15 @@ void Tasks::fill_stops(const TaskInput& input, const Vector6& bias) noexcept {
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (int i = 0; i < stop_count_; ++i) {
-    const surfaces::Facing& stop = input.stops[static_cast<std::size_t>(i)];
+    const surfaces::Facing& stop = input.stops[index(i)];
     if (stop.surface < 0) {
-      limit_rows_[static_cast<std::size_t>(first + i)].ddq = {};
+      limit_rows_[index(first + i)].ddq = {};
       problem_.set_bounds(first_limit_row() + first + i, {});
       continue;
     }
     row.segment(n_m_, n_a_) = J.transpose() * stop.normal;
     problem_.set_row(first_limit_row() + first + i, coefficients_);
-    set_limit(first + i, limit_rows_[static_cast<std::size_t>(first + i)].limits, stop.distance,
+    set_limit(first + i, limit_rows_[index(first + i)].limits, stop.distance,
               stop.normal.dot(velocity), stop.normal.dot(bias.head<3>()));
   }
 }
@@ -486,7 +485,7 @@ void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
   const Eigen::Map<const Eigen::VectorXd> x(solution.x.data(), problem_.variables());
   motor_torque_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
+    LimitRow& limit = limit_rows_[index(first_motor_ + i)];
     const std::span<const double> row = problem_.coefficients(first_limit_row() + first_motor_ + i);
     const double ddq = Eigen::Map<const Eigen::VectorXd>(row.data(), problem_.variables()).dot(x);
     limit.q = motor_torque_[i] = known_torque_[i] + limit.inertia * ddq;
@@ -506,10 +505,9 @@ bool Tasks::keeps_joints(const hqp::Solution& solution) const noexcept {
 // the first `count` limits
 bool Tasks::keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept {
   for (int limit = 0; limit < count; ++limit) {
-    for (const int row :
-         {first_limit_row() + limit, limit_rows_[static_cast<std::size_t>(limit)].rating_row}) {
+    for (const int row : {first_limit_row() + limit, limit_rows_[index(limit)].rating_row}) {
       if (row < 0 || problem_.level_of(row) < solution.completed_levels) continue;
-      if (!(std::abs(solution.slack[static_cast<std::size_t>(row)]) <= tolerance)) return false;
+      if (!(std::abs(solution.slack[index(row)]) <= tolerance)) return false;
     }
   }
   return true;

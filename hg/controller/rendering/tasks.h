@@ -85,16 +85,16 @@ double stop_rating(const DeviceModel& device);
 
 /// Whether accelerations of the gantry are unknowns of the law. Where the law cannot have them, or
 /// there is no gantry, a rule leads it, whatever `options` ask for.
-bool leads_gantry(const DeviceModel& device, const Options& options) noexcept;
+bool leads_gantry(const DeviceModel& device, const RenderingOptions& options) noexcept;
 
 /// Whether limits of the device brake together. Where the law does not know the motors, or bounds
 /// do not brake in time, each brakes separately, whatever `options` ask for.
-bool brakes_together(const DeviceModel& device, const Options& options) noexcept;
+bool brakes_together(const DeviceModel& device, const RenderingOptions& options) noexcept;
 
 class Tasks {
  public:
   /// `has_stops`: there are virtual surfaces that the end effector of the twin must not enter.
-  Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
+  Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOptions& options,
         bool has_stops = false);
 
   /// Writes all rows. `device` and `twin` are the models given to the constructor.
@@ -111,8 +111,8 @@ class Tasks {
   /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
   int acting_row(int limit, const hqp::Solution& solution) const noexcept {
     const int row = first_limit_row() + limit;
-    const int rating_row = limit_rows_[static_cast<std::size_t>(limit)].rating_row;
-    const bool acts = solution.state[static_cast<std::size_t>(row)] != hqp::RowState::kInactive;
+    const int rating_row = limit_rows_[index(limit)].rating_row;
+    const bool acts = solution.state[index(row)] != hqp::RowState::kInactive;
     return acts || rating_row < 0 ? row : rating_row;
   }
   /// Computes the motor torques of `solution`, which solves problem().
@@ -164,7 +164,7 @@ class Tasks {
                  double known_acceleration) noexcept;
   void hold(int limit, double ddq) noexcept;
 
-  Options options_;
+  RenderingOptions options_;
   int n_m_, n_a_;
   int n_g_;  ///< Gantry axes that the law leads
   int stop_count_;

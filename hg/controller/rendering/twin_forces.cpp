@@ -64,7 +64,7 @@ EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
                                  const TwinInnerState& inner) noexcept {
   EffectiveLimits result{free_limits(twin, dof, dq, inner.parameters), {}};
   constexpr Holds kContradiction = {LimitCause::kContradiction, LimitCause::kContradiction};
-  if (inner.parameters.moving[static_cast<std::size_t>(dof)].is_crossed) {
+  if (inner.parameters.moving[index(dof)].is_crossed) {
     result.held_by = kContradiction;
   }
   for (std::size_t i = 0; i < twin.locks.size(); ++i) {
@@ -117,7 +117,7 @@ VectorA damping_torque(const MatrixA& L, const VectorA& dq_a, double dt,
   const Eigen::Index n = dq_a.size();
   VectorA D(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const DofValues& dof = values.dofs[static_cast<std::size_t>(i)];
+    const DofValues& dof = values.dofs[index(i)];
     D[i] = dof.damping + dof.quadratic_damping * std::abs(dq_a[i]);
   }
   VectorA torque = D.cwiseProduct(dq_a);

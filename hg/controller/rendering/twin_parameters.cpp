@@ -74,7 +74,7 @@ bool is_index(const TwinModel& twin, const ParameterChange& change) noexcept {
     case ParameterOwner::kDof:
       return is_dof;
     case ParameterOwner::kJoint:
-      return is_dof && twin.dofs[static_cast<std::size_t>(change.index)].q_index >= 0;
+      return is_dof && twin.dofs[index(change.index)].q_index >= 0;
     case ParameterOwner::kWrench:
       return change.index >= 0 && change.index < 6;
     case ParameterOwner::kTwin:
@@ -89,7 +89,7 @@ bool is_value(Parameter parameter, double value) noexcept {
 
 // the range of a joint and of the conditional limits that hold
 Interval target_range(const TwinModel& twin, int dof, const TwinParameters& parameters) noexcept {
-  Interval range = parameters.range[static_cast<std::size_t>(dof)];
+  Interval range = parameters.range[index(dof)];
   for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
     const ConditionalLimit& limit = twin.conditional_limits[i];
     if (limit.dof != dof || !parameters.holds[i]) continue;
@@ -122,7 +122,7 @@ TwinParameters initial_parameters(const TwinModel& twin) {
     parameters.moving[i].q = parameters.range[i];
   }
   for (const ConditionalLimit& limit : twin.conditional_limits) {
-    parameters.may_be_overrun[static_cast<std::size_t>(limit.dof)] = true;
+    parameters.may_be_overrun[index(limit.dof)] = true;
   }
   parameters.target.w_ref = twin.w_ref;
   parameters.target.loads = {.mass = twin.mass_scale,

@@ -20,7 +20,7 @@ Axis axis_of(const MonitorConfig& config, int i, int n_p, int n_m) noexcept {
     return {n_m + i, config.is_gantry_slide, config.drive.dq_max, config.stop_distance_of_gantry()};
   }
   const int joint = (i - n_p) % n_m;
-  const auto k = static_cast<std::size_t>(joint);
+  const auto k = index(joint);
   return {joint, k < config.is_slide.size() && config.is_slide[k],
           k < config.joint_speed_max.size() ? config.joint_speed_max[k] : kInfinity,
           config.stop_distance_of_joint(joint)};

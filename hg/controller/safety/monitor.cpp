@@ -24,8 +24,6 @@ constexpr double kMotorMemory_s = 0.02;     // time constant of the motor torque
 constexpr double kShakingPatience_s = 3.0;  // as in passivity/
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 Fault make_fault(FaultCode code, int index, double value, double limit) noexcept {
   return {code, static_cast<std::int16_t>(index), value, limit};
 }
@@ -125,20 +123,18 @@ Monitor::Monitor(const MonitorConfig& config, int n_p, int n_m)
   const auto require = [](bool ok, const std::string& text) {
     if (!ok) throw SetupError("monitor: " + text);
   };
-  const auto fits = [](const auto& list, int n) {
-    return list.empty() || list.size() == static_cast<std::size_t>(n);
-  };
+  const auto fits = [](const auto& list, int n) { return list.empty() || std::ssize(list) == n; };
   require(config.dt > 0.0, "the period must be positive");
-  if (config_.gantry_range.empty()) config_.gantry_range.resize(at(n_p));
-  if (config_.joint_range.empty()) config_.joint_range.resize(at(n_m));
-  if (config_.is_slide.empty()) config_.is_slide.resize(at(n_m));
-  if (config_.joint_speed_max.empty()) config_.joint_speed_max.resize(at(n_m), kInfinity);
-  if (config_.joint_acceleration.empty()) config_.joint_acceleration.resize(at(n_m), kInfinity);
-  require(config_.gantry_range.size() == at(n_p), "one range per gantry axis is needed");
+  if (config_.gantry_range.empty()) config_.gantry_range.resize(index(n_p));
+  if (config_.joint_range.empty()) config_.joint_range.resize(index(n_m));
+  if (config_.is_slide.empty()) config_.is_slide.resize(index(n_m));
+  if (config_.joint_speed_max.empty()) config_.joint_speed_max.resize(index(n_m), kInfinity);
+  if (config_.joint_acceleration.empty()) config_.joint_acceleration.resize(index(n_m), kInfinity);
+  require(config_.gantry_range.size() == index(n_p), "one range per gantry axis is needed");
   for (const auto* list : {&config_.joint_speed_max, &config_.joint_acceleration}) {
-    require(list->size() == at(n_m), "one rating per joint is needed");
+    require(list->size() == index(n_m), "one rating per joint is needed");
   }
-  require(config_.joint_range.size() == at(n_m) && config_.is_slide.size() == at(n_m),
+  require(config_.joint_range.size() == index(n_m) && config_.is_slide.size() == index(n_m),
           "one range per joint is needed");
   require(fits(config_.actuators, n_m), "one actuator per joint is needed, or none");
   for (std::size_t i = 0; i < kRuleCount; ++i) {
@@ -163,15 +159,15 @@ bool Monitor::has_jumped(const SensorFrame& sensors, const MonitorState& state) 
   if (!state.has_sample) return false;
   const double far = config_.jump_factor * config_.dt;
   for (int i = 0; i < n_m_; ++i) {
-    if (std::abs(turned(sensors.q_m[i] - state.q_m[i])) > far * config_.joint_speed_max[at(i)]) {
+    if (std::abs(turned(sensors.q_m[i] - state.q_m[i])) > far * config_.joint_speed_max[index(i)]) {
       return true;
     }
   }
   return ((sensors.q_p - state.q_p).array().abs() > far * config_.drive.dq_max).any();
 }
 
-Verdict Monitor::watch(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
-                       MonitorState& state) noexcept {
+MonitorResult Monitor::watch(const SensorFrame& sensors, const Rendered& rendered,
+                             const Watched& watched, MonitorState& state) noexcept {
   worst_ = fresh_;
   if (state.lowest.size() != n_m_) {
     state.lowest = state.highest = rendered.robot.q_m;
@@ -190,7 +186,7 @@ Verdict Monitor::watch(const SensorFrame& sensors, const Rendered& rendered, con
   look_at_clocks(sensors, watched, state);
   look_at_sensors(sensors, state);
   const Fault shaking = look_for_shaking(sensors, rendered, watched, state);
-  Verdict verdict = judge(state);
+  MonitorResult verdict = judge(state);
   if (shaking.code != FaultCode::kNone) verdict.warning = shaking;
   state.is_broken = verdict.fault.code != FaultCode::kNone;
   return verdict;
@@ -198,7 +194,7 @@ Verdict Monitor::watch(const SensorFrame& sensors, const Rendered& rendered, con
 
 void Monitor::look_at_joint(int joint, const Rendered& rendered, const Watched& watched,
                             MonitorState& state) noexcept {
-  const std::size_t i = at(joint);
+  const std::size_t i = index(joint);
   const double q = rendered.robot.q_m[joint], dq = rendered.robot.dq_m[joint];
   const bool is_on = is_powered(watched.state);
   follow(config_.joint_range[i], q, is_on, state.lowest[joint], state.highest[joint]);
@@ -241,7 +237,7 @@ void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
   const bool is_new = state.momentum.size() != n_m_;
   if (is_new) state.momentum.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = config_.actuators[at(i)];
+    const ActuatorModel& actuator = config_.actuators[index(i)];
     const double dtheta = robot.dtheta_m[i], tau_J = robot.tau_m[i];
     const double p = actuator.rotor_inertia * dtheta;
     if (is_new) state.momentum[i] = p;
@@ -263,7 +259,7 @@ void Monitor::look_at_torques(const Watched& watched) noexcept {
   for (int i = 0; i < n_m_ && !config_.actuators.empty(); ++i) {
     look<FaultCode::kTorqueUnexplained>(
         i, std::abs(watched.unexplained[i]),
-        config_.unexplained_tolerance * config_.actuators[at(i)].torque_max);
+        config_.unexplained_tolerance * config_.actuators[index(i)].torque_max);
   }
 }
 
@@ -290,7 +286,8 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const Rendered& rendere
   for (int axis = 0; axis < n_p_; ++axis) {
     const double q = robot.q_p[axis], dq = robot.dq_p[axis];
     double& model = state.dq_p_model[axis];
-    follow(config_.gantry_range[at(axis)], q, is_on, state.lowest_p[axis], state.highest_p[axis]);
+    follow(config_.gantry_range[index(axis)], q, is_on, state.lowest_p[axis],
+           state.highest_p[axis]);
     if (!is_on) {
       model = dq;
       state.gantry_gap[axis] = state.gantry_drift[axis] = state.gantry_way[axis] = 0.0;
@@ -336,7 +333,7 @@ void Monitor::look_at_braking(const Rendered& rendered, const Watched& watched,
     state.braking_ramp_p += config_.dt * state.dq_p_model;
   }
   for (int i = 0; i < n_m_; ++i) {
-    const bool is_slide = config_.is_slide[at(i)];
+    const bool is_slide = config_.is_slide[index(i)];
     look<FaultCode::kBrakingPosition>(i, std::abs(robot.q_m[i] - state.braking_ramp[i]),
                                       is_slide ? config_.slide_braking_gap : config_.braking_gap);
     look<FaultCode::kBrakingSpeed>(
@@ -365,11 +362,11 @@ void Monitor::look_at_frames(const Rendered& rendered, const Watched& watched) n
   for (int i = n_m_; i < config_.end_cartesian; ++i) {
     const bool is_sum = i < config_.first_cartesian;
     look<FaultCode::kLimitExceeded>(
-        i, rendered.limits[at(i)].excess,
+        i, rendered.limits[index(i)].excess,
         is_sum ? config_.virtual_tolerance : config_.cartesian_tolerance);
   }
   look<FaultCode::kSyncLost>(-1, rendered.sync_error, config_.sync_tolerance);
-  if (watched.state != State::kAutonomous) return;
+  if (watched.state != SafetyState::kAutonomous) return;
   look<FaultCode::kSafeSpeedExceeded>(0, rendered.v_H.norm(), config_.safe_speed);
   if (!config_.is_gantry_slide) return;
   look<FaultCode::kSafeSpeedExceeded>(1, rendered.robot.dq_p.norm(), config_.safe_speed);
@@ -426,7 +423,7 @@ void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) n
   for (int i = 0; i < sensors.tau_m.size(); ++i) {
     const double tau = sensors.tau_m[i];
     if (config_.actuators.empty()) break;
-    const ActuatorModel& actuator = config_.actuators[at(i)];
+    const ActuatorModel& actuator = config_.actuators[index(i)];
     look<FaultCode::kJointTorqueExceeded>(i, std::abs(tau),
                                           config_.torque_tolerance * actuator.torque_max);
     if (sensors.theta_m.size() == 0) continue;
@@ -438,7 +435,7 @@ void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) n
     const double far = config_.jump_factor * config_.dt;
     for (int i = 0; i < n_m_; ++i) {
       look<FaultCode::kSensorJump>(i, std::abs(turned(sensors.q_m[i] - state.q_m[i])),
-                                   far * config_.joint_speed_max[at(i)]);
+                                   far * config_.joint_speed_max[index(i)]);
     }
     for (int i = 0; i < n_p_; ++i) {
       look<FaultCode::kSensorJump>(n_m_ + i, std::abs(sensors.q_p[i] - state.q_p[i]),
@@ -456,7 +453,7 @@ void Monitor::look_at_noise(const SensorFrame& sensors, MonitorState& state) noe
   const auto compare = [&](int first, const auto& now, const auto& before) {
     const bool can_compare = state.has_sample && now.size() == before.size();
     for (int i = 0; i < now.size(); ++i) {
-      std::uint16_t& same = state.same[at(first + i)];
+      std::uint16_t& same = state.same[index(first + i)];
       same = can_compare && now[i] == before[i] ? count_up(same) : std::uint16_t{0};
       look<FaultCode::kSensorFrozen>(first + i, same, config_.frozen_samples);
     }
@@ -473,8 +470,8 @@ void Monitor::look_at_noise(const SensorFrame& sensors, MonitorState& state) noe
 }
 
 // Of several rules that are broken the one with the hardest reaction, then the smallest number.
-Verdict Monitor::judge(MonitorState& state) const noexcept {
-  Verdict verdict;
+MonitorResult Monitor::judge(MonitorState& state) const noexcept {
+  MonitorResult verdict;
   Stop hardest = Stop::kNone;
   double nearest = 0.0;
   for (std::size_t i = 0; i < kRuleCount; ++i) {

@@ -97,7 +97,7 @@ struct MonitorConfig {
 
   /// Largest travel of a manipulator joint in a stop, rad or m.
   double stop_distance_of_joint(int joint) const noexcept {
-    const auto i = static_cast<std::size_t>(joint);
+    const auto i = index(joint);
     return i < is_slide.size() && is_slide[i] ? slide_stop_distance : stop_distance;
   }
   /// Largest travel of any gantry axis in a stop, m or rad.
@@ -138,11 +138,11 @@ struct Rendered {
 
 /// Other monitored values of a cycle.
 struct Watched {
-  State state = State::kOff;      ///< State of the supervisor
-  std::uint32_t late_cycles = 0;  ///< Late cycles since the last cycle
-  VectorP dq_p_command;           ///< Velocity command that the gantry follows now, m/s or rad/s
-  VectorM tau_m;                  ///< Motor torques commanded a period ago, Nm; empty = none
-  VectorM pulled_back;  ///< Shift of the reference back to the device, rad or m; empty = none
+  SafetyState state = SafetyState::kOff;  ///< State of the supervisor
+  std::uint32_t late_cycles = 0;          ///< Late cycles since the last cycle
+  VectorP dq_p_command;  ///< Velocity command that the gantry follows now, m/s or rad/s
+  VectorM tau_m;         ///< Motor torques commanded a period ago, Nm; empty = none
+  VectorM pulled_back;   ///< Shift of the reference back to the device, rad or m; empty = none
   /// Unexplained joint torques, TrackingReport::torque_unexplained; empty = none.
   VectorM unexplained;
   double turn = 0.0;              ///< Rotation of the gyroscope beyond the encoders', rad
@@ -196,7 +196,7 @@ void hashed(auto& hash, const MonitorState& state) {
            braking_ramp_p, is_stopping, stop_from, braking_ramp, ramp_speed);
 }
 
-struct Verdict {
+struct MonitorResult {
   Fault fault;  ///< Broken rule with the hardest reaction, or kNone
   /// Shaking of hand and device, if detected; otherwise the rule nearest to its threshold, once
   /// beyond its warning level. kNone without either.
@@ -212,8 +212,8 @@ class Monitor {
 
   /// Checks a cycle with usable sensors; call once per cycle, after the rendering. With unusable
   /// sensors call forget() instead.
-  Verdict watch(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
-                MonitorState& state) noexcept;
+  MonitorResult watch(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
+                      MonitorState& state) noexcept;
 
   /// Whether a position moved farther since the last sample than its rated speed and jump_factor
   /// allow.
@@ -248,7 +248,7 @@ class Monitor {
                          const Watched& watched, MonitorState& state) noexcept;
   void look_at_clocks(const SensorFrame& sensors, const Watched& watched,
                       MonitorState& state) noexcept;
-  Verdict judge(MonitorState& state) const noexcept;
+  MonitorResult judge(MonitorState& state) const noexcept;
 
   MonitorConfig config_;
   ShakingWatch shaking_;

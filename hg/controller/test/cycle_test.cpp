@@ -32,14 +32,14 @@ struct Loop {
   std::uint64_t latency = 1;  // periods; 0: the device does not answer
 
   explicit Loop(bool needs_tare = false, bool has_torque_loop = false, bool has_imu = false,
-                const Config& base = {},
+                const CycleConfig& base = {},
                 const rendering::DeviceModel& model = rendering::unlimited_device())
       : device(model) {
     rendering::TwinModel twin = rendering::unlimited_twin(
         model::Chain::free_body({.mass = 6.0}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
-    Config config = base;
+    CycleConfig config = base;
     config.estimation.wrench.tare.is_needed = needs_tare;
     config.estimation.wrench.has_imu = has_imu;
     config.prepositioning.n_p = 2;
@@ -73,7 +73,7 @@ struct Loop {
       if (sensors.theta_m.size() > 0) sensors.theta_m = command.q_m;
     }
     for (int i = 0; i < 2; ++i) {
-      const auto axis = static_cast<std::size_t>(i);
+      const auto axis = index(i);
       const double ddq =
           drive_acceleration({}, gantry_speed[axis], delay[axis].shift(command.dq_p[i], 4));
       sensors.q_p[i] += 1e-3 * gantry_speed[axis] + 0.5e-6 * ddq;
@@ -291,7 +291,7 @@ TEST(Cycle, TheTwinMeetsTheHandleWhereJointsBrakedByThemselvesInAStopThatEndsArm
   loop.sensors.dead_man = false;
   loop.run(3);
   ASSERT_EQ(loop.record.mode, Mode::kStopping);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   state.motion = Motion::kBrakeJoints;  // as a collision ahead does
   loop.cycle->restore(state);
   loop.sensors.w_S[0] = 0.0;
@@ -314,7 +314,7 @@ TEST(Cycle, RunsAgainWhenAskedInTheCycleAfterJointsBrakedOneByOne) {
   loop.sensors.dead_man = false;
   loop.run(3);
   ASSERT_EQ(loop.record.mode, Mode::kStopping);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   state.motion = Motion::kBrakeJoints;
   loop.cycle->restore(state);
   loop.sensors.w_S[0] = 0.0;
@@ -458,7 +458,7 @@ TEST(Cycle, ATorqueThatIsNotFiniteIsAFaultAndAResetBeginsAnew) {
     Loop loop(false, true);
     loop.run(110);
     loop.start_running();
-    State state = loop.cycle->state();
+    CycleState state = loop.cycle->state();
     if (in_estimation) state.estimation.motor[1].dtheta = nan;
     if (!in_estimation) state.control.friction[1] = nan;
     loop.cycle->restore(state);
@@ -497,7 +497,7 @@ int cycles_until_latency_fault(std::uint64_t before, const std::vector<std::uint
   loop.run(200);
   loop.start_running();
   for (int k = 0; k < 1000; ++k) {
-    loop.latency = after[static_cast<std::size_t>(k) % after.size()];
+    loop.latency = after[index(k) % after.size()];
     loop.step();
     if (loop.record.mode != Mode::kFault) continue;
     EXPECT_EQ(loop.record.fault.code, FaultCode::kLatencyGrew);
@@ -592,7 +592,7 @@ TEST(Cycle, AnArmThatFallsIsToldThoughAnotherSensorGivesNoNumber) {
 TEST(Cycle, HandleAndTwinApartIsAFault) {
   Loop loop;
   loop.start_running();
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   state.rendering.twin.q_a[0] += 0.03;
   loop.cycle->restore(state);
   expect_controlled_stop(loop, FaultCode::kSyncLost, Stop::kSs2);
@@ -606,7 +606,7 @@ TEST(Cycle, WithoutASolutionTheJointsBrakeByThemselvesAndAResetRunsAgain) {
   loop.run(400);
   const double speed = loop.record.reference.dq_m.lpNorm<Eigen::Infinity>();
   ASSERT_GT(speed, 0.05);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   state.rendering.twin.q_a[1] = std::numeric_limits<double>::quiet_NaN();
   loop.cycle->restore(state);
   loop.step();
@@ -649,7 +649,7 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
   loop.start_running();
   loop.sensors.w_S << 2, 1, -3, 0.1, 0.2, 0.1;
   loop.run(100);
-  const State snapshot = loop.cycle->state();
+  const CycleState snapshot = loop.cycle->state();
   const SensorFrame sensors = loop.sensors;
   const auto gantry_speed = loop.gantry_speed;
   const auto delay = loop.delay;
@@ -664,7 +664,7 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
   loop.delay = delay;
   for (int k = 0; k < 100; ++k) {
     loop.step();
-    ASSERT_EQ(loop.record.state_hash, hashes[static_cast<std::size_t>(k)]) << k;
+    ASSERT_EQ(loop.record.state_hash, hashes[index(k)]) << k;
   }
 }
 
@@ -677,11 +677,11 @@ TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
   const Eigen::Vector3d handle = device.chain.pose(device.handle).p;
   rendering::CartesianLimit wall = {.name = "elbow", .frame = device.elbow};
   for (int axis = 0; axis < 3; ++axis) {
-    wall.axes[static_cast<std::size_t>(axis)] = {
+    wall.axes[index(axis)] = {
         .q_min = elbow[axis] - 0.01, .q_max = elbow[axis] + 0.01, .ddq_max = 5.0};
   }
   device.cartesian_limits = {wall};
-  Config config;
+  CycleConfig config;
   config.surfaces = {{.name = "floor",
                       .shape = surfaces::Plane{},
                       .pose = {.p = handle - Eigen::Vector3d(0.0, 0.0, 0.002)},
@@ -718,7 +718,7 @@ TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
 
 // Somebody goes on pressing: the stop gives way for a third of its time and then brakes.
 TEST(Cycle, AStopByAContactDoesNotGiveWayForLongerThanItMayTake) {
-  Config config;
+  CycleConfig config;
   config.compliance.is_on = true;
   config.compliance.torque_max = VectorM::Constant(6, 50.0);
   rendering::DeviceModel device = rendering::unlimited_device();
@@ -733,7 +733,7 @@ TEST(Cycle, AStopByAContactDoesNotGiveWayForLongerThanItMayTake) {
   ASSERT_EQ(loop.record.mode, Mode::kRunning);
   ASSERT_TRUE(loop.record.touch.is_told);
   ASSERT_GT(loop.record.v_H.norm(), 0.05);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   safety::break_rule({.code = FaultCode::kTorqueUnexplained}, state.supervisor);
   loop.cycle->restore(state);
   loop.run(200);
@@ -748,7 +748,7 @@ TEST(Cycle, WhatTouchesTheArmIsNoSurfaceThatPushesBack) {
   Loop loop;
   loop.start_running();
   loop.run(10);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   ASSERT_GT(state.passivity.since_pushed_s, 0.0);
   state.rendering.touch[0] = 5.0;
   loop.cycle->restore(state);

@@ -23,12 +23,12 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const Vecto
   constexpr double kError = 1e-7;  // small against every limit of the controller
   const int n = loop.n_m;
   JointControl control(loop.config, loop.chain, loop.n_p, n, loop.handle);
-  State at_start = control.start();
+  ControlState at_start = control.start();
   at_start.latency = latency / loop.config.dt;
   const RobotState robot = standing(loop.config.actuators, q, weight);
   const ReferenceState reference = standing_reference(robot);
   const auto torque = [&](const RobotState& seen) -> Eigen::VectorXd {
-    State state = at_start;
+    ControlState state = at_start;
     CommandFrame command;
     TrackingReport report;
     control.step(reference, reference, seen, state, command, report);
@@ -83,7 +83,7 @@ class SampledLoop {
     Eigen::VectorXd seen(5 * n);  // theta, theta', q, q', joint torque
     seen << theta, next.segment(at.observers() + n, 3 * n), Eigen::VectorXd::Zero(n);
     for (int i = 0; i < n; ++i) {
-      const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
+      const ActuatorModel& actuator = actuators_[index(i)];
       seen[4 * n + i] =
           actuator.stiffness * (theta[i] - q[i]) + actuator.damping * (dtheta[i] - dq[i]);
     }

@@ -43,7 +43,7 @@ class Generator {
     const double kind = uniform(0.0, 1.0);
     if (kind < 0.05) return c;
     if (kind < 0.2 && !earlier_.empty()) {
-      c = earlier_[static_cast<std::size_t>(integer(0, static_cast<int>(earlier_.size()) - 1))];
+      c = earlier_[index(integer(0, static_cast<int>(earlier_.size()) - 1))];
       if (kind_.noise > 0.0) {
         for (double& c_j : c) c_j *= 1.0 + kind_.noise * value();
       }

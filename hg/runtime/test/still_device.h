@@ -68,7 +68,7 @@ struct Parts {
         rendering::unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(model, Eigen::Vector2d::Zero(), kPosture));
-    controller::Config config;
+    controller::CycleConfig config;
     config.estimation.wrench.has_imu = false;
     config.prepositioning.n_p = 2;
     config.monitor.joint_range.assign(6, {-10.0, 10.0});

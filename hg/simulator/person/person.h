@@ -24,7 +24,7 @@ enum class PersonKind {
   kMouse,   ///< follows HandTarget only
 };
 
-struct Config {
+struct PersonConfig {
   PersonKind kind = PersonKind::kScript;
   HandImpedance hand;
   Script script;
@@ -34,7 +34,8 @@ struct Config {
 class Person {
  public:
   /// `twin` and its frame `end_effector` give the pose of kTwinJoints and kCylindrical channels.
-  Person(const Config& config, const model::Chain& twin, int end_effector, const Pose& T_B_twin);
+  Person(const PersonConfig& config, const model::Chain& twin, int end_effector,
+         const Pose& T_B_twin);
 
   /// Wrench on the handle at time `t`, in s since the start of the run; the arm advances from call
   /// to call. An active hand target overrides the script. Zero before Script::grasp_s.
@@ -56,7 +57,7 @@ class Person {
   Pose channel_pose() noexcept;
   void keep_score(double dt, const HandleMotion& handle) noexcept;
 
-  Config config_;
+  PersonConfig config_;
   model::Chain twin_;
   int end_effector_;
   Pose T_B_twin_;

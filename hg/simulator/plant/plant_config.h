@@ -84,6 +84,6 @@ struct PlantConfig {
 };
 
 /// Throws SetupError, `item: rule, got value`, unless a plant can be built from it.
-void check(const PlantConfig& config, const model::Chain& chain);
+void check_plant_config(const PlantConfig& config, const model::Chain& chain);
 
 }  // namespace hg::simulator

@@ -4,7 +4,8 @@
 
 namespace hg::haptify {
 
-Benchmark measure(const config::Scenario& scenario, const Options& options, const Told& told) {
+Benchmark measure(const config::Scenario& scenario, const HaptifyOptions& options,
+                  const Told& told) {
   Benchmark result = {.options = options, .device = scenario.device.name};
   const Group group = {scenario, options, told, result};
   add_workspace(group);

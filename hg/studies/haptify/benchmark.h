@@ -16,6 +16,7 @@ using Told = std::function<void(const std::string& what, std::size_t done, std::
 /// Runs the benchmark. `scenario`: a hand that leads a free body (models/scenarios/walk.yaml). The
 /// same scenario and options give the same figures. Throws SetupError when the twin is not a free
 /// body.
-Benchmark measure(const config::Scenario& scenario, const Options& options, const Told& told);
+Benchmark measure(const config::Scenario& scenario, const HaptifyOptions& options,
+                  const Told& told);
 
 }  // namespace hg::haptify

@@ -66,14 +66,14 @@ struct View {
   std::vector<double> box;             ///< limits: left, right, bottom, top, m; empty = none
 };
 
-struct Options {
+struct HaptifyOptions {
   std::uint64_t seed = 1;  ///< seed of the first repetition; the others follow
   int repetitions = 5;
   bool is_quick = false;  ///< quick run: few samples, short runs
 };
 
 struct Benchmark {
-  Options options;
+  HaptifyOptions options;
   std::string device;
   std::vector<Figure> table;   ///< figures of Table III
   std::vector<Figure> beyond;  ///< figures beyond Table III

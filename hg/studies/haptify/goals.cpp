@@ -32,7 +32,7 @@ struct Condition {
 constexpr std::array kHands = {person::HandPreset::kRelaxed, person::HandPreset::kNormal,
                                person::HandPreset::kStiff};
 
-std::vector<double> heights(const Options& options) {
+std::vector<double> heights(const HaptifyOptions& options) {
   if (options.is_quick) return {-0.775};
   return {-1.05, -0.775, -0.55};
 }
@@ -269,7 +269,7 @@ void add_wall(const Group& group, double mass) {
                                        kWallDamping, kDamping)};
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!group.has_worked(words(what, all[i]), found[i].failure)) continue;
-    figure.values.push_back(found[i].verdict == studies::Verdict::kStable ? 1.0 : 0.0);
+    figure.values.push_back(found[i].verdict == studies::DecayClass::kStable ? 1.0 : 0.0);
   }
   group.out.beyond.push_back(figure);
 }
@@ -327,7 +327,7 @@ void add_presses(const Group& group) {
 }  // namespace
 
 Benchmark measure_goals(const config::Scenario& scenario, const config::Scenario& light,
-                        const Options& options, const Told& told) {
+                        const HaptifyOptions& options, const Told& told) {
   Benchmark result = {.options = options, .device = scenario.device.name};
   const Group group = {scenario, options, told, result};
   const Group with_light_body = {light, options, told, result};

@@ -13,7 +13,7 @@ namespace hg::haptify {
 /// those of measure(); `light` is the same with the lightest body that the device can render: it is
 /// used for the forces of free space and of a surface without friction.
 Benchmark measure_goals(const config::Scenario& scenario, const config::Scenario& light,
-                        const Options& options, const Told& told);
+                        const HaptifyOptions& options, const Told& told);
 
 /// Table with one row per goal: median, least and largest of all runs, and how many are within.
 Table goals_table(const Benchmark& goals);

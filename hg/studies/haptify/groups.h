@@ -18,7 +18,7 @@ inline constexpr studies::FreeTwin kLightBody = {.mass = 3.0, .damping = 2.0};
 
 struct Group {
   const config::Scenario& scenario;
-  const Options& options;
+  const HaptifyOptions& options;
   const Told& told;
   Benchmark& out;
 

@@ -138,7 +138,7 @@ void add_rotation(const Group& group) {
     table.rows.push_back({hands[hand].first});
     double calm_from = kInfinity;
     for (std::size_t i = columns; i-- > 0;) {
-      if (all[hand * columns + i].verdict != studies::Verdict::kStable) break;
+      if (all[hand * columns + i].verdict != studies::DecayClass::kStable) break;
       calm_from = inertia[i];
     }
     smallest = std::max(smallest, calm_from);

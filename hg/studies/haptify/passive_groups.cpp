@@ -87,11 +87,11 @@ void add_workspace(const Group& group) {
                     .name = "Workspace in the nominal orientation",
                     .unit = "m^3",
                     .note = "the handle as in the goal posture of prepositioning"};
-  for (const checks::Workspace& shape : shapes) {
+  for (const checks::HandleWorkspace& shape : shapes) {
     volume.values.push_back(shape.volume);
     nominal.values.push_back(shape.share_nominal * shape.box_volume);
   }
-  const checks::Workspace& first = shapes.front();
+  const checks::HandleWorkspace& first = shapes.front();
   if (first.has_box) {
     volume.why = fmt::format(
         "The limits of the handle are a box of {:.2f} m^3, and {:.1f} % of it is reached.",

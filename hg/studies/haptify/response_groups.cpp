@@ -19,7 +19,7 @@ double degrees(const std::complex<double>& value) {
   return std::arg(value) * 180.0 / std::numbers::pi;
 }
 
-ResponseConfig config_of(const Options& options) {
+ResponseConfig config_of(const HaptifyOptions& options) {
   ResponseConfig config;
   if (!options.is_quick) return config;
   config.frequency_Hz = {1, 5, 20};

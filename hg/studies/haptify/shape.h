@@ -18,16 +18,17 @@ struct ShapeConfig {
 /// Measures the workspace. Joint limits, the distance to the singularity (virtual joints), travel
 /// of the gantry and walls (Cartesian limits of handle and elbow) all hold; the control loop does
 /// not run.
-checks::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
-                                std::uint64_t seed);
+checks::HandleWorkspace measure_shape(const config::DeviceConfig& device, const ShapeConfig& config,
+                                      std::uint64_t seed);
 
 /// The positions of the handle from above, from the front and from the side.
-std::vector<View> workspace_views(const config::Device& device, const ShapeConfig& config,
+std::vector<View> workspace_views(const config::DeviceConfig& device, const ShapeConfig& config,
                                   std::uint64_t seed);
 
 /// Sides of the handle's box that the handle misses by more than 2 mm, with the joints at a limit
 /// where it comes nearest; empty = none.
-std::string unreached_sides(const config::Device& device, const checks::Workspace& shape,
-                            const ShapeConfig& config, std::uint64_t seed);
+std::string unreached_sides(const config::DeviceConfig& device,
+                            const checks::HandleWorkspace& shape, const ShapeConfig& config,
+                            std::uint64_t seed);
 
 }  // namespace hg::haptify

@@ -19,7 +19,7 @@ struct Source {
 };
 
 // Every joint of the least stiffness is so many times as stiff; the controller knows it.
-void stiffen_softest(double factor, tracking::Config& control) {
+void stiffen_softest(double factor, tracking::ControlConfig& control) {
   double softest = kInfinity;
   for (const ActuatorModel& it : control.actuators) softest = std::min(softest, it.stiffness);
   for (ActuatorModel& it : control.actuators) {

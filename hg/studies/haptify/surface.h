@@ -76,7 +76,7 @@ Peak measure_peak(const config::Scenario& scenario, const SurfaceConfig& config,
 
 struct Knock {
   /// Verdict; also kDiverges if a fault ended the run
-  studies::Verdict verdict = studies::Verdict::kDiverges;
+  studies::DecayClass verdict = studies::DecayClass::kDiverges;
   std::string failure;  ///< the hand did not reach the surface; empty = it did
 };
 /// A hand presses on the surface and gets a kick of 15 N for 10 ms; judges the decay along the
@@ -86,6 +86,7 @@ Knock knock(const config::Scenario& scenario, const SurfaceConfig& config, doubl
 
 /// Largest of the growing stiffnesses up to which all come to rest, N/m; 0 if the first one does
 /// not.
-double stiffest_calm(std::span<const double> stiffness, std::span<const studies::Verdict> verdicts);
+double stiffest_calm(std::span<const double> stiffness,
+                     std::span<const studies::DecayClass> verdicts);
 
 }  // namespace hg::haptify

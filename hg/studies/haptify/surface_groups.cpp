@@ -194,10 +194,10 @@ Table z_width_table(const std::vector<double>& damping) {
 }  // namespace
 
 double stiffest_calm(std::span<const double> stiffness,
-                     std::span<const studies::Verdict> verdicts) {
+                     std::span<const studies::DecayClass> verdicts) {
   double most = 0.0;
   for (std::size_t i = 0; i < stiffness.size(); ++i) {
-    if (verdicts[i] != studies::Verdict::kStable) break;
+    if (verdicts[i] != studies::DecayClass::kStable) break;
     most = stiffness[i];
   }
   return most;
@@ -223,7 +223,7 @@ void add_z_width(const Group& group) {
     const MapBody& body = bodies[k];
     const std::string name = fmt::format("{:g} kg, {:g} Ns/m{}", body.twin.mass, body.twin.damping,
                                          body.is_prompt ? ", prompt" : "");
-    std::vector<studies::Verdict> undamped;
+    std::vector<studies::DecayClass> undamped;
     bool has_failed = false;
     for (std::size_t row = 0; row < rows; ++row) {
       const double swing = std::sqrt(stiffness[row] / body.twin.mass) / (2.0 * std::numbers::pi);

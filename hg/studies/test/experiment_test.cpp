@@ -98,7 +98,7 @@ TEST(SpringHand, HasTheDampingRatiosItIsGiven) {
 TEST(Kick, AHeavyDampedBodyInANormalHandIsStable) {
   const KickOutcome outcome =
       kick(walk_scenario(), {}, person::hand(person::HandPreset::kNormal), 6.0, 20.0);
-  EXPECT_EQ(outcome.verdict, Verdict::kStable);
+  EXPECT_EQ(outcome.verdict, DecayClass::kStable);
   EXPECT_EQ(outcome.fault, FaultCode::kNone);
   EXPECT_GT(outcome.last_speed, 0.0);
 }
@@ -160,9 +160,9 @@ StabilityMap drawn_map() {
   StabilityMap map;
   map.config.mass = {1, 2};
   map.config.damping = {4};
-  map.rows = {{"300 N/m", 4.0, {{Verdict::kDiverges}, {Verdict::kHunts, 0.01}}, 1.25},
-              {"stiff", 4.0, {{Verdict::kSustained}, {Verdict::kSustained}}, kInfinity},
-              {"normal", 4.0, {{Verdict::kStable}, {Verdict::kSlow}}, 0.1}};
+  map.rows = {{"300 N/m", 4.0, {{DecayClass::kDiverges}, {DecayClass::kHunts, 0.01}}, 1.25},
+              {"stiff", 4.0, {{DecayClass::kSustained}, {DecayClass::kSustained}}, kInfinity},
+              {"normal", 4.0, {{DecayClass::kStable}, {DecayClass::kSlow}}, 0.1}};
   map.device = "test";
   return map;
 }

@@ -13,7 +13,7 @@
 namespace hg::tuning {
 namespace {
 
-Deviation late(const tracking::Config& believed) {
+Deviation late(const tracking::ControlConfig& believed) {
   constexpr double kMore = 1.5;
   tracking::TruePlant plant = {believed.actuators, believed.loop};
   plant.loop.latency *= kMore;
@@ -22,7 +22,7 @@ Deviation late(const tracking::Config& believed) {
 
 }  // namespace
 
-std::vector<Deviation> deviations(const tracking::Config& believed) {
+std::vector<Deviation> deviations(const tracking::ControlConfig& believed) {
   const tracking::TruePlant as_believed = {believed.actuators, believed.loop};
   std::vector<Deviation> all = {{"as believed", as_believed}};
   for (const double factor : {0.75, 1.25}) {
@@ -38,7 +38,7 @@ std::vector<Deviation> deviations(const tracking::Config& believed) {
   return all;
 }
 
-std::vector<Deviation> deviations_in_hand(const tracking::Config& believed) {
+std::vector<Deviation> deviations_in_hand(const tracking::ControlConfig& believed) {
   const tracking::TruePlant as_believed = {believed.actuators, believed.loop};
   constexpr double kLighter = 0.65;
   return {{"as believed", as_believed, 1.0, kLighter},
@@ -46,7 +46,7 @@ std::vector<Deviation> deviations_in_hand(const tracking::Config& believed) {
           {"torques at their bounds", as_believed, 0.5, kLighter}};
 }
 
-std::vector<Deviation> deviations_in_friction(const tracking::Config& believed) {
+std::vector<Deviation> deviations_in_friction(const tracking::ControlConfig& believed) {
   std::vector<Deviation> all;
   if (std::ranges::none_of(believed.actuators, has_presliding)) return all;
   for (const double real : {0.5, 1.0, 1.25}) {
@@ -80,7 +80,7 @@ std::vector<Grasp> grasps(const Body& body) {
   return all;
 }
 
-Demands::Demands(const tracking::Config& believed, const Body& body,
+Demands::Demands(const tracking::ControlConfig& believed, const Body& body,
                  std::vector<Eigen::VectorXd> postures)
     : body_(body),
       deviations_(deviations(believed)),
@@ -107,10 +107,10 @@ const Deviation& Demands::deviation(const Case& one) const {
   return (one.grasp < 0 ? deviations_ : deviations_in_hand_)[one.deviation];
 }
 
-double Demands::radius(const Device& device, const Case& one) const {
+double Demands::radius(const TunedDevice& device, const Case& one) const {
   const Deviation& real = deviation(one);
   const Eigen::VectorXd& q = postures_[one.posture];
-  const tracking::Config& config = device.loop.config;
+  const tracking::ControlConfig& config = device.loop.config;
   const double scale = 1e-3 / config.dt;
   if (one.grasp < 0) {
     return std::pow(tracking::spectral_radius(device.loop, q, config.loop.latency, real.plant),
@@ -119,14 +119,14 @@ double Demands::radius(const Device& device, const Case& one) const {
   const Grasp& grasp = grasps_[index(one.grasp)];
   Body body = is_friction(one) ? body_ : grasp.body;
   body.mass *= real.mass;
-  Device doubted = device;
+  TunedDevice doubted = device;
   if (is_friction(one)) doubted.loop.config.friction_share = real.fed;
   doubted.loop.config.flatness_Hz *= real.follower;
   return std::pow(hg::spectral_radius(linearise(doubted, real.plant, body, grasp.hand, {}, q).A),
                   scale);
 }
 
-double Demands::excess(const Device& device, const Case& one) const {
+double Demands::excess(const TunedDevice& device, const Case& one) const {
   const double in_hand = is_friction(one) ? kFrictionRadius : kHandRadius;
   return radius(device, one) - (one.grasp < 0 ? kArmRadius : in_hand);
 }

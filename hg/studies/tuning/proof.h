@@ -19,17 +19,17 @@ struct Deviation {
 
 /// Deviations without a hand: none; rotors, springs and links of 0.75 and 1.25 times the believed
 /// value; each separately, as in deviations_in_hand().
-std::vector<Deviation> deviations(const tracking::Config& believed);
+std::vector<Deviation> deviations(const tracking::ControlConfig& believed);
 
 /// Deviations in a hand: none; 1.5 times the latency; torques that follow half as fast. The last
 /// occurs when motors are at their peak (follow_torque() in control/joint_control.cpp) and can make
 /// a stable hand oscillate for ever.
-std::vector<Deviation> deviations_in_hand(const tracking::Config& believed);
+std::vector<Deviation> deviations_in_hand(const tracking::ControlConfig& believed);
 
 /// Deviations in joints with presliding: the friction has not slipped, with a stiffness of 0.5, 1
 /// and 1.25 times the believed one; the feedforward is 0.5 to 1.25 times as stiff as the friction.
 /// In hands, with the body itself. Empty for a device without presliding.
-std::vector<Deviation> deviations_in_friction(const tracking::Config& believed);
+std::vector<Deviation> deviations_in_friction(const tracking::ControlConfig& believed);
 
 /// A hand that holds the handle of a body.
 struct Grasp {
@@ -61,7 +61,7 @@ inline constexpr double kFrictionRadius = 1.0;
 /// All cases that a torque loop must tolerate.
 class Demands {
  public:
-  Demands(const tracking::Config& believed, const Body& body,
+  Demands(const tracking::ControlConfig& believed, const Body& body,
           std::vector<Eigen::VectorXd> postures);
 
   const std::vector<Eigen::VectorXd>& postures() const { return postures_; }
@@ -70,9 +70,9 @@ class Demands {
   /// All cases of a posture.
   std::vector<Case> cases(std::size_t posture) const;
   /// Largest modulus of the eigenvalues of `device`, per millisecond.
-  double radius(const Device& device, const Case& one) const;
+  double radius(const TunedDevice& device, const Case& one) const;
   /// Excess of the radius over its limit; > 0 where motions do not decay in time.
-  double excess(const Device& device, const Case& one) const;
+  double excess(const TunedDevice& device, const Case& one) const;
   /// Name of a case, e.g. "stiff hand, 0.4 kg, latency x 1.5".
   std::string name(const Case& one) const;
 

@@ -16,7 +16,7 @@ double rounding(double step) { return step / std::sqrt(12.0); }
 
 }  // namespace
 
-Device device_of(const config::Device& device) {
+TunedDevice device_of(const config::DeviceConfig& device) {
   const auto refuse = [&](const std::string& why) {
     throw SetupError(fmt::format(
         "{}: {}", device.sources.empty() ? device.name : device.sources.front().name, why));
@@ -50,7 +50,7 @@ Device device_of(const config::Device& device) {
                      .low_pass_Hz = device.estimation.wrench.low_pass_Hz}};
 }
 
-Noise noise_of(const config::Device& device) {
+Noise noise_of(const config::DeviceConfig& device) {
   const simulator::SensorsConfig& sensors = device.simulation.sensors;
   const Payload& payload = device.estimation.wrench.payload;
   const double accelerometer = sensors.accelerometer.noise * payload.mass;
@@ -68,7 +68,7 @@ Noise noise_of(const config::Device& device) {
   return noise;
 }
 
-Eigen::VectorXd unexpected_friction(const config::Device& device) {
+Eigen::VectorXd unexpected_friction(const config::DeviceConfig& device) {
   constexpr double kShare = 0.3;
   Eigen::VectorXd friction(device.model.n_m);
   for (int i = 0; i < device.model.n_m; ++i) {
@@ -77,7 +77,7 @@ Eigen::VectorXd unexpected_friction(const config::Device& device) {
   return friction;
 }
 
-tracking::TruePlant simulated(const config::Device& device) {
+tracking::TruePlant simulated(const config::DeviceConfig& device) {
   const config::RealityFactors& factors = device.simulation.factors;
   tracking::TruePlant plant = {device.control.actuators,
                                config::actual(device.control.loop, factors), factors.mass};

@@ -22,11 +22,11 @@ TEST(SafetyTables, HasEveryRuleAndEveryStateAndEvent) {
     EXPECT_NE(page.find(std::string(rule.release)), std::string::npos) << rule.name;
   }
   for (std::size_t i = 0; i < kEventCount; ++i) {
-    const std::string event(to_string(static_cast<Event>(i)));
+    const std::string event(to_string(static_cast<SafetyEvent>(i)));
     EXPECT_NE(page.find("| " + event + " |"), std::string::npos) << event;
   }
   for (std::size_t i = 0; i < kStateCount; ++i) {
-    const std::string state(to_string(static_cast<State>(i)));
+    const std::string state(to_string(static_cast<SafetyState>(i)));
     EXPECT_NE(page.find("| " + state + " |"), std::string::npos) << state;
   }
 }

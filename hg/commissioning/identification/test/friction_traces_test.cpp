@@ -11,8 +11,8 @@
 namespace hg::identification {
 namespace {
 
-tracking::Config one_joint() {
-  tracking::Config config;
+tracking::ControlConfig one_joint() {
+  tracking::ControlConfig config;
   config.actuators = {reference_actuators().front()};
   config.loop.current_lag = 0.0;
   return config;
@@ -47,7 +47,7 @@ TEST(FrictionTraces, TakesTheCommandThatWasAtWork) {
 }
 
 TEST(FrictionTraces, FollowsTheCurrent) {
-  tracking::Config config = one_joint();
+  tracking::ControlConfig config = one_joint();
   config.loop.current_lag = 2e-3;
   FrictionTraces traces(config);
   for (std::uint64_t k = 1; k <= 1000; ++k) {
@@ -83,7 +83,7 @@ TEST(FrictionTraces, UnwrapsJointsWithoutLimits) {
 }
 
 TEST(FrictionTraces, RefusesDrivesThatFollowPositions) {
-  EXPECT_THROW(FrictionTraces{tracking::Config{}}, SetupError);
+  EXPECT_THROW(FrictionTraces{tracking::ControlConfig{}}, SetupError);
 }
 
 }  // namespace

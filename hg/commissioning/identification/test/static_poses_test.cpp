@@ -12,13 +12,13 @@
 namespace hg::identification {
 namespace {
 
-const config::Device& reference_device() {
-  static const config::Device device = config::load_device("models/haptic_giant/device.yaml");
+const config::DeviceConfig& reference_device() {
+  static const config::DeviceConfig device = config::load_device("models/haptic_giant/device.yaml");
   return device;
 }
 
 TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
-  const config::Device& device = reference_device();
+  const config::DeviceConfig& device = reference_device();
   const std::vector<VectorM> postures = static_postures(device, 12);
   ASSERT_EQ(postures.size(), 12u);
   std::vector<StaticPose> poses;
@@ -47,7 +47,7 @@ TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
 }
 
 TEST(SimulatedPoses, ShowThePayloadOfTheDevice) {
-  const config::Device& device = reference_device();
+  const config::DeviceConfig& device = reference_device();
   const Payload& told = device.estimation.wrench.payload;
   ASSERT_GT(told.mass, 0.0);
   std::vector<StaticPose> poses;

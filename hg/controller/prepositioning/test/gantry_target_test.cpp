@@ -139,7 +139,7 @@ TEST(GantryTarget, KeepsTheRangesOfAllJoints) {
     chain.update_kinematics(q, at_rest);
     ASSERT_LT((chain.pose(config.handle).p - T_B_H.p).norm(), 5e-3) << k;
     for (int i = 0; i < 8; ++i) {
-      const Interval range = config.range[static_cast<std::size_t>(i)];
+      const Interval range = config.range[index(i)];
       ASSERT_GE(state.q[i], range.lb - 1e-12) << k << " " << i;
       ASSERT_LE(state.q[i], range.ub + 1e-12) << k << " " << i;
     }

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kDt = 1e-3;
 
-Config config() {
-  Config gantry;
+PrepositioningConfig config() {
+  PrepositioningConfig gantry;
   gantry.n_p = 2;
   gantry.q_limits = {Interval{-1.40, 1.40}, Interval{-1.60, 1.60}};
   return gantry;
@@ -30,8 +30,8 @@ struct HeldHand {
   std::array<CommandDelay, 2> delay{};
   double worst_excess = 0.0;
 
-  Command run(const Config& gantry, double seconds) {
-    Command command;
+  GantryCommand run(const PrepositioningConfig& gantry, double seconds) {
+    GantryCommand command;
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
       Vector6 q_m;
       EXPECT_EQ(model::haptic_giant::inverse(T_B_H, q, {}, q_m),
@@ -39,13 +39,13 @@ struct HeldHand {
       RobotState robot;
       robot.q_p = q;
       robot.dq_p = dq;
-      command = step(gantry, robot, model::haptic_giant::gantry_target(q, q_m), false);
+      command = command_gantry(gantry, robot, model::haptic_giant::gantry_target(q, q_m), false);
       for (int i = 0; i < 2; ++i) {
-        const double ddq = drive_acceleration(
-            drive, dq[i], delay[static_cast<std::size_t>(i)].shift(command.dq[i], 4));
+        const double ddq =
+            drive_acceleration(drive, dq[i], delay[index(i)].shift(command.dq[i], 4));
         q[i] += kDt * dq[i] + 0.5 * kDt * kDt * ddq;
         dq[i] += kDt * ddq;
-        const Interval limits = gantry.q_limits[static_cast<std::size_t>(i)];
+        const Interval limits = gantry.q_limits[index(i)];
         worst_excess = std::max({worst_excess, q[i] - limits.ub, limits.lb - q[i]});
       }
     }
@@ -74,10 +74,10 @@ TEST(Prepositioning, BringsJoints2And3ToTheirGoals) {
 }
 
 TEST(Prepositioning, StopsAtItsLimitsWhateverTheTarget) {
-  Config gantry = config();
+  PrepositioningConfig gantry = config();
   gantry.q_limits = {Interval{-0.05, 0.05}, Interval{-0.03, 0.03}};
   HeldHand hand{.drive = {}, .T_B_H = hand_at(0.5, -0.4)};
-  const Command last = hand.run(gantry, 4.0);
+  const GantryCommand last = hand.run(gantry, 4.0);
   EXPECT_LE(hand.worst_excess, 1e-6);
   EXPECT_NEAR(hand.q[0], 0.05, 1e-3);
   EXPECT_NEAR(hand.q[1], -0.03, 1e-3);
@@ -88,19 +88,19 @@ TEST(Prepositioning, StandsStillWhileTheDeviceIsBlocked) {
   RobotState robot;
   robot.q_p = VectorP::Zero(2);
   const VectorP target = Eigen::Vector2d(0.3, -0.2);
-  EXPECT_GT(step(config(), robot, target, false).dq.norm(), 0.01);
-  EXPECT_EQ(step(config(), robot, target, true).dq.norm(), 0.0);
+  EXPECT_GT(command_gantry(config(), robot, target, false).dq.norm(), 0.01);
+  EXPECT_EQ(command_gantry(config(), robot, target, true).dq.norm(), 0.0);
 }
 
 TEST(Prepositioning, StopsByItselfBeforeItCarriesAFrameOverItsLimit) {
-  const Config gantry = config();
+  const PrepositioningConfig gantry = config();
   RobotState robot;
   robot.q_p = Eigen::Vector2d(0.0, 0.0);
   const VectorP target = Eigen::Vector2d(1.0, -1.0);
-  const VectorP free = step(gantry, robot, target, false).dq;
+  const VectorP free = command_gantry(gantry, robot, target, false).dq;
   const auto in = [&](double down, double up) {
     const Room room = {VectorP::Constant(2, down), VectorP::Constant(2, up)};
-    return step(gantry, robot, target, false, kInfinity, room).dq;
+    return command_gantry(gantry, robot, target, false, kInfinity, room).dq;
   };
   EXPECT_EQ(in(kInfinity, kInfinity), free);
   EXPECT_EQ(in(10.0, 10.0), free) << "far away";
@@ -127,7 +127,8 @@ TEST(Prepositioning, TheAimOfTheLawIsTheRule) {
   robot.q_p = Eigen::Vector2d(0.1, -0.2);
   robot.dq_p = Eigen::Vector2d(0.03, -0.02);
   robot.ddq_p = Eigen::Vector2d(0.5, 0.2);
-  const Command command = step(config(), robot, Eigen::Vector2d(0.12, -0.21), false);
+  const GantryCommand command =
+      command_gantry(config(), robot, Eigen::Vector2d(0.12, -0.21), false);
   const GantryTask task = accelerations(command, drive, robot, VectorP(0), kDt);
   const VectorP dq = velocity_for(task.ddq, command, drive, robot);
   EXPECT_LT((dq - command.dq).cwiseAbs().maxCoeff(), 1e-12);
@@ -148,11 +149,11 @@ struct LedGantry {
 
   // for one period, towards `q_target`; `choose` is the law
   void step(const VectorP& q_target, const auto& choose) {
-    const Command command = prepositioning::step(config(), robot, q_target, false);
+    const GantryCommand command = prepositioning::command_gantry(config(), robot, q_target, false);
     last = choose(accelerations(command, drive, robot, last, kDt));
     const VectorP dq = velocity_for(last, command, drive, robot);
     for (int i = 0; i < 2; ++i) {
-      const double arrived = delay[static_cast<std::size_t>(i)].shift(dq[i], 4);
+      const double arrived = delay[index(i)].shift(dq[i], 4);
       robot.ddq_p[i] = drive_acceleration(drive, robot.dq_p[i], arrived);
       robot.q_p[i] += kDt * robot.dq_p[i] + 0.5 * kDt * kDt * robot.ddq_p[i];
       robot.dq_p[i] += kDt * robot.ddq_p[i];
@@ -184,19 +185,19 @@ TEST(Prepositioning, TheLawLeadsTheGantryNotFar) {
   for (int k = 0; k < 6000; ++k) {
     gantry.step(Eigen::Vector2d(3.0, 3.0), most);
     for (int i = 0; i < 2; ++i) {
-      EXPECT_LT(gantry.robot.q_p[i], config().q_limits[static_cast<std::size_t>(i)].ub + 1e-3) << k;
+      EXPECT_LT(gantry.robot.q_p[i], config().q_limits[index(i)].ub + 1e-3) << k;
     }
   }
   EXPECT_NEAR(gantry.robot.q_p[0], 1.40, 5e-3);
 }
 
 TEST(Prepositioning, RefusesImpossibleConfigurations) {
-  Config gantry = config();
+  PrepositioningConfig gantry = config();
   gantry.k_ppu = 0.0;
-  EXPECT_THROW(check(gantry), SetupError);
+  EXPECT_THROW(check_prepositioning(gantry), SetupError);
   gantry = config();
   gantry.q_limits[1] = {1.0, -1.0};
-  EXPECT_THROW(check(gantry), SetupError);
+  EXPECT_THROW(check_prepositioning(gantry), SetupError);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 
 namespace hg::surfaces {
 namespace {
@@ -40,7 +41,7 @@ class Seams {
     }
     for (std::size_t i = 0; i < 3; ++i) {
       const int a = numbers[i], b = numbers[(i + 1) % 3];
-      next_[static_cast<std::size_t>(last(a))] = last(b);
+      next_[index(last(a))] = last(b);
       if (a < b) ++surplus_[{a, b}];
       if (b < a) --surplus_[{b, a}];
     }
@@ -48,7 +49,7 @@ class Seams {
   }
   // Representative of all connected corners.
   int last(int corner) {
-    const auto next = [&](int at) -> int& { return next_[static_cast<std::size_t>(at)]; };
+    const auto next = [&](int at) -> int& { return next_[index(at)]; };
     for (; next(corner) != corner; corner = next(corner)) next(corner) = next(next(corner));
     return corner;
   }

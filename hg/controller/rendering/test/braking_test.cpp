@@ -17,7 +17,7 @@ namespace {
 
 struct Braking : testing::Test {
   DeviceModel device = unlimited_device();
-  Motion motion = {kGantryAtHome, VectorP::Zero(2), kPosture, VectorM::Zero(6)};
+  DeviceMotion motion = {kGantryAtHome, VectorP::Zero(2), kPosture, VectorM::Zero(6)};
 
   Braking() {
     const auto motors = reference_actuators();
@@ -35,7 +35,7 @@ struct Braking : testing::Test {
     torque += chain.c().tail(6) - J.transpose() * motion.w_H;
     double most = 0.0;
     for (int i = 0; i < 6; ++i) {
-      const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
+      const ActuatorModel& motor = device.motors[index(i)];
       const Interval allowed = allowed_torque(motor, motion.dq_m[i]);
       const double given = torque[i] + motor.rotor_inertia * ddq[i];
       most = std::max(most, given > 0.0 ? given / allowed.ub : given / allowed.lb);

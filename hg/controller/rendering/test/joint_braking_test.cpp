@@ -132,7 +132,7 @@ struct Arm {
   std::vector<std::pair<Eigen::Vector4d, double>> half_spaces() const {
     std::vector<std::pair<Eigen::Vector4d, double>> all;
     for (int limit = 0; limit < kLimits; ++limit) {
-      const auto k = static_cast<std::size_t>(limit);
+      const auto k = index(limit);
       Eigen::Vector4d a;
       a << row(limit), is_motor(limit) ? 0.0 : approaches[k].need;
       Interval bounds = approaches[k].room;
@@ -237,17 +237,16 @@ class Pushed {
       const Eigen::Vector2d n = normal(i);
       problem.add_row({n.data(), 2},
                       limits::recoverable_bounds(kWall, options, n.dot(p), n.dot(v), kDt));
-      approaches[static_cast<std::size_t>(i) + 2] =
-          approach(kWall, options, n.dot(p), n.dot(v), kDt);
+      approaches[index(i) + 2] = approach(kWall, options, n.dot(p), n.dot(v), kDt);
     }
     if (brakes_together) {
       const std::array<Interval, 2> torque = {Interval{-1.0, 1.0}, Interval{-1.0, 1.0}};
       JointBraking braking(problem, 0, 5, 0, 2);
       const double reserve = braking.reserve(problem, torque, approaches, known);
       for (int i = 0; i < 3; ++i) {
-        problem.set_bounds(i + 2,
-                           braking_bounds(approaches[static_cast<std::size_t>(i) + 2], reserve,
-                                          problem.bounds(i + 2), kWall, options, normal(i).dot(v)));
+        problem.set_bounds(
+            i + 2, braking_bounds(approaches[index(i) + 2], reserve, problem.bounds(i + 2), kWall,
+                                  options, normal(i).dot(v)));
       }
     }
     problem.add_level();
@@ -280,10 +279,10 @@ class Thrown {
 
   Thrown() {
     for (int i = 0; i < 6; ++i) {
-      device.joint_limits[static_cast<std::size_t>(i)] = {.q_min = kPosture[i] - kAway,
-                                                          .q_max = kPosture[i] + kAway,
-                                                          .dq_max = 3.0,
-                                                          .ddq_max = 10.0};
+      device.joint_limits[index(i)] = {.q_min = kPosture[i] - kAway,
+                                       .q_max = kPosture[i] + kAway,
+                                       .dq_max = 3.0,
+                                       .ddq_max = 10.0};
     }
     for (ActuatorModel motor : reference_actuators()) {
       motor.torque_max *= 0.5;
@@ -291,9 +290,9 @@ class Thrown {
     }
   }
   /// The rows of one cycle.
-  Tasks tasks(const Options& options) const {
+  Tasks tasks(const RenderingOptions& options) const {
     model::Chain device_chain = device.chain, twin_chain = twin.chain;
-    State state = Rendering(device, twin, options).start(kPosture);
+    RenderingState state = Rendering(device, twin, options).start(kPosture);
     state.reference.dq_m.setConstant(kSpeed);
     Eigen::VectorXd q(8), dq(8);
     q << kGantryAtHome, kPosture;
@@ -374,7 +373,7 @@ TEST(BrakingTogether, BeginsEarlierWhereMotorsAreWeakerThanRatings) {
 TEST(BrakingTogether, IsNoOtherThanAloneWhereTheLawDoesNotKnowTheMotors) {
   Thrown thrown;
   thrown.device.motors.clear();
-  const Options together = {.braking = Braking::kTogether};
+  const RenderingOptions together = {.braking = Braking::kTogether};
   EXPECT_FALSE(brakes_together(thrown.device, together));
   expect_same_bounds(thrown.tasks(together), thrown.tasks({}));
 }

@@ -30,7 +30,7 @@ TEST(Rendering, GoldenCaseOfTheHandbookJoint6AtItsUpperLimit) {
   DeviceModel device = unlimited_device();
   device.joint_limits[5].q_max = 2.1;
   Rendering rendering(device, golden_twin(), without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w;
   w << 3, -2, 1, 0.2, 0.1, 1.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -47,7 +47,7 @@ TEST(Rendering, GoldenCaseOfTheHandbookJoint6AtItsUpperLimit) {
 
 TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonSays) {
   Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w;
   w << 3, -2, 1, 0.2, 0.1, 1.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -62,10 +62,10 @@ TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonSays) {
 TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
   DeviceModel device = unlimited_device();
   device.joint_limits[5].q_max = 2.1;
-  Options options = without_synchronisation();
+  RenderingOptions options = without_synchronisation();
   options.slow_solve = 1;
   Rendering rendering(device, golden_twin(), options);
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w;
   w << 3, -2, 1, 0.2, 0.1, 1.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -83,8 +83,8 @@ TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
   EXPECT_EQ(solver.solve(kept.problem, kept.options, active, solution), hqp::Status::kSolved);
   EXPECT_EQ(solution.iterations, kept.iterations);
   for (int i = 0; i < 6; ++i) {
-    EXPECT_EQ(solution.x[static_cast<std::size_t>(i)], result.ddq_m[i]) << i;
-    EXPECT_EQ(solution.x[static_cast<std::size_t>(6 + i)], result.ddq_a[i]) << i;
+    EXPECT_EQ(solution.x[index(i)], result.ddq_m[i]) << i;
+    EXPECT_EQ(solution.x[index(6 + i)], result.ddq_a[i]) << i;
   }
 }
 
@@ -100,11 +100,11 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   const VectorP aim = Eigen::Vector2d(0.2, -0.1);
   GantryTask task = {Eigen::Vector2d(-0.5, -0.5), Eigen::Vector2d(0.5, 0.5), aim,
                      Eigen::Vector2d::Zero()};
-  Options options = without_synchronisation();
+  RenderingOptions options = without_synchronisation();
   options.gantry = Gantry::kLaw;
   const auto play = [&](const GantryTask& gantry, VectorP& ddq_p) {
     Rendering rendering(device, golden_twin(), options);
-    State state = rendering.start(kPosture);
+    RenderingState state = rendering.start(kPosture);
     const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
     LawResult result;
     EXPECT_EQ(rendering.step({.robot = robot, .gantry = gantry}, state, result),
@@ -129,7 +129,7 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
 
   task = {aim, aim, aim, Eigen::Vector2d(0.3, 0.3)};  // it does more than it was told
   Rendering rendering(device, golden_twin(), options);
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
   LawResult result;
   rendering.step({.robot = robot, .gantry = task}, state, result);
@@ -148,9 +148,9 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
   device.cartesian_limits[0].axes.fill({-1.5, 1.5, 1.5, 5.0});
   const Tasks tasks(device, golden_twin(), {});
   hqp::Solution solution(tasks.problem().capacity());
-  solution.slack.assign(static_cast<std::size_t>(tasks.problem().rows()), 0.0);
+  solution.slack.assign(index(tasks.problem().rows()), 0.0);
   EXPECT_TRUE(tasks.keeps_limits_of_device(solution));
-  const auto of_hand = static_cast<std::size_t>(tasks.first_limit_row() + 6 + 1);
+  const auto of_hand = index(tasks.first_limit_row() + 6 + 1);
   solution.slack[of_hand] = -0.01;
   EXPECT_FALSE(tasks.keeps_limits_of_device(solution));
   EXPECT_TRUE(tasks.keeps_joints(solution));
@@ -168,7 +168,7 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
 
 TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessAskedFor) {
   Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
   LawResult result;
   rendering.keep_problem(0);  // nothing has been solved
@@ -218,12 +218,12 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     for (int i = 0; i < 6; ++i) {
       // at its upper limit, at its lower limit, or free
       const double where = uniform(random);
-      limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      limits::JointLimits& limits = device.joint_limits[index(i)];
       if (where > 0.4) limits.q_max = q[i];
       if (where < -0.4) limits.q_min = q[i];
     }
     Rendering rendering(device, golden_twin(), without_synchronisation());
-    State state = rendering.start(q);
+    RenderingState state = rendering.start(q);
     Vector6 w;
     for (double& value : w) value = 20 * uniform(random);
     const RobotState robot = robot_with(kGantryAtHome, q, w);
@@ -240,7 +240,7 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     const Eigen::MatrixXd G = inverse(J_m) * J_a;
     Eigen::VectorXd lb(6), ub(6);
     for (int i = 0; i < 6; ++i) {
-      const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      const auto& limits = device.joint_limits[index(i)];
       lb[i] = limits.q_min == q[i] ? 0.0 : -kInfinity;
       ub[i] = limits.q_max == q[i] ? 0.0 : kInfinity;
     }
@@ -250,7 +250,7 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     ASSERT_LT((result.ddq_a - expected).norm(), 1e-7 * scale) << "trial " << trial;
     int active = 0;
     for (int i = 0; i < 6; ++i) {
-      const LimitReport& limit = result.limits[static_cast<std::size_t>(i)];
+      const LimitReport& limit = result.limits[index(i)];
       if (limit.state == LimitState::kInactive) continue;
       ++active;
       // a limit only pushes inwards
@@ -280,7 +280,7 @@ TEST(Rendering, TheBudgetClosesAndTheBearingsCarryTheRest) {
     TwinModel twin = door_with_closer();
     twin.dofs[0].friction = 0.5;
     Rendering rendering(device, twin, without_synchronisation());
-    State state = rendering.start(kPosture);
+    RenderingState state = rendering.start(kPosture);
     state.twin.q_a[0] = std::max(0.0, uniform(random));
     state.twin.q_a[1] = std::max(0.0, 0.8 * uniform(random));
     state.twin.dq_a[0] = uniform(random) * (state.twin.q_a[0] > 0.0);
@@ -306,7 +306,7 @@ TEST(Rendering, AtAHeldLimitTheOtherJointsMoveLikeTheReducedModel) {
   twin.q_start << 0.2, 0.3, 0.9, 1.0;
   twin.dofs[3].limits = {0.0, 1.0, 3.0, 20.0};  // bucket, at its upper end
   Rendering rendering(unlimited_device(), twin, without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   state.twin.dq_a << 0.3, -0.2, 0.4, 0.0;
   Vector6 w;
   w << 5, 3, 4, 2, 6, -1;
@@ -335,7 +335,7 @@ LawResult pushed_along_x(const DeviceModel& device, double force, double ddq_p) 
   TwinModel twin = golden_twin();
   twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
   Rendering rendering(device, twin, {});
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w = Vector6::Zero();
   w[0] = force;
   RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -379,10 +379,10 @@ TEST(Rendering, AVirtualJointIsHeldAtItsEnd) {
 TEST(Rendering, AGantryThatDragsJointsFromTheirLimitsBlocksTheDevice) {
   DeviceModel device = unlimited_device();
   for (int i = 0; i < 6; ++i) {
-    device.joint_limits[static_cast<std::size_t>(i)] = {kPosture[i], kPosture[i], 1.0, 10.0};
+    device.joint_limits[index(i)] = {kPosture[i], kPosture[i], 1.0, 10.0};
   }
   Rendering rendering(device, door_with_closer(), without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
   LawResult result;
   rendering.step({.robot = robot}, state, result);
@@ -402,7 +402,7 @@ TEST(Rendering, TheHandFollowsTheTwinAndTheErrorDecays) {
   start.R = start.R * Eigen::AngleAxisd(2e-3, Eigen::Vector3d::UnitY()).toRotationMatrix();
   twin.q_start = floating_at(start);
   Rendering rendering(device, twin, {});
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   LawResult result;
   for (int k = 0; k < 1000; ++k) {
     const RobotState robot = robot_with(kGantryAtHome, state.reference.q_m, Vector6::Zero());
@@ -430,7 +430,7 @@ TEST(Rendering, AStepMakesNoAllocation) {
   twin.locks = {door_lock()};
   twin.dofs[1].friction = 0.3;
   Rendering rendering(device, twin, without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w;
   w << 30, -20, 10, 2, 1, 1.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);

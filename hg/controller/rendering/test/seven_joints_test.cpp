@@ -98,12 +98,12 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
     for (double& value : q) value += 0.3 * uniform(random);
     for (int i = 0; i < 7; ++i) {
       const double where = uniform(random);
-      limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      limits::JointLimits& limits = device.joint_limits[index(i)];
       if (where > 0.3) limits.q_max = q[i];
       if (where < -0.3) limits.q_min = q[i];
     }
     Rendering rendering(device, trial % 2 == 0 ? free_body() : door(), without_synchronisation());
-    State state = rendering.start(q);
+    RenderingState state = rendering.start(q);
     Vector6 w;
     for (double& value : w) value = 20 * uniform(random);
     const RobotState robot = robot_at(q, w);
@@ -121,8 +121,8 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
     double idle_push = 0.0, largest = 0.0;
     int active = 0;
     for (int i = 0; i < 7; ++i) {
-      const LimitReport& limit = result.limits[static_cast<std::size_t>(i)];
-      const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      const LimitReport& limit = result.limits[index(i)];
+      const auto& limits = device.joint_limits[index(i)];
       const double ddq = result.ddq_m[i];
       if (limits.q_max == q[i]) {
         ASSERT_LE(ddq, 1e-9);
@@ -158,7 +158,7 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
 }
 
 // Plays one second without a wrench; the handle has to stay.
-void play_at_rest(Rendering& rendering, State& state, double seconds) {
+void play_at_rest(Rendering& rendering, RenderingState& state, double seconds) {
   const Pose start = pose_of(rendering.device(), state.reference.q_m);
   state.twin.q_a = floating_at(start);
   for (int k = 0; k < static_cast<int>(1000 * seconds); ++k) {
@@ -177,7 +177,7 @@ TEST(SevenJoints, TheOneToSpareGoesToItsGoalAndTheHandStays) {
   for (int k = 0; k < 400; ++k) goal += 1e-3 * idle_motion(device, goal);
   device.posture = goal;
   Rendering rendering(device, free_body(), {});
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   const double before = (goal - kPosture).norm();
   play_at_rest(rendering, state, 3.0);
   EXPECT_GT(before, 0.1);
@@ -192,7 +192,7 @@ TEST(SevenJoints, WithoutAGoalIdleMotionComesToRest) {
       device.posture = VectorM::Constant(7, std::numeric_limits<double>::quiet_NaN());
     }
     Rendering rendering(device, free_body(), {});
-    State state = rendering.start(kPosture);
+    RenderingState state = rendering.start(kPosture);
     state.reference.dq_m = 0.3 * idle_motion(device, kPosture);
     play_at_rest(rendering, state, 2.0);
     EXPECT_LT(state.reference.dq_m.norm(), 1e-5);
@@ -201,7 +201,7 @@ TEST(SevenJoints, WithoutAGoalIdleMotionComesToRest) {
 }
 
 TEST(SevenJoints, LawPaperWantsSix) {
-  Options options;
+  RenderingOptions options;
   options.law = Law::kPaper;
   try {
     Rendering(seven_joint_device(), free_body(), options);

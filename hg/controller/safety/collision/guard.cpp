@@ -14,7 +14,7 @@ constexpr double kAhead = 20.0;     // cycles: bounds that may be used up this s
 constexpr double kClose = 0.05;     // m: smaller bounds are recomputed in every cycle
 constexpr int kHalvings = 16;       // largest number of pending intervals of a path
 
-void check(const Config& config, const model::Chain& chain) {
+void check_collision(const CollisionConfig& config, const model::Chain& chain) {
   const auto require = [](bool holds, const char* rule) {
     if (!holds) throw SetupError(std::string("collision: ") + rule);
   };
@@ -31,12 +31,12 @@ void check(const Config& config, const model::Chain& chain) {
 
 // Braking with all joints at once from the state at time 0.
 struct Guard::Path {
-  const Config& config;
+  const CollisionConfig& config;
   const VectorPM& q;
   const VectorPM& dq;
   VectorPM stop;
 
-  Path(const Config& c, const VectorPM& from, const VectorPM& speed) noexcept
+  Path(const CollisionConfig& c, const VectorPM& from, const VectorPM& speed) noexcept
       : config(c), q(from), dq(speed), stop(from) {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       stop[i] += dq[i] * (c.reaction[i] + 0.5 * std::abs(dq[i]) / c.deceleration[i]);
@@ -73,26 +73,24 @@ struct Guard::Path {
   }
 };
 
-Guard::Guard(const Config& config, const model::Chain& chain) : config_(config) {
+Guard::Guard(const CollisionConfig& config, const model::Chain& chain) : config_(config) {
   if (config_.pairs.watched.empty()) return;
-  check(config_, chain);
+  check_collision(config_, chain);
   if (config_.pairs.watched.size() > kMaxPairs) {
     throw SetupError("collision: " + std::to_string(config_.pairs.watched.size()) +
                      " pairs of shapes may touch, at most " + std::to_string(kMaxPairs) +
                      " can be watched; use fewer collision elements in the URDF");
   }
   for (const Pair& pair : config_.pairs.watched) {
-    distances_.emplace_back(config_.shapes[static_cast<std::size_t>(pair.a)],
-                            config_.shapes[static_cast<std::size_t>(pair.b)]);
+    distances_.emplace_back(config_.shapes[index(pair.a)], config_.shapes[index(pair.b)]);
   }
   chain_.push_back(chain);
 }
 
-std::vector<std::string> pair_names(const Config& config) {
+std::vector<std::string> pair_names(const CollisionConfig& config) {
   std::vector<std::string> names;
   for (const Pair& pair : config.pairs.watched) {
-    names.push_back(config.shapes[static_cast<std::size_t>(pair.a)].name + " - " +
-                    config.shapes[static_cast<std::size_t>(pair.b)].name);
+    names.push_back(config.shapes[index(pair.a)].name + " - " + config.shapes[index(pair.b)].name);
   }
   return names;
 }
@@ -113,7 +111,7 @@ double Guard::distance(int pair, const Path& path, double time) noexcept {
 
 // Depth first from the start of the path; `ends` holds the ends of pending intervals.
 void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
-                     State& state) noexcept {
+                     CollisionState& state) noexcept {
   struct Place {
     double time, distance;
   };
@@ -153,7 +151,7 @@ void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
 }
 
 // Reduces each bound by the change of the path since the last cycle.
-void Guard::fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept {
+void Guard::fade(const VectorPM& q, const VectorPM& stop, CollisionState& state) noexcept {
   const VectorPM change = (q - state.q).cwiseAbs().cwiseMax((stop - state.stop).cwiseAbs());
   for (std::size_t i = 0; i < config_.pairs.watched.size(); ++i) {
     fading_[i] = config_.pairs.watched[i].lever.dot(change);
@@ -162,7 +160,7 @@ void Guard::fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept
 }
 
 Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
-                       State& state) noexcept {
+                       CollisionState& state) noexcept {
   Prediction prediction;
   const auto count = static_cast<int>(config_.pairs.watched.size());
   if (count == 0) return prediction;

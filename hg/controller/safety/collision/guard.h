@@ -36,7 +36,7 @@ inline constexpr int kMaxDistances = 24;  ///< Largest number of distances compu
 inline constexpr double kFarEnough = 0.02;
 
 /// Set-up data.
-struct Config {
+struct CollisionConfig {
   std::vector<Shape> shapes;    ///< Collision shapes; empty: nothing is watched
   Pairs pairs;                  ///< Pairs found by choose_pairs()
   VectorPM reaction;            ///< Reaction time of each joint until it brakes, s
@@ -45,9 +45,9 @@ struct Config {
 };
 
 /// Names like "link1 - forearm", one per watched pair.
-std::vector<std::string> pair_names(const Config& config);
+std::vector<std::string> pair_names(const CollisionConfig& config);
 
-struct State {
+struct CollisionState {
   int count = 0;                            ///< Number of watched pairs; 0 = not started
   VectorPM q, stop;                         ///< Joint and stopping positions of the last cycle
   std::array<double, kMaxPairs> left{};     ///< Lower bound on the distance minus `allowed`, m
@@ -55,7 +55,7 @@ struct State {
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const State& state) {
+void hashed(auto& hash, const CollisionState& state) {
   const auto& [count, q, stop, left, allowed] = state;
   hash.mix(count, q, stop);
   for (std::size_t i = 0; i < index(count); ++i) hash.mix(left[i], allowed[i]);
@@ -72,21 +72,23 @@ class Guard {
  public:
   Guard() = default;
   /// Throws SetupError when too many pairs would have to be watched.
-  Guard(const Config& config, const model::Chain& chain);
+  Guard(const CollisionConfig& config, const model::Chain& chain);
 
   /// Predicts braking from `q` and `dq`. `is_moving` = the device may move autonomously. As long as
   /// it may not, pairs nearer than the safe distance are accepted as they are; afterwards they must
   /// not come 5 mm nearer.
-  Prediction step(const VectorPM& q, const VectorPM& dq, bool is_moving, State& state) noexcept;
+  Prediction step(const VectorPM& q, const VectorPM& dq, bool is_moving,
+                  CollisionState& state) noexcept;
 
  private:
   struct Path;  // braking path
 
   double distance(int pair, const Path& path, double time) noexcept;
-  void evaluate(int pair, const Path& path, bool is_moving, int& budget, State& state) noexcept;
-  void fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept;
+  void evaluate(int pair, const Path& path, bool is_moving, int& budget,
+                CollisionState& state) noexcept;
+  void fade(const VectorPM& q, const VectorPM& stop, CollisionState& state) noexcept;
 
-  Config config_;
+  CollisionConfig config_;
   std::vector<Distance> distances_;
   std::vector<model::Chain> chain_;         // one, or none without shapes
   std::array<double, kMaxPairs> fading_{};  // decrease of each bound since the last cycle, m

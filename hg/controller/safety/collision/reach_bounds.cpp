@@ -45,7 +45,7 @@ ReachBounds::ReachBounds(model::Chain chain, std::vector<Interval> range)
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain_.nv());
   chain_.update_kinematics(chain_.neutral(), zero);
   for (int i = 0; i < chain_.nv(); ++i) {
-    const auto joint = static_cast<std::size_t>(i);
+    const auto joint = index(i);
     const bool is_slide = chain_.joints()[joint].type == model::JointType::kPrismatic;
     const int frame = frame_on(chain_, i + 1);
     const Vector6 column = chain_.jacobian(frame).col(i);
@@ -59,8 +59,7 @@ ReachBounds::ReachBounds(model::Chain chain, std::vector<Interval> range)
 VectorPM ReachBounds::of(const Shape& shape, int from) const {
   VectorPM lever = VectorPM::Zero(chain_.nv());
   for (int i = from; i < shape.body; ++i) {
-    const bool is_slide =
-        chain_.joints()[static_cast<std::size_t>(i)].type == model::JointType::kPrismatic;
+    const bool is_slide = chain_.joints()[index(i)].type == model::JointType::kPrismatic;
     lever[i] = is_slide ? 1.0 : this->lever(i, shape);
   }
   return lever;
@@ -70,14 +69,14 @@ VectorPM ReachBounds::of(const Shape& shape, int from) const {
 // from joint to joint, added up. While all axes are parallel only what is across them counts.
 double ReachBounds::lever(int joint, const Shape& shape) const {
   constexpr double kParallel = 1e-9;
-  const Eigen::Vector3d& axis = axis_[static_cast<std::size_t>(joint)];
+  const Eigen::Vector3d& axis = axis_[index(joint)];
   bool is_parallel = true;
   const auto part = [&](const Eigen::Vector3d& offset) {
     return is_parallel ? offset.cross(axis).norm() : offset.norm();
   };
   double sum = 0.0;
   for (int i = joint + 1; i < shape.body; ++i) {
-    const auto next = static_cast<std::size_t>(i);
+    const auto next = index(i);
     sum += part(origin_[next] - origin_[next - 1]) + part(stroke_[next] * axis_[next]);
     const bool turns = chain_.joints()[next].type != model::JointType::kPrismatic;
     if (turns && axis_[next].cross(axis).norm() > kParallel) is_parallel = false;
@@ -85,7 +84,7 @@ double ReachBounds::lever(int joint, const Shape& shape) const {
   const Pose T_B_shape = chain_.pose(shape.frame) * shape.T_frame_shape;
   double farthest = 0.0;
   for (const Eigen::Vector3d& corner : corners(shape, T_B_shape)) {
-    farthest = std::max(farthest, part(corner - origin_[static_cast<std::size_t>(shape.body - 1)]));
+    farthest = std::max(farthest, part(corner - origin_[index(shape.body - 1)]));
   }
   return sum + farthest + shape.radius;
 }

@@ -20,11 +20,11 @@ constexpr double kQuiet_s = 0.05;       // time below that share until a contact
 constexpr double kGantryGain = 0.01;    // m/s per N, rad/s per Nm
 constexpr double kDamping = 0.1;        // m or rad: singular directions of the arm carry nothing
 
-double least_threshold(const Config& config, int joint) noexcept {
+double least_threshold(const ComplianceConfig& config, int joint) noexcept {
   return std::max(kLeast * config.torque_max[joint], kLeastOfArm * config.torque_max.maxCoeff());
 }
 
-void start(const Input& input, State& state) noexcept {
+void start(const ComplianceInput& input, ComplianceState& state) noexcept {
   const auto n = input.torque.size();
   state.torque = state.variance = state.load = VectorM::Zero(n);
   state.away = VectorP(0);
@@ -33,7 +33,7 @@ void start(const Input& input, State& state) noexcept {
 
 // Learns the noise from torques far below a contact. Noise raises a threshold to at most twice the
 // minimum.
-void learn(const Config& config, State& state) noexcept {
+void learn(const ComplianceConfig& config, ComplianceState& state) noexcept {
   for (int i = 0; i < state.torque.size(); ++i) {
     const double most = least_threshold(config, i) / kDeviations;
     double& variance = state.variance[i];
@@ -43,7 +43,7 @@ void learn(const Config& config, State& state) noexcept {
 }
 
 // Wrench w with J^T w = torque of the manipulator's part of J.
-Vector6 wrench_of(const Input& input, const VectorM& torque) noexcept {
+Vector6 wrench_of(const ComplianceInput& input, const VectorM& torque) noexcept {
   const auto J = input.J.rightCols(torque.size());
   Eigen::Matrix<double, 6, 6> normal = J.lazyProduct(J.transpose());
   normal.diagonal().array() += kDamping * kDamping;
@@ -55,7 +55,7 @@ Vector6 wrench_of(const Input& input, const VectorM& torque) noexcept {
 }
 
 // Torques beyond the thresholds, continuous where a contact begins and ends.
-VectorM beyond(const Config& config, const State& state) noexcept {
+VectorM beyond(const ComplianceConfig& config, const ComplianceState& state) noexcept {
   VectorM torque = state.torque;
   for (int i = 0; i < torque.size(); ++i) {
     const double most = threshold(config, state, i);
@@ -66,12 +66,13 @@ VectorM beyond(const Config& config, const State& state) noexcept {
 
 }  // namespace
 
-double threshold(const Config& config, const State& state, int joint) noexcept {
+double threshold(const ComplianceConfig& config, const ComplianceState& state, int joint) noexcept {
   const double noise = kDeviations * std::sqrt(state.variance[joint]);
   return least_threshold(config, joint) + noise + kModelError * state.load[joint];
 }
 
-TouchReport step(const Config& config, const Input& input, State& state) noexcept {
+TouchReport react_to_contact(const ComplianceConfig& config, const ComplianceInput& input,
+                             ComplianceState& state) noexcept {
   if (!state.is_started) start(input, state);
   TouchReport report;
   state.torque += config.dt / kFilter_s * (input.torque - state.torque);

@@ -21,7 +21,7 @@
 namespace hg::compliance {
 
 /// Set-up data.
-struct Config {
+struct ComplianceConfig {
   bool is_on = false;
   double dt = 1e-3;    ///< period, s
   VectorM torque_max;  ///< Peak torque of each joint, Nm; empty: the joints have no torque sensors
@@ -33,7 +33,7 @@ inline constexpr double kMomentMax = 30.0;   // Nm
 inline constexpr double kGantrySpeed = 0.3;  // m/s or rad/s, away from the contact
 
 /// Part of the copyable state of a cycle.
-struct State {
+struct ComplianceState {
   bool is_started = false;
   VectorM dq;        ///< Joint speeds in the last sample, rad/s
   VectorM torque;    ///< Joint torques of the contact, low-passed, Nm
@@ -45,7 +45,7 @@ struct State {
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const State& state) {
+void hashed(auto& hash, const ComplianceState& state) {
   const auto& [is_started, dq, torque, variance, load, is_told, quiet_s, away] = state;
   hash.mix(std::uint64_t{is_started} | std::uint64_t{is_told} << 1U, dq, torque, variance, load,
            quiet_s, away);
@@ -54,7 +54,7 @@ void hashed(auto& hash, const State& state) {
 using JacobianIn = Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>;
 
 /// One sample.
-struct Input {
+struct ComplianceInput {
   VectorM torque;  ///< Joint torques explained by neither motion nor user, Nm
   VectorM load;    ///< Model torques that move and hold the joints, Nm
   JacobianIn J;    ///< Jacobian of the handle; gantry joints first
@@ -62,9 +62,10 @@ struct Input {
 };
 
 /// Advances by one sample; call once per cycle with the drives on.
-TouchReport step(const Config& config, const Input& input, State& state) noexcept;
+TouchReport react_to_contact(const ComplianceConfig& config, const ComplianceInput& input,
+                             ComplianceState& state) noexcept;
 
 /// Torque from which a joint reports a contact, Nm.
-double threshold(const Config& config, const State& state, int joint) noexcept;
+double threshold(const ComplianceConfig& config, const ComplianceState& state, int joint) noexcept;
 
 }  // namespace hg::compliance

@@ -21,23 +21,23 @@ inline const model::Chain& arm() {
   return chain;
 }
 
-inline Config reference_config(Method method = Method::kModal) {
-  Config config;
+inline ControlConfig reference_config(Method method = Method::kModal) {
+  ControlConfig config;
   config.method = method;
   config.actuators = reference_actuators();
   return config;
 }
 
 /// Motors without friction.
-inline Config frictionless_config(Method method = Method::kModal) {
-  Config config = reference_config(method);
+inline ControlConfig frictionless_config(Method method = Method::kModal) {
+  ControlConfig config = reference_config(method);
   for (ActuatorModel& actuator : config.actuators) {
     actuator.coulomb_friction = actuator.viscous_friction = actuator.load_friction = 0.0;
   }
   return config;
 }
 
-inline JointControl control_of(const Config& config) {
+inline JointControl control_of(const ControlConfig& config) {
   return JointControl(config, arm(), kGantry, kJoints, arm().frame("handle"));
 }
 
@@ -88,9 +88,9 @@ inline SensorFrame answered(std::uint64_t sequence, std::uint64_t periods_ago) {
 }
 
 /// Of everything that a controller does in a period, ten times.
-inline std::uint64_t allocations_of_steps(const Config& config) {
+inline std::uint64_t allocations_of_steps(const ControlConfig& config) {
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   const RobotState robot = following(reference, VectorM::Zero(6));
   CommandFrame command;

@@ -18,17 +18,17 @@ struct Answer {
   TrackingReport report;
 };
 
-Answer answer(JointControl& control, State& state, const ReferenceState& reference,
+Answer answer(JointControl& control, ControlState& state, const ReferenceState& reference,
               const RobotState& robot) {
   Answer result;
   control.step(reference, reference, robot, state, result.command, result.report);
   return result;
 }
 
-Answer first_answer(const Config& config, const ReferenceState& reference,
+Answer first_answer(const ControlConfig& config, const ReferenceState& reference,
                     const RobotState& robot) {
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   return answer(control, state, reference, robot);
 }
 
@@ -87,7 +87,7 @@ TEST_P(BothMethods, WhatMotionAndUserDoNotExplainOfATorqueIsToldAsAMovingMean) {
   RobotState robot = following(reference, weight);
   robot.tau_m = weight + joints(0.0, 0.0, -3.0, 5.0, 0.0, 0.0);
   JointControl control = control_of(reference_config(GetParam()));
-  State state = control.start();
+  ControlState state = control.start();
   TrackingReport report;
   for (int k = 0; k <= 100; ++k) report = answer(control, state, reference, robot).report;
   EXPECT_NEAR(report.torque_unexplained[3], 5.0 * (1.0 - std::exp(-1.0)), 0.05);
@@ -97,9 +97,9 @@ TEST_P(BothMethods, WhatMotionAndUserDoNotExplainOfATorqueIsToldAsAMovingMean) {
 
 TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
   // a force of the user that grows with 100 N/s: theta_r' = tau_r' / K
-  Config config = frictionless_config(GetParam());
+  ControlConfig config = frictionless_config(GetParam());
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   for (int k = 0; k < 300; ++k) {
@@ -114,9 +114,9 @@ TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
 }
 
 // The torques fed forward for a wrench of the user that grows with 100 `direction` per second.
-VectorM fed_for_growing(const Config& config, const Vector6& direction) {
+VectorM fed_for_growing(const ControlConfig& config, const Vector6& direction) {
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   for (int k = 0; k < 300; ++k) {
@@ -127,7 +127,7 @@ VectorM fed_for_growing(const Config& config, const Vector6& direction) {
 }
 
 TEST(ModalControl, AForceThatGrowsIsFedForwardAsItWillBe) {
-  Config config = frictionless_config();
+  ControlConfig config = frictionless_config();
   const VectorM late = fed_for_growing(config, Vector6::Unit(1));
   config.wrench_lead = 4e-3;
   const VectorM early = fed_for_growing(config, Vector6::Unit(1));
@@ -141,10 +141,10 @@ TEST(ModalControl, AForceThatGrowsIsFedForwardAsItWillBe) {
 
 // who holds the handle when the drives come on is no force that grows
 TEST(ModalControl, AForceThatWasThereBeforeIsNotLed) {
-  Config config = frictionless_config();
+  ControlConfig config = frictionless_config();
   config.wrench_lead = 4e-3;
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   robot.w_H[1] = 50.0;
@@ -162,7 +162,7 @@ TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
   const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
   Vector6 torque = Vector6::Zero();
   torque.tail<3>() = J.col(7).tail<3>();
-  Config config = frictionless_config();
+  ControlConfig config = frictionless_config();
   const VectorM late = fed_for_growing(config, torque);
   config.wrench_lead = 4e-3;
   const VectorM early = fed_for_growing(config, torque);
@@ -170,9 +170,9 @@ TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
 }
 
 // rms of the feedforward of a joint whose reference shakes with 60 Hz and 10 rad/s^2
-double fed_for_shaking(const Config& config, int joint) {
+double fed_for_shaking(const ControlConfig& config, int joint) {
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   ReferenceState reference = at_rest(home());
   const RobotState robot = following(reference, VectorM::Zero(6));
   double sum = 0.0;
@@ -186,8 +186,8 @@ double fed_for_shaking(const Config& config, int joint) {
 }
 
 TEST(ModalControl, WhatIsFedForwardToStiffModesIsLowPassedAndToSoftOnesNot) {
-  const Config plain = frictionless_config();
-  Config config = plain;
+  const ControlConfig plain = frictionless_config();
+  ControlConfig config = plain;
   config.stiff_low_pass_Hz = 20.0;
   EXPECT_LT(fed_for_shaking(config, 5), 0.5 * fed_for_shaking(plain, 5));
   EXPECT_GT(fed_for_shaking(config, 0), 0.9 * fed_for_shaking(plain, 0));
@@ -195,7 +195,7 @@ TEST(ModalControl, WhatIsFedForwardToStiffModesIsLowPassedAndToSoftOnesNot) {
 
 TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
   const ReferenceState reference = at_rest(home());
-  const Config config = reference_config(GetParam());
+  const ControlConfig config = reference_config(GetParam());
   for (const double side : {-1.0, 1.0}) {
     RobotState robot = following(reference, VectorM::Zero(6));
     robot.theta_m.array() -= 0.5 * side;  // far behind
@@ -211,7 +211,7 @@ TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
     EXPECT_DOUBLE_EQ(braking.command.tau_m[0], side * 176.0);
     EXPECT_GT(standing.report.torque_share[0], 1.0);  // what was asked for
     for (int i = 0; i < 6; ++i) {
-      const double peak = config.actuators[static_cast<std::size_t>(i)].torque_max;
+      const double peak = config.actuators[index(i)].torque_max;
       EXPECT_LE(std::abs(standing.command.tau_m[i]), peak);
       EXPECT_LE(std::abs(braking.command.tau_m[i]), peak);
     }
@@ -219,9 +219,9 @@ TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
 }
 
 TEST(ModalControl, TheIntegralStopsAtItsBound) {
-  const Config config = reference_config();
+  const ControlConfig config = reference_config();
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   robot.q_m[5] -= 2e-3;  // far from saturation, and stays like that
@@ -231,7 +231,7 @@ TEST(ModalControl, TheIntegralStopsAtItsBound) {
 
 TEST(ModalControl, TheIntegralWaitsWhileAMotorIsSaturated) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   robot.q_m.array() -= 0.5;
@@ -244,9 +244,9 @@ TEST(ModalControl, TheIntegralWaitsWhileAMotorIsSaturated) {
 
 // after a joint was held back for long: nothing may keep what was gathered
 TEST(ModalControl, AFullIntegralSaturatesNoMotorAndUnwinds) {
-  const Config config = reference_config();
+  const ControlConfig config = reference_config();
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   answer(control, state, reference, robot);
@@ -260,10 +260,10 @@ TEST(ModalControl, AFullIntegralSaturatesNoMotorAndUnwinds) {
 }
 
 TEST(ModalControl, EvenASaturatedIntegralUnwinds) {
-  Config config = reference_config();
+  ControlConfig config = reference_config();
   config.integral_max = 1.0;
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   answer(control, state, reference, robot);
@@ -277,7 +277,7 @@ TEST(ModalControl, EvenASaturatedIntegralUnwinds) {
 
 TEST(ModalControl, AConstantErrorOfALinkIsAnsweredMoreAndMore) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   robot.q_m[3] -= 1e-4;
@@ -292,7 +292,8 @@ TEST(ModalControl, AConstantErrorOfALinkIsAnsweredMoreAndMore) {
 }
 
 TEST_P(BothMethods, FrictionIsFedForwardWithTheDirectionOfTheReference) {
-  const Config config = reference_config(GetParam()), smooth = frictionless_config(GetParam());
+  const ControlConfig config = reference_config(GetParam()),
+                      smooth = frictionless_config(GetParam());
   for (const double speed : {-0.3, -2e-3, 2e-3, 0.3}) {
     SCOPED_TRACE(speed);
     ReferenceState reference = at_rest(home());
@@ -310,9 +311,9 @@ TEST_P(BothMethods, FrictionIsFedForwardWithTheDirectionOfTheReference) {
 }
 
 // m4 slides, and the spring transmits less than the reference needs: the controller has to push.
-State after_sliding(double speed, double motor_speed, double behind, int periods) {
+ControlState after_sliding(double speed, double motor_speed, double behind, int periods) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   ReferenceState reference = at_rest(home());
   reference.dq_m[3] = speed;
   for (int k = 0; k < periods; ++k) {
@@ -328,10 +329,10 @@ State after_sliding(double speed, double motor_speed, double behind, int periods
 TEST(ModalControl, FrictionThatTheFeedbackHasToOvercomeIsLearntWhileTheJointSlides) {
   constexpr double kStart = 0.8;
   for (const double way : {-1.0, 1.0}) {
-    const State more = after_sliding(0.2 * way, 0.2 * way, 1e-4 * way, 200);
+    const ControlState more = after_sliding(0.2 * way, 0.2 * way, 1e-4 * way, 200);
     EXPECT_GT(more.friction[3], kStart + 0.01);
     EXPECT_EQ(more.friction[0], kStart);  // stands
-    const State less = after_sliding(0.2 * way, 0.2 * way, -1e-4 * way, 200);
+    const ControlState less = after_sliding(0.2 * way, 0.2 * way, -1e-4 * way, 200);
     EXPECT_LT(less.friction[3], kStart - 0.01);
     // it does not slide: what the feedback adds is no friction
     EXPECT_EQ(after_sliding(0.2 * way, 0.0, 1e-4 * way, 200).friction[3], kStart);
@@ -345,20 +346,19 @@ TEST(ModalControl, FrictionThatTheFeedbackHasToOvercomeIsLearntWhileTheJointSlid
 
 // What the feedback adds to the torque of a motor that slides is missing friction.
 TEST(ModalControl, TheRateOfLearningIsThatOfTheMissingFriction) {
-  const Config config = reference_config();
+  const ControlConfig config = reference_config();
   for (const int joint : {0, 3, 5}) {
     SCOPED_TRACE(joint);
     ReferenceState reference = at_rest(home());
     reference.dq_m[joint] = 0.2;
     RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
     JointControl control = control_of(config);
-    State level = control.start(), behind = control.start();
+    ControlState level = control.start(), behind = control.start();
     const VectorM without = answer(control, level, reference, robot).command.tau_m;
     robot.theta_m[joint] -= 1e-4;
     robot.q_m[joint] -= 1e-4;
     const VectorM with = answer(control, behind, reference, robot).command.tau_m;
-    const double coulomb =
-        coulomb_torque(config.actuators[static_cast<std::size_t>(joint)], 0.2, level.tau_r[joint]);
+    const double coulomb = coulomb_torque(config.actuators[index(joint)], 0.2, level.tau_r[joint]);
     const double missing = (with - without)[joint] / coulomb;
     const double learnt = behind.friction[joint] - level.friction[joint];
     EXPECT_GT(missing, 0.02);
@@ -367,16 +367,16 @@ TEST(ModalControl, TheRateOfLearningIsThatOfTheMissingFriction) {
 }
 
 TEST(ModalControl, NoFrictionIsLearntWhileAMotorIsSaturated) {
-  const State once = after_sliding(0.2, 0.2, 0.3, 1);
+  const ControlState once = after_sliding(0.2, 0.2, 0.3, 1);
   ASSERT_TRUE(once.is_saturated);
   EXPECT_EQ(after_sliding(0.2, 0.2, 0.3, 100).friction, once.friction);
 }
 
 // 0.8 of the peak of m1 and m2: what is fed forward ends at its bound instead of swinging around it
 TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
-  const Config config = frictionless_config(GetParam());
+  const ControlConfig config = frictionless_config(GetParam());
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   model::Chain chain = arm();
@@ -395,19 +395,19 @@ TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
 
 // a matrix of two states whose largest eigenvalue passes 1 at 2 pi f dt = sqrt(5) - 1
 TEST(JointControl, TheFilterOfTheFeedforwardIsStableUpToItsBoundAndRefusedBeyond) {
-  Config config = frictionless_config();
+  ControlConfig config = frictionless_config();
   config.dt = 1.0 / 204.0;
-  EXPECT_NO_THROW(check(config));
+  EXPECT_NO_THROW(check_control_config(config));
   config.dt = 1.0 / 203.0;
-  EXPECT_THROW(check(config), SetupError);
+  EXPECT_THROW(check_control_config(config), SetupError);
   EXPECT_THROW(control_of(config), SetupError);
   config.method = Method::kDrives;
-  EXPECT_NO_THROW(check(config));
+  EXPECT_NO_THROW(check_control_config(config));
 
   config = frictionless_config();
   config.flatness_Hz = 0.99 * largest_flatness_Hz(1000.0);
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   answer(control, state, reference, robot);
@@ -424,7 +424,7 @@ TEST(Latency, IsMeasuredFromTheAnsweredCommandWhileTheDrivesAreOff) {
   for (const std::uint64_t periods : {1u, 2u, 3u}) {
     SCOPED_TRACE(periods);
     JointControl control = control_of(reference_config());
-    State state = control.start();
+    ControlState state = control.start();
     const ReferenceState reference = at_rest(home());
     CommandFrame command;
     for (std::uint64_t k = 10; k < 510; ++k) {
@@ -440,10 +440,10 @@ TEST(Latency, IsMeasuredFromTheAnsweredCommandWhileTheDrivesAreOff) {
 }
 
 TEST(Latency, WithoutAnAnswerItIsWhatTheConfigurationExpects) {
-  Config config = reference_config();
+  ControlConfig config = reference_config();
   config.loop.latency = 2e-3;
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   CommandFrame command;
   SensorFrame silent;
@@ -458,7 +458,7 @@ TEST(Latency, WithoutAnAnswerItIsWhatTheConfigurationExpects) {
 
 TEST(Latency, ChangesNothingWhileTheDrivesAreOn) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   answer(control, state, reference, following(reference, VectorM::Zero(6)));
   const double w0 = state.poles.w0;
@@ -469,7 +469,7 @@ TEST(Latency, ChangesNothingWhileTheDrivesAreOn) {
 
 TEST(JointControl, AfterARestItBeginsAnew) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   const Answer first = answer(control, state, reference, robot);
@@ -482,7 +482,7 @@ TEST(JointControl, AfterARestItBeginsAnew) {
 }
 
 TEST(JointControl, DrivesThatFollowPositionsGetTheReferenceAndNoTorques) {
-  Config config;
+  ControlConfig config;
   config.method = Method::kDrives;
   ReferenceState reference = at_rest(home());
   reference.dq_m.setConstant(0.1);
@@ -500,7 +500,7 @@ TEST(JointControl, DrivesThatFollowPositionsGetTheReferenceAndNoTorques) {
 }
 
 TEST(JointControl, NeedsOneActuatorPerJoint) {
-  Config config = reference_config();
+  ControlConfig config = reference_config();
   config.actuators.pop_back();
   EXPECT_THROW(control_of(config), SetupError);
   config.method = Method::kDrives;

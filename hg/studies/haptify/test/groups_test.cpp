@@ -12,7 +12,7 @@ namespace {
 TEST(Groups, MeasurementsThatFailAreToldAndGiveNoFigure) {
   config::Scenario scenario = config::load_scenario("models/scenarios/walk.yaml");
   scenario.device.monitor.force_max = 0.05;  // N: nobody can hold it
-  const Options options = {.repetitions = 2, .is_quick = true};
+  const HaptifyOptions options = {.repetitions = 2, .is_quick = true};
   for (const auto& [add, begin] :
        {std::pair(&add_free_space, "free space, body of 6 kg, seed 1: "),
         std::pair(&add_dynamics, "strokes, "), std::pair(&add_sliding, "frictionless surface, "),

@@ -105,9 +105,9 @@ TEST(HandleLoop, IsStableWhereTheSimulationIs) {
 
 TEST(HandleLoop, ALateWrenchIsFeltLaterAndLessClearly) {
   const config::Scenario scenario = walk();
-  Device late = device_of(scenario.device);
+  TunedDevice late = device_of(scenario.device);
   late.wrench.delay_s += 3e-3;
-  const auto felt = [&](const Device& device) {
+  const auto felt = [&](const TunedDevice& device) {
     return feel(linearise(device, simulated(scenario.device), {}, person::HandImpedance{},
                           noise_of(scenario.device), posture_of(scenario)),
                 {}, unexpected_friction(scenario.device));
@@ -139,7 +139,7 @@ TEST(HandleLoop, NoiseComesFromWhatIsNoisyAndNothingElse) {
 TEST(HandleLoop, HasTheNoiseOfTheWrenchAtOtherRates) {
   const config::Scenario scenario = walk();
   const auto vibration = [&](double rate_Hz) {
-    config::Device device = scenario.device;
+    config::DeviceConfig device = scenario.device;
     device.control.flatness_Hz = 40.0;
     config::set_rate(device, rate_Hz);
     return feel(linearise(device_of(device), simulated(device), {}, person::HandImpedance{},

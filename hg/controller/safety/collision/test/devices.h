@@ -12,7 +12,7 @@ namespace hg::collision {
 
 struct TestDevice {
   model::Chain chain;
-  Config config;
+  CollisionConfig config;
   std::vector<std::string> links_without;
   std::vector<Interval> range;
 };

@@ -23,8 +23,7 @@ class Judge {
   }
 
   Distance distance_of(int a, int b) const {
-    return {config_.shapes[static_cast<std::size_t>(a)],
-            config_.shapes[static_cast<std::size_t>(b)]};
+    return {config_.shapes[index(a)], config_.shapes[index(b)]};
   }
 
   double at(const VectorPM& q, int a, int b, const Distance& distance) {
@@ -51,11 +50,11 @@ class Judge {
 
  private:
   Pose pose(int shape) const {
-    const int frame = config_.shapes[static_cast<std::size_t>(shape)].frame;
+    const int frame = config_.shapes[index(shape)].frame;
     return frame < 0 ? Pose{} : chain_.pose(frame);
   }
 
-  Config config_;
+  CollisionConfig config_;
   model::Chain chain_;
   Pairs pairs_;
   std::vector<Distance> distances_;
@@ -75,7 +74,7 @@ class Wanderer {
 
   void jump() {
     for (int i = 0; i < 8; ++i) {
-      const auto joint = static_cast<std::size_t>(i);
+      const auto joint = index(i);
       q[i] = uniform(lower(joint), upper(joint));
       dq[i] = uniform(-speed_[joint], speed_[joint]);
     }
@@ -83,7 +82,7 @@ class Wanderer {
 
   void move() {
     for (int i = 0; i < 8; ++i) {
-      const auto joint = static_cast<std::size_t>(i);
+      const auto joint = index(i);
       if (uniform(0.0, 1.0) < 0.002) goal_[i] = uniform(-speed_[joint], speed_[joint]);
       const double step = 1e-3 * config_.deceleration[i];
       dq[i] += std::clamp(goal_[i] - dq[i], -step, step);
@@ -106,7 +105,7 @@ class Wanderer {
   double upper(std::size_t i) const { return std::min(range_[i].ub, std::numbers::pi); }
 
   std::mt19937 random_;
-  Config config_;
+  CollisionConfig config_;
   std::vector<Interval> range_;
   std::vector<double> speed_;
   VectorPM goal_;
@@ -124,7 +123,7 @@ TEST(Guard, SaysFreeOnlyWhereBrakingStaysFree) {
   int needless = 0;
   for (int n = 0; n < 400; ++n) {
     wanderer.jump();
-    State state;
+    CollisionState state;
     const bool must_brake = guard.step(wanderer.q, wanderer.dq, true, state).must_brake;
     double smallest = kInfinity;
     for (std::size_t pair = 0; pair < device.config.pairs.watched.size(); ++pair) {
@@ -150,7 +149,7 @@ TEST(Guard, RemembersBoundsThatHold) {
   const unsigned seed = 12;
   SCOPED_TRACE("seed " + std::to_string(seed));
   Wanderer wanderer(device, seed);
-  State state;
+  CollisionState state;
   long distances = 0;
   int worst = 0;
   constexpr int kCycles = 20000;
@@ -179,7 +178,7 @@ TEST(Guard, BrakesInTimeWhenAJointGoesForACollision) {
   Guard guard(device.config, device.chain);
   Judge judge(device);
   for (const double speed : {0.1, 0.5, 1.0, 2.0}) {
-    State state;
+    CollisionState state;
     VectorPM q = VectorPM::Zero(8);
     q << 0.0, 0.0, 0.0, 1.2, -0.7, 1.2, 0.3, 0.0;
     VectorPM dq = VectorPM::Zero(8);
@@ -203,14 +202,14 @@ TEST(Guard, BrakesInTimeWhenAJointGoesForACollision) {
 TEST(Guard, LetsADeviceLeaveAPlaceThatIsTooNear) {
   const TestDevice device = device_of(folding_urdf());
   Guard guard(device.config, device.chain);
-  State state;
+  CollisionState state;
   VectorPM q = VectorPM::Zero(8);
   q << 0.0, 0.0, 0.0, 2.94, -0.7, 1.2, 0.3, 0.0;  // drop tube 15 mm from the first link
   VectorPM dq = VectorPM::Zero(8);
   EXPECT_FALSE(guard.step(q, dq, false, state).must_brake);
   EXPECT_FALSE(guard.step(q, dq, true, state).must_brake);
 
-  State away = state;
+  CollisionState away = state;
   dq[3] = -0.2;
   EXPECT_FALSE(guard.step(q, dq, true, away).must_brake);
   for (int n = 0; n < 3000; ++n) {
@@ -234,10 +233,10 @@ TEST(Guard, GivesTheSameBitsFromTheSameState) {
   Guard guard(device.config, device.chain);
   Guard other(device.config, device.chain);
   Wanderer wanderer(device, 13);
-  State state;
+  CollisionState state;
   for (int n = 0; n < 3000; ++n) {
     wanderer.move();
-    State copy = state;
+    CollisionState copy = state;
     const Prediction a = guard.step(wanderer.q, wanderer.dq, true, state);
     const Prediction b = other.step(wanderer.q, wanderer.dq, true, copy);
     ASSERT_EQ(a.report.distance, b.report.distance);
@@ -250,7 +249,7 @@ TEST(Guard, AllocatesNothing) {
   const TestDevice device = device_of(folding_urdf());
   Guard guard(device.config, device.chain);
   Wanderer wanderer(device, 14);
-  State state;
+  CollisionState state;
   const AllocationCounter allocations;
   for (int n = 0; n < 2000; ++n) {
     wanderer.move();
@@ -279,14 +278,13 @@ TEST(ReachBounds, BoundEveryPointInEveryPosture) {
         const Vector6 column = J.col(i);
         const Eigen::Vector3d v = column.head<3>() + column.tail<3>().cross(arm);
         const double speed = v.norm() + (column.tail<3>().norm() > 0.5 ? hand.radius : 0.0);
-        largest[static_cast<std::size_t>(i)] =
-            std::max(largest[static_cast<std::size_t>(i)], speed);
+        largest[index(i)] = std::max(largest[index(i)], speed);
       }
     }
   }
   for (int i = 0; i < 8; ++i) {
-    EXPECT_LE(largest[static_cast<std::size_t>(i)], lever[i] + 1e-9) << i;
-    EXPECT_GE(largest[static_cast<std::size_t>(i)], 0.6 * lever[i]) << i;  // and not for nothing
+    EXPECT_LE(largest[index(i)], lever[i] + 1e-9) << i;
+    EXPECT_GE(largest[index(i)], 0.6 * lever[i]) << i;  // and not for nothing
   }
 }
 

@@ -15,8 +15,8 @@ VectorM joints(double a, double b) {
   return v;
 }
 
-Config config() {
-  Config config = {.is_on = true};
+ComplianceConfig config() {
+  ComplianceConfig config = {.is_on = true};
   config.torque_max = joints(100.0, 50.0);
   return config;
 }
@@ -30,17 +30,17 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian() {
   return J;
 }
 
-TouchReport felt(const Config& config, const VectorM& torque, State& state,
+TouchReport felt(const ComplianceConfig& config, const VectorM& torque, ComplianceState& state,
                  const VectorM& load = joints(0.0, 0.0)) {
   const Eigen::Matrix<double, 6, Eigen::Dynamic> J = jacobian();
-  return step(config, {.torque = torque, .load = load, .J = J, .n_p = 1}, state);
+  return react_to_contact(config, {.torque = torque, .load = load, .J = J, .n_p = 1}, state);
 }
 
 TEST(Compliance, NoiseIsNoContactWhateverItsSize) {
   for (const double sigma : {0.1, 1.0, 2.0}) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal(0.0, sigma);
-    State state;
+    ComplianceState state;
     double largest = 0.0;
     for (int k = 0; k < 100000; ++k) {
       largest =
@@ -52,7 +52,7 @@ TEST(Compliance, NoiseIsNoContactWhateverItsSize) {
 }
 
 TEST(Compliance, APushIsToldWithinMillisecondsAndAtItsJoint) {
-  State state;
+  ComplianceState state;
   for (int k = 0; k < 1000; ++k) felt(config(), joints(0.0, 0.0), state);
   int cycles = 0;
   while (!felt(config(), joints(12.0, 0.0), state).is_told) ASSERT_LT(++cycles, 3);
@@ -63,7 +63,7 @@ TEST(Compliance, APushIsToldWithinMillisecondsAndAtItsJoint) {
 }
 
 TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
-  State calm, noisy;
+  ComplianceState calm, noisy;
   std::mt19937 random(2);
   std::normal_distribution<double> normal(0.0, 3.0);
   for (int k = 0; k < 5000; ++k) {
@@ -73,7 +73,7 @@ TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
   EXPECT_GT(threshold(config(), noisy, 0), 1.5 * threshold(config(), calm, 0));
   // somebody who leans against the arm more and more is felt at twice the least at the latest
   const double least = threshold(config(), calm, 0);
-  State leaned_on;
+  ComplianceState leaned_on;
   double push = 0.0;
   while (!felt(config(), joints(push, 0.0), leaned_on).is_told) {
     ASSERT_LT(push, 2.1 * least);
@@ -82,13 +82,13 @@ TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
 }
 
 TEST(Compliance, WhatMovesTheJointsRaisesTheThreshold) {
-  State state;
+  ComplianceState state;
   for (int k = 0; k < 100; ++k) felt(config(), joints(10.0, 0.0), state, joints(90.0, 0.0));
   EXPECT_FALSE(state.is_told);
 }
 
 TEST(Compliance, TheWrenchDoesTheSameToTheJointsAndTheGantryLeaves) {
-  State state;
+  ComplianceState state;
   const VectorM torque = joints(-20.0, -25.0);
   TouchReport report;
   for (int k = 0; k < 100; ++k) report = felt(config(), torque, state);
@@ -103,7 +103,7 @@ TEST(Compliance, TheWrenchDoesTheSameToTheJointsAndTheGantryLeaves) {
 }
 
 TEST(Compliance, TheWrenchIsBounded) {
-  State state;
+  ComplianceState state;
   TouchReport report;
   for (int k = 0; k < 100; ++k) report = felt(config(), joints(4000.0, -900.0), state);
   EXPECT_LE(report.wrench.head<3>().norm(), kForceMax * (1.0 + 1e-12));
@@ -111,7 +111,7 @@ TEST(Compliance, TheWrenchIsBounded) {
 }
 
 TEST(Compliance, AContactEnds) {
-  State state;
+  ComplianceState state;
   for (int k = 0; k < 10; ++k) felt(config(), joints(50.0, 0.0), state);
   EXPECT_TRUE(state.is_told);
   for (int k = 0; k < 100; ++k) felt(config(), joints(0.0, 0.0), state);
@@ -120,12 +120,13 @@ TEST(Compliance, AContactEnds) {
 }
 
 TEST(Compliance, DoesNotAllocate) {
-  State state;
+  ComplianceState state;
   const Eigen::Matrix<double, 6, Eigen::Dynamic> J = jacobian();
-  const Config limits = config();
+  const ComplianceConfig limits = config();
   const AllocationCounter allocations;
   for (int k = 0; k < 100; ++k) {
-    step(limits, {.torque = joints(50.0, 1.0), .load = joints(1.0, 1.0), .J = J, .n_p = 1}, state);
+    react_to_contact(
+        limits, {.torque = joints(50.0, 1.0), .load = joints(1.0, 1.0), .J = J, .n_p = 1}, state);
   }
   EXPECT_EQ(allocations.count(), 0U);
 }
