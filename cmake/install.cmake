@@ -7,7 +7,8 @@ set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning
 # folders and headers that only their own module includes; Eigen or YAML show in them
 set(HG_PRIVATE_FOLDERS hg/hqp/solver)
 set(HG_PRIVATE_HEADERS
-  "/config/(.*schema|loader)[.]h$")
+  "/config/(.*schema|loader)[.]h$"
+  "/model/chain_parts[.]h$")
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)

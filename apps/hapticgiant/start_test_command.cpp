@@ -24,6 +24,7 @@
 #include "hg/controller/cycle.h"
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/runtime/requests.h"
 #include "hg/scenario/assembly.h"
@@ -149,7 +150,7 @@ class DeviceStation final : public start_test::Station {
   controller::Cycle cycle_;
   device::Device& device_;
   const rendering::DeviceModel& model_;
-  model::Chain chain_;
+  model::ChainData chain_;
   const bool is_simulated_;
   const std::atomic<bool>& interrupted_;
   start_test::SimulatedOperator operator_;

@@ -5,7 +5,7 @@
 
 namespace {
 
-using hg::model::Chain;
+using hg::model::ChainModel;
 constexpr double kPeriod = 1e-3;  // s
 
 // Yours talks to drives and sensors. This one is made of double integrators whose drives follow the
@@ -40,7 +40,7 @@ class MyRobot final : public hg::device::Device {
 };
 
 hg::rendering::TwinModel free_body_at(const hg::Pose& handle) {
-  hg::rendering::TwinModel twin{.chain = Chain::free_body({.mass = 6.0}, {.gravity = false})};
+  hg::rendering::TwinModel twin{.chain = ChainModel::free_body({.mass = 6.0}, {.gravity = false})};
   twin.end_effector = twin.chain.frame("handle");
   twin.q_start.resize(7);
   twin.q_start << handle.p, Eigen::Quaterniond(handle.R).coeffs();
@@ -52,7 +52,7 @@ hg::rendering::TwinModel free_body_at(const hg::Pose& handle) {
 
 int main(int count, char** arguments) {
   if (count != 2) return 2;
-  hg::rendering::DeviceModel model{.chain = Chain::from_urdf_file(arguments[1])};
+  hg::rendering::DeviceModel model{.chain = ChainModel::from_urdf_file(arguments[1])};
   model.n_m = model.chain.nv();
   model.handle = model.chain.frame("handle");
   hg::controller::Config config;  // drives that follow positions; everything else by default
@@ -67,15 +67,16 @@ int main(int count, char** arguments) {
   }
 
   const Eigen::VectorXd start{{0.0, 0.6, 1.2, 0.0, 0.8, 0.0}};  // rad
-  model.chain.update_poses(start);
-  const Eigen::Vector3d before = model.chain.pose(model.handle).p;
+  hg::model::ChainData posture(model.chain);
+  posture.update_poses(start);
+  const hg::Pose before = posture.pose(model.handle);
   MyRobot robot(start);
-  hg::controller::Cycle cycle(config, model, free_body_at(model.chain.pose(model.handle)));
+  hg::controller::Cycle cycle(config, model, free_body_at(before));
   hg::runtime::Runtime runtime({.rate_Hz = 1.0 / kPeriod, .duration_s = 2.0}, cycle, robot);
   runtime.start();
   const hg::runtime::Report report = runtime.join();
 
   const Eigen::Vector3d after = cycle.state().rendering.twin.q_a.head<3>();
-  std::printf("the handle has moved by %.2f m in %d cycles\n", (after - before).norm(),
+  std::printf("the handle has moved by %.2f m in %d cycles\n", (after - before.p).norm(),
               static_cast<int>(report.cycles));
 }

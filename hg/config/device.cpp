@@ -25,9 +25,9 @@ model::ChainOptions chain_options(const DeviceDraft& draft, const std::optional<
   return options;
 }
 
-std::optional<model::Chain> make_chain(LoaderFile& file, const DeviceDraft& draft,
-                                       const std::optional<UrdfText>& urdf,
-                                       const model::ChainOptions& options) {
+std::optional<model::ChainModel> make_chain(LoaderFile& file, const DeviceDraft& draft,
+                                            const std::optional<UrdfText>& urdf,
+                                            const model::ChainOptions& options) {
   if (!urdf || !draft.part.is_usable) return no_chain(file);
   return read_chain(file, *urdf, options);
 }
@@ -42,7 +42,7 @@ std::optional<Tool> read_tool(LoaderFile& file, const DeviceDraft& draft) {
   }
 }
 
-void take_joints(const model::Chain& chain, DeviceDraft& draft) {
+void take_joints(const model::ChainModel& chain, DeviceDraft& draft) {
   draft.frame_names = chain.frame_names();
   for (const model::Joint& joint : chain.joints()) {
     draft.joint_names.push_back(joint.name);
@@ -55,7 +55,7 @@ void take_joints(const model::Chain& chain, DeviceDraft& draft) {
 }
 
 // The chain has the gantry first, then the manipulator, and nothing else.
-void check_order(Loader& loader, const model::Chain& chain, const DeviceDraft& draft) {
+void check_order(Loader& loader, const model::ChainModel& chain, const DeviceDraft& draft) {
   std::vector<int> named = draft.gantry;
   named.insert(named.end(), draft.manipulator.begin(), draft.manipulator.end());
   std::string expected;
@@ -72,7 +72,7 @@ void check_order(Loader& loader, const model::Chain& chain, const DeviceDraft& d
               "at most 7 joints are possible");
 }
 
-void check_gantry(Loader& loader, const model::Chain& chain, const DeviceDraft& draft) {
+void check_gantry(Loader& loader, const model::ChainModel& chain, const DeviceDraft& draft) {
   for (int i : draft.gantry) {
     const model::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
     loader.rule(joint.nv == 1, "gantry", "a device has no floating joints", "'" + joint.name + "'");
@@ -92,7 +92,7 @@ void check_gantry(Loader& loader, const model::Chain& chain, const DeviceDraft& 
   }
 }
 
-void check_joints(Loader& loader, const model::Chain& chain, const DeviceDraft& draft) {
+void check_joints(Loader& loader, const model::ChainModel& chain, const DeviceDraft& draft) {
   for (int i : draft.manipulator) {
     const DeviceJoint& joint = draft.joints[static_cast<std::size_t>(i)];
     loader.rule(chain.joints()[static_cast<std::size_t>(i)].nv == 1, "manipulator",
@@ -187,7 +187,7 @@ std::vector<std::string> manipulator_names(const DeviceDraft& draft) {
   return names;
 }
 
-rendering::DeviceModel make_model(model::Chain chain, const DeviceDraft& draft) {
+rendering::DeviceModel make_model(model::ChainModel chain, const DeviceDraft& draft) {
   rendering::DeviceModel model = {.chain = std::move(chain),
                                   .n_p = static_cast<int>(draft.gantry.size()),
                                   .n_m = static_cast<int>(draft.manipulator.size()),
@@ -233,7 +233,7 @@ void state_stopping(Device& device) {
 // Fills the collision model from the collision elements of the URDF.
 void watch_collisions(const UrdfText& urdf, const model::ChainOptions& options,
                       const DeviceDraft& draft, Device& device) {
-  const model::Chain& chain = device.model.chain;
+  const model::ChainModel& chain = device.model.chain;
   collision::Geometry geometry = collision::read_geometry(
       model::serial_part(model::read_urdf_text(urdf.text, urdf.file.generic_string()),
                          options.root_link, options.tip_link),
@@ -360,7 +360,7 @@ Device load_device(const std::filesystem::path& path, SourceReader& reader) {
   const std::size_t first_source = reader.texts().size();
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   DeviceDraft draft;
-  std::optional<model::Chain> chain;
+  std::optional<model::ChainModel> chain;
   std::optional<Tool> tool;
   std::optional<UrdfText> urdf;
   model::ChainOptions options;

@@ -10,6 +10,7 @@
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/controller/rendering/surfaces/cast.h"
 #include "hg/core/error.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::config {
 
@@ -53,7 +54,7 @@ std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
   const std::size_t faults = file.faults.count();
   describe_surfaces(loader, drafts);
   if (file.faults.count() > faults) return {};
-  model::Chain chain = twin.chain;
+  model::ChainData chain(twin.chain);
   chain.update_poses(twin.q_start);
   const Eigen::Vector3d start = chain.pose(twin.end_effector).p;
   std::vector<surfaces::Surface> surfaces;

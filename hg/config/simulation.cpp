@@ -8,11 +8,12 @@
 #include "hg/config/loader.h"
 #include "hg/config/simulation_schema.h"
 #include "hg/core/error.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::config {
 namespace {
 
-void take_joints(const model::Chain& chain, SimulationDraft& draft) {
+void take_joints(const model::ChainModel& chain, SimulationDraft& draft) {
   draft.joint_names.clear();  // of a base, which has another URDF
   draft.joint_units.clear();
   draft.flexible.clear();
@@ -41,7 +42,7 @@ std::vector<int> find_joints(Loader& loader, const std::vector<std::string>& wan
 
 // Every joint of the plant is driven or flexible.
 void take_plant(Loader& loader, const SimulatedDevice& device, SimulationDraft& draft,
-                const model::Chain& chain) {
+                const model::ChainModel& chain) {
   Simulation& simulation = draft.simulation;
   simulation.gantry = find_joints(loader, device.gantry, draft);
   simulation.manipulator = find_joints(loader, device.manipulator, draft);
@@ -87,14 +88,14 @@ void yield(Loader& loader, LoaderFile& file, const SimulatedDevice& device,
   const std::optional<UrdfText> urdf = read_urdf(file, device.urdf);
   if (urdf) draft.simulation.chain = read_chain(file, *urdf, options);
   if (!draft.simulation.chain) return;
-  model::Chain& chain = *draft.simulation.chain;
-  take_joints(chain, draft);
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(chain.nv());
+  take_joints(*draft.simulation.chain, draft);
+  model::ChainData chain(*draft.simulation.chain);
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(chain.model().nv());
   chain.update(rest, rest);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto& joint = draft.structure[i];
     if (!joint || joint->frequency_Hz == 0.0) continue;
-    const int index = chain.joint(names[i] + kSuffix);
+    const int index = chain.model().joint(names[i] + kSuffix);
     const double inertia = draft.simulation.factors.mass * chain.M()(index, index);
     const double omega = 2.0 * std::numbers::pi * joint->frequency_Hz;
     draft.flexible[static_cast<std::size_t>(index)] = {

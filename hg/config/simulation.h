@@ -10,7 +10,7 @@
 
 #include "hg/config/sources.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/signals/actuator_model.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/payload.h"
@@ -78,7 +78,7 @@ struct Simulation {
 
   /// A plant with more joints than the controller's model, from `urdf` or with those of
   /// `structure`; without it the chain of the device.
-  std::optional<model::Chain> chain;
+  std::optional<model::ChainModel> chain;
   std::vector<int> gantry, manipulator;  ///< indices of the chain's joints, in the device's order
   std::vector<simulator::FlexibleJoint> flexible;  ///< all other joints of the chain
 };

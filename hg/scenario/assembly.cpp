@@ -130,7 +130,7 @@ simulator::Config device_simulation(const config::Device& device, const Start& s
 }
 
 // Places the bystander. Throws SetupError where the arm cannot hit anyone.
-void place(const config::BystanderInTheWay& bystander, const model::Chain& chain,
+void place(const config::BystanderInTheWay& bystander, const model::ChainModel& chain,
            simulator::Config& simulation) {
   auto* plant = std::get_if<simulator::PlantConfig>(&simulation.plant);
   if (plant == nullptr) {
@@ -146,7 +146,7 @@ simulator::Simulation simulation_of(
     const config::Device& device, const Start& start, person::Person person,
     const std::optional<config::BystanderInTheWay>& bystander = {}) {
   const bool is_elastic = device.control.method != tracking::Method::kDrives;
-  const model::Chain& chain =
+  const model::ChainModel& chain =
       device.simulation.chain && is_elastic ? *device.simulation.chain : device.model.chain;
   const std::string& handle =
       device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
@@ -286,9 +286,9 @@ simulator::Simulation make_simulation(const config::Scenario& scenario) {
 }
 
 simulator::Simulation make_unheld_simulation(const config::Device& device, const Start& start) {
-  return simulation_of(
-      device, start,
-      person::Person({.kind = person::PersonKind::kNone}, model::Chain::free_body({}), 0, Pose{}));
+  return simulation_of(device, start,
+                       person::Person({.kind = person::PersonKind::kNone},
+                                      model::ChainModel::free_body({}), 0, Pose{}));
 }
 
 std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario) {

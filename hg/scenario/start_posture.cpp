@@ -10,6 +10,7 @@
 #include "hg/controller/safety/collision/distance.h"
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/haptic_giant.h"
 #include "hg/model/inverse_kinematics.h"
 
@@ -23,10 +24,10 @@ struct Violation {
   limits::JointLimits limits;
 };
 
-// The first limit, in the order of the catalogue, that forbids `q` (gantry first); `chain` is the
-// device's.
-std::optional<Violation> find_violation(const rendering::DeviceModel& device, model::Chain& chain,
-                                        const Eigen::VectorXd& q) {
+// The first limit, in the order of the catalogue, that forbids `q` (gantry first). Moves `chain`,
+// the device, to `q`.
+std::optional<Violation> find_violation(const rendering::DeviceModel& device,
+                                        model::ChainData& chain, const Eigen::VectorXd& q) {
   const auto is_outside = [](double value, const limits::JointLimits& limits) {
     return value < limits.q_min || value > limits.q_max;
   };
@@ -41,7 +42,7 @@ std::optional<Violation> find_violation(const rendering::DeviceModel& device, mo
     const double sum = joint.weights.dot(q_m);
     if (is_outside(sum, joint.limits)) return Violation{joint.name, sum, joint.limits};
   }
-  chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.nv()));
+  chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.model().nv()));
   for (const rendering::CartesianLimit& limit : device.cartesian_limits) {
     const Eigen::Vector3d p = chain.pose(limit.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
@@ -56,7 +57,7 @@ std::optional<Violation> find_violation(const rendering::DeviceModel& device, mo
 
 // throws SetupError when the device may not be at `start`
 void check_limits(const config::Scenario& scenario, const Start& start) {
-  model::Chain chain = scenario.device.model.chain;
+  model::ChainData chain(scenario.device.model.chain);
   const std::optional<Violation> violation =
       find_violation(scenario.device.model, chain, stacked(start.q_p, start.q_m));
   if (!violation) return;
@@ -83,7 +84,7 @@ void check_floor(const config::Scenario& scenario, const Start& start) {
   if (start.T_B_H.p.z() <= device.floor_z) {
     refuse(fmt::format("the handle, at z {:.3f} m,", start.T_B_H.p.z()));
   }
-  model::Chain chain = device.model.chain;
+  model::ChainData chain(device.model.chain);
   chain.update_poses(stacked(start.q_p, start.q_m));
   const auto pose = [&](const collision::Shape& shape) {
     return shape.frame < 0 ? Pose{} : chain.pose(shape.frame);
@@ -126,7 +127,7 @@ Start closed_form_start(const config::Scenario& scenario) {
 Interval range_of(const limits::JointLimits& limits) { return {limits.q_min, limits.q_max}; }
 
 // The joints that stand at a limit in `q`, for advice.
-std::string joints_at_limits(const model::Chain& chain, const model::InverseProblem& problem,
+std::string joints_at_limits(const model::ChainModel& chain, const model::InverseProblem& problem,
                              const Eigen::VectorXd& q) {
   constexpr double kAtLimit = 1e-6;  // rad and m
   std::string names;
@@ -157,7 +158,7 @@ Start numeric_start(const config::Scenario& scenario) {
   }
   if (device.posture.size() > 0) problem.goal.tail(device.n_m) = device.posture;
 
-  model::Chain chain = device.chain;
+  model::ChainData chain(device.chain);
   problem.permits = [&](const Eigen::VectorXd& q) { return !find_violation(device, chain, q); };
   const model::InverseResult found = model::inverse_kinematics(device.chain, problem);
   if (!found.is_solved) {
@@ -178,8 +179,8 @@ Start numeric_start(const config::Scenario& scenario) {
 }  // namespace
 
 Pose handle_start(const rendering::TwinModel& twin) {
-  model::Chain chain = twin.chain;
-  chain.update_kinematics(twin.q_start, VectorA::Zero(chain.nv()));
+  model::ChainData chain(twin.chain);
+  chain.update_kinematics(twin.q_start, VectorA::Zero(chain.model().nv()));
   return chain.pose(twin.end_effector);
 }
 

@@ -90,7 +90,7 @@ Eigen::VectorXd vector_of(const nlohmann::json& array) {
 rendering::DeviceModel recorded_device(const Recording& recording) {
   const nlohmann::json& params = recording.header.at("params");
   rendering::DeviceModel device{
-      .chain = model::Chain::from_urdf_file(reference_folder() / "models/hapticgiant.urdf"),
+      .chain = model::ChainModel::from_urdf_file(reference_folder() / "models/hapticgiant.urdf"),
       .n_p = 2,
       .n_m = 6};
   device.handle = device.chain.frame("handle");
@@ -125,7 +125,7 @@ rendering::TwinModel recorded_twin(const Recording& recording, const std::vector
   }
   const std::string urdf = dt.at("urdf").get<std::string>();
   rendering::TwinModel twin{
-      .chain = model::Chain::from_urdf_file(reference_folder() / "models" / urdf, options)};
+      .chain = model::ChainModel::from_urdf_file(reference_folder() / "models" / urdf, options)};
   twin.end_effector = twin.chain.frame(dt.at("ee").get<std::string>());
   twin.q_start = twin.chain.neutral();
   for (std::size_t i = 0; i < twin.chain.joints().size(); ++i) {

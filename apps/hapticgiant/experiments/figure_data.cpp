@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hg/model/chain_data.h"
+
 namespace hg::apps {
 namespace {
 
@@ -63,11 +65,11 @@ Json pose_at(const rendering::TwinModel& twin, const RunTable& table, const Mark
     if (dof.q_index < 0) return nullptr;
     q[dof.q_index] = table[dof.name + (dof.is_angle ? "_rad" : "_m")][rows.end];
   }
-  model::Chain chain = twin.chain;
+  model::ChainData chain(twin.chain);
   chain.update_poses(q);
   Json points = Json::array();
-  for (const std::string& name : chain.frame_names()) {
-    const Eigen::Vector3d p = chain.pose(chain.frame(name)).p;
+  for (const std::string& name : chain.model().frame_names()) {
+    const Eigen::Vector3d p = chain.pose(chain.model().frame(name)).p;
     points.push_back({p.x(), p.y(), p.z()});
   }
   return {{"label", mark.label}, {"time_s", mark.time_s}, {"points", points}};

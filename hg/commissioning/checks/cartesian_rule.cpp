@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/model/chain_data.h"
+
 namespace hg::checks {
 namespace {
 
@@ -40,8 +42,8 @@ std::vector<CartesianRule> cartesian_rules(const config::Device& device, const S
   const rendering::DeviceModel& model = device.model;
   const std::size_t n = 3 * model.cartesian_limits.size();
   std::vector<std::vector<double>> values(n);  // half of what the joints give, m/s^2
-  model::Chain chain = model.chain;
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
+  model::ChainData chain(model.chain);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.model().nv());
   for (const Posture& posture : survey.postures) {
     chain.update_kinematics(posture.q, zero);
     for (std::size_t k = 0; k < n; ++k) {

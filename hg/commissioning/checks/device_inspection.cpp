@@ -13,6 +13,7 @@
 #include "hg/commissioning/checks/stopping_rule.h"
 #include "hg/commissioning/checks/workspace.h"
 #include "hg/core/index.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::checks {
 namespace {
@@ -188,8 +189,8 @@ void inspect_room(const config::Device& device, const Survey& survey, Collector&
 std::string joint_out_of_singularity(const config::Device& device, const Survey& survey) {
   constexpr double kStep = 1e-2;
   const rendering::DeviceModel& model = device.model;
-  model::Chain chain = model.chain;
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
+  model::ChainData chain(model.chain);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.model().nv());
   double best = 0.0;
   int joint = 0;
   for (int i = 0; i < model.n_m; ++i) {

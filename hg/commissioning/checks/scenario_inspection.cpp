@@ -15,6 +15,7 @@
 #include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::checks {
@@ -139,9 +140,9 @@ Match match(const config::Device& device, const config::Twin& twin) {
   config::Scenario pair = {.device = device, .twin = twin};
   const std::vector<ConfigurationA> postures = twin_postures(twin, kPostures, kSeed);
   const std::array<limits::JointLimits, 3> hand = rendering::handle_limits(device.model);
-  model::Chain twin_chain = twin.model.chain, device_chain = device.model.chain;
-  const Eigen::VectorXd zero_a = Eigen::VectorXd::Zero(twin_chain.nv());
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(device_chain.nv());
+  model::ChainData twin_chain(twin.model.chain), device_chain(device.model.chain);
+  const Eigen::VectorXd zero_a = Eigen::VectorXd::Zero(twin.model.chain.nv());
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(device.model.chain.nv());
   std::vector<Collected> values(twin.model.dofs.size());
 
   Match result;

@@ -13,6 +13,7 @@
 #include "hg/controller/rendering/braking.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::checks {
@@ -102,8 +103,8 @@ void warn_of(const std::vector<Spring>& springs, double least, const Worth& wort
 }
 
 void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Collector& out) {
-  model::Chain chain = twin.model.chain;
-  chain.update(twin.model.q_start, VectorA::Zero(chain.nv()));
+  model::ChainData chain(twin.model.chain);
+  chain.update(twin.model.q_start, VectorA::Zero(chain.model().nv()));
   const Eigen::MatrixXd mobility = inverse(Eigen::MatrixXd(chain.M() * twin.model.mass_scale));
   std::vector<Spring> springs;
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "hg/core/index.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/joint_range.h"
 
 namespace hg::checks {
@@ -24,15 +25,19 @@ double draw_coordinate(const JointRanges& ranges, Eigen::Index k, bool at_limits
 struct Scene {
   const config::Device& device;
   JointRanges ranges;
-  model::Chain chain;
+  model::ChainData chain;
   Eigen::VectorXd zero;
   Eigen::VectorXd effort, ddq_max;
 };
 
 Scene make_scene(const config::Device& device) {
   const rendering::DeviceModel& model = device.model;
-  Scene scene = {
-      device, joint_ranges(device), model.chain, Eigen::VectorXd::Zero(model.chain.nv()), {}, {}};
+  Scene scene = {device,
+                 joint_ranges(device),
+                 model::ChainData(model.chain),
+                 Eigen::VectorXd::Zero(model.chain.nv()),
+                 {},
+                 {}};
   scene.effort.resize(model.chain.nv());
   for (int i = 0; i < model.chain.nv(); ++i) {
     scene.effort[i] = model.chain.joints()[index(i)].effort_max;
@@ -53,7 +58,7 @@ bool has_paper_wrench(const MatrixJ& J, const Eigen::VectorXd& available) {
   return true;
 }
 
-// the chain has been updated to q
+// scene.chain: after update() at q
 Posture examine(const Scene& scene, const Eigen::VectorXd& q, double length) {
   const rendering::DeviceModel& model = scene.device.model;
   const MatrixJ J = scene.chain.jacobian(model.handle);
@@ -85,7 +90,7 @@ double characteristic_length(Scene& scene, Random& random) {
 }
 
 void survey_postures(Scene& scene, Random& random, Survey& result) {
-  result.gravity_max.setZero(scene.chain.nv());
+  result.gravity_max.setZero(scene.zero.size());
   const int drawn_max = 20 * result.options.postures;
   while (static_cast<int>(result.postures.size()) < result.options.postures &&
          result.drawn < drawn_max) {
@@ -116,8 +121,8 @@ bool is_inside(const rendering::CartesianLimit& limit, const Eigen::Vector3d& p)
   return true;
 }
 
-// Adds what one posture of the arm, to which the chain has been updated, reaches by itself and
-// with other positions of the gantry.
+// Adds what one posture of the arm reaches by itself and with other positions of the gantry;
+// scene.chain: after update() at q.
 void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, bool at_limits,
                    Random& random, Cloud& cloud) {
   const rendering::DeviceModel& model = scene.device.model;
@@ -219,7 +224,7 @@ bool permits_virtual_joints(const rendering::DeviceModel& model, const Eigen::Ve
   });
 }
 
-bool permits_boxes(const rendering::DeviceModel& model, const model::Chain& chain) {
+bool permits_boxes(const rendering::DeviceModel& model, const model::ChainData& chain) {
   return std::ranges::all_of(model.cartesian_limits, [&](const rendering::CartesianLimit& limit) {
     return is_inside(limit, chain.pose(limit.frame).p);
   });
@@ -272,7 +277,7 @@ Survey survey(const config::Device& device, const SurveyOptions& options) {
   return result;
 }
 
-MatrixJ manipulator_jacobian(const rendering::DeviceModel& model, const model::Chain& chain,
+MatrixJ manipulator_jacobian(const rendering::DeviceModel& model, const model::ChainData& chain,
                              int frame) {
   return chain.jacobian(frame).rightCols(model.n_m);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hg/core/index.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::checks {
 namespace {
@@ -24,7 +25,7 @@ Eigen::VectorXd nominal_posture(const rendering::DeviceModel& model, const Joint
 // Turns the handle of `q` to R_B_H with damped Gauss-Newton steps of the manipulator; false where
 // that leaves the joint limits.
 bool turn_handle(const rendering::DeviceModel& model, const JointRanges& ranges,
-                 const Eigen::Matrix3d& R_B_H, model::Chain& chain, Eigen::VectorXd& q) {
+                 const Eigen::Matrix3d& R_B_H, model::ChainData& chain, Eigen::VectorXd& q) {
   constexpr int kSteps = 10;
   constexpr double kReached = 1e-3, kStepMax = 0.5;  // rad
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(q.size());
@@ -63,14 +64,15 @@ double share_in_nominal_orientation(const config::Device& device, const Survey& 
   constexpr int kPostures = 20'000;
   const rendering::DeviceModel& model = device.model;
   const JointRanges ranges = joint_ranges(device);
-  model::Chain chain = model.chain;
-  chain.update_kinematics(nominal_posture(model, ranges), Eigen::VectorXd::Zero(chain.nv()));
+  model::ChainData chain(model.chain);
+  chain.update_kinematics(nominal_posture(model, ranges),
+                          Eigen::VectorXd::Zero(chain.model().nv()));
   const Eigen::Matrix3d R_B_H = chain.pose(model.handle).R;
   axis = R_B_H.col(2);
 
   Random random(survey.options.seed);
   const Cloud points =
-      cloud(device, kPostures, true, random, [&](model::Chain& moved, Eigen::VectorXd& q) {
+      cloud(device, kPostures, true, random, [&](model::ChainData& moved, Eigen::VectorXd& q) {
         return turn_handle(model, ranges, R_B_H, moved, q);
       });
   return filled_volume(points) / box.volume();

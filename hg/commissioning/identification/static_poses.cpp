@@ -13,6 +13,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
+#include "hg/model/chain_data.h"
 #include "hg/scenario/assembly.h"
 
 namespace hg::identification {
@@ -54,7 +55,7 @@ struct Candidate {
 
 std::vector<Candidate> candidates(const config::Device& device) {
   const rendering::DeviceModel& model = device.model;
-  model::Chain chain = model.chain;
+  model::ChainData chain(model.chain);
   std::vector<Candidate> usable;
   for (int k = 0; k < kCandidates; ++k) {
     const VectorM q_m = candidate(model, k);

@@ -141,7 +141,7 @@ TEST(Twin, DoorHasCloserSpringAndBolt) {
 }
 
 TEST(Twin, FreeBodyStartsWhereTheFileSays) {
-  rendering::TwinModel twin = free_space().twin.model;
+  const rendering::TwinModel twin = free_space().twin.model;
   ASSERT_EQ(twin.dofs.size(), 6u);
   EXPECT_EQ(twin.dofs[0].name, "root x");
   EXPECT_EQ(twin.dofs[5].name, "root rz");
@@ -150,10 +150,11 @@ TEST(Twin, FreeBodyStartsWhereTheFileSays) {
   EXPECT_FALSE(twin.dofs[2].is_angle);
   EXPECT_TRUE(twin.dofs[3].is_angle);
 
-  twin.chain.update(twin.q_start, VectorA::Zero(6));
-  EXPECT_NEAR(twin.chain.M()(0, 0), 6.0, kRounding);
-  EXPECT_NEAR(twin.chain.M()(4, 4), 0.08, kRounding);
-  const Pose pose = twin.chain.pose(twin.end_effector);
+  model::ChainData chain(twin.chain);
+  chain.update(twin.q_start, VectorA::Zero(6));
+  EXPECT_NEAR(chain.M()(0, 0), 6.0, kRounding);
+  EXPECT_NEAR(chain.M()(4, 4), 0.08, kRounding);
+  const Pose pose = chain.pose(twin.end_effector);
   EXPECT_TRUE(pose.p.isApprox(Eigen::Vector3d(0.9, 0.0, -0.75), kRounding));
   // [HANDBOOK] 2.2: hand axis z_H = (sin s) u - (cos s) z with u along y
   EXPECT_TRUE(pose.R.col(2).isApprox(Eigen::Vector3d(0, std::sin(1.4), -std::cos(1.4)), kWritten));
@@ -172,9 +173,10 @@ TEST(Twin, PlacementAndFrameOffsetsDoNotMoveTheStartPose) {
         "name: tool\nurdf: tool.urdf\nfloating_root: true\nend_effector: tip\n"
         "placement: {x_m: 1, yaw_rad: 0.7, roll_rad: 0.2}\n"
         "joints: {root: {start: {x_m: 0.5, z_m: -0.8, azimuth_rad: 1, roll_rad: 2}}}\n"}});
-  rendering::TwinModel twin = load_twin("twin.yaml", reader).model;
-  twin.chain.update_kinematics(twin.q_start, VectorA::Zero(6));
-  const Pose pose = twin.chain.pose(twin.end_effector);
+  const rendering::TwinModel twin = load_twin("twin.yaml", reader).model;
+  model::ChainData chain(twin.chain);
+  chain.update_kinematics(twin.q_start, VectorA::Zero(6));
+  const Pose pose = chain.pose(twin.end_effector);
   const Pose expected =
       pose_of(HandPose{.p = {0.5, 0.0, -0.8}, .azimuth = 1.0, .pitch = 0.5 * pi, .roll = 2.0});
   EXPECT_TRUE(pose.p.isApprox(expected.p, kRounding));
@@ -275,7 +277,7 @@ TEST(Script, DoorHandPushesAndPressesInTheFrameOfTheHandle) {
   };
   // torques on hinge and lever: J^T R w
   const auto torque = [&](double t, double hinge, double lever) {
-    model::Chain chain = door().twin.model.chain;
+    model::ChainData chain(door().twin.model.chain);
     const int frame = door().twin.model.end_effector;
     chain.update_kinematics(Eigen::Vector2d(hinge, lever), Eigen::Vector2d::Zero());
     const Eigen::Matrix3d R = chain.pose(frame).R;
@@ -305,7 +307,7 @@ TEST(Script, ExcavatorHandTurnsTheBucketAboutItsAxis) {
   const Eigen::Array3d arm = script.hand.stiffness;
   const double grip = script.hand.grip_stiffness;
   EXPECT_TRUE((arm * grip / (arm + grip)).isApproxToConstant(350.0, 1e-3));
-  model::Chain chain = excavator().twin.model.chain;
+  model::ChainData chain(excavator().twin.model.chain);
   const int frame = excavator().twin.model.end_effector;
   chain.update_kinematics(excavator().twin.model.q_start, Eigen::Vector4d::Zero());
   const auto channels = person::evaluate(script.script, 3.5);

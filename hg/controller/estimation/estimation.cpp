@@ -7,7 +7,7 @@
 
 namespace hg::estimation {
 
-Estimation::Estimation(const Config& config, const model::Chain& chain, int n_p, int n_m,
+Estimation::Estimation(const Config& config, const model::ChainModel& chain, int n_p, int n_m,
                        int handle)
     : config_(config),
       chain_(chain),
@@ -21,7 +21,8 @@ Estimation::Estimation(const Config& config, const model::Chain& chain, int n_p,
       units_(config.units, config.dt, config.link_pole_Hz, config.observer_pole_Hz, chain, n_p) {}
 
 bool Estimation::turns_without_end(int joint) const noexcept {
-  return chain_.joints()[static_cast<std::size_t>(joint)].type == model::JointType::kContinuous;
+  return chain_.model().joints()[static_cast<std::size_t>(joint)].type ==
+         model::JointType::kContinuous;
 }
 
 double Estimation::unwrapped(int joint, double measured, double last) const noexcept {

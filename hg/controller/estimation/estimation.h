@@ -15,7 +15,7 @@
 #include "hg/controller/estimation/user_wrench.h"
 #include "hg/core/fields.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/state.h"
 
@@ -64,7 +64,7 @@ void fields(Archive& a, T& state) {
 class Estimation {
  public:
   /// `chain` holds the gantry joints first; `handle` is its frame H.
-  Estimation(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
+  Estimation(const Config& config, const model::ChainModel& chain, int n_p, int n_m, int handle);
 
   /// Estimates the state of a sample. `dq_p_cmd` is the gantry command that was sent in the last
   /// cycle (n_p), `ddq_m_reference` the acceleration of the manipulator's reference since then
@@ -101,7 +101,7 @@ class Estimation {
   void observe_wrench(const SensorFrame& sensors, State& state, RobotState& robot) noexcept;
 
   Config config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   int n_p_, n_m_, handle_;
   int dead_periods_;
   GantryGains gantry_gains_;

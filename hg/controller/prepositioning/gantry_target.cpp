@@ -22,7 +22,7 @@ constexpr double kLost = 0.05;         // m and rad beside the hand: restart
 
 }  // namespace
 
-GantryTarget::GantryTarget(const TargetConfig& config, const model::Chain& chain)
+GantryTarget::GantryTarget(const TargetConfig& config, const model::ChainModel& chain)
     : config_(config), chain_(chain) {
   const int n = config.n_p + config.n_m;
   const auto require = [](bool ok, const char* rule) {

@@ -11,7 +11,7 @@
 #include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/stacked.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/state.h"
 
 namespace hg::prepositioning {
@@ -43,7 +43,7 @@ void fields(Archive& a, T& state) {
 class GantryTarget {
  public:
   /// `chain` holds the gantry joints first. Throws SetupError when config and chain do not fit.
-  GantryTarget(const TargetConfig& config, const model::Chain& chain);
+  GantryTarget(const TargetConfig& config, const model::ChainModel& chain);
 
   /// Returns the target of the gantry; `robot` gives the gantry, `q_m` the manipulator reference.
   VectorP step(const RobotState& robot, const VectorM& q_m, TargetState& state) noexcept;
@@ -53,7 +53,7 @@ class GantryTarget {
   VectorPM limited_step(MatrixPM H, VectorPM g, const VectorPM& q) const noexcept;
 
   TargetConfig config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   VectorPM goal_;              ///< Goals of all joints; NaN = no goal
   std::vector<bool> is_free_;  ///< Joints that turn without end
   VectorPM at_rest_;

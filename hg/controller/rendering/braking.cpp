@@ -8,6 +8,7 @@
 #include "hg/controller/rendering/motor_torque.h"
 #include "hg/core/stacked.h"
 #include "hg/hqp/solver.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::rendering {
 namespace {
@@ -30,7 +31,7 @@ double largest_acceleration(const DeviceModel& device, const Motion& motion,
                             const Eigen::Vector3d& direction) {
   if (device.motors.empty()) return rating(device, direction);
   const int n_p = device.n_p, n_m = device.n_m;
-  model::Chain chain = device.chain;
+  model::ChainData chain(device.chain);
   chain.update(stacked(motion.q_p, motion.q_m), stacked(motion.dq_p, motion.dq_m));
   const auto J = chain.jacobian(device.handle).middleCols(n_p, n_m).eval();
   const Vector6 bias = chain.bias_acceleration(device.handle);

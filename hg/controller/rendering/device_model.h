@@ -9,7 +9,7 @@
 
 #include "hg/core/types.h"
 #include "hg/limits/acceleration_bounds.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/signals/actuator_model.h"
 
 namespace hg::rendering {
@@ -31,12 +31,11 @@ struct CartesianLimit {
 };
 
 struct DeviceModel {
-  /// Gantry joints first, then the manipulator. Constant: whoever needs a posture copies it.
-  model::Chain chain;
-  int n_p = 0;      ///< Number of gantry joints
-  int n_m = 0;      ///< Number of manipulator joints
-  int handle = -1;  ///< Index of frame H
-  int elbow = -1;   ///< Index of the frame shown as the elbow; -1 = none
+  model::ChainModel chain;  ///< Gantry joints first, then the manipulator
+  int n_p = 0;              ///< Number of gantry joints
+  int n_m = 0;              ///< Number of manipulator joints
+  int handle = -1;          ///< Index of frame H
+  int elbow = -1;           ///< Index of the frame shown as the elbow; -1 = none
   std::vector<limits::JointLimits> joint_limits;  ///< Limits of the manipulator joints
   /// Motors, one per manipulator joint: their torques are limits of the law. Empty: the law does
   /// not know them, and no limit is accelerated beyond its rating.

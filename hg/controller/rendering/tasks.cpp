@@ -5,6 +5,7 @@
 
 #include "hg/controller/rendering/motor_torque.h"
 #include "hg/core/rotation.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::rendering {
 namespace {
@@ -208,7 +209,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
 // [HG] (12) with (11): J_m ddq_m - J_a ddq_a = s - J_p ddq_p - dJ dq + dJ_a dq_a
 void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
                           const TaskInput& input) noexcept {
-  const model::Chain &device_now = input.device_chain, &twin_now = input.twin_chain;
+  const model::ChainData &device_now = input.device_chain, &twin_now = input.twin_chain;
   const Pose& T_B_H = device_now.pose(device.handle);
   const Pose& T_B_E = twin_now.pose(twin.end_effector);
   const Vector6 velocity_error =

@@ -36,7 +36,7 @@ struct Loop {
                 const rendering::DeviceModel& model = rendering::unlimited_device())
       : device(model) {
     rendering::TwinModel twin = rendering::unlimited_twin(
-        model::Chain::free_body({.mass = 6.0}, {.gravity = false}), "handle");
+        model::ChainModel::free_body({.mass = 6.0}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
     Config config = base;
@@ -671,10 +671,11 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
 // The elbow at its wall and the handle caught by a surface: what another cycle goes on from.
 TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
   rendering::DeviceModel device = rendering::unlimited_device();
-  device.chain.update_poses(
+  model::ChainData chain(device.chain);
+  chain.update_poses(
       (Eigen::VectorXd(8) << Eigen::Vector2d::Zero(), Eigen::VectorXd(kPosture)).finished());
-  const Eigen::Vector3d elbow = device.chain.pose(device.elbow).p;
-  const Eigen::Vector3d handle = device.chain.pose(device.handle).p;
+  const Eigen::Vector3d elbow = chain.pose(device.elbow).p;
+  const Eigen::Vector3d handle = chain.pose(device.handle).p;
   rendering::CartesianLimit wall = {.name = "elbow", .frame = device.elbow};
   for (int axis = 0; axis < 3; ++axis) {
     wall.axes[static_cast<std::size_t>(axis)] = {
@@ -689,7 +690,7 @@ TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
   Loop loop(false, false, false, config, device);
   Loop other(false, false, false, config, device);
   loop.start_running();
-  const Eigen::Matrix3d R = device.chain.pose(device.handle).R;
+  const Eigen::Matrix3d R = chain.pose(device.handle).R;
   loop.sensors.w_S.head<3>() = R.transpose() * Eigen::Vector3d(20.0, 10.0, -40.0);
   const auto acts = [&] {
     return std::ranges::any_of(loop.record.limits, [](const LimitReport& limit) {

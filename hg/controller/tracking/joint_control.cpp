@@ -62,7 +62,7 @@ void check(const Config& config) {
                    model::to_text(config.flatness_Hz) + ": lower it, or raise the rate");
 }
 
-JointControl::JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m,
+JointControl::JointControl(const Config& config, const model::ChainModel& chain, int n_p, int n_m,
                            int handle)
     : config_(config), chain_(chain), n_p_(n_p), n_m_(n_m), handle_(handle) {
   check(config_);

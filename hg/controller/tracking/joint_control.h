@@ -13,7 +13,7 @@
 #include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/actuator_model.h"
 #include "hg/signals/presliding.h"
 #include "hg/signals/state.h"
@@ -107,7 +107,7 @@ class JointControl {
  public:
   /// `chain` holds the gantry joints first; `handle` is its frame H.
   /// Throws SetupError where numbers of actuators and joints differ, and what check() throws.
-  JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
+  JointControl(const Config& config, const model::ChainModel& chain, int n_p, int n_m, int handle);
 
   State start() const;
   /// Resets the state after a fault, except for the measured latency.
@@ -182,7 +182,7 @@ class JointControl {
                       State& state) const noexcept;
 
   Config config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   int n_p_, n_m_, handle_;
   double lead_pole_ = 0.0, stiff_pole_ = 0.0;  ///< Poles of the low-passes
   VectorM K_, sqrt_K_, Jm_;

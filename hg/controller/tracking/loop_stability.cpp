@@ -4,6 +4,7 @@
 
 #include "hg/controller/tracking/sampled_arm.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::tracking {
 namespace {
@@ -56,7 +57,7 @@ class SampledLoop {
         delay_(plant.loop.latency, loop.config.dt),
         layout_{loop.n_m, delay_.slots()},
         observers_(loop.filters, loop.config.dt) {
-    model::Chain chain = loop.chain;
+    model::ChainData chain(loop.chain);
     chain.update(q, Eigen::VectorXd::Zero(q.size()));
     const MatrixM M = plant.link_mass * chain.M().bottomRightCorner(loop.n_m, loop.n_m);
     step_ = matrix_exponential(plant_with_input(plant, M) * (loop.config.dt / kPlantSteps));

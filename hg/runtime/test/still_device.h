@@ -65,7 +65,7 @@ struct Parts {
   Parts() {
     const rendering::DeviceModel model = rendering::unlimited_device();
     rendering::TwinModel twin =
-        rendering::unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
+        rendering::unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(model, Eigen::Vector2d::Zero(), kPosture));
     controller::Config config;

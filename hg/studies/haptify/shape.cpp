@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hg/controller/rendering/device_model.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::haptify {
 namespace {
@@ -18,8 +19,8 @@ std::vector<std::string> binding_limits(const rendering::DeviceModel& model,
                                         const Eigen::VectorXd& q, int axis, double side) {
   constexpr double kNear = 0.02;   // rad
   constexpr double kMoves = 1e-3;  // m/rad; what moves it less does not end its way
-  model::Chain chain = model.chain;
-  chain.update(q, Eigen::VectorXd::Zero(chain.nv()));
+  model::ChainData chain(model.chain);
+  chain.update(q, Eigen::VectorXd::Zero(chain.model().nv()));
   const Eigen::VectorXd gain =
       side * chain.jacobian(model.handle).row(axis).tail(model.n_m).transpose();
   const Eigen::VectorXd arm = q.tail(model.n_m);
@@ -49,8 +50,8 @@ Eigen::VectorXd farthest(const config::Device& device, const ShapeConfig& config
                          std::uint64_t seed, int axis, double side) {
   checks::Random random(seed);
   const checks::JointRanges ranges = checks::joint_ranges(device);
-  model::Chain chain = device.model.chain;
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
+  model::ChainData chain(device.model.chain);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.model().nv());
   Eigen::VectorXd best;
   double most = 0.0;
   for (int i = 0; i < config.postures; ++i) {

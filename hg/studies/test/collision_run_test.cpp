@@ -81,7 +81,7 @@ class TrueDistance {
   }
 
   collision::Config config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   std::vector<collision::Distance> distances_;
 };
 

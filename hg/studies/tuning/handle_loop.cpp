@@ -13,6 +13,7 @@
 #include "hg/core/error.h"
 #include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::tuning {
 namespace {
@@ -132,7 +133,7 @@ class Period {
                        " states with this rate, latency and delay of the wrench, at most " +
                        std::to_string(kMostStates) + " are computed");
     }
-    model::Chain chain = device.loop.chain;
+    model::ChainData chain(device.loop.chain);
     const VectorXd at_rest = VectorXd::Zero(q.size());
     chain.update(q, at_rest);
     const int n = layout_.n;

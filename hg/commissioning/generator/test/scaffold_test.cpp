@@ -28,7 +28,7 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
     EXPECT_FALSE(Interval({range.q_min, range.q_max}).contains(0.0)) << i;
     EXPECT_TRUE(Interval({range.q_min, range.q_max}).contains(device.model.posture[i])) << i;
   }
-  model::Chain chain = device.model.chain;
+  model::ChainData chain(device.model.chain);
   EXPECT_GT(dexterity(chain, device.model.handle, 0, device.model.posture), 0.05);
 }
 
@@ -48,7 +48,7 @@ TEST(Scaffold, LeadingPrismaticJointsAreTheGantry) {
 
 TEST(Scaffold, SingularValuesOfTheGiantAreThoseOfItsDeterminant) {
   // [HANDBOOK] 2.4: det J = -L1 L2 L4 sin q2 sin q4 sin(q4 + q5)
-  const model::Chain chain = read_part(kGiant);
+  const model::ChainModel chain = read_part(kGiant);
   const std::vector<Interval> turns(8, Interval{-3.0, 3.0});
   const auto found = singular_values(chain, chain.frame("handle"), 2, turns);
   const auto contains = [&](int joint, int other, double value) {

@@ -31,7 +31,7 @@ TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
     const double sum = device.model.virtual_joints[0].weights.dot(q_m);
     EXPECT_GE(sum, device.model.virtual_joints[0].limits.q_min);
     EXPECT_LE(sum, device.model.virtual_joints[0].limits.q_max);
-    model::Chain chain = device.model.chain;
+    model::ChainData chain(device.model.chain);
     Eigen::VectorXd q = Eigen::VectorXd::Zero(8);
     q.tail(6) = q_m;
     chain.update_poses(q);

@@ -10,9 +10,9 @@
 namespace hg::estimation {
 namespace {
 
-const model::Chain& device_chain() {
-  static const model::Chain chain =
-      model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
+const model::ChainModel& device_chain() {
+  static const model::ChainModel chain =
+      model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
   return chain;
 }
 
@@ -55,11 +55,11 @@ TEST(Estimation, GivesTheWrenchAtTheHandleInBaseCoordinates) {
   config.T_H_S.p = {0.0, 0.0, -0.1};
   config.T_H_S.R = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
   Estimation estimation = make(config);
-  model::Chain chain = device_chain();
+  model::ChainData chain(device_chain());
   Eigen::VectorXd q(8);
   q << 0, 0, home();
   chain.update_kinematics(q, Eigen::VectorXd::Zero(8));
-  const Eigen::Matrix3d R_B_H = chain.pose(chain.frame("handle")).R;
+  const Eigen::Matrix3d R_B_H = chain.pose(chain.model().frame("handle")).R;
 
   const Eigen::Vector3d f_B(5, -3, 2), n_B(0.3, 0.1, -0.2);
   SensorFrame sensors = sensors_at(home());
@@ -152,11 +152,11 @@ TEST(Estimation, TakesOffTheWeightByThePoseOfATurnedSensor) {
   config.wrench.payload = {.mass = 1.18, .com = {0.01, 0.02, 0.03}};
   config.wrench.has_imu = false;
   Estimation estimation = make(config);
-  model::Chain chain = device_chain();
+  model::ChainData chain(device_chain());
   Eigen::VectorXd q(8);
   q << 0, 0, home();
   chain.update_poses(q);
-  const Eigen::Matrix3d R_B_S = chain.pose(chain.frame("handle")).R * config.T_H_S.R;
+  const Eigen::Matrix3d R_B_S = chain.pose(chain.model().frame("handle")).R * config.T_H_S.R;
   SensorFrame sensors = sensors_at(home());
   sensors.w_S =
       payload_wrench(config.wrench.payload, 9.81 * R_B_S.row(2).transpose(), {0, 0, 0}, {0, 0, 0});

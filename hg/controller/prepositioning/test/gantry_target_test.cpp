@@ -20,9 +20,9 @@ constexpr double kNoGoal = std::numeric_limits<double>::quiet_NaN();
 constexpr auto kSolved = model::haptic_giant::InverseStatus::kSolved;
 constexpr double kSame = 1e-6;  // m and rad, what is asked of the numeric target
 
-const model::Chain& haptic_giant() {
-  static const model::Chain chain =
-      model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
+const model::ChainModel& haptic_giant() {
+  static const model::ChainModel chain =
+      model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
   return chain;
 }
 
@@ -126,7 +126,7 @@ TEST(GantryTarget, KeepsTheRangesOfAllJoints) {
   Vector6 q_m;
   q_m << 0.4, 0.9, 0.1, 1.2, 0.2, 0.1;
   const RobotState robot = gantry_at(0.05, -0.1);
-  model::Chain chain = haptic_giant();
+  model::ChainData chain(haptic_giant());
   const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(8);
   Eigen::VectorXd q(8);
   q << robot.q_p, q_m;
@@ -165,7 +165,7 @@ TEST(GantryTarget, FindsAHandAgainThatHasJumped) {
 }
 
 TEST(GantryTarget, WithoutAGantryThereIsNone) {
-  const model::Chain chain = model::Chain::from_urdf_text(
+  const model::ChainModel chain = model::ChainModel::from_urdf_text(
       R"(<robot name="arm"><link name="base"/>
       <joint name="turn" type="revolute"><parent link="base"/><child link="tip"/>
         <axis xyz="0 0 1"/><limit lower="-2" upper="2"/></joint>

@@ -25,7 +25,7 @@ struct Braking : testing::Test {
   }
   // the share that the most loaded motor gives of what it may, when the handle accelerates so
   double load(const Eigen::Vector3d& acceleration) {
-    model::Chain& chain = device.chain;
+    model::ChainData chain(device.chain);
     chain.update(stacked(motion.q_p, motion.q_m), stacked(motion.dq_p, motion.dq_m));
     const Eigen::MatrixXd J = chain.jacobian(device.handle).rightCols(6);
     Vector6 wanted = -chain.bias_acceleration(device.handle);

@@ -292,7 +292,7 @@ class Thrown {
   }
   /// The rows of one cycle.
   Tasks tasks(const Options& options) const {
-    model::Chain device_chain = device.chain, twin_chain = twin.chain;
+    model::ChainData device_chain(device.chain), twin_chain(twin.chain);
     State state = Rendering(device, twin, options).start(kPosture);
     state.reference.dq_m.setConstant(kSpeed);
     Eigen::VectorXd q(8), dq(8);
@@ -332,7 +332,7 @@ class Thrown {
 
   static TwinModel body(const DeviceModel& device) {
     TwinModel twin =
-        unlimited_twin(model::Chain::free_body({.mass = 1.0}, {.gravity = false}), "handle");
+        unlimited_twin(model::ChainModel::free_body({.mass = 1.0}, {.gravity = false}), "handle");
     twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
     return twin;
   }

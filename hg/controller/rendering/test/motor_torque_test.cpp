@@ -74,7 +74,7 @@ struct Pulled {
   }
   static TwinModel body(const DeviceModel& device) {
     TwinModel twin =
-        unlimited_twin(model::Chain::free_body({.mass = 1.0}, {.gravity = false}), "handle");
+        unlimited_twin(model::ChainModel::free_body({.mass = 1.0}, {.gravity = false}), "handle");
     twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
     return twin;
   }

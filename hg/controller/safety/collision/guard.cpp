@@ -14,7 +14,7 @@ constexpr double kAhead = 20.0;     // cycles: bounds that may be used up this s
 constexpr double kClose = 0.05;     // m: smaller bounds are recomputed in every cycle
 constexpr int kHalvings = 16;       // largest number of pending intervals of a path
 
-void check(const Config& config, const model::Chain& chain) {
+void check(const Config& config, const model::ChainModel& chain) {
   const auto require = [](bool holds, const char* rule) {
     if (!holds) throw SetupError(std::string("collision: ") + rule);
   };
@@ -73,7 +73,7 @@ struct Guard::Path {
   }
 };
 
-Guard::Guard(const Config& config, const model::Chain& chain) : config_(config) {
+Guard::Guard(const Config& config, const model::ChainModel& chain) : config_(config) {
   if (config_.pairs.watched.empty()) return;
   check(config_, chain);
   if (config_.pairs.watched.size() > kMaxPairs) {
@@ -85,7 +85,7 @@ Guard::Guard(const Config& config, const model::Chain& chain) : config_(config) 
     distances_.emplace_back(config_.shapes[static_cast<std::size_t>(pair.a)],
                             config_.shapes[static_cast<std::size_t>(pair.b)]);
   }
-  chain_.push_back(chain);
+  chain_.emplace(chain);
 }
 
 std::vector<std::string> pair_names(const Config& config) {
@@ -100,11 +100,10 @@ std::vector<std::string> pair_names(const Config& config) {
 double Guard::distance(int pair, const Path& path, double time) noexcept {
   VectorPM q(path.q.size());
   for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = path.position(i, time);
-  model::Chain& chain = chain_.front();
-  chain.update_poses(q);
+  chain_->update_poses(q);
   const auto pose = [&](int shape) {
     const int frame = config_.shapes[static_cast<std::size_t>(shape)].frame;
-    return frame < 0 ? Pose{} : chain.pose(frame);
+    return frame < 0 ? Pose{} : chain_->pose(frame);
   };
   const auto index = static_cast<std::size_t>(pair);
   return distances_[index](pose(config_.pairs.watched[index].a),

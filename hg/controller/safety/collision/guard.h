@@ -26,6 +26,7 @@
 #include "hg/controller/safety/collision/pairs.h"
 #include "hg/core/fields.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/state.h"
 
 namespace hg::collision {
@@ -77,7 +78,7 @@ class Guard {
  public:
   Guard() = default;
   /// Throws SetupError when too many pairs would have to be watched.
-  Guard(const Config& config, const model::Chain& chain);
+  Guard(const Config& config, const model::ChainModel& chain);
 
   /// Predicts braking from `q` and `dq`. `is_moving` = the device may move autonomously. As long as
   /// it may not, pairs nearer than the safe distance are accepted as they are; afterwards they must
@@ -93,7 +94,7 @@ class Guard {
 
   Config config_;
   std::vector<Distance> distances_;
-  std::vector<model::Chain> chain_;         // one, or none without shapes
+  std::optional<model::ChainData> chain_;   // empty without shapes
   std::array<double, kMaxPairs> fading_{};  // decrease of each bound since the last cycle, m
 };
 

@@ -8,16 +8,16 @@
 
 #include "hg/controller/tracking/joint_control.h"
 #include "hg/core/allocation_counter.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/test/reference_actuators.h"
 
 namespace hg::tracking {
 
 inline constexpr int kGantry = 2, kJoints = 6;
 
-inline const model::Chain& arm() {
-  static const model::Chain chain =
-      model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
+inline const model::ChainModel& arm() {
+  static const model::ChainModel chain =
+      model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
   return chain;
 }
 
@@ -56,7 +56,7 @@ inline Eigen::VectorXd posture(const VectorM& q_m) {
 }
 
 inline MatrixM link_mass(const VectorM& q_m) {
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(q_m), Eigen::VectorXd::Zero(8));
   return chain.M().bottomRightCorner(6, 6);
 }

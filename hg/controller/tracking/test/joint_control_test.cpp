@@ -106,9 +106,9 @@ TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
     robot.w_H[2] = 0.1 * k;
     answer(control, state, reference, robot);
   }
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
-  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.model().frame("handle"));
   const VectorM dtau = -100.0 * J.rightCols(6).row(2).transpose();
   EXPECT_LT(largest(state.dtau_r - dtau), 1e-6 * largest(dtau));
 }
@@ -131,9 +131,9 @@ TEST(ModalControl, AForceThatGrowsIsFedForwardAsItWillBe) {
   const VectorM late = fed_for_growing(config, Vector6::Unit(1));
   config.wrench_lead = 4e-3;
   const VectorM early = fed_for_growing(config, Vector6::Unit(1));
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
-  const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.model().frame("handle"));
   const VectorM in_4_ms = -0.4 * J.rightCols(6).row(1).transpose();
   // along y the weak modes carry nearly everything
   EXPECT_LT(largest(early - late - in_4_ms), 0.05 * largest(in_4_ms));
@@ -157,9 +157,9 @@ TEST(ModalControl, AForceThatWasThereBeforeIsNotLed) {
 
 // A torque about the axis of m6 bends a stiff mode alone.
 TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
-  const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.model().frame("handle"));
   Vector6 torque = Vector6::Zero();
   torque.tail<3>() = J.col(7).tail<3>();
   Config config = frictionless_config();
@@ -379,9 +379,9 @@ TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
   State state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
-  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.model().frame("handle"));
   for (const double side : {-1.0, 1.0}) {
     for (const double load : {0.5, 0.8}) {
       robot.w_H = Vector6::Zero();

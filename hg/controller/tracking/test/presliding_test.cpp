@@ -113,7 +113,7 @@ TEST(Presliding, RemembersFeetOnlyWhereAJointHasIt) {
 TEST(Presliding, NothingIsLearntBeforeAllElementsSlip) {
   Config config = config_with(soft(3));
   config.friction_learning = 1.0;
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
   const VectorM weight = chain.c().tail(6);
   const auto learnt_after = [&](double way) {

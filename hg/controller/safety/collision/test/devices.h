@@ -11,7 +11,7 @@
 namespace hg::collision {
 
 struct TestDevice {
-  model::Chain chain;
+  model::ChainModel chain;
   Config config;
   std::vector<std::string> links_without;
   std::vector<Interval> range;
@@ -36,7 +36,7 @@ inline std::string folding_urdf() {
 }
 
 inline TestDevice device_of(const std::string& urdf_text) {
-  TestDevice device = {.chain = model::Chain::from_urdf_text(urdf_text, "test.urdf"),
+  TestDevice device = {.chain = model::ChainModel::from_urdf_text(urdf_text, "test.urdf"),
                        .config = {},
                        .links_without = {},
                        .range = {}};

@@ -56,7 +56,7 @@ class Judge {
   }
 
   Config config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   Pairs pairs_;
   std::vector<Distance> distances_;
 };
@@ -262,7 +262,7 @@ TEST(Guard, AllocatesNothing) {
 TEST(ReachBounds, BoundEveryPointInEveryPosture) {
   const TestDevice device = device_of(folding_urdf());
   const ReachBounds reach_bounds(device.chain, device.range);
-  model::Chain chain = device.chain;
+  model::ChainData chain(device.chain);
   Wanderer wanderer(device, 15);
   std::vector<double> largest(8, 0.0);
   const Shape& hand = *std::ranges::find(device.config.shapes, "hand", &Shape::name);
