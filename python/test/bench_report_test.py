@@ -1,6 +1,6 @@
 """Tables and figures of a benchmark: percentiles, histograms, exponents, text.
 
-Usage: bench_report_test.py   (from anywhere; needs matplotlib and jinja2, no compiled part)
+Usage: bench_report_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
 import csv

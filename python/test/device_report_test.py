@@ -1,6 +1,6 @@
 """The map of a device's force, and the report of its tuning.
 
-Usage: device_report_test.py   (from anywhere; needs matplotlib and jinja2, no compiled part)
+Usage: device_report_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
 import csv

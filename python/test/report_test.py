@@ -1,6 +1,6 @@
 """Pictures whose legends and labels lie over nothing, whatever the names.
 
-Usage: report_test.py   (from anywhere; needs matplotlib and jinja2, no compiled part)
+Usage: report_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
 import pathlib

@@ -1,6 +1,6 @@
 """Measures, statements and comparisons of runs, on runs whose answers are known.
 
-Usage: runs_test.py   (from anywhere; needs matplotlib and jinja2, no compiled part)
+Usage: runs_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
 import contextlib

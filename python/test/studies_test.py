@@ -1,6 +1,6 @@
 """Tables and pictures of studies and of computing times.
 
-Usage: studies_test.py   (from anywhere; needs matplotlib and jinja2, no compiled part)
+Usage: studies_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
 import contextlib

@@ -141,7 +141,7 @@ class Check(unittest.TestCase):
             code, out, err = check(DEVICE, "--map", file)
         self.assertEqual(code, 2)
         self.assertIn("HapticGiant: datasheet", out)
-        self.assertIn("needs matplotlib and jinja2; tools/setup.sh build", err)
+        self.assertIn("needs scipy, matplotlib and jinja2; tools/setup.sh build", err)
         self.assertFalse(file.exists())
 
     def test_bad_arguments(self):

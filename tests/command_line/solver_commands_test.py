@@ -95,7 +95,7 @@ class Bench(TemporaryFolder):
         with unittest.mock.patch.dict(os.environ, HAPTICGIANT_PYTHON="/bin/false-no-such-python"):
             code, out, err = run("bench", "door", "--out", self.folder / "none")
         self.assertEqual((code, out), (2, ""))
-        self.assertIn("needs matplotlib and jinja2; tools/setup.sh build", err)
+        self.assertIn("needs scipy, matplotlib and jinja2; tools/setup.sh build", err)
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_a_missing_event_is_1(self):

@@ -65,7 +65,7 @@ class Tune(TemporaryFolder):
         with unittest.mock.patch.dict(os.environ, HAPTICGIANT_PYTHON="/bin/false-no-such-python"):
             code, told, err = run("tune", "--out", self.folder / "none")
         self.assertEqual((code, told), (2, ""))
-        self.assertIn("needs matplotlib and jinja2; tools/setup.sh build", err)
+        self.assertIn("needs scipy, matplotlib and jinja2; tools/setup.sh build", err)
         self.assertFalse((self.folder / "none").exists())
 
     def test_what_cannot_be_tuned_is_refused_in_one_line(self):
