@@ -8,16 +8,10 @@ import json
 import math
 import pathlib
 import random
-import sys
 import tempfile
-import types
 import unittest
 
-PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "hapticgiant"
-if "hapticgiant" not in sys.modules:  # its own __init__ would need its compiled part
-    sys.modules["hapticgiant"] = types.ModuleType("hapticgiant")
-    sys.modules["hapticgiant"].__path__ = [str(PACKAGE)]
-from hapticgiant.report import benchmark, goals, haptify, measures, surfaces  # noqa: E402
+from hapticgiant.report import benchmark, goals, haptify, measures, surfaces
 
 BODY, LIGHT = {"mass": 6.0, "damping": 4.0}, {"mass": 3.0, "damping": 2.0}
 FREE_SPACE = {"force": 0.9, "own_share": 0.8, "extra": 0.13, "speed_rms": 0.2, "path": 12.0,

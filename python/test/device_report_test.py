@@ -8,7 +8,6 @@ import json
 import pathlib
 import sys
 import tempfile
-import types
 import unittest
 import xml.etree.ElementTree
 
@@ -16,14 +15,10 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "hapticgiant"
-if "hapticgiant" not in sys.modules:  # its own __init__ would need its compiled part
-    sys.modules["hapticgiant"] = types.ModuleType("hapticgiant")
-    sys.modules["hapticgiant"].__path__ = [str(PACKAGE)]
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from hapticgiant.figures import SETTINGS  # noqa: E402
-from hapticgiant.report import capability, tuning  # noqa: E402
-from report_test import overlapping  # noqa: E402
+from hapticgiant.figures import SETTINGS
+from hapticgiant.report import capability, tuning
+from report_test import overlapping
 
 
 def reached(**more):

@@ -4,15 +4,9 @@ Usage: faults_report_test.py   (from anywhere; no compiled part)
 """
 
 import pathlib
-import sys
-import types
 import unittest
 
-PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "hapticgiant"
-if "hapticgiant" not in sys.modules:  # its own __init__ would need its compiled part
-    sys.modules["hapticgiant"] = types.ModuleType("hapticgiant")
-    sys.modules["hapticgiant"].__path__ = [str(PACKAGE)]
-from hapticgiant.report import columns, faults, process_faults  # noqa: E402
+from hapticgiant.report import columns, faults, process_faults
 
 
 def case(outcome="noticed", **more):

@@ -4,8 +4,6 @@ Usage: report_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no c
 """
 
 import pathlib
-import sys
-import types
 import unittest
 
 import matplotlib
@@ -13,12 +11,8 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "hapticgiant"
-if "hapticgiant" not in sys.modules:  # its own __init__ would need its compiled part
-    sys.modules["hapticgiant"] = types.ModuleType("hapticgiant")
-    sys.modules["hapticgiant"].__path__ = [str(PACKAGE)]
-from hapticgiant import figures  # noqa: E402
-from hapticgiant.report import haptify, pictures  # noqa: E402
+from hapticgiant import figures
+from hapticgiant.report import haptify, pictures
 
 JOINTS = [f"left_shoulder_elevation_{number}" for number in range(8)]  # 25 characters
 
