@@ -1,23 +1,15 @@
 """Figures of runs, as the paper draws them.
 
-    python -m hapticgiant.figures OUT FOLDER...
-
-Each folder holds run.json and signals.npy, which `hapticgiant experiment` and `hapticgiant plot`
-write. Draws OUT/figure.svg and OUT/figure.png; several runs are drawn over each other. The same
-data gives the same files. Needs numpy and matplotlib, not the compiled part of this package.
+draw() takes folders with run.json and signals.npy, which `hapticgiant experiment` and
+`hapticgiant plot` write. Several runs are drawn over each other. The same data gives the same
+files. Needs numpy and matplotlib, not the compiled part of this package.
 """
 
-import json
 import pathlib
 import re
-import sys
 
-try:
-    import numpy as np
-except ImportError:
-    np = None
+import numpy as np
 
-NO_MATPLOTLIB = 69  # exit code
 WIDTH = 7.2  # inches: both columns of a paper
 LEGEND_ROW = 0.17  # inches, of the height that a row adds to a panel
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c564b")
@@ -449,27 +441,5 @@ def save(out, paint):
 
 def draw(out, folders):
     """Draws the runs of `folders` over each other into `out`."""
-    facts = json.loads((pathlib.Path(folders[0]) / "run.json").read_text())
-    if facts["kind"] == "tuning":
-        save(out, lambda figure: tuning(figure, facts))
-    else:
-        runs = [Run.load(folder) for folder in folders[:len(STYLES)]]
-        save(out, lambda figure: draw_runs(figure, runs))
-
-
-def main(arguments):
-    if len(arguments) < 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        return NO_MATPLOTLIB
-    if np is None:
-        return NO_MATPLOTLIB
-    draw(arguments[0], arguments[1:])
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    runs = [Run.load(folder) for folder in folders[:len(STYLES)]]
+    save(out, lambda figure: draw_runs(figure, runs))

@@ -6,7 +6,7 @@ Usage: faults_report_test.py   (from anywhere; no compiled part)
 import pathlib
 import unittest
 
-from hapticgiant.report import columns, faults, process_faults
+from hapticgiant.report import faults, process_faults, tables
 
 
 def case(outcome="noticed", **more):
@@ -94,8 +94,8 @@ class ProcessFaults(unittest.TestCase):
 class Columns(unittest.TestCase):
     def test_columns_are_aligned(self):
         rows = [["name", "n"], ["a", "1"], ["longer", "100"]]
-        self.assertEqual(columns.aligned(rows), "name      n\na         1\nlonger  100\n")
-        self.assertEqual(columns.markdown(rows), "| name   |   n |\n| ------ | --: |\n"
+        self.assertEqual(tables.as_text(rows), "name      n\na         1\nlonger  100\n")
+        self.assertEqual(tables.aligned_markdown(rows), "| name   |   n |\n| ------ | --: |\n"
                                                  "| a      |   1 |\n| longer | 100 |\n")
 
 

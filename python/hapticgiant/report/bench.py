@@ -6,7 +6,7 @@ import matplotlib
 import numpy as np
 
 from ..figures import COLOURS, SETTINGS
-from . import columns, pictures, tables
+from . import pictures, tables
 
 ENOUGH_FOR_TAIL = 1000  # times: with fewer, the 99.9th percentile would be the largest
 BINS_PER_DECADE = 20
@@ -250,7 +250,7 @@ def solver_table(rows):
             number(row["max_us"], 2), number(row["active_sets_tried"], 2), str(row["failed"]),
             "-" if row["wrong"] is None else str(row["wrong"]),
             "" if factor is None else f"{factor:.{1 if factor < 10 else 0}f} x"])
-    return columns.markdown(table, left=(0, 4))
+    return tables.aligned_markdown(table, left=(0, 4))
 
 
 def cycle_table(rows):
@@ -265,7 +265,7 @@ def cycle_table(rows):
                       *(number(row[key], 2)
                         for key in ("median_us", "p99_9_us", "max_us", "mean_us")),
                       f"{100.0 * row['mean_us'] / whole if whole else 0.0:.0f} %"])
-    return columns.markdown(table, left=(0, 1))
+    return tables.aligned_markdown(table, left=(0, 1))
 
 
 def growth_table(rows, exponents):
@@ -274,7 +274,7 @@ def growth_table(rows, exponents):
     table = [head] + [[value if isinstance(value, str) else
                        str(value) if isinstance(value, int) else number(value, 1)
                        for value in row.values()] for row in rows]
-    return columns.markdown(table, left=()) + "".join(
+    return tables.aligned_markdown(table, left=()) + "".join(
         f"\nmedian ~ {it['with']}^k at {it['at']}: k = {it['cold']:.2f} cold, {it['warm']:.2f} warm\n"
         for it in exponents)
 
@@ -303,7 +303,7 @@ def law_table(rows, results):
         found += [f"{run['unsolved']} cycles not solved"] if run["unsolved"] else []
         troubles += [f"\n**{row['scenario']}, {row['law']}, {row['bounds']}: {it}**\n"
                      for it in found]
-    return columns.markdown(table, left=(0, 1, 2, 8)) + "".join(troubles)
+    return tables.aligned_markdown(table, left=(0, 1, 2, 8)) + "".join(troubles)
 
 
 def only_first(most, what):

@@ -4,7 +4,7 @@ import collections
 import json
 import statistics
 
-from . import columns, tables
+from . import tables
 
 HEAD = ["fault", "cases", "noticed", "harmless", "unnoticed", "noticed ms", "at rest ms", "stop",
         "N", "outside", "way %", "J", "most often"]
@@ -83,7 +83,7 @@ def text(results):
     """For a terminal: the table, and the cases that failed."""
     failed = [case_text(number, case) for number, case in enumerate(results["cases"])
               if not case["passed"]]
-    return "".join([columns.aligned(table_of(results), left=(0, 7, 12)), "\n", LEGEND, "\n",
+    return "".join([tables.as_text(table_of(results), left=(0, 7, 12)), "\n", LEGEND, "\n",
                     *failed, verdict(results), "\n"])
 
 

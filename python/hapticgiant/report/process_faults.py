@@ -2,7 +2,7 @@
 
 import json
 
-from . import columns
+from . import tables
 
 LEGEND = (
     "at rest: from the stop (SIGTERM 0.3 s after the fault; the fault itself where the controller "
@@ -24,7 +24,7 @@ def text(results):
     head = ["fault", "scenario", "at rest ms", "way %", "J", "exit", "lived", "recorded",
             "what goes wrong"]
     bad = sum(not case["passed"] for case in cases)
-    return (columns.aligned([head, *map(row_of, cases)], left=(0, 1, 8)) + f"\n{LEGEND}\n"
+    return (tables.as_text([head, *map(row_of, cases)], left=(0, 1, 8)) + f"\n{LEGEND}\n"
             f"{bad} of {len(cases)} cases moved an axis farther than its stopping distance, did "
             "not come to rest, did not end, or lost more of\ntheir recording than its last "
             "second\n")

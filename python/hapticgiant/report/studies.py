@@ -86,7 +86,7 @@ def contact(folder, results, docs):
     verdict = ("! above the permissible value of ISO/TS 15066. Cases above one of them: "
                f"{without} of {len(cases)} without compliance, {with_it} with it.\n")
     seeds = f"orst of seeds 1 to {results['seeds']}"
-    print(f"{tables.as_text(rows, left=2)}\nw{seeds}; off / on: without and with compliance\n{verdict}",
+    print(f"{tables.as_text(rows, left=range(2))}\nw{seeds}; off / on: without and with compliance\n{verdict}",
           end="")
     if docs:
         with matplotlib.rc_context(SETTINGS):
@@ -126,7 +126,7 @@ def inertial_rows(runs):
 
 
 def inertial(folder, results, docs):
-    print(tables.as_text(INERTIAL_HEAD + inertial_rows(results["runs"]), left=3), end="")
+    print(tables.as_text(INERTIAL_HEAD + inertial_rows(results["runs"]), left=range(3)), end="")
     for run in results["runs"]:
         if run["fault"]:
             print(f"{run['scenario']}, {run['units']}, seed {run['seed']}: fault {run['fault']} "
@@ -184,7 +184,7 @@ def seeds(folder, results, docs):
     trials = trials_of(results["runs"])
     rows = [SEEDS_HEAD, *map(seeds_row, trials)]
     faults = "".join(fault_lines(trials))
-    print(f"{tables.as_text(rows, left=len(SEEDS_HEAD))}\nmedian / worst over the seeds; held: no "
+    print(f"{tables.as_text(rows, left=range(len(SEEDS_HEAD)))}\nmedian / worst over the seeds; held: no "
           f"fault, and no limit left by more than 2 mrad or 1 mm in truth\n{faults}", end="")
     pages.save(folder / "seeds.md", "# What scenarios show over seeds\n\n" + tables.markdown(rows)
                + (f"\n{faults}" if faults else ""))

@@ -15,12 +15,29 @@ def as_csv(rows):
     return text.getvalue()
 
 
-def as_text(rows, left=1):
-    """Aligned for a terminal; the first `left` columns to the left, the others to the right."""
-    widths = [max(map(len, column)) for column in zip(*rows)]
-    return "".join("  ".join(cell.ljust(width) if number < left else cell.rjust(width)
-                             for number, (cell, width) in enumerate(zip(row, widths))).rstrip() + "\n"
-                   for row in rows)
+def widths_of(rows):
+    return [max(map(len, column)) for column in zip(*rows)]
+
+
+def padded(row, widths, left):
+    return [cell.ljust(width) if index in left else cell.rjust(width)
+            for index, (cell, width) in enumerate(zip(row, widths))]
+
+
+def as_text(rows, left=(0,)):
+    """Aligned for a terminal; columns whose index is in `left` to the left, the others to the
+    right."""
+    widths = widths_of(rows)
+    return "".join("  ".join(padded(row, widths, left)).rstrip() + "\n" for row in rows)
+
+
+def aligned_markdown(rows, left=(0,)):
+    """A Markdown table that can be read as it is; `left` as for as_text()."""
+    widths = [max(width, 3) for width in widths_of(rows)]
+    rule = ["-" * width if index in left else "-" * (width - 1) + ":"
+            for index, width in enumerate(widths)]
+    return "".join(f"| {' | '.join(padded(row, widths, left))} |\n"
+                   for row in [rows[0], rule, *rows[1:]])
 
 
 def number(value):

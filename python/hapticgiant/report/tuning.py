@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..figures import COLOURS, SETTINGS, STYLES, WIDTH
-from . import columns, tables
+from . import tables
 
 # key, name, unit, digits, factor of the unit
 FIGURES = (
@@ -60,7 +60,7 @@ def yaml_of(results):
 def check_text(results):
     """For a terminal: only what the device has now."""
     before = results["before"]
-    return (columns.aligned(rows_of(results, [before]))
+    return (tables.as_text(rows_of(results, [before]))
             + f"\nproof       holds in {results['held_before']} of {results['postures']} postures; "
             f"{worst_of(before)}\n")
 
@@ -68,7 +68,7 @@ def check_text(results):
 def text(results):
     """For a terminal: before and after, and the lines for device.yaml."""
     before, after = results["before"], results["front"][0]
-    parts = [columns.aligned([["", "now", "tuned"], *rows_of(results, [before, after])]),
+    parts = [tables.as_text([["", "now", "tuned"], *rows_of(results, [before, after])]),
              f"\nproof       {results['cases']} cases in {results['postures']} postures; "
              f"{worst_of(after)}\n"]
     if not before["is_proven"]:
