@@ -11,7 +11,6 @@
 #include <optional>
 #include <utility>
 
-#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/report.h"

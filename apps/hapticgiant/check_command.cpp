@@ -12,7 +12,6 @@
 #include <optional>
 
 #include "apps/hapticgiant/check_report.h"
-#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/report.h"
 #include "hg/commissioning/checks/capability_map.h"

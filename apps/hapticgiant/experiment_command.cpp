@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/experiments/paper_experiment_command.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
@@ -113,9 +113,8 @@ int report(nlohmann::ordered_json results, const std::string& kind, const std::s
   results["kind"] = kind;
   const ScratchFolder scratch;
   const std::filesystem::path folder = scratch.path();
-  write_output((folder / "results.json").string(), results.dump() + "\n");
   try {
-    const int code = write_report(folder, docs);
+    const int code = report_on(folder, results, docs);
     if (!file.empty()) write_output(file, read_file(folder / name));
     return code;
   } catch (const SetupError& error) {

@@ -8,10 +8,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
@@ -62,7 +62,8 @@ haptify::Benchmark measure_all(const HaptifyArguments& arguments) {
   return haptify::measure(scenario, arguments.options, tell);
 }
 
-nlohmann::json results_json(const HaptifyArguments& arguments, const haptify::Benchmark& measured) {
+nlohmann::ordered_json results_json(const HaptifyArguments& arguments,
+                                    const haptify::Benchmark& measured) {
   const haptify::Options& options = arguments.options;
   return {{"kind", arguments.only_goals ? "goals" : "haptify"},
           {"version", kVersion},
@@ -87,9 +88,7 @@ int run_haptify(const HaptifyArguments& arguments) {
       kVersion));
   const haptify::Benchmark measured =
       arguments.only_goals ? measure_goals(arguments) : measure_all(arguments);
-  write_output((folder / "results.json").string(), results_json(arguments, measured).dump() + "\n");
-  write_report(folder, arguments.docs);
-  print_out(read_file(folder / "report.txt"));
+  print_out(report_text(folder, results_json(arguments, measured), "report.txt", arguments.docs));
   print_out(fmt::format("\nreport      {}\n",
                         (folder / (arguments.only_goals ? "goals.md" : "report.html")).string()));
   return measured.has_failures ? 1 : 0;

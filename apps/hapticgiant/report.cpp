@@ -1,17 +1,134 @@
 #include "apps/hapticgiant/report.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "apps/hapticgiant/experiments/figure_program.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
+#include "hg/config/shipped_files.h"
+#include "hg/core/error.h"
 #include "hg/core/open_file.h"
 
 namespace hg::apps {
+namespace {
 
-std::string report_text(const std::filesystem::path& folder, const nlohmann::ordered_json& results,
-                        const char* name) {
+namespace fs = std::filesystem;
+
+// exit codes of the report program: a library is missing; its verdict is this plus 1 or 3
+constexpr int kMissing = 69, kVerdict = 100, kLargestVerdict = 3;
+constexpr int kNotStarted = 127;
+
+struct Ended {
+  int code = kNotStarted;  ///< exit code; -1: a signal
+  std::string said;
+};
+
+std::string interpreter(const fs::path& root) {
+  if (const char* chosen = std::getenv("HAPTICGIANT_PYTHON")) {
+    const std::string name = chosen;
+    return name.find('/') == std::string::npos ? name : fs::absolute(name).string();
+  }
+  const fs::path own = root / ".venv" / "bin" / "python";
+  std::error_code error;
+  return !root.empty() && fs::exists(own, error) ? own.string() : "python3";
+}
+
+// Everything that comes from a descriptor until it closes.
+std::string read_all(int descriptor) {
+  std::string text;
+  char part[4096];
+  for (;;) {
+    const ssize_t count = read(descriptor, part, sizeof part);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(part, static_cast<std::size_t>(count));
+  }
+}
+
+// It starts in the root folder: Python would take modules from the working directory.
+Ended run_program(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return {};
+  const OpenFile output(ends[0]);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  posix_spawn_file_actions_addchdir_np(&actions, "/");
+  pid_t child = 0;
+  const int error =
+      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (error != 0) return {};
+  Ended ended = {.code = -1, .said = read_all(output.descriptor())};
+  int status = 0;
+  if (waitpid(child, &status, 0) == child && WIFEXITED(status)) ended.code = WEXITSTATUS(status);
+  return ended;
+}
+
+// Words that start python/hapticgiant/report, or its module where the package is installed.
+std::vector<std::string> report_program() {
+  const fs::path home = config::installation_root();
+  const fs::path script = home / "python" / "hapticgiant" / "report";
+  std::error_code error;
+  std::vector<std::string> words = {interpreter(home), "-B"};
+  if (!home.empty() && fs::exists(script, error)) {
+    words.push_back(script.string());
+  } else {
+    words.insert(words.end(), {"-m", "hapticgiant.report"});
+  }
+  return words;
+}
+
+[[noreturn]] void refuse(const std::string& interpreter) {
+  throw SetupError(fmt::format(
+      "{} cannot write the report: it needs scipy, matplotlib and jinja2; tools/setup.sh build, or "
+      "pip install scipy matplotlib jinja2, then the same command again",
+      interpreter));
+}
+
+}  // namespace
+
+void check_report_program() {
+  std::vector<std::string> words = report_program();
+  words.emplace_back("--check");
+  if (run_program(words).code != 0) refuse(words[0]);
+}
+
+int write_report(const fs::path& folder, const std::string& docs,
+                 const std::vector<fs::path>& runs) {
+  std::vector<std::string> words = report_program();
+  words.push_back(fs::absolute(folder).string());
+  for (const fs::path& run : runs) words.push_back(fs::absolute(run).string());
+  if (!docs.empty()) words.insert(words.end(), {"--docs", fs::absolute(docs).string()});
+  const auto [code, said] = run_program(words);
+  if (code == kNotStarted || code == kMissing) refuse(words[0]);
+  print_out(said);
+  if (code == 0) return 0;
+  if (code > kVerdict && code <= kVerdict + kLargestVerdict) return code - kVerdict;
+  throw SetupError(fmt::format("{}: no report: {} ended with {}", folder.string(), words[2], code));
+}
+
+int report_on(const fs::path& folder, const nlohmann::ordered_json& results,
+              const std::string& docs) {
   write_output((folder / "results.json").string(), results.dump() + "\n");
-  write_report(folder, "");
+  return write_report(folder, docs);
+}
+
+std::string report_text(const fs::path& folder, const nlohmann::ordered_json& results,
+                        const char* name, const std::string& docs) {
+  report_on(folder, results, docs);
   return read_file(folder / name);
 }
 

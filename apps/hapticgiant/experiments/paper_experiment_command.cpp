@@ -11,10 +11,10 @@
 #include <string_view>
 
 #include "apps/hapticgiant/experiments/experiment_run.h"
-#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/hapticgiant/experiments/figure_program.h"
 #include "apps/hapticgiant/experiments/run_data.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "hg/analysis/summary.h"
 #include "hg/core/error.h"
