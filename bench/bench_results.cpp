@@ -31,14 +31,6 @@ ordered_json json_of(const SolverSet& set) {
           {"runs", runs}};
 }
 
-ordered_json json_of(const CycleTimes& times) {
-  ordered_json stages = ordered_json::object();
-  for (int i = 0; i < kStageCount; ++i) {
-    stages[to_string(static_cast<Stage>(i))] = ns_of(times.stages[index(i)]);
-  }
-  return {{"scenario", times.scenario}, {"total", ns_of(times.total)}, {"stages", stages}};
-}
-
 ordered_json json_of(const GrowthRow& row) {
   return {{"variables", row.variables},
           {"levels", row.levels},
@@ -81,6 +73,14 @@ ordered_json json_of(const std::vector<Item>& items) {
 }
 
 }  // namespace
+
+ordered_json json_of(const CycleTimes& times) {
+  ordered_json stages = ordered_json::object();
+  for (int i = 0; i < kStageCount; ++i) {
+    stages[to_string(static_cast<Stage>(i))] = ns_of(times.stages[index(i)]);
+  }
+  return {{"scenario", times.scenario}, {"total", ns_of(times.total)}, {"stages", stages}};
+}
 
 ordered_json to_json(const BenchResults& results) {
   return {{"kind", "bench"},

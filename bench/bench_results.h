@@ -25,6 +25,9 @@ struct BenchResults {
   std::vector<LawRun> laws;
 };
 
+/// Times of the cycles of a scenario and of their stages, lists of whole nanoseconds.
+nlohmann::ordered_json json_of(const CycleTimes& times);
+
 /// All results; times are lists of whole nanoseconds.
 nlohmann::ordered_json to_json(const BenchResults& results);
 

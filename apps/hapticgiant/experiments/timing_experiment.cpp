@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +12,7 @@
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
+#include "bench/bench_results.h"
 #include "bench/cycle_table.h"
 #include "bench/machine.h"
 #include "hg/core/error.h"
@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kPasses = 2;
 
-// Computing times of one law at one rate, with their histogram.
+// Computing times of one law at one rate.
 Json measure(const PaperExperimentArguments& arguments, const std::string& law, double rate_Hz) {
   RunArguments run;
   run.world.scenario = "free_space";  // of the Cartesian experiment
@@ -38,20 +38,9 @@ Json measure(const PaperExperimentArguments& arguments, const std::string& law, 
   if (isatty(STDERR_FILENO) != 0) draw_error(fmt::format("law {}, {:.0f} Hz ...", law, rate_Hz));
   const bench::CycleTimes times =
       bench::measure_cycle(scenario.title, scenario, kPasses, std::size_t{1} << 40U);
-  const analysis::Distribution all = times.total.distribution();
-  Json row = {{"law", law},
-              {"rate_Hz", rate_Hz},
-              {"cycles", times.total.count()},
-              {"mean_us", times.total.mean()},
-              {"median_us", all.median},
-              {"p99_9_us", std::isnan(all.p99_9) ? Json() : Json(all.p99_9)},
-              {"max_us", all.max}};
-  for (const bench::Times& stage : times.stages) row["stage_means_us"].push_back(stage.mean());
-  row["solver_us"] = times.stages[static_cast<std::size_t>(Stage::kSolver)].mean();
-  row["bins"] = Json::array();
-  for (const bench::Bin& bin : bench::histogram(times.total)) {
-    row["bins"].push_back({bin.low, bin.high, bin.count});
-  }
+  Json row = bench::json_of(times);
+  row["law"] = law;
+  row["rate_Hz"] = rate_Hz;
   return row;
 }
 
@@ -83,7 +72,7 @@ int timing_experiment(const PaperExperimentArguments& arguments) {
     }
   }
   if (isatty(STDERR_FILENO) != 0) draw_error("");
-  write_output((folder / "results.json").string(), results.dump(2) + "\n");
+  write_output((folder / "results.json").string(), results.dump() + "\n");
   return report_on_folder(folder.string(), arguments.docs);
 }
 

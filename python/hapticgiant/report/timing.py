@@ -3,7 +3,7 @@
 import json
 
 from .. import figures
-from . import pages, tables
+from . import bench, pages, tables
 
 TITLE = "Computing time of a cycle"
 # [HG] VII-A: Intel Core i5-8600, 1 kHz, QuadProg++ below a cascade of problems
@@ -15,49 +15,53 @@ HOW = ("Each cycle of the Cartesian experiment is played twice and its faster ti
        "1003 us, is a matter of the system: see hapticgiant doctor.")
 
 
-def us(value, digits):
-    return "-" if value is None else f"{value:.{digits}f}"
-
-
-def solver_percent(row):
-    return 100.0 * row["solver_us"] / sum(row["stage_means_us"])
+def with_times(row):
+    """A row of results.json with its times in us and its histogram."""
+    stages = {name: bench.mean(ns) for name, ns in row["stages"].items()}
+    edges, counts = bench.histogram(row["total"])
+    return row | bench.distribution(row["total"]) | {
+        "cycles": len(row["total"]), "mean_us": bench.mean(row["total"]),
+        "solver_percent": 100.0 * stages["solver"] / sum(stages.values()),
+        "edges_us": edges.tolist(), "counts": counts.tolist()}
 
 
 def rows_of(results):
     mean, tail, most = PAPER_US.values()
     return [["", "rate Hz", "mean us", "99.9 % us", "max us", "solver's share", "mean / period"],
-            ["paper (Intel Core i5-8600)", "1000", us(mean, 0), us(tail, 0), us(most, 0),
+            ["paper (Intel Core i5-8600)", "1000", f"{mean:.0f}", f"{tail:.0f}", f"{most:.0f}",
              f"{PAPER_SOLVER_PERCENT:.1f} %", f"{0.1 * mean:.1f} %"]] + [
-        [f"ours, law {row['law']}", f"{row['rate_Hz']:.0f}", us(row["mean_us"], 1),
-         us(row["p99_9_us"], 1), us(row["max_us"], 1), f"{solver_percent(row):.1f} %",
+        [f"ours, law {row['law']}", f"{row['rate_Hz']:.0f}", bench.number(row["mean_us"], 1),
+         bench.number(row["p99_9_us"], 1), bench.number(row["max_us"], 1),
+         f"{row['solver_percent']:.1f} %",
          f"{1e-4 * row['mean_us'] * row['rate_Hz']:.1f} %"] for row in results["rows"]]
 
 
 def as_csv(results):
     keys = ("mean_us", "median_us", "p99_9_us", "max_us")
     return tables.as_csv([["law", "rate_Hz", "cycles", *keys, "solver_percent"]] + [
-        [row["law"], f"{row['rate_Hz']:g}", str(row["cycles"]), *(us(row[key], 3) for key in keys),
-         f"{solver_percent(row):.2f}"] for row in results["rows"]])
+        [row["law"], f"{row['rate_Hz']:g}", str(row["cycles"]),
+         *(bench.number(row[key], 3) for key in keys), f"{row['solver_percent']:.2f}"] for row in results["rows"]])
 
 
 def histogram_csv(results):
     return tables.as_csv([["law", "rate_Hz", "from_us", "to_us", "cycles"]] + [
         [row["law"], f"{row['rate_Hz']:g}", f"{low:.4g}", f"{high:.4g}", str(count)]
-        for row in results["rows"] for low, high, count in row["bins"]])
+        for row in results["rows"]
+        for low, high, count in zip(row["edges_us"], row["edges_us"][1:], row["counts"])])
 
 
 def figure_facts(results):
     series = []
     for row in results["rows"]:
-        edges = [low for low, _, _ in row["bins"]] + [row["bins"][-1][1]]
-        shares = [100.0 * count / row["cycles"] for _, _, count in row["bins"]] + [0.0]
+        shares = [100.0 * count / row["cycles"] for count in row["counts"]] + [0.0]
         series.append({"name": f"law {row['law']}, {1e-3 * row['rate_Hz']:g} kHz",
-                       "from_us": edges, "share_percent": shares})
+                       "from_us": row["edges_us"], "share_percent": shares})
     return {"has_two_laws": results["has_two_laws"], "paper_us": PAPER_US, "series": series}
 
 
 def write(folder, docs=None):
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    results["rows"] = [with_times(row) for row in results["rows"]]
     rows, machine = rows_of(results), results["machine"]
     print(tables.markdown(rows))
     pages.save(folder / "timing.csv", as_csv(results))
