@@ -12,7 +12,4 @@ std::string in_quotes(std::string_view text);
 /// The shortest decimal number that reads back to the same value.
 std::string to_text(double value);
 
-/// The text with the characters &, < and > escaped, for XML and HTML outside of attributes.
-std::string escaped(std::string_view text);
-
 }  // namespace hg

@@ -12,8 +12,6 @@ TEST(Text, NumbersReadBackToTheSameValue) {
   EXPECT_EQ(to_text(0.1), "0.1");
 }
 
-TEST(Text, MarkupIsEscaped) { EXPECT_EQ(escaped("a < b & c > d"), "a &lt; b &amp; c &gt; d"); }
-
 TEST(Text, QuotesAreSingle) { EXPECT_EQ(in_quotes("m1"), "'m1'"); }
 
 }  // namespace
