@@ -71,6 +71,7 @@ json as_json(const ForceResponse& response) {
 void add_transparency(const Group& group) {
   const ResponseConfig config = config_of(group.options, ResponseConfig{}.frequency_Hz);
   std::vector<Play> plays;
+  plays.reserve(kAxes);
   for (int axis = 0; axis < kAxes; ++axis) {
     plays.push_back({{{"axis", axis}}, [&, axis] {
                        return as_json(
@@ -84,6 +85,7 @@ void add_force_response(const Group& group) {
   ResponseConfig config = config_of(group.options, ResponseConfig{}.frequency_Hz);
   std::erase_if(config.frequency_Hz, [](double frequency) { return frequency < 0.5; });
   std::vector<Play> plays;
+  plays.reserve(kAxes);
   for (int axis = 0; axis < kAxes; ++axis) {
     plays.push_back(
         {{{"axis", axis}}, [&, axis] {
