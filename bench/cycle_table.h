@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bench/times.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/stage_probe.h"
 
 namespace hg::bench {

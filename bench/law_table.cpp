@@ -66,7 +66,7 @@ class Observer {
     }
     last_acceleration_ = record.a_H;
     ++run_.cycles;
-    run_.duration_s += scenario_.device.rendering.dt;
+    run_.duration_s += scenario_.device.model.dt();
   }
 
   const config::Scenario& scenario_;

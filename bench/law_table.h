@@ -6,7 +6,7 @@
 
 #include "bench/times.h"
 #include "hg/analysis/summary.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 namespace hg::bench {
 

@@ -1,7 +1,7 @@
 /// The player of experiments, for measurements of laws.
 #pragma once
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/player.h"
 
 namespace hg::bench {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 namespace hg::bench {
 

@@ -3,11 +3,12 @@
 #
 # Everything but what only the program needs.
 set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning tracking safety
-  controller device simulator runtime analysis config scenario)
+  controller device udp runtime config simulator analysis simulation scenario)
 # folders and headers that only their own module includes; Eigen or YAML show in them
 set(HG_PRIVATE_FOLDERS hg/hqp/solver)
 set(HG_PRIVATE_HEADERS
-  "/config/(.*schema|loader)[.]h$")
+  "/config/(.*schema|loader)[.]h$"
+  "/model/chain_parts[.]h$")
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)

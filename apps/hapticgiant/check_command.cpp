@@ -22,9 +22,9 @@
 #include "hg/commissioning/checks/twin_inspection.h"
 #include "hg/config/device.h"
 #include "hg/config/file_kind.h"
-#include "hg/config/scenario.h"
-#include "hg/config/script.h"
-#include "hg/config/simulation.h"
+#include "hg/config/simulation/scenario.h"
+#include "hg/config/simulation/script.h"
+#include "hg/config/simulation/simulation.h"
 #include "hg/config/tool.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"
@@ -39,7 +39,7 @@ using config::FileKind;
 // Everything that could be loaded, and what was found on the way.
 struct Check {
   CheckReport report;
-  std::list<config::Device> devices;
+  std::list<config::SimulatedDevice> devices;
   std::list<config::Twin> twins;
   std::list<config::Scenario> scenarios;
   std::vector<std::string> scripts;
@@ -72,7 +72,7 @@ void load(const std::string& file, Check& check) {
   try_to(file, check, [&] {
     switch (kind) {
       case FileKind::kDevice:
-        check.devices.push_back(config::load_device(file));
+        check.devices.push_back(config::load_simulated_device(file));
         break;
       case FileKind::kTwin:
         check.twins.push_back(config::load_twin(file));
@@ -107,7 +107,8 @@ Findings script_findings(const std::string& file, const rendering::TwinModel& tw
 // A script is made for one twin: for one of those at hand, or for a body that moves freely.
 void check_scripts(Check& check) {
   for (const std::string& file : check.scripts) {
-    Findings fewest = script_findings(file, {.chain = model::Chain::free_body({}), .q_start = {}});
+    Findings fewest =
+        script_findings(file, {.chain = model::ChainModel::free_body({}), .q_start = {}});
     const auto try_twin = [&](const config::Twin& twin) {
       const Findings findings = script_findings(file, twin.model);
       if (findings.size() < fewest.size()) fewest = findings;
@@ -146,15 +147,15 @@ void draw_map(const std::string& file, const Check& check) {
 
 void check_twins(Check& check) {
   constexpr double kUsualPeriod = 1e-3;  // s, where no device is given
-  const double dt = check.devices.empty() ? kUsualPeriod : check.devices.front().rendering.dt;
+  const double dt = check.devices.empty() ? kUsualPeriod : check.devices.front().model.dt();
   for (const config::Twin& twin : check.twins) {
     add(checks::inspect(twin, dt), check);
-    for (const config::Device& device : check.devices) {
+    for (const config::SimulatedDevice& device : check.devices) {
       add(checks::inspect(device, twin), check);
     }
   }
   for (const config::Scenario& scenario : check.scenarios) {
-    add(checks::inspect(scenario.twin, scenario.device.rendering.dt), check);
+    add(checks::inspect(scenario.twin, scenario.device.model.dt()), check);
     add(checks::inspect(scenario.device, scenario.twin), check);
     add(checks::inspect_surfaces(scenario), check);
   }

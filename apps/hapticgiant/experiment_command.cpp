@@ -20,7 +20,7 @@
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/core/scratch_folder.h"

@@ -52,7 +52,7 @@ class Reader final : public recording::RecordingListener {
                         error.what()));
       }
     }
-    traces_.emplace(device_->control);
+    traces_.emplace(device_->model, device_->control.loop.current_lag);
   }
 
   std::optional<config::Device> device_;
@@ -152,7 +152,7 @@ int identify_friction(const IdentifyFrictionArguments& arguments) {
   const recording::ReadResult read = recording::read_recording(arguments.file, reader);
   print_out(recording::to_text(read.losses));
   const FrictionTraces& traces = reader.traces();
-  const tracking::Config& control = reader.device().control;
+  const DeviceModel& model = reader.device().model;
   if (traces.used() == 0) {
     throw SetupError(fmt::format(
         "{}: none of its {} samples has drives that are on, motor encoders, joint torques and the "
@@ -160,24 +160,22 @@ int identify_friction(const IdentifyFrictionArguments& arguments) {
         arguments.file, traces.samples()));
   }
   print_out("{}: {} joints, drives on for {:.1f} s\n", arguments.file, traces.joints().size(),
-            static_cast<double>(traces.used()) * control.dt);
-  const rendering::DeviceModel& model = reader.device().model;
+            static_cast<double>(traces.used()) * model.dt());
   std::vector<std::string> names;
   std::vector<FrictionEstimate> estimates;
   bool is_any_found = false;
   for (std::size_t i = 0; i < traces.joints().size(); ++i) {
     names.push_back(model.chain.joints()[static_cast<std::size_t>(model.n_p) + i].name);
-    estimates.push_back(
-        identification::identify_friction(traces.joints()[i], control.actuators[i]));
-    print_joint(names[i], estimates[i], control.actuators[i]);
+    estimates.push_back(identification::identify_friction(traces.joints()[i], model.actuators[i]));
+    print_joint(names[i], estimates[i], model.actuators[i]);
     is_any_found = is_any_found || estimates[i].coulomb.is_found;
   }
-  write_json(arguments.json, to_json(names, estimates, control.actuators));
+  write_json(arguments.json, to_json(names, estimates, model.actuators));
   if (!is_any_found) {
     print_error("not usable: no joint moved enough for its friction\n");
     return 2;
   }
-  print_yaml(names, estimates, control.actuators);
+  print_yaml(names, estimates, model.actuators);
   return 0;
 }
 

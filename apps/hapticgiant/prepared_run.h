@@ -6,7 +6,7 @@
 
 #include "apps/hapticgiant/run_command.h"
 #include "hg/commissioning/start_test/machine_memory.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/cycle.h"
 #include "hg/device/device.h"
 #include "hg/device/udp/remote_device.h"

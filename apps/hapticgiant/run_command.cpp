@@ -182,13 +182,12 @@ runtime::Options runtime_options(const config::Scenario& scenario, const RunArgu
                                  bool goes_on, const std::atomic<bool>& interrupted) {
   runtime::Options options;
   options.stop = &interrupted;
-  options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = arguments.is_fast;
   options.changes = scenario.changes;
   options.panel = scenario.panel;
   options.load = faults::loads_of(scenario.faults);
   options.longest_stop_s = scenario::longest_stop_s(scenario);
-  if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / options.rate_Hz;
+  if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / scenario.device.model.rate_Hz;
   options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};
   // a simulated device waits for its controller: late cycles do no harm
   options.tells_late_cycles = !arguments.device_address.empty();
@@ -235,7 +234,7 @@ analysis::RunFacts facts_of(const PreparedRun& run, const runtime::Options& opti
                             const runtime::Report& report) {
   analysis::RunFacts facts = scenario::facts_of_scenario(run.scenario);
   facts.version = kVersion;
-  facts.rate_Hz = options.rate_Hz;
+  facts.rate_Hz = run.scenario.device.model.rate_Hz;
   facts.timing = timing_of(options, report);
   facts.dropped = report.dropped;
   facts.allocations_in_loop = report.allocations;

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "apps/hapticgiant/run_command.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/recording/flight_recorder.h"
 #include "hg/recording/recorder.h"
 

@@ -97,7 +97,7 @@ recording::RecordingInfo recording_info(const config::Scenario& scenario,
     info.configuration.push_back({kArguments, options});
   }
   info.version = kVersion;
-  info.rate_Hz = scenario.device.rate_Hz;
+  info.rate_Hz = scenario.device.model.rate_Hz;
   return info;
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/hapticgiant/run_command.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/recording/problem_dumps.h"
 #include "hg/recording/recorder.h"
 #include "hg/scenario/names.h"

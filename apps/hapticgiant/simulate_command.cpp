@@ -37,7 +37,7 @@ std::string how_it_ended(const udp::SessionReport& report) {
 /// A device whose true state is observed, which no controller knows.
 class WatchedDevice final : public device::Device {
  public:
-  WatchedDevice(std::unique_ptr<device::Device> device, const rendering::DeviceModel& model)
+  WatchedDevice(std::unique_ptr<device::Device> device, const DeviceModel& model)
       : device_(std::move(device)), model_(model) {}
 
   void read(SensorFrame& sensors) noexcept override { device_->read(sensors); }
@@ -69,7 +69,7 @@ class WatchedDevice final : public device::Device {
 
  private:
   std::unique_ptr<device::Device> device_;
-  const rendering::DeviceModel& model_;
+  const DeviceModel& model_;
   double worst_excess_ = 0.0, max_force_ = 0.0;
   int worst_joint_ = -1;
 };
@@ -119,7 +119,7 @@ int simulate(const SimulateArguments& arguments) {
   while (server.wait_for_client(stop)) {
     WatchedDevice device(scenario::make_simulated_device(scenario, world), scenario.device.model);
     const udp::SessionReport report = server.serve(device, stop);
-    print_out(fmt::format("\n{}  {:<12} {}\n", closing_lines(report, scenario.device.rate_Hz),
+    print_out(fmt::format("\n{}  {:<12} {}\n", closing_lines(report, scenario.device.model.rate_Hz),
                           "truth", device.truth_text()));
     look_at_capture();
   }

@@ -24,6 +24,7 @@
 #include "hg/controller/cycle.h"
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/runtime/requests.h"
 #include "hg/scenario/assembly.h"
@@ -148,8 +149,8 @@ class DeviceStation final : public start_test::Station {
 
   controller::Cycle cycle_;
   device::Device& device_;
-  const rendering::DeviceModel& model_;
-  model::Chain chain_;
+  const DeviceModel& model_;
+  model::ChainData chain_;
   const bool is_simulated_;
   const std::atomic<bool>& interrupted_;
   start_test::SimulatedOperator operator_;
@@ -165,7 +166,7 @@ start_test::Setup setup_of(const config::Device& device, bool is_simulated) {
   constexpr double kGantryTorque = 5.0, kGantryForce = 20.0;
   start_test::Setup setup = {.config = device.start_test, .is_simulated = is_simulated};
   const std::vector<model::Joint>& joints = device.model.chain.joints();
-  const std::vector<ActuatorModel>& actuators = device.control.actuators;
+  const std::vector<ActuatorModel>& actuators = device.model.actuators;
   for (int i = 0; i < device.model.n_p + device.model.n_m; ++i) {
     const model::Joint& joint = joints[static_cast<std::size_t>(i)];
     const bool is_slide = joint.type == model::JointType::kPrismatic;

@@ -15,6 +15,7 @@
 #include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/tune_report.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/config/control_cycle.h"
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/scratch_folder.h"
@@ -24,13 +25,14 @@
 namespace hg::apps {
 namespace {
 
-tuning::TuningProblem problem_of(const config::Device& device, const TuneArguments& arguments) {
+tuning::TuningProblem problem_of(const config::SimulatedDevice& device,
+                                 const TuneArguments& arguments) {
   return {.device = tuning::device_of(device),
           .noise = tuning::noise_of(device),
           .plant = tuning::simulated(device),
           .friction = tuning::unexpected_friction(device),
           .body = {.mass = arguments.mass, .damping = arguments.damping},
-          .postures = scenario::random_postures(device.model, arguments.postures, arguments.seed)};
+          .postures = config::random_postures(device.model, arguments.postures, arguments.seed)};
 }
 
 std::string command_of(const TuneArguments& arguments) {
@@ -51,7 +53,8 @@ std::string command_of(const TuneArguments& arguments) {
 }  // namespace
 
 int run_tune(const TuneArguments& arguments) {
-  const config::Device device = config::load_device(config::find_device(arguments.device));
+  const config::SimulatedDevice device =
+      config::load_simulated_device(config::find_device(arguments.device));
   tuning::TuningProblem problem = problem_of(device, arguments);
   const tuning::Figures now = tuning::figures_of(problem, problem.device);
   problem.friction_most_N = now.friction_N;

@@ -1,6 +1,6 @@
 // Our own headers that most of the files include which play or inspect scenarios.
 #pragma once
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/cycle.h"
 #include "hg/scenario/assembly.h"

@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/simulation.h"
 #include "hg/config/sources.h"
 #include "hg/controller/estimation/estimation.h"
 #include "hg/controller/prepositioning/prepositioning.h"
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/safety/collision/guard.h"
 #include "hg/controller/safety/compliance/compliance.h"
@@ -17,56 +15,40 @@
 #include "hg/controller/safety/passivity/passivity.h"
 #include "hg/controller/safety/sanitiser.h"
 #include "hg/controller/tracking/joint_control.h"
-#include "hg/core/types.h"
-#include "hg/signals/drive_model.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/start_test_config.h"
 
 namespace hg::config {
 
-/// Method that finds a posture for a handle pose at the start.
-enum class Kinematics {
-  kHapticGiant,  ///< closed form of [HANDBOOK] 2.3: two gantry axes, six joints
-  kGeneric,      ///< numerically, for any device
-};
-
 struct Device {
   std::string name;
   std::filesystem::path urdf;
-  double rate_Hz = 1000.0;
-  double floor_z = 0.0;    ///< height of the floor in B, m
-  bool has_floor = false;  ///< collisions with the floor are watched; false = it is only drawn
-  Kinematics kinematics = Kinematics::kGeneric;
-  DriveModel drive;
+  std::filesystem::path simulation_file;  ///< file of the device's simulation; empty = none
+  double floor_z = 0.0;                   ///< height of the floor in B, m
+  bool has_floor = false;    ///< collisions with the floor are watched; false = it is only drawn
   tracking::Config control;  ///< control, with method kDrives for a device without actuators
-  Pose T_H_S;                ///< force/torque sensor S in the handle frame H
-  rendering::DeviceModel model;
+  DeviceModel model;
   rendering::Options rendering;
   prepositioning::Config prepositioning;
   estimation::Config estimation;
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
   passivity::Config passivity;
-  compliance::Config compliance;  ///< compliance, without period and joint torques
+  compliance::Config compliance;
   StartTestConfig start_test;
   collision::Config collision;  ///< collision model; without shapes collisions are not watched
   std::vector<std::string> unknown_links;  ///< moving links of unknown shape
-  Simulation simulation;                   ///< simulation of this device; defaults without a file
-  SimulatedDevice simulated;               ///< properties that a simulation file has to fit
+  model::ChainOptions chain_options;       ///< options with which the chain was read
   std::vector<SourceText> sources;         ///< source texts, the YAML file first
   Places places;                           ///< places of the keys of the YAML file
 };
 
-/// Sets the values that follow from law, bounds and control method: whether the law knows the motor
-/// torques. For a scenario, see settle_law() in scenario.h.
+/// Sets what follows from law, bounds and control method: whether the law knows the motor torques.
+/// For a scenario, see settle_law() in simulation/scenario.h.
 void settle_law(Device& device);
 
-/// Sets the rate and all values that follow from it. Throws SetupError when the drive's dead time
-/// would span too many periods.
-void set_rate(Device& device, double rate_Hz);
-
-/// Replaces the device's simulation by that of this file; its texts join those of the device.
-/// Throws SetupError as load_simulation() does.
-void take_simulation(Device& device, const std::filesystem::path& file, SourceReader& reader);
+/// Throws SetupError where the device cannot be controlled at `rate_Hz`.
+void check_rate(const Device& device, double rate_Hz);
 
 /// Loads a device. Throws SetupError with all faults of the file, one per line.
 Device load_device(const std::filesystem::path& file);

@@ -21,10 +21,10 @@ struct DeviceJoint {
   limits::JointLimits limits;
 };
 
-/// Content of device.yaml, before it becomes a Device.
+/// A device in the making: what is known of it so far, and the names and parts it is made from.
 struct DeviceDraft {
-  std::string name;
-  std::filesystem::path urdf, tool, simulation;
+  Device device = {.model = {.chain = model::ChainModel::free_body({})}};  ///< its chain comes last
+  std::filesystem::path tool;
   ChainPart part;
   std::vector<std::string> link_names;  ///< link names of the URDF
   int flange = -1;
@@ -34,40 +34,22 @@ struct DeviceDraft {
   bool has_joints = false;                            ///< both lists are usable
   JointUnit gantry_unit = JointUnit::kEither;
   std::vector<std::string> manipulator_names;
-  int handle = -1, elbow = -1;
   Placement sensor;
-  double rate_Hz = 1000.0;
-  double floor_z = 0.0;
-  Kinematics kinematics = Kinematics::kGeneric;
-  VectorM posture;
-  std::vector<rendering::VirtualJoint> virtual_joints;
-  std::vector<rendering::CartesianLimit> cartesian_limits;
-  DriveModel drive;
   std::vector<std::optional<ActuatorModel>> actuators;  ///< actuator per joint, where given
-  tracking::Config control;
-  rendering::Options rendering;
-  prepositioning::Config prepositioning;
-  estimation::Config estimation;
-  safety::MonitorConfig monitor;
-  safety::SanitiserConfig sanitiser;
-  passivity::Config passivity;
-  compliance::Config compliance;
-  StartTestConfig start_test;
   std::vector<std::string> input_names{kSafetyInputNames.begin(), kSafetyInputNames.end()};
   bool watches_collisions = true;
-  bool has_floor = false;
-  double safe_distance = collision::Config{}.safe_distance;
 };
 
-inline constexpr std::array<Choice<Kinematics>, 2> kKinematics = {
-    {{"haptic_giant", Kinematics::kHapticGiant}, {"generic", Kinematics::kGeneric}}};
+/// Whether start posture and gantry target have a closed form.
+inline constexpr std::array<Choice<bool>, 2> kKinematics = {
+    {{"haptic_giant", true}, {"generic", false}}};
 
 inline constexpr JointKey kBrake = {"ddq_brake_rad_per_s2", "ddq_brake_m_per_s2"};
 
 template <class V>
 void describe_chain(V& v, DeviceDraft& d) {
-  v.words("name", d.name, "name of the device", Need::kRequired);
-  v.path("urdf", d.urdf, "kinematics and inertia; its limits are the defaults of joints",
+  v.words("name", d.device.name, "name of the device", Need::kRequired);
+  v.path("urdf", d.device.urdf, "kinematics and inertia; its limits are the defaults of joints",
          Need::kRequired);
 }
 
@@ -96,22 +78,23 @@ void describe_structure(V& v, DeviceDraft& d) {
       v.names("manipulator", d.manipulator, d.joint_names, "a joint of the URDF",
               "the joints after the gantry, to the tip", Need::kRequired);
   d.has_joints = has_gantry && has_manipulator;
-  v.name("handle", d.handle, d.frame_names, "a link of the URDF",
+  v.name("handle", d.device.model.handle, d.frame_names, "a link of the URDF",
          "frame H, held by the user; with a tool it has the name 'handle'");
-  v.name("elbow", d.elbow, d.frame_names, "a link of the URDF", "frame to be recorded and shown");
-  v.number("floor_z_m", d.floor_z, kAnyNumber,
+  v.name("elbow", d.device.model.elbow, d.frame_names, "a link of the URDF",
+         "frame to be recorded and shown");
+  v.number("floor_z_m", d.device.floor_z, kAnyNumber,
            "height of the floor in B: drawn on the page and, if given, not to be hit");
-  d.has_floor = v.is_given("floor_z_m");
+  d.device.has_floor = v.is_given("floor_z_m");
   v.group(
       "sensor", [&](auto& child) { describe(child, d.sensor); },
       "force/torque sensor S in the handle frame H");
-  v.path("simulation", d.simulation,
+  v.path("simulation", d.device.simulation_file,
          "what a simulation of the device needs to know beyond this: its sensors, and how it "
          "differs from what is said here; without it nothing differs and the sensors are ideal");
-  v.choice("kinematics", d.kinematics, kKinematics,
+  v.choice("kinematics", d.device.model.has_closed_form, kKinematics,
            "how the start posture and the gantry's target are found: in closed form or, for any "
            "device, numerically");
-  v.number("rate_Hz", d.rate_Hz, {.lb = 100.0, .ub = 20000.0}, "cycles per second");
+  v.number("rate_Hz", d.device.model.rate_Hz, {.lb = 100.0, .ub = 20000.0}, "cycles per second");
 }
 
 template <class V>
@@ -121,7 +104,7 @@ void describe(V& v, DeviceJoint& joint, bool is_gantry) {
 }
 
 template <class V>
-void describe(V& v, rendering::VirtualJoint& joint, const std::vector<std::string>& names) {
+void describe(V& v, VirtualJoint& joint, const std::vector<std::string>& names) {
   v.words("name", joint.name, "shown with the limit", Need::kRequired);
   joint.weights = per_joint(names.size(), 0.0);
   v.numbers_by_name(
@@ -136,7 +119,7 @@ void describe(V& v, rendering::VirtualJoint& joint, const std::vector<std::strin
 }
 
 template <class V>
-void describe(V& v, rendering::CartesianLimit& limit, const std::vector<std::string>& frames) {
+void describe(V& v, CartesianLimit& limit, const std::vector<std::string>& frames) {
   v.words("name", limit.name, "shown with the limit", Need::kRequired);
   v.name("frame", limit.frame, frames, "a link of the URDF", "its origin is limited",
          Need::kRequired);
@@ -163,22 +146,27 @@ void describe_limits(V& v, DeviceDraft& d) {
         describe(child, d.joints[static_cast<std::size_t>(index)], is_gantry);
       },
       "limits; what is not given is taken from the URDF");
-  d.posture = per_joint(d.manipulator_names.size(), kNoDefault);
+  d.device.model.posture = per_joint(d.manipulator_names.size(), kNoDefault);
   v.numbers_by_name(
       "posture", d.manipulator_names, "a manipulator joint", kJointPosition,
-      [&](int index, double goal) { set_joint(d.posture, index, goal); },
+      [&](int index, double goal) { set_joint(d.device.model.posture, index, goal); },
       "where these joints should be, rad or m: the gantry moves so that they are, a seventh joint "
       "goes there, and the start is chosen near it");
   v.list(
       "virtual_joints",
-      [&](auto& child) { describe(child, d.virtual_joints.emplace_back(), d.manipulator_names); },
+      [&](auto& child) {
+        describe(child, d.device.model.virtual_joints.emplace_back(), d.manipulator_names);
+      },
       "limits of sums of joints, for example near a singularity; at most 2");
   v.list(
       "cartesian_limits",
-      [&](auto& child) { describe(child, d.cartesian_limits.emplace_back(), d.frame_names); },
+      [&](auto& child) {
+        describe(child, d.device.model.cartesian_limits.emplace_back(), d.frame_names);
+      },
       "boxes in B, highest priority first; at most 2");
-  v.rule(d.virtual_joints.size() <= kMaxVirtualJoints, "virtual_joints", "at most 2 are possible");
-  v.rule(d.cartesian_limits.size() <= kMaxCartesianFrames, "cartesian_limits",
+  v.rule(d.device.model.virtual_joints.size() <= kMaxVirtualJoints, "virtual_joints",
+         "at most 2 are possible");
+  v.rule(d.device.model.cartesian_limits.size() <= kMaxCartesianFrames, "cartesian_limits",
          "at most 2 are possible");
 }
 
@@ -212,7 +200,7 @@ void describe_wrench(V& v, estimation::WrenchConfig& wrench) {
 
 template <class V>
 void describe_inertial_units(V& v, DeviceDraft& d) {
-  estimation::InertialUnitsConfig& units = d.estimation.units;
+  estimation::InertialUnitsConfig& units = d.device.estimation.units;
   v.names("inertial_units", units.frames, d.frame_names, "a link of the chain",
           "links that carry an inertial unit, from root to tip; how it sits there is learnt");
   v.rule(units.frames.size() <= kMaxInertialUnits, "inertial_units",
@@ -222,7 +210,7 @@ void describe_inertial_units(V& v, DeviceDraft& d) {
          "must be in the order from root to tip");
   v.number("inertial_delay_s", units.delay, kNotNegative,
            "from motion to reading; rounded to periods, at least one");
-  const double longest = (estimation::InertialUnitsState::kPast - 2) / d.rate_Hz;
+  const double longest = (estimation::InertialUnitsState::kPast - 2) / d.device.model.rate_Hz;
   v.rule(units.delay <= longest, "inertial_delay_s",
          "must be at most " + std::to_string(estimation::InertialUnitsState::kPast - 2) +
              " periods, here " + model::to_text(longest) + " s",
@@ -241,20 +229,20 @@ void describe_estimation(V& v, DeviceDraft& d) {
   v.group(
       "estimation",
       [&](auto& child) {
-        child.number("observer_pole_Hz", d.estimation.observer_pole_Hz, kPositive,
+        child.number("observer_pole_Hz", d.device.estimation.observer_pole_Hz, kPositive,
                      "Kalman filter of the gantry: large trusts the encoder, small the drive");
         child.rule(has_gantry || !child.is_given("observer_pole_Hz"), "observer_pole_Hz",
                    "concerns the gantry, and there is none");
-        child.number("link_pole_Hz", d.estimation.link_pole_Hz, kPositive,
+        child.number("link_pole_Hz", d.device.estimation.link_pole_Hz, kPositive,
                      "observer of the link side of elastic joints");
-        child.number("motor_low_pass_Hz", d.estimation.motor_low_pass_Hz, kNotNegative,
+        child.number("motor_low_pass_Hz", d.device.estimation.motor_low_pass_Hz, kNotNegative,
                      "first-order low-pass of the motor side's speed, 0 = none");
-        describe_wrench(child, d.estimation.wrench);
+        describe_wrench(child, d.device.estimation.wrench);
         describe_inertial_units(child, d);
       },
       "from sensors to state");
   v.group(
-      "payload", [&](auto& child) { describe(child, d.estimation.wrench.payload); },
+      "payload", [&](auto& child) { describe(child, d.device.estimation.wrench.payload); },
       "what hangs beyond the force/torque sensor, handle included; 'hapticgiant identify payload' "
       "measures it");
 }
@@ -406,24 +394,29 @@ void describe(V& v, rendering::Options& options, std::size_t manipulator_joints)
 template <class V>
 void describe_prepositioning(V& v, DeviceDraft& d) {
   // values not given stay within the drive's limits
-  d.prepositioning.dq_max = std::min(d.prepositioning.dq_max, d.drive.dq_max);
-  d.prepositioning.drive.ddq_max = std::min(d.prepositioning.drive.ddq_max, d.drive.ddq_max);
+  d.device.prepositioning.dq_max =
+      std::min(d.device.prepositioning.dq_max, d.device.model.drive.dq_max);
+  d.device.prepositioning.ddq_max =
+      std::min(d.device.prepositioning.ddq_max, d.device.model.drive.ddq_max);
   v.group(
       "prepositioning",
       [&](auto& child) {
-        child.number("k_ppu_1_per_s", d.prepositioning.k_ppu, kPositive, "gain, eq. (27)");
-        child.joint_number(kSpeed, d.gantry_unit, d.prepositioning.dq_max, kPositive,
+        child.number("k_ppu_1_per_s", d.device.prepositioning.k_ppu, kPositive, "gain, eq. (27)");
+        child.joint_number(kSpeed, d.gantry_unit, d.device.prepositioning.dq_max, kPositive,
                            "largest speed used, never above that of the drive");
         child.joint_number(
-            kBrake, d.gantry_unit, d.prepositioning.drive.ddq_max, kPositive,
+            kBrake, d.gantry_unit, d.device.prepositioning.ddq_max, kPositive,
             "deceleration that can be relied on, never above the drive's acceleration");
-        child.rule(d.prepositioning.dq_max <= d.drive.dq_max, kSpeed.of(d.gantry_unit),
-                   "must not exceed the speed of the drive, " + model::to_text(d.drive.dq_max),
-                   model::to_text(d.prepositioning.dq_max));
-        child.rule(
-            d.prepositioning.drive.ddq_max <= d.drive.ddq_max, kBrake.of(d.gantry_unit),
-            "must not exceed the acceleration of the drive, " + model::to_text(d.drive.ddq_max),
-            model::to_text(d.prepositioning.drive.ddq_max));
+        child.rule(d.device.prepositioning.dq_max <= d.device.model.drive.dq_max,
+                   kSpeed.of(d.gantry_unit),
+                   "must not exceed the speed of the drive, " +
+                       model::to_text(d.device.model.drive.dq_max),
+                   model::to_text(d.device.prepositioning.dq_max));
+        child.rule(d.device.prepositioning.ddq_max <= d.device.model.drive.ddq_max,
+                   kBrake.of(d.gantry_unit),
+                   "must not exceed the acceleration of the drive, " +
+                       model::to_text(d.device.model.drive.ddq_max),
+                   model::to_text(d.device.prepositioning.ddq_max));
       },
       "how the gantry moves along with the hand");
 }
@@ -437,46 +430,49 @@ void describe_behaviour(V& v, DeviceDraft& d) {
   v.group(
       "drive",
       [&](auto& child) {
-        child.number("dead_time_s", d.drive.dead_time, kNotNegative, "until a command has effect");
-        child.number("lag_s", d.drive.lag, kPositive, "time constant of the speed");
-        child.joint_number(kSpeed, d.gantry_unit, d.drive.dq_max, kPositive, "largest speed");
-        child.joint_number(kAcceleration, d.gantry_unit, d.drive.ddq_max, kPositive,
+        child.number("dead_time_s", d.device.model.drive.dead_time, kNotNegative,
+                     "until a command has effect");
+        child.number("lag_s", d.device.model.drive.lag, kPositive, "time constant of the speed");
+        child.joint_number(kSpeed, d.gantry_unit, d.device.model.drive.dq_max, kPositive,
+                           "largest speed");
+        child.joint_number(kAcceleration, d.gantry_unit, d.device.model.drive.ddq_max, kPositive,
                            "largest acceleration");
-        child.rule(std::lround(d.drive.dead_time * d.rate_Hz) <= CommandDelay::kMaxPeriods,
+        child.rule(std::lround(d.device.model.drive.dead_time * d.device.model.rate_Hz) <=
+                       CommandDelay::kMaxPeriods,
                    "dead_time_s", "must be shorter than 256 cycles",
-                   model::to_text(d.drive.dead_time));
+                   model::to_text(d.device.model.drive.dead_time));
       },
       "how the gantry follows its velocity command");
   v.group(
       "synchronisation",
       [&](auto& child) {
-        child.number("kP_tran_1_per_s2", d.rendering.kP_tran, kPositive, "position");
-        child.number("kD_tran_1_per_s", d.rendering.kD_tran, kPositive, "velocity");
-        child.number("kP_rot_1_per_s2", d.rendering.kP_rot, kPositive, "orientation");
-        child.number("kD_rot_1_per_s", d.rendering.kD_rot, kPositive, "angular velocity");
+        child.number("kP_tran_1_per_s2", d.device.rendering.kP_tran, kPositive, "position");
+        child.number("kD_tran_1_per_s", d.device.rendering.kD_tran, kPositive, "velocity");
+        child.number("kP_rot_1_per_s2", d.device.rendering.kP_rot, kPositive, "orientation");
+        child.number("kD_rot_1_per_s", d.device.rendering.kD_rot, kPositive, "angular velocity");
       },
       "gains that pull the handle onto the twin, eq. (11)");
   v.group(
-      "rendering", [&](auto& child) { describe(child, d.rendering, d.manipulator.size()); },
+      "rendering", [&](auto& child) { describe(child, d.device.rendering, d.manipulator.size()); },
       "the law, see docs/concepts/law.md");
   describe_prepositioning(v, d);
   describe_estimation(v, d);
   v.group(
       "passivity",
       [&](auto& child) {
-        child.choice("reaction", d.passivity.reaction, kPassivityReactions,
+        child.choice("reaction", d.device.passivity.reaction, kPassivityReactions,
                      "to hand and device shaking each other: nothing, a warning, or "
                      "more inertia and damping of the twin until they are calm");
-        child.number("damping_Ns_per_m", d.passivity.damping, kPositive,
+        child.number("damping_Ns_per_m", d.device.passivity.damping, kPositive,
                      "of the handle while it is calmed, besides that of the twin");
-        child.number("least_mass_kg", d.passivity.least_mass, kPositive,
+        child.number("least_mass_kg", d.device.passivity.least_mass, kPositive,
                      "that is felt at the handle while it is calmed");
       },
       "energy and oscillation at the handle, docs/concepts/passivity.md");
   v.group(
       "compliance",
       [&](auto& child) {
-        child.flag("is_on", d.compliance.is_on,
+        child.flag("is_on", d.device.compliance.is_on,
                    "arm and gantry give way to what touches the arm, before the device stops; only "
                    "with torque sensors in the joints");
       },
@@ -486,22 +482,23 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       [&](auto& child) {
         child.flag("is_watched", d.watches_collisions,
                    "stop before the device hits itself, its frame or the floor");
-        child.number("safe_distance_m", d.safe_distance, kPositive,
+        child.number("safe_distance_m", d.device.collision.safe_distance, kPositive,
                      "between any two parts while the device brakes");
       },
       "self-collision, from the collision elements of the URDF; docs/concepts/collision.md");
-  for (double* distance : {&d.monitor.stop_distance, &d.monitor.slide_stop_distance,
-                           &d.monitor.gantry_stop_distance, &d.monitor.turn_stop_distance}) {
+  for (double* distance :
+       {&d.device.monitor.stop_distance, &d.device.monitor.slide_stop_distance,
+        &d.device.monitor.gantry_stop_distance, &d.device.monitor.turn_stop_distance}) {
     *distance = kNoDefault;  // from the ratings
   }
   v.group(
-      "monitor", [&](auto& child) { describe(child, d.monitor); },
+      "monitor", [&](auto& child) { describe(child, d.device.monitor); },
       "when the device is stopped by a fault, docs/concepts/safety.md");
   v.group(
-      "sanitiser", [&](auto& child) { describe(child, d.sanitiser); },
+      "sanitiser", [&](auto& child) { describe(child, d.device.sanitiser); },
       "what is taken out of commands near and beyond limits, docs/concepts/safety.md");
   v.group(
-      "start_test", [&](auto& child) { describe(child, d.start_test, d.input_names); },
+      "start_test", [&](auto& child) { describe(child, d.device.start_test, d.input_names); },
       "brakes and stop inputs before the first run of a day, docs/reference/start_test.md");
 }
 
@@ -597,22 +594,22 @@ void describe_control(V& v, DeviceDraft& d) {
   v.rule(v.is_given("actuators") || !v.is_given("control"), "control",
          "concerns 'actuators', and there are none");
   if (v.is_given("actuators")) {
-    d.control.method = tracking::Method::kModal;
-    d.control.error_max = 0.007;  // [C] 6: 5 to 10 mrad
+    d.device.control.method = tracking::Method::kModal;
+    d.device.control.error_max = 0.007;  // [C] 6: 5 to 10 mrad
   }
   v.group(
       "control",
       [&](auto& child) {
-        describe(child, d.control);
-        const double longest = tracking::kMostLatency / d.rate_Hz;
-        child.rule(d.control.loop.latency <= longest, "latency_s",
+        describe(child, d.device.control);
+        const double longest = tracking::kMostLatency / d.device.model.rate_Hz;
+        child.rule(d.device.control.loop.latency <= longest, "latency_s",
                    "must be at most 64 periods, " + model::to_text(longest) + " s at this rate_Hz",
-                   model::to_text(d.control.loop.latency));
-        const double most = tracking::largest_flatness_Hz(d.rate_Hz);
-        child.rule(d.control.flatness_Hz < most, "flatness_Hz",
+                   model::to_text(d.device.control.loop.latency));
+        const double most = tracking::largest_flatness_Hz(d.device.model.rate_Hz);
+        child.rule(d.device.control.flatness_Hz < most, "flatness_Hz",
                    "must be below " + model::to_text(std::floor(10.0 * most) / 10.0) +
                        ", or the torques fed forward oscillate at this rate_Hz",
-                   model::to_text(d.control.flatness_Hz));
+                   model::to_text(d.device.control.flatness_Hz));
       },
       "how motor torques make the joints follow the reference");
 }

@@ -474,7 +474,7 @@ std::optional<UrdfText> read_urdf(LoaderFile& file, const std::filesystem::path&
   }
 }
 
-std::optional<model::Chain> no_chain(LoaderFile& file) {
+std::optional<model::ChainModel> no_chain(LoaderFile& file) {
   file.knows_names = false;
   return {};
 }
@@ -483,10 +483,10 @@ std::string name_of(const std::vector<std::string>& names, int index) {
   return index < 0 ? "" : names[static_cast<std::size_t>(index)];
 }
 
-std::optional<model::Chain> read_chain(LoaderFile& file, const UrdfText& urdf,
-                                       const model::ChainOptions& options) {
+std::optional<model::ChainModel> read_chain(LoaderFile& file, const UrdfText& urdf,
+                                            const model::ChainOptions& options) {
   try {
-    return model::Chain::from_urdf_text(urdf.text, urdf.file.generic_string(), options);
+    return model::ChainModel::from_urdf_text(urdf.text, urdf.file.generic_string(), options);
   } catch (const SetupError& error) {
     file.faults.add_complete(error.what());
     return no_chain(file);

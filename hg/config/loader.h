@@ -18,7 +18,7 @@
 
 #include "hg/config/schema.h"
 #include "hg/config/sources.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 
 namespace hg::config {
 
@@ -168,13 +168,13 @@ struct UrdfText {
 std::optional<UrdfText> read_urdf(LoaderFile& file, const std::filesystem::path& urdf);
 
 /// Records that there is no chain, for a reason already reported.
-std::optional<model::Chain> no_chain(LoaderFile& file);
+std::optional<model::ChainModel> no_chain(LoaderFile& file);
 
 /// Name with this index; empty for -1.
 std::string name_of(const std::vector<std::string>& names, int index);
 
 /// Builds a chain from the URDF. Empty, with a fault reported, if the URDF holds no such chain.
-std::optional<model::Chain> read_chain(LoaderFile& file, const UrdfText& urdf,
-                                       const model::ChainOptions& options);
+std::optional<model::ChainModel> read_chain(LoaderFile& file, const UrdfText& urdf,
+                                            const model::ChainOptions& options);
 
 }  // namespace hg::config

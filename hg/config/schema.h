@@ -22,7 +22,7 @@
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/limits/acceleration_bounds.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/model/urdf.h"
 
 namespace hg::config {

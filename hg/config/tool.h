@@ -6,7 +6,7 @@
 
 #include "hg/config/sources.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 
 namespace hg::config {
 

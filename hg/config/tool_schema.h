@@ -1,38 +1,29 @@
 /// Description of tool.yaml.
 #pragma once
 
-#include <string>
-
 #include "hg/config/schema.h"
-#include "hg/core/types.h"
+#include "hg/config/tool.h"
 
 namespace hg::config {
 
-/// Content of tool.yaml, before it becomes a Tool.
-struct ToolDraft {
-  std::string name;
-  double mass = 0.0;
-  Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-  Placement handle, sensor;
-  bool has_dead_man = true;
-};
-
 template <class V>
-void describe(V& v, ToolDraft& d) {
-  v.words("name", d.name, "name of the tool", Need::kRequired);
-  v.number("mass_kg", d.mass, kNotNegative, "mass of all that is screwed onto the flange");
-  v.vector("centre_of_mass_m", d.centre_of_mass, kAnyNumber, "in the link of the flange");
-  v.inertia("inertia_kg_m2", d.inertia,
+void describe(V& v, Tool& tool) {
+  v.words("name", tool.name, "name of the tool", Need::kRequired);
+  v.number("mass_kg", tool.body.mass, kNotNegative, "mass of all that is screwed onto the flange");
+  v.vector("centre_of_mass_m", tool.body.p_com, kAnyNumber, "in the link of the flange");
+  v.inertia("inertia_kg_m2", tool.body.inertia,
             "about the centre of mass, axes of the flange: [ixx, iyy, izz] or [ixx, iyy, izz, ixy, "
             "ixz, iyz]");
+  Placement handle, sensor;
   v.group(
-      "handle", [&](auto& child) { describe(child, d.handle); },
+      "handle", [&](auto& child) { describe(child, handle); },
       "frame H, held by the user, in the link of the flange");
   v.group(
-      "sensor", [&](auto& child) { describe(child, d.sensor); },
+      "sensor", [&](auto& child) { describe(child, sensor); },
       "force/torque sensor S in the handle frame H");
-  v.flag("dead_man", d.has_dead_man,
+  tool.body.T_link_handle = pose_of(handle);
+  tool.T_H_S = pose_of(sensor);
+  v.flag("dead_man", tool.has_dead_man,
          "whether the handle has a dead-man switch. Without one nobody notices a hand that lets "
          "go: the device runs on until it is told to stop");
 }

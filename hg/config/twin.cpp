@@ -9,23 +9,24 @@
 #include "hg/config/loader.h"
 #include "hg/config/twin_schema.h"
 #include "hg/core/error.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/haptic_giant.h"
 
 namespace hg::config {
 namespace {
 
-std::optional<model::Chain> make_free_body(LoaderFile& file, TwinDraft& draft,
-                                           const model::ChainOptions& options) {
+std::optional<model::ChainModel> make_free_body(LoaderFile& file, TwinDraft& draft,
+                                                const model::ChainOptions& options) {
   draft.body.inertia = draft.principal_inertia.asDiagonal();
   try {
-    return model::Chain::free_body(draft.body, options);
+    return model::ChainModel::free_body(draft.body, options);
   } catch (const SetupError& error) {
     file.faults.add_complete(file.path.generic_string() + ": free_body: " + error.what());
     return no_chain(file);
   }
 }
 
-std::optional<model::Chain> make_chain(LoaderFile& file, Loader& loader, TwinDraft& draft) {
+std::optional<model::ChainModel> make_chain(LoaderFile& file, Loader& loader, TwinDraft& draft) {
   // the URDF of a free body is only drawn, but a recording needs it, too
   const bool has_urdf = !draft.is_free_body || !draft.urdf.empty();
   const std::optional<UrdfText> urdf =
@@ -49,7 +50,7 @@ void take_unknown_joint(TwinDraft& draft) {
   draft.scalar_joints.push_back(0);
 }
 
-void take_joints(const model::Chain& chain, TwinDraft& draft) {
+void take_joints(const model::ChainModel& chain, TwinDraft& draft) {
   draft.frame_names = chain.frame_names();
   for (const model::Joint& joint : chain.joints()) {
     const bool is_floating = joint.type == model::JointType::kFloating;
@@ -70,7 +71,7 @@ void take_joints(const model::Chain& chain, TwinDraft& draft) {
   }
 }
 
-void check_types(Loader& loader, const model::Chain& chain) {
+void check_types(Loader& loader, const model::ChainModel& chain) {
   for (std::size_t i = 1; i < chain.joints().size(); ++i) {
     loader.rule(chain.joints()[i].type != model::JointType::kFloating, "urdf",
                 "only the first joint of a twin may be floating",
@@ -115,8 +116,8 @@ ConfigurationA start_of(const rendering::TwinModel& model, const Pose& T_B_root,
   if (draft.joints.empty() || draft.joints[0].type != model::JointType::kFloating) return q;
 
   // at the identity the body is at the root link: T_B_E = T_B_root T_root_E
-  model::Chain chain = model.chain;
-  chain.update_kinematics(q, VectorA::Zero(chain.nv()));
+  model::ChainData chain(model.chain);
+  chain.update_kinematics(q, VectorA::Zero(chain.model().nv()));
   const Pose T_root_E = inverse(T_B_root) * chain.pose(model.end_effector);
   const Pose T_root_body =
       inverse(T_B_root) * pose_of(draft.joints[0].floating.start) * inverse(T_root_E);
@@ -157,7 +158,7 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
   const std::size_t first_source = reader.texts().size();
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   TwinDraft draft;
-  std::optional<model::Chain> chain;
+  std::optional<model::ChainModel> chain;
   load_file(file, [&](Loader& loader) {
     describe_chain(loader, draft);
     chain = make_chain(file, loader, draft);

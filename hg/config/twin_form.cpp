@@ -72,8 +72,8 @@ void fill_range(const ParameterFacts& facts, FormField& field) {
   const bool is_flag = facts.parameter == Parameter::kGravity;
   const double size = std::isfinite(field.value) ? 10.0 * std::abs(field.value) : 0.0;
   const double largest = std::max(size, usual_largest(field.unit));
-  field.max = std::isfinite(facts.range.ub) ? facts.range.ub : largest;
-  field.min = std::isfinite(facts.range.lb) ? facts.range.lb : -largest;
+  field.max = facts.range.ub < kLargestParameter ? facts.range.ub : largest;
+  field.min = facts.range.lb > -kLargestParameter ? facts.range.lb : -largest;
   field.step = is_flag ? 1.0 : round_step((field.max - field.min) / kFineSteps);
   if (facts.excludes_lb) field.min = field.step;
 }

@@ -9,7 +9,7 @@
 
 #include "hg/config/schema.h"
 #include "hg/config/twin.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/signals/twin_parameter.h"
 
 namespace hg::config {

@@ -38,7 +38,7 @@ bool is_stopping(Motion motion) noexcept {
 }
 
 // Deceleration of joints braked without the law.
-VectorM braking_of(const rendering::DeviceModel& device) {
+VectorM braking_of(const DeviceModel& device) {
   constexpr double kWithoutRating = 10.0;  // rad/s^2 or m/s^2
   VectorM ddq(device.n_m);
   for (int i = 0; i < device.n_m; ++i) {
@@ -48,25 +48,19 @@ VectorM braking_of(const rendering::DeviceModel& device) {
   return ddq;
 }
 
-safety::MonitorConfig monitor_config(const Config& config) {
-  safety::MonitorConfig monitor = config.monitor;
-  monitor.has_imu = config.estimation.wrench.has_imu;
-  monitor.dt = config.rendering.dt;
-  return monitor;
-}
-
-prepositioning::TargetConfig target_of(const prepositioning::Config& gantry,
-                                       const rendering::DeviceModel& device) {
-  prepositioning::TargetConfig target = {.has_closed_form = gantry.has_closed_form,
-                                         .n_p = device.n_p,
-                                         .n_m = device.n_m,
-                                         .handle = device.handle,
-                                         .goal = device.posture};
-  target.range.assign(gantry.q_limits.begin(), gantry.q_limits.begin() + device.n_p);
-  for (const limits::JointLimits& joint : device.joint_limits) {
-    target.range.push_back({joint.q_min, joint.q_max});
-  }
-  return target;
+// Properties of the other parts on which the monitor's rules depend. The paper's bounds ask for
+// more than any rating where they contradict each other, and where the law knows torques they are
+// what limits accelerations.
+safety::MonitoredParts parts_of(const Config& config, const DeviceModel& device,
+                                const rendering::TwinModel& twin) {
+  const passivity::Reaction reaction = config.passivity.reaction;
+  const bool is_paper = config.rendering.bounds == rendering::Bounds::kPaper;
+  const double heaviest = rendering::felt_mass(twin).mass.ub;
+  return {.has_imu = config.estimation.wrench.has_imu,
+          .has_rated_bounds = !is_paper && device.motors().empty(),
+          .looks_for_shaking = reaction != passivity::Reaction::kOff,
+          .stops_shaking = reaction == passivity::Reaction::kAct,
+          .twin_mass = std::isfinite(heaviest) ? heaviest : 0.0};
 }
 
 // Whether a lost command link can cause this fault as a consequence.
@@ -127,21 +121,24 @@ void copy(const rendering::LawResult& law, CycleRecord& record) noexcept {
 
 }  // namespace
 
-Cycle::Cycle(const Config& config, const rendering::DeviceModel& device,
-             const rendering::TwinModel& twin)
+Cycle::Cycle(const Config& config, const DeviceModel& device, const rendering::TwinModel& twin)
     : config_(config),
-      estimation_(config.estimation, device.chain, device.n_p, device.n_m, device.handle),
+      dt_(device.dt()),
+      estimation_(config.estimation, device),
       rendering_(device, twin, config.rendering,
-                 surfaces::Environment(config.surfaces, config.rendering.dt,
-                                       rendering::felt_mass(twin).mass)),
-      control_(config.control, device.chain, device.n_p, device.n_m, device.handle),
-      gantry_target_(target_of(config.prepositioning, device), device.chain),
-      guard_(config.collision, device.chain),
-      monitor_(monitor_config(config), device.n_p, device.n_m),
-      sanitiser_(config.sanitiser, monitor_.config()) {
+                 surfaces::Environment(config.surfaces, dt_, rendering::felt_mass(twin).mass)),
+      control_(config.control, device),
+      gantry_target_(device),
+      prepositioning_(config.prepositioning, device),
+      guard_(config.collision, collision::braking_of(device, config.prepositioning.ddq_max),
+             device.chain),
+      monitor_(config.monitor, device, parts_of(config, device, twin)),
+      sanitiser_(config.sanitiser, device, prepositioning_.dq_max()) {
+  if (config.control.method != tracking::Method::kDrives) {
+    torque_max_ = compliance::peak_torques(device);
+  }
   ddq_max_ = braking_of(device);
-  longest_stop_ = static_cast<int>(std::lround(config.monitor.stop_time / config.rendering.dt));
-  prepositioning::check(config_.prepositioning);
+  longest_stop_ = static_cast<int>(std::lround(config.monitor.stop_time / dt_));
   state_.rendering = rendering_.start(VectorM::Zero(device.n_m));
   state_.control = control_.start();
   state_.dq_p = VectorP::Zero(device.n_p);
@@ -196,7 +193,7 @@ void Cycle::watch(const StageProbe& probe) noexcept {
 // Is this sample usable, which mode is permitted, which parameters change.
 Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
                                     const OperatorFrame& operator_input) noexcept {
-  Supervision result = {.is_usable = safety::is_finite(monitor_.config(), sensors)};
+  Supervision result = {.is_usable = safety::is_finite(sensors, config_.estimation.wrench.has_imu)};
   if (state_.cycle == 0) state_.next_sequence = sensors.sequence;
   safety::SupervisorState& supervisor = state_.supervisor;
   const ModeRequest request = operator_input.request;
@@ -227,7 +224,8 @@ Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
 }
 
 Fault Cycle::check(const SensorFrame& sensors) noexcept {
-  const Fault fault = safety::check_sensors(monitor_.config(), sensors, state_.next_sequence);
+  const Fault fault =
+      safety::check_sensors(sensors, state_.next_sequence, config_.estimation.wrench.has_imu);
   if (fault.code != FaultCode::kNone) return fault;
   const bool is_on = safety::is_powered(state_.supervisor.state);
   control_.listen(sensors, is_on, state_.control);
@@ -341,12 +339,11 @@ Cycle::GantryAim Cycle::preposition(Motion motion, const RobotState& robot) noex
   if (!is_moving(motion)) return {};
   const VectorP q_p_target =
       gantry_target_.step(robot, state_.rendering.reference.q_m, state_.gantry_target);
-  GantryAim aim = {.command = prepositioning::step(config_.prepositioning, robot, q_p_target,
-                                                   state_.is_blocked, speed_max() / std::sqrt(2.0),
-                                                   state_.room, state_.touch.away)};
+  GantryAim aim = {.command = prepositioning_.step(robot, q_p_target, state_.is_blocked,
+                                                   speed_max() / std::sqrt(2.0), state_.room,
+                                                   state_.touch.away)};
   if (rendering_.leads_gantry() && motion == Motion::kRender) {
-    aim.task = prepositioning::accelerations(aim.command, config_.estimation.drive, robot,
-                                             state_.rendering.ddq_p, config_.rendering.dt);
+    aim.task = prepositioning_.accelerations(aim.command, robot, state_.rendering.ddq_p);
     aim.task.unexplained = estimation_.gantry_disturbance(state_.estimation);
   }
   return aim;
@@ -360,8 +357,7 @@ double Cycle::ramp_forces(Motion motion, bool is_held) noexcept {
   if (!is_stopping(motion)) state_.was_alone = state == safety::State::kAutonomous;
   const bool is_gentle = is_held && !state_.was_alone && state == safety::State::kToArmed;
   const double share = is_stopping(motion) && !is_gentle ? 0.0 : state_.force_share;
-  const double step =
-      is_stopping(motion) ? -config_.rendering.dt / kRampOut : config_.rendering.dt / kRampIn;
+  const double step = is_stopping(motion) ? -dt_ / kRampOut : dt_ / kRampIn;
   state_.force_share = std::clamp(share + step, 0.0, 1.0);
   return share;
 }
@@ -404,7 +400,7 @@ PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
   const Vector6 twist_E = rendering_.end_effector_twist(rendering);
   const Vector6& w = robot.w_H;
   const PassivityReport report = passivity::step(
-      config_.passivity,
+      config_.passivity, dt_,
       {.f = w.head<3>(),
        .power_measured = w.dot(rendering_.handle_twist(robot)),
        .power_rendered = w.dot(twist_E),
@@ -444,8 +440,7 @@ Cycle::Moved Cycle::advance(Motion motion, const RobotState& robot, const Gantry
   if (motion == Motion::kBrakeJoints) brake_joints();
   const bool is_led = gantry.task.ddq.size() > 0;
   if (motion == Motion::kRender) {
-    moved.dq_p = is_led ? prepositioning::velocity_for(rendering.ddq_p, gantry.command,
-                                                       config_.estimation.drive, robot)
+    moved.dq_p = is_led ? prepositioning_.velocity_for(rendering.ddq_p, gantry.command, robot)
                         : gantry.command.dq;
   }
   moved.reference = rendering.reference;
@@ -460,7 +455,7 @@ Cycle::Moved Cycle::advance(Motion motion, const RobotState& robot, const Gantry
 // arm.
 void Cycle::brake_joints() noexcept {
   rendering::State& rendering = state_.rendering;
-  const double rate = 1.0 / config_.rendering.dt;
+  const double rate = 1.0 / dt_;
   rendering.reference.ddq_m =
       (-rate * rendering.reference.dq_m).cwiseMin(ddq_max_).cwiseMax(-ddq_max_);
   rendering.twin.dq_a.setZero();
@@ -513,8 +508,9 @@ Fault Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
       safety::break_rule(link.code != FaultCode::kNone ? link : verdict.fault, state_.supervisor);
     }
   }
-  const Fault slip = safety::watch_brakes(
-      monitor_.config(), sensors, safety::is_powered(state_.supervisor.state), state_.brakes);
+  const Fault slip =
+      safety::watch_brakes(monitor_.config(), device(), sensors,
+                           safety::is_powered(state_.supervisor.state), state_.brakes);
   if (slip.code != FaultCode::kNone) safety::break_rule(slip, state_.supervisor);
   return verdict.warning;
 }
@@ -545,7 +541,7 @@ TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
   constexpr double kFade = 0.05;  // s
   double share = 1.0;
   if (supervisor.mode() == Mode::kStopping) {
-    const double left = (longest_stop_ / 3 - supervisor.stop_samples) * config_.rendering.dt;
+    const double left = (longest_stop_ / 3 - supervisor.stop_samples) * dt_;
     const bool is_stopped_by_it = supervisor.fault.code == FaultCode::kTorqueUnexplained;
     share = is_stopped_by_it ? std::clamp(left / kFade, 0.0, 1.0) : 0.0;
   }
@@ -553,7 +549,7 @@ TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
       share > 0.0 && is_moving(supervisor.mode()) && state_.motion != Motion::kBrakeJoints;
   compliance::State& touch = state_.touch;
   const VectorM& dq = robot.dq_m;
-  const bool is_known = config_.compliance.torque_max.size() == dq.size() && dq.size() > 0;
+  const bool is_known = torque_max_.size() == dq.size() && dq.size() > 0;
   if (!config_.compliance.is_on || !is_on || !gives_way || !is_known) {
     touch = {};
     state_.rendering.touch.setZero();
@@ -562,8 +558,8 @@ TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
   TouchReport report;
   if (touch.dq.size() == dq.size()) {
     const tracking::JointControl::JointTorques torques =
-        control_.joint_torques(robot, (dq - touch.dq) / config_.rendering.dt);
-    report = compliance::step(config_.compliance,
+        control_.joint_torques(robot, (dq - touch.dq) / dt_);
+    report = compliance::step(torque_max_, dt_,
                               {.torque = torques.external,
                                .load = torques.motion,
                                .J = rendering_.handle_jacobian(),
@@ -603,7 +599,7 @@ void Cycle::fill(const Results& results, const Fault& warning, const TrackingRep
   std::destroy_at(&record);  // rebuilt in place: `record = {}` would copy an empty one
   ::new (&record) CycleRecord;
   record.cycle = state_.cycle - 1;
-  record.time_s = static_cast<double>(record.cycle) * config_.rendering.dt;
+  record.time_s = static_cast<double>(record.cycle) * dt_;
   // supervisor, after all rules of this cycle
   const safety::SupervisorState& supervisor = state_.supervisor;
   record.mode = supervisor.mode();

@@ -83,8 +83,7 @@ struct State {
 class Cycle {
  public:
   /// Builds all parts. Throws SetupError if they do not fit together.
-  Cycle(const Config& config, const rendering::DeviceModel& device,
-        const rendering::TwinModel& twin);
+  Cycle(const Config& config, const DeviceModel& device, const rendering::TwinModel& twin);
 
   /// Runs one cycle: computes `command` and `record` from sensors and operator input.
   void step(const SensorFrame& sensors, const OperatorFrame& operator_input, CommandFrame& command,
@@ -94,6 +93,8 @@ class Cycle {
   bool is_held(const SensorFrame& sensors) const noexcept {
     return safety::is_held(monitor_.config(), sensors);
   }
+  /// The device for which this cycle was built.
+  const DeviceModel& device() const noexcept { return rendering_.device(); }
 
   /// Caps the active sets of a solve from the next step on, where smaller than configured; 0 = as
   /// configured. Not part of the state: a replay sets it again.
@@ -183,12 +184,15 @@ class Cycle {
   void brake_joints() noexcept;
 
   Config config_;
-  VectorM ddq_max_;   ///< Deceleration of joints that brake without the law, rad/s^2 or m/s^2
-  int longest_stop_;  ///< Longest controlled stop, cycles
+  double dt_;           ///< Period, s
+  VectorM torque_max_;  ///< Peak torque of each joint, Nm; empty without torque control
+  VectorM ddq_max_;     ///< Deceleration of joints that brake without the law, rad/s^2 or m/s^2
+  int longest_stop_;    ///< Longest controlled stop, cycles
   estimation::Estimation estimation_;
   rendering::Rendering rendering_;
   tracking::JointControl control_;
   prepositioning::GantryTarget gantry_target_;
+  prepositioning::Prepositioning prepositioning_;
   collision::Guard guard_;
   safety::Monitor monitor_;
   safety::Sanitiser sanitiser_;

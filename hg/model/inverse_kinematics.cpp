@@ -10,6 +10,7 @@
 #include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/rotation.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/joint_range.h"
 
 namespace hg::model {
@@ -25,7 +26,7 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 class Search {
  public:
-  Search(const Chain& chain, const InverseProblem& problem)
+  Search(const ChainModel& chain, const InverseProblem& problem)
       : chain_(chain), problem_(problem), at_rest_(Eigen::VectorXd::Zero(chain.nv())) {
     if (chain.nq() != chain.nv()) {
       throw SetupError(chain.name() + ": inverse kinematics needs a chain without floating joints");
@@ -167,8 +168,8 @@ class Search {
 
   // Removes whole turns where that brings a joint nearer to its goal, or to 0.
   Eigen::VectorXd unwound(Eigen::VectorXd q) const {
-    for (std::size_t i = 0; i < chain_.joints().size(); ++i) {
-      if (chain_.joints()[i].type == JointType::kPrismatic) continue;
+    for (std::size_t i = 0; i < chain_.model().joints().size(); ++i) {
+      if (chain_.model().joints()[i].type == JointType::kPrismatic) continue;
       const auto k = static_cast<Eigen::Index>(i);
       const double goal = std::isfinite(problem_.goal[k]) ? problem_.goal[k] : 0.0;
       const double nearer = q[k] - kTurn * std::round((q[k] - goal) / kTurn);
@@ -177,7 +178,7 @@ class Search {
     return q;
   }
 
-  Chain chain_;
+  ChainData chain_;
   const InverseProblem& problem_;
   Eigen::VectorXd at_rest_;
 };
@@ -194,7 +195,7 @@ class Sequence {
   std::uint64_t state_ = 1;
 };
 
-Eigen::VectorXd start(const Chain& chain, const InverseProblem& problem, int number,
+Eigen::VectorXd start(const ChainModel& chain, const InverseProblem& problem, int number,
                       Sequence& sequence) {
   Eigen::VectorXd q(problem.goal.size());
   for (int i = 0; i < q.size(); ++i) {
@@ -210,7 +211,7 @@ Eigen::VectorXd start(const Chain& chain, const InverseProblem& problem, int num
 
 }  // namespace
 
-InverseResult inverse_kinematics(const Chain& chain, const InverseProblem& problem) {
+InverseResult inverse_kinematics(const ChainModel& chain, const InverseProblem& problem) {
   Search search(chain, problem);
   Sequence sequence;
   InverseResult best;

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 
 namespace hg::model {
 
@@ -34,6 +34,6 @@ struct InverseResult {
 
 /// Solves the problem. Deterministic: starts are the goals, the middle of the ranges and a fixed
 /// sequence.
-InverseResult inverse_kinematics(const Chain& chain, const InverseProblem& problem);
+InverseResult inverse_kinematics(const ChainModel& chain, const InverseProblem& problem);
 
 }  // namespace hg::model

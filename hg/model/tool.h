@@ -1,7 +1,7 @@
 /// Attaches a tool to a link of a URDF that has been read.
 #pragma once
 
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/model/urdf.h"
 
 namespace hg::model {

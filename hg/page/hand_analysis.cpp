@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kPostures = 2000;
 
-double best_dexterity(rendering::DeviceModel& device) {
+double best_dexterity(DeviceModel& device) {
   std::vector<Interval> ranges = generator::joint_ranges(device.chain);
   for (int i = 0; i < device.n_m; ++i) {
     const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
@@ -40,12 +40,13 @@ viewer_server::HandBudget HandAnalysis::budget(const CycleRecord& record) {
   viewer_server::HandBudget budget;
   budget.user = budget.rest = record.robot.w_H;
   const TwinState& twin = record.twin;
-  if (twin.q_a.size() != twin_.nq() || twin.dq_a.size() != twin_.nv()) return budget;
+  if (twin.q_a.size() != twin_.model().nq() || twin.dq_a.size() != twin_.model().nv())
+    return budget;
   twin_.update_kinematics(twin.q_a, twin.dq_a);
   const Eigen::MatrixXd J_transposed = twin_.jacobian(end_effector_).transpose();
   const LeastSquares decomposition(J_transposed);
   const auto at_hand = [&](const VectorA& tau) -> Vector6 {
-    if (tau.size() != twin_.nv()) return Vector6::Zero();
+    if (tau.size() != twin_.model().nv()) return Vector6::Zero();
     const Vector6 w = decomposition.solve(tau);
     budget.rest -= w;
     return w;

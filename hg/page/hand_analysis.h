@@ -6,7 +6,8 @@
 
 #include <optional>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
+#include "hg/model/chain_data.h"
 #include "hg/viewer_server/view.h"
 
 namespace hg::page {
@@ -24,9 +25,9 @@ class HandAnalysis {
   std::optional<viewer_server::Singularity> singularity(const CycleRecord& record);
 
  private:
-  model::Chain twin_;
+  model::ChainData twin_;
   int end_effector_;
-  rendering::DeviceModel device_;
+  DeviceModel device_;
   double best_ = 0.0;  ///< best dexterity of many postures
 };
 

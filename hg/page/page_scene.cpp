@@ -55,8 +55,8 @@ viewer_server::SceneChain device_chain(const config::Device& device) {
   for (std::size_t i = 0; i < device.model.joint_limits.size(); ++i) {
     viewer_server::SceneJoint& joint = chain.joints[static_cast<std::size_t>(device.model.n_p) + i];
     add_limits(device.model.joint_limits[i], joint);
-    if (i < device.control.actuators.size()) {
-      joint.tau_max = device.control.actuators[i].torque_max;
+    if (i < device.model.actuators.size()) {
+      joint.tau_max = device.model.actuators[i].torque_max;
     }
   }
   return chain;
@@ -164,7 +164,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   scene.twin = twin_chain(scenario.twin);
   scene.gantry_joints = scenario.device.model.n_p;
   scene.limits = scenario.limits;
-  scene.rate_hz = scenario.device.rate_Hz;
+  scene.rate_hz = scenario.device.model.rate_Hz;
   scene.box = box_of(scenario);
   scene.floor_z = scenario.device.floor_z;
   scene.stopping = stopping_text(scenario.device);

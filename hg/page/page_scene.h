@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hg/analysis/fault_figures.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/config/twin_form.h"
 #include "hg/scenario/options.h"
 #include "hg/viewer_server/scene.h"

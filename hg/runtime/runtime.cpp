@@ -48,8 +48,6 @@ void check(const Options& options) {
   const auto require = [](bool ok, const char* rule, double value) {
     if (!ok) throw SetupError(std::string("runtime: ") + rule + ", got " + std::to_string(value));
   };
-  require(options.rate_Hz >= 100.0 && options.rate_Hz <= 20000.0, "rate_Hz must be 100..20000",
-          options.rate_Hz);
   require(std::isfinite(options.duration_s) && options.duration_s >= 0.0,
           "duration_s must not be negative", options.duration_s);
   require(std::isfinite(options.longest_stop_s) && options.longest_stop_s > 0.0,
@@ -61,8 +59,7 @@ Runtime::Runtime(const Options& options, controller::Cycle& cycle, device::Devic
     : options_((check(options), options)),
       cycle_(cycle),
       device_(device),
-      session_(cycle, device,
-               {.rate_Hz = options.rate_Hz, .changes = options.changes, .load = options.load}),
+      session_(cycle, device, {.changes = options.changes, .load = options.load}),
       samples_(options.ring),
       hand_targets_(256),
       parameter_changes_(256),
@@ -133,7 +130,7 @@ bool Runtime::stop_is_requested() const noexcept {
 }
 
 Schedule Runtime::new_schedule() const noexcept {
-  return Schedule(now_ns(), std::llround(1e9 / (options_.rate_Hz * speed_)),
+  return Schedule(now_ns(), std::llround(1e9 / (cycle_.device().rate_Hz * speed_)),
                   report_.told_late_cycles ? 0 : Schedule::kMostToMakeUp);
 }
 
@@ -154,7 +151,7 @@ void Runtime::wait_for_turn(Schedule& schedule) noexcept {
 
 // Cycles missed by a device that is the clock, because this cycle took too long.
 std::uint32_t Runtime::late_for_device() const noexcept {
-  const double periods = 1e-9 * static_cast<double>(now_ns() - read_ns_) * options_.rate_Hz;
+  const double periods = 1e-9 * static_cast<double>(now_ns() - read_ns_) * cycle_.device().rate_Hz;
   return periods > 1.0 ? static_cast<std::uint32_t>(std::min(periods, 1e9)) : 0;
 }
 
@@ -207,7 +204,7 @@ void Runtime::operate(bool is_stopping) noexcept {
     is_operated_ = true;
     request_stops_ = next.stops;
   }
-  const double time_s = static_cast<double>(report_.cycles) / options_.rate_Hz;
+  const double time_s = static_cast<double>(report_.cycles) / cycle_.device().rate_Hz;
   if (const TimedPanel* due = timed_panels_.due(time_s)) {
     play_script(*due);
     if (due->request != ModeRequest::kNone) {

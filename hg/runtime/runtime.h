@@ -32,7 +32,6 @@ namespace hg::runtime {
 
 /// Options of a run; set-up data.
 struct Options {
-  double rate_Hz = 1000.0;  ///< Cycles per second, Hz
   bool is_fast = false;     ///< As fast as possible instead of in real time
   double duration_s = 0.0;  ///< Duration until the stop, s; 0 = until request_stop()
   /// Longest wait for standstill before only the brakes stop the device, s: slightly longer than a

@@ -7,7 +7,7 @@ namespace hg::runtime {
 Session::Session(controller::Cycle& cycle, device::Device& device, const SessionPlan& plan)
     : cycle_(cycle),
       device_(device),
-      rate_Hz_(plan.rate_Hz),
+      rate_Hz_(cycle.device().rate_Hz),
       duration_s_(plan.duration_s),
       changes_(plan.changes),
       loads_(plan.load) {}

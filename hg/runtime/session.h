@@ -19,7 +19,6 @@ namespace hg::runtime {
 
 /// What happens in a session at given times; set-up data.
 struct SessionPlan {
-  double rate_Hz = 1000.0;           ///< Cycles per second, Hz
   double duration_s = 0.0;           ///< Duration, s; 0 = until a fault or a stop
   std::vector<TimedChange> changes;  ///< Changes of the twin, in the order of their times
   std::vector<TimedLoad> load;       ///< Load on the computer, for tests

@@ -1,18 +1,14 @@
 #include "hg/scenario/assembly.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
-#include <random>
 #include <utility>
 #include <vector>
 
+#include "hg/config/control_cycle.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"
-#include "hg/core/linear_algebra.h"
 #include "hg/scenario/start_posture.h"
 #include "hg/simulator/faults/faulty_device.h"
 #include "hg/simulator/simulated_device.h"
@@ -53,7 +49,7 @@ Interval end_stops(const config::Simulation& reality, const model::Joint& joint,
   return {q_min - beyond, q_max + beyond};
 }
 
-simulator::PlantConfig elastic_plant(const config::Device& device, const Start& start,
+simulator::PlantConfig elastic_plant(const config::SimulatedDevice& device, const Start& start,
                                      double step) {
   const config::Simulation& reality = device.simulation;
   simulator::PlantConfig plant = {
@@ -63,7 +59,7 @@ simulator::PlantConfig elastic_plant(const config::Device& device, const Start& 
       .flexible = reality.flexible,
       .current_lag = actual(device.control.loop, reality.factors).current_lag,
       .mass = reality.factors.mass,
-      .drive = actual(device.drive, reality.factors),
+      .drive = actual(device.model.drive, reality.factors),
       .end_stop = reality.end_stop,
       .waviness = reality.waviness,
       .seed = reality.seed,
@@ -76,12 +72,12 @@ simulator::PlantConfig elastic_plant(const config::Device& device, const Start& 
   const std::vector<model::Joint>& joints = device.model.chain.joints();
   const auto n_p = static_cast<std::size_t>(device.model.n_p);
   for (std::size_t axis = 0; axis < n_p; ++axis) {
-    const Interval& limits = device.prepositioning.q_limits[axis];
+    const Interval& limits = device.model.gantry_range[axis];
     plant.gantry_stops.push_back(end_stops(reality, joints[axis], limits.lb, limits.ub));
   }
   for (int i = 0; i < device.model.n_m; ++i) {
     const auto joint = static_cast<std::size_t>(i);
-    plant.actuators.push_back(actual(device.control.actuators[joint], reality.factors));
+    plant.actuators.push_back(actual(device.model.actuators[joint], reality.factors));
     plant.effects.push_back(
         effects_of(plant.actuators.back(), reality.motors, reality.gears, reality.gear_ratio[i]));
     const limits::JointLimits& limits = device.model.joint_limits[joint];
@@ -91,9 +87,9 @@ simulator::PlantConfig elastic_plant(const config::Device& device, const Start& 
 }
 
 // The machine of a device: elastic joints where its joints have actuators.
-simulator::Config device_simulation(const config::Device& device, const Start& start) {
+simulator::Config device_simulation(const config::SimulatedDevice& device, const Start& start) {
   const config::Simulation& reality = device.simulation;
-  const double period = device.rendering.dt;
+  const double period = device.model.dt();
   const bool is_elastic = device.control.method != tracking::Method::kDrives;
   simulator::Config config = {.sensors = reality.sensors,
                               .has_dead_man = device.monitor.has_dead_man};
@@ -103,7 +99,7 @@ simulator::Config device_simulation(const config::Device& device, const Start& s
     config.plant = elastic_plant(device, start, period / config.steps);
   } else {
     config.plant = simulator::IdealPlantConfig{.period = period,
-                                               .drive = actual(device.drive, reality.factors),
+                                               .drive = actual(device.model.drive, reality.factors),
                                                .q_p_start = start.q_p,
                                                .q_m_start = start.q_m};
   }
@@ -113,7 +109,7 @@ simulator::Config device_simulation(const config::Device& device, const Start& s
   config.safety = device.simulation.safety;
   config.safety.period = period;
   sensed.gear_ratio = reality.gear_ratio;
-  sensed.T_H_S = device.T_H_S;
+  sensed.T_H_S = device.model.T_H_S;
   sensed.payload = actual(device.estimation.wrench.payload, reality.factors);
   sensed.torque_full_scale = VectorM::Ones(device.model.n_m);
   sensed.torque_rated = VectorM::Zero(is_elastic ? device.model.n_m : 0);
@@ -123,14 +119,14 @@ simulator::Config device_simulation(const config::Device& device, const Start& s
     sensed.is_endless[joint] =
         device.model.chain.joints()[in_chain].type == model::JointType::kContinuous;
     if (!is_elastic) continue;
-    sensed.torque_full_scale[i] = device.control.actuators[joint].torque_max;
-    sensed.torque_rated[i] = device.control.actuators[joint].torque_rated;
+    sensed.torque_full_scale[i] = device.model.actuators[joint].torque_max;
+    sensed.torque_rated[i] = device.model.actuators[joint].torque_rated;
   }
   return config;
 }
 
 // Places the bystander. Throws SetupError where the arm cannot hit anyone.
-void place(const config::BystanderInTheWay& bystander, const model::Chain& chain,
+void place(const config::BystanderInTheWay& bystander, const model::ChainModel& chain,
            simulator::Config& simulation) {
   auto* plant = std::get_if<simulator::PlantConfig>(&simulation.plant);
   if (plant == nullptr) {
@@ -143,10 +139,10 @@ void place(const config::BystanderInTheWay& bystander, const model::Chain& chain
 }
 
 simulator::Simulation simulation_of(
-    const config::Device& device, const Start& start, person::Person person,
+    const config::SimulatedDevice& device, const Start& start, person::Person person,
     const std::optional<config::BystanderInTheWay>& bystander = {}) {
   const bool is_elastic = device.control.method != tracking::Method::kDrives;
-  const model::Chain& chain =
+  const model::ChainModel& chain =
       device.simulation.chain && is_elastic ? *device.simulation.chain : device.model.chain;
   const std::string& handle =
       device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
@@ -166,110 +162,17 @@ bool has_noise(const simulator::SensorsConfig& sensors) {
          sensors.gyroscope.noise > 0.0;
 }
 
-constexpr int kStabilityPostures = 32;
-constexpr int kMostDraws = 1'000'000;  // of a posture; takes less than a second
-constexpr int kFurtherLatency = 4;     // periods beyond what is expected
-
-// Elastic joints: until which latency the gains that follow from it are stable.
-tracking::Config checked_control(const config::Device& device) {
-  tracking::Config control = device.control;
-  if (control.method == tracking::Method::kDrives) return control;
-  const tracking::Loop loop = torque_loop(device);
-  const int expected =
-      std::max(1, static_cast<int>(std::ceil(control.loop.latency / control.dt - 1e-9)));
-  const int periods =
-      tracking::longest_stable_latency(loop, random_postures(device.model, kStabilityPostures, 1),
-                                       expected + kFurtherLatency, expected);
-  control.latency_max = (periods + 0.25) * control.dt;  // what was measured is a mean
-  if (control.loop.latency > control.latency_max) {
-    throw SetupError(fmt::format(
-        "control.latency_s: at {:g} Hz the torque loop is stable up to {:g} s, got {:g}: raise the "
-        "rate, lower rotor_pole_rad_per_s or spring_damping, or run with --plant ideal",
-        device.rate_Hz, periods * control.dt, control.loop.latency));
-  }
-  return control;
-}
-
-compliance::Config compliance_of(const config::Device& device) {
-  compliance::Config compliance = device.compliance;
-  compliance.dt = device.rendering.dt;
-  if (device.control.method == tracking::Method::kDrives) return compliance;
-  compliance.torque_max.resize(device.model.n_m);
-  for (int i = 0; i < device.model.n_m; ++i) {
-    compliance.torque_max[i] = device.control.actuators[static_cast<std::size_t>(i)].torque_max;
-  }
-  return compliance;
-}
-
 }  // namespace
 
-std::vector<Eigen::VectorXd> random_postures(const rendering::DeviceModel& device, int count,
-                                             std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::vector<Eigen::VectorXd> postures;
-  for (int k = 0; k < kMostDraws; ++k) {
-    Eigen::VectorXd q = Eigen::VectorXd::Zero(device.n_p + device.n_m);
-    for (int i = 0; i < device.n_m; ++i) {
-      const limits::JointLimits& joint = device.joint_limits[static_cast<std::size_t>(i)];
-      const double lo = std::max(joint.q_min, -std::numbers::pi);
-      const double hi = std::min(joint.q_max, std::numbers::pi);
-      const double share = static_cast<double>(random()) / static_cast<double>(random.max());
-      q[device.n_p + i] = lo + (hi - lo) * share;
-    }
-    const auto is_within = [&](const rendering::VirtualJoint& joint) {
-      const double sum = joint.weights.dot(q.tail(device.n_m));
-      return joint.limits.q_min <= sum && sum <= joint.limits.q_max;
-    };
-    if (!std::ranges::all_of(device.virtual_joints, is_within)) continue;
-    postures.push_back(std::move(q));
-    if (static_cast<int>(postures.size()) == count) return postures;
-  }
-  throw SetupError(fmt::format(
-      "virtual_joints: only {} of {} random postures within the limits of the joints keep these "
-      "limits, {} are needed to check that the torque loop is stable: widen them, or tighten those "
-      "of the joints",
-      postures.size(), kMostDraws, count));
-}
-
-tracking::Loop torque_loop(const config::Device& device) {
-  return {.config = device.control,
-          .filters = {.link_pole_Hz = device.estimation.link_pole_Hz,
-                      .motor_low_pass_Hz = device.estimation.motor_low_pass_Hz},
-          .chain = device.model.chain,
-          .n_p = device.model.n_p,
-          .n_m = device.model.n_m,
-          .handle = device.model.handle};
-}
-
-bool notices_frozen_sensors(const config::Device& device) {
+bool notices_frozen_sensors(const config::SimulatedDevice& device) {
   const bool is_noisy = !device.simulation.is_from_file || has_noise(device.simulation.sensors);
   return is_noisy && device.monitor.frozen_samples > 0.0;
 }
 
 controller::Cycle make_cycle(const config::Scenario& scenario) {
-  const config::Device& device = scenario.device;
-  safety::MonitorConfig monitor = device.monitor;
-  if (!notices_frozen_sensors(device)) monitor.frozen_samples = 0.0;
-  // the paper's bounds ask for more than any rating where they contradict each other, and where the
-  // law knows torques they are what limits accelerations
-  if (device.rendering.bounds == rendering::Bounds::kPaper || !device.model.motors.empty()) {
-    monitor.acceleration_tolerance = kInfinity;
-  }
-  monitor.looks_for_shaking = device.passivity.reaction != passivity::Reaction::kOff;
-  monitor.stops_shaking = device.passivity.reaction == passivity::Reaction::kAct;
-  const double heaviest = rendering::felt_mass(scenario.twin.model).mass.ub;
-  monitor.twin_mass = std::isfinite(heaviest) ? heaviest : 0.0;
-  return controller::Cycle({.estimation = device.estimation,
-                            .prepositioning = device.prepositioning,
-                            .rendering = device.rendering,
-                            .control = checked_control(device),
-                            .monitor = monitor,
-                            .sanitiser = device.sanitiser,
-                            .collision = device.collision,
-                            .passivity = device.passivity,
-                            .compliance = compliance_of(device),
-                            .surfaces = scenario.surfaces},
-                           device.model, scenario.twin.model);
+  config::Device device = scenario.device;
+  if (!notices_frozen_sensors(scenario.device)) device.monitor.frozen_samples = 0.0;
+  return config::make_cycle(device, scenario.twin, scenario.surfaces);
 }
 
 person::Person make_person(const config::Scenario& scenario, const Start& start) {
@@ -281,14 +184,15 @@ person::Person make_person(const config::Scenario& scenario, const Start& start)
 }
 
 simulator::Simulation make_simulation(const config::Scenario& scenario) {
-  const Start start = find_start(scenario);
+  const Start start = find_start(scenario.device, scenario.twin);
   return simulation_of(scenario.device, start, make_person(scenario, start), scenario.bystander);
 }
 
-simulator::Simulation make_unheld_simulation(const config::Device& device, const Start& start) {
+simulator::Simulation make_unheld_simulation(const config::SimulatedDevice& device,
+                                             const Start& start) {
   return simulation_of(
       device, start,
-      person::Person({.kind = person::PersonKind::kNone}, model::Chain::free_body({}), 0, Pose{}));
+      person::Person({.kind = person::PersonKind::kNone}, model::ChainModel::free_body({}), 0, Pose{}));
 }
 
 std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario) {
@@ -307,12 +211,12 @@ analysis::Summary make_summary(const config::Scenario& scenario) {
                        const Truth& truth, std::vector<double>& values) mutable {
     limits.find(truth.q_p, truth.q_m, values);
   };
-  const std::vector<ActuatorModel>& actuators = scenario.device.control.actuators;
+  const std::vector<ActuatorModel>& actuators = scenario.device.model.actuators;
   VectorM torque_rated(static_cast<Eigen::Index>(actuators.size()));
   for (Eigen::Index i = 0; i < torque_rated.size(); ++i) {
     torque_rated[i] = actuators[static_cast<std::size_t>(i)].torque_rated;
   }
-  return {scenario.limits, std::move(positions), scenario.device.rate_Hz, torque_rated};
+  return {scenario.limits, std::move(positions), scenario.device.model.rate_Hz, torque_rated};
 }
 
 double planned_duration_s(const config::Scenario& scenario) {

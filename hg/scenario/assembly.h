@@ -1,14 +1,11 @@
 /// Builds the parts of a run from a loaded scenario.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "hg/analysis/summary.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/cycle.h"
-#include "hg/controller/tracking/loop_stability.h"
 #include "hg/device/device.h"
 #include "hg/scenario/start_posture.h"
 #include "hg/simulator/person/person.h"
@@ -19,16 +16,8 @@ namespace hg::scenario {
 /// The control cycle of the scenario's device and twin. Throws SetupError.
 controller::Cycle make_cycle(const config::Scenario& scenario);
 
-/// The torque loop of a device with elastic joints, as its controller believes it to be.
-tracking::Loop torque_loop(const config::Device& device);
-
-/// `count` postures (gantry at 0 first) all over the limits of the joints; a joint without limits
-/// is sampled over one turn. Throws SetupError if hardly any is within the virtual limits.
-std::vector<Eigen::VectorXd> random_postures(const rendering::DeviceModel& device, int count,
-                                             std::uint32_t seed);
-
 /// Whether rule 105 is on: sensors without noise in simulation.yaml give constant values at rest.
-bool notices_frozen_sensors(const config::Device& device);
+bool notices_frozen_sensors(const config::SimulatedDevice& device);
 
 /// The scenario's person, who grasps the handle of a device at `start`.
 person::Person make_person(const config::Scenario& scenario, const Start& start);
@@ -37,7 +26,8 @@ person::Person make_person(const config::Scenario& scenario, const Start& start)
 /// SetupError when the device cannot reach that pose.
 simulator::Simulation make_simulation(const config::Scenario& scenario);
 /// The device alone at `start` (the pose of the handle does not matter), with a free handle.
-simulator::Simulation make_unheld_simulation(const config::Device& device, const Start& start);
+simulator::Simulation make_unheld_simulation(const config::SimulatedDevice& device,
+                                             const Start& start);
 /// The world of make_simulation() behind the interface of a device, with the faults of the
 /// scenario. Those of the computer act in a session or runtime: faults::loads_of().
 std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario);

@@ -5,7 +5,7 @@
 namespace hg::scenario {
 namespace {
 
-std::vector<std::string> joint_names(const rendering::DeviceModel& device, int first, int count) {
+std::vector<std::string> joint_names(const DeviceModel& device, int first, int count) {
   std::vector<std::string> names;
   for (int i = first; i < first + count; ++i) {
     names.push_back(device.chain.joints()[static_cast<std::size_t>(i)].name);
@@ -33,7 +33,7 @@ analysis::Names part_names(const config::Scenario& scenario) {
 analysis::RunFacts facts_of_scenario(const config::Scenario& scenario) {
   using rendering::Braking;
   using rendering::Gantry;
-  const rendering::DeviceModel& device = scenario.device.model;
+  const DeviceModel& device = scenario.device.model;
   const rendering::Options& law = scenario.device.rendering;
   const Gantry gantry = rendering::leads_gantry(device, law) ? Gantry::kLaw : Gantry::kRule;
   const Braking braking =

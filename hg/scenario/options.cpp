@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "hg/config/law_names.h"
-#include "hg/config/script_schema.h"
 #include "hg/config/shipped_files.h"
+#include "hg/config/simulation/script_schema.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"
 
@@ -23,7 +23,7 @@ void apply(const Options& options, config::SourceReader& reader, config::Scenari
     scenario.sources.insert(scenario.sources.end(), sources.begin(), sources.end());
   };
   if (!options.device.empty()) {
-    scenario.device = config::load_device(options.device, reader);
+    scenario.device = config::load_simulated_device(options.device, reader);
     add_sources(scenario.device.sources);
   }
   if (!options.simulation.empty()) {
@@ -65,7 +65,10 @@ void apply(const Options& options, config::SourceReader& reader, config::Scenari
   } else if (!options.twin.empty()) {
     scenario.person = person::PersonKind::kMouse;  // a script is made for one twin
   }
-  if (options.rate_Hz) config::set_rate(scenario.device, *options.rate_Hz);
+  if (options.rate_Hz) {
+    config::check_rate(scenario.device, *options.rate_Hz);
+    scenario.device.model.rate_Hz = *options.rate_Hz;
+  }
 }
 
 // `text` is one of the names of `choices`; empty leaves the value alone
@@ -83,9 +86,9 @@ void choose(const char* option, const std::string& text, config::Choices<T> choi
 
 // applies --plant, --sensors, --hand, --seed and --step
 void apply_to_simulation(const Options& options, config::Scenario& scenario) {
-  config::Device& device = scenario.device;
+  config::SimulatedDevice& device = scenario.device;
   if (options.plant == "ideal") device.control.method = tracking::Method::kDrives;
-  if (options.plant == "elastic" && device.control.actuators.empty()) {
+  if (options.plant == "elastic" && device.model.actuators.empty()) {
     throw SetupError("--plant elastic: needs 'actuators' in " + device.sources.front().name);
   }
   if (options.seed) device.simulation.seed = *options.seed;
@@ -98,7 +101,6 @@ void apply_to_simulation(const Options& options, config::Scenario& scenario) {
            preset);
     scenario.script.hand = person::hand(preset);
   }
-  config::settle_law(scenario);
 }
 
 // the options of to_text() that determine the cycle

@@ -8,8 +8,7 @@ namespace hg::scenario {
 namespace {
 
 runtime::SessionPlan plan_of(const config::Scenario& scenario) {
-  return {.rate_Hz = scenario.device.rate_Hz,
-          .duration_s = planned_duration_s(scenario),
+  return {.duration_s = planned_duration_s(scenario),
           .changes = scenario.changes,
           .load = faults::loads_of(scenario.faults)};
 }

@@ -8,7 +8,7 @@
 
 #include <memory>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/cycle.h"
 #include "hg/device/device.h"
 #include "hg/runtime/session.h"

@@ -10,6 +10,7 @@
 #include "hg/controller/safety/collision/distance.h"
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/haptic_giant.h"
 #include "hg/model/inverse_kinematics.h"
 
@@ -23,9 +24,9 @@ struct Violation {
   limits::JointLimits limits;
 };
 
-// The first limit, in the order of the catalogue, that forbids `q` (gantry first); `chain` is the
-// device's.
-std::optional<Violation> find_violation(const rendering::DeviceModel& device, model::Chain& chain,
+// The first limit, in the order of the catalogue, that forbids `q` (gantry first). Moves `chain`,
+// the device, to `q`.
+std::optional<Violation> find_violation(const DeviceModel& device, model::ChainData& chain,
                                         const Eigen::VectorXd& q) {
   const auto is_outside = [](double value, const limits::JointLimits& limits) {
     return value < limits.q_min || value > limits.q_max;
@@ -37,12 +38,12 @@ std::optional<Violation> find_violation(const rendering::DeviceModel& device, mo
       return Violation{"joint " + device.manipulator_joint(i), q_m[i], limits};
     }
   }
-  for (const rendering::VirtualJoint& joint : device.virtual_joints) {
+  for (const VirtualJoint& joint : device.virtual_joints) {
     const double sum = joint.weights.dot(q_m);
     if (is_outside(sum, joint.limits)) return Violation{joint.name, sum, joint.limits};
   }
-  chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.nv()));
-  for (const rendering::CartesianLimit& limit : device.cartesian_limits) {
+  chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.model().nv()));
+  for (const CartesianLimit& limit : device.cartesian_limits) {
     const Eigen::Vector3d p = chain.pose(limit.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
       const limits::JointLimits& limits = limit.axes[static_cast<std::size_t>(axis)];
@@ -55,35 +56,32 @@ std::optional<Violation> find_violation(const rendering::DeviceModel& device, mo
 }
 
 // throws SetupError when the device may not be at `start`
-void check_limits(const config::Scenario& scenario, const Start& start) {
-  model::Chain chain = scenario.device.model.chain;
+void check_limits(const config::Device& device, const config::Twin& twin, const Start& start) {
+  model::ChainData chain(device.model.chain);
   const std::optional<Violation> violation =
-      find_violation(scenario.device.model, chain, stacked(start.q_p, start.q_m));
+      find_violation(device.model, chain, stacked(start.q_p, start.q_m));
   if (!violation) return;
   throw SetupError(fmt::format(
       "twin {}: at its start {} of the device would be at {:.3f}, outside {:.3f} .. {:.3f}; move "
       "or turn the twin's placement, or change its start{}",
-      scenario.twin.name, violation->item, violation->value, violation->limits.q_min,
-      violation->limits.q_max,
-      scenario.device.kinematics == config::Kinematics::kGeneric ? " or the device's posture"
-                                                                 : ""));
+      twin.name, violation->item, violation->value, violation->limits.q_min,
+      violation->limits.q_max, !device.model.has_closed_form ? " or the device's posture" : ""));
 }
 
 // throws SetupError when the handle or a part of the device would be in the floor at `start`: the
 // guard accepts a device in its present posture, so no other check reports it
-void check_floor(const config::Scenario& scenario, const Start& start) {
-  const config::Device& device = scenario.device;
+void check_floor(const config::Device& device, const config::Twin& twin, const Start& start) {
   if (!device.has_floor) return;
   const auto refuse = [&](const std::string& what) {
     throw SetupError(
         fmt::format("twin {}: at its start {} would be in the floor, at floor_z_m {:g} of the "
                     "device; check the sign of floor_z_m, or move the twin's placement",
-                    scenario.twin.name, what, device.floor_z));
+                    twin.name, what, device.floor_z));
   };
   if (start.T_B_H.p.z() <= device.floor_z) {
     refuse(fmt::format("the handle, at z {:.3f} m,", start.T_B_H.p.z()));
   }
-  model::Chain chain = device.model.chain;
+  model::ChainData chain(device.model.chain);
   chain.update_poses(stacked(start.q_p, start.q_m));
   const auto pose = [&](const collision::Shape& shape) {
     return shape.frame < 0 ? Pose{} : chain.pose(shape.frame);
@@ -97,23 +95,23 @@ void check_floor(const config::Scenario& scenario, const Start& start) {
   }
 }
 
-Start closed_form_start(const config::Scenario& scenario) {
+Start closed_form_start(const config::Device& device, const config::Twin& twin) {
   Start start;
-  start.T_B_H = handle_start(scenario.twin.model);
+  start.T_B_H = handle_start(twin.model);
   const auto require_solved = [&](model::haptic_giant::InverseStatus status, const char* what) {
     if (status == model::haptic_giant::InverseStatus::kSolved) return;
     const Eigen::Vector3d& p = start.T_B_H.p;
     throw SetupError(
         fmt::format("twin {}: {} its handle at ({:.2f}, {:.2f}, {:.2f}) m: {}; move the "
                     "twin's placement",
-                    scenario.twin.name, what, p.x(), p.y(), p.z(), to_string(status)));
+                    twin.name, what, p.x(), p.y(), p.z(), to_string(status)));
   };
   Eigen::Vector2d q_p;
   Vector6 q_m;
   require_solved(model::haptic_giant::inverse_at_target(start.T_B_H, q_p, q_m),
                  "the device cannot reach");
   for (int i = 0; i < 2; ++i) {
-    const Interval range = scenario.device.prepositioning.q_limits[static_cast<std::size_t>(i)];
+    const Interval range = device.model.gantry_range[static_cast<std::size_t>(i)];
     q_p[i] = std::clamp(q_p[i], range.lb, range.ub);
   }
   require_solved(model::haptic_giant::inverse(start.T_B_H, q_p, {}, q_m),
@@ -126,7 +124,7 @@ Start closed_form_start(const config::Scenario& scenario) {
 Interval range_of(const limits::JointLimits& limits) { return {limits.q_min, limits.q_max}; }
 
 // The joints that stand at a limit in `q`, for advice.
-std::string joints_at_limits(const model::Chain& chain, const model::InverseProblem& problem,
+std::string joints_at_limits(const model::ChainModel& chain, const model::InverseProblem& problem,
                              const Eigen::VectorXd& q) {
   constexpr double kAtLimit = 1e-6;  // rad and m
   std::string names;
@@ -137,11 +135,10 @@ std::string joints_at_limits(const model::Chain& chain, const model::InverseProb
   return names.empty() ? "the arm is stretched or folded" : "at their limits: " + names;
 }
 
-Start numeric_start(const config::Scenario& scenario) {
-  const rendering::DeviceModel& device = scenario.device.model;
+Start numeric_start(const DeviceModel& device, const config::Twin& twin) {
   const int n_p = device.n_p, n = device.chain.nv();
   Start start;
-  start.T_B_H = handle_start(scenario.twin.model);
+  start.T_B_H = handle_start(twin.model);
   model::InverseProblem problem = {
       .frame = device.handle,
       .T_B_frame = start.T_B_H,
@@ -149,15 +146,15 @@ Start numeric_start(const config::Scenario& scenario) {
       .q_max = Eigen::VectorXd(n),
       .goal = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN())};
   for (int i = 0; i < n; ++i) {
-    const Interval range =
-        i < n_p ? scenario.device.prepositioning.q_limits[static_cast<std::size_t>(i)]
-                : range_of(device.joint_limits[static_cast<std::size_t>(i - n_p)]);
+    const Interval range = i < n_p
+                               ? device.gantry_range[static_cast<std::size_t>(i)]
+                               : range_of(device.joint_limits[static_cast<std::size_t>(i - n_p)]);
     problem.q_min[i] = range.lb;
     problem.q_max[i] = range.ub;
   }
   if (device.posture.size() > 0) problem.goal.tail(device.n_m) = device.posture;
 
-  model::Chain chain = device.chain;
+  model::ChainData chain(device.chain);
   problem.permits = [&](const Eigen::VectorXd& q) { return !find_violation(device, chain, q); };
   const model::InverseResult found = model::inverse_kinematics(device.chain, problem);
   if (!found.is_solved) {
@@ -166,7 +163,7 @@ Start numeric_start(const config::Scenario& scenario) {
         "twin {}: the device cannot hold its handle at ({:.2f}, {:.2f}, {:.2f}) m: the nearest "
         "posture is {:.3f} m and {:.3f} rad away, {}; move or turn the twin's placement, or change "
         "its start",
-        scenario.twin.name, p.x(), p.y(), p.z(), found.position_error, found.angle_error,
+        twin.name, p.x(), p.y(), p.z(), found.position_error, found.angle_error,
         joints_at_limits(device.chain, problem, found.q)));
   }
   // where no solution was permitted, the limits of the nearest one give the reason
@@ -178,17 +175,16 @@ Start numeric_start(const config::Scenario& scenario) {
 }  // namespace
 
 Pose handle_start(const rendering::TwinModel& twin) {
-  model::Chain chain = twin.chain;
-  chain.update_kinematics(twin.q_start, VectorA::Zero(chain.nv()));
+  model::ChainData chain(twin.chain);
+  chain.update_kinematics(twin.q_start, VectorA::Zero(chain.model().nv()));
   return chain.pose(twin.end_effector);
 }
 
-Start find_start(const config::Scenario& scenario) {
-  Start start = scenario.device.kinematics == config::Kinematics::kHapticGiant
-                    ? closed_form_start(scenario)
-                    : numeric_start(scenario);
-  check_limits(scenario, start);
-  check_floor(scenario, start);
+Start find_start(const config::Device& device, const config::Twin& twin) {
+  Start start = device.model.has_closed_form ? closed_form_start(device, twin)
+                                             : numeric_start(device.model, twin);
+  check_limits(device, twin, start);
+  check_floor(device, twin, start);
   return start;
 }
 

@@ -1,7 +1,8 @@
 /// Start of a run: the twin at its start, the device with its handle there.
 #pragma once
 
-#include "hg/config/scenario.h"
+#include "hg/config/device.h"
+#include "hg/config/twin.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/core/types.h"
 
@@ -19,6 +20,6 @@ Pose handle_start(const rendering::TwinModel& twin);
 /// The device in its best posture with the handle where the twin's end effector starts. Throws
 /// SetupError with a suggested change when the device cannot be there within its limits and above
 /// its floor.
-Start find_start(const config::Scenario& scenario);
+Start find_start(const config::Device& device, const config::Twin& twin);
 
 }  // namespace hg::scenario

@@ -32,8 +32,10 @@ struct ParameterFacts {
   double no_limit = 0.0;        ///< infinity that stands for "no limit"; 0 = none is allowed
 };
 
-inline constexpr Interval kAnyValue = {-kInfinity, kInfinity};
-inline constexpr Interval kFromZero = {0.0, kInfinity};
+/// Largest magnitude of a parameter that has no range of its own: keeps products finite.
+inline constexpr double kLargestParameter = 1e9;
+inline constexpr Interval kAnyValue = {-kLargestParameter, kLargestParameter};
+inline constexpr Interval kFromZero = {0.0, kLargestParameter};
 
 inline constexpr std::array<ParameterFacts, 12> kParameters = {{
     {Parameter::kStiffness, ParameterOwner::kJoint, "stiffness_Nm_per_rad", "stiffness_N_per_m",

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/truth.h"
 #include "hg/simulator/person/person.h"
@@ -43,7 +43,8 @@ class Simulation {
 
   /// `chain` is that of the plant, `handle` its frame H. Throws SetupError when the latency is
   /// longer than kMaxLatency periods.
-  Simulation(const Config& config, const model::Chain& chain, int handle, person::Person person);
+  Simulation(const Config& config, const model::ChainModel& chain, int handle,
+             person::Person person);
 
   /// Present sensor readings.
   const SensorFrame& sensors() const noexcept { return frame_; }

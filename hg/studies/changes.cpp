@@ -1,6 +1,7 @@
 #include "hg/studies/changes.h"
 
 #include "hg/core/error.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::studies {
 namespace {
@@ -14,16 +15,17 @@ void require_free_body(const config::Scenario& scenario) {
 
 // inertia of the body about its origin, in its own axes
 Eigen::MatrixXd inertia_of(const config::Scenario& scenario) {
-  model::Chain chain = scenario.twin.model.chain;
-  const VectorA at_rest = VectorA::Zero(chain.nv());
+  model::ChainData chain(scenario.twin.model.chain);
+  const VectorA at_rest = VectorA::Zero(chain.model().nv());
   chain.update(scenario.twin.model.q_start, at_rest);
   return chain.M();
 }
 
 void set_body(config::Scenario& scenario, const model::FreeBody& body) {
   rendering::TwinModel& model = scenario.twin.model;
-  model.chain = model::Chain::free_body(body, {.T_B_root = scenario.twin.T_B_root,
-                                               .gravity = model.chain.default_loads().gravity > 0});
+  model.chain = model::ChainModel::free_body(
+      body,
+      {.T_B_root = scenario.twin.T_B_root, .gravity = model.chain.default_loads().gravity > 0});
   model.end_effector = model.chain.frame("handle");
   model.mass_scale = 1.0;
 }
@@ -57,8 +59,8 @@ void play_script(config::Scenario& scenario, const person::Script& script) {
   scenario.duration_s = 0.0;
 }
 
-void take_friction(tracking::Config& control) {
-  for (ActuatorModel& actuator : control.actuators) {
+void take_friction(DeviceModel& device) {
+  for (ActuatorModel& actuator : device.actuators) {
     actuator.coulomb_friction = actuator.viscous_friction = actuator.load_friction = 0.0;
   }
 }

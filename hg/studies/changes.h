@@ -1,7 +1,7 @@
 /// Changes that experiments make to a scenario.
 #pragma once
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/free_twin.h"
 
 namespace hg::studies {
@@ -21,6 +21,6 @@ FreeTwin free_twin_of(const config::Scenario& scenario);
 void play_script(config::Scenario& scenario, const person::Script& script);
 
 /// Removes the joint friction, from the true device and from the controller's model.
-void take_friction(tracking::Config& control);
+void take_friction(DeviceModel& device);
 
 }  // namespace hg::studies

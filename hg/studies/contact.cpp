@@ -8,6 +8,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 #include "hg/scenario/assembly.h"
 #include "hg/simulator/plant/bystander.h"
 #include "hg/studies/changes.h"
@@ -51,7 +52,7 @@ config::Scenario walking(const config::Scenario& scenario, const ContactConfig& 
 class Tracker {
  public:
   Tracker(const config::Scenario& scenario, const std::string& frame)
-      : chain_(scenario.device.model.chain), frame_(chain_.frame(frame)) {}
+      : chain_(scenario.device.model.chain), frame_(chain_.model().frame(frame)) {}
   void look(const Truth& truth) {
     const VectorPM q = stacked(truth.q_p, truth.q_m), dq = stacked(truth.dq_p, truth.dq_m);
     chain_.update_kinematics(q, dq);
@@ -60,7 +61,7 @@ class Tracker {
   Eigen::Vector3d velocity() const { return chain_.twist(frame_).head<3>(); }
 
  private:
-  model::Chain chain_;
+  model::ChainData chain_;
   int frame_;
 };
 
@@ -97,7 +98,7 @@ config::Scenario with(config::Scenario walk, const simulator::BystanderConfig& b
 ContactRun play(const config::Scenario& walk, const ContactConfig& config) {
   Player player(walk);
   Tracker tracker(walk, walk.bystander->hit_by);
-  const double dt = 1.0 / walk.device.rate_Hz;
+  const double dt = 1.0 / walk.device.model.rate_Hz;
   const double end_s = scenario::planned_duration_s(walk) + config.watched;
   ContactRun run;
   double hit_s = -1.0;

@@ -56,7 +56,7 @@ class Travel {
 
   // One period from the begin of the fault on.
   void add(const Truth& truth, const Sample& sample, bool has_reacted) {
-    const double dt = device_.rendering.dt;
+    const double dt = device_.model.dt();
     if (!has_begun_) {
       has_begun_ = true;
       from_m_ = truth.q_m;
@@ -69,7 +69,7 @@ class Travel {
       for (Eigen::Index i = 0; i < plan_p_.size(); ++i) {
         const double command = sample.command.enable ? sample.command.dq_p[i] : 0.0;
         plan_p_[i] += dt * speed_p_[i];
-        speed_p_[i] += dt * drive_acceleration(device_.drive, speed_p_[i], command);
+        speed_p_[i] += dt * drive_acceleration(device_.model.drive, speed_p_[i], command);
       }
       at_stop_m_ = truth.q_m;
       at_stop_p_ = truth.q_p;
@@ -142,7 +142,7 @@ std::size_t draw_index(std::size_t count, Random& random) {
 
 faults::Injection draw(const faults::Kind& kind, const config::Scenario& scenario, Random& random) {
   faults::Injection drawn = {.kind = &kind};
-  const rendering::DeviceModel& device = scenario.device.model;
+  const DeviceModel& device = scenario.device.model;
   const int parts = faults::parts_of(kind.part, device.n_m, device.n_p);
   drawn.index = static_cast<int>(draw_index(hg::index(parts), random));
   if (!kind.unit.empty()) {

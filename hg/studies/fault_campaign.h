@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/recording/recorder.h"
 #include "hg/signals/truth.h"
 #include "hg/simulator/faults/injection.h"

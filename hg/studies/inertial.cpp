@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/player.h"
 
@@ -18,13 +19,13 @@ constexpr std::size_t kLags = 12;  // periods that the units may be late
 
 // The first link that each joint moves, root to tip.
 std::vector<std::string> moved_links(const config::Device& device) {
-  model::Chain chain = device.model.chain;
-  const Eigen::VectorXd q = Eigen::VectorXd::Constant(chain.nv(), 0.5);
-  chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.nv()));
+  model::ChainData chain(device.model.chain);
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(chain.model().nv(), 0.5);
+  chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.model().nv()));
   std::vector<std::string> links;
   Eigen::Index moved = 0;
-  for (const std::string& name : chain.frame_names()) {
-    const model::Jacobian J = chain.jacobian(chain.frame(name));
+  for (const std::string& name : chain.model().frame_names()) {
+    const model::Jacobian J = chain.jacobian(chain.model().frame(name));
     Eigen::Index joints = 0;
     while (joints < J.cols() && J.col(joints).norm() > 0.0) ++joints;
     if (joints <= moved) continue;
@@ -68,7 +69,7 @@ class Judge {
  public:
   Judge(const config::Device& device, const UnitSet& units)
       : model_(device.model),
-        dt_(device.rendering.dt),
+        dt_(device.model.dt()),
         root_(frames_of(device, units.links).front()) {}
 
   // The truth of the sample before is known when the next one is there.
@@ -115,7 +116,7 @@ class Judge {
     const VectorPM dq = stacked(truth.dq_p, truth.dq_m);
     const VectorM ddq_m = (next.truth.dq_m - before_.truth.dq_m) / (2.0 * dt_);
     const VectorPM ddq = stacked(truth.ddq_p, ddq_m);
-    model_.chain.update_kinematics(stacked(truth.q_p, truth.q_m), dq);
+    chain_.update_kinematics(stacked(truth.q_p, truth.q_m), dq);
     compare(last_.reference, dq, ddq, reference_);
     compare(last_.encoders, dq, ddq, encoders_);
     compare(last_.inertial, dq, ddq, inertial_);
@@ -129,11 +130,10 @@ class Judge {
 
   void compare(const Belief& belief, const VectorPM& dq, const VectorPM& ddq, Squares& squares) {
     const int n_m = model_.n_m, n_p = model_.n_p;
-    const model::Chain& chain = model_.chain;
-    const Eigen::Vector3d from_root = chain.pose(model_.handle).p - chain.pose(root_).p;
-    const model::Jacobian& J = chain.jacobian(model_.handle);
+    const Eigen::Vector3d from_root = chain_.pose(model_.handle).p - chain_.pose(root_).p;
+    const model::Jacobian& J = chain_.jacobian(model_.handle);
     const Vector6 twist = J * belief.dq + at_handle(belief.bend_rate, from_root);
-    const Vector6 acceleration = J * belief.ddq + chain.bias_acceleration(model_.handle) +
+    const Vector6 acceleration = J * belief.ddq + chain_.bias_acceleration(model_.handle) +
                                  at_handle(belief.bend_acceleration, from_root);
     squares.joint_speed += (belief.dq - dq).tail(n_m).squaredNorm();
     squares.joint_acceleration += (belief.ddq - ddq).tail(n_m).squaredNorm();
@@ -161,7 +161,7 @@ class Judge {
     return static_cast<double>(best) + 0.5 * (left - right) / curvature;
   }
 
-  rendering::DeviceModel model_;
+  DeviceModel model_;
   double dt_;
   int root_;
   Moment before_, last_;

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/cycle.h"
 #include "hg/scenario/session.h"
 #include "hg/signals/state.h"

@@ -90,7 +90,7 @@ class Witness final : public device::Device {
 
   void watch(const Truth& truth) noexcept {
     const safety::MonitorConfig& stated = scenario_.device.monitor;
-    const double dt = scenario_.device.rendering.dt;
+    const double dt = scenario_.device.model.dt();
     if (from_m_.size() == 0) {
       from_m_ = truth.q_m;
       from_p_ = truth.q_p;
@@ -339,7 +339,7 @@ ProcessCase play(const std::string& program, const std::string& name, ProcessFau
   const config::Scenario scenario = config::load_scenario(config::find_scenario(name));
   const Interval times = fault_times(scenario);
   const double at_s = random.between(times.lb, times.ub);
-  const double dt = scenario.device.rendering.dt;
+  const double dt = scenario.device.model.dt();
   const ScratchFolder scratch;
   const std::string folder = scratch.path() + "/recordings";
 

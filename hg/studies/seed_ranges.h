@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/signals/fault.h"
 #include "hg/studies/workers.h"
 

@@ -61,7 +61,7 @@ double stable_from(const StabilityConfig& config, const StabilityRow& row,
 
 KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) {
   Player player(kicked);
-  const double rate_Hz = kicked.device.rate_Hz;
+  const double rate_Hz = kicked.device.model.rate_Hz;
   const double begin_s = kicked.script.script.grasp_s + config.kick.settling + config.kick.duration;
   const double last_window_s = begin_s + config.kick.watched - config.calm.window;
   KickOutcome outcome;
@@ -134,7 +134,7 @@ KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config
   config::Scenario played = kicked(scenario, config, hand, mass, damping);
   KickOutcome outcome = play(played, config);
   if (!is_stable(outcome.verdict) && !outcome.was_lost) {
-    take_friction(played.device.control);
+    take_friction(played.device.model);
     if (is_stable(play(played, config).verdict)) outcome.verdict = Verdict::kHunts;
   }
   return outcome;

@@ -33,8 +33,10 @@ from hapticgiant._core import (
     SolverStatus,
     Stop,
     TareStatus,
+    TwinParameter,
     next_request,
     start_posture,
+    twin_parameters,
 )
 from hapticgiant.recording import read_recording
 from hapticgiant.scenario import MODELS, load_scenario, run
@@ -68,6 +70,7 @@ __all__ = [
     "SolverStatus",
     "Stop",
     "TareStatus",
+    "TwinParameter",
     "haptic_giant",
     "hqp",
     "limits",
@@ -77,4 +80,5 @@ __all__ = [
     "read_recording",
     "run",
     "start_posture",
+    "twin_parameters",
 ]

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/runtime/requests.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/session.h"
@@ -45,8 +45,11 @@ void bind_scenario(nb::module_& module) {
       .def_prop_ro("duration_s", &scenario::planned_duration_s,
                    "until everything planned has happened; 0: nothing is planned")
       .def_prop_rw(
-          "rate_Hz", [](const Scenario& scenario) { return scenario.device.rate_Hz; },
-          [](Scenario& scenario, double rate_Hz) { config::set_rate(scenario.device, rate_Hz); },
+          "rate_Hz", [](const Scenario& scenario) { return scenario.device.model.rate_Hz; },
+          [](Scenario& scenario, double rate_Hz) {
+            config::check_rate(scenario.device, rate_Hz);
+            scenario.device.model.rate_Hz = rate_Hz;
+          },
           "cycles per second")
       .def_prop_rw(
           "law", [](const Scenario& scenario) { return scenario.device.rendering.law; },

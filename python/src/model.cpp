@@ -8,17 +8,18 @@
 #include <variant>
 #include <vector>
 
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
 
 namespace hg::python {
 namespace {
 
-using model::Chain;
+using model::ChainData;
+using model::ChainModel;
 using Frame = std::variant<int, std::string>;
 
-int index_of(const Chain& chain, const Frame& frame) {
+int index_of(const ChainModel& chain, const Frame& frame) {
   if (const auto* name = std::get_if<std::string>(&frame)) return chain.frame(*name);
   const int index = std::get<int>(frame);
   if (index < 0 || index >= static_cast<int>(chain.frame_names().size())) {
@@ -29,7 +30,8 @@ int index_of(const Chain& chain, const Frame& frame) {
 
 // calls function(q, dq) with arrays of the right sizes
 template <typename Function>
-auto with_state(const Chain& chain, const ArrayIn& q, const ArrayIn& dq, const Function& function) {
+auto with_state(const ChainModel& chain, const ArrayIn& q, const ArrayIn& dq,
+                const Function& function) {
   return function(vector_of(q, chain.nq(), "q"), vector_of(dq, chain.nv(), "dq"));
 }
 
@@ -61,7 +63,7 @@ void bind_joint(nb::module_& module) {
       .def_ro("effort_max", &Joint::effort_max, "Nm or N");
 }
 
-void bind_set_up(nb::class_<Chain>& chain) {
+void bind_set_up(nb::class_<ChainData>& chain) {
   const auto placement = nb::arg("placement") = Pose{};
   const auto gravity = nb::arg("gravity") = true;
   const auto floating_root = nb::arg("floating_root") = false;
@@ -72,7 +74,8 @@ void bind_set_up(nb::class_<Chain>& chain) {
           "from_urdf_file",
           [](const std::string& file, const Pose& at, bool has_gravity, bool floats,
              const std::string& root, const std::string& tip) {
-            return Chain::from_urdf_file(file, options_from(at, has_gravity, floats, root, tip));
+            return ChainData(
+                ChainModel::from_urdf_file(file, options_from(at, has_gravity, floats, root, tip)));
           },
           nb::arg("file"), placement, gravity, floating_root, root_link, tip_link,
           "Reads a URDF; `placement` is the pose of its root in frame B.")
@@ -80,74 +83,83 @@ void bind_set_up(nb::class_<Chain>& chain) {
           "from_urdf_text",
           [](const std::string& text, const std::string& source, const Pose& at, bool has_gravity,
              bool floats, const std::string& root, const std::string& tip) {
-            return Chain::from_urdf_text(text, source,
-                                         options_from(at, has_gravity, floats, root, tip));
+            return ChainData(ChainModel::from_urdf_text(
+                text, source, options_from(at, has_gravity, floats, root, tip)));
           },
           nb::arg("text"), nb::arg("source") = "urdf", placement, gravity, floating_root, root_link,
           tip_link, "The same from text; `source` stands for the file in messages.")
-      .def_prop_ro("name", &Chain::name)
-      .def_prop_ro("nq", &Chain::nq, "number of coordinates")
-      .def_prop_ro("nv", &Chain::nv, "number of velocities")
-      .def_prop_ro("joints", &Chain::joints)
-      .def_prop_ro("frame_names", &Chain::frame_names);
+      .def_prop_ro("name", [](const ChainData& self) { return self.model().name(); })
+      .def_prop_ro(
+          "nq", [](const ChainData& self) { return self.model().nq(); }, "number of coordinates")
+      .def_prop_ro(
+          "nv", [](const ChainData& self) { return self.model().nv(); }, "number of velocities")
+      .def_prop_ro("joints", [](const ChainData& self) { return self.model().joints(); })
+      .def_prop_ro("frame_names", [](const ChainData& self) { return self.model().frame_names(); });
 }
 
-void bind_kinematics(nb::class_<Chain>& chain) {
+void bind_kinematics(nb::class_<ChainData>& chain) {
   const auto frame = nb::arg("frame");
   chain
       .def(
-          "neutral", [](const Chain& self) { return to_numpy(self.neutral()); },
+          "neutral", [](const ChainData& self) { return to_numpy(self.model().neutral()); },
           "(nq) zeros; identity for floating joints.")
       .def(
           "integrate",
-          [](const Chain& self, const ArrayIn& q, const ArrayIn& step) {
-            return with_state(self, q, step,
-                              [&](auto at, auto by) { return to_numpy(self.integrate(at, by)); });
+          [](const ChainData& self, const ArrayIn& q, const ArrayIn& step) {
+            return with_state(self.model(), q, step, [&](auto at, auto by) {
+              return to_numpy(self.model().integrate(at, by));
+            });
           },
           nb::arg("q"), nb::arg("step"), "(nq) q moved by step (nv) = dq * dt.")
       .def(
           "update",
-          [](Chain& self, const ArrayIn& q, const ArrayIn& dq) {
-            with_state(self, q, dq, [&](auto at, auto with) { self.update(at, with); });
+          [](ChainData& self, const ArrayIn& q, const ArrayIn& dq) {
+            with_state(self.model(), q, dq, [&](auto at, auto with) { self.update(at, with); });
           },
           nb::arg("q"), nb::arg("dq"),
           "Sets the state, q (nq) and dq (nv), that all results below are for.")
       .def(
-          "pose", [](const Chain& self, const Frame& f) { return self.pose(index_of(self, f)); },
+          "pose",
+          [](const ChainData& self, const Frame& f) {
+            return self.pose(index_of(self.model(), f));
+          },
           frame, "Pose of a frame relative to B; frames by name or index.")
       .def(
           "twist",
-          [](const Chain& self, const Frame& f) { return to_numpy(self.twist(index_of(self, f))); },
+          [](const ChainData& self, const Frame& f) {
+            return to_numpy(self.twist(index_of(self.model(), f)));
+          },
           frame, "(6) velocity of its origin, then angular velocity, in B.")
       .def(
           "jacobian",
-          [](const Chain& self, const Frame& f) {
-            return to_numpy(self.jacobian(index_of(self, f)));
+          [](const ChainData& self, const Frame& f) {
+            return to_numpy(self.jacobian(index_of(self.model(), f)));
           },
           frame, "(6, nv) twist = jacobian @ dq.")
       .def(
           "bias_acceleration",
-          [](const Chain& self, const Frame& f) {
-            return to_numpy(self.bias_acceleration(index_of(self, f)));
+          [](const ChainData& self, const Frame& f) {
+            return to_numpy(self.bias_acceleration(index_of(self.model(), f)));
           },
           frame, "(6) derivative of the jacobian times dq.");
 }
 
-void bind_dynamics(nb::class_<Chain>& chain) {
+void bind_dynamics(nb::class_<ChainData>& chain) {
   chain
       .def_prop_ro(
-          "M", [](const Chain& self) { return to_numpy(self.M()); }, "(nv, nv) mass matrix")
+          "M", [](const ChainData& self) { return to_numpy(self.M()); }, "(nv, nv) mass matrix")
       .def_prop_ro(
-          "c", [](const Chain& self) { return to_numpy(self.c()); },
+          "c", [](const ChainData& self) { return to_numpy(self.c()); },
           "(nv) Coriolis, centrifugal and gravity torques: M ddq + c = tau + J^T w")
       .def_prop_ro(
-          "gravity", [](const Chain& self) { return to_numpy(self.gravity()); },
+          "gravity", [](const ChainData& self) { return to_numpy(self.gravity()); },
           "(nv) the part of c that gravity makes")
       .def(
           "inverse_dynamics",
-          [](Chain& self, const ArrayIn& q, const ArrayIn& dq, const ArrayIn& ddq) {
-            return with_state(self, q, dq, [&](auto at, auto with) {
-              return to_numpy(self.inverse_dynamics(at, with, vector_of(ddq, self.nv(), "ddq")));
+          [](ChainData& self, const ArrayIn& q, const ArrayIn& dq, const ArrayIn& ddq) {
+            return with_state(self.model(), q, dq, [&](auto at, auto with) {
+              return to_numpy(
+                  self.inverse_dynamics(at, with, vector_of(ddq, self.model().nv(), "ddq")));
             });
           },
           nb::arg("q"), nb::arg("dq"), nb::arg("ddq"),
@@ -158,9 +170,10 @@ void bind_dynamics(nb::class_<Chain>& chain) {
 
 void bind_model(nb::module_& module) {
   bind_joint(module);
-  nb::class_<Chain> chain(module, "Chain",
-                          "A serial kinematic chain. Results are resolved in frame B, linear part "
-                          "first, and belong to the last update().");
+  nb::class_<ChainData> chain(
+      module, "Chain",
+      "A serial kinematic chain. Results are resolved in frame B, linear part "
+      "first, and belong to the last update().");
   bind_set_up(chain);
   bind_kinematics(chain);
   bind_dynamics(chain);
@@ -171,7 +184,7 @@ void bind_model(nb::module_& module) {
         body.mass = mass;
         assign(inertia, "inertia", body.inertia);
         assign(p_handle_com, "p_handle_com", body.p_handle_com);
-        return Chain::free_body(body, {.gravity = gravity});
+        return ChainData(ChainModel::free_body(body, {.gravity = gravity}));
       },
       nb::arg("mass"), nb::arg("inertia"), nb::arg("p_handle_com") = std::vector{0.0, 0.0, 0.0},
       nb::arg("gravity") = true,

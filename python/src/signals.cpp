@@ -1,12 +1,17 @@
 /// Bindings of the exchanged structs, and of the enumerations in them.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <string>
+#include <string_view>
 #include <type_traits>
+#include <vector>
 
+#include "hg/config/schema.h"
 #include "hg/signals/limit.h"
 #include "hg/signals/state.h"
+#include "hg/signals/twin_parameter.h"
 #include "python/src/bind.h"
 #include "python/src/bind_enum.h"
 #include "python/src/fields.h"
@@ -36,11 +41,38 @@ void bind_limit_info(nb::module_& module) {
       .def_prop_ro("upper", [](const LimitInfo& limit) { return limit.range.ub; });
 }
 
+std::string text(std::string_view view) { return std::string(view); }
+
+void bind_twin_parameters(nb::module_& module) {
+  using Facts = ParameterFacts;
+  nb::class_<Facts>(module, "TwinParameter", "Facts about a parameter that may change at run time.")
+      .def_ro("parameter", &Facts::parameter)
+      .def_prop_ro(
+          "key", [](const Facts& facts) { return text(facts.key); },
+          "Key in twin.yaml; of a joint, that of a revolute joint.")
+      .def_prop_ro(
+          "length_key", [](const Facts& facts) { return text(facts.length_key); },
+          "Key of a prismatic joint; empty where there is no other.")
+      .def_prop_ro("unit", [](const Facts& facts) { return text(config::unit_of(facts.key)); })
+      .def_prop_ro("length_unit",
+                   [](const Facts& facts) { return text(config::unit_of(facts.length_key)); })
+      .def_prop_ro("label", [](const Facts& facts) { return text(facts.label); })
+      .def_prop_ro("help", [](const Facts& facts) { return text(facts.help); })
+      .def_prop_ro("lower", [](const Facts& facts) { return facts.range.lb; })
+      .def_prop_ro("upper", [](const Facts& facts) { return facts.range.ub; })
+      .def("allows", &allows, nb::arg("value"),
+           "Whether a value is within the range, or an infinity that stands for no limit.");
+  module.def(
+      "twin_parameters", [] { return std::vector<Facts>(kParameters.begin(), kParameters.end()); },
+      "The parameters of a twin that may change while it runs: names, units, ranges.");
+}
+
 }  // namespace
 
 void bind_signals(nb::module_& module) {
   bind_enums(module);
   bind_limit_info(module);
+  bind_twin_parameters(module);
 
   bind_fields<Pose>(module, "Pose", "Pose of a frame relative to another.")
       .def(

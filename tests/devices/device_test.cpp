@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/error.h"
 #include "hg/model/test/models.h"
 #include "hg/scenario/start_posture.h"
@@ -160,7 +160,7 @@ TEST(Start, ChoosesAPostureThatTheSumsOfJointsPermit) {
                "virtual_joints:\n  - {name: bend, weights: {elbow_joint: 1}, q_min_rad: -2.9, "
                "q_max_rad: -0.2, dq_max_rad_per_s: 3, ddq_max_rad_per_s2: 20}\n"
                "cartesian_limits:"}});
-  const scenario::Start start = scenario::find_start(scenario);
+  const scenario::Start start = scenario::find_start(scenario.device, scenario.twin);
   EXPECT_GE(start.q_m[2], -2.9);
   EXPECT_LE(start.q_m[2], -0.2);
 }

@@ -8,7 +8,7 @@
 
 #include "hg/config/device.h"
 #include "hg/config/file_kind.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/config/tool.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"
@@ -49,7 +49,7 @@ void load(unsigned kind, std::vector<config::SourceText> sources) {
     return;
   }
   config::SourceReader reader(std::move(sources));
-  if (kind % 4 == 0) config::load_device(file, reader);
+  if (kind % 4 == 0) config::load_simulated_device(file, reader);
   if (kind % 4 == 1) config::load_twin(file, reader);
   if (kind % 4 == 3) config::load_tool(file, reader);
   config::kind_of(file, reader);

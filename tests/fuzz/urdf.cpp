@@ -3,7 +3,7 @@
 #include <string>
 
 #include "hg/core/error.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/urdf.h"
 #include "tests/fuzz/targets.h"
 
@@ -21,9 +21,9 @@ void urdf(Bytes bytes) {
       std::fputs("a joint without links\n", stderr);
       std::abort();
     }
-    model::Chain chain = model::Chain::from_urdf_text(text, "input.urdf");
-    if (chain.nv() > kMaxTwin) return;
-    chain.update(chain.neutral(), VectorA::Zero(chain.nv()));
+    model::ChainData chain(model::ChainModel::from_urdf_text(text, "input.urdf"));
+    if (chain.model().nv() > kMaxTwin) return;
+    chain.update(chain.model().neutral(), VectorA::Zero(chain.model().nv()));
   } catch (const SetupError& error) {
     const std::string message = error.what();
     if (message.find("input.urdf") != std::string::npos) return;

@@ -61,7 +61,7 @@ void run(const config::Scenario& scenario) {
 void inspect(const config::Scenario& scenario) {
   const checks::Survey survey = checks::survey(scenario.device);
   checks::inspect(scenario.device, survey);
-  checks::inspect(scenario.twin, scenario.device.rendering.dt);
+  checks::inspect(scenario.twin, scenario.device.model.dt());
   checks::inspect(scenario.device, scenario.twin);
 }
 

@@ -87,14 +87,16 @@ Eigen::VectorXd vector_of(const nlohmann::json& array) {
   return vector;
 }
 
-rendering::DeviceModel recorded_device(const Recording& recording) {
+DeviceModel recorded_device(const Recording& recording) {
   const nlohmann::json& params = recording.header.at("params");
-  rendering::DeviceModel device{
-      .chain = model::Chain::from_urdf_file(reference_folder() / "models/hapticgiant.urdf"),
+  DeviceModel device{
+      .chain = model::ChainModel::from_urdf_file(reference_folder() / "models/hapticgiant.urdf"),
       .n_p = 2,
       .n_m = 6};
   device.handle = device.chain.frame("handle");
   device.elbow = device.chain.frame("elbow");
+  device.rate_Hz = 1.0 / number(params.at("dt"));
+  device.gantry_range.resize(2);
   for (std::size_t i = 0; i < 6; ++i) {
     device.joint_limits.push_back(
         joint_limits(params, "qm_min", "qm_max", "dqm_max", "ddqm_max", i));
@@ -104,7 +106,7 @@ rendering::DeviceModel recorded_device(const Recording& recording) {
        .weights = Eigen::Vector<double, 6>(0, 0, 0, 1, 1, 0),
        .limits = {number(params.at("s_min")), number(params.at("s_max")), kInfinity, kInfinity}}};
   for (const int frame : {device.handle, device.elbow}) {
-    rendering::CartesianLimit box{.name = "box", .frame = frame, .axes = {}, .margin = 0.0};
+    CartesianLimit box{.name = "box", .frame = frame, .axes = {}, .margin = 0.0};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box.axes[axis].q_min = number(params.at("x_lb").at(axis));
       box.axes[axis].q_max = number(params.at("x_ub").at(axis));
@@ -125,7 +127,7 @@ rendering::TwinModel recorded_twin(const Recording& recording, const std::vector
   }
   const std::string urdf = dt.at("urdf").get<std::string>();
   rendering::TwinModel twin{
-      .chain = model::Chain::from_urdf_file(reference_folder() / "models" / urdf, options)};
+      .chain = model::ChainModel::from_urdf_file(reference_folder() / "models" / urdf, options)};
   twin.end_effector = twin.chain.frame(dt.at("ee").get<std::string>());
   twin.q_start = twin.chain.neutral();
   for (std::size_t i = 0; i < twin.chain.joints().size(); ++i) {
@@ -148,7 +150,6 @@ rendering::Options recorded_options(const Recording& recording) {
   return {.law = rendering::Law::kPaper,
           .bounds = rendering::Bounds::kPaper,
           .T_C = number(params.at("T_C")),
-          .dt = number(params.at("dt")),
           .kP_tran = number(params.at("kP_tran")),
           .kD_tran = number(params.at("kD_tran")),
           .kP_rot = number(params.at("kP_rot")),

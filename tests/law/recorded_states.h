@@ -31,7 +31,7 @@ Eigen::VectorXd vector_of(const nlohmann::json& array);
 
 /// Device, twin and options that the header describes. Degrees of freedom in `locked` have a lock
 /// at zero that holds always.
-rendering::DeviceModel recorded_device(const Recording& recording);
+DeviceModel recorded_device(const Recording& recording);
 rendering::TwinModel recorded_twin(const Recording& recording, const std::vector<int>& locked);
 rendering::Options recorded_options(const Recording& recording);
 

@@ -56,7 +56,8 @@ void print(const std::string& effect, double step) {
   if (effect == "cogging") e.cogging = 1.5, e.cogging_wave = 60.0;
   config.actuators = {motor};
 
-  const model::Chain chain = model::Chain::from_urdf_text(kUrdf, "bench", {.gravity = false});
+  const model::ChainModel chain =
+      model::ChainModel::from_urdf_text(kUrdf, "bench", {.gravity = false});
   simulator::Plant plant(config, chain, chain.frame("link"));
   simulator::PlantInput input;
   input.brakes_closed = false;

@@ -12,8 +12,27 @@ import subprocess
 import sys
 
 EXAMPLES = pathlib.Path("examples/cpp").resolve()
-MOVED = re.compile(r"the handle has moved by 0\.[5-9][0-9] m in 2[0-9]{3} cycles")
+MOVED = re.compile(r"the joints have moved by up to 0\.[3-9][0-9] rad in 2[0-9]{3} cycles")
 DOOR_OPEN = re.compile(r"hinge at 1\.[0-9]+ rad after 10\.6 s")
+
+REMOTE_PROJECT = """cmake_minimum_required(VERSION 3.22)
+project(remote LANGUAGES CXX)
+find_package(hapticgiant 0.1 REQUIRED CONFIG COMPONENTS udp)
+add_executable(remote main.cpp)
+target_link_libraries(remote PRIVATE hapticgiant::udp)
+"""
+REMOTE_PROGRAM = """#include <cstdio>
+#include <exception>
+
+#include "hg/device/udp/remote_device.h"
+
+int main() try {
+  hg::udp::RemoteDevice device(hg::udp::parse_address("--device-address", "nowhere"), {});
+} catch (const std::exception& error) {
+  std::puts(error.what());
+  return 1;
+}
+"""
 
 
 def run(*command, fails=False):
@@ -81,18 +100,32 @@ def main():
     check(DOOR_OPEN.fullmatch(opened.strip()), f"first_feel: {opened}")
 
     # a program for a real machine: nothing of the simulator, its person or its faults is in it
-    arm = prefix / "share" / "hapticgiant" / "models" / "examples" / "arm.urdf"
-    moved = run(both / "own_machine", arm)
+    models = prefix / "share" / "hapticgiant" / "models"
+    moved = run(both / "own_machine", models / "examples" / "arm.yaml",
+                models / "twins" / "free_space" / "twin.yaml")
     check(MOVED.fullmatch(moved.strip()), f"own_machine: {moved}")
     link = run("ninja", "-C", both, "-t", "commands", "own_machine").strip().splitlines()[-1]
     linked = set(re.findall(r"libhg_([a-z_]+)[.]a", link))
-    check({"controller", "runtime"} <= linked, f"own_machine links {linked}")
-    others = linked & {"simulator", "config", "scenario", "analysis"}
+    check({"controller", "runtime", "config"} <= linked, f"own_machine links {linked}")
+    others = linked & {"simulator", "simulation", "scenario", "analysis"}
     check(not others, f"own_machine links {others}")
     symbols = run("nm", "--demangle", both / "own_machine")
     check("hg::runtime::Runtime::start" in symbols, "nm shows no names")
-    found = re.findall(r"\bhg::(?:simulator|person|faults|config|scenario)::[A-Za-z_]+", symbols)
+    check("hg::config::load_device" in symbols, "own_machine reads no device.yaml")
+    found = re.findall(r"\bhg::(?:simulator|person|faults|scenario)::[A-Za-z_]+", symbols)
+    found += re.findall(r"\bhg::config::load_(?:simul|scen|script)[a-z_]*", symbols)
     check(not found, f"own_machine has {found[:3]}")
+
+    # a program for a machine behind a network finds all that it links
+    remote = work / "remote"
+    shutil.rmtree(remote, ignore_errors=True)
+    remote.mkdir()
+    (remote / "CMakeLists.txt").write_text(REMOTE_PROJECT)
+    (remote / "main.cpp").write_text(REMOTE_PROGRAM)
+    run("cmake", "-S", remote, "-B", remote / "build", "-G", "Ninja", "-Wno-dev", path)
+    run("cmake", "--build", remote / "build")
+    refused = run(remote / "build" / "remote", fails=True)
+    check("--device-address" in refused, f"remote: {refused}")
 
     # what shows Eigen's types is refused where they would have another layout
     if flags:

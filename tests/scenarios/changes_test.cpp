@@ -80,7 +80,7 @@ TEST(TwinOutOfReach, IsRefusedWithAdvice) {
   config::Scenario scenario = law_alone("door");
   model::ChainOptions far = {.gravity = false};
   far.T_B_root.p = {30.0, 0.0, -0.8};
-  scenario.twin.model.chain = model::Chain::from_urdf_file(scenario.twin.urdf, far);
+  scenario.twin.model.chain = model::ChainModel::from_urdf_file(scenario.twin.urdf, far);
   try {
     ScenarioRun run(scenario);
     FAIL() << "accepted";

@@ -162,7 +162,7 @@ struct StuckJoint {
 };
 
 StuckJoint stuck_joint(const config::Scenario& scenario) {
-  const double rate_Hz = scenario.device.rate_Hz;
+  const double rate_Hz = scenario.device.model.rate_Hz;
   ScenarioRun run(scenario,
                   std::make_unique<StickingDevice>(scenario::make_simulation(scenario), rate_Hz));
   StuckJoint result;

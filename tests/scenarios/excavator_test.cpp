@@ -84,7 +84,7 @@ TEST_F(Excavator, TheStickGivesWayWhenTheBucketEnds) {
 // M_rr ddq_r = tau_r - c_r.
 TEST_F(Excavator, AfterTheHitTheOtherJointsObeyTheReducedModel) {
   const auto& twin = trace().run().scenario().twin.model;
-  model::Chain chain = twin.chain;
+  model::ChainData chain(twin.chain);
   int compared = 0;
   double most_different = 0.0;
   for (double t = trace().time_of("t_a"); t < trace().time_of("t_a") + 1.0; t += trace().period()) {
@@ -138,7 +138,7 @@ TEST_F(Excavator, TheSwingStopsAtBothEndsWhileTheArmStaysFree) {
 // The axis of the boom is at a right angle to that of the swing, which is vertical.
 TEST_F(Excavator, ContactOfTheBoomDoesNotTurnTheSwing) {
   const auto& scenario = trace().run().scenario();
-  model::Chain chain = scenario.twin.model.chain;
+  model::ChainData chain(scenario.twin.model.chain);
   int touching = 0;
   for (const CycleRecord& record : trace().records()) {
     if (!only_limit(record, kBoom)) continue;

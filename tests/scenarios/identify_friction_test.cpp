@@ -18,7 +18,8 @@ using identification::FrictionFigure;
 std::vector<FrictionEstimate> identified(const std::string& simulation) {
   const config::Scenario scenario =
       scenario::load({.scenario = "free_space", .user = "friction", .simulation = simulation});
-  identification::FrictionTraces traces(scenario.device.control);
+  identification::FrictionTraces traces(scenario.device.model,
+                                        scenario.device.control.loop.current_lag);
   studies::Player player(scenario);
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
     player.begin();
@@ -28,8 +29,8 @@ std::vector<FrictionEstimate> identified(const std::string& simulation) {
   EXPECT_EQ(player.record().fault.code, FaultCode::kNone);
   std::vector<FrictionEstimate> found;
   for (std::size_t i = 0; i < traces.joints().size(); ++i) {
-    found.push_back(identification::identify_friction(traces.joints()[i],
-                                                      scenario.device.control.actuators[i]));
+    found.push_back(
+        identification::identify_friction(traces.joints()[i], scenario.device.model.actuators[i]));
   }
   return found;
 }

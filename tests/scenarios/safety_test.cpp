@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/safety/rules.h"
 #include "hg/runtime/requests.h"
 #include "hg/scenario/session.h"
@@ -50,7 +50,7 @@ struct Machine {
   // until `condition` holds; false when it does not within `seconds`
   template <typename Condition>
   bool run_until(Condition condition, double seconds) {
-    const auto cycles = static_cast<int>(seconds * scenario.device.rate_Hz);
+    const auto cycles = static_cast<int>(seconds * scenario.device.model.rate_Hz);
     for (int k = 0; k < cycles; ++k) {
       step();
       if (condition()) return true;
@@ -93,7 +93,7 @@ TEST(Safety, NoShippedScenarioIsStoppedOrTouchedByARuleWithAllSensorErrors) {
                         {"walk", 2000, kRelaxed, 10}};
   for (const Case& c : cases) {
     config::Scenario s = shipped_scenario(c.name);
-    config::set_rate(s.device, c.rate_Hz);
+    s.device.model.rate_Hz = c.rate_Hz;
     s.script.hand = person::hand(c.hand);
     s.device.simulation.seed = s.device.simulation.sensors.seed = c.seed;
     Machine machine(std::move(s));

@@ -15,12 +15,13 @@ namespace {
 // 1/s^2
 constexpr double kSyncMaxUnknownLag = 3e-3;  // m
 
-void set_plant_lag(config::Scenario& scenario, double lag_s) { scenario.device.drive.lag = lag_s; }
+void set_plant_lag(config::Scenario& scenario, double lag_s) {
+  scenario.device.simulation.factors.gantry_lag = lag_s / scenario.device.model.drive.lag;
+}
 
 // the observer and the braking distance know the lag, too
 void set_known_lag(config::Scenario& scenario, double lag_s) {
-  scenario.device.prepositioning.drive.tau += lag_s - scenario.device.drive.lag;
-  scenario.device.estimation.drive.lag = lag_s;
+  scenario.device.model.drive.lag = lag_s;
   set_plant_lag(scenario, lag_s);
 }
 

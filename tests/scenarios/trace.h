@@ -16,14 +16,14 @@ class Trace {
   explicit Trace(config::Scenario scenario, double seconds = 1e9) : run_(std::move(scenario)) {
     records_.reserve(
         static_cast<std::size_t>(std::min(seconds, scenario::planned_duration_s(run_.scenario())) /
-                                 run_.scenario().device.rendering.dt) +
+                                 run_.scenario().device.model.dt()) +
         2);
     run_.play([&](const Sample& sample) { records_.push_back(sample.record); }, seconds);
   }
 
   const ScenarioRun& run() const { return run_; }
   const std::vector<CycleRecord>& records() const { return records_; }
-  double period() const { return run_.scenario().device.rendering.dt; }
+  double period() const { return run_.scenario().device.model.dt(); }
 
   /// Index of the record at time t.
   std::size_t at(double t) const {

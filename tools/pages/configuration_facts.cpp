@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "hg/config/device_schema.h"
-#include "hg/config/scenario_schema.h"
-#include "hg/config/script_schema.h"
-#include "hg/config/simulation_schema.h"
+#include "hg/config/simulation/scenario_schema.h"
+#include "hg/config/simulation/script_schema.h"
+#include "hg/config/simulation/simulation_schema.h"
 #include "hg/config/tool_schema.h"
 #include "hg/config/twin_schema.h"
 #include "tools/pages/doc_writer.h"
@@ -33,9 +33,9 @@ Json device_table() {
 }
 
 Json tool_table() {
-  ToolDraft draft;
+  Tool tool;
   DocWriter writer;
-  describe(writer, draft);
+  describe(writer, tool);
   return writer.table();
 }
 

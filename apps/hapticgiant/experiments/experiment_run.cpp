@@ -104,7 +104,6 @@ void show_progress(std::string_view name, double done_s, double total_s) {
 
 runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments) {
   runtime::Options options;
-  options.rate_Hz = scenario.device.rate_Hz;
   options.is_fast = true;
   options.duration_s = arguments.duration_s.value_or(scenario::planned_duration_s(scenario));
   options.longest_stop_s = scenario::longest_stop_s(scenario);
@@ -157,7 +156,7 @@ void play_experiment(const PaperExperiment& experiment, const RunArguments& argu
 
   analysis::RunFacts facts = scenario::facts_of_scenario(scenario);
   facts.version = kVersion;
-  facts.rate_Hz = options.rate_Hz;
+  facts.rate_Hz = scenario.device.model.rate_Hz;
   facts.allocations_in_loop = report.allocations;
   facts.timing.is_fast = true;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "apps/hapticgiant/run_command.h"
+#include "hg/config/simulation/scenario.h"
 
 namespace hg::apps {
 

@@ -80,7 +80,7 @@ class Reader final : public recording::RecordingListener {
       run["configuration"][text.name] = text.text;
     }
     analysis::RunFacts facts = scenario::facts_of_scenario(*scenario_);
-    facts.rate_Hz = scenario_->device.rate_Hz;
+    facts.rate_Hz = scenario_->device.model.rate_Hz;
     run["summary"] = Json::parse(summary_->to_json(facts, {}));
     make_folder(folder.string());
     write_run(folder, run, columns_);

@@ -8,6 +8,7 @@
 
 #include "apps/hapticgiant/output_file.h"
 #include "hg/core/enumerators.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::apps {
 namespace {
@@ -25,7 +26,7 @@ Json quantity(const std::string& name, bool is_angle, double lower, double upper
 
 bool is_angle(const model::Joint& joint) { return joint.type != model::JointType::kPrismatic; }
 
-void add_device(const rendering::DeviceModel& device, Json& json) {
+void add_device(const DeviceModel& device, Json& json) {
   for (const char* group : {"manipulator", "virtual", "gantry"}) json[group] = Json::array();
   for (int i = 0; i < device.n_m; ++i) {
     const limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
@@ -33,7 +34,7 @@ void add_device(const rendering::DeviceModel& device, Json& json) {
     json["manipulator"].push_back(
         quantity(joint.name, is_angle(joint), limits.q_min, limits.q_max));
   }
-  for (const rendering::VirtualJoint& joint : device.virtual_joints) {
+  for (const VirtualJoint& joint : device.virtual_joints) {
     json["virtual"].push_back(quantity(joint.name, true, joint.limits.q_min, joint.limits.q_max));
     json["virtual"].back()["weights"] =
         std::vector<double>(joint.weights.begin(), joint.weights.end());
@@ -43,7 +44,7 @@ void add_device(const rendering::DeviceModel& device, Json& json) {
     json["gantry"].push_back(
         quantity(joint.name, is_angle(joint), joint.position.lb, joint.position.ub));
   }
-  const auto box = rendering::handle_limits(device);
+  const auto box = handle_limits(device);
   json["box"] = {{"x", {number_or_null(box[0].q_min), number_or_null(box[0].q_max)}},
                  {"y", {number_or_null(box[1].q_min), number_or_null(box[1].q_max)}}};
   json["has_elbow"] = device.elbow >= 0;
@@ -65,7 +66,7 @@ void add_twin(const rendering::TwinModel& twin, Json& json) {
 // Limit, joint or coordinate that a condition is about, and whether that is an angle; empty: none.
 std::pair<std::string, bool> subject(const Condition& condition, const config::Scenario& scenario) {
   const auto i = static_cast<std::size_t>(condition.index);
-  const rendering::DeviceModel& device = scenario.device.model;
+  const DeviceModel& device = scenario.device.model;
   switch (condition.kind) {
     case ConditionKind::kLimit:
     case ConditionKind::kSpeedLimit:
@@ -113,7 +114,7 @@ Json describe(const config::Scenario& scenario) {
   Json json = {{"title", scenario.title},
                {"description", scenario.description},
                {"device", scenario.device.name},
-               {"rate_Hz", scenario.device.rate_Hz},
+               {"rate_Hz", scenario.device.model.rate_Hz},
                {"grasp_s", scenario.script.script.grasp_s},
                {"running_mode", static_cast<int>(Mode::kRunning)},
                {"lock_cause", static_cast<int>(LimitCause::kLock)}};
@@ -138,11 +139,11 @@ Json twin_points(const config::Scenario& scenario, const CycleRecord& record) {
   for (const rendering::TwinDof& dof : twin.dofs) {
     if (dof.q_index < 0) return nullptr;
   }
-  model::Chain chain = twin.chain;
+  model::ChainData chain(twin.chain);
   chain.update_poses(record.twin.q_a);
   Json points = Json::array();
-  for (const std::string& name : chain.frame_names()) {
-    const Eigen::Vector3d p = chain.pose(chain.frame(name)).p;
+  for (const std::string& name : chain.model().frame_names()) {
+    const Eigen::Vector3d p = chain.pose(chain.model().frame(name)).p;
     points.push_back({p.x(), p.y(), p.z()});
   }
   return points;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/model/chain_data.h"
+
 namespace hg::checks {
 namespace {
 
@@ -37,15 +39,15 @@ bool is_limited(const limits::JointLimits& limits) {
 }  // namespace
 
 std::vector<CartesianRule> cartesian_rules(const config::Device& device, const Survey& survey) {
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   const std::size_t n = 3 * model.cartesian_limits.size();
   std::vector<std::vector<double>> values(n);  // half of what the joints give, m/s^2
-  model::Chain chain = model.chain;
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
+  model::ChainData chain(model.chain);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.model().nv());
   for (const Posture& posture : survey.postures) {
     chain.update_kinematics(posture.q, zero);
     for (std::size_t k = 0; k < n; ++k) {
-      const rendering::CartesianLimit& limit = model.cartesian_limits[k / 3];
+      const CartesianLimit& limit = model.cartesian_limits[k / 3];
       const auto axis = static_cast<Eigen::Index>(k % 3);
       const limits::JointLimits& range = limit.axes[k % 3];
       if (!is_limited(range) || !is_near_face(range, chain.pose(limit.frame).p[axis])) continue;

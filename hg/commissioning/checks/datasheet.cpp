@@ -46,7 +46,7 @@ Bottleneck bottleneck(const config::Device& device, const Survey& survey, int fi
 }
 
 std::vector<JointLine> joint_lines(const config::Device& device, const Survey& survey) {
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   std::vector<JointLine> lines;
   for (std::size_t i = 0; i < model.chain.joints().size(); ++i) {
     const model::Joint& joint = model.chain.joints()[i];
@@ -56,9 +56,9 @@ std::vector<JointLine> joint_lines(const config::Device& device, const Survey& s
                       .gravity_max = survey.gravity_max[static_cast<Eigen::Index>(i)]};
     if (static_cast<int>(i) < model.n_p) {
       line.is_gantry = true;
-      line.range = device.prepositioning.q_limits[i];
+      line.range = device.model.gantry_range[i];
       line.dq_max = device.prepositioning.dq_max;
-      line.ddq_max = device.drive.ddq_max;
+      line.ddq_max = device.model.drive.ddq_max;
     } else {
       const auto& limits = model.joint_limits[i - static_cast<std::size_t>(model.n_p)];
       line.range = {limits.q_min, limits.q_max};
@@ -114,11 +114,11 @@ Datasheet make_datasheet(const config::Device& device, const Survey& survey) {
   sheet.stopping = stopping_of(device);
   sheet.stop_time = device.monitor.stop_time;
   sheet.bandwidth = {
-      .rate_Hz = device.rate_Hz,
+      .rate_Hz = device.model.rate_Hz,
       .synchronisation_Hz = std::sqrt(device.rendering.kP_tran) / (2.0 * M_PI),
       .gantry_Hz = device.model.n_p > 0 ? device.prepositioning.k_ppu / (2.0 * M_PI) : 0.0,
-      .drive_Hz = device.model.n_p > 0 ? 1.0 / (2.0 * M_PI * device.drive.lag) : 0.0,
-      .wrench_delay_s = estimation::wrench_delay(device.estimation.wrench, device.rendering.dt)};
+      .drive_Hz = device.model.n_p > 0 ? 1.0 / (2.0 * M_PI * device.model.drive.lag) : 0.0,
+      .wrench_delay_s = estimation::wrench_delay(device.estimation.wrench, device.model.dt())};
   return sheet;
 }
 

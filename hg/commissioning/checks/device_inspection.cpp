@@ -13,6 +13,7 @@
 #include "hg/commissioning/checks/stopping_rule.h"
 #include "hg/commissioning/checks/workspace.h"
 #include "hg/core/index.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::checks {
 namespace {
@@ -23,7 +24,7 @@ std::string position_key(const model::Joint& joint, const char* end) {
 }
 
 void inspect_synchronisation(const config::Device& device, Collector& out) {
-  const double dt = device.rendering.dt;
+  const double dt = device.model.dt();
   const auto inspect_pair = [&](double kP, double kD, const char* tag) {
     const std::string key_P = fmt::format("synchronisation.kP_{}_1_per_s2", tag);
     const std::string key_D = fmt::format("synchronisation.kD_{}_1_per_s", tag);
@@ -31,7 +32,7 @@ void inspect_synchronisation(const config::Device& device, Collector& out) {
       out.add(Severity::kFault, key_D,
               fmt::format("kD dt = {:.3g} at {:g} Hz, must be below 2: the handle would run away "
                           "from the twin",
-                          kD * dt, device.rate_Hz),
+                          kD * dt, device.model.rate_Hz),
               fmt::format("lower it below {:g}, or raise rate_Hz", 2.0 / dt));
       return;
     }
@@ -41,7 +42,7 @@ void inspect_synchronisation(const config::Device& device, Collector& out) {
           Severity::kFault, key_P,
           fmt::format("with kD {:g} and {:g} Hz the slowest pole of eq. (11) is {:.4f}, must be "
                       "below 1",
-                      kD, device.rate_Hz, pole),
+                      kD, device.model.rate_Hz, pole),
           fmt::format("lower it: {:g} damps critically with this kD", 0.25 * kD * kD));
     } else if (kD < std::sqrt(kP)) {
       out.add(Severity::kWarning, key_D,
@@ -57,8 +58,8 @@ void inspect_synchronisation(const config::Device& device, Collector& out) {
 
 void inspect_gantry(const config::Device& device, Collector& out) {
   if (device.model.n_p == 0) return;
-  const double k_max = 1.0 / (4.0 * device.drive.lag);
-  const double k_unstable = 1.0 / (device.drive.lag + device.drive.dead_time);
+  const double k_max = 1.0 / (4.0 * device.model.drive.lag);
+  const double k_unstable = 1.0 / (device.model.drive.lag + device.model.drive.dead_time);
   const double k = device.prepositioning.k_ppu;
   if (k < k_max) return;
   out.add(
@@ -69,7 +70,7 @@ void inspect_gantry(const config::Device& device, Collector& out) {
 }
 
 void inspect_joints(const config::Device& device, const Survey& survey, Collector& out) {
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   for (std::size_t i = 0; i < model.chain.joints().size(); ++i) {
     const model::Joint& joint = model.chain.joints()[i];
     const bool is_gantry = static_cast<int>(i) < model.n_p;
@@ -97,9 +98,9 @@ void inspect_joints(const config::Device& device, const Survey& survey, Collecto
 }
 
 void inspect_virtual_joints(const config::Device& device, Collector& out) {
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   for (std::size_t k = 0; k < model.virtual_joints.size(); ++k) {
-    const rendering::VirtualJoint& joint = model.virtual_joints[k];
+    const VirtualJoint& joint = model.virtual_joints[k];
     const std::string item = fmt::format("virtual_joints[{}]", k);
     Interval reach = {0.0, 0.0};
     double ddq_sum = 0.0;
@@ -132,10 +133,10 @@ void inspect_virtual_joints(const config::Device& device, Collector& out) {
 
 void inspect_boxes(const config::Device& device, const Survey& survey, Collector& out) {
   constexpr double kFixed = 1e-6;  // m; a coordinate that varies less is constant
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   for (std::size_t k = 0; k < survey.cloud.frames.size(); ++k) {
     if (survey.cloud.frames[k].isEmpty()) continue;  // no posture was found at all
-    const rendering::CartesianLimit& limit = model.cartesian_limits[k];
+    const CartesianLimit& limit = model.cartesian_limits[k];
     for (int axis = 0; axis < 3; ++axis) {
       const limits::JointLimits& range = limit.axes[index(axis)];
       const double lowest = survey.cloud.frames[k].min()[axis],
@@ -187,8 +188,8 @@ void inspect_room(const config::Device& device, const Survey& survey, Collector&
 // The joint whose motion leads away from the singularity fastest.
 std::string joint_out_of_singularity(const config::Device& device, const Survey& survey) {
   constexpr double kStep = 1e-2;
-  const rendering::DeviceModel& model = device.model;
-  model::Chain chain = model.chain;
+  const DeviceModel& model = device.model;
+  model::ChainData chain(model.chain);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
   double best = 0.0;
   int joint = 0;

@@ -15,6 +15,7 @@
 #include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::checks {
@@ -38,7 +39,7 @@ struct Collected {
 };
 
 // `hand` limits the handle along x, y, z of B
-void collect(const rendering::DeviceModel& model, const std::array<limits::JointLimits, 3>& hand,
+void collect(const DeviceModel& model, const std::array<limits::JointLimits, 3>& hand,
              const limits::JointLimits& limits, int dof, const Meeting& meeting, Collected& out) {
   const auto column = meeting.J_a.col(dof);
   for (std::size_t axis = 0; axis < hand.size(); ++axis) {
@@ -65,7 +66,7 @@ void collect(const rendering::DeviceModel& model, const std::array<limits::Joint
   out.device_joint.push_back(joint);
 }
 
-Demand summary(const rendering::DeviceModel& model, const std::string& name, Collected& values) {
+Demand summary(const DeviceModel& model, const std::string& name, Collected& values) {
   Demand demand = {.joint = name,
                    .acceleration = values.acceleration,
                    .speed = values.speed,
@@ -121,14 +122,14 @@ void inspect_demand(const rendering::TwinDof& dof, const Demand& demand, Collect
 void inspect_work(const config::Device& device, const config::Twin& twin, Collector& out) {
   const bool is_paper = device.rendering.law == rendering::Law::kPaper;
   const double most =
-      std::floor((is_paper ? 20.0 : 40.0) * std::cbrt(1000.0 / device.rate_Hz) + 1e-9);
+      std::floor((is_paper ? 20.0 : 40.0) * std::cbrt(1000.0 / device.model.rate_Hz) + 1e-9);
   const int dofs = twin.model.chain.nv();
   if (dofs <= most) return;
   out.add(
       Severity::kWarning, "urdf",
       fmt::format("the twin has {} degrees of freedom, expected at most {:g} with the law {} at "
                   "{:g} Hz: the cycle may take longer than its period",
-                  dofs, most, is_paper ? "paper" : "gauss", device.rate_Hz),
+                  dofs, most, is_paper ? "paper" : "gauss", device.model.rate_Hz),
       fmt::format("fix joints that need not move{}, or lower the device's rate_Hz",
                   is_paper ? ", take the law gauss" : ""));
 }
@@ -136,12 +137,12 @@ void inspect_work(const config::Device& device, const config::Twin& twin, Collec
 }  // namespace
 
 Match match(const config::Device& device, const config::Twin& twin) {
-  config::Scenario pair = {.device = device, .twin = twin};
+  config::Twin moved = twin;
   const std::vector<ConfigurationA> postures = twin_postures(twin, kPostures, kSeed);
-  const std::array<limits::JointLimits, 3> hand = rendering::handle_limits(device.model);
-  model::Chain twin_chain = twin.model.chain, device_chain = device.model.chain;
-  const Eigen::VectorXd zero_a = Eigen::VectorXd::Zero(twin_chain.nv());
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(device_chain.nv());
+  const std::array<limits::JointLimits, 3> hand = handle_limits(device.model);
+  model::ChainData twin_chain(twin.model.chain), device_chain(device.model.chain);
+  const Eigen::VectorXd zero_a = Eigen::VectorXd::Zero(twin.model.chain.nv());
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(device.model.chain.nv());
   std::vector<Collected> values(twin.model.dofs.size());
 
   Match result;
@@ -149,9 +150,9 @@ Match match(const config::Device& device, const config::Twin& twin) {
     ++result.postures;
     twin_chain.update_kinematics(q, zero_a);
     Meeting meeting = {twin_chain.jacobian(twin.model.end_effector), {}};
-    pair.twin.model.q_start = q;
+    moved.model.q_start = q;
     try {
-      const scenario::Start start = scenario::find_start(pair);
+      const scenario::Start start = scenario::find_start(device, moved);
       ++result.reached;
       device_chain.update_kinematics(stacked(start.q_p, start.q_m), zero);
       const MatrixJ J_m = manipulator_jacobian(device.model, device_chain, device.model.handle);
@@ -174,10 +175,10 @@ Match match(const config::Device& device, const config::Twin& twin) {
   return result;
 }
 
-Findings inspect(const config::Device& device, const config::Twin& twin) {
+Findings inspect(const config::SimulatedDevice& device, const config::Twin& twin) {
   Collector out(twin.sources, twin.places);
   try {
-    scenario::find_start({.device = device, .twin = twin});
+    scenario::find_start(device, twin);
   } catch (const SetupError& error) {
     out.add(Severity::kFault, "placement", error.what(), "");
   }

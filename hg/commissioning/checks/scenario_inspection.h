@@ -36,6 +36,6 @@ struct Match {
 Match match(const config::Device& device, const config::Twin& twin);
 
 /// All findings about the pair; they stand at keys of the twin.
-Findings inspect(const config::Device& device, const config::Twin& twin);
+Findings inspect(const config::SimulatedDevice& device, const config::Twin& twin);
 
 }  // namespace hg::checks

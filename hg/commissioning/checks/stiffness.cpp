@@ -13,6 +13,7 @@
 #include "hg/controller/rendering/braking.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::checks {
@@ -23,7 +24,7 @@ constexpr double kPhase_deg = 16.5;  // see frequency_Hz()
 constexpr double kLeastWay = 0.01;   // m at the handle, over which a spring should be followed
 
 // Mean delay between a wrench and the reaction of the motors.
-double delay_of(const config::Device& device) {
+double delay_of(const config::SimulatedDevice& device) {
   double delay = device.control.loop.latency;
   if (device.estimation.wrench.low_pass_Hz > 0.0) {
     delay += 1.0 / (kTurn * device.estimation.wrench.low_pass_Hz);
@@ -40,7 +41,7 @@ double braking_of(const config::Device& device, const config::Twin& twin) {
   rendering::Motion motion = {.dq_p = VectorP::Zero(device.model.n_p),
                               .dq_m = VectorM::Zero(device.model.n_m)};
   try {
-    const scenario::Start start = scenario::find_start({.device = device, .twin = twin});
+    const scenario::Start start = scenario::find_start(device, twin);
     motion.q_p = start.q_p;
     motion.q_m = start.q_m;
   } catch (const SetupError&) {
@@ -102,8 +103,8 @@ void warn_of(const std::vector<Spring>& springs, double least, const Worth& wort
 }
 
 void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Collector& out) {
-  model::Chain chain = twin.model.chain;
-  chain.update(twin.model.q_start, VectorA::Zero(chain.nv()));
+  model::ChainData chain(twin.model.chain);
+  chain.update(twin.model.q_start, VectorA::Zero(chain.model().nv()));
   const Eigen::MatrixXd mobility = inverse(Eigen::MatrixXd(chain.M() * twin.model.mass_scale));
   std::vector<Spring> springs;
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
@@ -162,11 +163,11 @@ double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
   return acceleration * std::sqrt(mass / stiffness);
 }
 
-StiffnessLimits stiffness_limits(const config::Device& device, const config::Twin& twin) {
+StiffnessLimits stiffness_limits(const config::SimulatedDevice& device, const config::Twin& twin) {
   const auto [mass, dq] = rendering::felt_mass(twin.model);
   StiffnessLimits limits = {.mass = mass.lb,
-                            .period = device.rendering.dt,
-                            .delay = std::max(delay_of(device), device.rendering.dt)};
+                            .period = device.model.dt(),
+                            .delay = std::max(delay_of(device), device.model.dt())};
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const double speed = dq[static_cast<Eigen::Index>(i)];
     limits.damping += twin.model.dofs[i].damping * speed * speed;
@@ -175,7 +176,8 @@ StiffnessLimits stiffness_limits(const config::Device& device, const config::Twi
   return limits;
 }
 
-void inspect_stiffness(const config::Device& device, const config::Twin& twin, Collector& out) {
+void inspect_stiffness(const config::SimulatedDevice& device, const config::Twin& twin,
+                       Collector& out) {
   const StiffnessLimits limits = stiffness_limits(device, twin);
   out.add(Severity::kNote, "end_effector",
           fmt::format(

@@ -6,7 +6,7 @@
 
 #include "hg/commissioning/checks/findings.h"
 #include "hg/config/device.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/config/twin.h"
 
 namespace hg::checks {
@@ -40,10 +40,11 @@ struct StiffnessLimits {
 /// Speed of a hand that explores a surface, m/s; [A].
 inline constexpr double kFeelingSpeed = 0.1;
 
-StiffnessLimits stiffness_limits(const config::Device& device, const config::Twin& twin);
+StiffnessLimits stiffness_limits(const config::SimulatedDevice& device, const config::Twin& twin);
 
 /// Adds a note with the limits, and a warning for each spring beyond them.
-void inspect_stiffness(const config::Device& device, const config::Twin& twin, Collector& out);
+void inspect_stiffness(const config::SimulatedDevice& device, const config::Twin& twin,
+                       Collector& out);
 
 /// Warnings for each surface beyond the stiffness limits.
 Findings inspect_surfaces(const config::Scenario& scenario);

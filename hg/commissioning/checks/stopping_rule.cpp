@@ -10,7 +10,7 @@
 namespace hg::checks {
 
 std::vector<Stopping> stopping_of(const config::Device& device) {
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   const safety::MonitorConfig& monitor = device.monitor;
   std::vector<Stopping> all;
   for (int i = 0; i < model.n_p + model.n_m; ++i) {
@@ -18,7 +18,7 @@ std::vector<Stopping> stopping_of(const config::Device& device) {
     const bool is_angle = joint.type != model::JointType::kPrismatic;
     Stopping stopping = {.name = joint.name, .is_angle = is_angle};
     if (i < model.n_p) {
-      stopping.need = safety::stopping_need(device.drive);
+      stopping.need = safety::stopping_need(device.model.drive);
       stopping.distance = is_angle ? monitor.turn_stop_distance : monitor.gantry_stop_distance;
       stopping.key =
           is_angle ? "monitor.gantry_stop_distance_rad" : "monitor.gantry_stop_distance_m";

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "hg/core/index.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/joint_range.h"
 
 namespace hg::checks {
@@ -24,13 +25,13 @@ double draw_coordinate(const JointRanges& ranges, Eigen::Index k, bool at_limits
 struct Scene {
   const config::Device& device;
   JointRanges ranges;
-  model::Chain chain;
+  model::ChainData chain;
   Eigen::VectorXd zero;
   Eigen::VectorXd effort, ddq_max;
 };
 
 Scene make_scene(const config::Device& device) {
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   Scene scene = {
       device, joint_ranges(device), model.chain, Eigen::VectorXd::Zero(model.chain.nv()), {}, {}};
   scene.effort.resize(model.chain.nv());
@@ -53,9 +54,9 @@ bool has_paper_wrench(const MatrixJ& J, const Eigen::VectorXd& available) {
   return true;
 }
 
-// the chain has been updated to q
+// scene.chain: after update() at q
 Posture examine(const Scene& scene, const Eigen::VectorXd& q, double length) {
-  const rendering::DeviceModel& model = scene.device.model;
+  const DeviceModel& model = scene.device.model;
   const MatrixJ J = scene.chain.jacobian(model.handle);
   const MatrixJ J_m = J.rightCols(model.n_m);
   const Eigen::VectorXd available = scene.effort - scene.chain.gravity().cwiseAbs();
@@ -72,7 +73,7 @@ Posture examine(const Scene& scene, const Eigen::VectorXd& q, double length) {
 
 double characteristic_length(Scene& scene, Random& random) {
   constexpr int kPostures = 200;
-  const rendering::DeviceModel& model = scene.device.model;
+  const DeviceModel& model = scene.device.model;
   double sum = 0.0;
   for (int i = 0; i < kPostures; ++i) {
     const auto q = draw(scene.device, scene.ranges, false, random);
@@ -85,7 +86,7 @@ double characteristic_length(Scene& scene, Random& random) {
 }
 
 void survey_postures(Scene& scene, Random& random, Survey& result) {
-  result.gravity_max.setZero(scene.chain.nv());
+  result.gravity_max.setZero(scene.zero.size());
   const int drawn_max = 20 * result.options.postures;
   while (static_cast<int>(result.postures.size()) < result.options.postures &&
          result.drawn < drawn_max) {
@@ -101,14 +102,14 @@ void survey_postures(Scene& scene, Random& random, Survey& result) {
 }
 
 // A gantry of prismatic joints shifts everything by J_p q_p: positions without further kinematics.
-bool gantry_only_shifts(const rendering::DeviceModel& model) {
+bool gantry_only_shifts(const DeviceModel& model) {
   const std::span joints(model.chain.joints().data(), index(model.n_p));
   return model.n_p > 0 && std::ranges::all_of(joints, [](const model::Joint& joint) {
            return joint.type == model::JointType::kPrismatic;
          });
 }
 
-bool is_inside(const rendering::CartesianLimit& limit, const Eigen::Vector3d& p) {
+bool is_inside(const CartesianLimit& limit, const Eigen::Vector3d& p) {
   for (int axis = 0; axis < 3; ++axis) {
     const limits::JointLimits& range = limit.axes[index(axis)];
     if (p[axis] < range.q_min || p[axis] > range.q_max) return false;
@@ -116,11 +117,11 @@ bool is_inside(const rendering::CartesianLimit& limit, const Eigen::Vector3d& p)
   return true;
 }
 
-// Adds what one posture of the arm, to which the chain has been updated, reaches by itself and
-// with other positions of the gantry.
+// Adds what one posture of the arm reaches by itself and with other positions of the gantry;
+// scene.chain: after update() at q.
 void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, bool at_limits,
                    Random& random, Cloud& cloud) {
-  const rendering::DeviceModel& model = scene.device.model;
+  const DeviceModel& model = scene.device.model;
   const auto n_p = static_cast<Eigen::Index>(model.n_p);
   const Eigen::Matrix3Xd J = scene.chain.jacobian(model.handle).topRows<3>();
   const Eigen::VectorXd available = scene.effort - scene.chain.gravity().cwiseAbs();
@@ -133,7 +134,7 @@ void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, boo
     }
     bool is_permitted = true;
     for (std::size_t k = 0; k < model.cartesian_limits.size(); ++k) {
-      const rendering::CartesianLimit& limit = model.cartesian_limits[k];
+      const CartesianLimit& limit = model.cartesian_limits[k];
       const Eigen::Vector3d p = scene.chain.pose(limit.frame).p + shift;
       cloud.frames[k].extend(p);
       is_permitted = is_permitted && is_inside(limit, p);
@@ -146,7 +147,7 @@ void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, boo
 // does.
 Posture descend(Scene& scene, const Posture& from, double length) {
   constexpr int kRounds = 100;
-  const rendering::DeviceModel& model = scene.device.model;
+  const DeviceModel& model = scene.device.model;
   const auto smallest = [&](const Eigen::VectorXd& q) {
     scene.chain.update_kinematics(q, scene.zero);
     return conditioning(manipulator_jacobian(model, scene.chain, model.handle), length).smallest;
@@ -193,14 +194,14 @@ void find_most_singular(Scene& scene, Survey& result) {
 }  // namespace
 
 JointRanges joint_ranges(const config::Device& device) {
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   const int n = model.chain.nv();
   JointRanges ranges = {Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (int i = 0; i < n; ++i) {
     const model::Joint& joint = model.chain.joints()[index(i)];
     Interval range = joint.position;
     if (i < model.n_p) {
-      range = device.prepositioning.q_limits[index(i)];
+      range = device.model.gantry_range[index(i)];
     } else {
       const auto& limits = model.joint_limits[index(i - model.n_p)];
       range = {limits.q_min, limits.q_max};
@@ -212,15 +213,15 @@ JointRanges joint_ranges(const config::Device& device) {
   return ranges;
 }
 
-bool permits_virtual_joints(const rendering::DeviceModel& model, const Eigen::VectorXd& q) {
-  return std::ranges::all_of(model.virtual_joints, [&](const rendering::VirtualJoint& joint) {
+bool permits_virtual_joints(const DeviceModel& model, const Eigen::VectorXd& q) {
+  return std::ranges::all_of(model.virtual_joints, [&](const VirtualJoint& joint) {
     const double sum = joint.weights.dot(q.tail(model.n_m));
     return sum >= joint.limits.q_min && sum <= joint.limits.q_max;
   });
 }
 
-bool permits_boxes(const rendering::DeviceModel& model, const model::Chain& chain) {
-  return std::ranges::all_of(model.cartesian_limits, [&](const rendering::CartesianLimit& limit) {
+bool permits_boxes(const DeviceModel& model, const model::ChainData& chain) {
+  return std::ranges::all_of(model.cartesian_limits, [&](const CartesianLimit& limit) {
     return is_inside(limit, chain.pose(limit.frame).p);
   });
 }
@@ -240,7 +241,7 @@ std::optional<Eigen::VectorXd> draw(const config::Device& device, const JointRan
 Cloud cloud(const config::Device& device, int postures, bool at_limits, Random& random,
             const Adjust& adjust) {
   constexpr int kCopies = 8;  // gantry positions per posture of the arm
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   Scene scene = make_scene(device);
   const int copies = gantry_only_shifts(model) ? kCopies : 1;
   const model::Joint& first = model.chain.joints()[index(model.n_p)];
@@ -272,8 +273,7 @@ Survey survey(const config::Device& device, const SurveyOptions& options) {
   return result;
 }
 
-MatrixJ manipulator_jacobian(const rendering::DeviceModel& model, const model::Chain& chain,
-                             int frame) {
+MatrixJ manipulator_jacobian(const DeviceModel& model, const model::ChainData& chain, int frame) {
   return chain.jacobian(frame).rightCols(model.n_m);
 }
 

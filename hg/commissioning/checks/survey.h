@@ -12,6 +12,7 @@
 #include "hg/commissioning/checks/capability.h"
 #include "hg/config/device.h"
 #include "hg/core/random.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::checks {
 
@@ -31,9 +32,9 @@ JointRanges joint_ranges(const config::Device& device);
 using hg::Random;
 
 /// Whether the virtual joints of the device permit `q` (gantry first).
-bool permits_virtual_joints(const rendering::DeviceModel& model, const Eigen::VectorXd& q);
-/// Whether all Cartesian limits permit the posture to which the chain has been updated.
-bool permits_boxes(const rendering::DeviceModel& model, const model::Chain& chain);
+bool permits_virtual_joints(const DeviceModel& model, const Eigen::VectorXd& q);
+/// Whether all Cartesian limits permit the posture of `chain`, after update_poses().
+bool permits_boxes(const DeviceModel& model, const model::ChainData& chain);
 
 /// Draws a posture uniformly in the joint ranges, respecting virtual joints. With `at_limits` every
 /// joint stands at one of its limits with a chance of 1/5, so that the edges of the workspace are
@@ -68,7 +69,7 @@ struct Cloud {
 };
 
 /// Callback that moves a drawn posture; false = leave it out. May update the chain as it likes.
-using Adjust = std::function<bool(model::Chain& chain, Eigen::VectorXd& q)>;
+using Adjust = std::function<bool(model::ChainData& chain, Eigen::VectorXd& q)>;
 
 /// Draws `postures` of the arm, each with several positions of a gantry that only shifts it.
 Cloud cloud(const config::Device& device, int postures, bool at_limits, Random& random,
@@ -86,8 +87,7 @@ struct Survey {
 
 Survey survey(const config::Device& device, const SurveyOptions& options = {});
 
-/// Manipulator columns of the Jacobian of `frame`.
-MatrixJ manipulator_jacobian(const rendering::DeviceModel& model, const model::Chain& chain,
-                             int frame);
+/// Manipulator columns of the Jacobian of `frame`; `chain`: after update_kinematics().
+MatrixJ manipulator_jacobian(const DeviceModel& model, const model::ChainData& chain, int frame);
 
 }  // namespace hg::checks

@@ -9,6 +9,7 @@
 #include "hg/commissioning/checks/survey.h"
 #include "hg/commissioning/checks/twin_bodies.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/joint_range.h"
 
 namespace hg::checks {
@@ -134,10 +135,10 @@ std::vector<ConfigurationA> twin_postures(const config::Twin& twin, int count, s
 }
 
 TwinFigures twin_figures(const config::Twin& twin, const std::vector<ConfigurationA>& postures) {
-  model::Chain chain = twin.model.chain;
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
+  model::ChainData chain(twin.model.chain);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.model().nv());
   TwinFigures figures;
-  figures.smallest_inertia = VectorA::Constant(chain.nv(), kInfinity);
+  figures.smallest_inertia = VectorA::Constant(chain.model().nv(), kInfinity);
   for (const ConfigurationA& q : postures) {
     chain.update(q, zero);
     const Eigen::VectorXd eigenvalues = symmetric_eigen(chain.M()).values;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hg/core/index.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::checks {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr double kPointsPerVoxel = 40.0;  // so that hardly any stays empty by chance
 
 // Posture that shows the nominal orientation: the goals, otherwise the middle of the ranges.
-Eigen::VectorXd nominal_posture(const rendering::DeviceModel& model, const JointRanges& ranges) {
+Eigen::VectorXd nominal_posture(const DeviceModel& model, const JointRanges& ranges) {
   Eigen::VectorXd q = 0.5 * (ranges.lower + ranges.upper);
   for (Eigen::Index i = 0; i < model.posture.size(); ++i) {
     if (!std::isnan(model.posture[i])) q[model.n_p + i] = model.posture[i];
@@ -23,8 +24,8 @@ Eigen::VectorXd nominal_posture(const rendering::DeviceModel& model, const Joint
 
 // Turns the handle of `q` to R_B_H with damped Gauss-Newton steps of the manipulator; false where
 // that leaves the joint limits.
-bool turn_handle(const rendering::DeviceModel& model, const JointRanges& ranges,
-                 const Eigen::Matrix3d& R_B_H, model::Chain& chain, Eigen::VectorXd& q) {
+bool turn_handle(const DeviceModel& model, const JointRanges& ranges, const Eigen::Matrix3d& R_B_H,
+                 model::ChainData& chain, Eigen::VectorXd& q) {
   constexpr int kSteps = 10;
   constexpr double kReached = 1e-3, kStepMax = 0.5;  // rad
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(q.size());
@@ -61,16 +62,17 @@ double filled_volume(const Cloud& points) {
 double share_in_nominal_orientation(const config::Device& device, const Survey& survey,
                                     const Eigen::AlignedBox3d& box, Eigen::Vector3d& axis) {
   constexpr int kPostures = 20'000;
-  const rendering::DeviceModel& model = device.model;
+  const DeviceModel& model = device.model;
   const JointRanges ranges = joint_ranges(device);
-  model::Chain chain = model.chain;
-  chain.update_kinematics(nominal_posture(model, ranges), Eigen::VectorXd::Zero(chain.nv()));
+  model::ChainData chain(model.chain);
+  chain.update_kinematics(nominal_posture(model, ranges),
+                          Eigen::VectorXd::Zero(chain.model().nv()));
   const Eigen::Matrix3d R_B_H = chain.pose(model.handle).R;
   axis = R_B_H.col(2);
 
   Random random(survey.options.seed);
   const Cloud points =
-      cloud(device, kPostures, true, random, [&](model::Chain& moved, Eigen::VectorXd& q) {
+      cloud(device, kPostures, true, random, [&](model::ChainData& moved, Eigen::VectorXd& q) {
         return turn_handle(model, ranges, R_B_H, moved, q);
       });
   return filled_volume(points) / box.volume();
@@ -133,8 +135,8 @@ std::size_t VoxelGrid::index(const Eigen::Vector3i& cell) const {
   return hg::index((cell[0] * count_[1] + cell[1]) * count_[2] + cell[2]);
 }
 
-Eigen::AlignedBox3d handle_box(const rendering::DeviceModel& model) {
-  const std::array<limits::JointLimits, 3> limits = rendering::handle_limits(model);
+Eigen::AlignedBox3d handle_box(const DeviceModel& model) {
+  const std::array<limits::JointLimits, 3> limits = handle_limits(model);
   return {Eigen::Vector3d(limits[0].q_min, limits[1].q_min, limits[2].q_min),
           Eigen::Vector3d(limits[0].q_max, limits[1].q_max, limits[2].q_max)};
 }

@@ -32,7 +32,7 @@ class VoxelGrid {
 };
 
 /// Box in which all Cartesian limits of the handle together keep it; infinite on unlimited axes.
-Eigen::AlignedBox3d handle_box(const rendering::DeviceModel& model);
+Eigen::AlignedBox3d handle_box(const DeviceModel& model);
 
 struct Workspace {
   Eigen::AlignedBox3d bounds;    ///< bounds of the handle, m

@@ -9,14 +9,14 @@
 
 namespace hg::generator {
 
-model::Chain read_part(const ChainPart& part) {
+model::ChainModel read_part(const ChainPart& part) {
   model::ChainOptions options;
   options.root_link = part.root_link;
   options.tip_link = part.tip_link;
-  return model::Chain::from_urdf_file(part.urdf, options);
+  return model::ChainModel::from_urdf_file(part.urdf, options);
 }
 
-int held_frame(const model::Chain& chain) {
+int held_frame(const model::ChainModel& chain) {
   constexpr std::array<const char*, 6> kHints = {"handle", "tcp", "tool", "ee", "grip", "hand"};
   const auto& names = chain.frame_names();
   for (const char* hint : kHints) {

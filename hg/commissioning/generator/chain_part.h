@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 
 namespace hg::generator {
 
@@ -14,12 +14,12 @@ struct ChainPart {
   std::string root_link, tip_link;
 };
 
-/// Reads the part as a chain. Throws SetupError as Chain::from_urdf_file.
-model::Chain read_part(const ChainPart& part);
+/// Reads the part as a chain. Throws SetupError as ChainModel::from_urdf_file.
+model::ChainModel read_part(const ChainPart& part);
 
 /// Index of the last frame with a name of a held frame (handle, tcp, tool, ...), else of the last
 /// frame.
-int held_frame(const model::Chain& chain);
+int held_frame(const model::ChainModel& chain);
 
 /// Number with two significant digits in usual notation: 0.0023, 1.2, 120.
 std::string rounded(double value);

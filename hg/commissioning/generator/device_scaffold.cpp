@@ -11,6 +11,7 @@
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/core/error.h"
 #include "hg/core/index.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::generator {
 namespace {
@@ -22,7 +23,7 @@ constexpr double kRampTime = 0.2;        // s, from rest to full speed where no 
 constexpr double kDefaultSpeed = 1.5;    // rad/s or m/s where the URDF has none
 
 struct DeviceDraft {
-  model::Chain chain;
+  model::ChainData chain;
   int n_p = 0;
   int handle = 0;
   bool stands = false;
@@ -31,10 +32,12 @@ struct DeviceDraft {
   Eigen::VectorXd posture;
 };
 
-const model::Joint& joint(const DeviceDraft& d, int i) { return d.chain.joints()[index(i)]; }
+const model::Joint& joint(const DeviceDraft& d, int i) {
+  return d.chain.model().joints()[index(i)];
+}
 
 // leading prismatic joints that six or seven others follow
-int gantry_joints(const model::Chain& chain, const std::string& source) {
+int gantry_joints(const model::ChainModel& chain, const std::string& source) {
   const int n = chain.nv();
   int leading = 0;
   for (const model::Joint& joint : chain.joints()) {
@@ -74,7 +77,7 @@ bool stands(DeviceDraft& d) {
   PostureSampler sampler(d.ranges);
   int above = 0;
   for (int k = 0; k < kPostures; ++k) {
-    d.chain.update_kinematics(sampler.draw(), Eigen::VectorXd::Zero(d.chain.nv()));
+    d.chain.update_kinematics(sampler.draw(), Eigen::VectorXd::Zero(d.chain.model().nv()));
     if (d.chain.pose(d.handle).p.z() >= kTable) ++above;
   }
   return d.n_p == 0 && above > kPostures / 4;
@@ -192,7 +195,7 @@ std::string list_of(const DeviceDraft& d, int first, int end) {
 std::string joint_lines(const DeviceDraft& d) {
   std::string text =
       "\njoints:  # positions and speeds that do not stand here are those of the URDF\n";
-  for (int i = d.n_p; i < d.chain.nv(); ++i) {
+  for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
     const model::Joint& j = joint(d, i);
     const Interval range = d.ranges[index(i)];
     const std::string unit = unit_of(j);
@@ -215,7 +218,7 @@ std::string posture_lines(const DeviceDraft& d) {
       fmt::format("\nposture:  # [V] the most dexterous of {} postures; {}\n", kPostures,
                   d.n_p > 0 ? "the gantry moves so that the arm stays near it"
                             : "where runs begin, if they can");
-  for (int i = d.n_p; i < d.chain.nv(); ++i) {
+  for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
     text += fmt::format("  {}: {}\n", quoted(joint(d, i).name), rounded(d.posture[i]));
   }
   return text;
@@ -242,7 +245,7 @@ std::string virtual_joint_lines(const DeviceDraft& d) {
 
 std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   std::string text = fmt::format("\ncartesian_limits:\n  - name: hand\n    frame: {}\n",
-                                 quoted(d.chain.frame_names()[index(d.handle)]));
+                                 quoted(d.chain.model().frame_names()[index(d.handle)]));
   for (int axis = 0; axis < 3; ++axis) {
     text +=
         fmt::format("    {}: {{q_min_m: {}, q_max_m: {}}}{}\n", "xyz"[axis],
@@ -261,16 +264,18 @@ std::string box_lines(const DeviceDraft& d, const Reach& reach) {
 }  // namespace
 
 std::string device_yaml(const ChainPart& part, const std::filesystem::path& folder) {
-  DeviceDraft d{.chain = read_part(part), .ranges = {}, .singular = {}, .posture = {}};
-  d.n_p = gantry_joints(d.chain, part.urdf.generic_string());
-  d.handle = held_frame(d.chain);
-  d.ranges = joint_ranges(d.chain);
+  DeviceDraft d{
+      .chain = model::ChainData(read_part(part)), .ranges = {}, .singular = {}, .posture = {}};
+  d.n_p = gantry_joints(d.chain.model(), part.urdf.generic_string());
+  d.handle = held_frame(d.chain.model());
+  d.ranges = joint_ranges(d.chain.model());
   for (std::size_t i = 0; i < d.ranges.size(); ++i) {
     // more than a turn says that the joint has no stops, only cables
-    if (unit_of(d.chain.joints()[i]) == "rad") d.ranges[i] = intersect(d.ranges[i], {-M_PI, M_PI});
+    if (unit_of(d.chain.model().joints()[i]) == "rad")
+      d.ranges[i] = intersect(d.ranges[i], {-M_PI, M_PI});
   }
   d.stands = stands(d);
-  d.singular = singular_values(d.chain, d.handle, d.n_p, d.ranges);
+  d.singular = singular_values(d.chain.model(), d.handle, d.n_p, d.ranges);
   d.posture = best_posture(d);
   leave_singularities(d);
   const Reach reach = reach_of(d);
@@ -280,13 +285,13 @@ std::string device_yaml(const ChainPart& part, const std::filesystem::path& fold
       "# [V] worked out from the URDF, [A] assumed: look at these first. All keys: "
       "docs/reference/configuration.md\n\n"
       "name: {}\n{}",
-      d.chain.name(), part.urdf.filename().generic_string(), quoted(d.chain.name()),
+      d.chain.model().name(), part.urdf.filename().generic_string(), quoted(d.chain.model().name()),
       part_lines(part, folder));
   if (d.n_p > 0)
     text += fmt::format("gantry: {}  # [V] the first prismatic joints\n", list_of(d, 0, d.n_p));
-  text += fmt::format("manipulator: {}\n", list_of(d, d.n_p, d.chain.nv()));
+  text += fmt::format("manipulator: {}\n", list_of(d, d.n_p, d.chain.model().nv()));
   text += fmt::format("handle: {}  # [A] frame that is held, at the force/torque sensor\n",
-                      quoted(d.chain.frame_names()[index(d.handle)]));
+                      quoted(d.chain.model().frame_names()[index(d.handle)]));
   text += "rate_Hz: 1000\n";
   return text + joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach);
 }

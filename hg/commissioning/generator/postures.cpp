@@ -18,7 +18,7 @@ constexpr int kWitnesses = 12;      // random postures that must all be singular
 
 // whether every posture with this value is singular; the value is put in by `set`
 template <class Set>
-bool is_always_singular(model::Chain& chain, int frame, int first,
+bool is_always_singular(model::ChainData& chain, int frame, int first,
                         const std::vector<Interval>& ranges, Set set) {
   PostureSampler sampler(ranges);
   for (int i = 0; i < kWitnesses; ++i) {
@@ -44,7 +44,7 @@ Eigen::VectorXd PostureSampler::draw() {
   return q;
 }
 
-std::vector<Interval> joint_ranges(const model::Chain& chain) {
+std::vector<Interval> joint_ranges(const model::ChainModel& chain) {
   std::vector<Interval> ranges;
   for (const model::Joint& joint : chain.joints()) {
     ranges.push_back(
@@ -53,24 +53,24 @@ std::vector<Interval> joint_ranges(const model::Chain& chain) {
   return ranges;
 }
 
-double dexterity(model::Chain& chain, int frame, int first, const Eigen::VectorXd& q) {
-  const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(chain.nv());
+double dexterity(model::ChainData& chain, int frame, int first, const Eigen::VectorXd& q) {
+  const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(chain.model().nv());
   chain.update_kinematics(q, at_rest);
-  Eigen::MatrixXd J = chain.jacobian(frame).rightCols(chain.nv() - first);
+  Eigen::MatrixXd J = chain.jacobian(frame).rightCols(chain.model().nv() - first);
   J.bottomRows<3>() *= kWrist;
   const Eigen::VectorXd sigma = singular_value_decomposition(J).sigma;
   return sigma.size() < 6 ? 0.0 : sigma[5];
 }
 
-std::vector<SingularValue> singular_values(const model::Chain& chain, int frame, int first,
+std::vector<SingularValue> singular_values(const model::ChainModel& chain, int frame, int first,
                                            const std::vector<Interval>& ranges) {
   constexpr std::array<double, 9> kQuarters = {-2 * M_PI, -1.5 * M_PI, -M_PI,      -M_PI_2, 0,
                                                M_PI_2,    M_PI,        1.5 * M_PI, 2 * M_PI};
-  model::Chain probe = chain;
-  const int n = probe.nv();
+  model::ChainData probe(chain);
+  const int n = chain.nv();
   std::vector<SingularValue> found;
   const auto turns = [&](int joint) {
-    return probe.joints()[index(joint)].type != model::JointType::kPrismatic;
+    return chain.joints()[index(joint)].type != model::JointType::kPrismatic;
   };
   const auto range = [&](int joint) { return ranges[index(joint)]; };
 

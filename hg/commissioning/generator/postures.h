@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hg/core/interval.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::generator {
 
@@ -24,11 +24,12 @@ class PostureSampler {
 };
 
 /// Position ranges of the chain's joints, one per joint; floating joints are not supported.
-std::vector<Interval> joint_ranges(const model::Chain& chain);
+std::vector<Interval> joint_ranges(const model::ChainModel& chain);
 
 /// Smallest singular value of the Jacobian (columns from `first`) at `frame`, rotations scaled by
-/// 0.3 m, about the size of a wrist; m/rad. 0 where a direction of motion is lost.
-double dexterity(model::Chain& chain, int frame, int first, const Eigen::VectorXd& q);
+/// 0.3 m, about the size of a wrist; m/rad. 0 where a direction of motion is lost. Moves `chain`
+/// to `q`.
+double dexterity(model::ChainData& chain, int frame, int first, const Eigen::VectorXd& q);
 
 /// A joint, or the sum of two neighbours, that is singular at `value` for all positions of the
 /// others.
@@ -40,7 +41,7 @@ struct SingularValue {
 
 /// Finds singular values among multiples of a quarter turn of the joints from `first` on; earlier
 /// joints are ignored.
-std::vector<SingularValue> singular_values(const model::Chain& chain, int frame, int first,
+std::vector<SingularValue> singular_values(const model::ChainModel& chain, int frame, int first,
                                            const std::vector<Interval>& ranges);
 
 }  // namespace hg::generator

@@ -9,6 +9,7 @@
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/core/error.h"
 #include "hg/core/index.h"
+#include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::generator {
@@ -22,7 +23,7 @@ constexpr double kTurnShare = 0.5;  // share of the rating of the slowest of the
 constexpr double kCoasting = 1.5;   // s, time constant of a released joint
 
 struct TwinDraft {
-  model::Chain chain;
+  model::ChainData chain;
   int end_effector = 0;
   std::vector<Interval> ranges;
   Eigen::VectorXd start;
@@ -36,18 +37,18 @@ struct Placement {
   bool is_upright = true;
 };
 
-const model::Joint& joint(const TwinDraft& d, int i) { return d.chain.joints()[index(i)]; }
+const model::Joint& joint(const TwinDraft& d, int i) { return d.chain.model().joints()[index(i)]; }
 
 TwinDraft make_draft(const ChainPart& part) {
-  TwinDraft d{.chain = read_part(part), .ranges = {}, .start = {}, .lever = {}};
-  for (const model::Joint& joint : d.chain.joints()) {
+  TwinDraft d{.chain = model::ChainData(read_part(part)), .ranges = {}, .start = {}, .lever = {}};
+  for (const model::Joint& joint : d.chain.model().joints()) {
     if (joint.nv == 1) continue;
     throw SetupError(part.urdf.generic_string() + ": joint " + joint.name +
                      ": is floating; a draft is made for joints with one coordinate");
   }
-  d.end_effector = held_frame(d.chain);
-  d.ranges = joint_ranges(d.chain);
-  const int n = d.chain.nv();
+  d.end_effector = held_frame(d.chain.model());
+  d.ranges = joint_ranges(d.chain.model());
+  const int n = d.chain.model().nv();
   d.start.resize(n);
   d.lever = Eigen::VectorXd::Zero(n);
   for (int i = 0; i < n; ++i) {
@@ -72,29 +73,18 @@ Pose tip(TwinDraft& d, const Eigen::VectorXd& q) {
 class Reach {
  public:
   explicit Reach(const config::Device& device)
-      : scenario_{.title = {},
-                  .description = {},
-                  .device = device,
-                  .twin = {.name = "draft",
-                           .urdf = {},
-                           .T_B_root = {},
-                           .model = {.chain = model::Chain::free_body({}),
-                                     .end_effector = 0,
-                                     .q_start = ConfigurationA::Zero(7),
-                                     .dofs = {},
-                                     .locks = {}},
-                           .sources = {}},
-                  .script = {},
-                  .limits = {},
-                  .events = {},
-                  .sources = {}} {}
+      : device_(device),
+        twin_{.name = "draft",
+              .model = {.chain = model::ChainModel::free_body({}),
+                        .end_effector = 0,
+                        .q_start = ConfigurationA::Zero(7)}} {}
 
   bool contains(const Pose& T_B_H) {
-    ConfigurationA& q = scenario_.twin.model.q_start;
+    ConfigurationA& q = twin_.model.q_start;
     q.head<3>() = T_B_H.p;
     q.segment<4>(3) = Eigen::Quaterniond(T_B_H.R).normalized().coeffs();
     try {
-      scenario::find_start(scenario_);
+      scenario::find_start(device_, twin_);
       return true;
     } catch (const SetupError&) {
       return false;
@@ -102,14 +92,15 @@ class Reach {
   }
 
  private:
-  config::Scenario scenario_;
+  const config::Device& device_;
+  config::Twin twin_;
 };
 
 // the handle with every joint of the device at its goal or in the middle of its range
 Pose nominal_handle(const config::Device& device) {
-  model::Chain chain = device.model.chain;
-  const std::vector<Interval> ranges = joint_ranges(chain);
-  Eigen::VectorXd q(chain.nq());
+  model::ChainData chain(device.model.chain);
+  const std::vector<Interval> ranges = joint_ranges(device.model.chain);
+  Eigen::VectorXd q(chain.model().nq());
   for (int i = 0; i < q.size(); ++i) {
     const Interval range = ranges[index(i)];
     q[i] = 0.5 * (range.lb + range.ub);
@@ -119,7 +110,7 @@ Pose nominal_handle(const config::Device& device) {
       q[i] = device.model.posture[goal];
     }
   }
-  chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.nv()));
+  chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.model().nv()));
   return chain.pose(device.model.handle);
 }
 
@@ -190,7 +181,7 @@ struct TipRatings {
 
 TipRatings tip_ratings(const config::Device& device) {
   limits::JointLimits hand{.dq_max = 1.5, .ddq_max = 5.0};
-  for (const limits::JointLimits& axis : rendering::handle_limits(device.model)) {
+  for (const limits::JointLimits& axis : handle_limits(device.model)) {
     hand.dq_max = std::min(hand.dq_max, axis.dq_max);
     hand.ddq_max = std::min(hand.ddq_max, axis.ddq_max);
   }
@@ -205,12 +196,12 @@ TipRatings tip_ratings(const config::Device& device) {
 }
 
 std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
-  const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(d.chain.nv());
+  const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(d.chain.model().nv());
   d.chain.update(d.start, at_rest);
   const Eigen::MatrixXd M = d.chain.M();
   std::string text =
       "\njoints:  # positions and speeds that do not stand here are those of the URDF\n";
-  for (int i = 0; i < d.chain.nv(); ++i) {
+  for (int i = 0; i < d.chain.model().nv(); ++i) {
     const model::Joint& j = joint(d, i);
     const bool turns = j.type != model::JointType::kPrismatic;
     const std::string unit = turns ? "rad" : "m";
@@ -247,9 +238,9 @@ std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder
              "docs/reference/configuration.md\n\n"
              "name: {}\n{}"
              "end_effector: {}  # [A] frame that the hand holds\n",
-             d.chain.name(), part.urdf.filename().generic_string(), device.name,
-             quoted(d.chain.name()), part_lines(part, folder),
-             quoted(d.chain.frame_names()[index(d.end_effector)])) +
+             d.chain.model().name(), part.urdf.filename().generic_string(), device.name,
+             quoted(d.chain.model().name()), part_lines(part, folder),
+             quoted(d.chain.model().frame_names()[index(d.end_effector)])) +
          placement_line(placement) +
          "gravity: false  # true: the hand carries the weight of the twin\n" +
          joint_lines(d, tip_ratings(device));

@@ -15,19 +15,17 @@ constexpr double kSettling_s = 0.3;       // after the drives came on: brakes op
 
 }  // namespace
 
-FrictionTraces::FrictionTraces(const tracking::Config& control)
-    : current_share_(control.loop.current_lag > 0.0
-                         ? -std::expm1(-control.dt / control.loop.current_lag)
-                         : 1.0),
-      settling_(kSettling_s / control.dt),
-      joints_(control.actuators.size()),
+FrictionTraces::FrictionTraces(const DeviceModel& device, double current_lag)
+    : current_share_(current_lag > 0.0 ? -std::expm1(-device.dt() / current_lag) : 1.0),
+      settling_(kSettling_s / device.dt()),
+      joints_(device.actuators.size()),
       given_(kRemembered) {
-  if (control.actuators.empty()) {
+  if (device.actuators.empty()) {
     throw SetupError(
         "friction: needs a device with 'actuators', whose motor torques are known; the drives of "
         "this one follow positions");
   }
-  for (FrictionTrace& joint : joints_) joint.period_s = control.dt;
+  for (FrictionTrace& joint : joints_) joint.period_s = device.dt();
   current_ = working_ = VectorM::Zero(static_cast<Eigen::Index>(joints_.size()));
 }
 

@@ -7,15 +7,16 @@
 #include <vector>
 
 #include "hg/commissioning/identification/friction.h"
-#include "hg/controller/tracking/joint_control.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::identification {
 
 class FrictionTraces {
  public:
-  /// Throws SetupError for a device whose drives follow positions.
-  explicit FrictionTraces(const tracking::Config& control);
+  /// `current_lag`: time constant of the current, s. Throws SetupError for a device whose drives
+  /// follow positions.
+  FrictionTraces(const DeviceModel& device, double current_lag);
 
   /// Adds the next sample. Samples with drives off, shortly after they came on, without motor
   /// encoders or without a known active command are left out.

@@ -13,6 +13,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
+#include "hg/model/chain_data.h"
 #include "hg/scenario/assembly.h"
 
 namespace hg::identification {
@@ -30,7 +31,7 @@ double halton(int index, int base) {
   return value;
 }
 
-VectorM candidate(const rendering::DeviceModel& device, int index) {
+VectorM candidate(const DeviceModel& device, int index) {
   constexpr std::array<int, kMaxManipulator> kBases = {2, 3, 5, 7, 11, 13, 17};
   VectorM q_m(device.n_m);
   for (int i = 0; i < device.n_m; ++i) {
@@ -53,18 +54,18 @@ struct Candidate {
 };
 
 std::vector<Candidate> candidates(const config::Device& device) {
-  const rendering::DeviceModel& model = device.model;
-  model::Chain chain = model.chain;
+  const DeviceModel& model = device.model;
+  model::ChainData chain(model.chain);
   std::vector<Candidate> usable;
   for (int k = 0; k < kCandidates; ++k) {
     const VectorM q_m = candidate(model, k);
     Eigen::VectorXd q = Eigen::VectorXd::Zero(model.n_p + model.n_m);
     q.tail(model.n_m) = q_m;
     chain.update_poses(q);
-    const auto sum_holds = [&](const rendering::VirtualJoint& sum) {
+    const auto sum_holds = [&](const VirtualJoint& sum) {
       return is_within(sum.limits, sum.weights.dot(q_m));
     };
-    const auto frame_holds = [&](const rendering::CartesianLimit& limit) {
+    const auto frame_holds = [&](const CartesianLimit& limit) {
       const Eigen::Vector3d p = chain.pose(limit.frame).p;
       return is_within(limit.axes[0], p.x()) && is_within(limit.axes[1], p.y()) &&
              is_within(limit.axes[2], p.z());
@@ -73,7 +74,7 @@ std::vector<Candidate> candidates(const config::Device& device) {
         !std::ranges::all_of(model.cartesian_limits, frame_holds)) {
       continue;
     }
-    const Eigen::Matrix3d R_B_S = chain.pose(model.handle).R * device.T_H_S.R;
+    const Eigen::Matrix3d R_B_S = chain.pose(model.handle).R * device.model.T_H_S.R;
     usable.push_back({q_m, R_B_S.row(2).transpose()});
   }
   return usable;
@@ -148,7 +149,7 @@ std::vector<VectorM> static_postures(const config::Device& device, int count) {
   return postures;
 }
 
-StaticPose measure_simulated(const config::Device& device, const VectorM& q_m) {
+StaticPose measure_simulated(const config::SimulatedDevice& device, const VectorM& q_m) {
   const scenario::Start start = {.T_B_H = {}, .q_p = VectorP::Zero(device.model.n_p), .q_m = q_m};
   simulator::Simulation simulation = scenario::make_unheld_simulation(device, start);
   CommandFrame brakes_closed;
@@ -157,7 +158,7 @@ StaticPose measure_simulated(const config::Device& device, const VectorM& q_m) {
   brakes_closed.tau_m = brakes_closed.dq_m;
   brakes_closed.dq_p = VectorP::Zero(device.model.n_p);
   StaticPose mean;
-  const int second = static_cast<int>(std::lround(device.rate_Hz));
+  const int second = static_cast<int>(std::lround(device.model.rate_Hz));
   for (int k = 0; k < 2 * second; ++k) {
     brakes_closed.sequence = simulation.sensors().sequence;
     simulation.step(brakes_closed);

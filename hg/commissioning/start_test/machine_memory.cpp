@@ -56,7 +56,7 @@ std::optional<std::vector<Position>> braked_posture(const config::Device& device
                                                     double duration_s = kBraked) {
   SensorFrame sensors;
   CommandFrame off = udp::off_command(remote.welcome().actual);
-  for (double time_s = 0.0; time_s < duration_s; time_s += 1.0 / device.rate_Hz) {
+  for (double time_s = 0.0; time_s < duration_s; time_s += 1.0 / device.model.rate_Hz) {
     remote.read(sensors);
     if (sensors.driver_fault != FaultCode::kNone) return std::nullopt;
     off.sequence = sensors.sequence;

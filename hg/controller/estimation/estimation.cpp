@@ -7,21 +7,24 @@
 
 namespace hg::estimation {
 
-Estimation::Estimation(const Config& config, const model::Chain& chain, int n_p, int n_m,
-                       int handle)
+Estimation::Estimation(const Config& config, const DeviceModel& device)
     : config_(config),
-      chain_(chain),
-      n_p_(n_p),
-      n_m_(n_m),
-      handle_(handle),
-      dead_periods_(static_cast<int>(std::lround(config.drive.dead_time / config.dt))),
-      gantry_gains_(gantry_gains(config.observer_pole_Hz, config.dt)),
-      link_pole_(low_pass_pole(config.link_pole_Hz, config.dt)),
-      motor_pole_(low_pass_pole(config.motor_low_pass_Hz, config.dt)),
-      units_(config.units, config.dt, config.link_pole_Hz, config.observer_pole_Hz, chain, n_p) {}
+      chain_(device.chain),
+      n_p_(device.n_p),
+      n_m_(device.n_m),
+      handle_(device.handle),
+      dt_(device.dt()),
+      T_H_S_(device.T_H_S),
+      drive_(device.drive),
+      dead_periods_(static_cast<int>(std::lround(drive_.dead_time / dt_))),
+      gantry_gains_(gantry_gains(config.observer_pole_Hz, dt_)),
+      link_pole_(low_pass_pole(config.link_pole_Hz, dt_)),
+      motor_pole_(low_pass_pole(config.motor_low_pass_Hz, dt_)),
+      units_(config.units, dt_, config.link_pole_Hz, config.observer_pole_Hz, device.chain, n_p_) {}
 
 bool Estimation::turns_without_end(int joint) const noexcept {
-  return chain_.joints()[static_cast<std::size_t>(joint)].type == model::JointType::kContinuous;
+  return chain_.model().joints()[static_cast<std::size_t>(joint)].type ==
+         model::JointType::kContinuous;
 }
 
 double Estimation::unwrapped(int joint, double measured, double last) const noexcept {
@@ -38,10 +41,9 @@ void Estimation::tare(bool is_asked_for, bool is_at_rest, State& state) const no
 
 void Estimation::check_motion(const SensorFrame& sensors, bool is_on, State& state) const noexcept {
   if (!config_.wrench.has_imu) return;
-  const Pose T_B_S = chain_.pose(handle_) * config_.T_H_S;
-  advance(config_.dt,
-          {.R_B_S = T_B_S.R, .p_S = T_B_S.p, .omega_S = sensors.omega_S, .a_S = sensors.a_S}, is_on,
-          state.inertial);
+  const Pose T_B_S = chain_.pose(handle_) * T_H_S_;
+  advance(dt_, {.R_B_S = T_B_S.R, .p_S = T_B_S.p, .omega_S = sensors.omega_S, .a_S = sensors.a_S},
+          is_on, state.inertial);
 }
 
 RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
@@ -91,13 +93,13 @@ VectorM Estimation::observe_joints(const SensorFrame& sensors, const VectorM& dd
     if (!has_motor_encoders) continue;
 
     LinkObserver& link = state.link[joint];
-    observe(link_pole_, config_.dt, ddq_m_reference[i], robot.q_m[i], link);
+    observe(link_pole_, dt_, ddq_m_reference[i], robot.q_m[i], link);
     robot.q_m[i] = link.q;
     robot.dq_m[i] = link.dq;
 
     MotorObserver& motor = state.motor[joint];
     const double theta = unwrapped(n_p_ + i, sensors.theta_m[i], link.q);
-    observe(motor_pole_, config_.dt, theta, motor);
+    observe(motor_pole_, dt_, theta, motor);
     robot.theta_m[i] = motor.theta;
     robot.dtheta_m[i] = motor.dtheta;
   }
@@ -115,8 +117,8 @@ VectorP Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq
   for (int i = 0; i < n_p_; ++i) {
     GantryObserver& axis = state.gantry[static_cast<std::size_t>(i)];
     measured[i] = unwrapped(i, sensors.q_p[i], axis.q);
-    observe(config_.drive, gantry_gains_, config_.dt, measured[i],
-            axis.delay.shift(dq_p_cmd[i], dead_periods_), axis);
+    observe(drive_, gantry_gains_, dt_, measured[i], axis.delay.shift(dq_p_cmd[i], dead_periods_),
+            axis);
     robot.q_p[i] = axis.q;
     robot.dq_p[i] = axis.dq;
     robot.ddq_p[i] = axis.ddq;
@@ -134,17 +136,17 @@ void Estimation::observe_wrench(const SensorFrame& sensors, State& state,
                                 RobotState& robot) noexcept {
   chain_.update_poses(stacked(robot.q_p, robot.q_m));
   const Eigen::Matrix3d& R_B_H = chain_.pose(handle_).R;
-  const Eigen::Matrix3d R_B_S = R_B_H * config_.T_H_S.R;
+  const Eigen::Matrix3d R_B_S = R_B_H * T_H_S_.R;
   if (state.wrench.tare.status == TareStatus::kUnderWay) {
-    advance(config_.wrench.tare, config_.dt, without_weight(config_.wrench, sensors, R_B_S),
+    advance(config_.wrench.tare, dt_, without_weight(config_.wrench, sensors, R_B_S),
             sensors.dead_man, robot.q_m, robot.q_p, state.wrench.tare);
   }
-  estimate(config_.wrench, config_.dt, sensors, R_B_S, state.wrench);
+  estimate(config_.wrench, dt_, sensors, R_B_S, state.wrench);
 
   // the sensor measures in S; the law needs the same wrench about H, resolved in B
   const Vector6& w_S = state.wrench.w_S;
-  const Eigen::Vector3d f_H = config_.T_H_S.R * w_S.head<3>();
-  const Eigen::Vector3d n_H = config_.T_H_S.R * w_S.tail<3>() + config_.T_H_S.p.cross(f_H);
+  const Eigen::Vector3d f_H = T_H_S_.R * w_S.head<3>();
+  const Eigen::Vector3d n_H = T_H_S_.R * w_S.tail<3>() + T_H_S_.p.cross(f_H);
   robot.w_H << R_B_H * f_H, R_B_H * n_H;
 }
 

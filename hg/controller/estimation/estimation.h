@@ -15,20 +15,17 @@
 #include "hg/controller/estimation/user_wrench.h"
 #include "hg/core/fields.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
-#include "hg/signals/drive_model.h"
+#include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::estimation {
 
 /// Set-up data.
 struct Config {
-  double dt = 1e-3;                  ///< period, s
-  DriveModel drive;                  ///< Drive model of every gantry axis
   double observer_pole_Hz = 8.0;     ///< Pole of the gantry observer, see gantry_observer.h
   double link_pole_Hz = 100.0;       ///< Pole of the link side; [C] 2: 60-160 equal, 40 marginal
   double motor_low_pass_Hz = 200.0;  ///< Low-pass of the motor side's speed
-  Pose T_H_S;                        ///< Pose of the force/torque sensor S in the handle frame H
   WrenchConfig wrench;
   InertialUnitsConfig units;  ///< Inertial units on links
 };
@@ -63,8 +60,7 @@ void fields(Archive& a, T& state) {
 
 class Estimation {
  public:
-  /// `chain` holds the gantry joints first; `handle` is its frame H.
-  Estimation(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
+  Estimation(const Config& config, const DeviceModel& device);
 
   /// Estimates the state of a sample. `dq_p_cmd` is the gantry command that was sent in the last
   /// cycle (n_p), `ddq_m_reference` the acceleration of the manipulator's reference since then
@@ -101,8 +97,11 @@ class Estimation {
   void observe_wrench(const SensorFrame& sensors, State& state, RobotState& robot) noexcept;
 
   Config config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   int n_p_, n_m_, handle_;
+  double dt_;  ///< Period, s
+  Pose T_H_S_;
+  DriveModel drive_;
   int dead_periods_;
   GantryGains gantry_gains_;
   double link_pole_, motor_pole_;

@@ -33,7 +33,7 @@ constexpr double kSlow_Hz = 60.0;   // observer of a joint whose acceleration is
 }  // namespace
 
 InertialUnits::InertialUnits(const InertialUnitsConfig& config, double dt, double link_pole_Hz,
-                             double gantry_pole_Hz, const model::Chain& chain, int n_p)
+                             double gantry_pole_Hz, const model::ChainModel& chain, int n_p)
     : config_(config),
       dt_(dt),
       chain_(chain),
@@ -55,7 +55,7 @@ InertialUnits::InertialUnits(const InertialUnitsConfig& config, double dt, doubl
   variance_.resize(n_ + 6);
   for (int i = 0; i < n_; ++i) {
     const bool is_slide =
-        chain_.joints()[static_cast<std::size_t>(i)].type == model::JointType::kPrismatic;
+        chain_.model().joints()[static_cast<std::size_t>(i)].type == model::JointType::kPrismatic;
     variance_[i] = is_slide ? kGantry * kGantry : kJoint * kJoint;
   }
   variance_.segment<3>(n_).setConstant(kBendShift * kBendShift);

@@ -21,7 +21,7 @@
 #include "hg/core/fields.h"
 #include "hg/core/stacked.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/state.h"
 
 namespace hg::estimation {
@@ -30,7 +30,7 @@ using UnitCalibrations = std::array<UnitCalibration, kMaxInertialUnits>;
 
 /// Set-up data.
 struct InertialUnitsConfig {
-  std::vector<int> frames;  ///< Chain frames of links with a unit, root to tip; empty = no units
+  std::vector<int> frames;  ///< Frames of links with a unit, root to tip; empty = no units
   double delay = 1e-3;      ///< Delay from motion to reading, s; rounded to periods, at least one
   /// true: the control uses the units; false: their results are only reported.
   bool feeds_back = false;
@@ -104,7 +104,7 @@ class InertialUnits {
   /// `chain` holds the gantry joints first. Throws SetupError where there are more units than
   /// kMaxInertialUnits or the delay is longer than what is remembered.
   InertialUnits(const InertialUnitsConfig& config, double dt, double link_pole_Hz,
-                double gantry_pole_Hz, const model::Chain& chain, int n_p);
+                double gantry_pole_Hz, const model::ChainModel& chain, int n_p);
 
   bool has_any() const noexcept { return !config_.frames.empty(); }
   /// Processes the readings of a period, as SensorFrame::inertial has them, and the encoders'.
@@ -141,7 +141,7 @@ class InertialUnits {
   VectorPM slow_Hz_;   ///< Observer poles of joints whose acceleration is seen
   VectorPM fast_Hz_;   ///< Observer poles of joints whose acceleration is not seen
   Unknowns variance_;  ///< Prior variances of the unknowns
-  model::Chain chain_;
+  model::ChainData chain_;
   int n_p_, n_;
   int delay_;  ///< Delay in periods
 };

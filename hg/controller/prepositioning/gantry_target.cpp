@@ -22,21 +22,24 @@ constexpr double kLost = 0.05;         // m and rad beside the hand: restart
 
 }  // namespace
 
-GantryTarget::GantryTarget(const TargetConfig& config, const model::Chain& chain)
-    : config_(config), chain_(chain) {
-  const int n = config.n_p + config.n_m;
-  const auto require = [](bool ok, const char* rule) {
-    if (!ok) throw SetupError(std::string("prepositioning: ") + rule);
-  };
-  require(!config.has_closed_form || (config.n_p == 2 && config.n_m == 6),
-          "the closed-form target needs two gantry joints and six manipulator joints");
-  require(n == chain.nv() && config.range.size() == static_cast<std::size_t>(n),
-          "one range per joint of the chain is needed");
-  require(config.goal.size() == 0 || config.goal.size() == config.n_m,
-          "one goal per manipulator joint is needed, or none");
+GantryTarget::GantryTarget(const DeviceModel& device)
+    : has_closed_form_(device.has_closed_form),
+      n_p_(device.n_p),
+      handle_(device.handle),
+      chain_(device.chain),
+      range_(device.gantry_range) {
+  if (has_closed_form_ && (n_p_ != 2 || device.n_m != 6)) {
+    throw SetupError(
+        "prepositioning: the closed-form target needs two gantry joints and six manipulator "
+        "joints");
+  }
+  for (const limits::JointLimits& joint : device.joint_limits) {
+    range_.push_back({joint.q_min, joint.q_max});
+  }
+  const int n = n_p_ + device.n_m;
   goal_ = VectorPM::Constant(n, std::numeric_limits<double>::quiet_NaN());
-  if (config.goal.size() > 0) goal_.tail(config.n_m) = config.goal;
-  for (const model::Joint& joint : chain.joints()) {
+  if (device.posture.size() > 0) goal_.tail(device.n_m) = device.posture;
+  for (const model::Joint& joint : chain_.model().joints()) {
     is_free_.push_back(joint.type == model::JointType::kContinuous);
   }
   at_rest_ = VectorPM::Zero(n);
@@ -44,12 +47,12 @@ GantryTarget::GantryTarget(const TargetConfig& config, const model::Chain& chain
 
 VectorP GantryTarget::step(const RobotState& robot, const VectorM& q_m,
                            TargetState& state) noexcept {
-  if (config_.n_p == 0) return VectorP(0);
-  if (config_.has_closed_form) return model::haptic_giant::gantry_target(robot.q_p, q_m);
+  if (n_p_ == 0) return VectorP(0);
+  if (has_closed_form_) return model::haptic_giant::gantry_target(robot.q_p, q_m);
 
   const VectorPM q_now = stacked(robot.q_p, q_m);
   chain_.update_kinematics(q_now, at_rest_);
-  const Pose T_B_H = chain_.pose(config_.handle);
+  const Pose T_B_H = chain_.pose(handle_);
   if (!state.is_started) {
     state.q = q_now;
     state.is_started = true;
@@ -60,18 +63,18 @@ VectorP GantryTarget::step(const RobotState& robot, const VectorM& q_m,
     // the posture misses the hand, behind a singularity or a limit: stay and restart
     state.q = q_now;
   }
-  return state.q.head(config_.n_p);
+  return state.q.head(n_p_);
 }
 
 // One step of minimising kPoseWeight |pose error|^2 + |goal - q|^2; returns the pose error before.
 double GantryTarget::improve(const Pose& T_B_H, VectorPM& q) noexcept {
   chain_.update_kinematics(q, at_rest_);
-  const Pose pose = chain_.pose(config_.handle);
+  const Pose pose = chain_.pose(handle_);
   Vector6 error;
   error << T_B_H.p - pose.p, rotation_between(pose.R, T_B_H.R);
 
   const auto n = q.size();
-  const model::Jacobian J = chain_.jacobian(config_.handle);
+  const model::Jacobian J = chain_.jacobian(handle_);
   MatrixPM H(n, n);
   H.noalias() = kPoseWeight * (J.transpose().lazyProduct(J));
   VectorPM g(n);
@@ -92,7 +95,7 @@ double GantryTarget::improve(const Pose& T_B_H, VectorPM& q) noexcept {
 // it.
 VectorPM GantryTarget::limited_step(MatrixPM H, VectorPM g, const VectorPM& q) const noexcept {
   const auto limited = [&](int i, double step) {
-    const Interval range = config_.range[static_cast<std::size_t>(i)];
+    const Interval range = range_[static_cast<std::size_t>(i)];
     return std::clamp(q[i] + step, range.lb, range.ub) - q[i];
   };
   VectorPM step = H.ldlt().solve(g);

@@ -11,21 +11,13 @@
 #include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/stacked.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::prepositioning {
 
 using MatrixPM = MatrixUpTo<kMaxGantry + kMaxManipulator, kMaxGantry + kMaxManipulator>;
-
-/// Set-up data.
-struct TargetConfig {
-  bool has_closed_form = false;  ///< the device is a HapticGiant
-  int n_p = 0, n_m = 0;
-  int handle = -1;              ///< Index of frame H of the chain
-  VectorM goal;                 ///< Goals of the manipulator joints; NaN or missing = no goal
-  std::vector<Interval> range;  ///< Ranges of gantry and manipulator joints
-};
 
 /// Part of the copyable state of a cycle.
 struct TargetState {
@@ -42,8 +34,8 @@ void fields(Archive& a, T& state) {
 
 class GantryTarget {
  public:
-  /// `chain` holds the gantry joints first. Throws SetupError when config and chain do not fit.
-  GantryTarget(const TargetConfig& config, const model::Chain& chain);
+  /// Throws SetupError when the device has a closed form, but not its joints.
+  explicit GantryTarget(const DeviceModel& device);
 
   /// Returns the target of the gantry; `robot` gives the gantry, `q_m` the manipulator reference.
   VectorP step(const RobotState& robot, const VectorM& q_m, TargetState& state) noexcept;
@@ -52,10 +44,12 @@ class GantryTarget {
   double improve(const Pose& T_B_H, VectorPM& q) noexcept;
   VectorPM limited_step(MatrixPM H, VectorPM g, const VectorPM& q) const noexcept;
 
-  TargetConfig config_;
-  model::Chain chain_;
-  VectorPM goal_;              ///< Goals of all joints; NaN = no goal
-  std::vector<bool> is_free_;  ///< Joints that turn without end
+  bool has_closed_form_;
+  int n_p_, handle_;
+  model::ChainData chain_;
+  std::vector<Interval> range_;  ///< Ranges of gantry and manipulator joints
+  VectorPM goal_;                ///< Goals of all joints; NaN = no goal
+  std::vector<bool> is_free_;    ///< Joints that turn without end
   VectorPM at_rest_;
 };
 

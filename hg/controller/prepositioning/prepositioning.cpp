@@ -21,35 +21,36 @@ VectorP speed_then(const DriveModel& drive, const RobotState& robot) noexcept {
 
 }  // namespace
 
-void check(const Config& config) {
+Prepositioning::Prepositioning(const Config& config, const DeviceModel& device)
+    : config_(config),
+      range_(device.gantry_range),
+      drive_(device.drive),
+      dt_(device.dt()),
+      response_{.tau = drive_.dead_time + drive_.lag + dt_, .ddq_max = config.ddq_max} {
   const auto require = [](bool ok, const char* rule) {
     if (!ok) throw SetupError(std::string("prepositioning: ") + rule);
   };
-  require(config.n_p >= 0 && config.n_p <= kMaxGantry, "at most two gantry joints are possible");
   require(std::isfinite(config.k_ppu) && config.k_ppu > 0.0, "k_ppu must be positive");
   require(config.dq_max > 0.0, "dq_max must be positive");
-  for (int i = 0; i < config.n_p; ++i) {
-    require(!config.q_limits[static_cast<std::size_t>(i)].empty(), "limits must not be reversed");
-  }
-  limits::check(config.drive, "prepositioning");
+  limits::check(response_, "prepositioning");
 }
 
-Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked, double dq_max, const Room& room, const VectorP& away) noexcept {
-  const double fastest = std::min(config.dq_max, dq_max);
-  Command command = {q_target, VectorP::Zero(config.n_p), VectorP::Zero(config.n_p),
-                     VectorP::Zero(config.n_p)};
-  for (int i = 0; i < config.n_p; ++i) {
-    const Interval q_limits = config.q_limits[static_cast<std::size_t>(i)];
+Command Prepositioning::step(const RobotState& robot, const VectorP& q_target, bool device_blocked,
+                             double dq_max, const Room& room, const VectorP& away) const noexcept {
+  const double fastest = std::min(config_.dq_max, dq_max);
+  const auto n_p = static_cast<int>(range_.size());
+  Command command = {q_target, VectorP::Zero(n_p), VectorP::Zero(n_p), VectorP::Zero(n_p)};
+  for (int i = 0; i < n_p; ++i) {
+    const Interval q_limits = range_[static_cast<std::size_t>(i)];
     command.q_target[i] = std::clamp(command.q_target[i], q_limits.lb, q_limits.ub);
-    Interval bounds = limits::braking_velocity_bounds(q_limits, config.drive, robot.q_p[i]);
+    Interval bounds = limits::braking_velocity_bounds(q_limits, response_, robot.q_p[i]);
     if (room.up.size() > 0) {
       const Interval alone =
-          limits::braking_velocity_bounds({-room.down[i], room.up[i]}, config.drive, 0.0);
+          limits::braking_velocity_bounds({-room.down[i], room.up[i]}, response_, 0.0);
       bounds.lb = std::max(bounds.lb, std::min(alone.lb, 0.0) - kTakenBack);
       bounds.ub = std::min(bounds.ub, std::max(alone.ub, 0.0) + kTakenBack);
     }
-    const double to_target = config.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
+    const double to_target = config_.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
     const double dq = away.size() > 0 ? away[i] : to_target;
     command.dq_min[i] = std::clamp(bounds.lb, -fastest, fastest);
     command.dq_max[i] = std::clamp(bounds.ub, -fastest, fastest);
@@ -59,14 +60,14 @@ Command step(const Config& config, const RobotState& robot, const VectorP& q_tar
   return command;
 }
 
-GantryTask accelerations(const Command& command, const DriveModel& drive, const RobotState& robot,
-                         const VectorP& last, double dt) noexcept {
-  const VectorP dq = speed_then(drive, robot);
+GantryTask Prepositioning::accelerations(const Command& command, const RobotState& robot,
+                                         const VectorP& last) const noexcept {
+  const VectorP dq = speed_then(drive_, robot);
   const VectorP& before = last.size() > 0 ? last : robot.ddq_p;
-  const double change = drive.ddq_max * dt / onset(drive);
+  const double change = drive_.ddq_max * dt_ / onset(drive_);
   GantryTask task = {dq, dq, dq, VectorP::Zero(dq.size())};
   for (Eigen::Index i = 0; i < dq.size(); ++i) {
-    const auto of = [&](double dq_cmd) { return drive_acceleration(drive, dq[i], dq_cmd); };
+    const auto of = [&](double dq_cmd) { return drive_acceleration(drive_, dq[i], dq_cmd); };
     const double aim = std::clamp(command.dq[i], command.dq_min[i], command.dq_max[i]);
     const double least = of(std::max(command.dq_min[i], aim - kLead));
     const double most = of(std::min(command.dq_max[i], aim + kLead));
@@ -77,9 +78,9 @@ GantryTask accelerations(const Command& command, const DriveModel& drive, const 
   return task;
 }
 
-VectorP velocity_for(const VectorP& ddq, const Command& command, const DriveModel& drive,
-                     const RobotState& robot) noexcept {
-  const VectorP dq = speed_then(drive, robot) + drive.lag * ddq;
+VectorP Prepositioning::velocity_for(const VectorP& ddq, const Command& command,
+                                     const RobotState& robot) const noexcept {
+  const VectorP dq = speed_then(drive_, robot) + drive_.lag * ddq;
   return dq.cwiseMax(command.dq_min).cwiseMin(command.dq_max);
 }
 

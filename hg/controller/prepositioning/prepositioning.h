@@ -4,30 +4,24 @@
 /// Prismatic axes: m and m/s, revolute ones rad and rad/s. No allocation, noexcept after set-up.
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/limits/velocity_bounds.h"
-#include "hg/signals/drive_model.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/gantry_task.h"
 #include "hg/signals/state.h"
 
 namespace hg::prepositioning {
 
-/// Set-up data. Arrays are indexed by gantry joint.
+/// Set-up data.
 struct Config {
-  int n_p = 0;
-  bool has_closed_form = false;  ///< Target in closed form: the device is a HapticGiant
-  std::array<Interval, kMaxGantry> q_limits;  ///< Position limits, m or rad
-  double dq_max = 1.5;                        ///< Largest speed, m/s or rad/s
-  double k_ppu = 4.0;  ///< Gain of (27), 1/s; below 1 / (4 lag) there is no overshoot
-  limits::DriveResponse drive;
+  double dq_max = 1.5;   ///< Largest speed, m/s or rad/s
+  double k_ppu = 4.0;    ///< Gain of (27), 1/s; below 1 / (4 lag) there is no overshoot
+  double ddq_max = 2.0;  ///< Deceleration that can be relied on, m/s^2 or rad/s^2
 };
-
-/// Throws SetupError naming the field that is out of range.
-void check(const Config& config);
 
 /// Distance that each axis may move, the arm held stiff, before it carries a frame of the device
 /// over a limit; negative beyond one, m or rad. Empty: there are no such limits.
@@ -48,24 +42,40 @@ struct Command {
   VectorP dq_min, dq_max;  ///< Bounds of the velocity command, m/s or rad/s
 };
 
-/// Computes the velocity command. `robot` gives the gantry. `device_blocked` (a manipulator row
-/// could not be met) makes the command zero: a gantry that drags a blocked arm is a fault. No axis
-/// is faster than `dq_max`, nor more than 0.25 m/s (rad/s) faster than lets it stop within its
-/// `room`: an arm at its limits compensates no more. `away` replaces the motion to the target: the
-/// velocity with which the gantry leaves a contact of the arm; empty: no contact.
-Command step(const Config& config, const RobotState& robot, const VectorP& q_target,
-             bool device_blocked, double dq_max = kInfinity, const Room& room = {},
-             const VectorP& away = {}) noexcept;
+class Prepositioning {
+ public:
+  /// Throws SetupError naming the value that is out of range.
+  Prepositioning(const Config& config, const DeviceModel& device);
 
-/// Range in which the law may lead the gantry instead of `command`, which is its aim: 0.1 m/s
-/// (rad/s) beside it within the bounds of the command. Steps from `last` reach the full
-/// acceleration of the drives within the larger of 60 ms and 15 dead times. `last` (n_p, or empty)
-/// is the acceleration that the law demanded a period of `dt` (s) before.
-GantryTask accelerations(const Command& command, const DriveModel& drive, const RobotState& robot,
-                         const VectorP& last, double dt) noexcept;
+  /// Computes the velocity command. `robot` gives the gantry. `device_blocked` (a manipulator row
+  /// could not be met) makes the command zero: a gantry that drags a blocked arm is a fault. No
+  /// axis is faster than `dq_max`, nor more than 0.25 m/s (rad/s) faster than lets it stop within
+  /// its `room`: an arm at its limits compensates no more. `away` replaces the motion to the
+  /// target: the velocity with which the gantry leaves a contact of the arm; empty: no contact.
+  Command step(const RobotState& robot, const VectorP& q_target, bool device_blocked,
+               double dq_max = kInfinity, const Room& room = {},
+               const VectorP& away = {}) const noexcept;
 
-/// Velocity command that makes the drives accelerate by `ddq`, within the bounds of `command`.
-VectorP velocity_for(const VectorP& ddq, const Command& command, const DriveModel& drive,
-                     const RobotState& robot) noexcept;
+  /// Range in which the law may lead the gantry instead of `command`, which is its aim: 0.1 m/s
+  /// (rad/s) beside it within the bounds of the command. Steps from `last` reach the full
+  /// acceleration of the drives within the larger of 60 ms and 15 dead times. `last` (n_p, or
+  /// empty) is the acceleration that the law demanded a period before.
+  GantryTask accelerations(const Command& command, const RobotState& robot,
+                           const VectorP& last) const noexcept;
+
+  /// Velocity command that makes the drives accelerate by `ddq`, within the bounds of `command`.
+  VectorP velocity_for(const VectorP& ddq, const Command& command,
+                       const RobotState& robot) const noexcept;
+
+  /// Largest speed of an axis, m/s or rad/s.
+  double dq_max() const noexcept { return config_.dq_max; }
+
+ private:
+  Config config_;
+  std::vector<Interval> range_;  ///< Ranges of the axes, m or rad
+  DriveModel drive_;
+  double dt_;                       ///< Period, s
+  limits::DriveResponse response_;  ///< Response that braking relies on
+};
 
 }  // namespace hg::prepositioning

@@ -8,6 +8,7 @@
 #include "hg/controller/rendering/motor_torque.h"
 #include "hg/core/stacked.h"
 #include "hg/hqp/solver.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::rendering {
 namespace {
@@ -28,9 +29,9 @@ double rating(const DeviceModel& device, const Eigen::Vector3d& direction) {
 
 double largest_acceleration(const DeviceModel& device, const Motion& motion,
                             const Eigen::Vector3d& direction) {
-  if (device.motors.empty()) return rating(device, direction);
+  if (device.motors().empty()) return rating(device, direction);
   const int n_p = device.n_p, n_m = device.n_m;
-  model::Chain chain = device.chain;
+  model::ChainData chain(device.chain);
   chain.update(stacked(motion.q_p, motion.q_m), stacked(motion.dq_p, motion.dq_m));
   const auto J = chain.jacobian(device.handle).middleCols(n_p, n_m).eval();
   const Vector6 bias = chain.bias_acceleration(device.handle);
@@ -48,7 +49,7 @@ double largest_acceleration(const DeviceModel& device, const Motion& motion,
   }
   problem.add_level();
   for (int i = 0; i < n_m; ++i) {
-    const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
+    const ActuatorModel& motor = device.motors()[static_cast<std::size_t>(i)];
     row << chain.M().row(n_p + i).tail(n_m).transpose(), 0.0;
     row[i] += motor.rotor_inertia;
     const Interval torque = allowed_torque(motor, motion.dq_m[i]);

@@ -4,7 +4,7 @@
 /// Set-up and evaluation; allocates. SI units, frame B.
 #pragma once
 
-#include "hg/controller/rendering/device_model.h"
+#include "hg/model/device_model.h"
 
 namespace hg::rendering {
 

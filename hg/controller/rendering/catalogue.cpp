@@ -23,7 +23,7 @@ LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin) 
   for (const VirtualJoint& joint : device.virtual_joints) {
     catalogue.push_back({LimitKind::kVirtualJoint, joint.name, true, range_of(joint.limits)});
   }
-  for (std::size_t i = 0; i < device.motors.size(); ++i) {
+  for (std::size_t i = 0; i < device.motors().size(); ++i) {
     const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(device.n_p) + i];
     catalogue.push_back(
         {LimitKind::kMotor, "motor " + joint.name, joint.type != model::JointType::kPrismatic, {}});
@@ -50,7 +50,9 @@ std::vector<std::string> repeated_names(const LimitCatalogue& catalogue) {
 }
 
 LimitPositions::LimitPositions(const DeviceModel& device)
-    : virtual_joints_(device.virtual_joints), motors_(device.motors.size()), chain_(device.chain) {
+    : virtual_joints_(device.virtual_joints),
+      motors_(device.motors().size()),
+      chain_(device.chain) {
   for (const CartesianLimit& limit : device.cartesian_limits) frames_.push_back(limit.frame);
 }
 

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/twin_model.h"
+#include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/limit.h"
 
 namespace hg::rendering {
@@ -31,7 +32,7 @@ class LimitPositions {
   std::vector<VirtualJoint> virtual_joints_;
   std::size_t motors_;
   std::vector<int> frames_;  ///< Frames with Cartesian limits
-  model::Chain chain_;       ///< Moved by find()
+  model::ChainData chain_;   ///< Device in the posture of the last find()
 };
 
 }  // namespace hg::rendering

@@ -8,9 +8,10 @@
 
 #include <Eigen/QR>
 
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/hqp/problem.h"
+#include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/limit.h"
 
 namespace hg::rendering {

@@ -7,7 +7,7 @@ void integrate(ReferenceState& reference, double dt) noexcept {
   reference.dq_m += dt * reference.ddq_m;
 }
 
-void integrate(const model::Chain& chain, TwinState& twin, double dt) noexcept {
+void integrate(const model::ChainModel& chain, TwinState& twin, double dt) noexcept {
   const VectorA step = dt * twin.dq_a + (0.5 * dt * dt) * twin.ddq_a;
   twin.q_a = chain.integrate(twin.q_a, step);
   twin.dq_a += dt * twin.ddq_a;

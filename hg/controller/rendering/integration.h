@@ -1,7 +1,7 @@
 /// One sample of constant acceleration; [HG] sec. VI-E.
 #pragma once
 
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::rendering {
@@ -10,6 +10,6 @@ namespace hg::rendering {
 void integrate(ReferenceState& reference, double dt) noexcept;
 
 /// Integrates the twin on its configuration space: orientations stay orientations.
-void integrate(const model::Chain& chain, TwinState& twin, double dt) noexcept;
+void integrate(const model::ChainModel& chain, TwinState& twin, double dt) noexcept;
 
 }  // namespace hg::rendering

@@ -51,7 +51,6 @@ struct Options {
   Gantry gantry = Gantry::kRule;
   Braking braking = Braking::kAlone;
   double T_C = 20e-3;    ///< horizon of bounds C, s; the period, as printed in (8), bounces
-  double dt = 1e-3;      ///< Nominal period, s, used by the integration
   double kP_tran = 400;  ///< synchronisation (11), 1/s^2; double pole at 20 rad/s with kD
   double kD_tran = 40;   ///< Synchronisation, translational damping, 1/s
   double kP_rot = 400;   ///< Synchronisation, rotational stiffness, 1/s^2

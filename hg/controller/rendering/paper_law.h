@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "hg/controller/rendering/constraint_directions.h"
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/hqp/problem.h"
 #include "hg/hqp/solution.h"
+#include "hg/model/device_model.h"
 
 namespace hg::rendering {
 

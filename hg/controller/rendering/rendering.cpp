@@ -88,12 +88,10 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
   const auto require = [](bool ok, const std::string& text) {
     if (!ok) throw SetupError(text);
   };
-  require(options.dt > 0.0, "rendering: the period must be positive");
   require(options.slow_solve > 0, "rendering: slow_solve must be positive");
   require(options.solver_budget >= 0, "rendering: solver_budget must not be negative");
   const bool is_paper = options.law == Law::kPaper;
-  require(device.motors.empty() || device.motors.size() == static_cast<std::size_t>(device.n_m),
-          "device: one motor per manipulator joint is needed, or none");
+  hg::check(device);
   require(!is_paper || device.n_m == 6, "device: law paper needs six manipulator joints, got " +
                                             std::to_string(device.n_m) +
                                             "; law gauss takes seven as well");
@@ -101,13 +99,9 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
           "device: six or seven manipulator joints are needed, got " + std::to_string(device.n_m));
   require(device.posture.size() == 0 || device.posture.size() == device.n_m,
           "device: one posture goal per manipulator joint is needed, or none");
-  require(options.bounds != Bounds::kPaper || options.T_C >= options.dt,
+  require(options.bounds != Bounds::kPaper || options.T_C >= device.dt(),
           "rendering: T_C must not be below the period");
-  require(device.n_p + device.n_m == device.chain.nv(),
-          "device: gantry and manipulator must be all joints of the chain");
   require(device.handle >= 0, "device: a handle frame is needed");
-  require(device.joint_limits.size() == static_cast<std::size_t>(device.n_m),
-          "device: one limit per manipulator joint is needed");
   for (int i = 0; i < device.n_m; ++i) {
     limits::check(device.joint_limits[static_cast<std::size_t>(i)],
                   "joint " + device.manipulator_joint(i));
@@ -145,6 +139,7 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
       device_now_(device_.chain),
       twin_now_(twin_.chain),
       options_(options),
+      dt_(device_.dt()),
       environment_(std::move(environment)),
       stop_rating_(stop_rating(device_)),
       tasks_(device_, twin_, options_, environment_.has_stops()),
@@ -182,7 +177,7 @@ ChangeStatus Rendering::change(const ParameterChange& change, State& state) cons
 
 void Rendering::update_device(const RobotState& robot, const ReferenceState& reference) noexcept {
   const VectorPM q = stacked(robot.q_p, reference.q_m), dq = stacked(robot.dq_p, reference.dq_m);
-  if (device_.motors.empty()) {
+  if (device_.motors().empty()) {
     device_now_.update_kinematics(q, dq);
   } else {
     device_now_.update(q, dq);
@@ -191,7 +186,7 @@ void Rendering::update_device(const RobotState& robot, const ReferenceState& ref
 
 SolverStatus Rendering::step(const LawInput& input, State& state, LawResult& result) noexcept {
   update_device(input.robot, state.reference);
-  advance_parameters(twin_, state.twin, options_.dt, state.inner.parameters);
+  advance_parameters(twin_, state.twin, dt_, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
   const model::Loads loads = {values.loads.mass * state.calming.inertia,
                               values.loads.gravity / state.calming.inertia};
@@ -211,7 +206,7 @@ SolverStatus Rendering::step(const LawInput& input, State& state, LawResult& res
   solve(input, state, result);
   result.active_set_changes = changed_rows(previous, state.active_set.state,
                                            tasks_.first_limit_row(), tasks_.limit_row_count());
-  if (!is_released) catch_reversals(state.twin, options_.dt, state.inner);
+  if (!is_released) catch_reversals(state.twin, dt_, state.inner);
   give_way(result.contact, state);
   if (environment_.has_stops()) add_stops(result.contact);
   find_kinematics(state, result);
@@ -238,7 +233,7 @@ void Rendering::add_torques(const LawInput& input, bool is_released, State& stat
     result.tau_a = J_a_.transpose() * (share * input.robot.w_H);
     budget.spring = share * spring_torque(twin_, state.twin.q_a, state.inner.parameters);
     if (share < 1.0) budget.spring -= (1.0 - share) * twin_now_.gravity();
-    budget.damping = damping_torque(L_, state.twin.dq_a, options_.dt, values);
+    budget.damping = damping_torque(L_, state.twin.dq_a, dt_, values);
     if (state.calming.damping > 0.0) {
       const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
       budget.damping.noalias() += J_a_.topRows<3>().transpose() * (state.calming.damping * v_E);
@@ -308,8 +303,7 @@ void Rendering::give_way(const ContactReport& contact, State& state) const noexc
   factor.solveInPlace(along);
   factor.solveInPlace(limits);
   const double missing = -along.dot(limits) / along.squaredNorm();
-  const Eigen::Vector3d v_E =
-      J_a_.topRows<3>() * (state.twin.dq_a + 0.5 * options_.dt * state.twin.ddq_a);
+  const Eigen::Vector3d v_E = J_a_.topRows<3>() * (state.twin.dq_a + 0.5 * dt_ * state.twin.ddq_a);
   environment_.give_way(contact, std::clamp(missing, 0.0, force), v_E, state.contact);
 }
 
@@ -430,8 +424,8 @@ void Rendering::solve(const LawInput& input, State& state, LawResult& result) no
   if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
   result.ddq_m = state.reference.ddq_m;
   result.ddq_a = state.twin.ddq_a;
-  reactions_.report(tasks_, solution_,
-                    {.L = L_, .J_a = J_a_, .w_H = input.robot.w_H, .dt = options_.dt}, result);
+  reactions_.report(tasks_, solution_, {.L = L_, .J_a = J_a_, .w_H = input.robot.w_H, .dt = dt_},
+                    result);
 }
 
 void Rendering::keep_problem(std::uint64_t cycle, double cycle_time_us) noexcept {
@@ -495,8 +489,8 @@ void Rendering::find_kinematics(const State& state, LawResult& result) const noe
 }
 
 void Rendering::integrate(State& state) const noexcept {
-  rendering::integrate(state.reference, options_.dt);
-  rendering::integrate(twin_.chain, state.twin, options_.dt);
+  rendering::integrate(state.reference, dt_);
+  rendering::integrate(twin_.chain, state.twin, dt_);
 }
 
 }  // namespace hg::rendering

@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/law_result.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/reactions.h"
@@ -21,6 +20,8 @@
 #include "hg/core/stage_probe.h"
 #include "hg/hqp/problem_capture.h"
 #include "hg/hqp/solver.h"
+#include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::rendering {
@@ -57,9 +58,10 @@ class Rendering {
 
   const DeviceModel& device() const noexcept { return device_; }
   const TwinModel& twin() const noexcept { return twin_; }
-  /// Device and twin in the posture of the last step().
-  const model::Chain& device_chain() const noexcept { return device_now_; }
-  const model::Chain& twin_chain() const noexcept { return twin_now_; }
+  /// Device in the posture of the last step(): with M and c only where the law knows its motors.
+  const model::ChainData& device_chain() const noexcept { return device_now_; }
+  /// Twin in the posture of the last step(), with M and c.
+  const model::ChainData& twin_chain() const noexcept { return twin_now_; }
 
   /// State at rest: manipulator at `q_m`, twin at its start.
   State start(const VectorM& q_m) const;
@@ -92,14 +94,16 @@ class Rendering {
   /// step, to first order, m or rad.
   void gantry_room(VectorP& down, VectorP& up) const noexcept;
 
-  // of the last step, with its posture:
-  /// Twist of the handle as measured, resolved in B.
+  /// Twist of the handle at the measured joint speeds in the posture of the last step(), resolved
+  /// in B.
   Vector6 handle_twist(const RobotState& robot) const noexcept;
-  /// Jacobian of the handle, gantry joints first.
+  /// Jacobian of the handle in the posture of the last step(), gantry joints first.
   const model::Jacobian& handle_jacobian() const noexcept { return J_H_; }
-  /// Twist of the end effector of the twin, resolved in B.
+  /// Twist of the end effector of the twin at the speeds of `state` in the posture of the last
+  /// step(), resolved in B.
   Vector6 end_effector_twist(const State& state) const noexcept;
-  /// Mass of the twin as set up, at its end effector along the axis of B where it is least, kg.
+  /// Mass of the twin as set up, in the posture of the last step(), at its end effector along the
+  /// axis of B where it is least, kg.
   double apparent_mass(const State& state) const noexcept;
 
   /// Caps the budget of a solve from now on, where smaller than in the options; 0 = as in the
@@ -136,8 +140,9 @@ class Rendering {
 
   DeviceModel device_;
   TwinModel twin_;
-  model::Chain device_now_, twin_now_;  ///< Both in the posture of the last update
+  model::ChainData device_now_, twin_now_;  ///< Both in the posture of the last update
   Options options_;
+  double dt_;  ///< Period, s
   surfaces::Environment environment_;
   double stop_rating_;
   Tasks tasks_;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::rendering {
 

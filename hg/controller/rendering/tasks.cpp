@@ -5,6 +5,7 @@
 
 #include "hg/controller/rendering/motor_torque.h"
 #include "hg/core/rotation.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::rendering {
 namespace {
@@ -72,17 +73,18 @@ bool leads_gantry(const DeviceModel& device, const Options& options) noexcept {
 
 bool brakes_together(const DeviceModel& device, const Options& options) noexcept {
   return options.braking == Braking::kTogether && options.law == Law::kGauss &&
-         options.bounds == Bounds::kRecoverable && !device.motors.empty();
+         options.bounds == Bounds::kRecoverable && !device.motors().empty();
 }
 
 Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
              bool has_stops)
     : options_(options),
+      dt_(device.dt()),
       n_m_(device.n_m),
       n_a_(twin.chain.nv()),
       n_g_(led_axes(device, options)),
       stop_count_(has_stops ? surfaces::kMostFacing : 0),
-      knows_torques_(!device.motors.empty()),
+      knows_torques_(!device.motors().empty()),
       first_motor_(n_m_ + static_cast<int>(device.virtual_joints.size())),
       problem_(capacity_of(device, twin, options, stop_count_)),
       coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0) {
@@ -143,7 +145,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   limit_row_count_ = problem_.rows() - first_limit_row();
   if (brakes_together(device, options_)) {
     const int limits = device.limit_count();
-    lasting_.resize(device.motors.size());
+    lasting_.resize(device.motors().size());
     joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_);
     approaches_.resize(static_cast<std::size_t>(limits));
     known_.resize(static_cast<std::size_t>(limits));
@@ -169,7 +171,7 @@ double Tasks::weight_of(const LimitRow& row) const noexcept {
 }
 
 void Tasks::add_limit(const limits::JointLimits& limits, int variable, double margin) {
-  limit_rows_.push_back(make_row(limits, margin, options_.dt));
+  limit_rows_.push_back(make_row(limits, margin, dt_));
   limit_rows_.back().is_recoverable = options_.bounds == Bounds::kRecoverable;
   const double weight = weight_of(limit_rows_.back());
   if (variable >= 0) {
@@ -208,7 +210,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
 // [HG] (12) with (11): J_m ddq_m - J_a ddq_a = s - J_p ddq_p - dJ dq + dJ_a dq_a
 void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
                           const TaskInput& input) noexcept {
-  const model::Chain &device_now = input.device_chain, &twin_now = input.twin_chain;
+  const model::ChainData &device_now = input.device_chain, &twin_now = input.twin_chain;
   const Pose& T_B_H = device_now.pose(device.handle);
   const Pose& T_B_E = twin_now.pose(twin.end_effector);
   const Vector6 velocity_error =
@@ -241,11 +243,11 @@ void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, do
   row.dq = dq;
   row.known = known_acceleration;
   if (row.is_recoverable) {
-    row.ddq = limits::recoverable_bounds(limits, row.options, q, dq, options_.dt);
+    row.ddq = limits::recoverable_bounds(limits, row.options, q, dq, dt_);
     if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, {});
   } else if (row.rating_row >= 0) {
-    row.ddq = limits::bounds_A(limits, q, dq, options_.dt);
-    problem_.set_bounds(row.rating_row, limits::bounds_B(limits, q, dq, options_.dt));
+    row.ddq = limits::bounds_A(limits, q, dq, dt_);
+    problem_.set_bounds(row.rating_row, limits::bounds_B(limits, q, dq, dt_));
   } else {
     row.ddq = limits::bounds_C(limits, q, dq, options_.T_C);
   }
@@ -279,7 +281,7 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
     ++limit;
   }
 
-  limit += static_cast<int>(device.motors.size());
+  limit += static_cast<int>(device.motors().size());
 
   // [HG] (15)-(16)
   for (const CartesianLimit& frame : device.cartesian_limits) {
@@ -313,7 +315,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
   // a joint faster than any motor has jumped: its torques are unknown
   are_torques_known_ = known.allFinite();
   for (int i = 0; i < n_m_; ++i) {
-    const double fastest = kJumped * device.motors[static_cast<std::size_t>(i)].speed_no_load;
+    const double fastest = kJumped * device.motors()[static_cast<std::size_t>(i)].speed_no_load;
     if (std::abs(input.reference.dq_m[i]) > fastest) are_torques_known_ = false;
   }
 
@@ -324,7 +326,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
       problem_.set_bounds(first_limit_row() + first_motor_ + i, {});
       continue;
     }
-    const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
+    const ActuatorModel& motor = device.motors()[static_cast<std::size_t>(i)];
     const double dq = input.reference.dq_m[i];
     const double inertia = M(i, device.n_p + i) + motor.rotor_inertia;
     row.head(n_m_) = M.row(i).segment(device.n_p, n_m_) / inertia;
@@ -337,7 +339,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
                                                (torque.ub - known[i]) / inertia};
     }
     if (input.motor_torque.size() > 0) {
-      torque = reached_torque(torque, input.motor_torque[i], options_.dt);
+      torque = reached_torque(torque, input.motor_torque[i], dt_);
     }
     LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
     limit.dq = dq;
@@ -354,7 +356,7 @@ void Tasks::brake_together() noexcept {
   for (std::size_t i = 0; i < approaches_.size(); ++i) {
     const LimitRow& row = limit_rows_[i];
     if (row.is_motor) continue;
-    approaches_[i] = approach(row.limits, row.options, row.q, row.dq, options_.dt);
+    approaches_[i] = approach(row.limits, row.options, row.q, row.dq, dt_);
     known_[i] = row.known;
     has_near = has_near || is_near(approaches_[i], row.limits);
   }
@@ -384,7 +386,7 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
       effective.limits.q_min = effective.limits.q_max = q;
     }
     row.range = input.inner.parameters.moving[static_cast<std::size_t>(i)].q;
-    row.options = limits::recoverable_options(effective.limits, options_.dt, options_.dt);
+    row.options = limits::recoverable_options(effective.limits, dt_, dt_);
     if (knows_torques_) row.options.tau_onset = kTwinBrakingOnset;
     const bool is_held =
         row.held_by.lower != LimitCause::kNone || row.held_by.upper != LimitCause::kNone;
@@ -393,7 +395,7 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
     set_limit(first + i, effective.limits, q, dq, 0.0);
 
     // [HG] (31): a lock of bounds paper stops the joint, as fast as its rating allows
-    double ddq_stop = -dq / options_.dt;
+    double ddq_stop = -dq / dt_;
     if (options_.bounds == Bounds::kPaper) {
       const double ddq_max = effective.limits.ddq_max;
       ddq_stop = std::clamp(ddq_stop, -ddq_max, ddq_max);

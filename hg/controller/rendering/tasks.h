@@ -23,7 +23,6 @@
 #include <optional>
 #include <vector>
 
-#include "hg/controller/rendering/device_model.h"
 #include "hg/controller/rendering/joint_braking.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/paper_law.h"
@@ -33,6 +32,8 @@
 #include "hg/hqp/problem.h"
 #include "hg/hqp/solution.h"
 #include "hg/limits/acceleration_bounds.h"
+#include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/gantry_task.h"
 #include "hg/signals/state.h"
 
@@ -60,8 +61,10 @@ struct LimitRow {
 
 /// Inputs of one cycle.
 struct TaskInput {
-  const model::Chain& device_chain;  ///< The device in the posture of this cycle
-  const model::Chain& twin_chain;    ///< The twin in the posture of this cycle
+  /// Device in this cycle, after update(); without motors that the law knows update_kinematics()
+  /// is enough.
+  const model::ChainData& device_chain;
+  const model::ChainData& twin_chain;  ///< Twin in this cycle, after update()
   const RobotState& robot;
   const ReferenceState& reference;
   const TwinState& twin;
@@ -165,6 +168,7 @@ class Tasks {
   void hold(int limit, double ddq) noexcept;
 
   Options options_;
+  double dt_;  ///< Period, s
   int n_m_, n_a_;
   int n_g_;  ///< Gantry axes that the law leads
   int stop_count_;

@@ -6,6 +6,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::rendering {
 
@@ -33,8 +34,8 @@ void check(const TwinModel& twin) {
 
 FeltMass felt_mass(const TwinModel& twin) {
   constexpr double kStuck = 1e-6;  // of the largest mobility
-  model::Chain chain = twin.chain;
-  const VectorA at_rest = VectorA::Zero(chain.nv());
+  model::ChainData chain(twin.chain);
+  const VectorA at_rest = VectorA::Zero(chain.model().nv());
   chain.update(twin.q_start, at_rest);
   const Eigen::MatrixXd J = chain.jacobian(twin.end_effector).topRows<3>();
   const Eigen::MatrixXd inverse_mass = inverse(Eigen::MatrixXd(chain.M()));

@@ -9,7 +9,7 @@
 
 #include "hg/core/types.h"
 #include "hg/limits/acceleration_bounds.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 
 namespace hg::rendering {
 
@@ -71,7 +71,7 @@ struct ConditionalLimit {
 };
 
 struct TwinModel {
-  model::Chain chain;         ///< Constant: whoever needs a posture copies it
+  model::ChainModel chain;
   int end_effector = -1;      ///< Index of frame E
   ConfigurationA q_start;     ///< Coordinates at the start
   std::vector<TwinDof> dofs;  ///< Degrees of freedom, one per velocity of the chain

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kApproach = 0.1;  // s; a person feels a change, not a blow
 constexpr double kArrived = 1e-9;  // of the larger of 1 and the target
-constexpr double kLargest = 1e9;   // of any value; keeps products finite
 
 void approach(double& now, double target, double share) noexcept {
   if (now == target) return;
@@ -83,10 +82,6 @@ bool is_index(const TwinModel& twin, const ParameterChange& change) noexcept {
   return false;
 }
 
-bool is_value(Parameter parameter, double value) noexcept {
-  return allows(facts_of(parameter), value) && (std::isinf(value) || std::abs(value) <= kLargest);
-}
-
 // the range of a joint and of the conditional limits that hold
 Interval target_range(const TwinModel& twin, int dof, const TwinParameters& parameters) noexcept {
   Interval range = parameters.range[static_cast<std::size_t>(dof)];
@@ -135,7 +130,7 @@ ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
                    TwinParameters& parameters) noexcept {
   if (change.parameter == Parameter::kNone) return ChangeStatus::kNone;
   const bool is_known = static_cast<std::size_t>(change.parameter) <= kParameters.size();
-  if (!is_known || !is_index(twin, change) || !is_value(change.parameter, change.value)) {
+  if (!is_known || !is_index(twin, change) || !allows(facts_of(change.parameter), change.value)) {
     return ChangeStatus::kRefused;
   }
   const auto index = static_cast<std::size_t>(std::max<int>(change.index, 0));

@@ -47,7 +47,7 @@ struct TwinParameters {
 TwinParameters initial_parameters(const TwinModel& twin);
 
 /// Sets `change` as a target, or refuses it and changes nothing: unknown parameter or index, a
-/// value outside the range of its Parameter or beyond 1e9, limits that would cross, no lower limit
+/// value outside the range of its Parameter, limits that would cross, no lower limit
 /// where a closer measures from it.
 [[nodiscard]] ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
                                  TwinParameters& parameters) noexcept;

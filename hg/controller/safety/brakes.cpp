@@ -15,15 +15,16 @@ struct Axis {
   double stop_distance = 0.0;
 };
 
-Axis axis_of(const MonitorConfig& config, int i, int n_p, int n_m) noexcept {
-  if (i < n_p) {
-    return {n_m + i, config.is_gantry_slide, config.drive.dq_max, config.stop_distance_of_gantry()};
+Axis axis_of(const MonitorConfig& config, const DeviceModel& device, int i) noexcept {
+  if (i < device.n_p) {
+    const bool is_slide = device.is_gantry_slide();
+    return {device.n_m + i, is_slide, device.drive.dq_max,
+            config.stop_distance_of_gantry(is_slide)};
   }
-  const int joint = (i - n_p) % n_m;
-  const auto k = static_cast<std::size_t>(joint);
-  return {joint, k < config.is_slide.size() && config.is_slide[k],
-          k < config.joint_speed_max.size() ? config.joint_speed_max[k] : kInfinity,
-          config.stop_distance_of_joint(joint)};
+  const int joint = (i - device.n_p) % device.n_m;
+  const bool is_slide = device.is_slide(joint);
+  return {joint, is_slide, device.joint_limits[static_cast<std::size_t>(joint)].dq_max,
+          config.stop_distance_of_joint(is_slide)};
 }
 
 BrakedAxes positions_of(const SensorFrame& sensors) noexcept {
@@ -47,8 +48,8 @@ double slip_of(const MonitorConfig& config, const Axis& axis) noexcept {
 
 }  // namespace
 
-Fault watch_brakes(const MonitorConfig& config, const SensorFrame& sensors, bool is_powered,
-                   BrakeState& state) noexcept {
+Fault watch_brakes(const MonitorConfig& config, const DeviceModel& device,
+                   const SensorFrame& sensors, bool is_powered, BrakeState& state) noexcept {
   const bool is_heard = sensors.driver_fault != FaultCode::kDeviceSilent &&
                         sensors.driver_fault != FaultCode::kDeviceGone;
   if (state.slip.code != FaultCode::kNone || !is_heard) return state.slip;
@@ -63,7 +64,7 @@ Fault watch_brakes(const MonitorConfig& config, const SensorFrame& sensors, bool
   }
   if (is_powered || !state.was_powered) return {};
 
-  const auto at_rest = static_cast<std::uint32_t>(config.stop_time / config.dt) + 1;
+  const auto at_rest = static_cast<std::uint32_t>(config.stop_time / device.dt()) + 1;
   state.samples_off = std::min(state.samples_off + 1, at_rest + 1);
   const bool is_new = state.samples_off == 1 || state.from.size() != q.size();
   const bool is_over = state.samples_off == at_rest;
@@ -71,16 +72,15 @@ Fault watch_brakes(const MonitorConfig& config, const SensorFrame& sensors, bool
     state.from = q;
     state.may_move.setZero(q.size());
   }
-  const auto n_p = static_cast<int>(sensors.q_p.size()), n_m = static_cast<int>(sensors.q_m.size());
   Fault worst;
   double largest = 1.0;  // largest share of the allowed motion
   for (int i = 0; i < q.size(); ++i) {
-    const Axis axis = axis_of(config, i, n_p, n_m);
+    const Axis axis = axis_of(config, device, i);
     if (!std::isfinite(q[i])) continue;
     if (!std::isfinite(state.from[i])) state.from[i] = q[i];
     if (is_new || is_over) {
       const double speed =
-          std::isfinite(last[i]) ? moved(axis, last[i], q[i]) / config.dt : kInfinity;
+          std::isfinite(last[i]) ? moved(axis, last[i], q[i]) / device.dt() : kInfinity;
       const double share = is_over ? 0.0 : std::min(1.0, speed / axis.speed_max);
       state.may_move[i] = slip_of(config, axis) + share * axis.stop_distance;
     }

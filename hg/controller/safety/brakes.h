@@ -44,7 +44,7 @@ void fields(Archive& a, T& state) {
 /// move by its slip tolerance. For the duration of a stop after power-off, an axis that was still
 /// moving may also move by (speed / rated speed) of its stopping distance. Returns the slip, or
 /// kNone; its index is the joint, gantry axes follow after the joints.
-Fault watch_brakes(const MonitorConfig& config, const SensorFrame& sensors, bool is_powered,
-                   BrakeState& state) noexcept;
+Fault watch_brakes(const MonitorConfig& config, const DeviceModel& device,
+                   const SensorFrame& sensors, bool is_powered, BrakeState& state) noexcept;
 
 }  // namespace hg::safety

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "hg/controller/safety/stopping.h"
-#include "hg/core/error.h"
 #include "hg/core/first_not_finite.h"
 
 namespace hg::safety {
@@ -29,11 +28,11 @@ Fault make_fault(FaultCode code, int index, double value, double limit) noexcept
 
 // Index of the first value that is not finite, < 0: none. Order: joints, joint speeds, gantry,
 // wrench, motors, joint torques, accelerometer, gyroscope, motor temperatures, clock.
-int first_bad_value(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
+int first_bad_value(const SensorFrame& sensors, bool has_imu) noexcept {
   const Eigen::Vector3d kNone = Eigen::Vector3d::Zero();
   return first_not_finite(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
-                          sensors.tau_m, config.has_imu ? sensors.a_S : kNone,
-                          config.has_imu ? sensors.omega_S : kNone, sensors.temperature_m,
+                          sensors.tau_m, has_imu ? sensors.a_S : kNone,
+                          has_imu ? sensors.omega_S : kNone, sensors.temperature_m,
                           Eigen::Matrix<double, 1, 1>(sensors.time_s));
 }
 
@@ -54,8 +53,8 @@ std::uint16_t count_up(std::uint16_t count) noexcept {
 
 }  // namespace
 
-bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
-  return first_bad_value(config, sensors) < 0;
+bool is_finite(const SensorFrame& sensors, bool has_imu) noexcept {
+  return first_bad_value(sensors, has_imu) < 0;
 }
 
 bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
@@ -63,8 +62,8 @@ bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors)
          sensors.w_S.tail<3>().norm() <= config.torque_max;
 }
 
-Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
-                    std::uint64_t expected_sequence) noexcept {
+Fault check_sensors(const SensorFrame& sensors, std::uint64_t expected_sequence,
+                    bool has_imu) noexcept {
   if (sensors.driver_fault != FaultCode::kNone) {
     return make_fault(sensors.driver_fault, -1, 0.0, 0.0);
   }
@@ -72,7 +71,7 @@ Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
     return make_fault(FaultCode::kSequenceGap, -1, static_cast<double>(sensors.sequence),
                       static_cast<double>(expected_sequence));
   }
-  const int index = first_bad_value(config, sensors);
+  const int index = first_bad_value(sensors, has_imu);
   if (index >= 0) return make_fault(FaultCode::kSensorNotFinite, index, NAN, 0.0);
   return {};
 }
@@ -87,30 +86,26 @@ Fault check_solution(SolverStatus status, const VectorM& ddq_m, const VectorA& d
   return {};
 }
 
-Monitor::Monitor(const MonitorConfig& config, int n_p, int n_m)
-    : config_(config), shaking_(config.dt, config.twin_mass), n_p_(n_p), n_m_(n_m) {
-  const auto require = [](bool ok, const std::string& text) {
-    if (!ok) throw SetupError("monitor: " + text);
-  };
-  const auto fits = [](const auto& list, int n) {
-    return list.empty() || list.size() == static_cast<std::size_t>(n);
-  };
-  require(config.dt > 0.0, "the period must be positive");
-  if (config_.gantry_range.empty()) config_.gantry_range.resize(at(n_p));
-  if (config_.joint_range.empty()) config_.joint_range.resize(at(n_m));
-  if (config_.is_slide.empty()) config_.is_slide.resize(at(n_m));
-  if (config_.joint_speed_max.empty()) config_.joint_speed_max.resize(at(n_m), kInfinity);
-  if (config_.joint_acceleration.empty()) config_.joint_acceleration.resize(at(n_m), kInfinity);
-  require(config_.gantry_range.size() == at(n_p), "one range per gantry axis is needed");
-  for (const auto* list : {&config_.joint_speed_max, &config_.joint_acceleration}) {
-    require(list->size() == at(n_m), "one rating per joint is needed");
-  }
-  require(config_.joint_range.size() == at(n_m) && config_.is_slide.size() == at(n_m),
-          "one range per joint is needed");
-  require(fits(config_.actuators, n_m), "one actuator per joint is needed, or none");
+Monitor::Monitor(const MonitorConfig& config, const DeviceModel& device,
+                 const MonitoredParts& parts)
+    : config_(config),
+      parts_(parts),
+      n_p_(device.n_p),
+      n_m_(device.n_m),
+      dt_(device.dt()),
+      drive_(device.drive),
+      gantry_range_(device.gantry_range),
+      joint_limits_(device.joint_limits),
+      actuators_(device.actuators),
+      is_gantry_slide_(device.is_gantry_slide()),
+      end_cartesian_(device.limit_count()),
+      first_cartesian_(end_cartesian_ - 3 * static_cast<int>(device.cartesian_limits.size())),
+      shaking_(dt_, parts.twin_mass) {
+  for (int i = 0; i < n_m_; ++i) is_slide_.push_back(device.is_slide(i));
+  if (!parts.has_rated_bounds) config_.acceleration_tolerance = kInfinity;
   for (std::size_t i = 0; i < kRuleCount; ++i) {
     const Debounce& debounce = kRules[i].debounce;
-    const int samples = static_cast<int>(std::ceil(debounce.seconds / config.dt - 1e-9));
+    const int samples = static_cast<int>(std::ceil(debounce.seconds / dt_ - 1e-9));
     debounce_[i] = std::min(std::max(debounce.samples, samples), int{UINT16_MAX});
     fresh_[i] = {kRules[i].warn_from, 0.0, 0.0, -1};
   }
@@ -128,13 +123,13 @@ void Monitor::look(int index, double value, double limit) noexcept {
 
 bool Monitor::has_jumped(const SensorFrame& sensors, const MonitorState& state) const noexcept {
   if (!state.has_sample) return false;
-  const double far = config_.jump_factor * config_.dt;
+  const double far = config_.jump_factor * dt_;
   for (int i = 0; i < n_m_; ++i) {
-    if (std::abs(turned(sensors.q_m[i] - state.q_m[i])) > far * config_.joint_speed_max[at(i)]) {
+    if (std::abs(turned(sensors.q_m[i] - state.q_m[i])) > far * joint_limits_[at(i)].dq_max) {
       return true;
     }
   }
-  return ((sensors.q_p - state.q_p).array().abs() > far * config_.drive.dq_max).any();
+  return ((sensors.q_p - state.q_p).array().abs() > far * drive_.dq_max).any();
 }
 
 Verdict Monitor::watch(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
@@ -168,19 +163,19 @@ void Monitor::look_at_joint(int joint, const Rendered& rendered, const Watched& 
   const std::size_t i = at(joint);
   const double q = rendered.robot.q_m[joint], dq = rendered.robot.dq_m[joint];
   const bool is_on = is_powered(watched.state);
-  follow(config_.joint_range[i], q, is_on, state.lowest[joint], state.highest[joint]);
+  const limits::JointLimits& limits = joint_limits_[i];
+  follow({limits.q_min, limits.q_max}, q, is_on, state.lowest[joint], state.highest[joint]);
   double& pulled = state.pulled_back[joint];
   const bool is_pulled = watched.pulled_back.size() > 0 && watched.pulled_back[joint] != 0.0;
-  pulled =
-      is_pulled ? pulled + watched.pulled_back[joint] : pulled * (1.0 - config_.dt / kPullMemory_s);
+  pulled = is_pulled ? pulled + watched.pulled_back[joint] : pulled * (1.0 - dt_ / kPullMemory_s);
   if (!is_on) {
     pulled = 0.0;
     return;
   }
-  const bool is_slide = config_.is_slide[i];
+  const bool is_slide = is_slide_[i];
   const double beyond = is_slide ? config_.slide_tolerance : config_.position_tolerance;
   const double apart = is_slide ? config_.slide_tracking_tolerance : config_.tracking_tolerance;
-  const double fastest = config_.speed_tolerance * config_.joint_speed_max[i];
+  const double fastest = config_.speed_tolerance * joint_limits_[i].dq_max;
   const ReferenceState& reference = rendered.reference;
   const double q_r = reference.q_m[joint];
   look<FaultCode::kLimitExceeded>(joint,
@@ -189,9 +184,8 @@ void Monitor::look_at_joint(int joint, const Rendered& rendered, const Watched& 
                                   beyond);
   look<FaultCode::kSpeedExceeded>(joint, std::abs(dq), fastest);
   look<FaultCode::kSpeedExceeded>(joint, std::abs(reference.dq_m[joint]), fastest);
-  look<FaultCode::kAccelerationExceeded>(
-      joint, std::abs(reference.ddq_m[joint]),
-      config_.acceleration_tolerance * config_.joint_acceleration[i]);
+  look<FaultCode::kAccelerationExceeded>(joint, std::abs(reference.ddq_m[joint]),
+                                         config_.acceleration_tolerance * joint_limits_[i].ddq_max);
   look<FaultCode::kTrackingLost>(joint, std::abs(q_r - q + pulled), apart);
 }
 
@@ -200,7 +194,7 @@ void Monitor::look_at_joint(int joint, const Rendered& rendered, const Watched& 
 void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
                              MonitorState& state) noexcept {
   const bool is_told = watched.tau_m.size() == n_m_ && robot.dtheta_m.size() == n_m_ &&
-                       robot.tau_m.size() == n_m_ && !config_.actuators.empty();
+                       robot.tau_m.size() == n_m_ && !actuators_.empty();
   if (!is_told || !is_powered(watched.state)) {
     state.momentum.resize(0);
     return;
@@ -208,14 +202,14 @@ void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
   const bool is_new = state.momentum.size() != n_m_;
   if (is_new) state.momentum.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = config_.actuators[at(i)];
+    const ActuatorModel& actuator = actuators_[at(i)];
     const double dtheta = robot.dtheta_m[i], tau_J = robot.tau_m[i];
     const double p = actuator.rotor_inertia * dtheta;
     if (is_new) state.momentum[i] = p;
     const double unexplained = (state.momentum[i] - p) / kMotorMemory_s;
     const double most = torque_available(actuator, watched.tau_m[i] * dtheta > 0.0 ? dtheta : 0.0);
     const double told = std::clamp(watched.tau_m[i], -most, most);
-    state.momentum[i] += config_.dt * (told - tau_J - unexplained);
+    state.momentum[i] += dt_ * (told - tau_J - unexplained);
     const double friction =
         coulomb_torque(actuator, 0.0, tau_J) + actuator.viscous_friction * std::abs(dtheta);
     look<FaultCode::kMotorDeviates>(i, std::abs(unexplained) - friction,
@@ -227,10 +221,10 @@ void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
 // sensor and joint torques contradict each other. Running only: a stop need not brake exactly.
 void Monitor::look_at_torques(const Watched& watched) noexcept {
   if (mode_of(watched.state) != Mode::kRunning || watched.unexplained.size() != n_m_) return;
-  for (int i = 0; i < n_m_ && !config_.actuators.empty(); ++i) {
+  for (int i = 0; i < n_m_ && !actuators_.empty(); ++i) {
     look<FaultCode::kTorqueUnexplained>(
         i, std::abs(watched.unexplained[i]),
-        config_.unexplained_tolerance * config_.actuators[at(i)].torque_max);
+        config_.unexplained_tolerance * actuators_[at(i)].torque_max);
   }
 }
 
@@ -247,17 +241,17 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const Rendered& rendere
                              const Watched& watched, MonitorState& state) noexcept {
   const RobotState& robot = rendered.robot;
   const bool is_on = is_powered(watched.state);
-  const double beyond = config_.is_gantry_slide ? config_.gantry_tolerance : config_.turn_tolerance;
-  const double off = config_.is_gantry_slide ? config_.gantry_deviation : config_.turn_deviation;
-  const double gap = config_.is_gantry_slide ? config_.gantry_gap : config_.turn_gap;
-  const double drift = config_.is_gantry_slide ? config_.gantry_drift : config_.turn_drift;
-  const double kept = 1.0 - config_.dt / kGapMemory_s;
-  const double kept_long = 1.0 - config_.dt / kDriftMemory_s;
-  const double while_dead = config_.drive.dead_time * config_.drive.ddq_max;
+  const double beyond = is_gantry_slide_ ? config_.gantry_tolerance : config_.turn_tolerance;
+  const double off = is_gantry_slide_ ? config_.gantry_deviation : config_.turn_deviation;
+  const double gap = is_gantry_slide_ ? config_.gantry_gap : config_.turn_gap;
+  const double drift = is_gantry_slide_ ? config_.gantry_drift : config_.turn_drift;
+  const double kept = 1.0 - dt_ / kGapMemory_s;
+  const double kept_long = 1.0 - dt_ / kDriftMemory_s;
+  const double while_dead = drive_.dead_time * drive_.ddq_max;
   for (int axis = 0; axis < n_p_; ++axis) {
     const double q = robot.q_p[axis], dq = robot.dq_p[axis];
     double& model = state.dq_p_model[axis];
-    follow(config_.gantry_range[at(axis)], q, is_on, state.lowest_p[axis], state.highest_p[axis]);
+    follow(gantry_range_[at(axis)], q, is_on, state.lowest_p[axis], state.highest_p[axis]);
     if (!is_on) {
       model = dq;
       state.gantry_gap[axis] = state.gantry_drift[axis] = state.gantry_way[axis] = 0.0;
@@ -265,22 +259,21 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const Rendered& rendere
     }
     if (state.has_sample) {
       const double moved = sensors.q_p[axis] - state.q_p[axis];
-      const double error = moved - config_.dt * model;
+      const double error = moved - dt_ * model;
       state.gantry_gap[axis] = kept * state.gantry_gap[axis] + error;
       state.gantry_drift[axis] = kept_long * state.gantry_drift[axis] + error;
-      state.gantry_way[axis] = kept_long * state.gantry_way[axis] + config_.dt * std::abs(model);
+      state.gantry_way[axis] = kept_long * state.gantry_way[axis] + dt_ * std::abs(model);
       // a drive that is as fast again as its model thinks is still no fault
-      const double by_lag = config_.drive.lag * std::abs(model);
+      const double by_lag = drive_.lag * std::abs(model);
       look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_gap[axis]), gap + by_lag);
       look<FaultCode::kGantryDeviates>(axis, std::abs(state.gantry_drift[axis]),
                                        drift + kDriveError * state.gantry_way[axis] + by_lag);
     }
     look<FaultCode::kGantryExceeded>(
         axis, std::max(q - state.highest_p[axis], state.lowest_p[axis] - q), beyond);
-    look<FaultCode::kGantryExceeded>(axis, std::abs(dq),
-                                     config_.speed_tolerance * config_.drive.dq_max);
+    look<FaultCode::kGantryExceeded>(axis, std::abs(dq), config_.speed_tolerance * drive_.dq_max);
     look<FaultCode::kGantryDeviates>(axis, std::abs(dq - model), off + while_dead);
-    model += config_.dt * drive_acceleration(config_.drive, model, watched.dq_p_command[axis]);
+    model += dt_ * drive_acceleration(drive_, model, watched.dq_p_command[axis]);
   }
 }
 
@@ -298,39 +291,40 @@ void Monitor::look_at_braking(const Rendered& rendered, const Watched& watched,
     state.ramp_speed = rendered.reference.dq_m;
     state.stop_from_p = state.braking_ramp_p = robot.q_p;
   } else {
-    state.ramp_speed += config_.dt * rendered.reference.ddq_m;
-    state.braking_ramp += config_.dt * state.ramp_speed;
-    state.braking_ramp_p += config_.dt * state.dq_p_model;
+    state.ramp_speed += dt_ * rendered.reference.ddq_m;
+    state.braking_ramp += dt_ * state.ramp_speed;
+    state.braking_ramp_p += dt_ * state.dq_p_model;
   }
   for (int i = 0; i < n_m_; ++i) {
-    const bool is_slide = config_.is_slide[at(i)];
+    const bool is_slide = is_slide_[at(i)];
     look<FaultCode::kBrakingPosition>(i, std::abs(robot.q_m[i] - state.braking_ramp[i]),
                                       is_slide ? config_.slide_braking_gap : config_.braking_gap);
     look<FaultCode::kBrakingSpeed>(
         i, std::abs(robot.dq_m[i] - state.ramp_speed[i]),
         is_slide ? config_.slide_braking_deviation : config_.braking_deviation);
     look<FaultCode::kStopTooFar>(i, std::abs(robot.q_m[i] - state.stop_from[i]),
-                                 kUntilBrakes * config_.stop_distance_of_joint(i));
+                                 kUntilBrakes * config_.stop_distance_of_joint(is_slide));
   }
-  const bool is_slide = config_.is_gantry_slide;
+  const bool is_slide = is_gantry_slide_;
   const double gap = is_slide ? config_.gantry_gap : config_.turn_gap;
   const double off = is_slide ? config_.gantry_deviation : config_.turn_deviation;
-  const double by_dead_time = config_.drive.dead_time * config_.drive.ddq_max;
+  const double by_dead_time = drive_.dead_time * drive_.ddq_max;
   for (int i = 0; i < n_p_; ++i) {
     const double moved = std::abs(robot.q_p[i] - state.stop_from_p[i]);
     look<FaultCode::kBrakingPosition>(n_m_ + i, std::abs(robot.q_p[i] - state.braking_ramp_p[i]),
                                       gap);
     look<FaultCode::kBrakingSpeed>(n_m_ + i, std::abs(robot.dq_p[i] - state.dq_p_model[i]),
                                    off + by_dead_time);
-    look<FaultCode::kStopTooFar>(n_m_ + i, moved, kUntilBrakes * config_.stop_distance_of_gantry());
+    look<FaultCode::kStopTooFar>(n_m_ + i, moved,
+                                 kUntilBrakes * config_.stop_distance_of_gantry(is_slide));
   }
 }
 
 void Monitor::look_at_frames(const Rendered& rendered, const Watched& watched) noexcept {
   const Mode mode = mode_of(watched.state);
   if (mode != Mode::kRunning && mode != Mode::kStopping) return;
-  for (int i = n_m_; i < config_.end_cartesian; ++i) {
-    const bool is_sum = i < config_.first_cartesian;
+  for (int i = n_m_; i < end_cartesian_; ++i) {
+    const bool is_sum = i < first_cartesian_;
     look<FaultCode::kLimitExceeded>(
         i, rendered.limits[at(i)].excess,
         is_sum ? config_.virtual_tolerance : config_.cartesian_tolerance);
@@ -338,7 +332,7 @@ void Monitor::look_at_frames(const Rendered& rendered, const Watched& watched) n
   look<FaultCode::kSyncLost>(-1, rendered.sync_error, config_.sync_tolerance);
   if (watched.state != State::kAutonomous) return;
   look<FaultCode::kSafeSpeedExceeded>(0, rendered.v_H.norm(), config_.safe_speed);
-  if (!config_.is_gantry_slide) return;
+  if (!is_gantry_slide_) return;
   look<FaultCode::kSafeSpeedExceeded>(1, rendered.robot.dq_p.norm(), config_.safe_speed);
 }
 
@@ -346,7 +340,7 @@ void Monitor::look_at_frames(const Rendered& rendered, const Watched& watched) n
 // passivity/.
 Fault Monitor::look_for_shaking(const SensorFrame& sensors, const Rendered& rendered,
                                 const Watched& watched, MonitorState& state) noexcept {
-  if (!config_.looks_for_shaking || mode_of(watched.state) != Mode::kRunning) {
+  if (!parts_.looks_for_shaking || mode_of(watched.state) != Mode::kRunning) {
     state.shaking = {};
     return {};
   }
@@ -358,7 +352,7 @@ Fault Monitor::look_for_shaking(const SensorFrame& sensors, const Rendered& rend
                                             state.shaking);
   if (found.what == Shaking::kNone) return {};
   const auto index = static_cast<int>(found.what);
-  if (config_.stops_shaking && found.what != Shaking::kForce) {
+  if (parts_.stops_shaking && found.what != Shaking::kForce) {
     look<FaultCode::kOscillation>(index, state.shaking.shakes_s, kShakingPatience_s);
   }
   return make_fault(FaultCode::kOscillation, index, found.index, 1.0);
@@ -367,7 +361,7 @@ Fault Monitor::look_for_shaking(const SensorFrame& sensors, const Rendered& rend
 void Monitor::look_at_clocks(const SensorFrame& sensors, const Watched& watched,
                              MonitorState& state) noexcept {
   if (state.has_sample) {
-    const double error = (sensors.time_s - state.time_s) / config_.dt - 1.0;
+    const double error = (sensors.time_s - state.time_s) / dt_ - 1.0;
     state.clock_error += kClockMemory * (error - state.clock_error);
     look<FaultCode::kClockWrong>(-1, std::abs(state.clock_error), config_.clock_tolerance);
   }
@@ -375,7 +369,7 @@ void Monitor::look_at_clocks(const SensorFrame& sensors, const Watched& watched,
 
   const auto late = static_cast<double>(watched.late_cycles);
   const bool is_on = is_powered(watched.state);
-  state.late = is_on ? std::max(0.0, state.late - config_.dt * config_.overruns_per_s) + late : 0.0;
+  state.late = is_on ? std::max(0.0, state.late - dt_ * config_.overruns_per_s) + late : 0.0;
   state.late_in_a_row = is_on && watched.late_cycles > 0
                             ? state.late_in_a_row + static_cast<int>(std::min(late, 1e6))
                             : 0;
@@ -392,8 +386,8 @@ void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) n
   }
   for (int i = 0; i < sensors.tau_m.size(); ++i) {
     const double tau = sensors.tau_m[i];
-    if (config_.actuators.empty()) break;
-    const ActuatorModel& actuator = config_.actuators[at(i)];
+    if (actuators_.empty()) break;
+    const ActuatorModel& actuator = actuators_[at(i)];
     look<FaultCode::kJointTorqueExceeded>(i, std::abs(tau),
                                           config_.torque_tolerance * actuator.torque_max);
     if (sensors.theta_m.size() == 0) continue;
@@ -402,14 +396,14 @@ void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) n
                                         config_.plausibility);
   }
   if (state.has_sample) {
-    const double far = config_.jump_factor * config_.dt;
+    const double far = config_.jump_factor * dt_;
     for (int i = 0; i < n_m_; ++i) {
       look<FaultCode::kSensorJump>(i, std::abs(turned(sensors.q_m[i] - state.q_m[i])),
-                                   far * config_.joint_speed_max[at(i)]);
+                                   far * joint_limits_[at(i)].dq_max);
     }
     for (int i = 0; i < n_p_; ++i) {
       look<FaultCode::kSensorJump>(n_m_ + i, std::abs(sensors.q_p[i] - state.q_p[i]),
-                                   far * config_.drive.dq_max);
+                                   far * drive_.dq_max);
     }
   }
   if (config_.frozen_samples > 0.0) look_at_noise(sensors, state);
@@ -432,7 +426,7 @@ void Monitor::look_at_noise(const SensorFrame& sensors, MonitorState& state) noe
   compare(n_m_, sensors.w_S, state.w_S);
   state.tau_m = sensors.tau_m;
   state.w_S = sensors.w_S;
-  if (!config_.has_imu) return;
+  if (!parts_.has_imu) return;
   Vector6 imu;
   imu << sensors.a_S, sensors.omega_S;
   compare(n_m_ + 6, imu, state.imu);

@@ -16,9 +16,7 @@
 #include "hg/controller/safety/shaking.h"
 #include "hg/controller/safety/transitions.h"
 #include "hg/core/fields.h"
-#include "hg/core/interval.h"
-#include "hg/signals/actuator_model.h"
-#include "hg/signals/drive_model.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::safety {
@@ -29,7 +27,6 @@ struct MonitorConfig {
   double force_max = 150.0;  ///< Largest force of the user, N
   double torque_max = 14.0;  ///< Largest torque of the user, Nm; the sensor's range ends at 15
   bool has_dead_man = true;  ///< false: the handle counts as held all the time
-  bool has_imu = true;       ///< false: the fields of the inertial unit are not checked
   double position_tolerance = 0.03;   ///< Tolerance beyond the limit of a revolute joint, rad
   double slide_tolerance = 0.03;      ///< Tolerance beyond the limit of a prismatic joint, m
   double virtual_tolerance = 0.05;    ///< Tolerance beyond the limit of a sum of joints, rad or m
@@ -76,35 +73,25 @@ struct MonitorConfig {
   double frozen_samples = 0;       ///< Samples allowed with the same bits; 0: sensors have no noise
   double overruns_in_a_row = 2;    ///< Consecutive late cycles allowed
   double overruns_per_s = 5;       ///< Long-term rate of late cycles allowed, 1/s
-  bool looks_for_shaking = true;   ///< Warns when hand and device shake each other
-  bool stops_shaking = false;      ///< Stops the device when the shaking lasts
-
-  // properties of device and twin
-  double twin_mass = 1.0;         ///< Largest mass of the twin felt at the handle, at the start, kg
-  double dt = 1e-3;               ///< Period, s
-  double gantry_speed_max = 1.5;  ///< Largest gantry velocity command, m/s or rad/s
-  DriveModel drive;               ///< Drive model of every gantry axis
-  bool is_gantry_slide = true;    ///< Gantry axes are prismatic
-  std::vector<Interval> gantry_range;      ///< Ranges of the gantry axes, m or rad
-  std::vector<Interval> joint_range;       ///< Ranges of the manipulator joints, rad or m
-  std::vector<bool> is_slide;              ///< Whether each joint is prismatic; empty = none
-  std::vector<double> joint_speed_max;     ///< Rated joint speeds, rad/s or m/s
-  std::vector<double> joint_acceleration;  ///< Rated joint accelerations; empty = none
-  /// Actuators of the joints; empty: drives follow positions.
-  std::vector<ActuatorModel> actuators;
-  /// Index of the first Cartesian limit in the catalogue, after joints, sums of joints and motors.
-  int first_cartesian = 0;
-  int end_cartesian = 0;  ///< Index one past the last Cartesian limit
 
   /// Largest travel of a manipulator joint in a stop, rad or m.
-  double stop_distance_of_joint(int joint) const noexcept {
-    const auto i = static_cast<std::size_t>(joint);
-    return i < is_slide.size() && is_slide[i] ? slide_stop_distance : stop_distance;
+  double stop_distance_of_joint(bool is_slide) const noexcept {
+    return is_slide ? slide_stop_distance : stop_distance;
   }
   /// Largest travel of any gantry axis in a stop, m or rad.
-  double stop_distance_of_gantry() const noexcept {
-    return is_gantry_slide ? gantry_stop_distance : turn_stop_distance;
+  double stop_distance_of_gantry(bool is_slide) const noexcept {
+    return is_slide ? gantry_stop_distance : turn_stop_distance;
   }
+};
+
+/// Properties of the other parts of a cycle on which the rules depend.
+struct MonitoredParts {
+  bool has_imu = true;  ///< false: the fields of the inertial unit are not checked
+  /// false: the bounds of the law may ask for more than the rated accelerations.
+  bool has_rated_bounds = true;
+  bool looks_for_shaking = true;  ///< Warns when hand and device shake each other
+  bool stops_shaking = false;     ///< Stops the device when the shaking lasts
+  double twin_mass = 1.0;         ///< Largest mass of the twin felt at the handle, at the start, kg
 };
 
 /// Whether the handle is held, by the dead-man switch; always true without one.
@@ -113,14 +100,15 @@ inline bool is_held(const MonitorConfig& config, const SensorFrame& sensors) noe
 }
 
 /// Whether every measured value is finite; other samples must not reach the estimation.
-bool is_finite(const MonitorConfig& config, const SensorFrame& sensors) noexcept;
+/// `has_imu` = the device has an inertial unit, whose values count, too.
+bool is_finite(const SensorFrame& sensors, bool has_imu) noexcept;
 
 /// Whether force and torque at the handle are at most force_max and torque_max.
 bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors) noexcept;
 
 /// First reason that makes a sample unusable, or kNone.
-Fault check_sensors(const MonitorConfig& config, const SensorFrame& sensors,
-                    std::uint64_t expected_sequence) noexcept;
+Fault check_sensors(const SensorFrame& sensors, std::uint64_t expected_sequence,
+                    bool has_imu) noexcept;
 
 /// Fault that forbids integrating the accelerations that the law found, or kNone.
 Fault check_solution(SolverStatus status, const VectorM& ddq_m, const VectorA& ddq_a) noexcept;
@@ -225,8 +213,7 @@ struct Verdict {
 
 class Monitor {
  public:
-  /// Throws SetupError when a list has not one entry per joint or axis, or the period is not > 0.
-  Monitor(const MonitorConfig& config, int n_p, int n_m);
+  Monitor(const MonitorConfig& config, const DeviceModel& device, const MonitoredParts& parts = {});
 
   const MonitorConfig& config() const noexcept { return config_; }
 
@@ -271,8 +258,18 @@ class Monitor {
   Verdict judge(MonitorState& state) const noexcept;
 
   MonitorConfig config_;
-  ShakingWatch shaking_;
+  MonitoredParts parts_;
   int n_p_, n_m_;
+  double dt_;         ///< Period, s
+  DriveModel drive_;  ///< Drive of every gantry axis
+  std::vector<Interval> gantry_range_;
+  std::vector<limits::JointLimits> joint_limits_;
+  std::vector<ActuatorModel> actuators_;  ///< Actuators of the joints; empty: none
+  std::vector<bool> is_slide_;            ///< Whether each joint is prismatic
+  bool is_gantry_slide_;                  ///< Gantry axes are prismatic
+  int end_cartesian_;    ///< Index one past the last Cartesian limit in the catalogue
+  int first_cartesian_;  ///< Index of the first one, after joints, sums of joints and motors
+  ShakingWatch shaking_;
   std::array<int, kRuleCount> debounce_{};  // samples
   std::array<Worst, kRuleCount> fresh_{};   // initial values of a cycle
   std::array<Worst, kRuleCount> worst_{};

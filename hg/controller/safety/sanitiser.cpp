@@ -29,22 +29,23 @@ double within_reach(double value, double before, double reach, double rest) noex
 
 }  // namespace
 
-Sanitiser::Sanitiser(const SanitiserConfig& config, const MonitorConfig& monitor)
+Sanitiser::Sanitiser(const SanitiserConfig& config, const DeviceModel& device, double gantry_speed)
     : config_(config),
-      dt_(monitor.dt),
-      gantry_speed_(monitor.gantry_speed_max),
-      gantry_range_(monitor.gantry_range) {
-  for (std::size_t i = 0; i < monitor.joint_range.size(); ++i) {
-    const double margin = monitor.is_slide[i] ? config.slide_margin : config.margin;
-    const Interval& range = monitor.joint_range[i];
-    const double rating = monitor.joint_acceleration[i];
-    joints_.push_back(
-        {.lowest = range.lb - margin,
-         .highest = range.ub + margin,
-         .speed = kSpeedShare * monitor.joint_speed_max[i],
-         .braking = std::isfinite(rating) ? kBrakingShare * rating : kBrakingWithoutRating,
-         .peak = monitor.actuators.empty() ? kInfinity : monitor.actuators[i].torque_max,
-         .rotor_inertia = monitor.actuators.empty() ? 0.0 : monitor.actuators[i].rotor_inertia});
+      dt_(device.dt()),
+      gantry_speed_(gantry_speed),
+      gantry_range_(device.gantry_range) {
+  for (std::size_t i = 0; i < device.joint_limits.size(); ++i) {
+    const double margin =
+        device.is_slide(static_cast<int>(i)) ? config.slide_margin : config.margin;
+    const limits::JointLimits& limits = device.joint_limits[i];
+    const bool is_rated = std::isfinite(limits.ddq_max);
+    const bool has_motor = !device.actuators.empty();
+    joints_.push_back({.lowest = limits.q_min - margin,
+                       .highest = limits.q_max + margin,
+                       .speed = kSpeedShare * limits.dq_max,
+                       .braking = is_rated ? kBrakingShare * limits.ddq_max : kBrakingWithoutRating,
+                       .peak = has_motor ? device.actuators[i].torque_max : kInfinity,
+                       .rotor_inertia = has_motor ? device.actuators[i].rotor_inertia : 0.0});
   }
 }
 

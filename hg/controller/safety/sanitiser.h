@@ -18,7 +18,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hg/controller/safety/monitor.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::safety {
@@ -48,8 +48,8 @@ struct Sanitised {
 
 class Sanitiser {
  public:
-  /// Takes limits and ratings from `monitor`, which has one entry per joint.
-  Sanitiser(const SanitiserConfig& config, const MonitorConfig& monitor);
+  /// `gantry_speed`: largest speed of a gantry axis, m/s or rad/s.
+  Sanitiser(const SanitiserConfig& config, const DeviceModel& device, double gantry_speed);
 
   Sanitised step(const SanitiserInput& input, CommandFrame& command) const noexcept;
 

@@ -20,7 +20,7 @@ const VectorM kPosture = rendering::posture({0.3, 1.5, -0.6, 1.3, 0.2, 0.4});
 
 // A free body in the hand of a device that follows perfectly, and a constant push.
 struct Loop {
-  rendering::DeviceModel device;
+  DeviceModel device;
   std::unique_ptr<Cycle> cycle;
   SensorFrame sensors;
   OperatorFrame operator_input;
@@ -32,24 +32,25 @@ struct Loop {
   std::uint64_t latency = 1;  // periods; 0: the device does not answer
 
   explicit Loop(bool needs_tare = false, bool has_torque_loop = false, bool has_imu = false,
-                const Config& base = {},
-                const rendering::DeviceModel& model = rendering::unlimited_device())
+                const Config& base = {}, const DeviceModel& model = rendering::unlimited_device())
       : device(model) {
     rendering::TwinModel twin = rendering::unlimited_twin(
-        model::Chain::free_body({.mass = 6.0}, {.gravity = false}), "handle");
+        model::ChainModel::free_body({.mass = 6.0}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
     Config config = base;
     config.estimation.wrench.tare.is_needed = needs_tare;
     config.estimation.wrench.has_imu = has_imu;
-    config.prepositioning.n_p = 2;
-    config.prepositioning.has_closed_form = true;
-    config.prepositioning.q_limits.fill({-1.4, 1.4});
-    config.monitor.joint_range.assign(6, {-10.0, 10.0});
-    config.monitor.joint_speed_max.assign(6, 10.0);
+    device.has_closed_form = true;
+    device.gantry_range.assign(2, {-1.4, 1.4});
+    for (limits::JointLimits& joint : device.joint_limits) {
+      joint.q_min = std::max(joint.q_min, -10.0);
+      joint.q_max = std::min(joint.q_max, 10.0);
+      joint.dq_max = std::min(joint.dq_max, 10.0);
+    }
     if (has_torque_loop) {
       config.control.method = tracking::Method::kModal;
-      config.control.actuators = reference_actuators();
+      device.actuators = reference_actuators();
     }
     cycle = std::make_unique<Cycle>(config, device, twin);
     sensors.q_m = kPosture;
@@ -670,12 +671,12 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
 
 // The elbow at its wall and the handle caught by a surface: what another cycle goes on from.
 TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
-  rendering::DeviceModel device = rendering::unlimited_device();
+  DeviceModel device = rendering::unlimited_device();
   device.chain.update_poses(
       (Eigen::VectorXd(8) << Eigen::Vector2d::Zero(), Eigen::VectorXd(kPosture)).finished());
   const Eigen::Vector3d elbow = device.chain.pose(device.elbow).p;
   const Eigen::Vector3d handle = device.chain.pose(device.handle).p;
-  rendering::CartesianLimit wall = {.name = "elbow", .frame = device.elbow};
+  CartesianLimit wall = {.name = "elbow", .frame = device.elbow};
   for (int axis = 0; axis < 3; ++axis) {
     wall.axes[static_cast<std::size_t>(axis)] = {
         .q_min = elbow[axis] - 0.01, .q_max = elbow[axis] + 0.01, .ddq_max = 5.0};
@@ -689,7 +690,7 @@ TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
   Loop loop(false, false, false, config, device);
   Loop other(false, false, false, config, device);
   loop.start_running();
-  const Eigen::Matrix3d R = device.chain.pose(device.handle).R;
+  const Eigen::Matrix3d R = chain.pose(device.handle).R;
   loop.sensors.w_S.head<3>() = R.transpose() * Eigen::Vector3d(20.0, 10.0, -40.0);
   const auto acts = [&] {
     return std::ranges::any_of(loop.record.limits, [](const LimitReport& limit) {
@@ -720,8 +721,7 @@ TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
 TEST(Cycle, AStopByAContactDoesNotGiveWayForLongerThanItMayTake) {
   Config config;
   config.compliance.is_on = true;
-  config.compliance.torque_max = VectorM::Constant(6, 50.0);
-  rendering::DeviceModel device = rendering::unlimited_device();
+  DeviceModel device = rendering::unlimited_device();
   for (limits::JointLimits& joint : device.joint_limits) {
     joint.dq_max = 0.5;
     joint.ddq_max = 2.0;

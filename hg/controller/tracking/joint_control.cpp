@@ -46,48 +46,53 @@ double largest_flatness_Hz(double rate_Hz) noexcept {
   return kFastestFilter * rate_Hz / (2.0 * std::numbers::pi);
 }
 
-void check(const Config& config) {
+void check(const Config& config, double rate_Hz) {
   if (config.method == Method::kDrives) return;
-  if (!(config.loop.latency <= kMostLatency * config.dt)) {
+  const double longest = kMostLatency * (1.0 / rate_Hz);
+  if (!(config.loop.latency <= longest)) {
     throw SetupError("control.latency_s: must be at most " + std::to_string(kMostLatency) +
-                     " periods, at " + model::to_text(1.0 / config.dt) + " Hz " +
-                     model::to_text(kMostLatency * config.dt) + " s, got " +
-                     model::to_text(config.loop.latency));
+                     " periods, at " + model::to_text(rate_Hz) + " Hz " + model::to_text(longest) +
+                     " s, got " + model::to_text(config.loop.latency));
   }
-  const double most = largest_flatness_Hz(1.0 / config.dt);
+  const double most = largest_flatness_Hz(rate_Hz);
   if (config.flatness_Hz < most) return;
-  throw SetupError("control.flatness_Hz: at " + model::to_text(1.0 / config.dt) +
-                   " Hz it must be below " + model::to_text(std::floor(10.0 * most) / 10.0) +
+  throw SetupError("control.flatness_Hz: at " + model::to_text(rate_Hz) + " Hz it must be below " +
+                   model::to_text(std::floor(10.0 * most) / 10.0) +
                    ", or the torques fed forward oscillate, got " +
                    model::to_text(config.flatness_Hz) + ": lower it, or raise the rate");
 }
 
-JointControl::JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m,
-                           int handle)
-    : config_(config), chain_(chain), n_p_(n_p), n_m_(n_m), handle_(handle) {
-  check(config_);
+JointControl::JointControl(const Config& config, const DeviceModel& device)
+    : config_(config),
+      chain_(device.chain),
+      n_p_(device.n_p),
+      n_m_(device.n_m),
+      handle_(device.handle),
+      dt_(device.dt()),
+      actuators_(device.actuators) {
+  check(config_, device.rate_Hz);
   if (config_.method == Method::kDrives) return;
-  if (static_cast<int>(config_.actuators.size()) != n_m_) {
+  if (static_cast<int>(actuators_.size()) != n_m_) {
     throw SetupError("control: " + std::to_string(n_m_) + " actuators expected, got " +
-                     std::to_string(config_.actuators.size()));
+                     std::to_string(actuators_.size()));
   }
-  lead_pole_ = estimation::low_pass_pole(config_.lead_low_pass_Hz, config_.dt);
-  stiff_pole_ = estimation::low_pass_pole(config_.stiff_low_pass_Hz, config_.dt);
+  lead_pole_ = estimation::low_pass_pole(config_.lead_low_pass_Hz, dt_);
+  stiff_pole_ = estimation::low_pass_pole(config_.stiff_low_pass_Hz, dt_);
   K_.resize(n_m_);
   Jm_.resize(n_m_);
   feed_max_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    K_[i] = config_.actuators[static_cast<std::size_t>(i)].stiffness;
-    Jm_[i] = config_.actuators[static_cast<std::size_t>(i)].rotor_inertia;
-    feed_max_[i] = kFeedforwardShare * config_.actuators[static_cast<std::size_t>(i)].torque_max;
+    K_[i] = actuators_[static_cast<std::size_t>(i)].stiffness;
+    Jm_[i] = actuators_[static_cast<std::size_t>(i)].rotor_inertia;
+    feed_max_[i] = kFeedforwardShare * actuators_[static_cast<std::size_t>(i)].torque_max;
   }
   sqrt_K_ = K_.cwiseSqrt();
-  has_feet_ = std::ranges::any_of(config_.actuators, has_presliding);
+  has_feet_ = std::ranges::any_of(actuators_, has_presliding);
 }
 
 State JointControl::start() const {
   State state;
-  state.latency = config_.loop.latency / config_.dt;
+  state.latency = config_.loop.latency / dt_;
   state.modes = Modes(n_m_);
   state.integral = VectorM::Zero(n_m_);
   state.friction = VectorM::Constant(n_m_, config_.friction_share);
@@ -120,12 +125,12 @@ void JointControl::listen(const SensorFrame& sensors, bool on, State& state) con
 
 Fault JointControl::check_latency(const SensorFrame& sensors, const State& state) const noexcept {
   if (config_.method == Method::kDrives) return {};
-  return state.late * config_.dt < kLateFor ? Fault{} : link_fault(sensors, state);
+  return state.late * dt_ < kLateFor ? Fault{} : link_fault(sensors, state);
 }
 
 Fault JointControl::link_disturbance(const SensorFrame& sensors,
                                      const State& state) const noexcept {
-  return state.late * config_.dt < kDisturbedFor ? Fault{} : link_fault(sensors, state);
+  return state.late * dt_ < kDisturbedFor ? Fault{} : link_fault(sensors, state);
 }
 
 // Commands are lost when the command at work dates from before it became late: none has arrived
@@ -133,9 +138,8 @@ Fault JointControl::link_disturbance(const SensorFrame& sensors,
 Fault JointControl::link_fault(const SensorFrame& sensors, const State& state) const noexcept {
   const double age = age_of(sensors), most = state.latency + kLatencyMargin;
   const bool has_grown = age < 0.0 || (age > most && age < state.late);
-  if (has_grown) return {FaultCode::kLatencyGrew, -1, age * config_.dt, most * config_.dt};
-  return {FaultCode::kCommandsLost, -1, std::max<double>(age, state.late) * config_.dt,
-          most * config_.dt};
+  if (has_grown) return {FaultCode::kLatencyGrew, -1, age * dt_, most * dt_};
+  return {FaultCode::kCommandsLost, -1, std::max<double>(age, state.late) * dt_, most * dt_};
 }
 
 void JointControl::rest(const ReferenceState& reference, State& state,
@@ -165,7 +169,7 @@ void JointControl::step(const ReferenceState& now, const ReferenceState& next,
   state.is_saturated = false;
   report.torque_share.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
     double& tau = command.tau_m[i];
     const double available = tau * robot.dtheta_m[i] > 0.0
                                  ? torque_available(actuator, robot.dtheta_m[i])
@@ -175,7 +179,7 @@ void JointControl::step(const ReferenceState& now, const ReferenceState& next,
     tau = std::clamp(tau, -available, available);
   }
   report.torque_unexplained = state.unexplained;
-  report.latency_s = state.latency * config_.dt;
+  report.latency_s = state.latency * dt_;
 }
 
 // The reference is so near to the joints that its mass matrix is theirs.
@@ -211,7 +215,7 @@ MatrixM JointControl::scaled_mass() const noexcept {
 
 void JointControl::begin(const ReferenceState& reference, const RobotState& robot,
                          State& state) noexcept {
-  state.poles = poles_for(config_.poles, state.latency * config_.dt + config_.loop.current_lag);
+  state.poles = poles_for(config_.poles, state.latency * dt_ + config_.loop.current_lag);
   const VectorM tau = link_torque(reference, robot);
   state.tau_r = fed(tau);
   state.unexplained = VectorM::Zero(n_m_);
@@ -235,7 +239,7 @@ JointControl::Feedforward JointControl::feedforward(const ReferenceState& refere
   const VectorM tau = link_torque(reference, robot);
   link_torque_ = tau;
   ddq_r_ = reference.ddq_m;
-  state.unexplained += config_.dt / kUnexplained_s * (robot.tau_m - tau - state.unexplained);
+  state.unexplained += dt_ / kUnexplained_s * (robot.tau_m - tau - state.unexplained);
   follow_torque(fed(config_.method == Method::kModal ? timely(tau, robot, state) : tau), state);
   Feedforward forward = {.tau = state.tau_r,
                          .dtheta = reference.dq_m + state.dtau_r.cwiseQuotient(K_),
@@ -272,7 +276,7 @@ VectorM JointControl::of_stiff_modes(const VectorM& tau, const VectorM& shares,
 // the low-passed part.
 VectorM JointControl::timely(const VectorM& tau, const RobotState& robot,
                              State& state) const noexcept {
-  const Vector6 rate = (robot.w_H - state.w_H) / config_.dt;
+  const Vector6 rate = (robot.w_H - state.w_H) / dt_;
   estimation::low_pass(lead_pole_, rate, state.dw_H);
   state.w_H = robot.w_H;
   const model::Jacobian& J = chain_.jacobian(handle_);
@@ -289,7 +293,7 @@ VectorM JointControl::timely(const VectorM& tau, const RobotState& robot,
 void JointControl::follow_torque(const VectorM& tau, State& state) const noexcept {
   const double w = 2.0 * std::numbers::pi * config_.flatness_Hz;
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
     const double peak = feed_max_[i];
     const double per_torque = actuator.stiffness / actuator.rotor_inertia;
     const double braking = 0.5 * peak * per_torque;
@@ -301,8 +305,8 @@ void JointControl::follow_torque(const VectorM& tau, State& state) const noexcep
     const double wanted = w * (std::copysign(speed, error) - state.dtau_r[i]);
     state.ddtau_r[i] = std::clamp(wanted, (-peak - state.tau_r[i]) * per_torque,
                                   (peak - state.tau_r[i]) * per_torque);
-    state.dtau_r[i] += config_.dt * state.ddtau_r[i];
-    state.tau_r[i] += config_.dt * state.dtau_r[i];
+    state.dtau_r[i] += dt_ * state.ddtau_r[i];
+    state.tau_r[i] += dt_ * state.dtau_r[i];
   }
 }
 
@@ -311,8 +315,7 @@ void JointControl::integrate(const VectorM& error, State& state) const noexcept 
   for (int i = 0; i < n_m_; ++i) {
     double& integral = state.integral[i];
     if (state.is_saturated && error[i] * integral >= 0.0) continue;
-    integral =
-        std::clamp(integral + config_.dt * error[i], -config_.integral_max, config_.integral_max);
+    integral = std::clamp(integral + dt_ * error[i], -config_.integral_max, config_.integral_max);
   }
 }
 
@@ -355,7 +358,7 @@ VectorM JointControl::motor_pd_torque(const Errors& errors,
 void JointControl::dry_friction(const ReferenceState& reference, State& state,
                                 Feedforward& forward) const noexcept {
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
     const double dtheta = forward.dtheta[i];
     forward.dry[i] = coulomb_torque(actuator, dtheta, forward.tau[i]);
     if (has_presliding(actuator)) {
@@ -370,7 +373,7 @@ void JointControl::dry_friction(const ReferenceState& reference, State& state,
 VectorM JointControl::friction(const Feedforward& forward, const State& state) const noexcept {
   VectorM tau(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
     tau[i] = state.friction[i] * forward.dry[i] * forward.along[i] +
              actuator.viscous_friction * forward.dtheta[i];
   }
@@ -384,13 +387,13 @@ void JointControl::learn_friction(const Feedforward& forward, const VectorM& fee
                                   const RobotState& robot, State& state) const noexcept {
   if (state.is_saturated) return;
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = config_.actuators[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
     const double along = forward.along[i];
     const double slides = std::tanh(robot.dtheta_m[i] / config_.friction_speed) * along;
     if (!(slides >= kSlides)) continue;
     if (has_presliding(actuator) && std::abs(along) < kSlips) continue;
     const double missing = feedback[i] * along / forward.dry[i];
-    state.friction[i] += config_.dt * config_.friction_learning * missing;
+    state.friction[i] += dt_ * config_.friction_learning * missing;
     state.friction[i] = std::clamp(state.friction[i], 0.0, kMostFriction);
   }
 }

@@ -13,8 +13,8 @@
 #include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
-#include "hg/signals/actuator_model.h"
+#include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/presliding.h"
 #include "hg/signals/state.h"
 
@@ -32,10 +32,7 @@ enum class Method {
 
 /// Set-up data.
 struct Config {
-  double dt = 1e-3;  ///< period, s
   Method method = Method::kDrives;
-  /// Actuators, one per manipulator joint; empty with kDrives.
-  std::vector<ActuatorModel> actuators;
   TorqueLoop loop;  ///< Torque loop with the expected latency; the true latency is measured
   /// Largest measured latency with which the loop is known to be stable, s.
   double latency_max = kInfinity;
@@ -59,8 +56,9 @@ double largest_flatness_Hz(double rate_Hz) noexcept;
 /// Largest expected latency; stability with more is not checked.
 inline constexpr int kMostLatency = 64;  // periods
 
-/// Throws SetupError where the period is too long for flatness_Hz or too short for the latency.
-void check(const Config& config);
+/// Throws SetupError where the period of `rate_Hz` is too long for flatness_Hz or too short for the
+/// latency.
+void check(const Config& config, double rate_Hz);
 
 /// Part of the copyable state of a cycle.
 struct State {
@@ -105,9 +103,8 @@ void fields(Archive& a, T& state) {
 
 class JointControl {
  public:
-  /// `chain` holds the gantry joints first; `handle` is its frame H.
-  /// Throws SetupError where numbers of actuators and joints differ, and what check() throws.
-  JointControl(const Config& config, const model::Chain& chain, int n_p, int n_m, int handle);
+  /// Throws SetupError where a torque loop has no actuators, and what check() throws.
+  JointControl(const Config& config, const DeviceModel& device);
 
   State start() const;
   /// Resets the state after a fault, except for the measured latency.
@@ -121,7 +118,7 @@ class JointControl {
   }
   /// Whether the loop is stable with the measured latency; true without a torque loop.
   bool is_stable(const State& state) const noexcept {
-    return config_.method == Method::kDrives || state.latency * config_.dt <= config_.latency_max;
+    return config_.method == Method::kDrives || state.latency * dt_ <= config_.latency_max;
   }
   /// kCommandsLost or kLatencyGrew once the samples with a command more than half a period older
   /// than the latency assumed by the gains outnumber the others by 50 ms; kNone otherwise, and
@@ -182,8 +179,10 @@ class JointControl {
                       State& state) const noexcept;
 
   Config config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   int n_p_, n_m_, handle_;
+  double dt_;                                  ///< Period, s
+  std::vector<ActuatorModel> actuators_;       ///< Actuators, one per joint
   double lead_pole_ = 0.0, stiff_pole_ = 0.0;  ///< Poles of the low-passes
   VectorM K_, sqrt_K_, Jm_;
   bool has_feet_ = false;        ///< Some joint has presliding

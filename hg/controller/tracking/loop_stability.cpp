@@ -4,6 +4,7 @@
 
 #include "hg/controller/tracking/sampled_arm.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::tracking {
 namespace {
@@ -21,11 +22,11 @@ struct Layout {
 Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const VectorM& weight,
                          double latency) {
   constexpr double kError = 1e-7;  // small against every limit of the controller
-  const int n = loop.n_m;
-  JointControl control(loop.config, loop.chain, loop.n_p, n, loop.handle);
+  const int n = loop.device.n_m;
+  JointControl control(loop.config, loop.device);
   State at_start = control.start();
-  at_start.latency = latency / loop.config.dt;
-  const RobotState robot = standing(loop.config.actuators, q, weight);
+  at_start.latency = latency / loop.device.dt();
+  const RobotState robot = standing(loop.device.actuators, q, weight);
   const ReferenceState reference = standing_reference(robot);
   const auto torque = [&](const RobotState& seen) -> Eigen::VectorXd {
     State state = at_start;
@@ -53,14 +54,15 @@ class SampledLoop {
  public:
   SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency, const TruePlant& plant)
       : actuators_(plant.actuators),
-        delay_(plant.loop.latency, loop.config.dt),
-        layout_{loop.n_m, delay_.slots()},
-        observers_(loop.filters, loop.config.dt) {
-    model::Chain chain = loop.chain;
+        delay_(plant.loop.latency, loop.device.dt()),
+        layout_{loop.device.n_m, delay_.slots()},
+        observers_(loop.filters, loop.device.dt()) {
+    model::ChainData chain(loop.device.chain);
     chain.update(q, Eigen::VectorXd::Zero(q.size()));
-    const MatrixM M = plant.link_mass * chain.M().bottomRightCorner(loop.n_m, loop.n_m);
-    step_ = matrix_exponential(plant_with_input(plant, M) * (loop.config.dt / kPlantSteps));
-    feedback_ = feedback(loop, q, chain.c().tail(loop.n_m), latency);
+    const MatrixM M =
+        plant.link_mass * chain.M().bottomRightCorner(loop.device.n_m, loop.device.n_m);
+    step_ = matrix_exponential(plant_with_input(plant, M) * (loop.device.dt() / kPlantSteps));
+    feedback_ = feedback(loop, q, chain.c().tail(loop.device.n_m), latency);
   }
 
   Eigen::MatrixXd period() const {
@@ -113,7 +115,7 @@ class SampledLoop {
 }  // namespace
 
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency) {
-  TruePlant as_believed = {loop.config.actuators, loop.config.loop};
+  TruePlant as_believed = {loop.device.actuators, loop.config.loop};
   as_believed.loop.latency = latency;
   return spectral_radius(loop, q, latency, as_believed);
 }
@@ -128,7 +130,7 @@ int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>&
                            int least) {
   for (int periods = least; periods <= most; ++periods) {
     for (const Eigen::VectorXd& q : postures) {
-      if (spectral_radius(loop, q, periods * loop.config.dt) >= 1.0) return periods - 1;
+      if (spectral_radius(loop, q, periods * loop.device.dt()) >= 1.0) return periods - 1;
     }
   }
   return most;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hg/controller/tracking/joint_control.h"
+#include "hg/model/chain_model.h"
 
 namespace hg::tracking {
 
@@ -22,8 +23,7 @@ struct LoopFilters {
 struct Loop {
   Config config;
   LoopFilters filters;
-  model::Chain chain;  ///< Chain, gantry joints first
-  int n_p = 0, n_m = 0, handle = 0;
+  DeviceModel device;
 };
 
 /// True plant, independent of the model that the controller uses.

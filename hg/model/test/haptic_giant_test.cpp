@@ -5,7 +5,7 @@
 #include <random>
 #include <utility>
 
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/test/dh_reference.h"
 
 namespace hg::model::haptic_giant {
@@ -172,8 +172,8 @@ TEST(HapticGiant, HeightOutOfReachIsSaidBeforeDistance) {
 }
 
 TEST(HapticGiant, DeterminantEqualsThatOfTheJacobian) {
-  Chain chain = Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
-  const int handle = chain.frame("handle");
+  ChainData chain(ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf"));
+  const int handle = chain.model().frame("handle");
   Random random;
   for (int i = 0; i < 20'000; ++i) {
     const auto [q_p, q_m] = random.anywhere();

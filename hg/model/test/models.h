@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "hg/core/error.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::model {
 
-inline Chain haptic_giant_chain(const ChainOptions& options = {}) {
-  return Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf", options);
+inline ChainModel haptic_giant_chain(const ChainOptions& options = {}) {
+  return ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf", options);
 }
 
-inline Chain twin_chain(const std::string& name, const ChainOptions& options = {}) {
-  return Chain::from_urdf_file("models/twins/" + name + "/" + name + ".urdf", options);
+inline ChainModel twin_chain(const std::string& name, const ChainOptions& options = {}) {
+  return ChainModel::from_urdf_file("models/twins/" + name + "/" + name + ".urdf", options);
 }
 
 /// The file of a robot of the wheel example-robot-data, tools/requirements-test.txt.
@@ -29,8 +29,8 @@ inline std::filesystem::path example_robot_file(const std::string& file) {
   throw SetupError(file + ": no such robot; pip install -r tools/requirements-test.txt");
 }
 
-inline Chain example_robot(const std::string& file, const std::string& tip_link = "") {
-  return Chain::from_urdf_file(example_robot_file(file), {.tip_link = tip_link});
+inline ChainModel example_robot(const std::string& file, const std::string& tip_link = "") {
+  return ChainModel::from_urdf_file(example_robot_file(file), {.tip_link = tip_link});
 }
 
 /// A placement that is no multiple of a right angle.
@@ -40,7 +40,7 @@ inline Pose slanted() {
 }
 
 /// Slanted axes, a prismatic and a floating joint in the middle, masses on fixed links.
-inline Chain mixed_chain(const ChainOptions& options = {}) {
+inline ChainModel mixed_chain(const ChainOptions& options = {}) {
   constexpr std::string_view kText = R"(<robot name="mixed">
   <link name="base"/>
   <joint name="turn" type="revolute"><parent link="base"/><child link="a"/>
@@ -68,31 +68,31 @@ inline Chain mixed_chain(const ChainOptions& options = {}) {
     <origin xyz="0.1 0.2 0.3" rpy="0.5 0.4 0.3"/></joint>
   <link name="handle"/>
 </robot>)";
-  return Chain::from_urdf_text(kText, "mixed.urdf", options);
+  return ChainModel::from_urdf_text(kText, "mixed.urdf", options);
 }
 
 /// Every kind of chain, all with frames "handle".
-inline std::vector<Chain> all_chains() {
+inline std::vector<ChainModel> all_chains() {
   const ChainOptions options = {.T_B_root = slanted()};
-  std::vector<Chain> chains;
+  std::vector<ChainModel> chains;
   chains.push_back(haptic_giant_chain());
   for (const char* twin : {"free_space", "door", "excavator"}) {
     chains.push_back(twin_chain(twin, options));
   }
   chains.push_back(mixed_chain(options));
-  chains.push_back(Chain::free_body({.mass = 4.0,
-                                     .inertia = Eigen::Vector3d(0.05, 0.07, 0.09).asDiagonal(),
-                                     .p_handle_com = Eigen::Vector3d(0.1, -0.05, 0.2)},
-                                    options));
+  chains.push_back(ChainModel::free_body({.mass = 4.0,
+                                          .inertia = Eigen::Vector3d(0.05, 0.07, 0.09).asDiagonal(),
+                                          .p_handle_com = Eigen::Vector3d(0.1, -0.05, 0.2)},
+                                         options));
   ChainOptions floating = options;
   floating.floating_root = true;
-  chains.push_back(Chain::from_urdf_text(R"(<robot name="floating"><link name="body"><inertial>
+  chains.push_back(ChainModel::from_urdf_text(R"(<robot name="floating"><link name="body"><inertial>
     <mass value="5"/><inertia ixx="0.1" iyy="0.2" izz="0.2" ixy="0" ixz="0" iyz="0"/></inertial></link>
     <joint name="arm" type="continuous"><parent link="body"/><child link="handle"/>
     <origin xyz="0.2 0 0.1"/><axis xyz="0 0 1"/></joint>
     <link name="handle"><inertial><origin xyz="0.3 0 0"/><mass value="1"/>
     <inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>)",
-                                         "floating.urdf", floating));
+                                              "floating.urdf", floating));
   return chains;
 }
 
@@ -106,9 +106,10 @@ class RandomState {
     for (double& x : v) x = uniform_(engine_);
     return v;
   }
-  Eigen::VectorXd q(const Chain& chain) {
+  Eigen::VectorXd q(const ChainModel& chain) {
     return chain.integrate(chain.neutral(), vector(chain.nv()));
   }
+  Eigen::VectorXd q(const ChainData& chain) { return q(chain.model()); }
 
  private:
   std::mt19937 engine_;

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "hg/model/chain_data.h"
 #include "hg/model/haptic_giant.h"
 #include "hg/model/test/dh_reference.h"
 #include "hg/model/test/models.h"
@@ -27,8 +28,8 @@ void expect_printed(const Eigen::VectorXd& value, const Eigen::VectorXd& expecte
 }
 
 TEST(HapticGiantUrdf, PosesEqualTableI) {
-  Chain chain = haptic_giant_chain();
-  const int handle = chain.frame("handle"), elbow = chain.frame("elbow");
+  ChainData chain(haptic_giant_chain());
+  const int handle = chain.model().frame("handle"), elbow = chain.model().frame("elbow");
   RandomState random(1);
   for (int i = 0; i < 1000; ++i) {
     const Vector8 q = 1.5 * random.vector(8);
@@ -41,7 +42,7 @@ TEST(HapticGiantUrdf, PosesEqualTableI) {
 }
 
 TEST(HapticGiantUrdf, DynamicsEqualTheReference) {
-  Chain chain = haptic_giant_chain();
+  ChainData chain(haptic_giant_chain());
   chain.update(kQ, kDq);
   const Eigen::VectorXd tau = chain.inverse_dynamics(kQ, kDq, kDdq);
   expect_printed(
@@ -51,12 +52,12 @@ TEST(HapticGiantUrdf, DynamicsEqualTheReference) {
   expect_printed(chain.gravity(), Vector8{{0, 0, 0, 0, 0, 27.53918, 2.0978, 0}});
   const Vector6 w_H_in_B{{10, -20, 30, 1, 2, -3}};
   expect_printed(
-      tau - chain.jacobian(chain.frame("handle")).transpose() * w_H_in_B,
+      tau - chain.jacobian(chain.model().frame("handle")).transpose() * w_H_in_B,
       Vector8{{13.24069, 34.2393, 12.52455, 0.05981, -5.8856, 10.52451, -1.67575, 1.69455}});
 }
 
 TEST(HapticGiantUrdf, MassMatrixAtHomeEqualsTheReference) {
-  Chain chain = haptic_giant_chain();
+  ChainData chain(haptic_giant_chain());
   const Vector8 home{{0, 0, 0, pi / 2, -std::atan2(0.53, 0.67), pi / 2, 0, 0}};
   chain.update(home, Vector8::Zero());
   const Eigen::MatrixXd M = chain.M().bottomRightCorner<6, 6>();
@@ -70,7 +71,7 @@ TEST(HapticGiantUrdf, MassMatrixAtHomeEqualsTheReference) {
 }
 
 TEST(HapticGiantUrdf, JointOneTurnsWithoutEndAndTheOthersHaveLimits) {
-  const Chain chain = haptic_giant_chain();
+  const ChainModel chain = haptic_giant_chain();
   EXPECT_EQ(chain.joints()[static_cast<std::size_t>(chain.joint("m1"))].type,
             JointType::kContinuous);
   const auto limit = [&](const char* name) {
@@ -86,39 +87,39 @@ TEST(HapticGiantUrdf, JointOneTurnsWithoutEndAndTheOthersHaveLimits) {
 }
 
 TEST(FreeSpaceUrdf, IsTheDefaultFreeBody) {
-  Chain urdf = twin_chain("free_space");
-  Chain body = Chain::free_body({});
+  ChainData urdf(twin_chain("free_space"));
+  ChainData body(ChainModel::free_body({}));
   RandomState random(4);
   const Eigen::VectorXd q = random.q(body), dq = random.vector(6);
   urdf.update(q, dq);
   body.update(q, dq);
   EXPECT_LT((urdf.M() - body.M()).norm(), kRounding);
   EXPECT_LT((urdf.c() - body.c()).norm(), 1e-11);
-  EXPECT_LT(distance(urdf.pose(urdf.frame("handle")), body.pose(0)), kRounding);
-  EXPECT_EQ(urdf.joints()[0].name, body.joints()[0].name);
+  EXPECT_LT(distance(urdf.pose(urdf.model().frame("handle")), body.pose(0)), kRounding);
+  EXPECT_EQ(urdf.model().joints()[0].name, body.model().joints()[0].name);
 }
 
 TEST(ChainUrdfs, AreLongAndHeavyAsTheirReadmeSays) {
   for (const int joints : {20, 30}) {
     SCOPED_TRACE(joints);
-    Chain chain = twin_chain("chain_" + std::to_string(joints));
-    ASSERT_EQ(chain.nv(), joints);
+    ChainData chain(twin_chain("chain_" + std::to_string(joints)));
+    ASSERT_EQ(chain.model().nv(), joints);
     const VectorA straight = VectorA::Zero(joints);
     chain.update(straight, straight);
-    const Eigen::Vector3d tip = chain.pose(chain.frame("handle")).p;
+    const Eigen::Vector3d tip = chain.pose(chain.model().frame("handle")).p;
     EXPECT_LT((tip - Eigen::Vector3d(1.2, 0.0, 0.0)).norm(), kRounding);
     // the weight of all links, half a length from j2 on: 10 kg in all
     EXPECT_NEAR(chain.gravity()[1] / -9.81 / (0.5 * (1.2 - 1.2 / joints)),
                 10.0 * (joints - 1) / joints, 2e-3);
     for (int i = 0; i < joints; ++i) {
-      const Interval range = chain.joints()[static_cast<std::size_t>(i)].position;
+      const Interval range = chain.model().joints()[static_cast<std::size_t>(i)].position;
       EXPECT_NEAR(range.ub - range.lb, 2.0 / joints, 1e-3) << i;
     }
   }
 }
 
 TEST(DoorUrdf, MassMatrixIsConstantAndUncoupled) {
-  Chain door = twin_chain("door");
+  ChainData door(twin_chain("door"));
   Eigen::Matrix2d M;
   M << 2.5, 0.0, 0.0, 0.02;
   for (const double hinge : {0.0, 0.6, 1.75}) {
@@ -131,8 +132,8 @@ TEST(DoorUrdf, MassMatrixIsConstantAndUncoupled) {
 }
 
 TEST(DoorUrdf, HandIsAtThreeQuartersOfAMetreAndMovesDownWithTheLever) {
-  Chain door = twin_chain("door");
-  const int handle = door.frame("handle");
+  ChainData door(twin_chain("door"));
+  const int handle = door.model().frame("handle");
   door.update_kinematics(Eigen::Vector2d(0, 0), Eigen::Vector2d(0, 0));
   const Jacobian J = door.jacobian(handle);
   EXPECT_LT((J.col(0) - Vector6{{0.06, 0.75, 0, 0, 0, 1}}).norm(), kRounding);
@@ -143,8 +144,8 @@ TEST(DoorUrdf, HandIsAtThreeQuartersOfAMetreAndMovesDownWithTheLever) {
 }
 
 TEST(ExcavatorUrdf, TipFollowsTheThreePitches) {
-  Chain excavator = twin_chain("excavator");
-  const int handle = excavator.frame("handle");
+  ChainData excavator(twin_chain("excavator"));
+  const int handle = excavator.model().frame("handle");
   RandomState random(6);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector4d q = random.vector(4);
@@ -159,7 +160,7 @@ TEST(ExcavatorUrdf, TipFollowsTheThreePitches) {
 
 TEST(ExcavatorUrdf, MassesActInTheMiddleOfRods) {
   // inertia of boom, stick, bucket about the boom's axis in the extended posture
-  Chain excavator = twin_chain("excavator");
+  ChainData excavator(twin_chain("excavator"));
   excavator.update(Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero());
   const double bucket = 4.0 * (0.35 * 0.35 / 12.0 + 0.175 * 0.175) + 0.05;
   const double stick = 8.0 * (0.7 * 0.7 / 12.0 + 0.35 * 0.35) + 4.0 * (0.35 * 0.35 / 12.0) + 0.05 +
@@ -189,13 +190,13 @@ struct Margins {
   double s_lowest = 10.0, s_highest = -10.0;
 };
 
-void add_margins(Chain& twin, const Eigen::VectorXd& q, Margins& margins) {
-  static const Chain device = haptic_giant_chain();
+void add_margins(ChainData& twin, const Eigen::VectorXd& q, Margins& margins) {
+  static const ChainModel device = haptic_giant_chain();
   const auto room = [](double x, double lower, double upper) {
     return std::min(x - lower, upper - x);
   };
-  twin.update_kinematics(q, Eigen::VectorXd::Zero(twin.nv()));
-  const Pose hand = twin.pose(twin.frame("handle"));
+  twin.update_kinematics(q, Eigen::VectorXd::Zero(twin.model().nv()));
+  const Pose hand = twin.pose(twin.model().frame("handle"));
   Eigen::Vector2d q_p;
   Vector6 q_m;
   ASSERT_EQ(haptic_giant::inverse_at_target(hand, q_p, q_m), haptic_giant::InverseStatus::kSolved);
@@ -217,7 +218,7 @@ void add_margins(Chain& twin, const Eigen::VectorXd& q, Margins& margins) {
 }
 
 TEST(Placements, TheDoorStaysInsideAllLimitsOverItsWholeTravel) {
-  Chain door = twin_chain(kDoor.twin, {.T_B_root = kDoor.T_B_root});
+  ChainData door(twin_chain(kDoor.twin, {.T_B_root = kDoor.T_B_root}));
   Margins margins;
   for (double hinge = 0.0; hinge < 1.76; hinge += 0.05) {
     for (double lever = 0.0; lever < 0.81; lever += 0.1) {
@@ -246,8 +247,8 @@ void for_all_postures(Visit visit) {
 }
 
 TEST(Placements, TheHandAxisOfTheExcavatorStays45DegreesFromTheVertical) {
-  Chain excavator = twin_chain(kExcavator.twin, {.T_B_root = kExcavator.T_B_root});
-  const int handle = excavator.frame("handle");
+  ChainData excavator(twin_chain(kExcavator.twin, {.T_B_root = kExcavator.T_B_root}));
+  const int handle = excavator.model().frame("handle");
   for_all_postures([&](const Eigen::Vector4d& q) {
     excavator.update_kinematics(q, Eigen::Vector4d::Zero());
     ASSERT_LT(std::abs(excavator.pose(handle).R(2, 2)), std::sqrt(0.5) + 1e-9);
@@ -255,8 +256,8 @@ TEST(Placements, TheHandAxisOfTheExcavatorStays45DegreesFromTheVertical) {
 }
 
 TEST(Placements, TheExcavatorStaysInsideAllLimitsWithItsTipAtMiddleHeight) {
-  Chain excavator = twin_chain(kExcavator.twin, {.T_B_root = kExcavator.T_B_root});
-  const int handle = excavator.frame("handle");
+  ChainData excavator(twin_chain(kExcavator.twin, {.T_B_root = kExcavator.T_B_root}));
+  const int handle = excavator.model().frame("handle");
   Margins margins;
   int inside = 0;
   for_all_postures([&](const Eigen::Vector4d& q) {
@@ -273,7 +274,7 @@ TEST(Placements, TheExcavatorStaysInsideAllLimitsWithItsTipAtMiddleHeight) {
 }
 
 TEST(Placements, TheExcavatorReachesEveryPostureOfItsScenario) {
-  Chain excavator = twin_chain(kExcavator.twin, {.T_B_root = kExcavator.T_B_root});
+  ChainData excavator(twin_chain(kExcavator.twin, {.T_B_root = kExcavator.T_B_root}));
   Margins margins;
   for (const Eigen::Vector4d& q :
        {Eigen::Vector4d(0, 0.35, 0.9, 0.4), Eigen::Vector4d(0, 0, 0.4, 0.0),

@@ -6,6 +6,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/rotation.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/test/models.h"
 
 namespace hg::model {
@@ -33,7 +34,7 @@ Tool handle() {
 
 std::string said(const Tool& tool, const std::string& extra = "") {
   try {
-    Chain::from_urdf_text(arm(extra), "arm.urdf", {.tool = tool});
+    ChainModel::from_urdf_text(arm(extra), "arm.urdf", {.tool = tool});
   } catch (const SetupError& error) {
     return error.what();
   }
@@ -41,12 +42,12 @@ std::string said(const Tool& tool, const std::string& extra = "") {
 }
 
 TEST(Tool, WeighsAndTurnsLikeALinkOfTheUrdf) {
-  Chain with_tool = Chain::from_urdf_text(arm(""), "arm.urdf", {.tool = handle()});
-  Chain as_link = Chain::from_urdf_text(arm(R"(
+  ChainData with_tool(ChainModel::from_urdf_text(arm(""), "arm.urdf", {.tool = handle()}));
+  ChainData as_link(ChainModel::from_urdf_text(arm(R"(
   <joint name="weld" type="fixed"><parent link="flange"/><child link="mass"/></joint>
   <link name="mass"><inertial><origin xyz="0 0.03 0.1"/><mass value="0.8"/>
     <inertia ixx="0.002" iyy="0.003" izz="0.004" ixy="0" ixz="0" iyz="0"/></inertial></link>)"),
-                                        "arm.urdf");
+                                               "arm.urdf"));
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.7), dq = Eigen::VectorXd::Ones(1);
   with_tool.update(q, dq);
   as_link.update(q, dq);
@@ -55,11 +56,11 @@ TEST(Tool, WeighsAndTurnsLikeALinkOfTheUrdf) {
 }
 
 TEST(Tool, AddsItsFrame) {
-  Chain chain = Chain::from_urdf_text(arm(""), "arm.urdf", {.tool = handle()});
+  ChainData chain(ChainModel::from_urdf_text(arm(""), "arm.urdf", {.tool = handle()}));
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, -0.4), dq = Eigen::VectorXd::Zero(1);
   chain.update_kinematics(q, dq);
-  const Pose expected = chain.pose(chain.frame("flange")) * slanted();
-  const Pose actual = chain.pose(chain.frame("handle"));
+  const Pose expected = chain.pose(chain.model().frame("flange")) * slanted();
+  const Pose actual = chain.pose(chain.model().frame("handle"));
   EXPECT_LT((actual.p - expected.p).norm(), kRounding);
   EXPECT_LT(rotation_between(actual.R, expected.R).norm(), kRounding);
 }

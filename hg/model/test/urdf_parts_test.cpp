@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "hg/core/error.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/test/models.h"
 
 namespace hg::model {
@@ -15,7 +15,7 @@ constexpr double kRounding = 1e-12;
 
 std::string message_of(const std::string& text, const ChainOptions& options) {
   try {
-    Chain::from_urdf_text(text, "tree.urdf", options);
+    ChainModel::from_urdf_text(text, "tree.urdf", options);
   } catch (const SetupError& error) {
     return error.what();
   }
@@ -45,12 +45,12 @@ const std::string kTree =
           "<axis xyz='1 0 0'/><limit lower='0' upper='0.1'/><mimic joint='elbow'/>") +
     joint("other", "continuous", "torso", "right", "<origin xyz='0 -1 0'/>") + "</robot>";
 
-Chain part_of_tree(const std::string& root, const std::string& tip) {
-  return Chain::from_urdf_text(kTree, "tree.urdf",
-                               {.gravity = false, .root_link = root, .tip_link = tip});
+ChainModel part_of_tree(const std::string& root, const std::string& tip) {
+  return ChainModel::from_urdf_text(kTree, "tree.urdf",
+                                    {.gravity = false, .root_link = root, .tip_link = tip});
 }
 
-std::vector<std::string> joint_names(const Chain& chain) {
+std::vector<std::string> joint_names(const ChainModel& chain) {
   std::vector<std::string> names;
   for (const Joint& each : chain.joints()) names.push_back(each.name);
   return names;
@@ -58,12 +58,12 @@ std::vector<std::string> joint_names(const Chain& chain) {
 
 TEST(SerialPart, ABranchedRobotIsReadUpToATip) {
   EXPECT_NE(message_of(kTree, {}), "accepted");
-  Chain chain = part_of_tree("", "lower");
-  EXPECT_EQ(joint_names(chain), (std::vector<std::string>{"waist", "shoulder", "elbow"}));
-  EXPECT_EQ(chain.frame_names().size(), 6u);
+  ChainData chain(part_of_tree("", "lower"));
+  EXPECT_EQ(joint_names(chain.model()), (std::vector<std::string>{"waist", "shoulder", "elbow"}));
+  EXPECT_EQ(chain.model().frame_names().size(), 6u);
 
   // the frozen finger hangs on the forearm, the right arm on the torso: all masses turn with it
-  chain.update(chain.neutral(), VectorA::Zero(3));
+  chain.update(chain.model().neutral(), VectorA::Zero(3));
   const double mass = 2.0, I = 0.1;
   const auto about_z = [&](double x, double y) { return I + mass * (x * x + y * y); };
   const double expected =
@@ -72,11 +72,12 @@ TEST(SerialPart, ABranchedRobotIsReadUpToATip) {
 }
 
 TEST(SerialPart, BelowARootTheRestOfTheRobotIsLeftOut) {
-  Chain chain = part_of_tree("upper", "lower");
-  EXPECT_EQ(joint_names(chain), (std::vector<std::string>{"elbow"}));
-  EXPECT_EQ(chain.frame_names(), (std::vector<std::string>{"upper", "lower", "finger"}));
-  chain.update_kinematics(chain.neutral(), VectorA::Zero(1));
-  EXPECT_LT((chain.pose(chain.frame("lower")).p - Eigen::Vector3d(1, 0, 0)).norm(), kRounding);
+  ChainData chain(part_of_tree("upper", "lower"));
+  EXPECT_EQ(joint_names(chain.model()), (std::vector<std::string>{"elbow"}));
+  EXPECT_EQ(chain.model().frame_names(), (std::vector<std::string>{"upper", "lower", "finger"}));
+  chain.update_kinematics(chain.model().neutral(), VectorA::Zero(1));
+  EXPECT_LT((chain.pose(chain.model().frame("lower")).p - Eigen::Vector3d(1, 0, 0)).norm(),
+            kRounding);
 }
 
 TEST(SerialPart, ARootAloneTakesWhatHangsOnIt) {
@@ -109,15 +110,16 @@ TEST(PlanarParts, AreTwoSlidesAndATurnAboutTheNormal) {
     SCOPED_TRACE(axis);
     const std::string text = planar_robot(axis);
     const UrdfJoint planar = read_urdf_text(text, "").joints[0];
-    Chain chain = Chain::from_urdf_text(text, "puck.urdf");
-    ASSERT_EQ(joint_names(chain), (std::vector<std::string>{"glide x", "glide y", "glide turn"}));
-    EXPECT_EQ(chain.joints()[1].planar, "glide");
-    EXPECT_EQ(chain.joints()[0].type, JointType::kPrismatic);
-    EXPECT_EQ(chain.joints()[2].type, JointType::kContinuous);
+    ChainData chain(ChainModel::from_urdf_text(text, "puck.urdf"));
+    ASSERT_EQ(joint_names(chain.model()),
+              (std::vector<std::string>{"glide x", "glide y", "glide turn"}));
+    EXPECT_EQ(chain.model().joints()[1].planar, "glide");
+    EXPECT_EQ(chain.model().joints()[0].type, JointType::kPrismatic);
+    EXPECT_EQ(chain.model().joints()[2].type, JointType::kContinuous);
 
     const Eigen::Vector3d q(0.7, -0.4, 2.5);
     chain.update(q, VectorA::Zero(3));
-    const Pose moved = inverse(planar.T_parent_joint) * chain.pose(chain.frame("puck"));
+    const Pose moved = inverse(planar.T_parent_joint) * chain.pose(chain.model().frame("puck"));
     EXPECT_NEAR(moved.p.dot(planar.axis), 0.0, kRounding);
     EXPECT_NEAR(moved.p.norm(), q.head<2>().norm(), kRounding);
     const Eigen::AngleAxisd turn(q[2], planar.axis);

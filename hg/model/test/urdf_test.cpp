@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "hg/core/error.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 
 namespace hg::model {
 namespace {
@@ -34,7 +34,7 @@ struct Text {
 
 std::string message_of(const std::string& text) {
   try {
-    Chain::from_urdf_text(text, "arm.urdf");
+    ChainModel::from_urdf_text(text, "arm.urdf");
   } catch (const SetupError& error) {
     return error.what();
   }
@@ -52,7 +52,7 @@ std::string joint_with(const std::string& type, const std::string& inside) {
 }
 
 TEST(Urdf, ASoundFileIsRead) {
-  const Chain chain = Chain::from_urdf_text(Text().all(), "arm.urdf");
+  const ChainModel chain = ChainModel::from_urdf_text(Text().all(), "arm.urdf");
   EXPECT_EQ(chain.name(), "r");
   ASSERT_EQ(chain.joints().size(), 1u);
   const Joint& joint = chain.joints()[0];
@@ -68,16 +68,16 @@ TEST(Urdf, ASoundFileIsRead) {
 TEST(Urdf, LimitsThatAreNotGivenAreUnbounded) {
   Text text;
   text.joint = joint_with("continuous", "<limit lower='-1' upper='1' velocity='2'/>");
-  const Chain chain = Chain::from_urdf_text(text.all(), "arm.urdf");
+  const ChainModel chain = ChainModel::from_urdf_text(text.all(), "arm.urdf");
   const Joint& joint = chain.joints()[0];
   EXPECT_EQ(joint.type, JointType::kContinuous);
   EXPECT_FALSE(joint.position.bounded());
   EXPECT_EQ(joint.velocity_max, 2.0);
   EXPECT_EQ(joint.effort_max, kInfinity);
   text.joint = joint_with("prismatic", "<limit lower='-1' upper='1'/>");
-  EXPECT_EQ(Chain::from_urdf_text(text.all(), "").joints()[0].velocity_max, kInfinity);
+  EXPECT_EQ(ChainModel::from_urdf_text(text.all(), "").joints()[0].velocity_max, kInfinity);
   text.joint = joint_with("floating", "<limit velocity='2'/>");
-  EXPECT_EQ(Chain::from_urdf_text(text.all(), "").joints()[0].velocity_max, kInfinity);
+  EXPECT_EQ(ChainModel::from_urdf_text(text.all(), "").joints()[0].velocity_max, kInfinity);
 }
 
 TEST(Urdf, RotationsAreRollPitchYawAboutFixedAxes) {
@@ -338,7 +338,7 @@ TEST(Urdf, BrokenXmlNamesItsLine) {
 
 TEST(Urdf, AMissingFileIsNamed) {
   try {
-    Chain::from_urdf_file("models/no_such.urdf");
+    ChainModel::from_urdf_file("models/no_such.urdf");
     FAIL();
   } catch (const SetupError& error) {
     EXPECT_STREQ(error.what(), "models/no_such.urdf: cannot be read: No such file or directory");

@@ -50,7 +50,7 @@ TEST(Runtime, ADeviceThatIsTheClockIsNotWaitedFor) {
   Parts parts;
   parts.device.keeps_time = true;
   std::uint64_t seen = 0;
-  const Report report = run(parts, {.rate_Hz = 100.0, .duration_s = 6.0}, seen);
+  const Report report = run(parts, {.duration_s = 6.0}, seen);
   EXPECT_GE(report.cycles, 6001u);
   EXPECT_EQ(report.wake_up_us.count(), 0u);  // it never slept
 }
@@ -77,7 +77,7 @@ TEST(Runtime, KeepsProblemsOfSlowCyclesOnly) {
 TEST(Runtime, RealTimeModePlaysTheWholeDuration) {
   Parts parts;
   std::uint64_t seen = 0;
-  const Report report = run(parts, {.rate_Hz = 500.0, .duration_s = 0.2}, seen);
+  const Report report = run(parts, {.duration_s = 0.2}, seen);
   EXPECT_GE(report.cycles, 100u);
   EXPECT_EQ(report.dropped + seen, report.cycles);
   EXPECT_EQ(report.allocations, 0u);
@@ -434,7 +434,7 @@ TEST(Pace, RefusesWhatIsOutOfRange) {
 
 // Late cycles that the cycle was told about, by sample; the run is over before the device moves.
 std::vector<std::uint32_t> told(const Options& options, bool keeps_time, Report& report) {
-  Parts parts;
+  Parts parts(200.0);
   parts.device.stalls_at = 20;
   parts.device.keeps_time = keeps_time;
   Runtime runtime(options, *parts.cycle, parts.device);
@@ -449,8 +449,7 @@ std::vector<std::uint32_t> told(const Options& options, bool keeps_time, Report&
 TEST(Runtime, TellsTheCycleWhatWasMissedWhereTheThreadIsRealTime) {
   for (const bool keeps_time : {false, true}) {
     Report report;
-    const auto late =
-        told({.rate_Hz = 200.0, .duration_s = 0.2, .tells_late_cycles = true}, keeps_time, report);
+    const auto late = told({.duration_s = 0.2, .tells_late_cycles = true}, keeps_time, report);
     EXPECT_GE(report.overruns, 4u);
     ASSERT_GT(late.size(), 20u);
     EXPECT_EQ(report.told_late_cycles, report.thread.priority > 0);
@@ -461,16 +460,15 @@ TEST(Runtime, TellsTheCycleWhatWasMissedWhereTheThreadIsRealTime) {
 
 TEST(Runtime, TellsNobodyAboutLateCyclesOfADeviceThatWaits) {
   Report report;
-  const auto late = told({.rate_Hz = 200.0, .duration_s = 0.2}, false, report);
+  const auto late = told({.duration_s = 0.2}, false, report);
   EXPECT_GE(report.overruns, 4u);
   for (const std::uint32_t cycles : late) EXPECT_EQ(cycles, 0u);
 }
 
 TEST(Runtime, AnOrdinaryThreadIsNotToldEither) {
   Report report;
-  const auto late = told(
-      {.rate_Hz = 200.0, .duration_s = 0.2, .thread = {.priority = 0}, .tells_late_cycles = true},
-      false, report);
+  const auto late = told({.duration_s = 0.2, .thread = {.priority = 0}, .tells_late_cycles = true},
+                         false, report);
   EXPECT_EQ(report.thread.priority, 0);
   EXPECT_EQ(report.thread.priority_error, 0);  // it was not asked for
   EXPECT_FALSE(report.told_late_cycles);
@@ -513,8 +511,8 @@ TEST(Runtime, RunsOnTheProcessorThatIsAskedFor) {
 TEST(Runtime, RefusesImpossibleOptions) {
   EXPECT_THROW(check({.thread = {.priority = 100}}), SetupError);
   EXPECT_THROW(check({.thread = {.cpu = -2}}), SetupError);
-  EXPECT_THROW(check({.rate_Hz = 0.0}), SetupError);
-  EXPECT_THROW(check({.rate_Hz = kInfinity}), SetupError);
+  EXPECT_THROW(Parts(0.0), SetupError);
+  EXPECT_THROW(Parts(20001.0), SetupError);
   EXPECT_THROW(check({.duration_s = -1.0}), SetupError);
 }
 

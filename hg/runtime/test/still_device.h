@@ -28,7 +28,7 @@ class StillDevice : public device::Device {
   }
   void write(const CommandFrame& command) noexcept override {
     ++sensors_.sequence;
-    sensors_.time_s += 1e-3;
+    sensors_.time_s += period_s;
     if (sensors_.sequence == lost_sample) ++sensors_.sequence;
     sensors_.dead_man = !(sensors_.sequence >= opens_at && sensors_.sequence < closes_at);
     if (sensors_.sequence == stalls_at) stall();
@@ -45,6 +45,7 @@ class StillDevice : public device::Device {
     }
   }
 
+  double period_s = 1e-3;
   bool keeps_time = false;
   std::uint64_t lost_sample = 0;
   double speed = 0.0;                         ///< that is measured, whatever it is told
@@ -62,17 +63,17 @@ struct Parts {
   StillDevice device;
   std::unique_ptr<controller::Cycle> cycle;
 
-  Parts() {
-    const rendering::DeviceModel model = rendering::unlimited_device();
+  explicit Parts(double rate_Hz = 1000.0) {
+    DeviceModel model = rendering::unlimited_device();
+    model.rate_Hz = rate_Hz;
+    model.joint_limits.assign(6, {.q_min = -10.0, .q_max = 10.0, .dq_max = 10.0});
+    device.period_s = 1.0 / rate_Hz;
     rendering::TwinModel twin =
-        rendering::unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
+        rendering::unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(model, Eigen::Vector2d::Zero(), kPosture));
     controller::Config config;
     config.estimation.wrench.has_imu = false;
-    config.prepositioning.n_p = 2;
-    config.monitor.joint_range.assign(6, {-10.0, 10.0});
-    config.monitor.joint_speed_max.assign(6, 10.0);
     cycle = std::make_unique<controller::Cycle>(config, model, twin);
   }
 };

@@ -8,7 +8,7 @@ udp::Description describe(const config::Scenario& scenario, bool is_lock_step) {
   return {.device = device.name,
           .n_p = static_cast<std::uint32_t>(device.model.n_p),
           .n_m = static_cast<std::uint32_t>(device.model.n_m),
-          .rate_Hz = device.rate_Hz,
+          .rate_Hz = device.model.rate_Hz,
           .interface = has_drives ? udp::Interface::kPosition : udp::Interface::kTorque,
           .is_lock_step = is_lock_step};
 }

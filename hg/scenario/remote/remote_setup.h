@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/device/udp/remote_device.h"
 
 namespace hg::scenario {

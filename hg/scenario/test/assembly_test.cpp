@@ -42,10 +42,10 @@ TEST(MakeCycle, VirtualLimitsThatNoPostureKeepsAreRefused) {
 
 TEST(MakeCycle, TheRateMustSuitTheFilterOfTheFeedforward) {
   config::Scenario scenario = door();
-  EXPECT_EQ(message_of([&] { config::set_rate(scenario.device, 200.0); }),
+  EXPECT_EQ(message_of([&] { config::check_rate(scenario.device, 200.0); }),
             "control.flatness_Hz: at 200 Hz it must be below 39.3, or the torques fed forward "
             "oscillate, got 95: lower it, or raise the rate");
-  EXPECT_EQ(scenario.device.rate_Hz, 1000.0);
+  EXPECT_EQ(scenario.device.model.rate_Hz, 1000.0);
   scenario.device.control.flatness_Hz = 200.0;
   EXPECT_NE(message(scenario).find("it must be below 196.7"), std::string::npos);
 }

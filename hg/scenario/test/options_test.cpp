@@ -14,7 +14,7 @@ TEST(Options, ARecordingKeepsThoseThatDetermineTheCycle) {
   EXPECT_EQ(to_text(options), "--rate-hz 500\n--law paper\n--bounds paper\n");
   const config::Scenario recorded =
       load_recorded(load({.scenario = "door"}).sources, to_text(options));
-  EXPECT_EQ(recorded.device.rate_Hz, 500.0);
+  EXPECT_EQ(recorded.device.model.rate_Hz, 500.0);
   EXPECT_EQ(recorded.device.rendering.law, rendering::Law::kPaper);
   EXPECT_EQ(recorded.device.rendering.bounds, rendering::Bounds::kPaper);
 }

@@ -9,7 +9,7 @@
 
 namespace hg::person {
 
-Person::Person(const Config& config, const model::Chain& twin, int end_effector,
+Person::Person(const Config& config, const model::ChainModel& twin, int end_effector,
                const Pose& T_B_twin)
     : config_(config),
       twin_(twin),
@@ -54,8 +54,8 @@ Pose Person::channel_pose() noexcept {
                                                            channels_[2]);
       return pose;
     case ScriptFrame::kTwinJoints: {
-      const Eigen::Map<const Eigen::VectorXd> q(channels_.data(), twin_.nq());
-      const VectorA at_rest = VectorA::Zero(twin_.nv());
+      const Eigen::Map<const Eigen::VectorXd> q(channels_.data(), twin_.model().nq());
+      const VectorA at_rest = VectorA::Zero(twin_.model().nv());
       twin_.update_kinematics(q, at_rest);
       return twin_.pose(end_effector_);
     }

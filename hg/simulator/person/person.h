@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/frames.h"
 #include "hg/simulator/person/hand.h"
 #include "hg/simulator/person/script.h"
@@ -34,7 +34,8 @@ struct Config {
 class Person {
  public:
   /// `twin` and its frame `end_effector` give the pose of kTwinJoints and kCylindrical channels.
-  Person(const Config& config, const model::Chain& twin, int end_effector, const Pose& T_B_twin);
+  Person(const Config& config, const model::ChainModel& twin, int end_effector,
+         const Pose& T_B_twin);
 
   /// Wrench on the handle at time `t`, in s since the start of the run; the arm advances from call
   /// to call. An active hand target overrides the script. Zero before Script::grasp_s.
@@ -57,7 +58,7 @@ class Person {
   void keep_score(double dt, const HandleMotion& handle) noexcept;
 
   Config config_;
-  model::Chain twin_;
+  model::ChainData twin_;
   int end_effector_;
   Pose T_B_twin_;
   Arm arm_;

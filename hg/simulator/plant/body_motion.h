@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::simulator {
 
@@ -13,9 +13,9 @@ struct BodyMotion {
   Vector6 acceleration = Vector6::Zero();  ///< acceleration of L's origin, m/s^2; angular, rad/s^2
 };
 
-/// Motion of `frame` at the last update of `chain`, with the joint accelerations `ddq` (nv).
+/// Motion of `frame` with the joint accelerations `ddq` (nv); `chain`: after update_kinematics().
 template <typename Accelerations>
-BodyMotion motion_of(const model::Chain& chain, int frame, const Accelerations& ddq) noexcept {
+BodyMotion motion_of(const model::ChainData& chain, int frame, const Accelerations& ddq) noexcept {
   BodyMotion motion = {.R_B_L = chain.pose(frame).R,
                        .twist = chain.twist(frame),
                        .acceleration = chain.bias_acceleration(frame)};

@@ -6,7 +6,7 @@
 
 namespace hg::simulator {
 
-IdealPlant::IdealPlant(const IdealPlantConfig& config, const model::Chain& chain, int handle)
+IdealPlant::IdealPlant(const IdealPlantConfig& config, const model::ChainModel& chain, int handle)
     : config_(config),
       chain_(chain),
       handle_(handle),

@@ -8,7 +8,7 @@
 
 #include "hg/core/stacked.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/truth.h"
@@ -27,7 +27,7 @@ struct IdealPlantConfig {
 class IdealPlant {
  public:
   /// `chain` holds the gantry joints first; `handle` is its frame H.
-  IdealPlant(const IdealPlantConfig& config, const model::Chain& chain, int handle);
+  IdealPlant(const IdealPlantConfig& config, const model::ChainModel& chain, int handle);
 
   /// Advances by one period with drives that are on, or off and held by their brakes.
   void step(const CommandFrame& command, bool is_on) noexcept;
@@ -39,7 +39,7 @@ class IdealPlant {
   void observe(const VectorM& ddq_m) noexcept;
 
   IdealPlantConfig config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   int handle_, dead_periods_;
   std::array<CommandDelay, kMaxGantry> delays_;
   VectorPM ddq_;

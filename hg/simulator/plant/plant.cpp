@@ -26,7 +26,7 @@ double stopped(const Interval& travel, double q, double dq, double ddq) noexcept
 
 }  // namespace
 
-Plant::Plant(const PlantConfig& config, const model::Chain& chain, int handle)
+Plant::Plant(const PlantConfig& config, const model::ChainModel& chain, int handle)
     : config_(config), chain_(chain), handle_(handle) {
   check(config, chain);
   n_p_ = static_cast<int>(config_.gantry.size());
@@ -75,7 +75,7 @@ Plant::Motion Plant::strayed(int axis) const noexcept {
 }
 
 model::Loads Plant::loads() const noexcept {
-  model::Loads loads = chain_.default_loads();
+  model::Loads loads = chain_.model().default_loads();
   loads.mass = config_.mass;
   return loads;
 }

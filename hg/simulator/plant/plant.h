@@ -15,7 +15,7 @@
 #include <array>
 
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/truth.h"
 #include "hg/simulator/hardware_faults.h"
@@ -38,7 +38,7 @@ struct PlantInput {
 class Plant {
  public:
   /// Starts at rest, the springs carrying the weight. `handle` is the chain's frame H.
-  Plant(const PlantConfig& config, const model::Chain& chain, int handle);
+  Plant(const PlantConfig& config, const model::ChainModel& chain, int handle);
 
   /// Advances by one step.
   void step(const PlantInput& input) noexcept;
@@ -113,7 +113,7 @@ class Plant {
   void observe() noexcept;
 
   PlantConfig config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   int handle_, n_p_, n_m_, n_l_;
   int dead_steps_;
   double current_share_;  // fraction of the way to its command that a current covers in one step

@@ -67,7 +67,7 @@ void check_waviness(const PlantConfig& config) {
 }
 
 // Throws unless every joint of the chain has exactly one role.
-void check_joints(const PlantConfig& config, const model::Chain& chain) {
+void check_joints(const PlantConfig& config, const model::ChainModel& chain) {
   std::vector<int> uses(chain.joints().size(), 0);
   const auto use = [&](int joint) {
     require(joint >= 0 && static_cast<std::size_t>(joint) < uses.size(), "joint of the plant",
@@ -92,7 +92,7 @@ void check_joints(const PlantConfig& config, const model::Chain& chain) {
           static_cast<double>(config.flexible.size()));
 }
 
-void check_end_stops(const PlantConfig& config, const model::Chain& chain) {
+void check_end_stops(const PlantConfig& config, const model::ChainModel& chain) {
   require_positive("end stop stiffness", config.end_stop.stiffness);
   require_not_negative("end stop damping_ratio", config.end_stop.damping_ratio);
   if (!config.gantry_stops.empty()) {
@@ -112,7 +112,7 @@ void check_end_stops(const PlantConfig& config, const model::Chain& chain) {
 
 }  // namespace
 
-void check(const PlantConfig& config, const model::Chain& chain) {
+void check(const PlantConfig& config, const model::ChainModel& chain) {
   check_joints(config, chain);
   require_positive("step", config.step);
   require_not_negative("current_lag", config.current_lag);

@@ -9,7 +9,7 @@
 
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/signals/actuator_model.h"
 #include "hg/signals/drive_model.h"
 #include "hg/simulator/plant/bystander.h"
@@ -60,7 +60,7 @@ struct EndStopModel {
   double damping_ratio = 5.0;
 };
 
-/// Set-up data of a plant. Indices are those of Chain::joints(); every joint is in exactly one
+/// Set-up data of a plant. Indices are those of ChainModel::joints(); every joint is in exactly one
 /// list.
 struct PlantConfig {
   double step = 0.25e-3;         ///< s, > 0; damps 15 Hz by 1.2 % of critical, [HANDBOOK] 4.4
@@ -84,6 +84,6 @@ struct PlantConfig {
 };
 
 /// Throws SetupError, `item: rule, got value`, unless a plant can be built from it.
-void check(const PlantConfig& config, const model::Chain& chain);
+void check(const PlantConfig& config, const model::ChainModel& chain);
 
 }  // namespace hg::simulator

@@ -70,10 +70,10 @@ TEST(Bystander, MeetsOnlyWhatComesFromTheFront) {
 
 // A whole arm swings against a clamped chest: it pays for all that the body stores.
 TEST(Bystander, ThePlantPaysForTheImpact) {
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   for (const bool is_clamped : {false, true}) {
     PlantConfig config = reference_config();
-    model::Chain posture = chain;
+    model::ChainData posture(chain);
     VectorQ q = VectorQ::Zero(8);
     q.tail(6) = config.q_m_start;
     posture.update_poses(q);

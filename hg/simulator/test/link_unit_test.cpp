@@ -59,7 +59,7 @@ TEST(LinkUnit, FeelsTheLeverFromTheOriginOfItsLink) {
 }
 
 TEST(LinkUnit, OfAPlantMovesAsTheHandleOfTheTruth) {
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   const PlantConfig config = reference_config();
   const int handle = chain.frame("handle");
   Plant plant(config, chain, handle);

@@ -25,7 +25,7 @@ PlantConfig config_with(const JointEffects& effects, double coulomb_friction = 0
 }
 
 Plant plant_of(const PlantConfig& config) {
-  const model::Chain chain = one_joint(0.1);
+  const model::ChainModel chain = one_joint(0.1);
   return Plant(config, chain, chain.frame("tip"));
 }
 
@@ -215,7 +215,7 @@ TEST(PlantEffects, BacklashLetsTheLinkMoveFreelyBetweenItsFlanks) {
 TEST(PlantEffects, AnArmWithBacklashHangsInItsFlanks) {
   PlantConfig config = reference_config();
   config.effects.assign(6, {.backlash = 1e-3});
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   const VectorM weight = plant.truth().tau_J;
   for (int k = 0; k < 4000; ++k) plant.step(idle(config, true));
@@ -262,7 +262,7 @@ PlantConfig rough_config() {
 }
 
 TEST(PlantEffects, NeverAddEnergy) {
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   for (const bool brakes_closed : {false, true}) {
     const PlantConfig config = rough_config();
     Plant plant(config, chain, chain.frame("handle"));
@@ -298,7 +298,7 @@ TEST(PlantEffects, BalanceOfEnergyClosesWithTheStep) {
       config.effects[i].ripple = 0.01;
       config.effects[i].ripple_wave = 300.0;
     }
-    const model::Chain chain = haptic_giant();
+    const model::ChainModel chain = haptic_giant();
     Plant plant(config, chain, chain.frame("handle"));
     const VectorM weight = plant.truth().tau_J;
     const double before = plant.energy().sum();
@@ -325,7 +325,7 @@ TEST(PlantEffects, BalanceOfEnergyClosesWithTheStep) {
 
 TEST(PlantEffects, ZeroIsWhatItWasToTheBit) {
   PlantConfig config = reference_config();
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plain(config, chain, chain.frame("handle"));
   config.effects.assign(6, JointEffects{});
   config.waviness.assign(2, Waviness{});
@@ -346,7 +346,7 @@ TEST(PlantEffects, ZeroIsWhatItWasToTheBit) {
 TEST(PlantEffects, WavinessMovesTheGantryBesideItsEncoder) {
   PlantConfig config = reference_config();
   config.waviness = {{.amplitude = 1e-4, .period = 0.05}, {}};
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   PlantInput input = idle(config, true);
   input.dq_p_command << 0.2, 0.1;
@@ -371,10 +371,10 @@ TEST(PlantEffects, AnAxisThatYieldsRingsWithItsFrequency) {
   model::ChainOptions options;
   options.gravity = false;
   options.passive = {{.behind = "ppu1", .name = "sway", .axis = {}}};
-  model::Chain chain =
-      model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf", options);
-  ASSERT_EQ(chain.joints().size(), 9u);
-  EXPECT_EQ(chain.joint("sway"), 1);
+  model::ChainData chain(
+      model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf", options));
+  ASSERT_EQ(chain.model().joints().size(), 9u);
+  EXPECT_EQ(chain.model().joint("sway"), 1);
   chain.update(Eigen::VectorXd::Zero(9), Eigen::VectorXd::Zero(9));
   EXPECT_NEAR(chain.M()(1, 1), chain.M()(0, 0), 1e-6);
   const double omega = 2.0 * kPi * 12.0, inertia = chain.M()(1, 1), ratio = 0.01;
@@ -386,7 +386,7 @@ TEST(PlantEffects, AnAxisThatYieldsRingsWithItsFrequency) {
   config.flexible = {
       {.joint = 1, .stiffness = omega * omega * inertia, .damping = 2.0 * ratio * omega * inertia}};
   for (ActuatorModel& a : config.actuators) a.stiffness *= 1e4;  // the arm is one body
-  Plant plant(config, chain, chain.frame("handle"));
+  Plant plant(config, chain.model(), chain.model().frame("handle"));
   PlantInput input = idle(config, true);
   input.w_H[0] = 100.0;
   for (int k = 0; k < 100; ++k) plant.step(input);

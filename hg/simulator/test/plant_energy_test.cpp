@@ -17,7 +17,7 @@ Balance balance_of(double step) {
   PlantConfig config = reference_config();
   config.step = step;
   config.drive.dead_time = 0.0;
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   const double energy = plant.energy().sum();
   PlantInput input = idle(config, false);
@@ -64,7 +64,7 @@ double energy_of(const Plant& plant) {
 }
 
 TEST(PlantEnergy, NeverGrowsWithoutInput) {
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   for (const bool brakes_closed : {false, true}) {
     PlantConfig config = reference_config();
     for (const double q : config.q_m_start) config.end_stops.push_back({q - 0.3, q + 0.3});
@@ -93,7 +93,7 @@ TEST(PlantEnergy, AHeavierArmWeighsMoreAndFallsAsFast) {
     a.coulomb_friction = a.load_friction = a.viscous_friction = 0.0;
     a.rotor_inertia *= 1e-3;
   }
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   config.mass = 1.3;
   Plant heavy(config, chain, chain.frame("handle"));
@@ -110,8 +110,8 @@ TEST(PlantEnergy, AHeavierArmWeighsMoreAndFallsAsFast) {
 
 // A gantry that nothing drives: joints that move freely.
 TEST(PlantEnergy, WithoutHorizontalForcesTheHorizontalMomentumStays) {
-  const model::Chain chain = haptic_giant();
-  model::Chain judge = chain;
+  const model::ChainModel chain = haptic_giant();
+  model::ChainData judge(chain);
   const auto drift_of = [&](double step) {
     PlantConfig config = reference_config();
     config.step = step;
@@ -136,8 +136,8 @@ TEST(PlantEnergy, WithoutHorizontalForcesTheHorizontalMomentumStays) {
 }
 
 TEST(PlantEnergy, GantryForcesMakeTheMomentum) {
-  const model::Chain chain = haptic_giant();
-  model::Chain judge = chain;
+  const model::ChainModel chain = haptic_giant();
+  model::ChainData judge(chain);
   PlantConfig config = reference_config();
   config.step = 0.05e-3;
   Plant plant(config, chain, chain.frame("handle"));

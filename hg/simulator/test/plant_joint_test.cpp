@@ -24,7 +24,7 @@ TEST(PlantJoint, FrictionHoldsALoadBelowItAndNoneAbove) {
   actuator.viscous_friction = 0.5;
   PlantConfig config = one_joint_config(actuator);
   config.step = 1e-3;
-  const model::Chain chain = one_joint(0.003);
+  const model::ChainModel chain = one_joint(0.003);
   const auto drift_under = [&](double load) {
     Plant plant(config, chain, chain.frame("tip"));
     for (int k = 0; k < 10'000; ++k) plant.step(pull(config, load));
@@ -45,7 +45,7 @@ TEST(PlantJoint, BreaksAwayAtItsStictionThenSlidesOnItsCoulombFriction) {
   actuator.coulomb_friction = 4.0;
   actuator.stiction = 1.2;
   const PlantConfig config = one_joint_config(actuator);
-  const model::Chain chain = one_joint(2.0);
+  const model::ChainModel chain = one_joint(2.0);
   Plant plant(config, chain, chain.frame("tip"));
   PlantInput input = idle(config, false);
   double torque = 0.0;
@@ -76,7 +76,7 @@ TEST(PlantJoint, LoadMakesFriction) {
   actuator.coulomb_friction = 1.0;
   actuator.load_friction = 0.06;
   const PlantConfig config = one_joint_config(actuator);
-  const model::Chain chain = one_joint(0.1);
+  const model::ChainModel chain = one_joint(0.1);
   Plant plant(config, chain, chain.frame("tip"));
   PlantInput input = pull(config, -50.0);
   input.brakes_closed = true;
@@ -94,7 +94,7 @@ TEST(PlantJoint, LoadMakesFriction) {
 TEST(PlantJoint, FrictionStaysInItsBoxAndNeverDrives) {
   PlantConfig config = reference_config();
   for (const double q : config.q_m_start) config.end_stops.push_back({q - 0.2, q + 0.2});
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   int held = 0, sliding = 0, most_tries = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -138,7 +138,7 @@ TEST(PlantJoint, FrictionStaysInItsBoxAndNeverDrives) {
 
 TEST(PlantJoint, BrakesStopMotorsAtOnceAndForGood) {
   const PlantConfig config = reference_config();
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   PlantInput input = idle(config, false);
   input.tau_command << 100.0, -60.0, 30.0, 60.0, 10.0, 5.0;
@@ -161,7 +161,7 @@ TEST(PlantJoint, BrakesStopMotorsAtOnceAndForGood) {
 
 TEST(PlantJoint, ABrakeThatClosesByItselfHoldsItsMotorAndAWeakOneHoldsNothing) {
   const PlantConfig config = reference_config();
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   for (const bool brakes_closed : {false, true}) {
     Plant plant(config, chain, chain.frame("handle"));
     PlantInput input = idle(config, brakes_closed);
@@ -178,7 +178,7 @@ TEST(PlantJoint, ABrakeThatClosesByItselfHoldsItsMotorAndAWeakOneHoldsNothing) {
 TEST(PlantJoint, CurrentFollowsItsCommandWithItsLagUpToThePeakTorque) {
   PlantConfig config = reference_config();
   config.current_lag = 2e-3;
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   PlantInput input = idle(config, true);
   input.tau_command << 1e6, -1e6, 50.0, 0.0, 0.0, 0.0;
@@ -196,7 +196,7 @@ TEST(PlantJoint, AFastMotorHasLessTorqueToDriveButAllToBrake) {
   actuator.speed_full_torque = 2.0;
   actuator.speed_no_load = 4.0;
   const PlantConfig config = one_joint_config(actuator);
-  const model::Chain chain = one_joint(2.0);
+  const model::ChainModel chain = one_joint(2.0);
   for (const double way : {1.0, -1.0}) {
     Plant plant(config, chain, chain.frame("tip"));
     PlantInput input = idle(config, false);
@@ -218,7 +218,7 @@ TEST(PlantJoint, AFastMotorHasLessTorqueToDriveButAllToBrake) {
 
 TEST(PlantJoint, TheGantryWaitsThenFollowsWithinItsRatings) {
   const PlantConfig config = reference_config();  // dead time 4 ms, lag 40 ms, 2.5 m/s^2, 1.5 m/s
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   PlantInput input = idle(config, true);
   input.dq_p_command << 0.05, 9.0;
@@ -240,7 +240,7 @@ TEST(PlantJoint, TheGantryWaitsThenFollowsWithinItsRatings) {
 TEST(PlantJoint, EndStopsDoNotThrowBack) {
   PlantConfig config = one_joint_config(bare_actuator(1e-3, 1e4));
   config.end_stops = {{-0.1, 0.2}};
-  const model::Chain chain = one_joint(3.0);
+  const model::ChainModel chain = one_joint(3.0);
   for (const double way : {1.0, -1.0}) {
     for (const double torque : {0.1, 5.0, 300.0}) {
       Plant plant(config, chain, chain.frame("tip"));
@@ -267,7 +267,7 @@ TEST(PlantJoint, EndStopsPushAndCarryWhatTheMotorPresses) {
   PlantConfig config = reference_config();
   config.end_stops.resize(6);
   config.end_stops[1] = {config.q_m_start[1] - 0.1, config.q_m_start[1] + 0.1};
-  const model::Chain chain = haptic_giant(false);
+  const model::ChainModel chain = haptic_giant(false);
   for (const double way : {1.0, -1.0}) {
     Plant plant(config, chain, chain.frame("handle"));
     PlantInput input = idle(config, false);

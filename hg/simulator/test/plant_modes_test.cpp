@@ -17,7 +17,7 @@ constexpr double kPi = std::numbers::pi;
 using Signals = std::vector<std::vector<double>>;  // one per joint
 
 // Torques of the springs after a tap of 1 ms by `tap` on the handle.
-Signals ring(const PlantConfig& config, const model::Chain& chain, const std::string& frame,
+Signals ring(const PlantConfig& config, const model::ChainModel& chain, const std::string& frame,
              const PlantInput& input, const Vector6& tap, double duration) {
   Plant plant(config, chain, chain.frame(frame));
   PlantInput tapped = input;
@@ -97,7 +97,7 @@ void expect_modes(const std::vector<double>& expected_Hz, bool brakes_closed, do
   PlantConfig config = ringing_config();
   config.step = step;
   config.drive.dead_time = 0.0;
-  const model::Chain chain = haptic_giant(false);
+  const model::ChainModel chain = haptic_giant(false);
   const Signals signals =
       ring(config, chain, "handle", idle(config, brakes_closed), slanted_tap(), duration);
   for (const double expected : expected_Hz) {
@@ -141,7 +141,7 @@ TEST(PlantModes, AFlexibleJointLowersThemAsPredicted) {
   const std::string parts =
       joint("give", "prismatic", "base", "carriage", "1 0 0") + body("carriage", 3.0, 0.1) +
       joint("slide", "prismatic", "carriage", "tip", "1 0 0") + body("tip", 2.0, 0.1);
-  const model::Chain chain = chain_of(parts, false);
+  const model::ChainModel chain = chain_of(parts, false);
   constexpr double kJoint = 8000.0, kGive = 20000.0;  // N/m
   PlantConfig config = one_joint_config(bare_actuator(1.0, kJoint));
   config.step = 0.02e-3;
@@ -173,8 +173,8 @@ TEST(PlantModes, AFlexibleFrameBelowTheGantrySagsAndGivesWayToItsDrive) {
       body("trolley", 20.0, 1.0) + joint("arm", "revolute", "trolley", "upper", "0 1 0") +
       body("upper", 0.1, 0.01) + joint("bend", "revolute", "upper", "tip", "0 1 0", "0.4 0 0") +
       body("tip", 4.0, 0.05);
-  const model::Chain chain = chain_of(parts, true);
-  model::Chain judge = chain;
+  const model::ChainModel chain = chain_of(parts, true);
+  model::ChainData judge(chain);
   PlantConfig config = one_joint_config(bare_actuator(1.0, 5000.0));
   config.gantry = {1};
   config.manipulator = {2};
@@ -209,7 +209,7 @@ TEST(PlantModes, AFlexibleFrameBelowTheGantrySagsAndGivesWayToItsDrive) {
 TEST(PlantModes, PrismaticJointsAreSpringsUnderLoad) {
   const std::string parts =
       joint("lift", "prismatic", "base", "tip", "0 0 1") + body("tip", 5.0, 0.1);
-  const model::Chain chain = chain_of(parts, true);
+  const model::ChainModel chain = chain_of(parts, true);
   ActuatorModel actuator = bare_actuator(2.0, 20'000.0);
   PlantConfig config = one_joint_config(actuator);
   config.step = 0.02e-3;
@@ -237,7 +237,7 @@ TEST(PlantModes, SevenJointsWithoutAGantryFallAndAreCaught) {
     parts += body(name, 3.0, 0.02);
     parent = name;
   }
-  const model::Chain chain = chain_of(parts, true);
+  const model::ChainModel chain = chain_of(parts, true);
   PlantConfig config;
   config.q_m_start = VectorM::Constant(7, 0.3);
   for (int i = 0; i < 7; ++i) {

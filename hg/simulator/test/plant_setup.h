@@ -5,15 +5,15 @@
 #include <numbers>
 #include <string>
 
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/signals/test/reference_actuators.h"
 #include "hg/simulator/plant/plant.h"
 
 namespace hg::simulator {
 
-inline model::Chain haptic_giant(bool gravity = true) {
-  return model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf",
-                                      {.gravity = gravity});
+inline model::ChainModel haptic_giant(bool gravity = true) {
+  return model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf",
+                                           {.gravity = gravity});
 }
 
 /// At home: q_m = (0, pi/2, -atan(0.53/0.67), pi/2, 0, 0).
@@ -65,14 +65,14 @@ inline std::string joint(const std::string& name, const std::string& type,
          "'/><limit lower='-9' upper='9' effort='9' velocity='9'/></joint>";
 }
 
-inline model::Chain chain_of(const std::string& parts, bool gravity) {
-  return model::Chain::from_urdf_text(
+inline model::ChainModel chain_of(const std::string& parts, bool gravity) {
+  return model::ChainModel::from_urdf_text(
       "<robot name='bench'><link name='base'/>" + parts + "</robot>", "bench",
       {.gravity = gravity});
 }
 
 /// One joint about z with the inertia `inertia` behind it, frame "tip".
-inline model::Chain one_joint(double inertia) {
+inline model::ChainModel one_joint(double inertia) {
   return chain_of(joint("turn", "continuous", "base", "tip", "0 0 1") + body("tip", 1.0, inertia),
                   false);
 }

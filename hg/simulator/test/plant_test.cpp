@@ -43,7 +43,7 @@ TEST(Plant, HoldsItsWeightInItsSpringsAtRest) {
   Golden slanted{VectorM(6), VectorM(6)};
   slanted.q << 0.4, 1.2, -0.5, 1.1, 0.3, -0.7;
   slanted.tau << 0.0, 0.0, 0.0, 27.53918, 2.0978, 0.0;
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   for (const Golden& golden : {home, slanted}) {
     config.q_m_start = golden.q;
     Plant plant(config, chain, chain.frame("handle"));
@@ -57,7 +57,7 @@ TEST(Plant, HoldsItsWeightInItsSpringsAtRest) {
 
 TEST(Plant, MotorsHoldTheWeightWithOpenBrakes) {
   PlantConfig config = reference_config();
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   PlantInput input = idle(config, true);
   input.tau_command = plant.truth().tau_J;
@@ -70,13 +70,13 @@ TEST(Plant, MotorsHoldTheWeightWithOpenBrakes) {
 
 TEST(Plant, EquationsOfMotionHoldToRounding) {
   const PlantConfig config = narrow_config();
-  model::Chain chain = haptic_giant();
-  const int handle = chain.frame("handle");
+  model::ChainData chain(haptic_giant());
+  const int handle = chain.model().frame("handle");
   bool has_touched_stop = false;
   for (unsigned seed = 0; seed < 10; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
-    Plant plant(config, chain, handle);
+    Plant plant(config, chain.model(), handle);
     PlantInput input;
     for (int k = 0; k < 1000; ++k) {
       if (k % 40 == 0) input = random_input(config, random);
@@ -120,7 +120,7 @@ TEST(Plant, EquationsOfMotionHoldToRounding) {
 
 TEST(Plant, ResidualOfOrdinaryMotionIsBelowThatOfTheHandbook) {
   const PlantConfig config = reference_config();
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   const VectorM weight = plant.truth().tau_J;
   PlantInput input = idle(config, false);
@@ -142,7 +142,7 @@ TEST(Plant, TruthIsTheMotionOfTheHandle) {
   PlantConfig config = reference_config();
   config.step = 1e-5;
   config.drive.dead_time = 0.0;
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   PlantInput input = idle(config, false);
   input.dq_p_command << 0.6, -0.4;
@@ -165,7 +165,7 @@ TEST(Plant, TruthIsTheMotionOfTheHandle) {
 
 TEST(Plant, CopiesGoOnWithTheSameBits) {
   const PlantConfig config = narrow_config();
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   std::mt19937 random(7);
   for (int k = 0; k < 200; ++k) plant.step(random_input(config, random));
@@ -181,7 +181,7 @@ TEST(Plant, CopiesGoOnWithTheSameBits) {
 
 TEST(Plant, DoesNotAllocate) {
   const PlantConfig config = narrow_config();
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
   std::mt19937 random(3);
   double sum = 0.0;
@@ -221,7 +221,7 @@ TEST(Plant, TheGantryMeetsBuffersAtItsEnds) {
 }
 
 TEST(Plant, SetUpNamesWhatCannotBe) {
-  const model::Chain chain = haptic_giant();
+  const model::ChainModel chain = haptic_giant();
   const auto message = [&](auto&& spoil) -> std::string {
     PlantConfig config = reference_config();
     spoil(config);

@@ -9,19 +9,19 @@
 
 namespace hg::simulator {
 
-inline const model::Chain& device_chain() {
-  static const model::Chain chain = haptic_giant();
+inline const model::ChainModel& device_chain() {
+  static const model::ChainModel chain = haptic_giant();
   return chain;
 }
 
 inline person::Person nobody() {
-  const model::Chain body = model::Chain::free_body({}, {.gravity = false});
+  const model::ChainModel body = model::ChainModel::free_body({}, {.gravity = false});
   return {{.kind = person::PersonKind::kNone}, body, body.frame("handle"), {}};
 }
 
 /// Pulls towards HandTarget::p_B from the default grasp on.
 inline person::Person mouse() {
-  const model::Chain body = model::Chain::free_body({}, {.gravity = false});
+  const model::ChainModel body = model::ChainModel::free_body({}, {.gravity = false});
   person::Config config;
   config.kind = person::PersonKind::kMouse;
   config.hand.tremor_rms = 0.0;

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 namespace hg::haptify {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/haptify/measures.h"
 
 namespace hg::haptify {

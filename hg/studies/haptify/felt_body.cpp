@@ -73,7 +73,7 @@ Twist twist(const config::Scenario& scenario, const TwistConfig& config,
   }
   if (speed.empty()) return {.failure = played.failure};
   if (!played.failure.empty()) return {};
-  return {.verdict = studies::judge_decay(speed, config.calm, kicked.device.rate_Hz)};
+  return {.verdict = studies::judge_decay(speed, config.calm, kicked.device.model.rate_Hz)};
 }
 
 }  // namespace hg::haptify

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/simulator/person/hand.h"
 #include "hg/studies/decay.h"
 

@@ -15,10 +15,10 @@ namespace {
 using nlohmann::json;
 
 // Every joint of the least stiffness is so many times as stiff; the controller knows it.
-void stiffen_softest(double factor, tracking::Config& control) {
+void stiffen_softest(double factor, DeviceModel& device) {
   double softest = kInfinity;
-  for (const ActuatorModel& it : control.actuators) softest = std::min(softest, it.stiffness);
-  for (ActuatorModel& it : control.actuators) {
+  for (const ActuatorModel& it : device.actuators) softest = std::min(softest, it.stiffness);
+  for (ActuatorModel& it : device.actuators) {
     if (it.stiffness == softest) it.stiffness *= factor;
   }
 }
@@ -29,7 +29,7 @@ std::vector<FreeSpaceVariant> changed_ways() {
   return {{.name = "measured wrench not low-passed",
            .change = [](Scenario& s) { s.device.estimation.wrench.low_pass_Hz = 0.0; }},
           {.name = "softest joints four times as stiff",
-           .change = [](Scenario& s) { stiffen_softest(4.0, s.device.control); }}};
+           .change = [](Scenario& s) { stiffen_softest(4.0, s.device.model); }}};
 }
 
 std::vector<double> numbers(const Eigen::Vector3d& vector) {

@@ -55,7 +55,7 @@ FreeSpace measure_free_space(const config::Scenario& scenario, const FreeSpaceCo
   studies::set_seed(led, seed);
 
   const Played played = play(led, disturbance);
-  const double rate_Hz = led.device.rate_Hz;
+  const double rate_Hz = led.device.model.rate_Hz;
   std::vector<HandleSample> motion;
   std::vector<Eigen::Vector3d> acceleration;
   FreeSpace result = {.failure = played.failure};

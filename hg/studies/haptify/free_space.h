@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/config/twin.h"
 #include "hg/studies/haptify/measures.h"
 #include "hg/studies/haptify/play.h"

@@ -79,7 +79,7 @@ std::vector<FreeSpaceVariant> free_space_variants() {
            .change = [](Scenario& s) { take_gear_errors(s.device.simulation.sensors); },
            .takes_away = true},
           {.name = "no friction",
-           .change = [](Scenario& s) { studies::take_friction(s.device.control); },
+           .change = [](Scenario& s) { studies::take_friction(s.device.model); },
            .takes_away = true},
           {.name = "controller knows the plant",
            .change = [](Scenario& s) { s.device.simulation.factors = {}; },
@@ -113,7 +113,8 @@ FreeSpace measure_variant(const config::Scenario& scenario, const FreeSpaceVaria
   if (variant.change) variant.change(changed);
   Disturbance disturbance;
   if (variant.vibration.acceleration > 0.0) {
-    const double lag = changed.device.drive.lag * changed.device.simulation.factors.gantry_lag;
+    const double lag =
+        changed.device.model.drive.lag * changed.device.simulation.factors.gantry_lag;
     disturbance = [&variant, lag](double time_s, VectorP& dq_p) {
       shake(variant.vibration, lag, time_s, dq_p);
     };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hg/simulator/person/hand.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/free_twin.h"
 #include "hg/studies/haptify/benchmark.h"
 #include "hg/studies/haptify/free_space.h"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/decay.h"
 
 namespace hg::haptify {

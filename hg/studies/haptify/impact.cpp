@@ -56,7 +56,7 @@ std::size_t contact_of(const Played& played, const ImpactConfig& config) {
 }
 
 // From the contact to the deepest point.
-double braking_of(const rendering::DeviceModel& device, std::span<const Instant> braking) {
+double braking_of(const DeviceModel& device, std::span<const Instant> braking) {
   const Instant& first = braking.front();
   rendering::Motion motion = {first.q_p, first.dq_p, first.q_m, first.dq_m};
   for (const Instant& now : braking) motion.w_H += now.w_H / static_cast<double>(braking.size());
@@ -121,7 +121,7 @@ Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& conf
     }
     result.peak_force = std::max(result.peak_force, now.surface.norm());
     result.felt_force = std::max(result.felt_force, std::abs(now.w_H[kAhead]));
-    const double work = now.contact_power / hit.device.rate_Hz;
+    const double work = now.contact_power / hit.device.model.rate_Hz;
     (work < 0.0 ? result.energy_in : result.energy_out) += std::abs(work);
   }
   result.braking =

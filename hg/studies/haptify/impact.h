@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 namespace hg::haptify {
 

@@ -20,9 +20,9 @@ config::Scenario prepared(const config::Scenario& scenario, const ImpedanceConfi
                           const ImpedanceCase& what) {
   config::Scenario pushed = scenario;
   if (what.is_rigid) studies::set_free_twin(pushed, config.rigid);
-  config::Device& device = pushed.device;
+  config::SimulatedDevice& device = pushed.device;
   device.control.method = what.is_modal ? tracking::Method::kModal : tracking::Method::kMotorPd;
-  if (!what.has_friction) studies::take_friction(device.control);
+  if (!what.has_friction) studies::take_friction(device.model);
   if (what.is_rigid) device.control.error_max = kInfinity;  // the deflection is what is measured
   if (what.is_blind) {
     // Nor the contradiction of a blind sensor and torques

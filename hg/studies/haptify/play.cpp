@@ -64,7 +64,7 @@ Played play(const config::Scenario& scenario, const Disturbance& disturbance) {
          .p_B_E = record.T_B_E.p,
          .p_ref = record.T_B_H.p,
          .surface = record.contact.force,
-         .contact_power = contact_power(record, 1.0 / scenario.device.rate_Hz),
+         .contact_power = contact_power(record, 1.0 / scenario.device.model.rate_Hz),
          .q_p = truth.q_p,
          .dq_p = truth.dq_p,
          .q_m = truth.q_m,

@@ -109,7 +109,7 @@ Response measure_response(const config::Scenario& scenario, const ResponseConfig
   const Played played = play(pushed);
   Response result = {.failure = played.failure};
   if (!played.failure.empty() || played.instants.empty()) return result;
-  const double rate_Hz = pushed.device.rate_Hz;
+  const double rate_Hz = pushed.device.model.rate_Hz;
   const Eigen::Vector3d direction = played.instants.front().T_B_H.R.col(axis);
   for (const Spell& spell : plan.spells) {
     const auto counted = part(played, spell.begin_s, spell.end_s, rate_Hz);
@@ -173,7 +173,7 @@ ForceResponse measure_force_response(const config::Scenario& scenario, const Res
   config::Scenario driven = instrument(scenario, config, script, seed);
   driven.script.hand = person::hand(person::HandPreset::kStiff);
   driven.script.hand.tremor_rms = 0.0;
-  const double rate_Hz = driven.device.rate_Hz;
+  const double rate_Hz = driven.device.model.rate_Hz;
   driven.changes = reference_force(config, plan, axis, driven.script.script.grasp_s, rate_Hz);
   const Played played = play(driven);
   ForceResponse result = {.failure = played.failure};
@@ -213,7 +213,7 @@ Latency measure_latency(const config::Scenario& scenario, const ResponseConfig& 
                              .value = config.step_force});
   script.duration_s = kPause + 0.5 + config.watched_s;
   const config::Scenario pushed = instrument(scenario, config, script, seed);
-  const double rate_Hz = pushed.device.rate_Hz;
+  const double rate_Hz = pushed.device.model.rate_Hz;
   const Played played = play(pushed);
   Latency result = {.failure = played.failure};
   if (!played.failure.empty() || played.instants.empty()) return result;

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/simulator/person/script.h"
 
 namespace hg::haptify {

@@ -4,20 +4,21 @@
 #include <utility>
 #include <vector>
 
-#include "hg/controller/rendering/device_model.h"
+#include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 
 namespace hg::haptify {
 namespace {
 
 // Joints and virtual joints of a posture (gantry first) that stand at a limit beyond which the
 // handle would go farther along `axis`, to the side of the sign of `side`.
-std::vector<std::pair<std::string, double>> binding_limits(const rendering::DeviceModel& model,
+std::vector<std::pair<std::string, double>> binding_limits(const DeviceModel& model,
                                                            const Eigen::VectorXd& q, int axis,
                                                            double side) {
   constexpr double kNear = 0.02;   // rad
   constexpr double kMoves = 1e-3;  // m/rad; what moves it less does not end its way
-  model::Chain chain = model.chain;
-  chain.update(q, Eigen::VectorXd::Zero(chain.nv()));
+  model::ChainData chain(model.chain);
+  chain.update(q, Eigen::VectorXd::Zero(chain.model().nv()));
   const Eigen::VectorXd gain =
       side * chain.jacobian(model.handle).row(axis).tail(model.n_m).transpose();
   const Eigen::VectorXd arm = q.tail(model.n_m);
@@ -32,7 +33,7 @@ std::vector<std::pair<std::string, double>> binding_limits(const rendering::Devi
     add(model.chain.joints()[joint].name, model.joint_limits[static_cast<std::size_t>(i)], arm[i],
         gain[i], -gain[i]);
   }
-  for (const rendering::VirtualJoint& joint : model.virtual_joints) {
+  for (const VirtualJoint& joint : model.virtual_joints) {
     const Eigen::VectorXd gains = joint.weights.cwiseProduct(gain);
     add(joint.name, joint.limits, joint.weights.dot(arm), gains.maxCoeff(), -gains.minCoeff());
   }
@@ -45,8 +46,8 @@ Eigen::VectorXd farthest(const config::Device& device, const ShapeConfig& config
                          std::uint64_t seed, int axis, double side) {
   checks::Random random(seed);
   const checks::JointRanges ranges = checks::joint_ranges(device);
-  model::Chain chain = device.model.chain;
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
+  model::ChainData chain(device.model.chain);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.model().nv());
   Eigen::VectorXd best;
   double most = 0.0;
   for (int i = 0; i < config.postures; ++i) {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/simulator/person/hand.h"
 #include "hg/studies/decay.h"
 #include "hg/studies/haptify/play.h"

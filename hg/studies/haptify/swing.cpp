@@ -20,7 +20,7 @@ constexpr double kMass = 5.0;   // kg, of which nothing is felt: it turns about 
 constexpr double kRange = 1.0;  // rad to either side: never met
 
 // A body that turns about the vertical through p_B_hinge, with the handle at T_B_H when q = 0.
-model::Chain hinge(double inertia, const Pose& T_B_hinge, const Pose& T_B_H) {
+model::ChainModel hinge(double inertia, const Pose& T_B_hinge, const Pose& T_B_H) {
   const std::string text = fmt::format(
       R"(<robot name="hinge"><link name="base"/>
 <joint name="hinge" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
@@ -29,7 +29,7 @@ model::Chain hinge(double inertia, const Pose& T_B_hinge, const Pose& T_B_H) {
 <inertia ixx="{3}" iyy="{3}" izz="{3}" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>)",
       -kRange, kRange, kMass, inertia);
   const model::Tool handle = {.link = "arm", .T_link_handle = inverse(T_B_hinge) * T_B_H};
-  return model::Chain::from_urdf_text(text, "hinge", {.T_B_root = T_B_hinge, .tool = handle});
+  return model::ChainModel::from_urdf_text(text, "hinge", {.T_B_root = T_B_hinge, .tool = handle});
 }
 
 config::Scenario prepared(const config::Scenario& scenario, const SwingConfig& config,
@@ -90,7 +90,7 @@ Swing measure_swing(const config::Scenario& scenario, const SwingConfig& config,
     angle.push_back(std::atan2(arm.y(), arm.x()));
   }
   const double omega = std::sqrt(stiffness / config.inertia);
-  return {.true_handle = oscillation_of(angle, config.swings, swung.device.rate_Hz),
+  return {.true_handle = oscillation_of(angle, config.swings, swung.device.model.rate_Hz),
           .ideal_Hz = omega / (2.0 * kPi),
           .ideal_damping = config.damping / (2.0 * omega * config.inertia),
           .failure = played.failure};

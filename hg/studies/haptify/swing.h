@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 namespace hg::haptify {
 

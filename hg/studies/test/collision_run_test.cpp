@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/safety/collision/guard.h"
 #include "hg/core/stacked.h"
 #include "hg/studies/changes.h"
@@ -22,8 +22,8 @@ collision::Shape column_at(double x, double y) {
 }
 
 void watch(config::Device& device) {
-  std::vector<Interval> range(device.prepositioning.q_limits.begin(),
-                              device.prepositioning.q_limits.begin() + device.model.n_p);
+  std::vector<Interval> range(device.model.gantry_range.begin(),
+                              device.model.gantry_range.begin() + device.model.n_p);
   for (const auto& joint : device.model.joint_limits) range.push_back({joint.q_min, joint.q_max});
   device.collision.pairs =
       collision::choose_pairs(device.collision.shapes, device.model.chain, range,
@@ -81,7 +81,7 @@ class TrueDistance {
   }
 
   collision::Config config_;
-  model::Chain chain_;
+  model::ChainData chain_;
   std::vector<collision::Distance> distances_;
 };
 

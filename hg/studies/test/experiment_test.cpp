@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/error.h"
 #include "hg/signals/drive_model.h"
 #include "hg/studies/changes.h"
@@ -46,20 +46,20 @@ TEST(SetFreeTwin, ChangesMassAndDampingAndNothingElse) {
   const FreeTwin shipped = free_twin_of(scenario);
   EXPECT_DOUBLE_EQ(shipped.mass, 6.0);
   EXPECT_DOUBLE_EQ(shipped.damping, 4.0);
-  model::Chain before = scenario.twin.model.chain;
+  model::ChainData before(scenario.twin.model.chain);
   set_free_twin(scenario, {.mass = 2.5, .damping = 7.0});
   EXPECT_DOUBLE_EQ(free_twin_of(scenario).mass, 2.5);
   EXPECT_DOUBLE_EQ(free_twin_of(scenario).damping, 7.0);
   EXPECT_DOUBLE_EQ(scenario.twin.model.dofs[3].damping, 0.1);  // angular
 
-  model::Chain after = scenario.twin.model.chain;
+  model::ChainData after(scenario.twin.model.chain);
   const VectorA at_rest = VectorA::Zero(6);
   before.update(scenario.twin.model.q_start, at_rest);
   after.update(scenario.twin.model.q_start, at_rest);
   EXPECT_TRUE(after.M().bottomRightCorner(3, 3).isApprox(before.M().bottomRightCorner(3, 3)));
   EXPECT_TRUE(after.gravity().isZero());
   EXPECT_TRUE(after.pose(scenario.twin.model.end_effector)
-                  .p.isApprox(before.pose(before.frame("handle")).p));
+                  .p.isApprox(before.pose(before.model().frame("handle")).p));
 }
 
 TEST(SetFreeTwin, RefusesOtherTwins) {

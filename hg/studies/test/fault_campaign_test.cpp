@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/fault_campaign.h"
 
 namespace hg::studies {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/player.h"
 #include "hg/studies/stability_map.h"
 

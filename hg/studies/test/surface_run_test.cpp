@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/scenario/start_posture.h"
 #include "hg/simulator/person/hand.h"
 #include "hg/studies/player.h"

@@ -13,6 +13,7 @@
 #include "hg/core/error.h"
 #include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::tuning {
 namespace {
@@ -118,27 +119,28 @@ class Period {
          const person::HandImpedance& hand, const VectorXd& q)
       : body_(body),
         dampers_(dampers_of(body)),
-        config_(without_friction(device.loop.config)),
+        config_(device.loop.config),
+        model_(without_friction(device.loop.device)),
         plant_(plant),
-        dt_(config_.dt),
+        dt_(model_.dt()),
         command_delay_(plant.loop.latency, dt_),
         observers_(device.loop.filters, dt_),
         average_(std::max(1, rounded_groups(device.wrench.average_s))),
         delay_(rounded_groups(device.wrench.delay_s)),
-        layout_(device.loop.n_m, command_delay_.slots(), average_ + delay_),
-        control_(config_, device.loop.chain, device.loop.n_p, device.loop.n_m, device.loop.handle) {
+        layout_(model_.n_m, command_delay_.slots(), average_ + delay_),
+        control_(config_, model_) {
     if (layout_.size > kMostStates) {
       throw SetupError("the loop around the handle has " + std::to_string(layout_.size) +
                        " states with this rate, latency and delay of the wrench, at most " +
                        std::to_string(kMostStates) + " are computed");
     }
-    model::Chain chain = device.loop.chain;
+    model::ChainData chain(model_.chain);
     const VectorXd at_rest = VectorXd::Zero(q.size());
     chain.update(q, at_rest);
     const int n = layout_.n;
-    J_ = chain.jacobian(device.loop.handle).rightCols(n);
+    J_ = chain.jacobian(model_.handle).rightCols(n);
     to_joints_ = LeastSquares(J_).pseudo_inverse();
-    R_B_H_ = chain.pose(device.loop.handle).R;
+    R_B_H_ = chain.pose(model_.handle).R;
     hand_ = matrices_of(hand, R_B_H_);
     K_.resize(n);
     D_.resize(n);
@@ -264,14 +266,14 @@ class Period {
 
  private:
   // friction is removed, and presliding friction does not slip, its stiffness being the same
-  static tracking::Config without_friction(tracking::Config config) {
+  static DeviceModel without_friction(DeviceModel device) {
     constexpr double kFar = 1e3;
-    for (ActuatorModel& actuator : config.actuators) {
+    for (ActuatorModel& actuator : device.actuators) {
       actuator.presliding *= kFar;
       actuator.coulomb_friction *= has_presliding(actuator) ? kFar : 0.0;
       actuator.load_friction = 0.0;
     }
-    return config;
+    return device;
   }
 
   int rounded_groups(double seconds) const {
@@ -313,7 +315,7 @@ class Period {
 
   // The controller at rest, the springs carrying `weight`.
   void start_control(const VectorXd& q, const VectorM& weight) {
-    robot_ = tracking::standing(config_.actuators, q, weight);
+    robot_ = tracking::standing(model_.actuators, q, weight);
     q_m_ = robot_.q_m;
     const ReferenceState rest = tracking::standing_reference(robot_);
     started_ = control_.start();
@@ -338,6 +340,7 @@ class Period {
   Body body_;
   Dampers dampers_;
   tracking::Config config_;
+  DeviceModel model_;
   tracking::TruePlant plant_;
   double dt_;
   tracking::CommandDelay command_delay_;
@@ -380,7 +383,7 @@ HandleLoop linearise(const Device& device, const tracking::TruePlant& plant, con
                      .B_motor = MatrixXd(at.size, n),
                      .B_noise = MatrixXd(at.size, kNoises + 3 * n),
                      .C = MatrixXd::Zero(12, at.size),
-                     .period_s = device.loop.config.dt};
+                     .period_s = device.loop.device.dt()};
   for (int i = 0; i < at.size; ++i) {
     const VectorXd one = unit_of[i] * VectorXd::Unit(at.size, i);
     loop.A.col(i) = (period.advance(one, {}) - rest) / unit_of[i];

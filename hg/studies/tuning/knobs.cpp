@@ -50,7 +50,7 @@ double most_of(const Knob& knob, const Device& device) {
                     tracking::largest_rotor_pole(config.loop.latency + config.loop.current_lag));
   }
   if (knob.key == "flatness_Hz") {
-    return std::min(knob.most, 0.8 * tracking::largest_flatness_Hz(1.0 / config.dt));
+    return std::min(knob.most, 0.8 * tracking::largest_flatness_Hz(device.loop.device.rate_Hz));
   }
   return knob.most;
 }

@@ -13,17 +13,17 @@
 namespace hg::tuning {
 namespace {
 
-Deviation late(const tracking::Config& believed) {
+Deviation late(const tracking::Loop& believed) {
   constexpr double kMore = 1.5;
-  tracking::TruePlant plant = {believed.actuators, believed.loop};
+  tracking::TruePlant plant = {believed.device.actuators, believed.config.loop};
   plant.loop.latency *= kMore;
   return {fmt::format("latency x {:g}", kMore), plant};
 }
 
 }  // namespace
 
-std::vector<Deviation> deviations(const tracking::Config& believed) {
-  const tracking::TruePlant as_believed = {believed.actuators, believed.loop};
+std::vector<Deviation> deviations(const tracking::Loop& believed) {
+  const tracking::TruePlant as_believed = {believed.device.actuators, believed.config.loop};
   std::vector<Deviation> all = {{"as believed", as_believed}};
   for (const double factor : {0.75, 1.25}) {
     tracking::TruePlant rotors = as_believed, springs = as_believed, links = as_believed;
@@ -38,23 +38,23 @@ std::vector<Deviation> deviations(const tracking::Config& believed) {
   return all;
 }
 
-std::vector<Deviation> deviations_in_hand(const tracking::Config& believed) {
-  const tracking::TruePlant as_believed = {believed.actuators, believed.loop};
+std::vector<Deviation> deviations_in_hand(const tracking::Loop& believed) {
+  const tracking::TruePlant as_believed = {believed.device.actuators, believed.config.loop};
   constexpr double kLighter = 0.65;
   return {{"as believed", as_believed, 1.0, kLighter},
           late(believed),
           {"torques at their bounds", as_believed, 0.5, kLighter}};
 }
 
-std::vector<Deviation> deviations_in_friction(const tracking::Config& believed) {
+std::vector<Deviation> deviations_in_friction(const tracking::Loop& believed) {
   std::vector<Deviation> all;
-  if (std::ranges::none_of(believed.actuators, has_presliding)) return all;
+  if (std::ranges::none_of(believed.device.actuators, has_presliding)) return all;
   for (const double real : {0.5, 1.0, 1.25}) {
     for (const double share : {0.5, 1.0, 1.25}) {
-      tracking::TruePlant plant = {believed.actuators, believed.loop};
-      plant.bristles.resize(static_cast<Eigen::Index>(believed.actuators.size()));
+      tracking::TruePlant plant = {believed.device.actuators, believed.config.loop};
+      plant.bristles.resize(static_cast<Eigen::Index>(believed.device.actuators.size()));
       for (Eigen::Index i = 0; i < plant.bristles.size(); ++i) {
-        plant.bristles[i] = real * presliding_stiffness(believed.actuators[index(i)]);
+        plant.bristles[i] = real * presliding_stiffness(believed.device.actuators[index(i)]);
       }
       all.push_back({.what = fmt::format("bristles x {:g}, fed forward x {:g}", real, share * real),
                      .plant = plant,
@@ -80,7 +80,7 @@ std::vector<Grasp> grasps(const Body& body) {
   return all;
 }
 
-Demands::Demands(const tracking::Config& believed, const Body& body,
+Demands::Demands(const tracking::Loop& believed, const Body& body,
                  std::vector<Eigen::VectorXd> postures)
     : body_(body),
       deviations_(deviations(believed)),
@@ -111,7 +111,7 @@ double Demands::radius(const Device& device, const Case& one) const {
   const Deviation& real = deviation(one);
   const Eigen::VectorXd& q = postures_[one.posture];
   const tracking::Config& config = device.loop.config;
-  const double scale = 1e-3 / config.dt;
+  const double scale = 1e-3 / device.loop.device.dt();
   if (one.grasp < 0) {
     return std::pow(tracking::spectral_radius(device.loop, q, config.loop.latency, real.plant),
                     scale);

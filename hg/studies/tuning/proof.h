@@ -19,17 +19,17 @@ struct Deviation {
 
 /// Deviations without a hand: none; rotors, springs and links of 0.75 and 1.25 times the believed
 /// value; each separately, as in deviations_in_hand().
-std::vector<Deviation> deviations(const tracking::Config& believed);
+std::vector<Deviation> deviations(const tracking::Loop& believed);
 
 /// Deviations in a hand: none; 1.5 times the latency; torques that follow half as fast. The last
 /// occurs when motors are at their peak (follow_torque() in control/joint_control.cpp) and can make
 /// a stable hand oscillate for ever.
-std::vector<Deviation> deviations_in_hand(const tracking::Config& believed);
+std::vector<Deviation> deviations_in_hand(const tracking::Loop& believed);
 
 /// Deviations in joints with presliding: the friction has not slipped, with a stiffness of 0.5, 1
 /// and 1.25 times the believed one; the feedforward is 0.5 to 1.25 times as stiff as the friction.
 /// In hands, with the body itself. Empty for a device without presliding.
-std::vector<Deviation> deviations_in_friction(const tracking::Config& believed);
+std::vector<Deviation> deviations_in_friction(const tracking::Loop& believed);
 
 /// A hand that holds the handle of a body.
 struct Grasp {
@@ -61,8 +61,7 @@ inline constexpr double kFrictionRadius = 1.0;
 /// All cases that a torque loop must tolerate.
 class Demands {
  public:
-  Demands(const tracking::Config& believed, const Body& body,
-          std::vector<Eigen::VectorXd> postures);
+  Demands(const tracking::Loop& believed, const Body& body, std::vector<Eigen::VectorXd> postures);
 
   const std::vector<Eigen::VectorXd>& postures() const { return postures_; }
   /// Whether the case is one of deviations_in_friction().

@@ -156,7 +156,7 @@ class Search {
 }  // namespace
 
 Demands demands_of(const TuningProblem& problem) {
-  return {problem.device.loop.config, problem.body, problem.postures};
+  return {problem.device.loop, problem.body, problem.postures};
 }
 
 Figures figures_of(const TuningProblem& problem, const Device& device) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "hg/config/control_cycle.h"
 #include "hg/core/error.h"
 #include "hg/core/index.h"
 #include "hg/scenario/assembly.h"
@@ -16,7 +17,7 @@ double rounding(double step) { return step / std::sqrt(12.0); }
 
 }  // namespace
 
-Device device_of(const config::Device& device) {
+Device device_of(const config::SimulatedDevice& device) {
   const auto refuse = [&](const std::string& why) {
     throw SetupError(fmt::format(
         "{}: {}", device.sources.empty() ? device.name : device.sources.front().name, why));
@@ -44,13 +45,13 @@ Device device_of(const config::Device& device) {
         "tune weighs what is felt against the noise of the force/torque sensor, and there is "
         "none: give 'simulation:' a file with sensors.wrench_sensor.noise_N_per_sqrt_Hz");
   }
-  return {.loop = scenario::torque_loop(device),
+  return {.loop = config::torque_loop(device),
           .wrench = {.average_s = sensor.filter.average,
                      .delay_s = sensor.filter.delay,
                      .low_pass_Hz = device.estimation.wrench.low_pass_Hz}};
 }
 
-Noise noise_of(const config::Device& device) {
+Noise noise_of(const config::SimulatedDevice& device) {
   const simulator::SensorsConfig& sensors = device.simulation.sensors;
   const Payload& payload = device.estimation.wrench.payload;
   const double accelerometer = sensors.accelerometer.noise * payload.mass;
@@ -63,24 +64,24 @@ Noise noise_of(const config::Device& device) {
     least_ratio = device.simulation.gear_ratio.minCoeff();
   noise.motor_encoder = rounding(sensors.motor_encoder.resolution) / least_ratio;
   for (int i = 0; i < device.model.n_m; ++i) {
-    noise.joint[i] = sensors.torque.noise * device.control.actuators[index(i)].torque_max;
+    noise.joint[i] = sensors.torque.noise * device.model.actuators[index(i)].torque_max;
   }
   return noise;
 }
 
-Eigen::VectorXd unexpected_friction(const config::Device& device) {
+Eigen::VectorXd unexpected_friction(const config::SimulatedDevice& device) {
   constexpr double kShare = 0.3;
   Eigen::VectorXd friction(device.model.n_m);
   for (int i = 0; i < device.model.n_m; ++i) {
-    friction[i] = kShare * device.control.actuators[index(i)].coulomb_friction;
+    friction[i] = kShare * device.model.actuators[index(i)].coulomb_friction;
   }
   return friction;
 }
 
-tracking::TruePlant simulated(const config::Device& device) {
+tracking::TruePlant simulated(const config::SimulatedDevice& device) {
   const config::RealityFactors& factors = device.simulation.factors;
-  tracking::TruePlant plant = {device.control.actuators,
-                               config::actual(device.control.loop, factors), factors.mass};
+  tracking::TruePlant plant = {device.model.actuators, config::actual(device.control.loop, factors),
+                               factors.mass};
   for (ActuatorModel& actuator : plant.actuators) actuator = config::actual(actuator, factors);
   return plant;
 }

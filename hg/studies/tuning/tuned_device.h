@@ -1,7 +1,7 @@
 /// Inputs of tuning from a device file.
 #pragma once
 
-#include "hg/config/device.h"
+#include "hg/config/simulation/simulation.h"
 #include "hg/studies/tuning/handle_loop.h"
 
 namespace hg::tuning {
@@ -9,15 +9,15 @@ namespace hg::tuning {
 /// The loop of a device with elastic joints, with the delay of the wrench that its simulation has.
 /// Throws SetupError for a device that cannot be tuned: one whose drives follow positions, with
 /// fewer than six joints, without an accelerometer, or whose sensors have no noise.
-Device device_of(const config::Device& device);
+Device device_of(const config::SimulatedDevice& device);
 
 /// Sensor noise of the simulation.
-Noise noise_of(const config::Device& device);
+Noise noise_of(const config::SimulatedDevice& device);
 
 /// Unmodelled friction: assumed share of the friction in the device file, Nm.
-Eigen::VectorXd unexpected_friction(const config::Device& device);
+Eigen::VectorXd unexpected_friction(const config::SimulatedDevice& device);
 
 /// Reality of the simulation, which differs from the controller's model.
-tracking::TruePlant simulated(const config::Device& device);
+tracking::TruePlant simulated(const config::SimulatedDevice& device);
 
 }  // namespace hg::tuning

@@ -40,8 +40,8 @@ inline constexpr std::string_view kCartesianUrdf = R"(<robot name="cartesian">
 inline config::Device cartesian_device(const Pose& T_B_root = {}) {
   config::Device device = {
       .name = "cartesian",
-      .model = {.chain = model::Chain::from_urdf_text(kCartesianUrdf, "cartesian.urdf",
-                                                      {.T_B_root = T_B_root})}};
+      .model = {.chain = model::ChainModel::from_urdf_text(kCartesianUrdf, "cartesian.urdf",
+                                                           {.T_B_root = T_B_root})}};
   device.model.n_m = 6;
   device.model.handle = device.model.chain.frame("handle");
   for (const model::Joint& joint : device.model.chain.joints()) {

@@ -432,7 +432,7 @@ TEST(Pair, TwinThatIsTooMuchWorkForTheRateIsFound) {
                                                 std::to_string(dofs) + "\n"}});
     config::Device device = shipped_device();
     device.rendering.law = law;
-    config::set_rate(device, rate_Hz);
+    device.model.rate_Hz = rate_Hz;
     const Findings findings = inspect(device, config::load_twin("f.yaml", reader));
     const Finding* finding = find(findings, "urdf", "degrees of freedom");
     return finding == nullptr ? "" : finding->what;

@@ -68,7 +68,7 @@ TEST(Stiffness, SaysTheLimitsAndHowTheyCome) {
   }
   config::Scenario unlimited = walk();
   unlimited.device.model.cartesian_limits.clear();
-  unlimited.device.model.motors.clear();
+  unlimited.device.model.has_torque_limits = false;
   EXPECT_NE(found(unlimited)[0].what.find("neither motors nor"), std::string::npos);
 }
 

@@ -12,8 +12,8 @@ namespace {
 
 constexpr SurveyOptions kFew = {.seed = 3, .postures = 2'000, .positions = 100'000};
 
-rendering::CartesianLimit box(const rendering::DeviceModel& model) {
-  rendering::CartesianLimit limit = {.name = "hand", .frame = model.handle, .axes = {}};
+CartesianLimit box(const DeviceModel& model) {
+  CartesianLimit limit = {.name = "hand", .frame = model.handle, .axes = {}};
   limit.axes[0] = {.q_min = 0.0, .q_max = 4.0, .dq_max = 1.0, .ddq_max = 5.0};
   limit.axes[1] = {.q_min = 0.0, .q_max = 1.0, .dq_max = 1.0, .ddq_max = 5.0};
   limit.axes[2] = {.q_min = 0.0, .q_max = 1.0, .dq_max = 1.0, .ddq_max = 5.0};

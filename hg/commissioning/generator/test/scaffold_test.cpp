@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hg/commissioning/generator/postures.h"
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/test/message_of.h"
 #include "hg/core/test/temporary_folder.h"
 #include "hg/scenario/start_posture.h"
@@ -28,7 +28,7 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
     EXPECT_FALSE(Interval({range.q_min, range.q_max}).contains(0.0)) << i;
     EXPECT_TRUE(Interval({range.q_min, range.q_max}).contains(device.model.posture[i])) << i;
   }
-  model::Chain chain = device.model.chain;
+  model::ChainModel chain = device.model.chain;
   EXPECT_GT(dexterity(chain, device.model.handle, 0, device.model.posture), 0.05);
 }
 
@@ -48,7 +48,7 @@ TEST(Scaffold, LeadingPrismaticJointsAreTheGantry) {
 
 TEST(Scaffold, SingularValuesOfTheGiantAreThoseOfItsDeterminant) {
   // [HANDBOOK] 2.4: det J = -L1 L2 L4 sin q2 sin q4 sin(q4 + q5)
-  const model::Chain chain = read_part(kGiant);
+  const model::ChainModel chain = read_part(kGiant);
   const std::vector<Interval> turns(8, Interval{-3.0, 3.0});
   const auto found = singular_values(chain, chain.frame("handle"), 2, turns);
   const auto contains = [&](int joint, int other, double value) {
@@ -72,7 +72,7 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
     config::Scenario scenario{
         .title = {},
         .description = {},
-        .device = config::load_device(device),
+        .device = config::load_simulated_device(device),
         .twin = config::load_twin(folder.write(
             "gate.yaml", twin_yaml(kGate, folder.path(), config::load_device(device)))),
         .script = {},
@@ -81,7 +81,7 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
         .changes = {},
         .sources = {},
         .places = {}};
-    EXPECT_NO_THROW(scenario::find_start(scenario)) << device;
+    EXPECT_NO_THROW(scenario::find_start(scenario.device, scenario.twin)) << device;
     EXPECT_EQ(scenario.twin.model.dofs[0].limits.q_max, 1.2);
     EXPECT_GT(scenario.twin.model.dofs[0].damping, 0.0);
 

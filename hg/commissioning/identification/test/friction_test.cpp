@@ -52,7 +52,7 @@ FrictionTrace move(const ActuatorModel& a, const simulator::JointEffects& effect
                    double duration_s) {
   simulator::PlantConfig config = simulator::one_joint_config(a);
   config.effects = {effects};
-  const model::Chain chain = simulator::one_joint(2.5);
+  const model::ChainModel chain = simulator::one_joint(2.5);
   simulator::Plant plant(config, chain, chain.frame("tip"));
   simulator::PlantInput input = simulator::idle(config, false);
   FrictionTrace trace;

@@ -11,11 +11,12 @@
 namespace hg::identification {
 namespace {
 
-tracking::Config one_joint() {
-  tracking::Config config;
-  config.actuators = {reference_actuators().front()};
-  config.loop.current_lag = 0.0;
-  return config;
+constexpr double kNoLag = 0.0;
+
+DeviceModel one_joint() {
+  DeviceModel device{.chain = model::ChainModel::free_body({})};
+  device.actuators = {reference_actuators().front()};
+  return device;
 }
 
 // Sample `k` of a drive that is on and answers the command of two samples before.
@@ -32,7 +33,7 @@ Sample sample(std::uint64_t k) {
 }
 
 TEST(FrictionTraces, TakesTheCommandThatWasAtWork) {
-  FrictionTraces traces(one_joint());
+  FrictionTraces traces(one_joint(), kNoLag);
   for (std::uint64_t k = 1; k <= 1000; ++k) traces.add(sample(k));
   const FrictionTrace& joint = traces.joints()[0];
   EXPECT_EQ(traces.samples(), 1000u);
@@ -47,9 +48,7 @@ TEST(FrictionTraces, TakesTheCommandThatWasAtWork) {
 }
 
 TEST(FrictionTraces, FollowsTheCurrent) {
-  tracking::Config config = one_joint();
-  config.loop.current_lag = 2e-3;
-  FrictionTraces traces(config);
+  FrictionTraces traces(one_joint(), 2e-3);
   for (std::uint64_t k = 1; k <= 1000; ++k) {
     Sample s = sample(k);
     s.command.tau_m[0] = k <= 900 ? 0.0 : 10.0;
@@ -61,7 +60,7 @@ TEST(FrictionTraces, FollowsTheCurrent) {
 }
 
 TEST(FrictionTraces, CutsWhereSamplesAreLostOrDrivesAreOff) {
-  FrictionTraces traces(one_joint());
+  FrictionTraces traces(one_joint(), kNoLag);
   for (std::uint64_t k = 1; k <= 2000; ++k) {
     if (k == 700) continue;
     Sample s = sample(k);
@@ -72,7 +71,7 @@ TEST(FrictionTraces, CutsWhereSamplesAreLostOrDrivesAreOff) {
 }
 
 TEST(FrictionTraces, UnwrapsJointsWithoutLimits) {
-  FrictionTraces traces(one_joint());
+  FrictionTraces traces(one_joint(), kNoLag);
   for (std::uint64_t k = 1; k <= 1000; ++k) {
     Sample s = sample(k);
     s.sensors.theta_m[0] = std::remainder(0.01 * static_cast<double>(k), 2.0 * std::numbers::pi);
@@ -83,7 +82,9 @@ TEST(FrictionTraces, UnwrapsJointsWithoutLimits) {
 }
 
 TEST(FrictionTraces, RefusesDrivesThatFollowPositions) {
-  EXPECT_THROW(FrictionTraces{tracking::Config{}}, SetupError);
+  DeviceModel without = one_joint();
+  without.actuators.clear();
+  EXPECT_THROW(FrictionTraces(without, kNoLag), SetupError);
 }
 
 }  // namespace

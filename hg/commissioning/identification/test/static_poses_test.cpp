@@ -6,19 +6,20 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/device.h"
+#include "hg/config/simulation/simulation.h"
 #include "hg/core/error.h"
 
 namespace hg::identification {
 namespace {
 
-const config::Device& reference_device() {
-  static const config::Device device = config::load_device("models/haptic_giant/device.yaml");
+const config::SimulatedDevice& reference_device() {
+  static const config::SimulatedDevice device =
+      config::load_simulated_device("models/haptic_giant/device.yaml");
   return device;
 }
 
 TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
-  const config::Device& device = reference_device();
+  const config::SimulatedDevice& device = reference_device();
   const std::vector<VectorM> postures = static_postures(device, 12);
   ASSERT_EQ(postures.size(), 12u);
   std::vector<StaticPose> poses;
@@ -31,7 +32,7 @@ TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
     const double sum = device.model.virtual_joints[0].weights.dot(q_m);
     EXPECT_GE(sum, device.model.virtual_joints[0].limits.q_min);
     EXPECT_LE(sum, device.model.virtual_joints[0].limits.q_max);
-    model::Chain chain = device.model.chain;
+    model::ChainData chain(device.model.chain);
     Eigen::VectorXd q = Eigen::VectorXd::Zero(8);
     q.tail(6) = q_m;
     chain.update_poses(q);
@@ -39,7 +40,7 @@ TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
     EXPECT_LT(std::abs(p_B_H.x()), 1.65);
     EXPECT_LT(std::abs(p_B_H.y()), 1.95);
     StaticPose pose;
-    pose.a_S = (chain.pose(device.model.handle).R * device.T_H_S.R).row(2).transpose() * 9.81;
+    pose.a_S = (chain.pose(device.model.handle).R * device.model.T_H_S.R).row(2).transpose() * 9.81;
     poses.push_back(pose);
   }
   EXPECT_LT(identify_payload(poses).condition, 2.0);
@@ -47,7 +48,7 @@ TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
 }
 
 TEST(SimulatedPoses, ShowThePayloadOfTheDevice) {
-  const config::Device& device = reference_device();
+  const config::SimulatedDevice& device = reference_device();
   const Payload& told = device.estimation.wrench.payload;
   ASSERT_GT(told.mass, 0.0);
   std::vector<StaticPose> poses;

@@ -10,11 +10,18 @@
 namespace hg::estimation {
 namespace {
 
-const model::Chain& device_chain() {
-  static const model::Chain chain =
-      model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
-  return chain;
+const DeviceModel& device() {
+  static const DeviceModel device = [] {
+    DeviceModel model{
+        .chain = model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf"),
+        .n_p = 2,
+        .n_m = 6};
+    model.handle = model.chain.frame("handle");
+    return model;
+  }();
+  return device;
 }
+const model::ChainModel& device_chain() { return device().chain; }
 
 SensorFrame sensors_at(const VectorM& q_m) {
   SensorFrame sensors;
@@ -30,9 +37,7 @@ VectorM home() {
   return q;
 }
 
-Estimation make(const Config& config = {}) {
-  return Estimation(config, device_chain(), 2, 6, device_chain().frame("handle"));
-}
+Estimation make(const Config& config = {}) { return {config, device()}; }
 
 TEST(Estimation, CountsTheTurnsOfTheSlipRingJointInBothDirections) {
   Estimation estimation = make();
@@ -51,20 +56,20 @@ TEST(Estimation, CountsTheTurnsOfTheSlipRingJointInBothDirections) {
 }
 
 TEST(Estimation, GivesTheWrenchAtTheHandleInBaseCoordinates) {
-  Config config;
-  config.T_H_S.p = {0.0, 0.0, -0.1};
-  config.T_H_S.R = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  Estimation estimation = make(config);
-  model::Chain chain = device_chain();
+  DeviceModel turned = device();
+  turned.T_H_S.p = {0.0, 0.0, -0.1};
+  turned.T_H_S.R = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  Estimation estimation({}, turned);
+  model::ChainData chain(device_chain());
   Eigen::VectorXd q(8);
   q << 0, 0, home();
   chain.update_kinematics(q, Eigen::VectorXd::Zero(8));
-  const Eigen::Matrix3d R_B_H = chain.pose(chain.frame("handle")).R;
+  const Eigen::Matrix3d R_B_H = chain.pose(chain.model().frame("handle")).R;
 
   const Eigen::Vector3d f_B(5, -3, 2), n_B(0.3, 0.1, -0.2);
   SensorFrame sensors = sensors_at(home());
-  const Eigen::Matrix3d R_S_B = (R_B_H * config.T_H_S.R).transpose();
-  sensors.w_S << R_S_B * f_B, R_S_B * (n_B - (R_B_H * config.T_H_S.p).cross(f_B));
+  const Eigen::Matrix3d R_S_B = (R_B_H * turned.T_H_S.R).transpose();
+  sensors.w_S << R_S_B * f_B, R_S_B * (n_B - (R_B_H * turned.T_H_S.p).cross(f_B));
   State state;
   const RobotState robot = estimation.step(sensors, VectorP::Zero(2), VectorM::Zero(6), state);
   EXPECT_LT((robot.w_H.head<3>() - f_B).norm(), 1e-12);
@@ -73,10 +78,10 @@ TEST(Estimation, GivesTheWrenchAtTheHandleInBaseCoordinates) {
 
 // a drive that follows its model, or has another lag than the observer believes
 double worst_acceleration_error(double true_lag) {
-  const Config config;
-  Estimation estimation = make(config);
+  const double dt = device().dt();
+  Estimation estimation = make();
   State state;
-  DriveModel drive = config.drive;
+  DriveModel drive = device().drive;
   drive.lag = true_lag;
   CommandDelay delay;
   double q = 0.0, dq = 0.0, ddq = 0.0, worst = 0.0;
@@ -86,10 +91,10 @@ double worst_acceleration_error(double true_lag) {
     sensors.q_p[0] = q;
     const RobotState robot = estimation.step(sensors, command, VectorM::Zero(6), state);
     if (k > 500) worst = std::max(worst, std::abs(robot.ddq_p[0] - ddq));
-    command[0] = 0.5 * std::sin(2.0 * std::numbers::pi * 0.25 * k * config.dt);
+    command[0] = 0.5 * std::sin(2.0 * std::numbers::pi * 0.25 * k * dt);
     ddq = drive_acceleration(drive, dq, delay.shift(command[0], 4));
-    q += config.dt * dq + 0.5 * config.dt * config.dt * ddq;
-    dq += config.dt * ddq;
+    q += dt * dq + 0.5 * dt * dt * ddq;
+    dq += dt * ddq;
   }
   return worst;
 }
@@ -147,16 +152,17 @@ TEST(Estimation, FollowsBothSidesOfElasticJointsThroughTurns) {
 }
 
 TEST(Estimation, TakesOffTheWeightByThePoseOfATurnedSensor) {
+  DeviceModel turned = device();
+  turned.T_H_S.R = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
   Config config;
-  config.T_H_S.R = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
   config.wrench.payload = {.mass = 1.18, .com = {0.01, 0.02, 0.03}};
   config.wrench.has_imu = false;
-  Estimation estimation = make(config);
-  model::Chain chain = device_chain();
+  Estimation estimation(config, turned);
+  model::ChainData chain(device_chain());
   Eigen::VectorXd q(8);
   q << 0, 0, home();
   chain.update_poses(q);
-  const Eigen::Matrix3d R_B_S = chain.pose(chain.frame("handle")).R * config.T_H_S.R;
+  const Eigen::Matrix3d R_B_S = chain.pose(chain.model().frame("handle")).R * turned.T_H_S.R;
   SensorFrame sensors = sensors_at(home());
   sensors.w_S =
       payload_wrench(config.wrench.payload, 9.81 * R_B_S.row(2).transpose(), {0, 0, 0}, {0, 0, 0});

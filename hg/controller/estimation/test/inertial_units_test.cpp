@@ -21,9 +21,9 @@ constexpr int kJoints = 8;
 constexpr double kShake = 2.0, kShake_Hz = 20.0;  // rad/s^2 of the arm's joints
 constexpr double kLearning_s = 15.0;
 
-const model::Chain& device_chain() {
-  static const model::Chain chain =
-      model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
+const model::ChainModel& device_chain() {
+  static const model::ChainModel chain =
+      model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
   return chain;
 }
 
@@ -77,7 +77,7 @@ class Machine {
 
   InertialReadings readings(double t) {
     const Joints joints(t);
-    model::Chain chain = chain_;
+    model::ChainData chain(device_chain());
     chain.update_kinematics(joints.q, joints.dq);
     InertialReadings all(6 * static_cast<Eigen::Index>(frames_.size()));
     const Eigen::Vector3d root = chain.pose(frames_.front()).p;
@@ -119,9 +119,10 @@ class Machine {
   const InertialUnits& units() const { return units_; }
 
   // directions of the gantry's axes in the plane
-  Eigen::Matrix2d axes() {
-    chain_.update_kinematics(Joints(0.0).q, Joints(0.0).dq);
-    return chain_.jacobian(chain_.frame("ppu2")).topLeftCorner<2, 2>();
+  Eigen::Matrix2d axes() const {
+    model::ChainData chain(device_chain());
+    chain.update_kinematics(Joints(0.0).q, Joints(0.0).dq);
+    return chain.jacobian(chain.model().frame("ppu2")).topLeftCorner<2, 2>();
   }
   // rms of the accelerations of the arm over `seconds`, by the units over by the reference
   double share_of_error(double seconds) {
@@ -141,7 +142,6 @@ class Machine {
 
  private:
   std::vector<int> frames_;
-  model::Chain chain_ = device_chain();
   InertialUnits units_;
 };
 

@@ -20,19 +20,21 @@ constexpr double kNoGoal = std::numeric_limits<double>::quiet_NaN();
 constexpr auto kSolved = model::haptic_giant::InverseStatus::kSolved;
 constexpr double kSame = 1e-6;  // m and rad, what is asked of the numeric target
 
-const model::Chain& haptic_giant() {
-  static const model::Chain chain =
-      model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
+const model::ChainModel& haptic_giant() {
+  static const model::ChainModel chain =
+      model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
   return chain;
 }
 
-TargetConfig numeric() {
-  TargetConfig config = {.n_p = 2, .n_m = 6, .handle = haptic_giant().frame("handle")};
-  config.goal = VectorM::Constant(6, kNoGoal);
-  config.goal[1] = 0.5 * pi;
-  config.goal[2] = -std::atan2(model::haptic_giant::kL1, model::haptic_giant::kL2);
-  config.range.assign(8, {});
-  return config;
+DeviceModel numeric() {
+  DeviceModel device = {
+      .chain = haptic_giant(), .n_p = 2, .n_m = 6, .handle = haptic_giant().frame("handle")};
+  device.posture = VectorM::Constant(6, kNoGoal);
+  device.posture[1] = 0.5 * pi;
+  device.posture[2] = -std::atan2(model::haptic_giant::kL1, model::haptic_giant::kL2);
+  device.gantry_range.resize(2);
+  device.joint_limits.resize(6);
+  return device;
 }
 
 RobotState gantry_at(double x, double y) {
@@ -55,7 +57,7 @@ TEST(GantryTarget, EqualsTheClosedForm) {
   const auto between = [&](double lb, double ub) {
     return std::uniform_real_distribution<double>(lb, ub)(random);
   };
-  GantryTarget target(numeric(), haptic_giant());
+  GantryTarget target(numeric());
   for (int sample = 0; sample < 100; ++sample) {
     const RobotState robot = gantry_at(between(-1, 1), between(-1, 1));
     Vector6 q_m;
@@ -68,7 +70,7 @@ TEST(GantryTarget, EqualsTheClosedForm) {
 }
 
 TEST(GantryTarget, FollowsAMovingHandAndAMovingGantryWithoutAllocation) {
-  GantryTarget target(numeric(), haptic_giant());
+  GantryTarget target(numeric());
   TargetState state;
   Eigen::Vector2d q_p(0.0, 0.0);
   Vector6 q_m;
@@ -98,7 +100,7 @@ TEST(GantryTarget, FollowsAMovingHandAndAMovingGantryWithoutAllocation) {
 }
 
 TEST(GantryTarget, StaysSaneWhereTheArmIsStretchedOrFolded) {
-  GantryTarget target(numeric(), haptic_giant());
+  GantryTarget target(numeric());
   for (const double q2 : {1e-9, 1e-3, pi - 1e-3}) {
     for (const double s : {1e-9, 1e-3, pi - 1e-9}) {
       Vector6 q_m;
@@ -118,41 +120,44 @@ TEST(GantryTarget, StaysSaneWhereTheArmIsStretchedOrFolded) {
 }
 
 TEST(GantryTarget, KeepsTheRangesOfAllJoints) {
-  TargetConfig config = numeric();
-  config.range[0] = {-0.1, 0.1};
-  config.range[1] = {-0.2, 0.2};
-  config.range[4] = {-0.3, 0.3};  // m3 cannot have its goal, -0.67
-  GantryTarget target(config, haptic_giant());
+  DeviceModel device = numeric();
+  device.gantry_range = {{-0.1, 0.1}, {-0.2, 0.2}};
+  device.joint_limits[2] = {.q_min = -0.3, .q_max = 0.3};  // m3 cannot have its goal, -0.67
+  GantryTarget target(device);
   Vector6 q_m;
   q_m << 0.4, 0.9, 0.1, 1.2, 0.2, 0.1;
   const RobotState robot = gantry_at(0.05, -0.1);
-  model::Chain chain = haptic_giant();
+  model::ChainData chain(haptic_giant());
   const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(8);
   Eigen::VectorXd q(8);
   q << robot.q_p, q_m;
   chain.update_kinematics(q, at_rest);
-  const Pose T_B_H = chain.pose(config.handle);
+  const Pose T_B_H = chain.pose(device.handle);
   TargetState state;
   for (int k = 0; k < 300; ++k) {
     target.step(robot, q_m, state);
     q = state.q;
     chain.update_kinematics(q, at_rest);
-    ASSERT_LT((chain.pose(config.handle).p - T_B_H.p).norm(), 5e-3) << k;
+    ASSERT_LT((chain.pose(device.handle).p - T_B_H.p).norm(), 5e-3) << k;
     for (int i = 0; i < 8; ++i) {
-      const Interval range = config.range[static_cast<std::size_t>(i)];
+      const auto joint = static_cast<std::size_t>(i);
+      const Interval range = i < 2 ? device.gantry_range[joint]
+                                   : Interval{device.joint_limits[joint - 2].q_min,
+                                              device.joint_limits[joint - 2].q_max};
       ASSERT_GE(state.q[i], range.lb - 1e-12) << k << " " << i;
       ASSERT_LE(state.q[i], range.ub + 1e-12) << k << " " << i;
     }
   }
   q = state.q;
   chain.update_kinematics(q, at_rest);
-  EXPECT_LT((chain.pose(config.handle).p - T_B_H.p).norm(), 1e-4);
-  EXPECT_LT(std::abs(q[3] - config.goal[1]), std::abs(q_m[1] - config.goal[1]) - 0.02);  // m2 gains
+  EXPECT_LT((chain.pose(device.handle).p - T_B_H.p).norm(), 1e-4);
+  EXPECT_LT(std::abs(q[3] - device.posture[1]),
+            std::abs(q_m[1] - device.posture[1]) - 0.02);  // m2 gains
 }
 
 // A hand that jumps leaves the posture behind: a new one begins at the device's own.
 TEST(GantryTarget, FindsAHandAgainThatHasJumped) {
-  GantryTarget target(numeric(), haptic_giant());
+  GantryTarget target(numeric());
   Vector6 q_m;
   q_m << 0.4, 0.9, 0.1, 1.2, 0.2, 0.1;
   TargetState state;
@@ -165,14 +170,14 @@ TEST(GantryTarget, FindsAHandAgainThatHasJumped) {
 }
 
 TEST(GantryTarget, WithoutAGantryThereIsNone) {
-  const model::Chain chain = model::Chain::from_urdf_text(
+  const model::ChainModel chain = model::ChainModel::from_urdf_text(
       R"(<robot name="arm"><link name="base"/>
       <joint name="turn" type="revolute"><parent link="base"/><child link="tip"/>
         <axis xyz="0 0 1"/><limit lower="-2" upper="2"/></joint>
       <link name="tip"><inertial><mass value="1"/>
         <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>)",
       "arm.urdf");
-  GantryTarget target({.n_p = 0, .n_m = 1, .handle = 1, .range = {Interval{-2, 2}}}, chain);
+  GantryTarget target({.chain = chain, .n_p = 0, .n_m = 1, .handle = 1, .joint_limits = {{}}});
   TargetState state;
   RobotState robot;
   robot.q_p = VectorP(0);
@@ -180,11 +185,11 @@ TEST(GantryTarget, WithoutAGantryThereIsNone) {
 }
 
 TEST(GantryTarget, RefusesTheClosedFormForOtherDevices) {
-  TargetConfig config = numeric();
-  config.has_closed_form = true;
-  config.n_p = 1;
-  config.n_m = 7;
-  EXPECT_THROW(GantryTarget(config, haptic_giant()), SetupError);
+  DeviceModel device = numeric();
+  device.has_closed_form = true;
+  device.n_p = 1;
+  device.n_m = 7;
+  EXPECT_THROW(GantryTarget{device}, SetupError);
 }
 
 }  // namespace

@@ -15,12 +15,21 @@ namespace {
 
 constexpr double kDt = 1e-3;
 
-Config config() {
-  Config gantry;
-  gantry.n_p = 2;
-  gantry.q_limits = {Interval{-1.40, 1.40}, Interval{-1.60, 1.60}};
-  return gantry;
+constexpr double kGain = Config{}.k_ppu;
+
+const DeviceModel& device() {
+  static const DeviceModel device = [] {
+    DeviceModel model{
+        .chain = model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf"),
+        .n_p = 2,
+        .n_m = 6};
+    model.gantry_range = {Interval{-1.40, 1.40}, Interval{-1.60, 1.60}};
+    return model;
+  }();
+  return device;
 }
+
+Prepositioning rule() { return {{}, device()}; }
 
 // The hand is held at a fixed pose while the gantry moves below it, with the drive of `drive`.
 struct HeldHand {
@@ -30,7 +39,8 @@ struct HeldHand {
   std::array<CommandDelay, 2> delay{};
   double worst_excess = 0.0;
 
-  Command run(const Config& gantry, double seconds) {
+  Command run(const DeviceModel& device, double seconds) {
+    const Prepositioning gantry({}, device);
     Command command;
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
       Vector6 q_m;
@@ -39,13 +49,13 @@ struct HeldHand {
       RobotState robot;
       robot.q_p = q;
       robot.dq_p = dq;
-      command = step(gantry, robot, model::haptic_giant::gantry_target(q, q_m), false);
+      command = gantry.step(robot, model::haptic_giant::gantry_target(q, q_m), false);
       for (int i = 0; i < 2; ++i) {
         const double ddq = drive_acceleration(
             drive, dq[i], delay[static_cast<std::size_t>(i)].shift(command.dq[i], 4));
         q[i] += kDt * dq[i] + 0.5 * kDt * kDt * ddq;
         dq[i] += kDt * ddq;
-        const Interval limits = gantry.q_limits[static_cast<std::size_t>(i)];
+        const Interval limits = device.gantry_range[static_cast<std::size_t>(i)];
         worst_excess = std::max({worst_excess, q[i] - limits.ub, limits.lb - q[i]});
       }
     }
@@ -65,7 +75,7 @@ Pose hand_at(double x, double y) {
 TEST(Prepositioning, BringsJoints2And3ToTheirGoals) {
   HeldHand hand{.drive = {}, .T_B_H = hand_at(0.2, 0.1)};
   hand.q << 0.15, 0.05;
-  hand.run(config(), 6.0);
+  hand.run(device(), 6.0);
   Vector6 q_m;
   ASSERT_EQ(model::haptic_giant::inverse(hand.T_B_H, hand.q, {}, q_m),
             model::haptic_giant::InverseStatus::kSolved);
@@ -74,10 +84,10 @@ TEST(Prepositioning, BringsJoints2And3ToTheirGoals) {
 }
 
 TEST(Prepositioning, StopsAtItsLimitsWhateverTheTarget) {
-  Config gantry = config();
-  gantry.q_limits = {Interval{-0.05, 0.05}, Interval{-0.03, 0.03}};
+  DeviceModel narrow = device();
+  narrow.gantry_range = {Interval{-0.05, 0.05}, Interval{-0.03, 0.03}};
   HeldHand hand{.drive = {}, .T_B_H = hand_at(0.5, -0.4)};
-  const Command last = hand.run(gantry, 4.0);
+  const Command last = hand.run(narrow, 4.0);
   EXPECT_LE(hand.worst_excess, 1e-6);
   EXPECT_NEAR(hand.q[0], 0.05, 1e-3);
   EXPECT_NEAR(hand.q[1], -0.03, 1e-3);
@@ -88,19 +98,19 @@ TEST(Prepositioning, StandsStillWhileTheDeviceIsBlocked) {
   RobotState robot;
   robot.q_p = VectorP::Zero(2);
   const VectorP target = Eigen::Vector2d(0.3, -0.2);
-  EXPECT_GT(step(config(), robot, target, false).dq.norm(), 0.01);
-  EXPECT_EQ(step(config(), robot, target, true).dq.norm(), 0.0);
+  EXPECT_GT(rule().step(robot, target, false).dq.norm(), 0.01);
+  EXPECT_EQ(rule().step(robot, target, true).dq.norm(), 0.0);
 }
 
 TEST(Prepositioning, StopsByItselfBeforeItCarriesAFrameOverItsLimit) {
-  const Config gantry = config();
+  const Prepositioning gantry = rule();
   RobotState robot;
   robot.q_p = Eigen::Vector2d(0.0, 0.0);
   const VectorP target = Eigen::Vector2d(1.0, -1.0);
-  const VectorP free = step(gantry, robot, target, false).dq;
+  const VectorP free = gantry.step(robot, target, false).dq;
   const auto in = [&](double down, double up) {
     const Room room = {VectorP::Constant(2, down), VectorP::Constant(2, up)};
-    return step(gantry, robot, target, false, kInfinity, room).dq;
+    return gantry.step(robot, target, false, kInfinity, room).dq;
   };
   EXPECT_EQ(in(kInfinity, kInfinity), free);
   EXPECT_EQ(in(10.0, 10.0), free) << "far away";
@@ -111,7 +121,9 @@ TEST(Prepositioning, StopsByItselfBeforeItCarriesAFrameOverItsLimit) {
     const VectorP dq = in(left, left);
     for (const double v : {dq[0] - kTakenBack, -dq[1] - kTakenBack}) {
       EXPECT_GT(v, 0.1);
-      EXPECT_LE(v * v / (2.0 * gantry.drive.ddq_max) + v * gantry.drive.tau, left + 1e-12) << left;
+      constexpr double kBraking = Config{}.ddq_max;
+      const double tau = device().drive.dead_time + device().drive.lag + kDt;
+      EXPECT_LE(v * v / (2.0 * kBraking) + v * tau, left + 1e-12) << left;
     }
   }
   for (const double left : {0.0, -0.02}) {
@@ -122,24 +134,25 @@ TEST(Prepositioning, StopsByItselfBeforeItCarriesAFrameOverItsLimit) {
 
 // What the law leaves at its aim is what the rule commands.
 TEST(Prepositioning, TheAimOfTheLawIsTheRule) {
-  const DriveModel drive;
+  const Prepositioning gantry = rule();
   RobotState robot;
   robot.q_p = Eigen::Vector2d(0.1, -0.2);
   robot.dq_p = Eigen::Vector2d(0.03, -0.02);
   robot.ddq_p = Eigen::Vector2d(0.5, 0.2);
-  const Command command = step(config(), robot, Eigen::Vector2d(0.12, -0.21), false);
-  const GantryTask task = accelerations(command, drive, robot, VectorP(0), kDt);
-  const VectorP dq = velocity_for(task.ddq, command, drive, robot);
+  const Command command = gantry.step(robot, Eigen::Vector2d(0.12, -0.21), false);
+  const GantryTask task = gantry.accelerations(command, robot, VectorP(0));
+  const VectorP dq = gantry.velocity_for(task.ddq, command, robot);
   EXPECT_LT((dq - command.dq).cwiseAbs().maxCoeff(), 1e-12);
   for (int i = 0; i < 2; ++i) {
-    EXPECT_NEAR(task.ddq_max[i] - task.ddq_min[i], 2.0 * drive.ddq_max / 60.0, 1e-12);
+    EXPECT_NEAR(task.ddq_max[i] - task.ddq_min[i], 2.0 * device().drive.ddq_max / 60.0, 1e-12);
     EXPECT_NEAR(task.ddq_max[i] + task.ddq_min[i], 2.0 * robot.ddq_p[i], 1e-12);
   }
 }
 
 // A gantry whose drives follow their model, led by the law.
 struct LedGantry {
-  DriveModel drive;
+  Prepositioning rule = prepositioning::rule();
+  DriveModel drive = device().drive;
   RobotState robot;
   std::array<CommandDelay, 2> delay{};
   VectorP last;
@@ -148,9 +161,9 @@ struct LedGantry {
 
   // for one period, towards `q_target`; `choose` is the law
   void step(const VectorP& q_target, const auto& choose) {
-    const Command command = prepositioning::step(config(), robot, q_target, false);
-    last = choose(accelerations(command, drive, robot, last, kDt));
-    const VectorP dq = velocity_for(last, command, drive, robot);
+    const Command command = rule.step(robot, q_target, false);
+    last = choose(rule.accelerations(command, robot, last));
+    const VectorP dq = rule.velocity_for(last, command, robot);
     for (int i = 0; i < 2; ++i) {
       const double arrived = delay[static_cast<std::size_t>(i)].shift(dq[i], 4);
       robot.ddq_p[i] = drive_acceleration(drive, robot.dq_p[i], arrived);
@@ -165,7 +178,7 @@ TEST(Prepositioning, TheDrivesDoWhatTheLawAsksFor) {
   LedGantry gantry;
   for (int k = 0; k < 300; ++k) {
     // the rule goes along, so that nothing but its drives limits the gantry
-    const VectorP target = gantry.robot.q_p + gantry.robot.dq_p / config().k_ppu;
+    const VectorP target = gantry.robot.q_p + gantry.robot.dq_p / kGain;
     gantry.step(target, [&](const GantryTask& task) -> VectorP {
       return wanted.cwiseMax(task.ddq_min).cwiseMin(task.ddq_max);
     });
@@ -180,23 +193,21 @@ TEST(Prepositioning, TheLawLeadsTheGantryNotFar) {
   const auto most = [](const GantryTask& task) { return task.ddq_max; };
   LedGantry gantry;
   for (int k = 0; k < 3000; ++k) gantry.step(Eigen::Vector2d(0.3, 0.2), most);
-  EXPECT_NEAR(gantry.robot.q_p[0], 0.3 + 0.1 / config().k_ppu, 1e-3);
+  EXPECT_NEAR(gantry.robot.q_p[0], 0.3 + 0.1 / kGain, 1e-3);
   for (int k = 0; k < 6000; ++k) {
     gantry.step(Eigen::Vector2d(3.0, 3.0), most);
     for (int i = 0; i < 2; ++i) {
-      EXPECT_LT(gantry.robot.q_p[i], config().q_limits[static_cast<std::size_t>(i)].ub + 1e-3) << k;
+      EXPECT_LT(gantry.robot.q_p[i], device().gantry_range[static_cast<std::size_t>(i)].ub + 1e-3)
+          << k;
     }
   }
   EXPECT_NEAR(gantry.robot.q_p[0], 1.40, 5e-3);
 }
 
 TEST(Prepositioning, RefusesImpossibleConfigurations) {
-  Config gantry = config();
-  gantry.k_ppu = 0.0;
-  EXPECT_THROW(check(gantry), SetupError);
-  gantry = config();
-  gantry.q_limits[1] = {1.0, -1.0};
-  EXPECT_THROW(check(gantry), SetupError);
+  EXPECT_THROW(Prepositioning({.k_ppu = 0.0}, device()), SetupError);
+  EXPECT_THROW(Prepositioning({.dq_max = 0.0}, device()), SetupError);
+  EXPECT_THROW(Prepositioning({.ddq_max = -1.0}, device()), SetupError);
 }
 
 }  // namespace

@@ -21,11 +21,12 @@ struct Braking : testing::Test {
 
   Braking() {
     const auto motors = reference_actuators();
-    device.motors.assign(motors.begin(), motors.end());
+    device.actuators.assign(motors.begin(), motors.end());
+    device.has_torque_limits = true;
   }
   // the share that the most loaded motor gives of what it may, when the handle accelerates so
   double load(const Eigen::Vector3d& acceleration) {
-    model::Chain& chain = device.chain;
+    model::ChainData chain(device.chain);
     chain.update(stacked(motion.q_p, motion.q_m), stacked(motion.dq_p, motion.dq_m));
     const Eigen::MatrixXd J = chain.jacobian(device.handle).rightCols(6);
     Vector6 wanted = -chain.bias_acceleration(device.handle);
@@ -35,7 +36,7 @@ struct Braking : testing::Test {
     torque += chain.c().tail(6) - J.transpose() * motion.w_H;
     double most = 0.0;
     for (int i = 0; i < 6; ++i) {
-      const ActuatorModel& motor = device.motors[static_cast<std::size_t>(i)];
+      const ActuatorModel& motor = device.actuators[static_cast<std::size_t>(i)];
       const Interval allowed = allowed_torque(motor, motion.dq_m[i]);
       const double given = torque[i] + motor.rotor_inertia * ddq[i];
       most = std::max(most, given > 0.0 ? given / allowed.ub : given / allowed.lb);
@@ -68,7 +69,7 @@ TEST_F(Braking, KnowsTheHandThatPushes) {
 }
 
 TEST_F(Braking, IsTheRatingWhereMotorsAreNotKnown) {
-  device.motors.clear();
+  device.has_torque_limits = false;
   EXPECT_TRUE(std::isinf(largest_acceleration(device, motion, Eigen::Vector3d::UnitX())));
   CartesianLimit limit = {.name = "handle", .frame = device.handle};
   for (limits::JointLimits& axis : limit.axes) axis.ddq_max = 3.0;

@@ -179,15 +179,17 @@ TEST(LargeTwin, OfThirtyJointsWithLimitsStaysSolvedInsideAndAttached) {
   DeviceModel device = unlimited_device();
   for (limits::JointLimits& joint : device.joint_limits) joint = {-10.0, 10.0, 8.0, 400.0};
   model::ChainOptions placed = {.gravity = false};
-  const model::Chain at_origin = model::Chain::from_urdf_text(snake(30, 1.0), "snake.urdf", placed);
+  const model::ChainModel at_origin =
+      model::ChainModel::from_urdf_text(snake(30, 1.0), "snake.urdf", placed);
   TwinModel twin = unlimited_twin(at_origin, "l30");
   ConfigurationA q_start(30);
   for (int i = 0; i < 30; ++i) q_start[i] = i % 5 == 4 ? 0.0 : 0.3 * std::sin(2.0 * i);
-  model::Chain chain = at_origin;
+  model::ChainData chain(at_origin);
   chain.update_kinematics(q_start, VectorA::Zero(30));
   placed.T_B_root =
       handle_pose(device, kGantryAtHome, kPosture) * inverse(chain.pose(twin.end_effector));
-  twin = unlimited_twin(model::Chain::from_urdf_text(snake(30, 1.0), "snake.urdf", placed), "l30");
+  twin = unlimited_twin(model::ChainModel::from_urdf_text(snake(30, 1.0), "snake.urdf", placed),
+                        "l30");
   twin.q_start = q_start;
   for (std::size_t i = 0; i < 30; ++i) {
     const double q = q_start[static_cast<Eigen::Index>(i)];

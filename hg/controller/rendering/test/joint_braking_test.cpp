@@ -287,12 +287,13 @@ class Thrown {
     }
     for (ActuatorModel motor : reference_actuators()) {
       motor.torque_max *= 0.5;
-      device.motors.push_back(motor);
+      device.actuators.push_back(motor);
     }
+    device.has_torque_limits = true;
   }
   /// The rows of one cycle.
   Tasks tasks(const Options& options) const {
-    model::Chain device_chain = device.chain, twin_chain = twin.chain;
+    model::ChainData device_chain(device.chain), twin_chain(twin.chain);
     State state = Rendering(device, twin, options).start(kPosture);
     state.reference.dq_m.setConstant(kSpeed);
     Eigen::VectorXd q(8), dq(8);
@@ -332,7 +333,7 @@ class Thrown {
 
   static TwinModel body(const DeviceModel& device) {
     TwinModel twin =
-        unlimited_twin(model::Chain::free_body({.mass = 1.0}, {.gravity = false}), "handle");
+        unlimited_twin(model::ChainModel::free_body({.mass = 1.0}, {.gravity = false}), "handle");
     twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
     return twin;
   }
@@ -373,7 +374,7 @@ TEST(BrakingTogether, BeginsEarlierWhereMotorsAreWeakerThanRatings) {
 
 TEST(BrakingTogether, IsNoOtherThanAloneWhereTheLawDoesNotKnowTheMotors) {
   Thrown thrown;
-  thrown.device.motors.clear();
+  thrown.device.has_torque_limits = false;
   const Options together = {.braking = Braking::kTogether};
   EXPECT_FALSE(brakes_together(thrown.device, together));
   expect_same_bounds(thrown.tasks(together), thrown.tasks({}));

@@ -55,15 +55,16 @@ class Random {
 TwinModel random_twin(Random& random) {
   switch (random.below(3)) {
     case 0:
-      return unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
+      return unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
     case 1:
       return unlimited_twin(
-          model::Chain::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}),
+          model::ChainModel::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}),
           "handle");
     default: {
-      TwinModel twin = unlimited_twin(
-          model::Chain::from_urdf_file("models/twins/excavator/excavator.urdf", {.gravity = false}),
-          "handle");
+      TwinModel twin =
+          unlimited_twin(model::ChainModel::from_urdf_file("models/twins/excavator/excavator.urdf",
+                                                           {.gravity = false}),
+                         "handle");
       twin.q_start << 0.2, 0.3, 0.9, 1.0;
       return twin;
     }
@@ -164,8 +165,8 @@ TwinModel two_coupled_joints() {
        << "<axis xyz='0 0 1'/></joint><joint name='a2' type='continuous'><parent link='first'/>"
        << "<child link='handle'/><origin xyz='" << length
        << " 0 0'/><axis xyz='0 0 1'/></joint></robot>";
-  return unlimited_twin(model::Chain::from_urdf_text(urdf.str(), "folded.urdf", {.gravity = false}),
-                        "handle");
+  return unlimited_twin(
+      model::ChainModel::from_urdf_text(urdf.str(), "folded.urdf", {.gravity = false}), "handle");
 }
 
 // docs/concepts/law.md: with a_free = 0 and a <= (-1, -0.9), Gauss leaves the second row alone:
@@ -178,7 +179,7 @@ TEST(Laws, DifferWithTwoCoupledLimits) {
     const Options options = with(law, Bounds::kRecoverable);
     Rendering rendering(unlimited_device(), twin, options);
     State state = rendering.start(kPosture);
-    state.twin.dq_a << 1.0 + 1.0 * options.dt, 1.0 + 0.9 * options.dt;
+    state.twin.dq_a << 1.0 + 1.0e-3, 1.0 + 0.9e-3;
     int changes = 0;
     for (int cycle = 0; cycle < 12; ++cycle) {
       const TouchedEnds before = state.touched;
@@ -206,7 +207,8 @@ TEST(Laws, DifferWithTwoCoupledLimits) {
 struct Crowded {
   DeviceModel device = unlimited_device();
   TwinModel twin = unlimited_twin(
-      model::Chain::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}), "handle");
+      model::ChainModel::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}),
+      "handle");
 
   Crowded() {
     for (auto& limits : device.joint_limits) limits = {-10.0, 10.0, 2.0, 12.0};
@@ -278,7 +280,7 @@ class Door {
   void run(double seconds, double torque) {
     for (int k = 0; k < static_cast<int>(1000 * seconds); ++k) {
       state_.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-      model::Chain chain = rendering_.twin().chain;
+      model::ChainData chain(rendering_.twin().chain);
       chain.update_kinematics(state_.twin.q_a, state_.twin.dq_a);
       const Eigen::MatrixXd J_T = chain.jacobian(rendering_.twin().end_effector).transpose();
       const Eigen::VectorXd tau = torque * Eigen::Vector2d::UnitX();
@@ -300,7 +302,8 @@ class Door {
  private:
   static TwinModel twin(double friction, bool has_bolt) {
     TwinModel twin = unlimited_twin(
-        model::Chain::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}), "handle");
+        model::ChainModel::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}),
+        "handle");
     twin.dofs[0].limits = {0.0, 1.0, 1.2, 6.0};
     twin.dofs[0].friction = friction;
     if (has_bolt) {
@@ -371,7 +374,7 @@ TEST(PaperLaw, KnowsALimitOneCycleLater) {
 
 TEST(PaperBounds, ShowTheRatingThatActs) {
   DeviceModel device = unlimited_device();
-  TwinModel twin = unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
+  TwinModel twin = unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
   device.joint_limits[5] = {-10.0, 10.0, 2.0, 1.0};
   Rendering rendering(device, twin, with(Law::kGauss, Bounds::kPaper));
   State state = rendering.start(kPosture);
@@ -391,7 +394,8 @@ TEST(PaperBounds, ShowTheRatingThatActs) {
 // tests/reference/README.md: rows of levels 6 and 8 of a lock get clip(-dq / dt, +-ddq_max)
 TEST(PaperBounds, ALockBrakesWithTheRatingOfItsJoint) {
   TwinModel twin = unlimited_twin(
-      model::Chain::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}), "handle");
+      model::ChainModel::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}),
+      "handle");
   twin.dofs[0].limits = {0.0, 1.0, 1.2, 6.0};
   twin.locks = {{.name = "bolt", .dof = 0, .position = 0.0, .engaged_while = {}}};
   Rendering rendering(unlimited_device(), twin, with(Law::kPaper, Bounds::kPaper));
@@ -445,10 +449,11 @@ TEST(PaperBounds, ALockThatEngagesInMotionStopsTheJointWhereItIs) {
 }
 
 TEST(Laws, RefuseWhatTheyCannotRender) {
-  const TwinModel twin = unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
+  const TwinModel twin =
+      unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
   Options options;
   options.bounds = Bounds::kPaper;
-  options.T_C = 0.5 * options.dt;
+  options.T_C = 0.5 * unlimited_device().dt();
   EXPECT_THROW(Rendering(unlimited_device(), twin, options), SetupError);
   DeviceModel device = unlimited_device();
   device.posture = posture({0, 0, 0});

@@ -69,12 +69,13 @@ struct Pulled {
     for (limits::JointLimits& joint : device.joint_limits) {
       joint = {.q_min = -6.0, .q_max = 6.0, .dq_max = 3.0, .ddq_max = 5.0};
     }
-    if (knows_motors) device.motors.assign(6, kMotor);
+    device.actuators.assign(6, kMotor);
+    device.has_torque_limits = knows_motors;
     return device;
   }
   static TwinModel body(const DeviceModel& device) {
     TwinModel twin =
-        unlimited_twin(model::Chain::free_body({.mass = 1.0}, {.gravity = false}), "handle");
+        unlimited_twin(model::ChainModel::free_body({.mass = 1.0}, {.gravity = false}), "handle");
     twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
     return twin;
   }

@@ -57,7 +57,7 @@ struct Playing {
 
   // a wrench that puts `torque` on the twin's joint `dof`
   Vector6 wrench_for(int dof, double torque) {
-    model::Chain chain = rendering.twin().chain;
+    model::ChainData chain(rendering.twin().chain);
     chain.update_kinematics(state.twin.q_a, state.twin.dq_a);
     const Eigen::MatrixXd J_a_T = chain.jacobian(rendering.twin().end_effector).transpose();
     const Eigen::VectorXd tau = torque * Eigen::VectorXd::Unit(J_a_T.rows(), dof);
@@ -83,7 +83,8 @@ struct Playing {
 
 inline TwinModel door() {
   TwinModel twin = unlimited_twin(
-      model::Chain::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}), "handle");
+      model::ChainModel::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}),
+      "handle");
   twin.dofs[0].limits = {0.0, 1.75, kInfinity, 6.0};
   twin.dofs[1].limits = {0.0, 0.80, 3.0, 35.0};
   return twin;

@@ -18,11 +18,11 @@ TwinModel golden_twin() {
   body.mass = 6.0;
   body.p_handle_com = {0.1, 0.05, 0.1};
   body.inertia = Eigen::Vector3d(0.08, 0.1, 0.12).asDiagonal();
-  return unlimited_twin(model::Chain::free_body(body, {.gravity = false}), "handle");
+  return unlimited_twin(model::ChainModel::free_body(body, {.gravity = false}), "handle");
 }
 
 // the acceleration that no limit disturbs
-VectorA free_acceleration(const model::Chain& twin, const VectorA& tau) {
+VectorA free_acceleration(const model::ChainData& twin, const VectorA& tau) {
   return LeastSquares(twin.M()).solve(tau);
 }
 
@@ -94,9 +94,10 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   DeviceModel device = unlimited_device();
   Eigen::VectorXd q(8);
   q << kGantryAtHome, kPosture;
-  device.chain.update_kinematics(q, Eigen::VectorXd::Zero(8));
+  model::ChainData chain(device.chain);
+  chain.update_kinematics(q, Eigen::VectorXd::Zero(8));
   Vector6 w = Vector6::Zero();
-  w.head<3>() = 20.0 * device.chain.jacobian(device.handle).col(4).head<3>().normalized();
+  w.head<3>() = 20.0 * chain.jacobian(device.handle).col(4).head<3>().normalized();
   const VectorP aim = Eigen::Vector2d(0.2, -0.1);
   GantryTask task = {Eigen::Vector2d(-0.5, -0.5), Eigen::Vector2d(0.5, 0.5), aim,
                      Eigen::Vector2d::Zero()};
@@ -231,7 +232,7 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
 
     // ddq_m = J_m^-1 J_a ddq_a, everything at rest
-    model::Chain chain = device.chain;
+    model::ChainData chain(device.chain);
     Eigen::VectorXd q_all(8);
     q_all << kGantryAtHome, q;
     chain.update_kinematics(q_all, Eigen::VectorXd::Zero(8));
@@ -300,9 +301,9 @@ TEST(Rendering, TheBudgetClosesAndTheBearingsCarryTheRest) {
 }
 
 TEST(Rendering, AtAHeldLimitTheOtherJointsMoveLikeTheReducedModel) {
-  TwinModel twin = unlimited_twin(
-      model::Chain::from_urdf_file("models/twins/excavator/excavator.urdf", {.gravity = false}),
-      "handle");
+  TwinModel twin = unlimited_twin(model::ChainModel::from_urdf_file(
+                                      "models/twins/excavator/excavator.urdf", {.gravity = false}),
+                                  "handle");
   twin.q_start << 0.2, 0.3, 0.9, 1.0;
   twin.dofs[3].limits = {0.0, 1.0, 3.0, 20.0};  // bucket, at its upper end
   Rendering rendering(unlimited_device(), twin, without_synchronisation());

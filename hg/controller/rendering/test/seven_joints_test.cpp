@@ -36,15 +36,16 @@ std::string seven_joint_urdf() {
 }
 
 DeviceModel seven_joint_device() {
-  DeviceModel device{
-      .chain = model::Chain::from_urdf_text(seven_joint_urdf(), "seven.urdf"), .n_p = 0, .n_m = 7};
+  DeviceModel device{.chain = model::ChainModel::from_urdf_text(seven_joint_urdf(), "seven.urdf"),
+                     .n_p = 0,
+                     .n_m = 7};
   device.handle = device.chain.frame("handle");
   device.joint_limits.assign(7, {});
   return device;
 }
 
 TwinModel free_body() {
-  TwinModel twin = unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle");
+  TwinModel twin = unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
   for (TwinDof& dof : twin.dofs) dof.damping = 5.0;
   return twin;
 }
@@ -53,7 +54,8 @@ TwinModel free_body() {
 // the manipulator tells their shares apart
 TwinModel door() {
   return unlimited_twin(
-      model::Chain::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}), "handle");
+      model::ChainModel::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}),
+      "handle");
 }
 
 const VectorM kPosture = posture({0.2, 0.5, -0.3, 1.9, 0.4, 2.2, 0.6});
@@ -68,13 +70,13 @@ RobotState robot_at(const VectorM& q_m, const Vector6& w) {
 }
 
 Eigen::MatrixXd handle_jacobian(const DeviceModel& device, const VectorM& q) {
-  model::Chain chain = device.chain;
+  model::ChainData chain(device.chain);
   chain.update_kinematics(q, VectorM::Zero(7));
   return chain.jacobian(device.handle);
 }
 
 Pose pose_of(const DeviceModel& device, const VectorM& q) {
-  model::Chain chain = device.chain;
+  model::ChainData chain(device.chain);
   chain.update_kinematics(q, VectorM::Zero(7));
   return chain.pose(device.handle);
 }

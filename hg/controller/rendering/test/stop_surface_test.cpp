@@ -37,7 +37,7 @@ struct Thrown {
 
   static TwinModel body() {
     TwinModel twin =
-        unlimited_twin(model::Chain::free_body({.mass = kMass}, {.gravity = false}), "handle");
+        unlimited_twin(model::ChainModel::free_body({.mass = kMass}, {.gravity = false}), "handle");
     twin.q_start = floating_at({kStart, Eigen::Matrix3d::Identity()});
     return twin;
   }

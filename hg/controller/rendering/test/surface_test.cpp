@@ -21,7 +21,7 @@ struct Falling {
 
   static TwinModel body() {
     TwinModel twin =
-        unlimited_twin(model::Chain::free_body({.mass = kMass}, {.gravity = false}), "handle");
+        unlimited_twin(model::ChainModel::free_body({.mass = kMass}, {.gravity = false}), "handle");
     twin.q_start = floating_at({{0.4, 0.1, 0.001}, Eigen::Matrix3d::Identity()});
     return twin;
   }
@@ -66,7 +66,7 @@ TEST(TwinOnASurface, RestsWhereTheSurfaceCarriesTheUser) {
 // A surface that says no damping brakes what comes in, and carries the weight of the twin besides.
 TEST(TwinOnASurface, CarriesATwinThatHasWeight) {
   TwinModel twin =
-      unlimited_twin(model::Chain::free_body({.mass = kMass}, {.gravity = true}), "handle");
+      unlimited_twin(model::ChainModel::free_body({.mass = kMass}, {.gravity = true}), "handle");
   twin.q_start = floating_at({{0.4, 0.1, 0.05}, Eigen::Matrix3d::Identity()});
   Rendering rendering(unlimited_device(), twin, without_synchronisation(),
                       surfaces::Environment(
@@ -88,7 +88,7 @@ TEST(TwinOnASurface, CarriesATwinThatHasWeight) {
 TEST(TwinOnASurface, IsCaughtWithTheMassThatItHasNow) {
   const auto played = [](double mass, double scale) {
     TwinModel twin = Falling::body();
-    twin.chain = model::Chain::free_body({.mass = mass}, {.gravity = false});
+    twin.chain = model::ChainModel::free_body({.mass = mass}, {.gravity = false});
     Rendering rendering(
         unlimited_device(), twin, without_synchronisation(),
         surfaces::Environment(

@@ -10,17 +10,19 @@ namespace hg::rendering {
 
 /// The HapticGiant without any limits; tests add the ones they are about.
 inline DeviceModel unlimited_device() {
-  DeviceModel device{.chain = model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf"),
-                     .n_p = 2,
-                     .n_m = 6};
+  DeviceModel device{
+      .chain = model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf"),
+      .n_p = 2,
+      .n_m = 6};
   device.handle = device.chain.frame("handle");
   device.elbow = device.chain.frame("elbow");
+  device.gantry_range.resize(2);
   device.joint_limits.assign(6, {});
   return device;
 }
 
 /// A twin with one TwinDof per degree of freedom of `chain`, without limits.
-inline TwinModel unlimited_twin(model::Chain chain, const std::string& end_effector) {
+inline TwinModel unlimited_twin(model::ChainModel chain, const std::string& end_effector) {
   TwinModel twin{.chain = std::move(chain)};
   twin.end_effector = twin.chain.frame(end_effector);
   twin.q_start = twin.chain.neutral();
@@ -49,7 +51,7 @@ inline RobotState robot_with(const Eigen::Vector2d& q_p, const VectorM& q_m, con
 
 /// Where H is for a posture.
 inline Pose handle_pose(const DeviceModel& device, const Eigen::Vector2d& q_p, const VectorM& q_m) {
-  model::Chain chain = device.chain;
+  model::ChainData chain(device.chain);
   Eigen::VectorXd q(8);
   q << q_p, q_m;
   chain.update_kinematics(q, Eigen::VectorXd::Zero(8));

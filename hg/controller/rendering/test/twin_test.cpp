@@ -13,16 +13,16 @@ namespace hg::rendering {
 namespace {
 
 TwinModel excavator() {
-  TwinModel twin = unlimited_twin(
-      model::Chain::from_urdf_file("models/twins/excavator/excavator.urdf", {.gravity = false}),
-      "handle");
+  TwinModel twin = unlimited_twin(model::ChainModel::from_urdf_file(
+                                      "models/twins/excavator/excavator.urdf", {.gravity = false}),
+                                  "handle");
   twin.q_start << 0.2, 0.3, 0.9, 1.0;
   return twin;
 }
 
 double hinge_inertia() {
-  model::Chain chain = door().chain;
-  chain.update(chain.neutral(), VectorA::Zero(2));
+  model::ChainData chain(door().chain);
+  chain.update(chain.model().neutral(), VectorA::Zero(2));
   return chain.M()(0, 0);
 }
 
@@ -55,8 +55,8 @@ TEST(Damper, IsExactlyViscousWhereTheSampleIsShortEnough) {
 
 TEST(Damper, OfOneJointGrowsUntilItStopsTheJointWithinASample) {
   const TwinModel twin = door();
-  model::Chain chain = twin.chain;
-  chain.update(chain.neutral(), VectorA::Zero(2));
+  model::ChainData chain(twin.chain);
+  chain.update(chain.model().neutral(), VectorA::Zero(2));
   const double most = chain.M()(0, 0) / kDt;
   MatrixA L;
   factor_mass(chain.M(), L);
@@ -78,7 +78,7 @@ TEST(Damper, TakesEnergyHoweverStiffItIsAndHoweverJointsAreCoupled) {
     TwinModel twin = excavator();
     for (TwinDof& dof : twin.dofs) dof.damping = std::pow(10.0, exponent(random));
     TwinParameters parameters = initial_parameters(twin);
-    model::Chain chain = twin.chain;
+    model::ChainData chain(twin.chain);
     VectorA dq(4);
     for (double& value : dq) value = velocity(random);
     chain.update(twin.q_start, VectorA::Zero(4));
@@ -192,7 +192,7 @@ TEST(ReferenceWrench, IsTheOneAtWhichTheTwinRests) {
 
 TEST(Loads, AHeavierTwinIsSlowerAndGravityPullsItDown) {
   TwinModel twin =
-      unlimited_twin(model::Chain::free_body({.mass = 5.0}, {.gravity = false}), "handle");
+      unlimited_twin(model::ChainModel::free_body({.mass = 5.0}, {.gravity = false}), "handle");
   twin.mass_scale = 2.0;
   Playing playing(twin);
   Vector6 w;
@@ -231,7 +231,7 @@ TEST(Changes, AreRefusedWhereTheyMakeNoSense) {
   untouched.run(0.1, 0, 5.0);
   EXPECT_EQ(playing.state.twin.q_a, untouched.state.twin.q_a);
 
-  Playing body(unlimited_twin(model::Chain::free_body({}, {.gravity = false}), "handle"));
+  Playing body(unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle"));
   EXPECT_EQ(body.change(Parameter::kStiffness, 0, 1.0), ChangeStatus::kRefused);
   EXPECT_EQ(body.change(Parameter::kDamping, 5, 1.0), ChangeStatus::kTaken);
 }
@@ -356,7 +356,7 @@ void expect_newton(const TwinModel& twin, double tolerance) {
     ASSERT_NO_FATAL_FAILURE(playing.step(w));
     ASSERT_LT(playing.worst_gap, 1e-9) << trial;
 
-    model::Chain chain = twin.chain;
+    model::ChainData chain(twin.chain);
     chain.update(before.twin.q_a, before.twin.dq_a);
     const VectorA tau = chain.jacobian(twin.end_effector).transpose() * w;
     const VectorA expected = LeastSquares(chain.M()).solve(tau - chain.c());
@@ -366,12 +366,12 @@ void expect_newton(const TwinModel& twin, double tolerance) {
 }
 
 TEST(AnyTwin, ThirtyJointsInARow) {
-  expect_newton(unlimited_twin(model::Chain::from_urdf_text(snake(30, 1.0), "snake.urdf"), "l30"),
-                1e-9);
+  expect_newton(
+      unlimited_twin(model::ChainModel::from_urdf_text(snake(30, 1.0), "snake.urdf"), "l30"), 1e-9);
 }
 
 TEST(AnyTwin, UR5) {
-  expect_newton(unlimited_twin(model::Chain::from_urdf_file(
+  expect_newton(unlimited_twin(model::ChainModel::from_urdf_file(
                                    model::example_robot_file("ur_description/urdf/ur5_robot.urdf")),
                                "tool0"),
                 1e-9);
@@ -380,7 +380,7 @@ TEST(AnyTwin, UR5) {
 TEST(AnyTwin, PandaWithItsFingersStandingStill) {
   const model::ChainOptions hand = {.tip_link = "panda_hand"};
   const TwinModel twin =
-      unlimited_twin(model::Chain::from_urdf_file(
+      unlimited_twin(model::ChainModel::from_urdf_file(
                          model::example_robot_file("panda_description/urdf/panda.urdf"), hand),
                      "panda_hand");
   EXPECT_EQ(twin.chain.nv(), 7);
@@ -390,7 +390,7 @@ TEST(AnyTwin, PandaWithItsFingersStandingStill) {
 TEST(AnyTwin, AnArmOfTheWholeTalos) {
   const model::ChainOptions arm = {.root_link = "torso_2_link", .tip_link = "arm_left_7_link"};
   const TwinModel twin =
-      unlimited_twin(model::Chain::from_urdf_file(
+      unlimited_twin(model::ChainModel::from_urdf_file(
                          model::example_robot_file("talos_data/robots/talos_reduced.urdf"), arm),
                      "gripper_left_base_link");
   EXPECT_EQ(twin.chain.nv(), 7);
@@ -399,9 +399,10 @@ TEST(AnyTwin, AnArmOfTheWholeTalos) {
 
 TEST(AnyTwin, OfConditionNumberAMillion) {
   // a last link of 1 mg at the end of a chain of kilograms
-  TwinModel twin = unlimited_twin(model::Chain::from_urdf_text(snake(6, 1e-5), "snake.urdf"), "l6");
-  model::Chain chain = twin.chain;
-  chain.update(chain.neutral(), VectorA::Zero(6));
+  TwinModel twin =
+      unlimited_twin(model::ChainModel::from_urdf_text(snake(6, 1e-5), "snake.urdf"), "l6");
+  model::ChainData chain(twin.chain);
+  chain.update(chain.model().neutral(), VectorA::Zero(6));
   const Eigen::VectorXd eigenvalues = symmetric_eigen(chain.M()).values;
   EXPECT_GT(eigenvalues[5] / eigenvalues[0], 1e6);
   expect_newton(twin, 1e-7);
@@ -409,7 +410,7 @@ TEST(AnyTwin, OfConditionNumberAMillion) {
 
 TEST(AnyTwin, APuckOnATableWithLimitsAndSpringsPerCoordinate) {
   TwinModel twin = unlimited_twin(
-      model::Chain::from_urdf_text(
+      model::ChainModel::from_urdf_text(
           "<robot name='puck'><link name='table'/><link name='puck'><inertial><mass value='2'/>"
           "<inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link>"
           "<joint name='glide' type='planar'><parent link='table'/><child link='puck'/>"

@@ -14,15 +14,15 @@ constexpr double kAhead = 20.0;     // cycles: bounds that may be used up this s
 constexpr double kClose = 0.05;     // m: smaller bounds are recomputed in every cycle
 constexpr int kHalvings = 16;       // largest number of pending intervals of a path
 
-void check(const Config& config, const model::Chain& chain) {
+void check(const Config& config, const Braking& braking, const model::ChainModel& chain) {
   const auto require = [](bool holds, const char* rule) {
     if (!holds) throw SetupError(std::string("collision: ") + rule);
   };
-  require(config.reaction.size() == chain.nv() && config.deceleration.size() == chain.nv(),
+  require(braking.reaction.size() == chain.nv() && braking.deceleration.size() == chain.nv(),
           "reaction and deceleration need one value per joint");
-  require(config.reaction.allFinite() && config.reaction.minCoeff() >= 0.0,
+  require(braking.reaction.allFinite() && braking.reaction.minCoeff() >= 0.0,
           "reaction must be finite and not negative");
-  require(config.deceleration.allFinite() && config.deceleration.minCoeff() > 0.0,
+  require(braking.deceleration.allFinite() && braking.deceleration.minCoeff() > 0.0,
           "deceleration must be finite and positive");
   require(config.safe_distance > 0.0, "safe_distance must be positive");
 }
@@ -31,15 +31,15 @@ void check(const Config& config, const model::Chain& chain) {
 
 // Braking with all joints at once from the state at time 0.
 struct Guard::Path {
-  const Config& config;
+  const Braking& braking;
   const VectorPM& q;
   const VectorPM& dq;
   VectorPM stop;
 
-  Path(const Config& c, const VectorPM& from, const VectorPM& speed) noexcept
-      : config(c), q(from), dq(speed), stop(from) {
+  Path(const Braking& b, const VectorPM& from, const VectorPM& speed) noexcept
+      : braking(b), q(from), dq(speed), stop(from) {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      stop[i] += dq[i] * (c.reaction[i] + 0.5 * std::abs(dq[i]) / c.deceleration[i]);
+      stop[i] += dq[i] * (b.reaction[i] + 0.5 * std::abs(dq[i]) / b.deceleration[i]);
     }
   }
 
@@ -48,18 +48,18 @@ struct Guard::Path {
     double longest = 0.0;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       if (pair.lever[i] == 0.0 || dq[i] == 0.0) continue;
-      longest = std::max(longest, config.reaction[i] + std::abs(dq[i]) / config.deceleration[i]);
+      longest = std::max(longest, braking.reaction[i] + std::abs(dq[i]) / braking.deceleration[i]);
     }
     return longest;
   }
 
   double position(Eigen::Index i, double time) const noexcept {
-    const double braking = std::max(0.0, time - config.reaction[i]);
-    if (braking * config.deceleration[i] >= std::abs(dq[i])) {
-      return time >= config.reaction[i] ? stop[i] : q[i] + dq[i] * time;
+    const double reaction = braking.reaction[i], deceleration = braking.deceleration[i];
+    const double since = std::max(0.0, time - reaction);
+    if (since * deceleration >= std::abs(dq[i])) {
+      return time >= reaction ? stop[i] : q[i] + dq[i] * time;
     }
-    return q[i] + dq[i] * time -
-           std::copysign(0.5 * config.deceleration[i] * braking * braking, dq[i]);
+    return q[i] + dq[i] * time - std::copysign(0.5 * deceleration * since * since, dq[i]);
   }
 
   // bound on what the joints between `begin` and `end` may take from the distance
@@ -73,9 +73,24 @@ struct Guard::Path {
   }
 };
 
-Guard::Guard(const Config& config, const model::Chain& chain) : config_(config) {
+Braking braking_of(const DeviceModel& device, double gantry) {
+  constexpr double kDrive = 0.010;  // s, [HANDBOOK] 6.4
+  const int n = device.n_p + device.n_m;
+  Braking braking = {.reaction = VectorPM::Constant(n, 2.0 * device.dt() + kDrive),
+                     .deceleration = VectorPM::Constant(n, gantry)};
+  for (int i = 0; i < device.n_p; ++i) {
+    braking.reaction[i] = 2.0 * device.dt() + device.drive.dead_time + device.drive.lag;
+  }
+  for (int i = 0; i < device.n_m; ++i) {
+    braking.deceleration[device.n_p + i] = device.joint_limits[static_cast<std::size_t>(i)].ddq_max;
+  }
+  return braking;
+}
+
+Guard::Guard(const Config& config, const Braking& braking, const model::ChainModel& chain)
+    : config_(config), braking_(braking) {
   if (config_.pairs.watched.empty()) return;
-  check(config_, chain);
+  check(config_, braking_, chain);
   if (config_.pairs.watched.size() > kMaxPairs) {
     throw SetupError("collision: " + std::to_string(config_.pairs.watched.size()) +
                      " pairs of shapes may touch, at most " + std::to_string(kMaxPairs) +
@@ -85,7 +100,7 @@ Guard::Guard(const Config& config, const model::Chain& chain) : config_(config) 
     distances_.emplace_back(config_.shapes[static_cast<std::size_t>(pair.a)],
                             config_.shapes[static_cast<std::size_t>(pair.b)]);
   }
-  chain_.push_back(chain);
+  chain_.emplace(chain);
 }
 
 std::vector<std::string> pair_names(const Config& config) {
@@ -100,11 +115,10 @@ std::vector<std::string> pair_names(const Config& config) {
 double Guard::distance(int pair, const Path& path, double time) noexcept {
   VectorPM q(path.q.size());
   for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = path.position(i, time);
-  model::Chain& chain = chain_.front();
-  chain.update_poses(q);
+  chain_->update_poses(q);
   const auto pose = [&](int shape) {
     const int frame = config_.shapes[static_cast<std::size_t>(shape)].frame;
-    return frame < 0 ? Pose{} : chain.pose(frame);
+    return frame < 0 ? Pose{} : chain_->pose(frame);
   };
   const auto index = static_cast<std::size_t>(pair);
   return distances_[index](pose(config_.pairs.watched[index].a),
@@ -166,7 +180,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
   Prediction prediction;
   const auto count = static_cast<int>(config_.pairs.watched.size());
   if (count == 0) return prediction;
-  const Path path(config_, q, dq);
+  const Path path(braking_, q, dq);
   const int had_budget = state.count == count ? kMaxDistances : 0;
   int budget = had_budget;
   if (state.count == count) {

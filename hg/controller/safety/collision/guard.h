@@ -26,6 +26,8 @@
 #include "hg/controller/safety/collision/pairs.h"
 #include "hg/core/fields.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/state.h"
 
 namespace hg::collision {
@@ -39,13 +41,21 @@ inline constexpr double kFarEnough = 0.02;
 struct Config {
   std::vector<Shape> shapes;    ///< Collision shapes; empty: nothing is watched
   Pairs pairs;                  ///< Pairs found by choose_pairs()
-  VectorPM reaction;            ///< Reaction time of each joint until it brakes, s
-  VectorPM deceleration;        ///< Deceleration of each joint, rad/s^2 or m/s^2, > 0
   double safe_distance = 0.03;  ///< Safe distance, [HANDBOOK] 6.4, m
 };
 
 /// Names like "link1 - forearm", one per watched pair.
 std::vector<std::string> pair_names(const Config& config);
+
+/// How the joints brake, gantry first.
+struct Braking {
+  VectorPM reaction;      ///< Reaction time of each joint until it brakes, s
+  VectorPM deceleration;  ///< Deceleration of each joint, rad/s^2 or m/s^2, > 0
+};
+
+/// Braking of the device's joints: two periods and the dead time of the drives, then the rated
+/// decelerations, of a gantry axis `gantry` (m/s^2 or rad/s^2).
+Braking braking_of(const DeviceModel& device, double gantry);
 
 struct State {
   int count = 0;                            ///< Number of watched pairs; 0 = not started
@@ -77,7 +87,7 @@ class Guard {
  public:
   Guard() = default;
   /// Throws SetupError when too many pairs would have to be watched.
-  Guard(const Config& config, const model::Chain& chain);
+  Guard(const Config& config, const Braking& braking, const model::ChainModel& chain);
 
   /// Predicts braking from `q` and `dq`. `is_moving` = the device may move autonomously. As long as
   /// it may not, pairs nearer than the safe distance are accepted as they are; afterwards they must
@@ -92,8 +102,9 @@ class Guard {
   void fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept;
 
   Config config_;
+  Braking braking_;
   std::vector<Distance> distances_;
-  std::vector<model::Chain> chain_;         // one, or none without shapes
+  std::optional<model::ChainData> chain_;   // empty without shapes
   std::array<double, kMaxPairs> fading_{};  // decrease of each bound since the last cycle, m
 };
 

@@ -8,6 +8,7 @@
 
 #include "hg/controller/safety/collision/distance.h"
 #include "hg/controller/safety/collision/reach_bounds.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::collision {
 namespace {
@@ -30,7 +31,7 @@ struct Candidate {
   std::array<Nearest, kStarts> nearest;  // of each part of the samples
 };
 
-std::vector<Interval> sampled(const model::Chain& chain, std::vector<Interval> range) {
+std::vector<Interval> sampled(const model::ChainModel& chain, std::vector<Interval> range) {
   for (std::size_t i = 0; i < range.size(); ++i) {
     const bool is_slide = chain.joints()[i].type == model::JointType::kPrismatic;
     const double far = is_slide ? kUnlimitedSlide : std::numbers::pi;
@@ -40,26 +41,26 @@ std::vector<Interval> sampled(const model::Chain& chain, std::vector<Interval> r
   return range;
 }
 
-Pose pose_of(const model::Chain& chain, const Shape& shape) {
+Pose pose_of(const model::ChainData& chain, const Shape& shape) {
   return shape.frame < 0 ? Pose{} : chain.pose(shape.frame);
 }
 
 double distance_at(const Eigen::VectorXd& q, const std::vector<Shape>& shapes,
-                   const Candidate& candidate, model::Chain& chain) {
+                   const Candidate& candidate, model::ChainData& chain) {
   chain.update_poses(q);
   return candidate.distance(pose_of(chain, shapes[static_cast<std::size_t>(candidate.pair.a)]),
                             pose_of(chain, shapes[static_cast<std::size_t>(candidate.pair.b)]));
 }
 
 void sample(const std::vector<Shape>& shapes, const std::vector<Interval>& range,
-            model::Chain& chain, std::vector<Candidate>& candidates) {
+            model::ChainData& chain, std::vector<Candidate>& candidates) {
   std::mt19937_64 random(kSeed);
   const auto uniform = [&](const Interval& interval) {
     const double share = static_cast<double>(random() >> 11U) * 0x1p-53;
     const double beyond = std::clamp((1.0 + 2.0 * kBeyond) * share - kBeyond, 0.0, 1.0);
     return interval.lb + beyond * (interval.ub - interval.lb);
   };
-  Eigen::VectorXd q(chain.nv());
+  Eigen::VectorXd q(chain.model().nv());
   std::vector<Pose> poses(shapes.size());
   for (int n = 0; n < kSamples; ++n) {
     for (int i = 0; i < q.size(); ++i) q[i] = uniform(range[static_cast<std::size_t>(i)]);
@@ -78,13 +79,13 @@ void sample(const std::vector<Shape>& shapes, const std::vector<Interval>& range
 
 // Searches from a good sample, joint by joint with shrinking steps, until nearer than `near`.
 void search(const std::vector<Shape>& shapes, const std::vector<Interval>& range, double near,
-            Candidate::Nearest best, model::Chain& chain, Candidate& candidate) {
+            Candidate::Nearest best, model::ChainData& chain, Candidate& candidate) {
   constexpr int kRounds = 40;
   constexpr double kSmallest = 1e-3;  // smallest step, share of the range
   double step = 0.15;
   for (int round = 0; round < kRounds && step > kSmallest; ++round) {
     bool is_better = false;
-    for (int i = 0; i < chain.nv(); ++i) {
+    for (int i = 0; i < chain.model().nv(); ++i) {
       if (candidate.pair.lever[i] == 0.0) continue;
       const Interval& joint = range[static_cast<std::size_t>(i)];
       for (const double direction : {-1.0, 1.0}) {
@@ -104,7 +105,7 @@ void search(const std::vector<Shape>& shapes, const std::vector<Interval>& range
 
 }  // namespace
 
-Pairs choose_pairs(const std::vector<Shape>& shapes, model::Chain chain,
+Pairs choose_pairs(const std::vector<Shape>& shapes, const model::ChainModel& chain,
                    const std::vector<Interval>& range, double near) {
   Pairs pairs;
   const ReachBounds reach_bounds(chain, range);
@@ -128,7 +129,8 @@ Pairs choose_pairs(const std::vector<Shape>& shapes, model::Chain chain,
   }
 
   const std::vector<Interval> limits = sampled(chain, range);
-  sample(shapes, limits, chain, candidates);
+  model::ChainData posture(chain);
+  sample(shapes, limits, posture, candidates);
   for (Candidate& candidate : candidates) {
     const Pair& pair = candidate.pair;
     if (candidate.largest <= 0.0) {
@@ -137,7 +139,7 @@ Pairs choose_pairs(const std::vector<Shape>& shapes, model::Chain chain,
     }
     for (const Candidate::Nearest& start : candidate.nearest) {
       if (candidate.smallest < near) break;
-      search(shapes, limits, near, start, chain, candidate);
+      search(shapes, limits, near, start, posture, candidate);
     }
     if (candidate.smallest < near) {
       pairs.watched.push_back(pair);

@@ -43,7 +43,7 @@ struct Pairs {
 /// Pairs of shapes that may come nearer than `near` (m) within `range` (per joint; joints without
 /// limits turn once). A pair is left out as kNever when neither samples of the whole range nor a
 /// search from the best of them come that near.
-Pairs choose_pairs(const std::vector<Shape>& shapes, model::Chain chain,
+Pairs choose_pairs(const std::vector<Shape>& shapes, const model::ChainModel& chain,
                    const std::vector<Interval>& range, double near);
 
 }  // namespace hg::collision

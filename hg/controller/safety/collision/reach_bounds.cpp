@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/model/chain_data.h"
+
 namespace hg::collision {
 namespace {
 
@@ -25,12 +27,13 @@ std::vector<Eigen::Vector3d> corners(const Shape& shape, const Pose& T_B_shape) 
   return points;
 }
 
-// A frame on each body: of all frames the first that just this many joints move.
-int frame_on(const model::Chain& chain, int body) {
-  for (int frame = 0; frame < static_cast<int>(chain.frame_names().size()); ++frame) {
+// A frame on each body: of all frames the first that just this many joints move. `chain`: after
+// update_kinematics().
+int frame_on(const model::ChainData& chain, int body) {
+  for (int frame = 0; frame < static_cast<int>(chain.model().frame_names().size()); ++frame) {
     const model::Jacobian J = chain.jacobian(frame);
     int moved_by = 0;
-    for (int i = 0; i < chain.nv(); ++i) {
+    for (int i = 0; i < chain.model().nv(); ++i) {
       if (!J.col(i).isZero(0.0)) moved_by = i + 1;
     }
     if (moved_by == body) return frame;
@@ -40,13 +43,13 @@ int frame_on(const model::Chain& chain, int body) {
 
 }  // namespace
 
-ReachBounds::ReachBounds(model::Chain chain, std::vector<Interval> range)
+ReachBounds::ReachBounds(model::ChainModel chain, std::vector<Interval> range)
     : chain_(std::move(chain)) {
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain_.nv());
-  chain_.update_kinematics(chain_.neutral(), zero);
-  for (int i = 0; i < chain_.nv(); ++i) {
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain_.model().nv());
+  chain_.update_kinematics(chain_.model().neutral(), zero);
+  for (int i = 0; i < chain_.model().nv(); ++i) {
     const auto joint = static_cast<std::size_t>(i);
-    const bool is_slide = chain_.joints()[joint].type == model::JointType::kPrismatic;
+    const bool is_slide = chain_.model().joints()[joint].type == model::JointType::kPrismatic;
     const int frame = frame_on(chain_, i + 1);
     const Vector6 column = chain_.jacobian(frame).col(i);
     origin_.push_back(chain_.pose(frame).p);
@@ -57,10 +60,10 @@ ReachBounds::ReachBounds(model::Chain chain, std::vector<Interval> range)
 }
 
 VectorPM ReachBounds::of(const Shape& shape, int from) const {
-  VectorPM lever = VectorPM::Zero(chain_.nv());
+  VectorPM lever = VectorPM::Zero(chain_.model().nv());
   for (int i = from; i < shape.body; ++i) {
     const bool is_slide =
-        chain_.joints()[static_cast<std::size_t>(i)].type == model::JointType::kPrismatic;
+        chain_.model().joints()[static_cast<std::size_t>(i)].type == model::JointType::kPrismatic;
     lever[i] = is_slide ? 1.0 : this->lever(i, shape);
   }
   return lever;
@@ -79,7 +82,7 @@ double ReachBounds::lever(int joint, const Shape& shape) const {
   for (int i = joint + 1; i < shape.body; ++i) {
     const auto next = static_cast<std::size_t>(i);
     sum += part(origin_[next] - origin_[next - 1]) + part(stroke_[next] * axis_[next]);
-    const bool turns = chain_.joints()[next].type != model::JointType::kPrismatic;
+    const bool turns = chain_.model().joints()[next].type != model::JointType::kPrismatic;
     if (turns && axis_[next].cross(axis).norm() > kParallel) is_parallel = false;
   }
   const Pose T_B_shape = chain_.pose(shape.frame) * shape.T_frame_shape;

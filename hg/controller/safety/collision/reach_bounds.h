@@ -6,6 +6,7 @@
 #include "hg/controller/safety/collision/shapes.h"
 #include "hg/core/interval.h"
 #include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::collision {
 
@@ -13,7 +14,7 @@ namespace hg::collision {
 class ReachBounds {
  public:
   /// `range`: range of each joint; a prismatic joint shifts the bodies behind it that far.
-  ReachBounds(model::Chain chain, std::vector<Interval> range);
+  ReachBounds(model::ChainModel chain, std::vector<Interval> range);
 
   /// Bounds as in Pair::lever for `shape` as seen from body `from`.
   VectorPM of(const Shape& shape, int from) const;
@@ -21,7 +22,7 @@ class ReachBounds {
  private:
   double lever(int joint, const Shape& shape) const;
 
-  model::Chain chain_;
+  model::ChainData chain_;
   std::vector<double> stroke_;           // stroke of prismatic joints, else 0
   std::vector<Eigen::Vector3d> origin_;  // joint origins in B
   std::vector<Eigen::Vector3d> axis_;    // joint axes in B

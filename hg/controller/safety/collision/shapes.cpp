@@ -14,7 +14,7 @@ using model::UrdfJointType;
 using model::UrdfShape;
 
 // Number of joints of the chain between B and this link.
-int body_of(const Urdf& urdf, int link, const model::Chain& chain) {
+int body_of(const Urdf& urdf, int link, const model::ChainModel& chain) {
   for (std::size_t steps = 0; steps <= urdf.joints.size(); ++steps) {
     const auto above = std::ranges::find(urdf.joints, link, &UrdfJoint::child);
     if (above == urdf.joints.end()) return 0;
@@ -76,7 +76,7 @@ void drop_inner(std::vector<Shape>& shapes) {
 
 }  // namespace
 
-Geometry read_geometry(const Urdf& urdf, const model::Chain& chain) {
+Geometry read_geometry(const Urdf& urdf, const model::ChainModel& chain) {
   Geometry geometry;
   for (std::size_t i = 0; i < urdf.links.size(); ++i) {
     const model::UrdfLink& link = urdf.links[i];

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/model/urdf.h"
 
 namespace hg::collision {
@@ -33,7 +33,7 @@ struct Geometry {
 };
 
 /// The shapes of `urdf`, the URDF or the part of it that `chain` was made of.
-Geometry read_geometry(const model::Urdf& urdf, const model::Chain& chain);
+Geometry read_geometry(const model::Urdf& urdf, const model::ChainModel& chain);
 
 /// The half space below `z` (m, in B), as a box that is large enough for every device.
 Shape floor_at(double z);

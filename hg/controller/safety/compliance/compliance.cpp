@@ -20,8 +20,8 @@ constexpr double kQuiet_s = 0.05;       // time below that share until a contact
 constexpr double kGantryGain = 0.01;    // m/s per N, rad/s per Nm
 constexpr double kDamping = 0.1;        // m or rad: singular directions of the arm carry nothing
 
-double least_threshold(const Config& config, int joint) noexcept {
-  return std::max(kLeast * config.torque_max[joint], kLeastOfArm * config.torque_max.maxCoeff());
+double least_threshold(const VectorM& torque_max, int joint) noexcept {
+  return std::max(kLeast * torque_max[joint], kLeastOfArm * torque_max.maxCoeff());
 }
 
 void start(const Input& input, State& state) noexcept {
@@ -33,11 +33,11 @@ void start(const Input& input, State& state) noexcept {
 
 // Learns the noise from torques far below a contact. Noise raises a threshold to at most twice the
 // minimum.
-void learn(const Config& config, State& state) noexcept {
+void learn(const VectorM& torque_max, double dt, State& state) noexcept {
   for (int i = 0; i < state.torque.size(); ++i) {
-    const double most = least_threshold(config, i) / kDeviations;
+    const double most = least_threshold(torque_max, i) / kDeviations;
     double& variance = state.variance[i];
-    variance += config.dt / kNoiseMemory_s * (state.torque[i] * state.torque[i] - variance);
+    variance += dt / kNoiseMemory_s * (state.torque[i] * state.torque[i] - variance);
     variance = std::min(variance, most * most);
   }
 }
@@ -55,10 +55,10 @@ Vector6 wrench_of(const Input& input, const VectorM& torque) noexcept {
 }
 
 // Torques beyond the thresholds, continuous where a contact begins and ends.
-VectorM beyond(const Config& config, const State& state) noexcept {
+VectorM beyond(const VectorM& torque_max, const State& state) noexcept {
   VectorM torque = state.torque;
   for (int i = 0; i < torque.size(); ++i) {
-    const double most = threshold(config, state, i);
+    const double most = threshold(torque_max, state, i);
     torque[i] -= std::clamp(torque[i], -most, most);
   }
   return torque;
@@ -66,30 +66,38 @@ VectorM beyond(const Config& config, const State& state) noexcept {
 
 }  // namespace
 
-double threshold(const Config& config, const State& state, int joint) noexcept {
-  const double noise = kDeviations * std::sqrt(state.variance[joint]);
-  return least_threshold(config, joint) + noise + kModelError * state.load[joint];
+VectorM peak_torques(const DeviceModel& device) {
+  VectorM torque(static_cast<Eigen::Index>(device.actuators.size()));
+  for (Eigen::Index i = 0; i < torque.size(); ++i) {
+    torque[i] = device.actuators[static_cast<std::size_t>(i)].torque_max;
+  }
+  return torque;
 }
 
-TouchReport step(const Config& config, const Input& input, State& state) noexcept {
+double threshold(const VectorM& torque_max, const State& state, int joint) noexcept {
+  const double noise = kDeviations * std::sqrt(state.variance[joint]);
+  return least_threshold(torque_max, joint) + noise + kModelError * state.load[joint];
+}
+
+TouchReport step(const VectorM& torque_max, double dt, const Input& input, State& state) noexcept {
   if (!state.is_started) start(input, state);
   TouchReport report;
-  state.torque += config.dt / kFilter_s * (input.torque - state.torque);
-  state.load = input.load.cwiseAbs().cwiseMax((1.0 - config.dt / kLoadMemory_s) * state.load);
+  state.torque += dt / kFilter_s * (input.torque - state.torque);
+  state.load = input.load.cwiseAbs().cwiseMax((1.0 - dt / kLoadMemory_s) * state.load);
   for (int i = 0; i < state.torque.size(); ++i) {
-    const double share = std::abs(state.torque[i]) / threshold(config, state, i);
+    const double share = std::abs(state.torque[i]) / threshold(torque_max, state, i);
     report.share = std::max(report.share, share);
     if (share >= 1.0) report.joint = i;
   }
-  state.quiet_s = report.share < kEnds ? state.quiet_s + config.dt : 0.0;
-  if (!state.is_told && report.share < kEnds) learn(config, state);
+  state.quiet_s = report.share < kEnds ? state.quiet_s + dt : 0.0;
+  if (!state.is_told && report.share < kEnds) learn(torque_max, dt, state);
   state.is_told = report.share >= 1.0 || (state.is_told && state.quiet_s < kQuiet_s);
 
   report.torque = state.torque;
   report.is_told = state.is_told;
   state.away.resize(0);
   if (!state.is_told) return report;
-  report.wrench = wrench_of(input, beyond(config, state));
+  report.wrench = wrench_of(input, beyond(torque_max, state));
   state.away.noalias() = kGantryGain * input.J.leftCols(input.n_p).transpose() * report.wrench;
   state.away = state.away.cwiseMin(kGantrySpeed).cwiseMax(-kGantrySpeed);
   return report;

@@ -17,6 +17,7 @@
 
 #include "hg/core/fields.h"
 #include "hg/core/types.h"
+#include "hg/model/device_model.h"
 #include "hg/signals/touch.h"
 
 namespace hg::compliance {
@@ -24,8 +25,6 @@ namespace hg::compliance {
 /// Set-up data.
 struct Config {
   bool is_on = false;
-  double dt = 1e-3;    ///< period, s
-  VectorM torque_max;  ///< Peak torque of each joint, Nm; empty: the joints have no torque sensors
 };
 
 /// The twin yields with no larger wrench than kForceMax and kMomentMax.
@@ -59,6 +58,9 @@ void fields(Archive& a, T& state) {
 
 using JacobianIn = Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>;
 
+/// Peak torque of each joint, Nm; empty: the joints have no actuators.
+VectorM peak_torques(const DeviceModel& device);
+
 /// One sample.
 struct Input {
   VectorM torque;  ///< Joint torques explained by neither motion nor user, Nm
@@ -67,10 +69,11 @@ struct Input {
   int n_p = 0;     ///< Number of gantry joints
 };
 
-/// Advances by one sample; call once per cycle with the drives on.
-TouchReport step(const Config& config, const Input& input, State& state) noexcept;
+/// Advances by one sample of `dt` (s); call once per cycle with the drives on. `torque_max`: peak
+/// torque of each joint, Nm.
+TouchReport step(const VectorM& torque_max, double dt, const Input& input, State& state) noexcept;
 
 /// Torque from which a joint reports a contact, Nm.
-double threshold(const Config& config, const State& state, int joint) noexcept;
+double threshold(const VectorM& torque_max, const State& state, int joint) noexcept;
 
 }  // namespace hg::compliance

@@ -47,8 +47,8 @@ double tremor_part(double dt, const Eigen::Vector3d& f, State& s) noexcept {
 }
 
 // Index of oscillation; 1 = detected.
-double look_for_oscillation(const Config& config, const Input& input, State& s) noexcept {
-  const double dt = config.dt;
+double look_for_oscillation(const Config& config, double dt, const Input& input,
+                            State& s) noexcept {
   if (!s.is_started) {
     s.x1 = s.x2 = s.x3 = s.in1 = s.in2 = input.f;
     s.since_pushed_s = kAfterPush;
@@ -71,8 +71,8 @@ double look_for_oscillation(const Config& config, const Input& input, State& s) 
   return std::max(s.oscillates_s / config.trip_time, counts ? high / kViolent : 0.0);
 }
 
-void calm(const Config& config, const Input& input, bool is_detected, State& s) noexcept {
-  const double dt = config.dt;
+void calm(const Config& config, double dt, const Input& input, bool is_detected,
+          State& s) noexcept {
   s.hold_s = is_detected ? kHold : std::max(0.0, s.hold_s - dt);
   const bool is_full = s.calming.damping >= 0.99 * config.damping;
   s.restless_s = is_detected && is_full ? s.restless_s + dt : 0.0;
@@ -93,20 +93,22 @@ void calm(const Config& config, const Input& input, bool is_detected, State& s) 
 
 }  // namespace
 
-PassivityReport step(const Config& config, const Input& input, State& state) noexcept {
+PassivityReport step(const Config& config, double dt, const Input& input, State& state) noexcept {
   if (config.reaction == Reaction::kOff) return {};
   if (!state.is_started) state.tank = config.tank_start;
   PassivityReport report;
-  report.oscillation = look_for_oscillation(config, input, state);
+  report.oscillation = look_for_oscillation(config, dt, input, state);
   state.is_started = true;
 
   const double inertia_before = state.calming.inertia;
-  if (config.reaction == Reaction::kAct) calm(config, input, report.oscillation >= 1.0, state);
+  if (config.reaction == Reaction::kAct) {
+    calm(config, dt, input, report.oscillation >= 1.0, state);
+  }
   const double growth = std::max(0.0, state.calming.inertia - inertia_before);
-  state.tank += config.dt * (input.dissipation + input.power_measured - input.power_rendered) -
+  state.tank += dt * (input.dissipation + input.power_measured - input.power_rendered) -
                 0.5 * growth * input.mass * input.speed * input.speed;
   state.tank = std::min(state.tank, config.tank_max);
-  state.energy = std::max(0.0, state.energy - config.dt * input.power_measured);
+  state.energy = std::max(0.0, state.energy - dt * input.power_measured);
   report.tank = state.tank;
   report.energy = state.energy;
   report.damping = state.calming.damping;

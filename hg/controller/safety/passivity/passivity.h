@@ -40,7 +40,6 @@ enum class Reaction : std::uint8_t {
 /// Set-up data.
 struct Config {
   Reaction reaction = Reaction::kObserve;
-  double dt = 1e-3;         ///< Period, s
   double trip_time = 0.25;  ///< Duration of oscillation until it is detected, s
   double damping = 25.0;    ///< Damping added on detection, Ns/m; [C] 7
   double least_mass = 3.0;  ///< Least mass felt at the handle on detection, kg; [C] 7
@@ -109,9 +108,9 @@ void fields(Archive& a, T& state) {
   a("calming", state.calming);
 }
 
-/// Advances by one cycle and returns its report; `state.calming` applies to the twin in the next
-/// one.
-PassivityReport step(const Config& config, const Input& input, State& state) noexcept;
+/// Advances by one cycle of `dt` (s) and returns its report; `state.calming` applies to the twin in
+/// the next one.
+PassivityReport step(const Config& config, double dt, const Input& input, State& state) noexcept;
 
 /// kOscillation when the oscillation has lasted 3 s at full damping, kEnergy when the tank has run
 /// empty, else kNone; only with Reaction::kAct.

@@ -5,21 +5,21 @@
 #include <cmath>
 #include <limits>
 
+#include "hg/controller/safety/test/test_device.h"
+
 namespace hg::safety {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-MonitorConfig config() {
-  MonitorConfig monitor;
-  monitor.is_slide.assign(6, false);
-  monitor.joint_speed_max.assign(6, 2.0);
-  return monitor;
+const DeviceModel& device() {
+  static const DeviceModel device = device_with("pprrrrrr", {.dq_max = 2.0});
+  return device;
 }
 
 // A device whose power has gone, with joint 4 at a speed.
 struct Dark {
-  MonitorConfig monitor = config();
+  MonitorConfig monitor;
   BrakeState state;
   SensorFrame sensors;
 
@@ -32,7 +32,9 @@ struct Dark {
     if (has_motors) sensors.theta_m[4] += 1e-3 * speed;
     EXPECT_EQ(step().code, FaultCode::kNone);
   }
-  Fault step(bool is_powered = false) { return watch_brakes(monitor, sensors, is_powered, state); }
+  Fault step(bool is_powered = false) {
+    return watch_brakes(monitor, device(), sensors, is_powered, state);
+  }
   // samples until it is told; -1: not within 2000
   template <typename Change>
   int until_told(Change change) {

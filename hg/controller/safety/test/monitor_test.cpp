@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string>
+
+#include "hg/controller/safety/test/test_device.h"
 
 namespace hg::safety {
 namespace {
@@ -21,54 +24,53 @@ SensorFrame good_sensors() {
   return sensors;
 }
 
-MonitorConfig config() {
-  MonitorConfig monitor;
-  monitor.joint_range.assign(6, {-2.0, 2.0});
-  monitor.gantry_range.assign(2, {-1.4, 1.4});
-  monitor.joint_speed_max.assign(6, 3.0);
-  monitor.joint_acceleration.assign(6, 20.0);
-  monitor.actuators.assign(6, {.rotor_inertia = 0.6,
-                               .stiffness = 10000.0,
-                               .coulomb_friction = 5.0,
-                               .load_friction = 0.0,
-                               .stiction = 1.0,
-                               .torque_max = 100.0,
-                               .speed_full_torque = 2.0,
-                               .speed_no_load = 4.0});
-  monitor.first_cartesian = 7;
-  monitor.end_cartesian = 10;
-  monitor.frozen_samples = 20;
-  return monitor;
+MonitorConfig config() { return {.frozen_samples = 20}; }
+
+// One sum of joints and one box follow the joints in the catalogue.
+DeviceModel device(const std::string& slides = "pprrrrrr") {
+  DeviceModel device =
+      device_with(slides, {.q_min = -2.0, .q_max = 2.0, .dq_max = 3.0, .ddq_max = 20.0});
+  device.actuators.assign(6, {.rotor_inertia = 0.6,
+                              .stiffness = 10000.0,
+                              .coulomb_friction = 5.0,
+                              .load_friction = 0.0,
+                              .stiction = 1.0,
+                              .torque_max = 100.0,
+                              .speed_full_torque = 2.0,
+                              .speed_no_load = 4.0});
+  device.virtual_joints.resize(1);
+  device.cartesian_limits.resize(1);
+  return device;
 }
 
 TEST(CheckSensors, GoodOnesPass) {
-  EXPECT_EQ(check_sensors(config(), good_sensors(), 7).code, FaultCode::kNone);
+  EXPECT_EQ(check_sensors(good_sensors(), 7, true).code, FaultCode::kNone);
 }
 
 TEST(CheckSensors, NamesTheComponentThatIsNotFinite) {
   // counted through: 6 joints, 6 speeds, 2 gantry axes, 6 wrench components
   SensorFrame sensors = good_sensors();
   sensors.q_m[3] = kNan;
-  EXPECT_EQ(check_sensors(config(), sensors, 7).code, FaultCode::kSensorNotFinite);
-  EXPECT_EQ(check_sensors(config(), sensors, 7).index, 3);
+  EXPECT_EQ(check_sensors(sensors, 7, true).code, FaultCode::kSensorNotFinite);
+  EXPECT_EQ(check_sensors(sensors, 7, true).index, 3);
   sensors = good_sensors();
   sensors.q_p[1] = kInfinity;
-  EXPECT_EQ(check_sensors(config(), sensors, 7).index, 13);
+  EXPECT_EQ(check_sensors(sensors, 7, true).index, 13);
   sensors = good_sensors();
   sensors.w_S[5] = kNan;
-  EXPECT_EQ(check_sensors(config(), sensors, 7).index, 19);
+  EXPECT_EQ(check_sensors(sensors, 7, true).index, 19);
 }
 
 TEST(CheckSensors, LooksAtMotorsJointTorquesAndTheInertialUnitToo) {
   SensorFrame complete = good_sensors();
   complete.theta_m = complete.tau_m = VectorM::Zero(6);
-  EXPECT_TRUE(is_finite(config(), complete));
+  EXPECT_TRUE(is_finite(complete, true));
   const auto expect_named = [&](auto&& spoil, int index) {
     SensorFrame sensors = complete;
     spoil(sensors);
-    EXPECT_FALSE(is_finite(config(), sensors)) << index;
-    EXPECT_EQ(check_sensors(config(), sensors, 7).code, FaultCode::kSensorNotFinite) << index;
-    EXPECT_EQ(check_sensors(config(), sensors, 7).index, index);
+    EXPECT_FALSE(is_finite(sensors, true)) << index;
+    EXPECT_EQ(check_sensors(sensors, 7, true).code, FaultCode::kSensorNotFinite) << index;
+    EXPECT_EQ(check_sensors(sensors, 7, true).index, index);
   };
   expect_named([](SensorFrame& s) { s.theta_m[0] = kNan; }, 20);
   expect_named([](SensorFrame& s) { s.tau_m[5] = kInfinity; }, 31);
@@ -79,20 +81,18 @@ TEST(CheckSensors, LooksAtMotorsJointTorquesAndTheInertialUnitToo) {
 TEST(CheckSensors, WhatADeviceWithoutInertialUnitSaysOfItDoesNotMatter) {
   SensorFrame sensors = good_sensors();
   sensors.a_S[0] = sensors.omega_S[0] = kNan;
-  MonitorConfig without = config();
-  without.has_imu = false;
-  EXPECT_TRUE(is_finite(without, sensors));
-  EXPECT_EQ(check_sensors(without, sensors, 7).code, FaultCode::kNone);
+  EXPECT_TRUE(is_finite(sensors, false));
+  EXPECT_EQ(check_sensors(sensors, 7, false).code, FaultCode::kNone);
 }
 
 TEST(CheckSensors, AFaultThatTheDriverReportsComesFirst) {
   SensorFrame sensors = good_sensors();
   sensors.driver_fault = FaultCode::kDeviceSilent;
-  EXPECT_EQ(check_sensors(config(), sensors, 6).code, FaultCode::kDeviceSilent);
+  EXPECT_EQ(check_sensors(sensors, 6, true).code, FaultCode::kDeviceSilent);
 }
 
 TEST(CheckSensors, SeesGaps) {
-  EXPECT_EQ(check_sensors(config(), good_sensors(), 6).code, FaultCode::kSequenceGap);
+  EXPECT_EQ(check_sensors(good_sensors(), 6, true).code, FaultCode::kSequenceGap);
 }
 
 TEST(CheckSolution, FindsWhatMustNotBeIntegrated) {
@@ -140,7 +140,9 @@ struct Bench {
   int cycles = 0;
   double torque = 0.0;  ///< of joint 0
 
-  explicit Bench(const MonitorConfig& monitor_config = config()) : monitor(monitor_config, 2, 6) {
+  explicit Bench(const MonitorConfig& monitor_config = config(),
+                 const DeviceModel& model = device(), const MonitoredParts& parts = {})
+      : monitor(monitor_config, model, parts) {
     sensors.theta_m = sensors.tau_m = VectorM::Zero(6);
     sensors.temperature_m = VectorM::Constant(6, 40.0);
     results.robot.q_m = results.robot.dq_m = VectorM::Zero(6);
@@ -286,10 +288,11 @@ TEST(Monitor, ABreakInBetweenBeginsTheDebounceAnew) {
 }
 
 TEST(Monitor, NoDebounceIsLongerAtAHigherRateInTime) {
-  MonitorConfig fast = config();
-  fast.dt = 0.5e-3;
-  fast.clock_tolerance = kInfinity;
-  Bench bench(fast);
+  MonitorConfig deaf = config();
+  deaf.clock_tolerance = kInfinity;
+  DeviceModel fast = device();
+  fast.rate_Hz = 2000.0;
+  Bench bench(deaf, fast);
   EXPECT_EQ(
       bench.until_fault(FaultCode::kTrackingLost, [&] { bench.results.robot.q_m[5] = 0.081; }), 40);
 }
@@ -442,15 +445,12 @@ TEST(Monitor, TheTwistOfALoadedSpringIsNoContradictionAndItsAbsenceIsOne) {
 
 TEST(Monitor, SlidesAndTurningGantriesHaveTolerancesOfTheirOwn) {
   MonitorConfig other = config();
-  other.is_slide.assign(6, false);
-  other.is_slide[3] = true;
   other.slide_tolerance = 0.01;
   other.slide_tracking_tolerance = 0.005;
-  other.is_gantry_slide = false;
   other.turn_tolerance = 0.2;
   other.turn_deviation = 0.1;
   const auto until = [&](FaultCode code, auto put) {
-    Bench bench(other);
+    Bench bench(other, device("rrrrrprr"));
     return bench.until_fault(code, [&] { put(bench); });
   };
   for (const double excess : {0.009, 0.011}) {

@@ -6,6 +6,9 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <string>
+
+#include "hg/controller/safety/test/test_device.h"
 
 namespace hg::safety {
 namespace {
@@ -14,15 +17,13 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLimit = 2.0, kMargin = 0.005, kSpeed = 3.0, kBraking = 30.0;
 constexpr double kPeak = 100.0, kRotor = 0.6;
 
-MonitorConfig ratings() {
-  MonitorConfig monitor;
-  monitor.joint_range.assign(6, {-kLimit, kLimit});
-  monitor.gantry_range.assign(2, {-1.4, 1.4});
-  monitor.is_slide.assign(6, false);
-  monitor.joint_speed_max.assign(6, kSpeed);
-  monitor.joint_acceleration.assign(6, kBraking / 1.5);
-  monitor.actuators.assign(6, {.rotor_inertia = kRotor, .torque_max = kPeak});
-  return monitor;
+constexpr double kGantrySpeed = 1.5;
+
+DeviceModel device(const std::string& slides = "pprrrrrr") {
+  DeviceModel device = device_with(
+      slides, {.q_min = -kLimit, .q_max = kLimit, .dq_max = kSpeed, .ddq_max = kBraking / 1.5});
+  device.actuators.assign(6, {.rotor_inertia = kRotor, .torque_max = kPeak});
+  return device;
 }
 
 // A torque-controlled device at rest in the middle of everything.
@@ -35,7 +36,7 @@ struct Bench {
   Sanitised result;
 
   explicit Bench(bool has_torques = true, bool is_strict = false)
-      : sanitiser({.is_strict = is_strict, .torque_rise = 2e-3}, ratings()) {
+      : sanitiser({.is_strict = is_strict, .torque_rise = 2e-3}, device(), kGantrySpeed) {
     robot.q_m = robot.dq_m = VectorM::Zero(6);
     robot.q_p = robot.dq_p = VectorP::Zero(2);
     command.enable = true;
@@ -82,10 +83,9 @@ TEST(Sanitiser, CutsWhatPushesOnBeyondALimitDownToTheTorqueThatHolds) {
 }
 
 TEST(Sanitiser, TheMarginOfASlideIsItsOwn) {
-  MonitorConfig monitor = ratings();
-  monitor.is_slide[2] = true;
   Bench bench;
-  bench.sanitiser = Sanitiser({.slide_margin = 2e-3, .torque_rise = 2e-3}, monitor);
+  bench.sanitiser =
+      Sanitiser({.slide_margin = 2e-3, .torque_rise = 2e-3}, device("pprrprrr"), kGantrySpeed);
   EXPECT_EQ(bench.torque_after(kLimit + 0.0019, 0.0, 20.0, 50.0), 50.0);
   EXPECT_EQ(bench.torque_after(kLimit + 0.0021, 0.0, 20.0, 50.0), 20.0);
 }

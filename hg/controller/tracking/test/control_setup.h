@@ -8,37 +8,52 @@
 
 #include "hg/controller/tracking/joint_control.h"
 #include "hg/core/allocation_counter.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/test/reference_actuators.h"
 
 namespace hg::tracking {
 
 inline constexpr int kGantry = 2, kJoints = 6;
 
-inline const model::Chain& arm() {
-  static const model::Chain chain =
-      model::Chain::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
+inline const model::ChainModel& arm() {
+  static const model::ChainModel chain =
+      model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf");
   return chain;
 }
 
-inline Config reference_config(Method method = Method::kModal) {
-  Config config;
+inline DeviceModel device_with(std::vector<ActuatorModel> actuators, double rate_Hz = 1000.0) {
+  return {.chain = arm(),
+          .n_p = kGantry,
+          .n_m = kJoints,
+          .handle = arm().frame("handle"),
+          .rate_Hz = rate_Hz,
+          .actuators = std::move(actuators)};
+}
+
+/// A control with the facts about the device that the tests change.
+struct Setup : Config {
+  std::vector<ActuatorModel> actuators;
+  double rate_Hz = 1000.0;
+};
+
+inline Setup reference_config(Method method = Method::kModal) {
+  Setup config;
   config.method = method;
   config.actuators = reference_actuators();
   return config;
 }
 
 /// Motors without friction.
-inline Config frictionless_config(Method method = Method::kModal) {
-  Config config = reference_config(method);
+inline Setup frictionless_config(Method method = Method::kModal) {
+  Setup config = reference_config(method);
   for (ActuatorModel& actuator : config.actuators) {
     actuator.coulomb_friction = actuator.viscous_friction = actuator.load_friction = 0.0;
   }
   return config;
 }
 
-inline JointControl control_of(const Config& config) {
-  return JointControl(config, arm(), kGantry, kJoints, arm().frame("handle"));
+inline JointControl control_of(const Setup& config) {
+  return {config, device_with(config.actuators, config.rate_Hz)};
 }
 
 inline VectorM joints(double m1, double m2, double m3, double m4, double m5, double m6) {
@@ -56,7 +71,7 @@ inline Eigen::VectorXd posture(const VectorM& q_m) {
 }
 
 inline MatrixM link_mass(const VectorM& q_m) {
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(q_m), Eigen::VectorXd::Zero(8));
   return chain.M().bottomRightCorner(6, 6);
 }
@@ -88,7 +103,7 @@ inline SensorFrame answered(std::uint64_t sequence, std::uint64_t periods_ago) {
 }
 
 /// Of everything that a controller does in a period, ten times.
-inline std::uint64_t allocations_of_steps(const Config& config) {
+inline std::uint64_t allocations_of_steps(const Setup& config) {
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());

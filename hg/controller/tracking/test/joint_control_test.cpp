@@ -25,8 +25,7 @@ Answer answer(JointControl& control, State& state, const ReferenceState& referen
   return result;
 }
 
-Answer first_answer(const Config& config, const ReferenceState& reference,
-                    const RobotState& robot) {
+Answer first_answer(const Setup& config, const ReferenceState& reference, const RobotState& robot) {
   JointControl control = control_of(config);
   State state = control.start();
   return answer(control, state, reference, robot);
@@ -97,7 +96,7 @@ TEST_P(BothMethods, WhatMotionAndUserDoNotExplainOfATorqueIsToldAsAMovingMean) {
 
 TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
   // a force of the user that grows with 100 N/s: theta_r' = tau_r' / K
-  Config config = frictionless_config(GetParam());
+  Setup config = frictionless_config(GetParam());
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
@@ -106,15 +105,15 @@ TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
     robot.w_H[2] = 0.1 * k;
     answer(control, state, reference, robot);
   }
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
-  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.model().frame("handle"));
   const VectorM dtau = -100.0 * J.rightCols(6).row(2).transpose();
   EXPECT_LT(largest(state.dtau_r - dtau), 1e-6 * largest(dtau));
 }
 
 // The torques fed forward for a wrench of the user that grows with 100 `direction` per second.
-VectorM fed_for_growing(const Config& config, const Vector6& direction) {
+VectorM fed_for_growing(const Setup& config, const Vector6& direction) {
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
@@ -127,13 +126,13 @@ VectorM fed_for_growing(const Config& config, const Vector6& direction) {
 }
 
 TEST(ModalControl, AForceThatGrowsIsFedForwardAsItWillBe) {
-  Config config = frictionless_config();
+  Setup config = frictionless_config();
   const VectorM late = fed_for_growing(config, Vector6::Unit(1));
   config.wrench_lead = 4e-3;
   const VectorM early = fed_for_growing(config, Vector6::Unit(1));
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
-  const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.model().frame("handle"));
   const VectorM in_4_ms = -0.4 * J.rightCols(6).row(1).transpose();
   // along y the weak modes carry nearly everything
   EXPECT_LT(largest(early - late - in_4_ms), 0.05 * largest(in_4_ms));
@@ -141,7 +140,7 @@ TEST(ModalControl, AForceThatGrowsIsFedForwardAsItWillBe) {
 
 // who holds the handle when the drives come on is no force that grows
 TEST(ModalControl, AForceThatWasThereBeforeIsNotLed) {
-  Config config = frictionless_config();
+  Setup config = frictionless_config();
   config.wrench_lead = 4e-3;
   JointControl control = control_of(config);
   State state = control.start();
@@ -157,12 +156,12 @@ TEST(ModalControl, AForceThatWasThereBeforeIsNotLed) {
 
 // A torque about the axis of m6 bends a stiff mode alone.
 TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
-  const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.model().frame("handle"));
   Vector6 torque = Vector6::Zero();
   torque.tail<3>() = J.col(7).tail<3>();
-  Config config = frictionless_config();
+  Setup config = frictionless_config();
   const VectorM late = fed_for_growing(config, torque);
   config.wrench_lead = 4e-3;
   const VectorM early = fed_for_growing(config, torque);
@@ -170,7 +169,7 @@ TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
 }
 
 // rms of the feedforward of a joint whose reference shakes with 60 Hz and 10 rad/s^2
-double fed_for_shaking(const Config& config, int joint) {
+double fed_for_shaking(const Setup& config, int joint) {
   JointControl control = control_of(config);
   State state = control.start();
   ReferenceState reference = at_rest(home());
@@ -186,8 +185,8 @@ double fed_for_shaking(const Config& config, int joint) {
 }
 
 TEST(ModalControl, WhatIsFedForwardToStiffModesIsLowPassedAndToSoftOnesNot) {
-  const Config plain = frictionless_config();
-  Config config = plain;
+  const Setup plain = frictionless_config();
+  Setup config = plain;
   config.stiff_low_pass_Hz = 20.0;
   EXPECT_LT(fed_for_shaking(config, 5), 0.5 * fed_for_shaking(plain, 5));
   EXPECT_GT(fed_for_shaking(config, 0), 0.9 * fed_for_shaking(plain, 0));
@@ -195,7 +194,7 @@ TEST(ModalControl, WhatIsFedForwardToStiffModesIsLowPassedAndToSoftOnesNot) {
 
 TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
   const ReferenceState reference = at_rest(home());
-  const Config config = reference_config(GetParam());
+  const Setup config = reference_config(GetParam());
   for (const double side : {-1.0, 1.0}) {
     RobotState robot = following(reference, VectorM::Zero(6));
     robot.theta_m.array() -= 0.5 * side;  // far behind
@@ -219,7 +218,7 @@ TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
 }
 
 TEST(ModalControl, TheIntegralStopsAtItsBound) {
-  const Config config = reference_config();
+  const Setup config = reference_config();
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
@@ -244,7 +243,7 @@ TEST(ModalControl, TheIntegralWaitsWhileAMotorIsSaturated) {
 
 // after a joint was held back for long: nothing may keep what was gathered
 TEST(ModalControl, AFullIntegralSaturatesNoMotorAndUnwinds) {
-  const Config config = reference_config();
+  const Setup config = reference_config();
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
@@ -254,13 +253,13 @@ TEST(ModalControl, AFullIntegralSaturatesNoMotorAndUnwinds) {
   answer(control, state, reference, robot);
   EXPECT_FALSE(state.is_saturated);
   robot.q_m.array() += 1e-3;  // they are beyond the reference now
-  const int periods = static_cast<int>(config.integral_max / (1e-3 * config.dt));
+  const int periods = static_cast<int>(config.integral_max / (1e-3 / config.rate_Hz));
   for (int k = 0; k < periods + 10; ++k) answer(control, state, reference, robot);
   EXPECT_LT(state.integral.maxCoeff(), 0.0);
 }
 
 TEST(ModalControl, EvenASaturatedIntegralUnwinds) {
-  Config config = reference_config();
+  Setup config = reference_config();
   config.integral_max = 1.0;
   JointControl control = control_of(config);
   State state = control.start();
@@ -292,7 +291,7 @@ TEST(ModalControl, AConstantErrorOfALinkIsAnsweredMoreAndMore) {
 }
 
 TEST_P(BothMethods, FrictionIsFedForwardWithTheDirectionOfTheReference) {
-  const Config config = reference_config(GetParam()), smooth = frictionless_config(GetParam());
+  const Setup config = reference_config(GetParam()), smooth = frictionless_config(GetParam());
   for (const double speed : {-0.3, -2e-3, 2e-3, 0.3}) {
     SCOPED_TRACE(speed);
     ReferenceState reference = at_rest(home());
@@ -345,7 +344,7 @@ TEST(ModalControl, FrictionThatTheFeedbackHasToOvercomeIsLearntWhileTheJointSlid
 
 // What the feedback adds to the torque of a motor that slides is missing friction.
 TEST(ModalControl, TheRateOfLearningIsThatOfTheMissingFriction) {
-  const Config config = reference_config();
+  const Setup config = reference_config();
   for (const int joint : {0, 3, 5}) {
     SCOPED_TRACE(joint);
     ReferenceState reference = at_rest(home());
@@ -362,7 +361,7 @@ TEST(ModalControl, TheRateOfLearningIsThatOfTheMissingFriction) {
     const double missing = (with - without)[joint] / coulomb;
     const double learnt = behind.friction[joint] - level.friction[joint];
     EXPECT_GT(missing, 0.02);
-    EXPECT_NEAR(learnt, config.dt * config.friction_learning * missing, 2e-3 * learnt);
+    EXPECT_NEAR(learnt, config.friction_learning / config.rate_Hz * missing, 2e-3 * learnt);
   }
 }
 
@@ -374,14 +373,14 @@ TEST(ModalControl, NoFrictionIsLearntWhileAMotorIsSaturated) {
 
 // 0.8 of the peak of m1 and m2: what is fed forward ends at its bound instead of swinging around it
 TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
-  const Config config = frictionless_config(GetParam());
+  const Setup config = frictionless_config(GetParam());
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
-  model::Chain chain = arm();
+  model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
-  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.frame("handle"));
+  Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.model().frame("handle"));
   for (const double side : {-1.0, 1.0}) {
     for (const double load : {0.5, 0.8}) {
       robot.w_H = Vector6::Zero();
@@ -395,14 +394,14 @@ TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
 
 // a matrix of two states whose largest eigenvalue passes 1 at 2 pi f dt = sqrt(5) - 1
 TEST(JointControl, TheFilterOfTheFeedforwardIsStableUpToItsBoundAndRefusedBeyond) {
-  Config config = frictionless_config();
-  config.dt = 1.0 / 204.0;
-  EXPECT_NO_THROW(check(config));
-  config.dt = 1.0 / 203.0;
-  EXPECT_THROW(check(config), SetupError);
+  Setup config = frictionless_config();
+  config.rate_Hz = 204.0;
+  EXPECT_NO_THROW(check(config, config.rate_Hz));
+  config.rate_Hz = 203.0;
+  EXPECT_THROW(check(config, config.rate_Hz), SetupError);
   EXPECT_THROW(control_of(config), SetupError);
   config.method = Method::kDrives;
-  EXPECT_NO_THROW(check(config));
+  EXPECT_NO_THROW(check(config, config.rate_Hz));
 
   config = frictionless_config();
   config.flatness_Hz = 0.99 * largest_flatness_Hz(1000.0);
@@ -440,7 +439,7 @@ TEST(Latency, IsMeasuredFromTheAnsweredCommandWhileTheDrivesAreOff) {
 }
 
 TEST(Latency, WithoutAnAnswerItIsWhatTheConfigurationExpects) {
-  Config config = reference_config();
+  Setup config = reference_config();
   config.loop.latency = 2e-3;
   JointControl control = control_of(config);
   State state = control.start();
@@ -482,7 +481,7 @@ TEST(JointControl, AfterARestItBeginsAnew) {
 }
 
 TEST(JointControl, DrivesThatFollowPositionsGetTheReferenceAndNoTorques) {
-  Config config;
+  Setup config;
   config.method = Method::kDrives;
   ReferenceState reference = at_rest(home());
   reference.dq_m.setConstant(0.1);
@@ -500,7 +499,7 @@ TEST(JointControl, DrivesThatFollowPositionsGetTheReferenceAndNoTorques) {
 }
 
 TEST(JointControl, NeedsOneActuatorPerJoint) {
-  Config config = reference_config();
+  Setup config = reference_config();
   config.actuators.pop_back();
   EXPECT_THROW(control_of(config), SetupError);
   config.method = Method::kDrives;

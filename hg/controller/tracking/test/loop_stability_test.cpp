@@ -14,10 +14,8 @@ namespace {
 
 Loop reference_loop(Method method = Method::kModal) {
   return {.config = reference_config(method),
-          .chain = arm(),
-          .n_p = kGantry,
-          .n_m = kJoints,
-          .handle = arm().frame("handle")};
+          .filters = {},
+          .device = device_with(reference_actuators())};
 }
 
 std::vector<Eigen::VectorXd> usual_postures() {
@@ -58,7 +56,7 @@ TEST(LoopStability, GainsThatKnowTheLatencyAreStableWithIt) {
 // the inertia that the controller knows.
 double worst_radius_of_plant(double believed, double latency, double rotor) {
   const Loop loop = reference_loop();
-  TruePlant plant = {loop.config.actuators, loop.config.loop};
+  TruePlant plant = {loop.device.actuators, loop.config.loop};
   plant.loop.latency = latency;
   for (ActuatorModel& actuator : plant.actuators) actuator.rotor_inertia *= rotor;
   double worst = 0.0;
@@ -106,7 +104,7 @@ std::vector<Eigen::VectorXd> dense_postures(std::size_t count) {
 // friction.
 TEST(LoopStability, EveryPostureToleratesAQuarterOfErrorInMassesAndSpringsAndHalfMoreLatency) {
   const Loop loop = reference_loop();
-  const TruePlant believed = {loop.config.actuators, loop.config.loop};
+  const TruePlant believed = {loop.device.actuators, loop.config.loop};
   const auto with = [&](auto change) {
     TruePlant plant = believed;
     change(plant);
@@ -149,7 +147,7 @@ TEST(LoopStability, TheMotorPdIsStableToo) {
 TEST(LoopStability, TheLongestStableLatencyEndsTheSearch) {
   EXPECT_EQ(longest_stable_latency(reference_loop(), postures(), 3), 3);
   Loop wrong = reference_loop();
-  for (ActuatorModel& actuator : wrong.config.actuators) actuator.torque_max = 1e9;
+  for (ActuatorModel& actuator : wrong.device.actuators) actuator.torque_max = 1e9;
   wrong.filters.link_pole_Hz = 20.0;  // [C] 2: unstable
   EXPECT_EQ(longest_stable_latency(wrong, postures(), 3), 0);
 }

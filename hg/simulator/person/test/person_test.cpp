@@ -14,10 +14,10 @@ namespace {
 constexpr double kDt = 1e-3;  // s
 constexpr double kGrasp = 0.7;
 
-model::Chain free_body() { return model::Chain::free_body({}, {.gravity = false}); }
+model::ChainModel free_body() { return model::ChainModel::free_body({}, {.gravity = false}); }
 
 Person make(const Config& config) {
-  const model::Chain chain = free_body();
+  const model::ChainModel chain = free_body();
   return Person(config, chain, chain.frame("handle"), {});
 }
 

@@ -28,7 +28,7 @@ config::Scenario sluggish() {
   config::Scenario scenario = walk();
   scenario.device.control.method = tracking::Method::kDrives;
   config::settle_law(scenario);
-  for (rendering::CartesianLimit& limit : scenario.device.model.cartesian_limits) {
+  for (CartesianLimit& limit : scenario.device.model.cartesian_limits) {
     for (limits::JointLimits& axis : limit.axes) axis.ddq_max = 1.0;
   }
   return scenario;

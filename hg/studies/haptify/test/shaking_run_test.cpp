@@ -66,7 +66,7 @@ config::Scenario wall(double stiffness, double run_up, double inside) {
                                          .pose = {.p = place, .R = upright.toRotationMatrix()},
                                          .stiffness = stiffness}};
   // a device that can brake less than it must, whatever becomes of this one
-  for (rendering::CartesianLimit& limit : scenario.device.model.cartesian_limits) {
+  for (CartesianLimit& limit : scenario.device.model.cartesian_limits) {
     for (limits::JointLimits& axis : limit.axes) axis.ddq_max = 2.0;
   }
   return scenario;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/studies/haptify/free_space_variants.h"
 #include "hg/studies/haptify/impedance.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hg/config/control_cycle.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/tuning/proof.h"
@@ -12,19 +13,21 @@ namespace {
 
 constexpr double kPresliding = 1e-4;  // rad, of all joints
 
-config::Device reference() { return config::load_device("models/haptic_giant/device.yaml"); }
+config::SimulatedDevice reference() {
+  return config::load_simulated_device("models/haptic_giant/device.yaml");
+}
 
 Device with_presliding(double presliding) {
   Device device = device_of(reference());
-  for (ActuatorModel& actuator : device.loop.config.actuators) actuator.presliding = presliding;
+  for (ActuatorModel& actuator : device.loop.device.actuators) actuator.presliding = presliding;
   return device;
 }
 
 VectorM bristles(const Device& device, double share) {
-  VectorM stiffness(device.loop.n_m);
-  for (int i = 0; i < device.loop.n_m; ++i) {
+  VectorM stiffness(device.loop.device.n_m);
+  for (int i = 0; i < device.loop.device.n_m; ++i) {
     stiffness[i] =
-        share * presliding_stiffness(device.loop.config.actuators[static_cast<std::size_t>(i)]);
+        share * presliding_stiffness(device.loop.device.actuators[static_cast<std::size_t>(i)]);
   }
   return stiffness;
 }
@@ -33,10 +36,10 @@ VectorM bristles(const Device& device, double share) {
 // `fed` times as stiff as believed.
 double worst(Device device, double real, double fed, int postures) {
   device.loop.config.friction_share = fed;
-  const tracking::TruePlant plant = {device.loop.config.actuators, device.loop.config.loop, 1.0,
+  const tracking::TruePlant plant = {device.loop.device.actuators, device.loop.config.loop, 1.0,
                                      bristles(device, real)};
   double largest = 0.0;
-  for (const Eigen::VectorXd& q : scenario::random_postures(reference().model, postures, 1)) {
+  for (const Eigen::VectorXd& q : config::random_postures(reference().model, postures, 1)) {
     for (const Grasp& grasp : grasps({})) {
       largest =
           std::max(largest, spectral_radius(linearise(device, plant, {}, grasp.hand, {}, q).A));
@@ -48,8 +51,8 @@ double worst(Device device, double real, double fed, int postures) {
 // docs/concepts/control.md, "Friction"
 TEST(FrictionProof, HoldsWhereAboutAsMuchIsFedForwardAsIsThere) {
   const Device device = with_presliding(kPresliding);
-  const auto postures = scenario::random_postures(reference().model, 5, 1);
-  const Demands demands(device.loop.config, {}, postures);
+  const auto postures = config::random_postures(reference().model, 5, 1);
+  const Demands demands(device.loop, {}, postures);
   int cases = 0;
   for (std::size_t i = 0; i < postures.size(); ++i) {
     for (const Case& one : demands.cases(i)) {
@@ -72,24 +75,24 @@ TEST(FrictionProof, DoesNotHoldFarFromThat) {
 TEST(FrictionProof, WithoutPreslidingSmallMotionsAreNotStableByThemselves) {
   Device device = device_of(reference());
   const tracking::Config& config = device.loop.config;
-  const tracking::TruePlant plant = {config.actuators, config.loop};
-  for (ActuatorModel& actuator : device.loop.config.actuators) {
+  const tracking::TruePlant plant = {device.loop.device.actuators, config.loop};
+  for (ActuatorModel& actuator : device.loop.device.actuators) {
     actuator.viscous_friction +=
         actuator.coulomb_friction * actuator.stiction / config.friction_speed;
   }
-  const Eigen::VectorXd q = scenario::random_postures(reference().model, 1, 1).front();
+  const Eigen::VectorXd q = config::random_postures(reference().model, 1, 1).front();
   EXPECT_GT(spectral_radius(linearise(device, plant, {}, grasps({}).back().hand, {}, q).A), 1.01);
 }
 
 TEST(FrictionProof, AsksNothingOfADeviceWithoutPresliding) {
-  EXPECT_TRUE(deviations_in_friction(device_of(reference()).loop.config).empty());
+  EXPECT_TRUE(deviations_in_friction(device_of(reference()).loop).empty());
 }
 
 // what is linearised does not slip, however small its presliding
 TEST(FrictionProof, IsOfTheStiffnessAlone) {
   const double wide = worst(with_presliding(1e-3), 1.0, 1.0, 1);
   Device steep = with_presliding(1e-5);
-  for (ActuatorModel& actuator : steep.loop.config.actuators) actuator.coulomb_friction *= 0.01;
+  for (ActuatorModel& actuator : steep.loop.device.actuators) actuator.coulomb_friction *= 0.01;
   EXPECT_NEAR(worst(steep, 1.0, 1.0, 1), wide, 1e-6);
 }
 

@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/changes.h"
@@ -29,7 +29,7 @@ config::Scenario walk() {
 }
 
 Eigen::VectorXd posture_of(const config::Scenario& scenario) {
-  const scenario::Start start = scenario::find_start(scenario);
+  const scenario::Start start = scenario::find_start(scenario.device, scenario.twin);
   Eigen::VectorXd q(start.q_p.size() + start.q_m.size());
   q << start.q_p, start.q_m;
   return q;
@@ -91,7 +91,7 @@ TEST(HandleLoop, SaysWhatTheSimulationShows) {
 // How a kick that saturates nothing dies out, on a machine without friction.
 TEST(HandleLoop, IsStableWhereTheSimulationIs) {
   config::Scenario scenario = walk();
-  studies::take_friction(scenario.device.control);
+  studies::take_friction(scenario.device.model);
   studies::StabilityConfig config;
   config.kick.force = 0.3;
   person::HandImpedance hand = person::hand(person::HandPreset::kStiff);
@@ -139,9 +139,9 @@ TEST(HandleLoop, NoiseComesFromWhatIsNoisyAndNothingElse) {
 TEST(HandleLoop, HasTheNoiseOfTheWrenchAtOtherRates) {
   const config::Scenario scenario = walk();
   const auto vibration = [&](double rate_Hz) {
-    config::Device device = scenario.device;
+    config::SimulatedDevice device = scenario.device;
     device.control.flatness_Hz = 40.0;
-    config::set_rate(device, rate_Hz);
+    device.model.rate_Hz = rate_Hz;
     return feel(linearise(device_of(device), simulated(device), {}, person::HandImpedance{},
                           {.force = 2.5e-3}, posture_of(scenario)),
                 {}, unexpected_friction(device))

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "hg/config/control_cycle.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/tuning/tuned_device.h"
@@ -13,12 +14,13 @@ namespace hg::tuning {
 namespace {
 
 TuningProblem problem_of(int postures) {
-  const config::Device device = config::load_device("models/haptic_giant/device.yaml");
+  const config::SimulatedDevice device =
+      config::load_simulated_device("models/haptic_giant/device.yaml");
   TuningProblem problem = {.device = device_of(device),
                            .noise = noise_of(device),
                            .plant = simulated(device),
                            .friction = unexpected_friction(device),
-                           .postures = scenario::random_postures(device.model, postures, 1),
+                           .postures = config::random_postures(device.model, postures, 1),
                            .felt_postures = 1};
   problem.friction_most_N = figures_of(problem, problem.device).friction_N;
   return problem;
@@ -87,7 +89,7 @@ TEST(Demands, RefuseTheDampingOfTheNotes) {
 // the body that is shipped, in hands up to 2000 N/m and with 1.5 times the latency
 TEST(Demands, EveryHandHoldsTheShippedBodyInEveryPosture) {
   const TuningProblem problem = problem_of(20);
-  for (const Deviation& deviation : deviations_in_hand(problem.device.loop.config)) {
+  for (const Deviation& deviation : deviations_in_hand(problem.device.loop)) {
     for (const Grasp& grasp : grasps(problem.body)) {
       Device device = problem.device;
       device.loop.config.flatness_Hz *= deviation.follower;
@@ -105,7 +107,7 @@ TEST(Demands, EveryHandHoldsTheShippedBodyInEveryPosture) {
 TEST(Demands, KnowALighterBodyIsHarderToHold) {
   const TuningProblem problem = problem_of(1);
   const auto worst = [&](double mass) {
-    const Demands demands(problem.device.loop.config, {.mass = mass}, problem.postures);
+    const Demands demands(problem.device.loop, {.mass = mass}, problem.postures);
     double largest = 0.0;
     for (const Case& one : demands.cases(0)) {
       if (one.grasp >= 0) largest = std::max(largest, demands.radius(problem.device, one));

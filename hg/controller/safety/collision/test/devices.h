@@ -11,8 +11,9 @@
 namespace hg::collision {
 
 struct TestDevice {
-  model::Chain chain;
+  model::ChainModel chain;
   Config config;
+  Braking braking;
   std::vector<std::string> links_without;
   std::vector<Interval> range;
 };
@@ -36,8 +37,9 @@ inline std::string folding_urdf() {
 }
 
 inline TestDevice device_of(const std::string& urdf_text) {
-  TestDevice device = {.chain = model::Chain::from_urdf_text(urdf_text, "test.urdf"),
+  TestDevice device = {.chain = model::ChainModel::from_urdf_text(urdf_text, "test.urdf"),
                        .config = {},
+                       .braking = {},
                        .links_without = {},
                        .range = {}};
   const Geometry geometry =
@@ -48,10 +50,10 @@ inline TestDevice device_of(const std::string& urdf_text) {
   for (const model::Joint& joint : device.chain.joints()) {
     device.range.push_back(joint.position);
   }
-  device.config.reaction.resize(8);
-  device.config.reaction << 0.046, 0.046, 0.013, 0.013, 0.013, 0.013, 0.013, 0.013;
-  device.config.deceleration.resize(8);
-  device.config.deceleration << 2.0, 2.0, 6.5, 7.5, 15.0, 8.0, 40.0, 40.0;
+  device.braking.reaction.resize(8);
+  device.braking.reaction << 0.046, 0.046, 0.013, 0.013, 0.013, 0.013, 0.013, 0.013;
+  device.braking.deceleration.resize(8);
+  device.braking.deceleration << 2.0, 2.0, 6.5, 7.5, 15.0, 8.0, 40.0, 40.0;
   device.config.pairs = choose_pairs(device.config.shapes, device.chain, device.range,
                                      device.config.safe_distance + kFarEnough);
   return device;

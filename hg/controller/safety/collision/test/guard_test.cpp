@@ -18,7 +18,10 @@ namespace {
 class Judge {
  public:
   explicit Judge(const TestDevice& device)
-      : config_(device.config), chain_(device.chain), pairs_(device.config.pairs) {
+      : config_(device.config),
+        braking_(device.braking),
+        chain_(device.chain),
+        pairs_(device.config.pairs) {
     for (const Pair& pair : pairs_.watched) distances_.push_back(distance_of(pair.a, pair.b));
   }
 
@@ -37,11 +40,11 @@ class Judge {
     VectorPM x = q;
     for (int k = 0; k <= samples; ++k) {
       for (Eigen::Index i = 0; i < q.size(); ++i) {
-        const double t_stop = config_.reaction[i] + std::abs(dq[i]) / config_.deceleration[i];
+        const double t_stop = braking_.reaction[i] + std::abs(dq[i]) / braking_.deceleration[i];
         const double t = std::min(1.2 * k / samples, t_stop);
-        const double braking = std::max(0.0, t - config_.reaction[i]);
+        const double braking = std::max(0.0, t - braking_.reaction[i]);
         x[i] = q[i] + dq[i] * t -
-               std::copysign(0.5 * config_.deceleration[i] * braking * braking, dq[i]);
+               std::copysign(0.5 * braking_.deceleration[i] * braking * braking, dq[i]);
       }
       smallest = std::min(smallest,
                           at(x, pairs_.watched[pair].a, pairs_.watched[pair].b, distances_[pair]));
@@ -56,7 +59,8 @@ class Judge {
   }
 
   Config config_;
-  model::Chain chain_;
+  Braking braking_;
+  model::ChainData chain_;
   Pairs pairs_;
   std::vector<Distance> distances_;
 };
@@ -65,7 +69,7 @@ class Judge {
 class Wanderer {
  public:
   Wanderer(const TestDevice& device, unsigned seed)
-      : random_(seed), config_(device.config), range_(device.range) {
+      : random_(seed), braking_(device.braking), range_(device.range) {
     for (const model::Joint& joint : device.chain.joints()) speed_.push_back(joint.velocity_max);
     q = VectorPM::Zero(8);
     dq = VectorPM::Zero(8);
@@ -85,7 +89,7 @@ class Wanderer {
     for (int i = 0; i < 8; ++i) {
       const auto joint = static_cast<std::size_t>(i);
       if (uniform(0.0, 1.0) < 0.002) goal_[i] = uniform(-speed_[joint], speed_[joint]);
-      const double step = 1e-3 * config_.deceleration[i];
+      const double step = 1e-3 * braking_.deceleration[i];
       dq[i] += std::clamp(goal_[i] - dq[i], -step, step);
       q[i] += 1e-3 * dq[i];
       if (q[i] < lower(joint) || q[i] > upper(joint)) {
@@ -106,7 +110,7 @@ class Wanderer {
   double upper(std::size_t i) const { return std::min(range_[i].ub, std::numbers::pi); }
 
   std::mt19937 random_;
-  Config config_;
+  Braking braking_;
   std::vector<Interval> range_;
   std::vector<double> speed_;
   VectorPM goal_;
@@ -114,7 +118,7 @@ class Wanderer {
 
 TEST(Guard, SaysFreeOnlyWhereBrakingStaysFree) {
   const TestDevice device = device_of(folding_urdf());
-  Guard guard(device.config, device.chain);
+  Guard guard(device.config, device.braking, device.chain);
   Judge judge(device);
   const unsigned seed = 11;
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -145,7 +149,7 @@ TEST(Guard, SaysFreeOnlyWhereBrakingStaysFree) {
 
 TEST(Guard, RemembersBoundsThatHold) {
   const TestDevice device = device_of(folding_urdf());
-  Guard guard(device.config, device.chain);
+  Guard guard(device.config, device.braking, device.chain);
   Judge judge(device);
   const unsigned seed = 12;
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -176,7 +180,7 @@ TEST(Guard, RemembersBoundsThatHold) {
 
 TEST(Guard, BrakesInTimeWhenAJointGoesForACollision) {
   const TestDevice device = device_of(folding_urdf());
-  Guard guard(device.config, device.chain);
+  Guard guard(device.config, device.braking, device.chain);
   Judge judge(device);
   for (const double speed : {0.1, 0.5, 1.0, 2.0}) {
     State state;
@@ -202,7 +206,7 @@ TEST(Guard, BrakesInTimeWhenAJointGoesForACollision) {
 
 TEST(Guard, LetsADeviceLeaveAPlaceThatIsTooNear) {
   const TestDevice device = device_of(folding_urdf());
-  Guard guard(device.config, device.chain);
+  Guard guard(device.config, device.braking, device.chain);
   State state;
   VectorPM q = VectorPM::Zero(8);
   q << 0.0, 0.0, 0.0, 2.94, -0.7, 1.2, 0.3, 0.0;  // drop tube 15 mm from the first link
@@ -231,8 +235,8 @@ TEST(Guard, LetsADeviceLeaveAPlaceThatIsTooNear) {
 
 TEST(Guard, GivesTheSameBitsFromTheSameState) {
   const TestDevice device = device_of(folding_urdf());
-  Guard guard(device.config, device.chain);
-  Guard other(device.config, device.chain);
+  Guard guard(device.config, device.braking, device.chain);
+  Guard other(device.config, device.braking, device.chain);
   Wanderer wanderer(device, 13);
   State state;
   for (int n = 0; n < 3000; ++n) {
@@ -242,13 +246,13 @@ TEST(Guard, GivesTheSameBitsFromTheSameState) {
     const Prediction b = other.step(wanderer.q, wanderer.dq, true, copy);
     ASSERT_EQ(a.report.distance, b.report.distance);
     ASSERT_EQ(std::memcmp(state.left.data(), copy.left.data(), sizeof(state.left)), 0);
-    if (n % 100 == 0) other = Guard(device.config, device.chain);
+    if (n % 100 == 0) other = Guard(device.config, device.braking, device.chain);
   }
 }
 
 TEST(Guard, AllocatesNothing) {
   const TestDevice device = device_of(folding_urdf());
-  Guard guard(device.config, device.chain);
+  Guard guard(device.config, device.braking, device.chain);
   Wanderer wanderer(device, 14);
   State state;
   const AllocationCounter allocations;
@@ -262,7 +266,7 @@ TEST(Guard, AllocatesNothing) {
 TEST(ReachBounds, BoundEveryPointInEveryPosture) {
   const TestDevice device = device_of(folding_urdf());
   const ReachBounds reach_bounds(device.chain, device.range);
-  model::Chain chain = device.chain;
+  model::ChainData chain(device.chain);
   Wanderer wanderer(device, 15);
   std::vector<double> largest(8, 0.0);
   const Shape& hand = *std::ranges::find(device.config.shapes, "hand", &Shape::name);

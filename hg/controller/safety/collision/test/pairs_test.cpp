@@ -86,7 +86,7 @@ TEST(Pairs, ThatAreLeftOutStayApart) {
     const unsigned seed = 21;
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
-    model::Chain chain = device.chain;
+    model::ChainData chain(device.chain);
     Eigen::VectorXd q(8);
     for (int n = 0; n < 50000; ++n) {
       for (int i = 0; i < 8; ++i) {

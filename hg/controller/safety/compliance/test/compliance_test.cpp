@@ -15,11 +15,9 @@ VectorM joints(double a, double b) {
   return v;
 }
 
-Config config() {
-  Config config = {.is_on = true};
-  config.torque_max = joints(100.0, 50.0);
-  return config;
-}
+constexpr double kDt = 1e-3;
+
+VectorM peaks() { return joints(100.0, 50.0); }
 
 // A gantry along x and an arm of two joints in the plane, lengths 1, at 0 and a quarter turn.
 Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian() {
@@ -30,10 +28,9 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian() {
   return J;
 }
 
-TouchReport felt(const Config& config, const VectorM& torque, State& state,
-                 const VectorM& load = joints(0.0, 0.0)) {
+TouchReport felt(const VectorM& torque, State& state, const VectorM& load = joints(0.0, 0.0)) {
   const Eigen::Matrix<double, 6, Eigen::Dynamic> J = jacobian();
-  return step(config, {.torque = torque, .load = load, .J = J, .n_p = 1}, state);
+  return step(peaks(), kDt, {.torque = torque, .load = load, .J = J, .n_p = 1}, state);
 }
 
 TEST(Compliance, NoiseIsNoContactWhateverItsSize) {
@@ -43,8 +40,7 @@ TEST(Compliance, NoiseIsNoContactWhateverItsSize) {
     State state;
     double largest = 0.0;
     for (int k = 0; k < 100000; ++k) {
-      largest =
-          std::max(largest, felt(config(), joints(normal(random), normal(random)), state).share);
+      largest = std::max(largest, felt(joints(normal(random), normal(random)), state).share);
     }
     EXPECT_LT(largest, 1.0) << sigma;
     EXPECT_FALSE(state.is_told);
@@ -53,11 +49,11 @@ TEST(Compliance, NoiseIsNoContactWhateverItsSize) {
 
 TEST(Compliance, APushIsToldWithinMillisecondsAndAtItsJoint) {
   State state;
-  for (int k = 0; k < 1000; ++k) felt(config(), joints(0.0, 0.0), state);
+  for (int k = 0; k < 1000; ++k) felt(joints(0.0, 0.0), state);
   int cycles = 0;
-  while (!felt(config(), joints(12.0, 0.0), state).is_told) ASSERT_LT(++cycles, 3);
+  while (!felt(joints(12.0, 0.0), state).is_told) ASSERT_LT(++cycles, 3);
   TouchReport report;
-  for (int k = 0; k < 50; ++k) report = felt(config(), joints(12.0, 4.0), state);
+  for (int k = 0; k < 50; ++k) report = felt(joints(12.0, 4.0), state);
   EXPECT_EQ(report.joint, 1);
   EXPECT_NEAR(report.torque[0], 12.0, 0.01);
 }
@@ -67,15 +63,15 @@ TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal(0.0, 3.0);
   for (int k = 0; k < 5000; ++k) {
-    felt(config(), joints(0.0, 0.0), calm);
-    felt(config(), joints(normal(random), 0.0), noisy);
+    felt(joints(0.0, 0.0), calm);
+    felt(joints(normal(random), 0.0), noisy);
   }
-  EXPECT_GT(threshold(config(), noisy, 0), 1.5 * threshold(config(), calm, 0));
+  EXPECT_GT(threshold(peaks(), noisy, 0), 1.5 * threshold(peaks(), calm, 0));
   // somebody who leans against the arm more and more is felt at twice the least at the latest
-  const double least = threshold(config(), calm, 0);
+  const double least = threshold(peaks(), calm, 0);
   State leaned_on;
   double push = 0.0;
-  while (!felt(config(), joints(push, 0.0), leaned_on).is_told) {
+  while (!felt(joints(push, 0.0), leaned_on).is_told) {
     ASSERT_LT(push, 2.1 * least);
     push += 1e-4;
   }
@@ -83,7 +79,7 @@ TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
 
 TEST(Compliance, WhatMovesTheJointsRaisesTheThreshold) {
   State state;
-  for (int k = 0; k < 100; ++k) felt(config(), joints(10.0, 0.0), state, joints(90.0, 0.0));
+  for (int k = 0; k < 100; ++k) felt(joints(10.0, 0.0), state, joints(90.0, 0.0));
   EXPECT_FALSE(state.is_told);
 }
 
@@ -91,11 +87,11 @@ TEST(Compliance, TheWrenchDoesTheSameToTheJointsAndTheGantryLeaves) {
   State state;
   const VectorM torque = joints(-20.0, -25.0);
   TouchReport report;
-  for (int k = 0; k < 100; ++k) report = felt(config(), torque, state);
+  for (int k = 0; k < 100; ++k) report = felt(torque, state);
   ASSERT_TRUE(report.is_told);
   const VectorM made = jacobian().rightCols(2).transpose() * report.wrench;
   const VectorM beyond =
-      torque + joints(threshold(config(), state, 0), threshold(config(), state, 1));
+      torque + joints(threshold(peaks(), state, 0), threshold(peaks(), state, 1));
   EXPECT_LT((made - beyond).norm(), 0.05 * beyond.norm());
   ASSERT_EQ(state.away.size(), 1);
   EXPECT_GT(state.away[0] * report.wrench[0], 0.0);
@@ -105,16 +101,16 @@ TEST(Compliance, TheWrenchDoesTheSameToTheJointsAndTheGantryLeaves) {
 TEST(Compliance, TheWrenchIsBounded) {
   State state;
   TouchReport report;
-  for (int k = 0; k < 100; ++k) report = felt(config(), joints(4000.0, -900.0), state);
+  for (int k = 0; k < 100; ++k) report = felt(joints(4000.0, -900.0), state);
   EXPECT_LE(report.wrench.head<3>().norm(), kForceMax * (1.0 + 1e-12));
   EXPECT_LE(report.wrench.tail<3>().norm(), kMomentMax * (1.0 + 1e-12));
 }
 
 TEST(Compliance, AContactEnds) {
   State state;
-  for (int k = 0; k < 10; ++k) felt(config(), joints(50.0, 0.0), state);
+  for (int k = 0; k < 10; ++k) felt(joints(50.0, 0.0), state);
   EXPECT_TRUE(state.is_told);
-  for (int k = 0; k < 100; ++k) felt(config(), joints(0.0, 0.0), state);
+  for (int k = 0; k < 100; ++k) felt(joints(0.0, 0.0), state);
   EXPECT_FALSE(state.is_told);
   EXPECT_EQ(state.away.size(), 0);
 }
@@ -122,10 +118,11 @@ TEST(Compliance, AContactEnds) {
 TEST(Compliance, DoesNotAllocate) {
   State state;
   const Eigen::Matrix<double, 6, Eigen::Dynamic> J = jacobian();
-  const Config limits = config();
+  const VectorM limits = peaks();
   const AllocationCounter allocations;
   for (int k = 0; k < 100; ++k) {
-    step(limits, {.torque = joints(50.0, 1.0), .load = joints(1.0, 1.0), .J = J, .n_p = 1}, state);
+    step(limits, kDt, {.torque = joints(50.0, 1.0), .load = joints(1.0, 1.0), .J = J, .n_p = 1},
+         state);
   }
   EXPECT_EQ(allocations.count(), 0U);
 }

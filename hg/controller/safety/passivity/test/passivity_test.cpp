@@ -28,7 +28,7 @@ double time_to_trip(double amplitude, double frequency_Hz, double pull = 0.0) {
   for (int n = 0; n < 5000; ++n) {
     Input input = with_force(amplitude, frequency_Hz, kDt * n);
     input.f.x() += pull;
-    if (step(config, input, state).oscillation >= 1.0) return kDt * n;
+    if (step(config, kDt, input, state).oscillation >= 1.0) return kDt * n;
   }
   return kInfinity;
 }
@@ -60,7 +60,7 @@ TEST(Passivity, LeavesHardStartsAndStopsAlone) {
     const int phase = n % 1000;
     Input input;
     input.f.x() = phase < 150 ? 60.0 : (phase > 500 && phase < 650 ? -60.0 : 0.0);
-    EXPECT_LT(step(config, input, state).oscillation, 1.0) << n;
+    EXPECT_LT(step(config, kDt, input, state).oscillation, 1.0) << n;
   }
 }
 
@@ -79,7 +79,7 @@ TEST(Passivity, DoesNotCountImpacts) {
     const double since = kDt * (n % 400);
     Input input = with_force(30.0 * std::exp(-since / 0.05), 12.0, since);
     input.is_pushed_back = since < 0.05;
-    EXPECT_LT(step(config, input, state).oscillation, 1.0);
+    EXPECT_LT(step(config, kDt, input, state).oscillation, 1.0);
   }
 }
 
@@ -90,7 +90,7 @@ TEST(Passivity, CountsShakingAgainstASurfaceLater) {
   for (int n = 0; n < 3000 && at_s == kInfinity; ++n) {
     Input input = with_force(20.0, 6.0, kDt * n);
     input.is_pushed_back = true;
-    if (step(config, input, state).oscillation >= 1.0) at_s = kDt * n;
+    if (step(config, kDt, input, state).oscillation >= 1.0) at_s = kDt * n;
   }
   EXPECT_GT(at_s, 0.5);
   EXPECT_LT(at_s, 0.9);
@@ -99,13 +99,13 @@ TEST(Passivity, CountsShakingAgainstASurfaceLater) {
 TEST(Passivity, CalmsAtOnceAndLetsGoSlowly) {
   const Config config = {.reaction = Reaction::kAct};
   State state;
-  for (int n = 0; n < 1000; ++n) step(config, with_force(20.0, 6.0, kDt * n), state);
+  for (int n = 0; n < 1000; ++n) step(config, kDt, with_force(20.0, 6.0, kDt * n), state);
   EXPECT_NEAR(state.calming.damping, 25.0, 0.1);
   EXPECT_NEAR(2.0 * state.calming.inertia, 3.0, 0.01);
   double calmed_s = 0.0;
   Calming before = state.calming;
   for (int n = 0; n < 6000; ++n) {
-    step(config, with_force(0.0, 6.0, 0.0), state);
+    step(config, kDt, with_force(0.0, 6.0, 0.0), state);
     if (state.calming.damping >= 24.0) calmed_s += kDt;
     EXPECT_LE(before.damping - state.calming.damping, 0.026);
     before = state.calming;
@@ -122,7 +122,7 @@ TEST(Passivity, ObservesWithoutActing) {
   State state;
   double index = 0.0;
   for (int n = 0; n < 1000; ++n) {
-    index = std::max(index, step(config, with_force(20.0, 6.0, kDt * n), state).oscillation);
+    index = std::max(index, step(config, kDt, with_force(20.0, 6.0, kDt * n), state).oscillation);
   }
   EXPECT_GE(index, 1.0);
   EXPECT_EQ(state.calming.damping, 0.0);
@@ -134,7 +134,7 @@ TEST(Passivity, StopsWhatCalmingDoesNotEnd) {
   State state;
   double stopped_s = kInfinity;
   for (int n = 0; n < 6000 && stopped_s == kInfinity; ++n) {
-    const PassivityReport report = step(config, with_force(20.0, 6.0, kDt * n), state);
+    const PassivityReport report = step(config, kDt, with_force(20.0, 6.0, kDt * n), state);
     if (check(config, report, state).code == FaultCode::kOscillation) stopped_s = kDt * n;
   }
   EXPECT_GT(stopped_s, 3.0);
@@ -148,7 +148,7 @@ TEST(Passivity, StopsWhatGivesMoreEnergyThanItsTankHolds) {
   double given = 0.0;
   while (fault.code == FaultCode::kNone && given < 1000.0) {
     const PassivityReport report =
-        step(config, {.power_measured = 0.0, .power_rendered = 50.0}, state);
+        step(config, kDt, {.power_measured = 0.0, .power_rendered = 50.0}, state);
     given += kDt * 50.0;
     fault = check(config, report, state);
   }
@@ -185,7 +185,7 @@ TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {
                      .mass = mass,
                      .speed = std::abs(v)};
       taken += kDt * push * v_late;
-      step(config, input, state);
+      step(config, kDt, input, state);
       EXPECT_LE(0.5 * mass * (state.calming.inertia - before.inertia),
                 before.damping * kDt + state.calming.damping * kDt + 1e-12);
       if (state.tank < 0.0) break;  // the device is stopped
@@ -199,7 +199,7 @@ TEST(Passivity, AllocatesNothing) {
   const Config config = {.reaction = Reaction::kAct};
   State state;
   const AllocationCounter allocations;
-  for (int n = 0; n < 1000; ++n) step(config, with_force(20.0, 6.0, kDt * n), state);
+  for (int n = 0; n < 1000; ++n) step(config, kDt, with_force(20.0, 6.0, kDt * n), state);
   EXPECT_EQ(allocations.count(), 0U);
 }
 

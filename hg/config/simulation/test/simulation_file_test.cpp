@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/simulation.h"
+#include "hg/config/simulation/simulation.h"
 #include "hg/core/test/message_of.h"
 
 namespace hg::config {
 namespace {
 
-const SimulatedDevice kDevice = {
+const SimulationTarget kDevice = {
     .gantry = {"slide"}, .manipulator = {"turn", "lift"}, .handle = "hand", .chain = {}};
 
 // base - slide - [bend, where there is one] - turn - lift - hand
@@ -31,7 +31,7 @@ std::string urdf(const std::string& bend) {
   return text + joint("lift", "prismatic", "arm", "hand") + "</robot>";
 }
 
-Simulation load(const std::string& yaml, const SimulatedDevice& device = kDevice) {
+Simulation load(const std::string& yaml, const SimulationTarget& device = kDevice) {
   SourceReader reader({{"simulation.yaml", yaml},
                        {"base.yaml",
                         "seed: 5\ngear_ratio: {lift: 50}\nfactors: {mass: 2}\n"
@@ -48,7 +48,7 @@ Simulation load(const std::string& yaml, const SimulatedDevice& device = kDevice
 }
 
 // What is wrong with the file; the text starts in line 2.
-std::string message(const std::string& yaml, const SimulatedDevice& device = kDevice) {
+std::string message(const std::string& yaml, const SimulationTarget& device = kDevice) {
   return message_of([&] { load("sensors: {}\n" + yaml, device); });
 }
 
@@ -327,7 +327,7 @@ TEST(SimulationFile, WithoutThemThereAreNoEffects) {
 }
 
 TEST(SimulationFile, AStructureThatYieldsIsAPassiveJointOfItsFrequency) {
-  SimulatedDevice device = kDevice;
+  SimulationTarget device = kDevice;
   device.urdf = "plain.urdf";
   const Simulation yields = load(
       "factors: {mass: 2}\n"
@@ -435,7 +435,7 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 TEST(SimulationFile, AnUrdfOfAnotherDeviceIsRefused) {
-  SimulatedDevice other = kDevice;
+  SimulationTarget other = kDevice;
   other.manipulator = {"turn", "reach"};
   EXPECT_EQ(message("urdf: plain.urdf\nflexible: {lift: {}}\n", other),
             "simulation.yaml:2:7: urdf: must have all joints of the device, there is no 'reach'");

@@ -1,4 +1,4 @@
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ std::vector<std::string> names_of(const std::vector<EventRule>& events) {
 }
 
 TEST(Device, HasTheLimitsOfTheHandbook) {
-  const rendering::DeviceModel& model = door().device.model;
+  const DeviceModel& model = door().device.model;
   ASSERT_EQ(model.n_p, 2);
   ASSERT_EQ(model.n_m, 6);
   // accelerations of m1..m4: what their torques can do, see device.yaml
@@ -71,10 +71,10 @@ TEST(Device, LimitsTheSumOfJointsFourAndFive) {
 }
 
 TEST(Device, KeepsHandAndElbowInTheBox) {
-  const rendering::DeviceModel& model = door().device.model;
+  const DeviceModel& model = door().device.model;
   ASSERT_EQ(model.cartesian_limits.size(), 2u);
-  const rendering::CartesianLimit& hand = model.cartesian_limits[0];
-  const rendering::CartesianLimit& elbow = model.cartesian_limits[1];
+  const CartesianLimit& hand = model.cartesian_limits[0];
+  const CartesianLimit& elbow = model.cartesian_limits[1];
   EXPECT_EQ(hand.name, "hand");
   EXPECT_EQ(hand.frame, model.handle);
   EXPECT_EQ(elbow.frame, model.elbow);
@@ -95,24 +95,32 @@ TEST(Device, KeepsHandAndElbowInTheBox) {
   EXPECT_EQ(elbow.axes[2].dq_max, kInfinity);
 }
 
-TEST(Device, GivesEveryPartThePeriodAndTheDrive) {
+TEST(Device, HasItsFactsInItsModel) {
   const Device& device = door().device;
-  EXPECT_EQ(device.rendering.dt, 1e-3);
-  EXPECT_EQ(device.estimation.dt, 1e-3);
-  EXPECT_EQ(device.estimation.drive.lag, 40e-3);
-  EXPECT_EQ(device.prepositioning.n_p, 2);
+  EXPECT_EQ(device.model.rate_Hz, 1000.0);
+  EXPECT_EQ(device.model.drive.lag, 40e-3);
   EXPECT_EQ(device.prepositioning.k_ppu, 4.0);
   EXPECT_EQ(device.prepositioning.dq_max, 1.5);
-  EXPECT_EQ(device.prepositioning.q_limits[0].ub, 1.40);
-  EXPECT_EQ(device.prepositioning.q_limits[1].lb, -1.60);
-  EXPECT_NEAR(device.prepositioning.drive.tau, 45e-3, kRounding);
-  EXPECT_EQ(device.prepositioning.drive.ddq_max, 2.0);
-  EXPECT_EQ(device.monitor.gantry_speed_max, 1.5);
-  ASSERT_EQ(device.monitor.joint_range.size(), 6u);
-  EXPECT_EQ(device.monitor.joint_range[3].ub, 2.45);
-  EXPECT_EQ(device.monitor.joint_speed_max[5], 3.5);
-  EXPECT_EQ(device.T_H_S.p, Eigen::Vector3d(0, 0, -0.0375));
-  EXPECT_EQ(device.estimation.T_H_S.p, device.T_H_S.p);
+  EXPECT_EQ(device.prepositioning.ddq_max, 2.0);
+  ASSERT_EQ(device.model.gantry_range.size(), 2u);
+  EXPECT_EQ(device.model.gantry_range[0].ub, 1.40);
+  EXPECT_EQ(device.model.gantry_range[1].lb, -1.60);
+  EXPECT_EQ(device.model.T_H_S.p, Eigen::Vector3d(0, 0, -0.0375));
+  EXPECT_TRUE(device.model.has_closed_form);
+  EXPECT_EQ(device.model.actuators.size(), 6u);
+  EXPECT_TRUE(device.model.has_torque_limits);
+}
+
+// what a program for the real machine loads
+TEST(Device, IsLoadedWithoutItsSimulation) {
+  const auto reads_simulation = [](const Device& device) {
+    return std::ranges::any_of(device.sources, [](const SourceText& source) {
+      return source.name.ends_with("simulation.yaml");
+    });
+  };
+  const std::string file = "models/haptic_giant/device.yaml";
+  EXPECT_FALSE(reads_simulation(load_device(file)));
+  EXPECT_TRUE(reads_simulation(load_simulated_device(file)));
 }
 
 TEST(Twin, DoorHasCloserSpringAndBolt) {
@@ -141,7 +149,7 @@ TEST(Twin, DoorHasCloserSpringAndBolt) {
 }
 
 TEST(Twin, FreeBodyStartsWhereTheFileSays) {
-  rendering::TwinModel twin = free_space().twin.model;
+  const rendering::TwinModel twin = free_space().twin.model;
   ASSERT_EQ(twin.dofs.size(), 6u);
   EXPECT_EQ(twin.dofs[0].name, "root x");
   EXPECT_EQ(twin.dofs[5].name, "root rz");
@@ -150,10 +158,11 @@ TEST(Twin, FreeBodyStartsWhereTheFileSays) {
   EXPECT_FALSE(twin.dofs[2].is_angle);
   EXPECT_TRUE(twin.dofs[3].is_angle);
 
-  twin.chain.update(twin.q_start, VectorA::Zero(6));
-  EXPECT_NEAR(twin.chain.M()(0, 0), 6.0, kRounding);
-  EXPECT_NEAR(twin.chain.M()(4, 4), 0.08, kRounding);
-  const Pose pose = twin.chain.pose(twin.end_effector);
+  model::ChainData chain(twin.chain);
+  chain.update(twin.q_start, VectorA::Zero(6));
+  EXPECT_NEAR(chain.M()(0, 0), 6.0, kRounding);
+  EXPECT_NEAR(chain.M()(4, 4), 0.08, kRounding);
+  const Pose pose = chain.pose(twin.end_effector);
   EXPECT_TRUE(pose.p.isApprox(Eigen::Vector3d(0.9, 0.0, -0.75), kRounding));
   // [HANDBOOK] 2.2: hand axis z_H = (sin s) u - (cos s) z with u along y
   EXPECT_TRUE(pose.R.col(2).isApprox(Eigen::Vector3d(0, std::sin(1.4), -std::cos(1.4)), kWritten));
@@ -172,9 +181,10 @@ TEST(Twin, PlacementAndFrameOffsetsDoNotMoveTheStartPose) {
         "name: tool\nurdf: tool.urdf\nfloating_root: true\nend_effector: tip\n"
         "placement: {x_m: 1, yaw_rad: 0.7, roll_rad: 0.2}\n"
         "joints: {root: {start: {x_m: 0.5, z_m: -0.8, azimuth_rad: 1, roll_rad: 2}}}\n"}});
-  rendering::TwinModel twin = load_twin("twin.yaml", reader).model;
-  twin.chain.update_kinematics(twin.q_start, VectorA::Zero(6));
-  const Pose pose = twin.chain.pose(twin.end_effector);
+  const rendering::TwinModel twin = load_twin("twin.yaml", reader).model;
+  model::ChainData chain(twin.chain);
+  chain.update_kinematics(twin.q_start, VectorA::Zero(6));
+  const Pose pose = chain.pose(twin.end_effector);
   const Pose expected =
       pose_of(HandPose{.p = {0.5, 0.0, -0.8}, .azimuth = 1.0, .pitch = 0.5 * pi, .roll = 2.0});
   EXPECT_TRUE(pose.p.isApprox(expected.p, kRounding));
@@ -275,7 +285,7 @@ TEST(Script, DoorHandPushesAndPressesInTheFrameOfTheHandle) {
   };
   // torques on hinge and lever: J^T R w
   const auto torque = [&](double t, double hinge, double lever) {
-    model::Chain chain = door().twin.model.chain;
+    model::ChainData chain(door().twin.model.chain);
     const int frame = door().twin.model.end_effector;
     chain.update_kinematics(Eigen::Vector2d(hinge, lever), Eigen::Vector2d::Zero());
     const Eigen::Matrix3d R = chain.pose(frame).R;
@@ -305,7 +315,7 @@ TEST(Script, ExcavatorHandTurnsTheBucketAboutItsAxis) {
   const Eigen::Array3d arm = script.hand.stiffness;
   const double grip = script.hand.grip_stiffness;
   EXPECT_TRUE((arm * grip / (arm + grip)).isApproxToConstant(350.0, 1e-3));
-  model::Chain chain = excavator().twin.model.chain;
+  model::ChainData chain(excavator().twin.model.chain);
   const int frame = excavator().twin.model.end_effector;
   chain.update_kinematics(excavator().twin.model.q_start, Eigen::Vector4d::Zero());
   const auto channels = person::evaluate(script.script, 3.5);
@@ -375,7 +385,7 @@ TEST(Scenario, WhoseLawDoesNotKnowTheMotorsHasNoLimitsOfThemAndTheSameEvents) {
   const Scenario before = scenario;
   scenario.device.rendering.law = rendering::Law::kPaper;
   settle_law(scenario);
-  EXPECT_TRUE(scenario.device.model.motors.empty());
+  EXPECT_TRUE(scenario.device.model.motors().empty());
   EXPECT_EQ(scenario.limits.size() + 6, before.limits.size());
   const auto hinge = [](const Scenario& of) {
     return of.limits[static_cast<std::size_t>(of.events[0].all_of[0].index)].name;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hg/config/schema.h"
-#include "hg/config/simulation.h"
+#include "hg/config/simulation/simulation.h"
 #include "hg/simulator/sensors/sensors.h"
 
 namespace hg::config {

@@ -1,14 +1,12 @@
-/// A serial kinematic chain: poses, Jacobians and dynamics of devices and twins.
+/// The constant part of a serial kinematic chain: joints, frames, masses; of devices and twins.
 ///
 /// Joints are revolute, continuous, prismatic or floating; fixed joints merge their links, planar
 /// ones become three scalar joints. A continuous joint has one unwrapped coordinate. A floating
 /// joint has seven coordinates (x y z qx qy qz qw: pose of the child in its parent) and six
-/// velocities (twist of the child, resolved in the child). All results are resolved in frame B,
-/// wrenches and twists linear part first. SI units.
+/// velocities (twist of the child, resolved in the child). SI units.
 ///
-/// Set-up throws SetupError, `file:line: item: rule, got value`. After set-up nothing allocates or
-/// throws. Accessors return results of the last update; the next update overwrites them. Not
-/// thread-safe: one chain per thread.
+/// Set-up throws SetupError, `file:line: item: rule, got value`. A model never changes after
+/// set-up: one model serves any number of chain_data.h, in any thread.
 #pragma once
 
 #include <filesystem>
@@ -83,30 +81,25 @@ struct FreeBody {
   Eigen::Matrix3d inertia = 0.08 * Eigen::Matrix3d::Identity();  ///< Inertia about the COM, kg m^2
   Eigen::Vector3d p_handle_com = Eigen::Vector3d::Zero();        ///< Centre of mass, m, in "handle"
 };
-
 /// Vector argument by reference: pass stored vectors or blocks of them; an expression is copied to
 /// the heap.
 using VectorIn = Eigen::Ref<const Eigen::VectorXd>;
-/// Jacobian of a frame (6 x nv), linear rows first.
-using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxTwin>;
 
-class Chain {
+struct ChainParts;
+
+/// A value: copies share their constant contents, which live as long as the last of them.
+class ChainModel {
  public:
-  /// Builds a chain from a URDF file. Refuses branches, more than kMaxTwin degrees of freedom, and
+  /// Builds a model from a URDF file. Refuses branches, more than kMaxTwin degrees of freedom, and
   /// physically impossible inertias.
-  static Chain from_urdf_file(const std::filesystem::path& file, const ChainOptions& options = {});
-  /// Builds a chain from URDF text; `source` replaces the file name in messages.
-  static Chain from_urdf_text(std::string_view text, std::string_view source,
-                              const ChainOptions& options = {});
+  static ChainModel from_urdf_file(const std::filesystem::path& file,
+                                   const ChainOptions& options = {});
+  /// Builds a model from URDF text; `source` replaces the file name in messages.
+  static ChainModel from_urdf_text(std::string_view text, std::string_view source,
+                                   const ChainOptions& options = {});
   /// Builds a free body with one floating joint "root" and one frame "handle"; `floating_root` is
   /// implied.
-  static Chain free_body(const FreeBody& body, const ChainOptions& options = {});
-
-  Chain(const Chain& other);
-  Chain(Chain&& other) noexcept;
-  Chain& operator=(const Chain& other);
-  Chain& operator=(Chain&& other) noexcept;
-  ~Chain();
+  static ChainModel free_body(const FreeBody& body, const ChainOptions& options = {});
 
   const std::string& name() const noexcept;  ///< Name of the robot, from the URDF
   int nq() const noexcept;                   ///< Number of coordinates
@@ -114,55 +107,25 @@ class Chain {
   const std::vector<Joint>& joints() const noexcept;
   const std::vector<std::string>& frame_names() const noexcept;  ///< Frames: links of the part
 
-  /// Index of a frame for the accessors below; throws SetupError with the nearest valid name.
+  /// Index of a frame for the accessors of ChainData; throws SetupError with the nearest valid
+  /// name.
   int frame(std::string_view name) const;
   /// Index of a joint in joints(); throws SetupError with the nearest valid name.
   int joint(std::string_view name) const;
 
+  /// Loads as built: mass 1, gravity as set in ChainOptions.
+  Loads default_loads() const noexcept;
   /// Neutral configuration: 0 for scalar joints, identity for floating ones.
   ConfigurationA neutral() const noexcept;
   /// Configuration q moved by `step` (nv, = dq * dt) for one unit of time; quaternions stay
   /// normalised.
   ConfigurationA integrate(const VectorIn& q, const VectorIn& step) const noexcept;
 
-  void update_poses(const VectorIn& q) noexcept;  ///< Updates poses only, at half the cost
-  /// Updates poses, twists, Jacobians, bias accelerations.
-  void update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept;
-  /// Updates poses, twists, Jacobians, bias accelerations, M, c, gravity.
-  void update(const VectorIn& q, const VectorIn& dq) noexcept { update(q, dq, default_loads()); }
-  /// The same update with other masses and gravity.
-  void update(const VectorIn& q, const VectorIn& dq, const Loads& loads) noexcept;
-  /// Loads as built: mass 1, gravity as set in ChainOptions.
-  Loads default_loads() const noexcept;
-
-  /// Pose of a frame relative to B.
-  const Pose& pose(int frame) const noexcept;
-  /// Twist of a frame: velocity of its origin and angular velocity (v; omega).
-  const Vector6& twist(int frame) const noexcept;
-  /// Jacobian of a frame: twist = jacobian * dq.
-  const Jacobian& jacobian(int frame) const noexcept;
-  /// Bias acceleration dJ * dq (ddq = 0): classical acceleration of the frame's origin, angular
-  /// acceleration.
-  const Vector6& bias_acceleration(int frame) const noexcept;
-
-  /// Mass matrix (nv x nv), symmetric, both triangles.
-  const Eigen::MatrixXd& M() const noexcept;
-  /// Coriolis, centrifugal and gravity torques (nv): M ddq + c = tau + J^T w.
-  const Eigen::VectorXd& c() const noexcept;
-  /// Gravity part of c() (nv); zero without gravity.
-  const Eigen::VectorXd& gravity() const noexcept;
-  /// Potential energy after update(), J, with default_loads(): zero without gravity, or with all
-  /// masses at the height of B.
-  double potential_energy() const noexcept;
-
-  /// Inverse dynamics tau = M ddq + c without external wrenches; keeps the results of update().
-  VectorA inverse_dynamics(const VectorIn& q, const VectorIn& dq, const VectorIn& ddq) noexcept;
-
  private:
-  struct Impl;
-  explicit Chain(std::unique_ptr<Impl> impl) noexcept;
+  friend class ChainData;
+  explicit ChainModel(ChainParts parts);
 
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<const ChainParts> parts_;
 };
 
 }  // namespace hg::model

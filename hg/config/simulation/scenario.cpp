@@ -1,4 +1,4 @@
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,11 @@
 #include <utility>
 
 #include "hg/config/loader.h"
-#include "hg/config/scenario_schema.h"
+#include "hg/config/simulation/scenario_schema.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/controller/rendering/surfaces/cast.h"
 #include "hg/core/error.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::config {
 
@@ -53,7 +54,7 @@ std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
   const std::size_t faults = file.faults.count();
   describe_surfaces(loader, drafts);
   if (file.faults.count() > faults) return {};
-  model::Chain chain = twin.chain;
+  model::ChainData chain(twin.chain);
   chain.update_poses(twin.q_start);
   const Eigen::Vector3d start = chain.pose(twin.end_effector).p;
   std::vector<surfaces::Surface> surfaces;
@@ -89,13 +90,13 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   BystanderDraft bystander;
   std::vector<surfaces::Surface> surfaces;
   std::vector<TimedPanel> panel;
-  std::optional<Device> device;
+  std::optional<SimulatedDevice> device;
   std::optional<Twin> twin;
   std::optional<Script> script = Script{};
   LimitCatalogue catalogue;
   load_file(file, [&](Loader& loader) {
     describe_parts(loader, draft);
-    device = part(file, draft.device, [&] { return load_device(draft.device, reader); });
+    device = part(file, draft.device, [&] { return load_simulated_device(draft.device, reader); });
     twin = part(file, draft.twin, [&] { return load_twin(draft.twin, reader); });
     if (twin && !draft.script.empty()) {
       script =

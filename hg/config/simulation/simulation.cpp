@@ -1,4 +1,4 @@
-#include "hg/config/simulation.h"
+#include "hg/config/simulation/simulation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,13 +6,14 @@
 #include <utility>
 
 #include "hg/config/loader.h"
-#include "hg/config/simulation_schema.h"
+#include "hg/config/simulation/simulation_schema.h"
 #include "hg/core/error.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::config {
 namespace {
 
-void take_joints(const model::Chain& chain, SimulationDraft& draft) {
+void take_joints(const model::ChainModel& chain, SimulationDraft& draft) {
   draft.joint_names.clear();  // of a base, which has another URDF
   draft.joint_units.clear();
   draft.flexible.clear();
@@ -41,7 +42,7 @@ std::vector<int> find_joints(Loader& loader, const std::vector<std::string>& wan
 
 // Every joint of the plant is driven or flexible.
 void take_plant(Loader& loader, const SimulatedDevice& device, SimulationDraft& draft,
-                const model::Chain& chain) {
+                const model::ChainModel& chain) {
   Simulation& simulation = draft.simulation;
   simulation.gantry = find_joints(loader, device.gantry, draft);
   simulation.manipulator = find_joints(loader, device.manipulator, draft);
@@ -70,7 +71,7 @@ constexpr char kSuffix[] = "_structure";  // suffix for the name of a joint that
 
 // The chain of the device with a joint where its structure yields; its stiffness from the inertia
 // that it carries.
-void yield(Loader& loader, LoaderFile& file, const SimulatedDevice& device,
+void yield(Loader& loader, LoaderFile& file, const SimulationTarget& device,
            SimulationDraft& draft) {
   std::vector<std::string> names = device.gantry;
   names.insert(names.end(), device.manipulator.begin(), device.manipulator.end());
@@ -87,14 +88,14 @@ void yield(Loader& loader, LoaderFile& file, const SimulatedDevice& device,
   const std::optional<UrdfText> urdf = read_urdf(file, device.urdf);
   if (urdf) draft.simulation.chain = read_chain(file, *urdf, options);
   if (!draft.simulation.chain) return;
-  model::Chain& chain = *draft.simulation.chain;
-  take_joints(chain, draft);
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(chain.nv());
+  take_joints(*draft.simulation.chain, draft);
+  model::ChainData chain(*draft.simulation.chain);
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(chain.model().nv());
   chain.update(rest, rest);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto& joint = draft.structure[i];
     if (!joint || joint->frequency_Hz == 0.0) continue;
-    const int index = chain.joint(names[i] + kSuffix);
+    const int index = chain.model().joint(names[i] + kSuffix);
     const double inertia = draft.simulation.factors.mass * chain.M()(index, index);
     const double omega = 2.0 * std::numbers::pi * joint->frequency_Hz;
     draft.flexible[static_cast<std::size_t>(index)] = {
@@ -166,10 +167,10 @@ simulator::JointEffects effects_of(const ActuatorModel& actuator, const MotorEff
 
 namespace {
 
-void load(const std::filesystem::path& path, SourceReader& reader, const SimulatedDevice& device,
+void load(const std::filesystem::path& path, SourceReader& reader, const SimulationTarget& device,
           bool is_base, SimulationDraft& draft);
 
-void load_base(LoaderFile& file, const SimulatedDevice& device, SimulationDraft& draft) {
+void load_base(LoaderFile& file, const SimulationTarget& device, SimulationDraft& draft) {
   try {
     load(draft.base, file.sources, device, true, draft);
   } catch (const SetupError& error) {
@@ -177,7 +178,7 @@ void load_base(LoaderFile& file, const SimulatedDevice& device, SimulationDraft&
   }
 }
 
-void load(const std::filesystem::path& path, SourceReader& reader, const SimulatedDevice& device,
+void load(const std::filesystem::path& path, SourceReader& reader, const SimulationTarget& device,
           bool is_base, SimulationDraft& draft) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   load_file(file, [&](Loader& loader) {
@@ -205,13 +206,60 @@ void load(const std::filesystem::path& path, SourceReader& reader, const Simulat
 }  // namespace
 
 Simulation load_simulation(const std::filesystem::path& path, SourceReader& reader,
-                           const SimulatedDevice& device) {
+                           const SimulationTarget& device) {
   SimulationDraft draft;
   load(path, reader, device, false, draft);
   draft.simulation.is_from_file = true;
   draft.simulation.seed = static_cast<std::uint64_t>(draft.seed);
   draft.simulation.sensors.seed = draft.simulation.seed;
   return std::move(draft.simulation);
+}
+
+namespace {
+
+SimulationTarget target_of(const Device& device) {
+  const DeviceModel& model = device.model;
+  SimulationTarget target = {
+      .handle = model.chain.frame_names()[static_cast<std::size_t>(model.handle)],
+      .chain = device.chain_options,
+      .urdf = device.urdf};
+  for (int i = 0; i < model.n_p + model.n_m; ++i) {
+    std::vector<std::string>& names = i < model.n_p ? target.gantry : target.manipulator;
+    names.push_back(model.chain.joints()[static_cast<std::size_t>(i)].name);
+  }
+  return target;
+}
+
+Simulation ideal_simulation(const Device& device) {
+  Simulation simulation;
+  simulation.sensors = simulator::ideal_sensors();
+  simulation.gear_ratio = VectorM::Ones(device.model.n_m);
+  return simulation;
+}
+
+}  // namespace
+
+SimulatedDevice load_simulated_device(const std::filesystem::path& file) {
+  SourceReader reader;
+  return load_simulated_device(file, reader);
+}
+
+SimulatedDevice load_simulated_device(const std::filesystem::path& file, SourceReader& reader) {
+  SimulatedDevice device = {load_device(file, reader), {}};
+  if (device.simulation_file.empty()) {
+    device.simulation = ideal_simulation(device);
+  } else {
+    take_simulation(device, device.simulation_file, reader);
+  }
+  return device;
+}
+
+void take_simulation(SimulatedDevice& device, const std::filesystem::path& file,
+                     SourceReader& reader) {
+  const std::size_t first_source = reader.texts().size();
+  device.simulation = load_simulation(file, reader, target_of(device));
+  const std::vector<SourceText> sources = reader.since(first_source);
+  device.sources.insert(device.sources.end(), sources.begin(), sources.end());
 }
 
 }  // namespace hg::config

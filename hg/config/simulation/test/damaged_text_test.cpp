@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/error.h"
 
 namespace hg::config {

@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/test/message_of.h"
 
 namespace hg::config {

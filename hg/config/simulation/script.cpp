@@ -1,4 +1,4 @@
-#include "hg/config/script.h"
+#include "hg/config/simulation/script.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "hg/config/loader.h"
-#include "hg/config/script_schema.h"
+#include "hg/config/simulation/script_schema.h"
 
 namespace hg::config {
 namespace {

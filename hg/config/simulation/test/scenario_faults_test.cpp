@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "hg/config/scenario.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/error.h"
 #include "hg/core/test/message_of.h"
 

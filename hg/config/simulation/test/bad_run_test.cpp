@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "hg/config/device.h"
-#include "hg/config/scenario.h"
-#include "hg/config/script.h"
+#include "hg/config/simulation/scenario.h"
+#include "hg/config/simulation/script.h"
 #include "hg/config/twin.h"
 #include "hg/core/test/message_of.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/device.h"
-#include "hg/config/script.h"
+#include "hg/config/simulation/script.h"
+#include "hg/config/simulation/simulation.h"
 #include "hg/config/sources.h"
 #include "hg/config/twin.h"
 #include "hg/controller/rendering/surfaces/surface.h"
@@ -32,7 +32,7 @@ struct Scenario {
   std::string description;  ///< description in one sentence
   /// Duration of the run, even if the script is longer; 0 = as the script
   double duration_s = 0.0;
-  Device device;
+  SimulatedDevice device;
   Twin twin;
   person::PersonKind person = person::PersonKind::kNone;
   Script script;  ///< script, empty unless person is kScript

@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "hg/config/device.h"
 #include "hg/config/sources.h"
 #include "hg/core/types.h"
-#include "hg/model/chain.h"
+#include "hg/model/chain_model.h"
 #include "hg/signals/actuator_model.h"
 #include "hg/signals/drive_model.h"
 #include "hg/signals/payload.h"
@@ -78,13 +79,13 @@ struct Simulation {
 
   /// A plant with more joints than the controller's model, from `urdf` or with those of
   /// `structure`; without it the chain of the device.
-  std::optional<model::Chain> chain;
+  std::optional<model::ChainModel> chain;
   std::vector<int> gantry, manipulator;  ///< indices of the chain's joints, in the device's order
   std::vector<simulator::FlexibleJoint> flexible;  ///< all other joints of the chain
 };
 
 /// The device that a simulation file belongs to. Without joint names, names are not checked.
-struct SimulatedDevice {
+struct SimulationTarget {
   std::vector<std::string> gantry, manipulator;  ///< joint names
   std::string handle;                            ///< name of the frame H
   model::ChainOptions chain;                     ///< options with which its URDF was read
@@ -93,6 +94,21 @@ struct SimulatedDevice {
 
 /// Loads a simulation. Throws SetupError with all faults of the file, one per line.
 Simulation load_simulation(const std::filesystem::path& file, SourceReader& reader,
-                           const SimulatedDevice& device);
+                           const SimulationTarget& target);
+
+/// A device with its simulation: ideal sensors, and nothing differs, where its file names none.
+struct SimulatedDevice : Device {
+  Simulation simulation;
+};
+
+/// Loads a device with its simulation. Throws SetupError with all faults of the device's file or
+/// else of the simulation's, one per line.
+SimulatedDevice load_simulated_device(const std::filesystem::path& file);
+SimulatedDevice load_simulated_device(const std::filesystem::path& file, SourceReader& reader);
+
+/// Replaces the device's simulation by that of this file; its texts join those of the device.
+/// Throws SetupError as load_simulation() does.
+void take_simulation(SimulatedDevice& device, const std::filesystem::path& file,
+                     SourceReader& reader);
 
 }  // namespace hg::config

@@ -1,0 +1,28 @@
+/// The control cycle of a device and a twin, for any machine: real or simulated.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hg/config/device.h"
+#include "hg/config/twin.h"
+#include "hg/controller/cycle.h"
+#include "hg/controller/tracking/loop_stability.h"
+
+namespace hg::config {
+
+/// The control cycle of `device` with `twin` in its hand, in contact with `surfaces`. Throws
+/// SetupError where they do not fit together, or where the torque loop is not stable with the
+/// expected latency.
+controller::Cycle make_cycle(const Device& device, const Twin& twin,
+                             std::vector<surfaces::Surface> surfaces = {});
+
+/// The torque loop of a device with elastic joints, as its controller believes it to be.
+tracking::Loop torque_loop(const Device& device);
+
+/// `count` postures (gantry at 0 first) all over the limits of the joints; a joint without limits
+/// is sampled over one turn. Throws SetupError if hardly any is within the virtual limits.
+std::vector<Eigen::VectorXd> random_postures(const DeviceModel& device, int count,
+                                             std::uint32_t seed);
+
+}  // namespace hg::config

@@ -1,0 +1,366 @@
+#include "hg/model/chain_model.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "hg/core/error.h"
+#include "hg/core/nearest_name.h"
+#include "hg/model/chain_parts.h"
+#include "hg/model/tool.h"
+#include "hg/model/urdf.h"
+#include "hg/model/urdf_parts.h"
+
+namespace hg::model {
+namespace {
+
+pinocchio::SE3 to_SE3(const Pose& pose) { return {pose.R, pose.p}; }
+
+pinocchio::Inertia to_inertia(const Inertial& i) { return {i.mass, i.p_com, i.inertia}; }
+
+// axes along x, y, z: cheaper specialised joints
+pinocchio::JointModel scalar_joint(bool turns, const Eigen::Vector3d& axis) {
+  if (axis == Eigen::Vector3d::UnitX()) {
+    return turns ? pinocchio::JointModel(pinocchio::JointModelRX())
+                 : pinocchio::JointModel(pinocchio::JointModelPX());
+  }
+  if (axis == Eigen::Vector3d::UnitY()) {
+    return turns ? pinocchio::JointModel(pinocchio::JointModelRY())
+                 : pinocchio::JointModel(pinocchio::JointModelPY());
+  }
+  if (axis == Eigen::Vector3d::UnitZ()) {
+    return turns ? pinocchio::JointModel(pinocchio::JointModelRZ())
+                 : pinocchio::JointModel(pinocchio::JointModelPZ());
+  }
+  return turns ? pinocchio::JointModel(pinocchio::JointModelRevoluteUnaligned(axis))
+               : pinocchio::JointModel(pinocchio::JointModelPrismaticUnaligned(axis));
+}
+ChainParts::Axis axis_of(const Joint& joint) {
+  ChainParts::Axis axis = {joint.type != JointType::kPrismatic, joint.axis};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (joint.axis != Eigen::Vector3d::Unit(k)) continue;
+    axis.k = k;
+    axis.i = (k + 1) % 3;
+    axis.j = (k + 2) % 3;
+  }
+  return axis;
+}
+
+int find(std::string_view name, const std::vector<std::string>& names, const std::string& chain,
+         const std::string& kind) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<int>(found - names.begin());
+  throw SetupError(chain + ": " + kind + " must be one of the chain, got '" + std::string(name) +
+                   "', nearest is '" + nearest_name(name, names) + "'");
+}
+
+// The pose q after moving along the twist `step` of the body for one unit of time.
+Eigen::Matrix<double, 7, 1> integrate_floating(const Eigen::Matrix<double, 7, 1>& q,
+                                               const Vector6& step) noexcept {
+  const Eigen::Quaterniond R(q[6], q[3], q[4], q[5]);
+  const Eigen::Vector3d omega = step.tail<3>();
+  const double half = 0.5 * omega.norm();
+
+  // sin(x) / x to the last digit also where x is small
+  const double sinc = half > 1e-4 ? std::sin(half) / half : 1.0 - half * half / 6.0;
+  Eigen::Quaterniond turn;
+  turn.w() = std::cos(half);
+  turn.vec() = 0.5 * sinc * omega;
+
+  const pinocchio::SE3 moved = pinocchio::exp6(pinocchio::Motion(step));
+  Eigen::Matrix<double, 7, 1> q_next;
+  q_next << q.head<3>() + R * moved.translation(), (R * turn).normalized().coeffs();
+  return q_next;
+}
+
+}  // namespace
+
+pinocchio::JointIndex ChainParts::add_joint(pinocchio::JointIndex parent, Joint joint,
+                                            const pinocchio::JointModel& kind,
+                                            const pinocchio::SE3& placement) {
+  const pinocchio::JointIndex index = model.addJoint(parent, kind, placement, joint.name);
+  joint.q_index = model.idx_qs[index];
+  joint.v_index = model.idx_vs[index];
+  joint.nq = model.nqs[index];
+  joint.nv = model.nvs[index];
+  joint_names.push_back(joint.name);
+  axes.push_back(axis_of(joint));
+  has_floating = has_floating || joint.type == JointType::kFloating;
+  joints.push_back(std::move(joint));
+  return index;
+}
+
+pinocchio::JointIndex ChainParts::add_floating_root(const Pose& T_B_root) {
+  return add_joint(0, {.name = "root", .type = JointType::kFloating, .position = {}},
+                   pinocchio::JointModelFreeFlyer(), to_SE3(T_B_root));
+}
+
+void ChainParts::add_frame(const std::string& frame_name, pinocchio::JointIndex joint,
+                           const pinocchio::SE3& T_joint_frame) {
+  frame_names.push_back(frame_name);
+  frames.push_back({joint, T_joint_frame});
+}
+
+namespace {
+
+// Walks a URDF from root to tip and adds its joints and links to a chain.
+class Builder {
+ public:
+  Builder(const Urdf& urdf, const ChainOptions& options) : urdf_(urdf), options_(options) {}
+
+  ChainParts build() {
+    ChainParts chain;
+    chain.name = urdf_.name;
+    const int root = root_link();
+    pinocchio::JointIndex joint = 0;
+    pinocchio::SE3 placement = to_SE3(options_.T_B_root);
+    if (options_.floating_root) {
+      joint = chain.add_floating_root(options_.T_B_root);
+      placement.setIdentity();
+    }
+
+    merge_fixed(chain, joint, root, placement);
+    refuse_massless(joint, link(root), options_.floating_root ? "root" : "");
+    std::size_t visited = merged_.size();
+    while (const UrdfJoint* next = moving_joint()) {
+      joint = add(chain, joint, *next);
+      merge_fixed(chain, joint, next->child, pinocchio::SE3::Identity());
+      refuse_massless(joint, link(next->child), next->name);
+      visited += merged_.size();
+    }
+    if (visited != urdf_.links.size()) fail_for_loop();
+    if (chain.joints.empty()) throw SetupError(urdf_.source + ": robot has no moving joint");
+    return chain;
+  }
+
+ private:
+  struct Merged {
+    int link;
+    pinocchio::SE3 T_joint_link;
+  };
+
+  const UrdfLink& link(int index) const { return urdf_.links[static_cast<std::size_t>(index)]; }
+
+  [[noreturn]] void fail(int line, const std::string& what) const {
+    throw SetupError(urdf_.source + ":" + std::to_string(line) + ": " + what);
+  }
+
+  int root_link() const {
+    std::vector<const UrdfJoint*> holder(urdf_.links.size(), nullptr);
+    for (const UrdfJoint& j : urdf_.joints) {
+      const UrdfJoint*& first = holder[static_cast<std::size_t>(j.child)];
+      if (first != nullptr) {
+        fail(j.line, "joint " + j.name + ": link " + link(j.child).name +
+                         " is the child of joint " + first->name + " already");
+      }
+      first = &j;
+    }
+    int root = -1;
+    for (int i = 0; i < static_cast<int>(holder.size()); ++i) {
+      if (holder[static_cast<std::size_t>(i)] != nullptr) continue;
+      if (root >= 0) {
+        fail(link(i).line, "link " + link(i).name + ": is not connected to link " +
+                               link(root).name + ", a chain has one root");
+      }
+      root = i;
+    }
+    if (root < 0) fail_for_loop();
+    return root;
+  }
+
+  [[noreturn]] void fail_for_loop() const {
+    fail(urdf_.joints.front().line, "robot: joints form a loop, a chain has a root and a tip");
+  }
+
+  // Collects the links that are fixed to `first`, gives them to the body of `joint` and lists
+  // frames.
+  void merge_fixed(ChainParts& chain, pinocchio::JointIndex joint, int first,
+                   const pinocchio::SE3& placement) {
+    merged_ = {{first, placement}};
+    mass_ = 0.0;
+    for (std::size_t i = 0; i < merged_.size(); ++i) {
+      const Merged at = merged_[i];
+      chain.add_frame(link(at.link).name, joint, at.T_joint_link);
+      if (const auto& inertial = link(at.link).inertial; inertial && joint > 0) {
+        // a point mass must be fixed to a body with inertia
+        const bool is_point = i > 0 && inertial->mass > 0.0 && inertial->inertia.isZero(0.0);
+        const std::string& fault = link(at.link).inertial_fault;
+        if (!fault.empty() && !is_point) throw SetupError(fault);
+        chain.model.appendBodyToJoint(joint, to_inertia(*inertial), at.T_joint_link);
+        mass_ += inertial->mass;
+      }
+      for (const UrdfJoint& j : urdf_.joints) {
+        if (j.parent != at.link || j.type != UrdfJointType::kFixed) continue;
+        merged_.push_back({j.child, at.T_joint_link * to_SE3(j.T_parent_joint)});
+      }
+    }
+  }
+
+  // The joint that carries the rest of the chain; nullptr at the tip.
+  const UrdfJoint* moving_joint() {
+    const UrdfJoint* found = nullptr;
+    for (const Merged& at : merged_) {
+      for (const UrdfJoint& j : urdf_.joints) {
+        if (j.parent != at.link || j.type == UrdfJointType::kFixed) continue;
+        if (found != nullptr) {
+          fail(j.line, "link " + link(at.link).name + ": branches into the joints " + found->name +
+                           " and " + j.name +
+                           "; name the last link of the chain with tip_link (and its first "
+                           "with root_link): the other joints then stand still");
+        }
+        found = &j;
+        T_joint_next_ = at.T_joint_link * to_SE3(j.T_parent_joint);
+      }
+    }
+    return found;
+  }
+
+  pinocchio::JointIndex add(ChainParts& chain, pinocchio::JointIndex parent,
+                            const UrdfJoint& j) const {
+    if (j.mimic_line > 0)
+      fail(j.mimic_line, "joint " + j.name + ": mimic joints are not supported");
+    if (j.type != UrdfJointType::kPlanar) return add(chain, parent, j, T_joint_next_, "");
+    pinocchio::SE3 placement = T_joint_next_;
+    for (const UrdfJoint& part : planar_parts(j)) {
+      parent = add(chain, parent, part, placement, j.name);
+      placement.setIdentity();
+    }
+    return parent;
+  }
+
+  static pinocchio::JointIndex add(ChainParts& chain, pinocchio::JointIndex parent,
+                                   const UrdfJoint& j, const pinocchio::SE3& placement,
+                                   const std::string& planar) {
+    Joint joint = {.name = j.name,
+                   .position = j.position,
+                   .velocity_max = j.velocity_max,
+                   .effort_max = j.effort_max,
+                   .axis = j.axis,
+                   .planar = planar};
+    if (j.type == UrdfJointType::kFloating) {
+      joint.type = JointType::kFloating;
+      return chain.add_joint(parent, joint, pinocchio::JointModelFreeFlyer(), placement);
+    }
+    joint.type = j.type == UrdfJointType::kPrismatic    ? JointType::kPrismatic
+                 : j.type == UrdfJointType::kContinuous ? JointType::kContinuous
+                                                        : JointType::kRevolute;
+    const bool turns = j.type != UrdfJointType::kPrismatic;
+    return chain.add_joint(parent, joint, scalar_joint(turns, j.axis), placement);
+  }
+
+  void refuse_massless(pinocchio::JointIndex joint, const UrdfLink& body,
+                       const std::string& joint_name) const {
+    if (joint == 0 || mass_ > 0.0) return;
+    fail(body.line, "link " + body.name + ": moves with joint " + joint_name +
+                        " but has no mass; give it an <inertial> or make the joint fixed");
+  }
+
+  const Urdf& urdf_;
+  const ChainOptions& options_;
+  std::vector<Merged> merged_;  // links of the current body
+  double mass_ = 0.0;           // of the current body
+  pinocchio::SE3 T_joint_next_ = pinocchio::SE3::Identity();
+};
+
+ChainParts build(const Urdf& urdf, const ChainOptions& options) {
+  Urdf part = serial_part(urdf, options.root_link, options.tip_link);
+  if (options.tool) attach(*options.tool, part);
+  for (const PassiveJoint& joint : options.passive)
+    insert_behind(joint.behind, joint.name, joint.axis, part);
+  ChainParts chain = Builder(part, options).build();
+  if (chain.model.nv > kMaxTwin || chain.model.nq > kMaxTwinCoords) {
+    throw SetupError(urdf.source + ": a chain has at most " + std::to_string(kMaxTwin) +
+                     " degrees of freedom, got " + std::to_string(chain.model.nv));
+  }
+  if (!options.gravity) chain.model.gravity.setZero();
+  return chain;
+}
+
+ChainParts build(const FreeBody& body, const ChainOptions& options) {
+  const Inertial inertial = {body.mass, body.p_handle_com, body.inertia};
+  check(inertial, "free body");
+  ChainParts chain;
+  chain.name = "free_body";
+  const pinocchio::JointIndex root = chain.add_floating_root(options.T_B_root);
+  chain.model.appendBodyToJoint(root, to_inertia(inertial), pinocchio::SE3::Identity());
+  chain.add_frame("handle", root, pinocchio::SE3::Identity());
+  if (!options.gravity) chain.model.gravity.setZero();
+  return chain;
+}
+
+}  // namespace
+
+std::string_view to_string(JointType type) noexcept {
+  switch (type) {
+    case JointType::kRevolute:
+      return "revolute";
+    case JointType::kContinuous:
+      return "continuous";
+    case JointType::kPrismatic:
+      return "prismatic";
+    case JointType::kFloating:
+      return "floating";
+  }
+  return "unknown";
+}
+
+ChainModel::ChainModel(ChainParts parts)
+    : parts_(std::make_shared<const ChainParts>(std::move(parts))) {}
+
+ChainModel ChainModel::from_urdf_file(const std::filesystem::path& file,
+                                      const ChainOptions& options) {
+  return ChainModel(build(read_urdf_file(file), options));
+}
+
+ChainModel ChainModel::from_urdf_text(std::string_view text, std::string_view source,
+                                      const ChainOptions& options) {
+  return ChainModel(build(read_urdf_text(text, source), options));
+}
+
+ChainModel ChainModel::free_body(const FreeBody& body, const ChainOptions& options) {
+  return ChainModel(build(body, options));
+}
+
+const std::string& ChainModel::name() const noexcept { return parts_->name; }
+int ChainModel::nq() const noexcept { return parts_->model.nq; }
+int ChainModel::nv() const noexcept { return parts_->model.nv; }
+const std::vector<Joint>& ChainModel::joints() const noexcept { return parts_->joints; }
+const std::vector<std::string>& ChainModel::frame_names() const noexcept {
+  return parts_->frame_names;
+}
+
+int ChainModel::frame(std::string_view name) const {
+  return find(name, parts_->frame_names, parts_->name, "frame");
+}
+
+int ChainModel::joint(std::string_view name) const {
+  return find(name, parts_->joint_names, parts_->name, "joint");
+}
+
+ConfigurationA ChainModel::neutral() const noexcept {
+  ConfigurationA q = ConfigurationA::Zero(nq());
+  for (const Joint& joint : parts_->joints) {
+    if (joint.type == JointType::kFloating) q[joint.q_index + 6] = 1.0;
+  }
+  return q;
+}
+
+ConfigurationA ChainModel::integrate(const VectorIn& q, const VectorIn& step) const noexcept {
+  assert(q.size() == nq() && step.size() == nv());
+  ConfigurationA q_next(nq());
+  for (const Joint& joint : parts_->joints) {
+    if (joint.type == JointType::kFloating) {
+      q_next.segment<7>(joint.q_index) =
+          integrate_floating(q.segment<7>(joint.q_index), step.segment<6>(joint.v_index));
+    } else {
+      q_next[joint.q_index] = q[joint.q_index] + step[joint.v_index];
+    }
+  }
+  return q_next;
+}
+Loads ChainModel::default_loads() const noexcept {
+  return {.mass = 1.0, .gravity = parts_->model.gravity.linear().isZero(0.0) ? 0.0 : 1.0};
+}
+
+}  // namespace hg::model

@@ -1,0 +1,49 @@
+/// Contents of a ChainModel, with types of the rigid-body library: for chain_model.cpp and
+/// chain_data.cpp only.
+#pragma once
+
+#include <pinocchio/multibody.hpp>
+#include <pinocchio/spatial.hpp>
+#include <string>
+#include <vector>
+
+#include "hg/model/chain_model.h"
+
+namespace hg::model {
+
+/// Joints, frames and the rigid-body model.
+struct ChainParts {
+  /// A frame moves with the child of a joint; joint 0 is the frame B itself.
+  struct Frame {
+    pinocchio::JointIndex joint = 0;
+    pinocchio::SE3 T_joint_frame = pinocchio::SE3::Identity();
+  };
+
+  /// Axis of a joint with one coordinate.
+  struct Axis {
+    bool turns = false;
+    Eigen::Vector3d e;  ///< Unit vector in the joint's own frame
+    /// Indices of the coordinate axis and of the next two in cyclic order x, y, z; -1 = not
+    /// aligned.
+    Eigen::Index k = -1, i = -1, j = -1;
+  };
+
+  std::string name;
+  std::vector<Joint> joints;
+  std::vector<Axis> axes;  ///< Axis per joint; meaningless for floating ones
+  bool has_floating = false;
+  std::vector<std::string> joint_names;
+  std::vector<std::string> frame_names;
+  std::vector<Frame> frames;
+  pinocchio::Model model;
+
+  /// Appends a joint to `parent`, whose child `placement` places it; returns its index.
+  pinocchio::JointIndex add_joint(pinocchio::JointIndex parent, Joint joint,
+                                  const pinocchio::JointModel& kind,
+                                  const pinocchio::SE3& placement);
+  pinocchio::JointIndex add_floating_root(const Pose& T_B_root);
+  void add_frame(const std::string& frame_name, pinocchio::JointIndex joint,
+                 const pinocchio::SE3& T_joint_frame);
+};
+
+}  // namespace hg::model
