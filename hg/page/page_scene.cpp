@@ -140,14 +140,15 @@ void add_own(const std::string& name, std::vector<Choice>& choices) {
 
 std::string stopping_text(const config::Device& device) {
   const safety::MonitorConfig& stated = device.monitor;
-  const auto is_slide = [](bool slide) { return slide; };
-  const bool has_turns = !std::ranges::all_of(stated.is_slide, is_slide);
-  const bool has_slides = std::ranges::any_of(stated.is_slide, is_slide);
+  bool has_turns = false, has_slides = false;
+  for (int i = 0; i < device.model.n_m; ++i) {
+    (device.model.is_slide(i) ? has_slides : has_turns) = true;
+  }
   std::string text = fmt::format("A stop takes at most {:g} s", stated.stop_time);
   if (has_turns) text += fmt::format(", {:g} rad of a joint", stated.stop_distance);
   if (has_slides) text += fmt::format(", {:g} m of a sliding joint", stated.slide_stop_distance);
   if (device.model.n_p > 0) {
-    text += stated.is_gantry_slide
+    text += device.model.is_gantry_slide()
                 ? fmt::format(", {:g} m of the gantry", stated.gantry_stop_distance)
                 : fmt::format(", {:g} rad of the gantry", stated.turn_stop_distance);
   }

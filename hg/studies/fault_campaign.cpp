@@ -79,11 +79,11 @@ class Travel {
     const safety::MonitorConfig& stated = device_.monitor;
     for (Eigen::Index i = 0; i < truth.q_m.size(); ++i) {
       look(off_m_[i] + truth.q_m[i] - at_stop_m_[i], truth.q_m[i] - from_m_[i],
-           stated.stop_distance_of_joint(static_cast<int>(i)));
+           stated.stop_distance_of_joint(device_.model.is_slide(static_cast<int>(i))));
     }
     for (Eigen::Index i = 0; i < truth.q_p.size(); ++i) {
       look(off_p_[i] + truth.q_p[i] - at_stop_p_[i], truth.q_p[i] - from_p_[i],
-           stated.stop_distance_of_gantry());
+           stated.stop_distance_of_gantry(device_.model.is_gantry_slide()));
     }
     if (!has_reacted) return;
     energy_ -= dt * truth.w_H.dot(truth.twist);

@@ -90,16 +90,18 @@ class Witness final : public device::Device {
 
   void watch(const Truth& truth) noexcept {
     const safety::MonitorConfig& stated = scenario_.device.monitor;
+    const DeviceModel& device = scenario_.device.model;
     const double dt = scenario_.device.model.dt();
     if (from_m_.size() == 0) {
       from_m_ = truth.q_m;
       from_p_ = truth.q_p;
     }
     for (Eigen::Index i = 0; i < from_m_.size(); ++i) {
-      look(truth.q_m[i] - from_m_[i], stated.stop_distance_of_joint(static_cast<int>(i)));
+      look(truth.q_m[i] - from_m_[i],
+           stated.stop_distance_of_joint(device.is_slide(static_cast<int>(i))));
     }
     for (Eigen::Index i = 0; i < from_p_.size(); ++i) {
-      look(truth.q_p[i] - from_p_[i], stated.stop_distance_of_gantry());
+      look(truth.q_p[i] - from_p_[i], stated.stop_distance_of_gantry(device.is_gantry_slide()));
     }
     energy_ -= dt * truth.w_H.dot(truth.twist);
     most_energy = std::max(most_energy, energy_);
