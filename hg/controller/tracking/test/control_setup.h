@@ -31,28 +31,28 @@ inline DeviceModel device_with(std::vector<ActuatorModel> actuators, double rate
 }
 
 /// A control with the facts about the device that the tests change.
-struct Setup : Config {
+struct ControlledArm : Config {
   std::vector<ActuatorModel> actuators;
   double rate_Hz = 1000.0;
 };
 
-inline Setup reference_config(Method method = Method::kModal) {
-  Setup config;
+inline ControlledArm reference_config(Method method = Method::kModal) {
+  ControlledArm config;
   config.method = method;
   config.actuators = reference_actuators();
   return config;
 }
 
 /// Motors without friction.
-inline Setup frictionless_config(Method method = Method::kModal) {
-  Setup config = reference_config(method);
+inline ControlledArm frictionless_config(Method method = Method::kModal) {
+  ControlledArm config = reference_config(method);
   for (ActuatorModel& actuator : config.actuators) {
     actuator.coulomb_friction = actuator.viscous_friction = actuator.load_friction = 0.0;
   }
   return config;
 }
 
-inline JointControl control_of(const Setup& config) {
+inline JointControl control_of(const ControlledArm& config) {
   return {config, device_with(config.actuators, config.rate_Hz)};
 }
 
@@ -103,7 +103,7 @@ inline SensorFrame answered(std::uint64_t sequence, std::uint64_t periods_ago) {
 }
 
 /// Of everything that a controller does in a period, ten times.
-inline std::uint64_t allocations_of_steps(const Setup& config) {
+inline std::uint64_t allocations_of_steps(const ControlledArm& config) {
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());

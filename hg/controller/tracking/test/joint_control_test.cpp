@@ -25,7 +25,8 @@ Answer answer(JointControl& control, State& state, const ReferenceState& referen
   return result;
 }
 
-Answer first_answer(const Setup& config, const ReferenceState& reference, const RobotState& robot) {
+Answer first_answer(const ControlledArm& config, const ReferenceState& reference,
+                    const RobotState& robot) {
   JointControl control = control_of(config);
   State state = control.start();
   return answer(control, state, reference, robot);
@@ -96,7 +97,7 @@ TEST_P(BothMethods, WhatMotionAndUserDoNotExplainOfATorqueIsToldAsAMovingMean) {
 
 TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
   // a force of the user that grows with 100 N/s: theta_r' = tau_r' / K
-  Setup config = frictionless_config(GetParam());
+  ControlledArm config = frictionless_config(GetParam());
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
@@ -113,7 +114,7 @@ TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
 }
 
 // The torques fed forward for a wrench of the user that grows with 100 `direction` per second.
-VectorM fed_for_growing(const Setup& config, const Vector6& direction) {
+VectorM fed_for_growing(const ControlledArm& config, const Vector6& direction) {
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
@@ -126,7 +127,7 @@ VectorM fed_for_growing(const Setup& config, const Vector6& direction) {
 }
 
 TEST(ModalControl, AForceThatGrowsIsFedForwardAsItWillBe) {
-  Setup config = frictionless_config();
+  ControlledArm config = frictionless_config();
   const VectorM late = fed_for_growing(config, Vector6::Unit(1));
   config.wrench_lead = 4e-3;
   const VectorM early = fed_for_growing(config, Vector6::Unit(1));
@@ -140,7 +141,7 @@ TEST(ModalControl, AForceThatGrowsIsFedForwardAsItWillBe) {
 
 // who holds the handle when the drives come on is no force that grows
 TEST(ModalControl, AForceThatWasThereBeforeIsNotLed) {
-  Setup config = frictionless_config();
+  ControlledArm config = frictionless_config();
   config.wrench_lead = 4e-3;
   JointControl control = control_of(config);
   State state = control.start();
@@ -161,7 +162,7 @@ TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
   const Eigen::Matrix<double, 6, 8> J = chain.jacobian(chain.model().frame("handle"));
   Vector6 torque = Vector6::Zero();
   torque.tail<3>() = J.col(7).tail<3>();
-  Setup config = frictionless_config();
+  ControlledArm config = frictionless_config();
   const VectorM late = fed_for_growing(config, torque);
   config.wrench_lead = 4e-3;
   const VectorM early = fed_for_growing(config, torque);
@@ -169,7 +170,7 @@ TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
 }
 
 // rms of the feedforward of a joint whose reference shakes with 60 Hz and 10 rad/s^2
-double fed_for_shaking(const Setup& config, int joint) {
+double fed_for_shaking(const ControlledArm& config, int joint) {
   JointControl control = control_of(config);
   State state = control.start();
   ReferenceState reference = at_rest(home());
@@ -185,8 +186,8 @@ double fed_for_shaking(const Setup& config, int joint) {
 }
 
 TEST(ModalControl, WhatIsFedForwardToStiffModesIsLowPassedAndToSoftOnesNot) {
-  const Setup plain = frictionless_config();
-  Setup config = plain;
+  const ControlledArm plain = frictionless_config();
+  ControlledArm config = plain;
   config.stiff_low_pass_Hz = 20.0;
   EXPECT_LT(fed_for_shaking(config, 5), 0.5 * fed_for_shaking(plain, 5));
   EXPECT_GT(fed_for_shaking(config, 0), 0.9 * fed_for_shaking(plain, 0));
@@ -194,7 +195,7 @@ TEST(ModalControl, WhatIsFedForwardToStiffModesIsLowPassedAndToSoftOnesNot) {
 
 TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
   const ReferenceState reference = at_rest(home());
-  const Setup config = reference_config(GetParam());
+  const ControlledArm config = reference_config(GetParam());
   for (const double side : {-1.0, 1.0}) {
     RobotState robot = following(reference, VectorM::Zero(6));
     robot.theta_m.array() -= 0.5 * side;  // far behind
@@ -218,7 +219,7 @@ TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
 }
 
 TEST(ModalControl, TheIntegralStopsAtItsBound) {
-  const Setup config = reference_config();
+  const ControlledArm config = reference_config();
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
@@ -243,7 +244,7 @@ TEST(ModalControl, TheIntegralWaitsWhileAMotorIsSaturated) {
 
 // after a joint was held back for long: nothing may keep what was gathered
 TEST(ModalControl, AFullIntegralSaturatesNoMotorAndUnwinds) {
-  const Setup config = reference_config();
+  const ControlledArm config = reference_config();
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
@@ -259,7 +260,7 @@ TEST(ModalControl, AFullIntegralSaturatesNoMotorAndUnwinds) {
 }
 
 TEST(ModalControl, EvenASaturatedIntegralUnwinds) {
-  Setup config = reference_config();
+  ControlledArm config = reference_config();
   config.integral_max = 1.0;
   JointControl control = control_of(config);
   State state = control.start();
@@ -291,7 +292,8 @@ TEST(ModalControl, AConstantErrorOfALinkIsAnsweredMoreAndMore) {
 }
 
 TEST_P(BothMethods, FrictionIsFedForwardWithTheDirectionOfTheReference) {
-  const Setup config = reference_config(GetParam()), smooth = frictionless_config(GetParam());
+  const ControlledArm config = reference_config(GetParam()),
+                      smooth = frictionless_config(GetParam());
   for (const double speed : {-0.3, -2e-3, 2e-3, 0.3}) {
     SCOPED_TRACE(speed);
     ReferenceState reference = at_rest(home());
@@ -344,7 +346,7 @@ TEST(ModalControl, FrictionThatTheFeedbackHasToOvercomeIsLearntWhileTheJointSlid
 
 // What the feedback adds to the torque of a motor that slides is missing friction.
 TEST(ModalControl, TheRateOfLearningIsThatOfTheMissingFriction) {
-  const Setup config = reference_config();
+  const ControlledArm config = reference_config();
   for (const int joint : {0, 3, 5}) {
     SCOPED_TRACE(joint);
     ReferenceState reference = at_rest(home());
@@ -373,7 +375,7 @@ TEST(ModalControl, NoFrictionIsLearntWhileAMotorIsSaturated) {
 
 // 0.8 of the peak of m1 and m2: what is fed forward ends at its bound instead of swinging around it
 TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
-  const Setup config = frictionless_config(GetParam());
+  const ControlledArm config = frictionless_config(GetParam());
   JointControl control = control_of(config);
   State state = control.start();
   const ReferenceState reference = at_rest(home());
@@ -394,7 +396,7 @@ TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
 
 // a matrix of two states whose largest eigenvalue passes 1 at 2 pi f dt = sqrt(5) - 1
 TEST(JointControl, TheFilterOfTheFeedforwardIsStableUpToItsBoundAndRefusedBeyond) {
-  Setup config = frictionless_config();
+  ControlledArm config = frictionless_config();
   config.rate_Hz = 204.0;
   EXPECT_NO_THROW(check(config, config.rate_Hz));
   config.rate_Hz = 203.0;
@@ -439,7 +441,7 @@ TEST(Latency, IsMeasuredFromTheAnsweredCommandWhileTheDrivesAreOff) {
 }
 
 TEST(Latency, WithoutAnAnswerItIsWhatTheConfigurationExpects) {
-  Setup config = reference_config();
+  ControlledArm config = reference_config();
   config.loop.latency = 2e-3;
   JointControl control = control_of(config);
   State state = control.start();
@@ -481,7 +483,7 @@ TEST(JointControl, AfterARestItBeginsAnew) {
 }
 
 TEST(JointControl, DrivesThatFollowPositionsGetTheReferenceAndNoTorques) {
-  Setup config;
+  ControlledArm config;
   config.method = Method::kDrives;
   ReferenceState reference = at_rest(home());
   reference.dq_m.setConstant(0.1);
@@ -499,7 +501,7 @@ TEST(JointControl, DrivesThatFollowPositionsGetTheReferenceAndNoTorques) {
 }
 
 TEST(JointControl, NeedsOneActuatorPerJoint) {
-  Setup config = reference_config();
+  ControlledArm config = reference_config();
   config.actuators.pop_back();
   EXPECT_THROW(control_of(config), SetupError);
   config.method = Method::kDrives;

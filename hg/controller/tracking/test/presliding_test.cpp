@@ -22,8 +22,8 @@ ActuatorModel soft(double elements) {
   return actuator;
 }
 
-Setup config_with(const ActuatorModel& actuator) {
-  Setup config = frictionless_config();
+ControlledArm config_with(const ActuatorModel& actuator) {
+  ControlledArm config = frictionless_config();
   config.actuators[kJoint] = actuator;
   config.friction_share = 1.0;
   config.friction_learning = 0.0;
@@ -32,9 +32,9 @@ Setup config_with(const ActuatorModel& actuator) {
 
 // Torques that are fed forward for friction while the reference of one joint is at `theta`, one
 // after the other; the robot follows.
-std::vector<double> fed_forward(const Setup& config, const std::vector<double>& theta,
+std::vector<double> fed_forward(const ControlledArm& config, const std::vector<double>& theta,
                                 State* last = nullptr) {
-  const auto torques = [&](const Setup& one, State& state) {
+  const auto torques = [&](const ControlledArm& one, State& state) {
     JointControl control = control_of(one);
     std::vector<double> result;
     for (const double angle : theta) {
@@ -48,7 +48,7 @@ std::vector<double> fed_forward(const Setup& config, const std::vector<double>& 
     }
     return result;
   };
-  const Setup smooth = config_with(frictionless_config().actuators[kJoint]);
+  const ControlledArm smooth = config_with(frictionless_config().actuators[kJoint]);
   State state = control_of(config).start(), plain = control_of(smooth).start();
   std::vector<double> friction = torques(config, state);
   const std::vector<double> rest = torques(smooth, plain);
@@ -85,7 +85,7 @@ TEST(Presliding, TurnsRoundOverTwiceItsWay) {
 }
 
 TEST(Presliding, IsMultipliedByWhatWasLearnt) {
-  Setup config = config_with(soft(2));
+  ControlledArm config = config_with(soft(2));
   const std::vector<double> path = {0.0, 0.3 * kWay, 2.0 * kWay};
   const std::vector<double> once = fed_forward(config, path);
   config.friction_share = 1.7;
@@ -94,7 +94,7 @@ TEST(Presliding, IsMultipliedByWhatWasLearnt) {
 }
 
 TEST(Presliding, DoesNotDependOnTheSpeedOverWhichTheSignChanges) {
-  Setup config = config_with(soft(2));
+  ControlledArm config = config_with(soft(2));
   const std::vector<double> path = {0.0, 0.3 * kWay, 2.0 * kWay};
   const std::vector<double> tau = fed_forward(config, path);
   config.friction_speed = 1.0;
@@ -111,7 +111,7 @@ TEST(Presliding, RemembersFeetOnlyWhereAJointHasIt) {
 
 // Learnt is what is missing while all elements slip.
 TEST(Presliding, NothingIsLearntBeforeAllElementsSlip) {
-  Setup config = config_with(soft(3));
+  ControlledArm config = config_with(soft(3));
   config.friction_learning = 1.0;
   model::ChainData chain(arm());
   chain.update(posture(home()), Eigen::VectorXd::Zero(8));
@@ -136,7 +136,7 @@ TEST(Presliding, NothingIsLearntBeforeAllElementsSlip) {
 }
 
 TEST(Presliding, BeginsAnewAfterARest) {
-  const Setup config = config_with(soft(2));
+  const ControlledArm config = config_with(soft(2));
   State state;
   fed_forward(config, {0.0, 5.0 * kWay}, &state);
   JointControl control = control_of(config);
