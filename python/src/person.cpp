@@ -17,7 +17,7 @@ void bind_person(nb::module_& module) {
   module.def(
       "start_posture",
       [](const Scenario& scenario) {
-        const scenario::Start start = scenario::find_start(scenario);
+        const scenario::Start start = scenario::find_start(scenario.device, scenario.twin);
         return std::make_tuple(to_numpy(start.q_p), to_numpy(start.q_m));
       },
       nb::arg("scenario"), "(q_p, q_m) of the device where a run begins.");
@@ -25,8 +25,8 @@ void bind_person(nb::module_& module) {
       .def(
           "__init__",
           [](person::Person* self, const Scenario& scenario) {
-            new (self)
-                person::Person(scenario::make_person(scenario, scenario::find_start(scenario)));
+            new (self) person::Person(scenario::make_person(
+                scenario, scenario::find_start(scenario.device, scenario.twin)));
           },
           nb::arg("scenario"))
       .def(
