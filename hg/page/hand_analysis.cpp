@@ -20,10 +20,10 @@ double best_dexterity(DeviceModel& device) {
     ranges[joint] = model::finite_range({limits.q_min, limits.q_max}, is_angle);
   }
   generator::PostureSampler sampler(ranges);
+  model::ChainData chain(device.chain);
   double best = 0.0;
   for (int i = 0; i < kPostures; ++i) {
-    best = std::max(best,
-                    generator::dexterity(device.chain, device.handle, device.n_p, sampler.draw()));
+    best = std::max(best, generator::dexterity(chain, device.handle, device.n_p, sampler.draw()));
   }
   return best;
 }
@@ -34,6 +34,7 @@ HandAnalysis::HandAnalysis(const config::Scenario& scenario)
     : twin_(scenario.twin.model.chain),
       end_effector_(scenario.twin.model.end_effector),
       device_(scenario.device.model),
+      device_chain_(device_.chain),
       best_(best_dexterity(device_)) {}
 
 viewer_server::HandBudget HandAnalysis::budget(const CycleRecord& record) {
@@ -69,7 +70,7 @@ std::optional<viewer_server::Singularity> HandAnalysis::singularity(const CycleR
   if (!has_posture) return {};
   Eigen::VectorXd q(device_.n_p + device_.n_m);
   q << record.robot.q_p, record.reference.q_m;
-  const double now = generator::dexterity(device_.chain, device_.handle, device_.n_p, q);
+  const double now = generator::dexterity(device_chain_, device_.handle, device_.n_p, q);
   viewer_server::Singularity singularity{std::clamp(now / best_, 0.0, 1.0)};
   double nearest = kInfinity;
   for (int i = 0; i < static_cast<int>(device_.virtual_joints.size()); ++i) {

@@ -28,6 +28,7 @@ class HandAnalysis {
   model::ChainData twin_;
   int end_effector_;
   DeviceModel device_;
+  model::ChainData device_chain_;
   double best_ = 0.0;  ///< best dexterity of many postures
 };
 

@@ -41,7 +41,7 @@ std::vector<int> find_joints(Loader& loader, const std::vector<std::string>& wan
 }
 
 // Every joint of the plant is driven or flexible.
-void take_plant(Loader& loader, const SimulatedDevice& device, SimulationDraft& draft,
+void take_plant(Loader& loader, const SimulationTarget& device, SimulationDraft& draft,
                 const model::ChainModel& chain) {
   Simulation& simulation = draft.simulation;
   simulation.gantry = find_joints(loader, device.gantry, draft);

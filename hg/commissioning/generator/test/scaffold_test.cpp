@@ -28,7 +28,7 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
     EXPECT_FALSE(Interval({range.q_min, range.q_max}).contains(0.0)) << i;
     EXPECT_TRUE(Interval({range.q_min, range.q_max}).contains(device.model.posture[i])) << i;
   }
-  model::ChainModel chain = device.model.chain;
+  model::ChainData chain(device.model.chain);
   EXPECT_GT(dexterity(chain, device.model.handle, 0, device.model.posture), 0.05);
 }
 
